@@ -1,0 +1,1 @@
+"""Rotations, states of bodies, ground motion and the recorder of a run."""

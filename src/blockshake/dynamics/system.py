@@ -1,0 +1,201 @@
+"""What both solvers integrate: bodies, forces on them, and the record of a run."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
+from blockshake.jit import kernel
+
+ENERGY_TERMS = (
+    "kinetic",
+    "potential",
+    "elastic",
+    "dissipated_friction",
+    "dissipated_contact",
+    "dissipated_viscous",
+    "input",
+)
+
+
+class Bodies(NamedTuple):
+    """Constants of the bodies, as kernels read them.
+
+    ``mass`` (n_bodies,) [kg]; ``inertia`` and ``inverse_inertia`` (n_bodies, 3, 3), body axes
+    [kg m2]; ``inverse_mass`` (n_bodies,), zero with ``inverse_inertia`` for driven bodies;
+    ``driven`` bool (n_bodies,); ``friction`` (n_bodies, n_bodies) [1]; ``gravity`` (3,) [m/s2];
+    ``home`` (n_bodies, 3) and ``home_orientation`` (n_bodies, 4): poses of the structure file.
+    """
+
+    mass: np.ndarray
+    inertia: np.ndarray
+    inverse_mass: np.ndarray
+    inverse_inertia: np.ndarray
+    driven: np.ndarray
+    friction: np.ndarray
+    gravity: np.ndarray
+    home: np.ndarray
+    home_orientation: np.ndarray
+
+
+class State(NamedTuple):
+    """Motion of the bodies at one instant, world frame, changed in place by kernels.
+
+    ``position`` (n_bodies, 3) [m], ``orientation`` (n_bodies, 4) unit quaternions,
+    ``velocity`` (n_bodies, 3) [m/s], ``angular_velocity`` (n_bodies, 3) [rad/s].
+    """
+
+    position: np.ndarray
+    orientation: np.ndarray
+    velocity: np.ndarray
+    angular_velocity: np.ndarray
+
+
+class Stoppers(NamedTuple):
+    """Elastic stops fixed to the first driven body.
+
+    ``body`` int64 (n,); ``point`` (n, 3) body frame [m]; ``axis`` (n, 3) signed unit vectors,
+    world frame at the start; ``gap`` (n,) [m]; ``stiffness`` (n,) [N/m].
+    """
+
+    body: np.ndarray
+    point: np.ndarray
+    axis: np.ndarray
+    gap: np.ndarray
+    stiffness: np.ndarray
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """Record of a run at the times asked for; NaN after an abort.
+
+    Attributes
+    ----------
+    time : float64 array, shape (n_times,)
+        [s]
+    position, velocity, angular_velocity : float64 arrays, shape (n_times, n_bodies, 3)
+        Inertial frame [m, m/s, rad/s].
+    orientation : float64 array, shape (n_times, n_bodies, 4)
+        Unit quaternions (w, x, y, z), body to world, continuous in sign.
+    energy : float64 array, shape (n_times, 7)
+        `ENERGY_TERMS`, of the bodies that are not driven [J].
+    joints : int64 array, shape (n_joints, 2)
+        Pairs of bodies that touched, by index.
+    joint_force : float64 array, shape (n_times, n_joints, 3)
+        Resultant on the second body of each pair [N].
+    status : str
+        ``completed``, ``collapsed``, ``diverged`` or ``not-converged``.
+    reason : str
+        Why the run ended early or is not to be trusted; empty when completed.
+    end_time : float
+        Time reached [s].
+    numerics : dict of str to float
+        Figures of the computation: steps, residuals, iterations and the like.
+    """
+
+    time: np.ndarray
+    position: np.ndarray
+    orientation: np.ndarray
+    velocity: np.ndarray
+    angular_velocity: np.ndarray
+    energy: np.ndarray
+    joints: np.ndarray
+    joint_force: np.ndarray
+    status: str
+    reason: str
+    end_time: float
+    numerics: dict
+
+
+def assemble_bodies(structure):
+    """Bodies, their state at the start and their stoppers, from a structure."""
+    free = ~structure.driven
+    inverse_mass = np.where(free, 1.0 / structure.mass, 0.0)
+    inverse_inertia = np.linalg.inv(structure.inertia) * free[:, None, None]
+    bodies = Bodies(
+        mass=structure.mass,
+        inertia=structure.inertia,
+        inverse_mass=inverse_mass,
+        inverse_inertia=inverse_inertia,
+        driven=structure.driven,
+        friction=np.nan_to_num(structure.friction),
+        gravity=np.array(structure.file.gravity),
+        home=structure.position.copy(),
+        home_orientation=structure.orientation.copy(),
+    )
+    state = State(
+        structure.position.copy(),
+        structure.orientation.copy(),
+        structure.velocity.copy(),
+        structure.angular_velocity.copy(),
+    )
+    return bodies, state, _assemble_stoppers(structure)
+
+
+def _assemble_stoppers(structure):
+    file = structure.file
+    unit = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+    sign = {"+": 1.0, "-": -1.0}
+    return Stoppers(
+        body=np.array([structure.body_names.index(stop.body) for stop in file.stoppers], dtype=np.int64),
+        point=np.array([stop.position for stop in file.stoppers], dtype=float).reshape(-1, 3),
+        axis=np.array([np.multiply(sign[stop.axis[0]], unit[stop.axis[1]]) for stop in file.stoppers]).reshape(-1, 3),
+        gap=np.array([stop.gap for stop in file.stoppers], dtype=float),
+        stiffness=np.array([stop.stiffness for stop in file.stoppers], dtype=float),
+    )
+
+
+@kernel
+def place_driven_into(bodies, displacement, velocity, state):
+    """Put every driven body where the ground motion has it, with its velocity.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    displacement, velocity : float64 arrays, shape (4,)
+        Ground x, y, z relative to the start and pitch [m, rad], and their rates.
+    state : State
+        Position, orientation and velocities of the driven bodies are overwritten; pitch turns
+        each about its moving mass centre, positive leaning the top to +x.
+    """
+    pitch = np.zeros(3)
+    pitch[1] = displacement[3]
+    for body in range(bodies.mass.size):
+        if bodies.driven[body]:
+            for axis in range(3):
+                state.position[body, axis] = bodies.home[body, axis] + displacement[axis]
+                state.velocity[body, axis] = velocity[axis]
+                state.angular_velocity[body, axis] = 0.0
+            state.angular_velocity[body, 1] = velocity[3]
+            rotate_into(bodies.home_orientation[body], pitch, state.orientation[body])
+
+
+@kernel
+def kinetic_energy(bodies, velocity, angular_velocity, orientation):
+    """Kinetic energy of the bodies that are not driven [J]; arrays as in `State`."""
+    R = np.empty((3, 3))
+    energy = 0.0
+    for body in range(bodies.mass.size):
+        if bodies.driven[body]:
+            continue
+        rotation_matrix_into(orientation[body], R)
+        v, w, inertia = velocity[body], angular_velocity[body], bodies.inertia[body]
+        energy += 0.5 * bodies.mass[body] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+        for i in range(3):
+            spin_i = R[0, i] * w[0] + R[1, i] * w[1] + R[2, i] * w[2]
+            for j in range(3):
+                spin_j = R[0, j] * w[0] + R[1, j] * w[1] + R[2, j] * w[2]
+                energy += 0.5 * spin_i * inertia[i, j] * spin_j
+    return energy
+
+
+@kernel
+def potential_energy(bodies, position):
+    """Potential energy in gravity of the bodies that are not driven, zero at the origin [J]."""
+    energy = 0.0
+    for body in range(bodies.mass.size):
+        if not bodies.driven[body]:
+            for axis in range(3):
+                energy -= bodies.mass[body] * bodies.gravity[axis] * position[body, axis]
+    return energy

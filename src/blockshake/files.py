@@ -1,0 +1,190 @@
+"""Reading and writing files: strict YAML, atomic writes, digests of sources and contents."""
+
+import ast
+import contextlib
+import functools
+import hashlib
+import json
+import os
+import re
+import tempfile
+from pathlib import Path
+
+import yaml
+
+from blockshake.errors import InputError
+
+PACKAGE = Path(__file__).parent
+_SHIPPED = PACKAGE.parents[1] / "config"
+
+
+class _StrictLoader(yaml.SafeLoader):
+    """YAML 1.2 numbers (``1e-5`` is one) and no key twice."""
+
+    def construct_mapping(self, node, deep=False):
+        keys = [key.value for key, _ in node.value]
+        for key in keys:
+            if keys.count(key) > 1:
+                raise yaml.constructor.ConstructorError(None, None, f"the key '{key}' stands twice", node.start_mark)
+        return super().construct_mapping(node, deep)
+
+
+_StrictLoader.add_implicit_resolver(
+    "tag:yaml.org,2002:float",
+    re.compile(r"^[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?$|^[-+]?\.(inf|Inf|INF)$|^\.(nan|NaN|NAN)$"),
+    list("-+0123456789."),
+)
+
+
+def parse_yaml(text, where):
+    """Python value of a YAML text, every number read as one (``1e-5`` included).
+
+    Raises
+    ------
+    InputError
+        The text is not YAML or states a key twice.
+    """
+    try:
+        return yaml.load(text, Loader=_StrictLoader)
+    except yaml.YAMLError as error:
+        raise InputError(where, "", "expected YAML; " + " ".join(str(error).split())) from None
+
+
+def load_yaml(path):
+    """Mapping at the top of a YAML file.
+
+    Raises
+    ------
+    InputError
+        The file is missing, unreadable, not YAML or not a mapping.
+    """
+    mapping = parse_yaml(read_text(path), path)
+    if not isinstance(mapping, dict):
+        raise InputError(path, "", "expected a mapping of keys to values at the top of the file")
+    return mapping
+
+
+def read_text(path):
+    """Text of a file that a user named.
+
+    Raises
+    ------
+    InputError
+        The file is missing or is not text.
+    """
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(path, "", f"expected a readable file; {error.strerror.lower()}") from None
+    except UnicodeDecodeError:
+        raise InputError(path, "", "expected a text file; its bytes are not UTF-8") from None
+
+
+def shipped(kind, name):
+    """Path of a file that ships with the program, such as ``shipped("structures", "configuration-1")``."""
+    return _SHIPPED / kind / f"{name}.yaml"
+
+
+def shipped_names(kind):
+    """Names of the files of one kind that ship with the program, sorted."""
+    return sorted(path.stem for path in (_SHIPPED / kind).glob("*.yaml"))
+
+
+@contextlib.contextmanager
+def replacing(path):
+    """Temporary path beside ``path`` that takes its place when the block ends well.
+
+    A reader sees the whole old file or the whole new one; a failed or killed writer leaves the
+    old one.
+    """
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=path.suffix, dir=path.parent)
+    os.close(handle)
+    try:
+        yield Path(temporary)
+        os.chmod(temporary, 0o666 & ~_umask())
+        os.replace(temporary, path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+
+
+def _umask():
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def write_text(path, text):
+    """Write a text file atomically."""
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def write_json(path, value):
+    """Write a JSON file atomically, keys in the order given, floats with all their digits."""
+    write_text(path, json.dumps(value, indent=2) + "\n")
+
+
+def write_dataset(path, dataset):
+    """Write an xarray Dataset as netCDF-4, atomically, float variables compressed."""
+    encoding = {
+        name: {"zlib": True, "complevel": 2, "shuffle": True}
+        for name, variable in dataset.variables.items()
+        if variable.dtype.kind == "f" and variable.size > 64
+    }
+    with replacing(path) as temporary:
+        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
+
+
+def content_digest(*values):
+    """Twelve hexadecimal digits that identify JSON-like values and arrays of bytes."""
+    digest = hashlib.sha256()
+    for value in values:
+        digest.update(value if isinstance(value, bytes) else json.dumps(value, sort_keys=True).encode())
+        digest.update(b"\0")
+    return digest.hexdigest()[:12]
+
+
+def file_digest(path):
+    """Twelve hexadecimal digits that identify a file's bytes."""
+    return content_digest(Path(path).read_bytes())
+
+
+@functools.cache
+def source_digest(*packages):
+    """Twelve hexadecimal digits that identify what the sources compute.
+
+    Parameters
+    ----------
+    *packages : str
+        Folders or modules of blockshake, such as ``"geometry"``, ``"solvers/ls_dem"`` or
+        ``"files.py"``; none means the whole package.
+
+    Notes
+    -----
+    Comments, docstrings and layout do not count: the digest is of the syntax trees, so that a
+    better explanation reruns no simulation.
+    """
+    digest = hashlib.sha256()
+    for package in packages or (".",):
+        path = PACKAGE / package
+        for source in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
+            digest.update(str(source.relative_to(PACKAGE)).encode())
+            digest.update(ast.dump(_without_docstrings(ast.parse(source.read_text(encoding="utf-8")))).encode())
+    return digest.hexdigest()[:12]
+
+
+def _without_docstrings(tree):
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        if (
+            isinstance(body, list)
+            and body
+            and isinstance(body[0], ast.Expr)
+            and isinstance(body[0].value, ast.Constant)
+            and isinstance(body[0].value.value, str)
+        ):
+            del body[0]
+    return tree

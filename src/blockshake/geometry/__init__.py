@@ -1,0 +1,1 @@
+"""Shapes, level sets, surface nodes, polyhedra, mass properties and structures."""

@@ -1,0 +1,145 @@
+"""Convex polyhedra with polygonal faces, and mass properties of closed surfaces."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import trimesh
+from scipy.spatial import ConvexHull
+
+# Two facets of a hull belong to one face when their unit normals and offsets agree to this much,
+# relative to the size of the body: far above rounding, far below any intended edge.
+_SAME_PLANE = 1e-7
+
+
+@dataclass(frozen=True)
+class MassProperties:
+    """Volume, centroid and unit-density inertia of a closed surface.
+
+    Attributes
+    ----------
+    volume : float
+        Enclosed volume [m3].
+    centroid : float64 array, shape (3,)
+        In the frame of the vertices [m].
+    inertia : float64 array, shape (3, 3)
+        About the centroid for a density of 1 kg/m3 [m5], axes of the vertices' frame.
+    """
+
+    volume: float
+    centroid: np.ndarray
+    inertia: np.ndarray
+
+
+@dataclass(frozen=True)
+class Polyhedron:
+    """A convex body by its vertices and polygonal faces.
+
+    Attributes
+    ----------
+    vertices : float64 array, shape (n_vertices, 3)
+        Body frame [m].
+    faces : tuple of int64 arrays
+        Vertex indices of each face, counter-clockwise seen from outside.
+    normals : float64 array, shape (n_faces, 3)
+        Unit outward normals.
+    offsets : float64 array, shape (n_faces,)
+        A point p lies inside where ``normals @ p <= offsets`` [m].
+    """
+
+    vertices: np.ndarray
+    faces: tuple
+    normals: np.ndarray
+    offsets: np.ndarray
+
+
+def box_vertices(size, chamfer):
+    """Vertices of a box whose twelve edges are cut at 45 degrees.
+
+    Parameters
+    ----------
+    size : sequence of 3 floats
+        Full edge lengths along body x, y, z [m].
+    chamfer : float
+        Leg of the chamfer on each adjacent face [m]; 0 gives the sharp box.
+
+    Returns
+    -------
+    float64 array, shape (8, 3) or (32, 3)
+        With a chamfer: the 24 corners of the six flats, then the 8 points where three chamfers
+        meet.
+    """
+    half = np.asarray(size, dtype=float) / 2.0
+    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
+    if chamfer == 0.0:
+        return signs * half
+    flats = []
+    for axis in range(3):
+        inset = np.full(3, chamfer)
+        inset[axis] = 0.0
+        flats.append(signs * (half - inset))
+    return np.vstack([*flats, signs * (half - chamfer / 2.0)])
+
+
+def convex_polyhedron(vertices):
+    """Convex hull of points, coplanar facets merged into polygons, faces in a fixed order.
+
+    Parameters
+    ----------
+    vertices : float64 array, shape (n, 3)
+        Points [m]; those inside the hull or inside a face are dropped.
+    """
+    vertices = np.asarray(vertices, dtype=float)
+    hull = ConvexHull(vertices)
+    scale = np.ptp(vertices, axis=0).max()
+    planes = np.column_stack([hull.equations[:, :3], -hull.equations[:, 3] / scale])
+    order = np.lexsort(np.round(planes, 6).T)
+    distinct = []
+    for index in order:
+        if not any(np.abs(planes[index] - planes[kept]).max() < _SAME_PLANE for kept in distinct):
+            distinct.append(index)
+    normals = planes[distinct, :3]
+    offsets = planes[distinct, 3] * scale
+    faces = []
+    for normal, offset in zip(normals, offsets, strict=True):
+        on_face = np.flatnonzero(np.abs(vertices @ normal - offset) < _SAME_PLANE * scale)
+        on_face = np.array([index for index in on_face if index in hull.vertices])
+        faces.append(_counter_clockwise(vertices, on_face, normal))
+    used = np.unique(np.concatenate(faces))
+    renumbered = np.full(len(vertices), -1)
+    renumbered[used] = np.arange(len(used))
+    return Polyhedron(vertices[used], tuple(renumbered[face] for face in faces), normals, offsets)
+
+
+def _counter_clockwise(vertices, indices, normal):
+    points = vertices[indices] - vertices[indices].mean(axis=0)
+    first = points[0] / np.linalg.norm(points[0])
+    second = np.cross(normal, first)
+    return indices[np.argsort(np.arctan2(points @ second, points @ first))]
+
+
+def triangles(polyhedron):
+    """Triangle fan of every face: int64 array, shape (n_triangles, 3), outward."""
+    return np.array(
+        [
+            (face[0], face[corner], face[corner + 1])
+            for face in polyhedron.faces
+            for corner in range(1, len(face) - 1)
+        ]
+    )
+
+
+def mass_properties(vertices, faces):
+    """Mass properties of the solid inside a closed triangulated surface.
+
+    Parameters
+    ----------
+    vertices : float64 array, shape (n_vertices, 3)
+        Corners [m].
+    faces : int array, shape (n_triangles, 3)
+        Outward triangles.
+    """
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    inertia = np.array(mesh.moment_inertia)
+    # a symmetric body must not start to yaw from the rounding of its own inertia
+    inertia[np.abs(inertia) < 1e-12 * np.trace(inertia)] = 0.0
+    return MassProperties(float(mesh.volume), np.array(mesh.center_mass), inertia)

@@ -1,0 +1,67 @@
+"""Unit quaternions (w, x, y, z) that turn body axes into world axes."""
+
+import numpy as np
+
+from blockshake.jit import kernel
+
+
+@kernel
+def rotation_matrix_into(q, R):
+    """Rotation matrix of a unit quaternion, written into ``R``.
+
+    Parameters
+    ----------
+    q : float64 array, shape (4,)
+        Unit quaternion (w, x, y, z), body to world.
+    R : float64 array, shape (3, 3)
+        Overwritten: ``R @ body_vector`` is the world vector.
+    """
+    w, x, y, z = q[0], q[1], q[2], q[3]
+    R[0, 0] = 1.0 - 2.0 * (y * y + z * z)
+    R[0, 1] = 2.0 * (x * y - w * z)
+    R[0, 2] = 2.0 * (x * z + w * y)
+    R[1, 0] = 2.0 * (x * y + w * z)
+    R[1, 1] = 1.0 - 2.0 * (x * x + z * z)
+    R[1, 2] = 2.0 * (y * z - w * x)
+    R[2, 0] = 2.0 * (x * z - w * y)
+    R[2, 1] = 2.0 * (y * z + w * x)
+    R[2, 2] = 1.0 - 2.0 * (x * x + y * y)
+
+
+@kernel
+def rotate_into(q, rotation, out):
+    """Quaternion ``q`` turned further by a world-frame rotation vector, written into ``out``.
+
+    Parameters
+    ----------
+    q : float64 array, shape (4,)
+        Unit quaternion before.
+    rotation : float64 array, shape (3,)
+        Rotation vector in the world frame [rad], such as angular velocity times time step.
+    out : float64 array, shape (4,)
+        Overwritten with the unit quaternion after, same sign branch as ``q``; may be ``q``.
+    """
+    rx, ry, rz = rotation[0], rotation[1], rotation[2]
+    angle = np.sqrt(rx * rx + ry * ry + rz * rz)
+    c = np.cos(0.5 * angle)
+    # sin(a/2)/a by its series near zero, where the quotient is 0/0
+    s = 0.5 - angle * angle / 48.0 if angle < 1e-4 else np.sin(0.5 * angle) / angle
+    ax, ay, az = s * rx, s * ry, s * rz
+    w, x, y, z = q[0], q[1], q[2], q[3]
+    nw = c * w - ax * x - ay * y - az * z
+    nx = c * x + ax * w + ay * z - az * y
+    ny = c * y + ay * w + az * x - ax * z
+    nz = c * z + az * w + ax * y - ay * x
+    norm = np.sqrt(nw * nw + nx * nx + ny * ny + nz * nz)
+    out[0], out[1], out[2], out[3] = nw / norm, nx / norm, ny / norm, nz / norm
+
+
+def rotation_matrices(q):
+    """Rotation matrices, shape (..., 3, 3), of unit quaternions (w, x, y, z), shape (..., 4)."""
+    w, x, y, z = np.moveaxis(np.asarray(q, dtype=float), -1, 0)
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)

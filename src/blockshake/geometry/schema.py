@@ -1,0 +1,111 @@
+"""The structure file (YAML): its keys, types and limits; whatever else is an error."""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Vector = tuple[Finite, Finite, Finite]
+Quaternion = tuple[Finite, Finite, Finite, Finite]
+Name = Annotated[str, Field(min_length=1, pattern=r"^[^\s./]+$")]
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Material(_Strict):
+    """Bulk properties of a material."""
+
+    density: Positive = Field(description="mass density [kg/m3]")
+    youngs_modulus: Positive = Field(description="Young's modulus [Pa]")
+    poisson_ratio: float = Field(gt=-1.0, lt=0.5, description="Poisson's ratio [1]")
+    viscous_modulus: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(
+        0.0, description="viscous modulus of the bulk [Pa s, by assumption]; the rigid solvers do not use it"
+    )
+
+
+class Shape(_Strict):
+    """A box by its full edge lengths, chamfered or sharp, or a closed triangulated mesh."""
+
+    box: tuple[Positive, Positive, Positive] | None = Field(None, description="edge lengths along body x, y, z [m]")
+    chamfer: Annotated[float, Field(ge=0)] = Field(0.0, description="leg of the 45-degree chamfer of a box [m]")
+    mesh: str | None = Field(None, description="file of a closed triangulated surface, coordinates in m")
+
+    @model_validator(mode="after")
+    def _one_kind(self):
+        if (self.box is None) == (self.mesh is None):
+            raise ValueError("expected either box (three edge lengths) or mesh (a file)")
+        if self.mesh is not None and self.chamfer:
+            raise ValueError("expected a chamfer on a box only")
+        if self.box is not None and 2.0 * self.chamfer >= min(self.box):
+            raise ValueError("expected a chamfer below half the smallest edge length")
+        return self
+
+
+class Body(_Strict):
+    """One rigid body: where it starts and how it moves then."""
+
+    name: Name
+    shape: str
+    material: str
+    position: Vector = Field(description="mass centre, world frame [m]")
+    orientation: Quaternion = Field((1.0, 0.0, 0.0, 0.0), description="unit quaternion w, x, y, z, body to world")
+    velocity: Vector = Field((0.0, 0.0, 0.0), description="of the mass centre, world frame [m/s]")
+    angular_velocity: Vector = Field((0.0, 0.0, 0.0), description="world frame [rad/s]")
+    driven: bool = Field(False, description="the body follows the ground motion")
+    density: Positive | None = Field(None, description="of this body instead of its material's [kg/m3]")
+
+
+class Friction(_Strict):
+    """Coulomb's coefficient of a pair of materials."""
+
+    pair: tuple[str, str]
+    coefficient: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+
+
+class Stopper(_Strict):
+    """A one-sided elastic stop fixed to the driven body."""
+
+    body: str
+    position: Vector = Field(description="point of the body, body frame [m]")
+    axis: Literal["+x", "-x", "+y", "-y", "+z", "-z"] = Field(description="side on which the stop stands")
+    gap: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(description="clearance at the start [m]")
+    stiffness: Positive = Field(description="force per closure beyond the gap [N/m]")
+
+
+class Marker(_Strict):
+    """A point of a body whose displacement is measured."""
+
+    name: Name
+    body: str
+    position: Vector = Field(description="body frame [m]")
+
+
+class Accelerometer(_Strict):
+    """An accelerometer fixed to a body, one channel an axis."""
+
+    name: Name
+    body: str
+    position: Vector = Field(description="body frame [m]")
+    axes: tuple[Literal["x", "y", "z"], ...] = Field(min_length=1)
+
+
+class StructureFile(_Strict):
+    """The whole file."""
+
+    name: str
+    description: str = ""
+    gravity: Vector = Field((0.0, 0.0, -9.81), description="[m/s2]")
+    materials: dict[Name, Material]
+    shapes: dict[Name, Shape]
+    bodies: tuple[Body, ...] = Field(min_length=1)
+    friction: tuple[Friction, ...] = ()
+    restitution: Annotated[float, Field(ge=0, le=1)] = Field(
+        0.5, description="C_res of Eq. (3), LS-DEM; 0 means critical damping [1]"
+    )
+    nscd_restitution: Annotated[float, Field(ge=0, le=1)] = Field(0.0, description="Newton's restitution, NSCD [1]")
+    stoppers: tuple[Stopper, ...] = ()
+    markers: tuple[Marker, ...] = ()
+    accelerometers: tuple[Accelerometer, ...] = ()

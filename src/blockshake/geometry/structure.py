@@ -1,0 +1,297 @@
+"""A structure as the solvers need it: checked file, shapes, mass properties, start state."""
+
+import copy
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from pydantic import ValidationError
+
+from blockshake.errors import InputError
+from blockshake.files import load_yaml, shipped, shipped_names
+from blockshake.geometry.overlap import penetration_depth
+from blockshake.geometry.polyhedron import (
+    MassProperties,
+    Polyhedron,
+    box_vertices,
+    convex_polyhedron,
+    mass_properties,
+    triangles,
+)
+from blockshake.geometry.schema import StructureFile
+
+_DEEPEST_OVERLAP = 1e-3  # m, contract; deeper is a wrong structure, not an initial penetration
+_TOUCHING = 1e-4  # m, contract: an equilibrium within this of the given poses is the start
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A shape about its mass centre.
+
+    Attributes
+    ----------
+    vertices, triangles : float64 (n, 3), int64 (m, 3)
+        Closed outward surface, body frame [m].
+    polyhedron : Polyhedron or None
+        The same as a convex body; None where the shape is not convex.
+    properties : MassProperties
+        Of unit density, centroid at the origin.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    polyhedron: Polyhedron | None
+    properties: MassProperties
+
+
+@dataclass(frozen=True)
+class Structure:
+    """A checked structure with what follows from its geometry.
+
+    Attributes
+    ----------
+    file : StructureFile
+        The file's content, parameters applied.
+    source : str
+        Name or path it came from.
+    solids : dict of str to Solid
+        By shape name.
+    mass : float64 array, shape (n_bodies,)
+        Of the true chamfered shape [kg].
+    inertia : float64 array, shape (n_bodies, 3, 3)
+        About the mass centre, body axes [kg m2].
+    driven : bool array, shape (n_bodies,)
+        Bodies that follow the motion.
+    position, velocity, angular_velocity : float64 arrays, shape (n_bodies, 3)
+        At the start, world frame [m, m/s, rad/s].
+    orientation : float64 array, shape (n_bodies, 4)
+        At the start, unit quaternions (w, x, y, z), body to world.
+    friction : float64 array, shape (n_bodies, n_bodies)
+        Coulomb's coefficient of each pair of bodies [1]; NaN between driven bodies.
+    touching : bool array, shape (n_bodies, n_bodies)
+        Pairs nearer than 0.1 mm at the start.
+    """
+
+    file: StructureFile
+    source: str
+    solids: dict
+    mass: np.ndarray
+    inertia: np.ndarray
+    driven: np.ndarray
+    position: np.ndarray
+    orientation: np.ndarray
+    velocity: np.ndarray
+    angular_velocity: np.ndarray
+    friction: np.ndarray
+    touching: np.ndarray
+
+    @property
+    def body_names(self):
+        """Names of the bodies, in file order."""
+        return [body.name for body in self.file.bodies]
+
+    def solid(self, body):
+        """Solid of the body with this index."""
+        return self.solids[self.file.bodies[body].shape]
+
+
+def load_structure(source, parameters=None):
+    """Structure from a shipped name or a YAML file.
+
+    Parameters
+    ----------
+    source : str or path
+        ``configuration-1`` to ``configuration-4``, or a file.
+    parameters : dict of str to value, optional
+        Values by dotted name that replace the file's, such as
+        ``{"friction.concrete.concrete": 0.6, "materials.concrete.density": 2350.0}``.
+
+    Raises
+    ------
+    InputError
+        Unknown key, missing friction pair, overlapping bodies, open mesh and the like.
+    """
+    path = shipped("structures", source)
+    if not path.exists():
+        path = Path(source)
+        if not path.exists() and path.suffix == "":
+            raise InputError(source, "", f"expected a structure file or one of {', '.join(shipped_names('structures'))}")
+    mapping = copy.deepcopy(load_yaml(path))
+    for key, value in (parameters or {}).items():
+        _replace(mapping, key, value, str(source))
+    return build_structure(mapping, str(source), path.parent)
+
+
+def build_structure(mapping, source, folder):
+    """Structure from the mapping of a structure file; ``folder`` is where its meshes lie."""
+    try:
+        file = StructureFile.model_validate(mapping)
+    except ValidationError as error:
+        raise _worded(error, mapping, source) from None
+    _check_names(file, source)
+    solids = {name: _solid(name, shape, source, folder) for name, shape in file.shapes.items()}
+    mass, inertia = _masses(file, solids)
+    position = np.array([body.position for body in file.bodies])
+    orientation = _unit_quaternions(file, source)
+    return Structure(
+        file=file,
+        source=source,
+        solids=solids,
+        mass=mass,
+        inertia=inertia,
+        driven=np.array([body.driven for body in file.bodies]),
+        position=position,
+        orientation=orientation,
+        velocity=np.array([body.velocity for body in file.bodies]),
+        angular_velocity=np.array([body.angular_velocity for body in file.bodies]),
+        friction=_friction(file, source),
+        touching=_touching(file, source, solids, position, orientation),
+    )
+
+
+def _replace(mapping, key, value, source):
+    """Set one dotted key of a structure mapping; friction pairs in either order."""
+    parts = key.split(".")
+    if parts[0] == "friction":
+        for entry in mapping.get("friction", []):
+            if len(parts) == 3 and sorted(entry["pair"]) == sorted(parts[1:]):
+                entry["coefficient"] = value
+                return
+        raise InputError(source, key, "expected friction.MATERIAL.MATERIAL of a pair in the file")
+    place = mapping
+    for part in parts[:-1]:
+        if isinstance(place, list):
+            found = [item for index, item in enumerate(place) if item.get("name", str(index)) == part]
+            place = found[0] if found else None
+        elif isinstance(place, dict):
+            place = place.get(part)
+        if not isinstance(place, (dict, list)):
+            raise InputError(source, key, f"expected a parameter of this structure; it has no '{part}' here")
+    if not isinstance(place, dict):
+        raise InputError(source, key, "expected a parameter of this structure")
+    place[parts[-1]] = value
+
+
+def _worded(error, mapping, source):
+    """First of pydantic's complaints as one line that names the key."""
+    first = error.errors()[0]
+    place, words = mapping, []
+    for part in first["loc"]:
+        if isinstance(place, (list, tuple)) and isinstance(part, int) and part < len(place):
+            place = place[part]
+            words.append(str(place.get("name", part)) if isinstance(place, dict) else str(part))
+        else:
+            place = place.get(part) if isinstance(place, dict) else None
+            words.append(str(part))
+    message = first["msg"].removeprefix("Value error, ")
+    if first["type"] == "extra_forbidden":
+        message = "unknown key; expected one of the structure file's keys"
+    elif first["type"] == "missing":
+        message = "missing key"
+    elif "input" in first and not isinstance(first["input"], dict):
+        message = f"{message[0].lower()}{message[1:]}, not {first['input']!r}"
+    return InputError(source, ".".join(words), message)
+
+
+def _check_names(file, source):
+    for kind in ("bodies", "markers", "accelerometers"):
+        names = [item.name for item in getattr(file, kind)]
+        for name in names:
+            if names.count(name) > 1:
+                raise InputError(source, f"{kind}.{name}", "expected every name once")
+    bodies = {body.name for body in file.bodies}
+    for body in file.bodies:
+        for key, known in (("shape", file.shapes), ("material", file.materials)):
+            if getattr(body, key) not in known:
+                raise InputError(
+                    source, f"bodies.{body.name}.{key}", f"expected one of {', '.join(known)}, not '{getattr(body, key)}'"
+                )
+        if body.driven and any(body.velocity + body.angular_velocity):
+            raise InputError(source, f"bodies.{body.name}", "expected no velocity of a driven body: it follows the motion")
+    for kind in ("stoppers", "markers", "accelerometers"):
+        for index, item in enumerate(getattr(file, kind)):
+            if item.body not in bodies:
+                name = getattr(item, "name", index)
+                raise InputError(source, f"{kind}.{name}.body", f"expected a body of this structure, not '{item.body}'")
+    if file.stoppers and not any(body.driven for body in file.bodies):
+        raise InputError(source, "stoppers", "expected a driven body to fix the stoppers to")
+
+
+def _unit_quaternions(file, source):
+    for body in file.bodies:
+        if abs(np.linalg.norm(body.orientation) - 1.0) > 1e-3:
+            raise InputError(source, f"bodies.{body.name}.orientation", "expected a unit quaternion [w, x, y, z]")
+    quaternions = np.array([body.orientation for body in file.bodies])
+    return quaternions / np.linalg.norm(quaternions, axis=1)[:, None]
+
+
+def _friction(file, source):
+    known = {}
+    for entry in file.friction:
+        for material in entry.pair:
+            if material not in file.materials:
+                raise InputError(source, "friction", f"expected pairs of this file's materials, not '{material}'")
+        key = tuple(sorted(entry.pair))
+        if key in known:
+            raise InputError(source, f"friction.{entry.pair[0]}.{entry.pair[1]}", "expected every pair once")
+        known[key] = entry.coefficient
+    n_bodies = len(file.bodies)
+    friction = np.full((n_bodies, n_bodies), np.nan)
+    for a, body_a in enumerate(file.bodies):
+        for b, body_b in enumerate(file.bodies):
+            if a == b or (body_a.driven and body_b.driven):
+                continue
+            key = tuple(sorted((body_a.material, body_b.material)))
+            if key not in known:
+                raise InputError(source, f"friction.{key[0]}.{key[1]}", "missing; expected a coefficient for this pair")
+            friction[a, b] = known[key]
+    return friction
+
+
+def _solid(name, shape, source, folder):
+    if shape.box is not None:
+        polyhedron = convex_polyhedron(box_vertices(shape.box, shape.chamfer))
+        vertices, faces = polyhedron.vertices, triangles(polyhedron)
+        return Solid(vertices, faces, polyhedron, mass_properties(vertices, faces))
+    path = Path(folder) / shape.mesh
+    try:
+        mesh = trimesh.load_mesh(path)
+    except Exception as error:  # trimesh raises whatever its many readers raise
+        raise InputError(source, f"shapes.{name}.mesh", f"expected a readable mesh file {path}; {error}") from None
+    if not mesh.is_watertight or mesh.volume <= 0.0:
+        raise InputError(source, f"shapes.{name}.mesh", "expected a closed surface with outward triangles")
+    vertices = np.array(mesh.vertices) - mesh.center_mass
+    faces = np.array(mesh.faces)
+    polyhedron = convex_polyhedron(vertices) if mesh.is_convex else None
+    return Solid(vertices, faces, polyhedron, mass_properties(vertices, faces))
+
+
+def _masses(file, solids):
+    density = np.array([body.density or file.materials[body.material].density for body in file.bodies])
+    properties = [solids[body.shape].properties for body in file.bodies]
+    mass = density * np.array([item.volume for item in properties])
+    inertia = density[:, None, None] * np.array([item.inertia for item in properties])
+    return mass, inertia
+
+
+def _touching(file, source, solids, position, orientation):
+    """Pairs that touch at the start; an overlap too deep to be an initial penetration is an error."""
+    n_bodies = len(file.bodies)
+    touching = np.zeros((n_bodies, n_bodies), dtype=bool)
+    for a, body_a in enumerate(file.bodies):
+        for b in range(a + 1, n_bodies):
+            body_b = file.bodies[b]
+            if body_a.driven and body_b.driven:
+                continue
+            depth = penetration_depth(
+                solids[body_a.shape], position[a], orientation[a], solids[body_b.shape], position[b], orientation[b]
+            )
+            if depth > _DEEPEST_OVERLAP:
+                raise InputError(
+                    source,
+                    f"bodies.{body_b.name}.position",
+                    f"overlaps {body_a.name} by {1e3 * depth:.3g} mm; expected at most {1e3 * _DEEPEST_OVERLAP:.0f} mm",
+                )
+            touching[a, b] = touching[b, a] = depth > -_TOUCHING
+    return touching

@@ -1,0 +1,76 @@
+"""Surface nodes of a chamfered box: where LS-DEM looks for contact, and how much area each stands for."""
+
+import numpy as np
+
+
+def box_nodes(size, chamfer, spacing, inset):
+    """Nodes on the six flats of a box, evenly spaced, the outer ones just inside the perimeter.
+
+    Parameters
+    ----------
+    size : sequence of 3 floats
+        Full edge lengths along body x, y, z [m].
+    chamfer : float
+        Leg of the chamfer [m]; the flats end there.
+    spacing : float
+        Aimed distance of nodes along each edge [m]; at least two intervals an edge.
+    inset : float
+        Distance of the outermost nodes from the flat's perimeter [m]. On the ridge itself the
+        normal of the level set jumps by 45 degrees.
+
+    Returns
+    -------
+    points : float64 array, shape (n_nodes, 3)
+        Body frame [m].
+    areas : float64 array, shape (n_nodes,)
+        Area that each node stands for [m2]. Over a flat they integrate a constant and a linear
+        pressure exactly: their sum is the flat's area, and their second moments are its second
+        moments, whatever spacing and inset, so that the number of nodes does not change the
+        stiffness of an interface in compression or in rocking.
+    """
+    size = np.asarray(size, dtype=float)
+    points, areas = [], []
+    for axis in range(3):
+        across = [other for other in range(3) if other != axis]
+        first, first_weight = line_nodes(size[across[0]] - 2.0 * chamfer, spacing, inset)
+        second, second_weight = line_nodes(size[across[1]] - 2.0 * chamfer, spacing, inset)
+        for side in (-0.5, 0.5):
+            flat = np.zeros((first.size, second.size, 3))
+            flat[..., axis] = side * size[axis]
+            flat[..., across[0]] = first[:, None]
+            flat[..., across[1]] = second[None, :]
+            points.append(flat.reshape(-1, 3))
+            areas.append(np.outer(first_weight, second_weight).ravel())
+    return np.vstack(points), np.concatenate(areas)
+
+
+def line_nodes(length, spacing, inset):
+    """Evenly spaced nodes on a centred line, with weights exact for cubic functions.
+
+    Parameters
+    ----------
+    length : float
+        [m]
+    spacing : float
+        Aimed distance [m]; at least two intervals.
+    inset : float
+        Distance of the end nodes from the line's ends [m].
+
+    Returns
+    -------
+    positions, weights : float64 arrays, shape (n,)
+        [m]; the trapezoidal weights, scaled to the whole length, with part of the end weights
+        moved to their neighbours so that the second moment is ``length**3 / 12``. With two
+        intervals and no inset this is Simpson's rule.
+    """
+    n_intervals = max(2, round(length / spacing))
+    positions = np.linspace(-0.5, 0.5, n_intervals + 1) * (length - 2.0 * inset)
+    weights = np.ones(n_intervals + 1)
+    weights[[0, -1]] = 0.5
+    weights *= length / weights.sum()
+    excess = weights @ positions**2 - length**3 / 12.0
+    moved = excess / (2.0 * (positions[-1] ** 2 - positions[-2] ** 2))
+    weights[[0, -1]] -= moved
+    weights[1] += moved
+    weights[-2] += moved
+    return positions, weights

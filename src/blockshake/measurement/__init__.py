@@ -1,0 +1,1 @@
+"""What instruments see of a structure: markers, accelerometers, noise."""

@@ -1,0 +1,1 @@
+"""Figures, tables and pages: from Datasets to files; nothing is computed here."""

@@ -1,0 +1,1 @@
+"""The contact solvers: same structure, same motion, same record, different contact."""

@@ -1,0 +1,1 @@
+"""LS-DEM: penalty contact of surface nodes on level sets, explicit in time."""

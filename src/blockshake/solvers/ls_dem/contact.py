@@ -1,0 +1,331 @@
+"""Contact of two bodies: Eqs. (2) to (6) at every near node, both bodies checked against each other."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.geometry.level_set import box_distance
+from blockshake.geometry.rotations import rotation_matrix_into
+from blockshake.jit import inline_kernel, kernel
+from blockshake.solvers.ls_dem.candidates import (
+    AREA,
+    LANES,
+    PACKET,
+    PHI,
+    PX,
+    PY,
+    PZ,
+    SHEAR_X,
+    SHEAR_Y,
+    SHEAR_Z,
+)
+
+# Entries of the energy bookkeeping of one step [J]
+ELASTIC, FRICTION, DAMPING, N_ENERGIES = 0, 1, 2, 3
+
+
+class Interfaces(NamedTuple):
+    """Contact parameters by pair of bodies.
+
+    ``k_n``, ``k_s`` (n_bodies, n_bodies): stiffness per area [N/m3]; ``mu``: Coulomb's
+    coefficient [1]; ``mass``: effective mass [kg]; ``damping_ratio``: of Eq. (3) [1].
+    """
+
+    k_n: np.ndarray
+    k_s: np.ndarray
+    mu: np.ndarray
+    mass: np.ndarray
+    damping_ratio: float
+
+
+class Kinematics(NamedTuple):
+    """What contact needs of the motion.
+
+    ``position``, ``orientation`` at the step; ``velocity``, ``spin`` (n_bodies, 3): mean over the
+    step before, which carries the shear springs from their last to their present length;
+    ``velocity_now``, ``spin_now``: at the step, for the dashpots. World frame.
+    """
+
+    position: np.ndarray
+    orientation: np.ndarray
+    velocity: np.ndarray
+    spin: np.ndarray
+    velocity_now: np.ndarray
+    spin_now: np.ndarray
+
+
+class Loads(NamedTuple):
+    """Result of a force evaluation, overwritten by it.
+
+    ``force``, ``moment`` (n_bodies, 3) on each body [N, N m], world frame, about its mass centre;
+    ``joint`` (n_bodies, n_bodies) int64: row of `joint_force` of a pair, -1 before it touched;
+    ``joint_force`` (n_joints_max, 3) on the second body [N]; ``energy`` (3,) [J].
+    """
+
+    force: np.ndarray
+    moment: np.ndarray
+    joint: np.ndarray
+    joint_force: np.ndarray
+    energy: np.ndarray
+
+
+def damping_ratio(restitution):
+    """Fraction of critical damping of Eq. (3) for a coefficient of restitution.
+
+    Zhou et al. (2023), Eq. (3) after Tsuji et al. (1993), with ``ln C_res^2`` read as
+    ``(ln C_res)^2``: a spring and dashpot that may pull then rebounds with exactly ``C_res``.
+    ``C_res = 0`` means critical damping.
+    """
+    if restitution == 0.0:
+        return 1.0
+    return -np.log(restitution) / np.sqrt(np.pi**2 + np.log(restitution) ** 2)
+
+
+@inline_kernel
+def normal_force(phi, closing, k_n, gamma_n):
+    """Magnitude of a node's normal force, Eq. (2), never pulling [N].
+
+    ``phi`` is the level-set value (negative inside) [m], ``closing`` the velocity of the node
+    along the outward normal of the other body [m/s], negative when approaching. The damped force
+    is cut at zero because concrete does not stick to concrete; so a ``gamma_n`` made for a
+    restitution of 0.50 rebounds at 0.55.
+    """
+    force = -k_n * phi - gamma_n * closing
+    return force if (force > 0.0 and phi < 0.0) else 0.0
+
+
+@kernel
+def _relative_frame_into(kinematics, owner, other, R, frame):
+    """Motion of ``owner`` in the body frame of ``other``.
+
+    ``R`` (3, 3): owner's axes in the other's. ``frame`` (5, 3), rows: owner's mass centre;
+    relative velocity field ``row 1 + row 2 x q`` over the step before; the same at the step,
+    rows 3 and 4, where q is a position in the other's frame.
+    """
+    R_owner, R_other = np.empty((3, 3)), np.empty((3, 3))
+    rotation_matrix_into(kinematics.orientation[owner], R_owner)
+    rotation_matrix_into(kinematics.orientation[other], R_other)
+    delta = np.empty(3)
+    for i in range(3):
+        delta[i] = kinematics.position[owner, i] - kinematics.position[other, i]
+        for j in range(3):
+            R[i, j] = R_other[0, i] * R_owner[0, j] + R_other[1, i] * R_owner[1, j] + R_other[2, i] * R_owner[2, j]
+    turned = np.zeros((3, 3))  # owner velocity difference, owner spin, other spin, all in the other's frame
+    for i in range(3):
+        frame[0, i] = R_other[0, i] * delta[0] + R_other[1, i] * delta[1] + R_other[2, i] * delta[2]
+    d = frame[0]
+    for field in range(2):
+        velocity = kinematics.velocity if field == 0 else kinematics.velocity_now
+        spin = kinematics.spin if field == 0 else kinematics.spin_now
+        for i in range(3):
+            turned[0, i] = turned[1, i] = turned[2, i] = 0.0
+            for j in range(3):
+                turned[0, i] += R_other[j, i] * (velocity[owner, j] - velocity[other, j])
+                turned[1, i] += R_other[j, i] * spin[owner, j]
+                turned[2, i] += R_other[j, i] * spin[other, j]
+        v, w, u = turned[0], turned[1], turned[2]
+        # v + w x (q - d) - u x q = (v - w x d) + (w - u) x q
+        frame[1 + 2 * field, 0] = v[0] - (w[1] * d[2] - w[2] * d[1])
+        frame[1 + 2 * field, 1] = v[1] - (w[2] * d[0] - w[0] * d[2])
+        frame[1 + 2 * field, 2] = v[2] - (w[0] * d[1] - w[1] * d[0])
+        for i in range(3):
+            frame[2 + 2 * field, i] = w[i] - u[i]
+
+
+@kernel
+def _touching_area(packets, first, last, R, d, half, chamfer, sums):
+    """Area of the listed nodes that lie inside the other body [m2]; ``sums`` is workspace (LANES,)."""
+    a, b, c = half[0], half[1], half[2]
+    r00, r01, r02, r10, r11, r12, r20, r21, r22 = (
+        R[0, 0], R[0, 1], R[0, 2], R[1, 0], R[1, 1], R[1, 2], R[2, 0], R[2, 1], R[2, 2],
+    )  # fmt: skip
+    d0, d1, d2 = d[0], d[1], d[2]
+    sums[:] = 0.0
+    for packet in range(first, last):
+        nodes = packets[packet * PACKET : (packet + 1) * PACKET]
+        for lane in range(LANES):
+            x, y, z = nodes[PX + lane], nodes[PY + lane], nodes[PZ + lane]
+            phi, _, _, _ = box_distance(
+                r00 * x + r01 * y + r02 * z + d0,
+                r10 * x + r11 * y + r12 * z + d1,
+                r20 * x + r21 * y + r22 * z + d2,
+                a, b, c, chamfer,
+            )  # fmt: skip
+            sums[lane] += nodes[AREA + lane] if phi < 0.0 else 0.0
+    return sums[:LANES].sum()
+
+
+@kernel
+def _side_forces_into(packets, first, last, R, frame, half, chamfer, law, sums, total):
+    """Forces of the nodes of one side, summed.
+
+    Parameters
+    ----------
+    packets : float64 array, shape (n_packets * PACKET,)
+        As in `Candidates`; shear forces and level-set values are updated.
+    first, last : int
+        Packets of this side.
+    R, frame : float64 arrays, shape (3, 3) and (5, 3)
+        From `_relative_frame_into`.
+    half, chamfer : float64 array, shape (3,), and float
+        Of the body whose level set is read [m].
+    law : tuple of 5 floats
+        ``k_n``, ``k_s``, ``gamma_n`` per area of node [N/m3, N/m3, N s/m3], Coulomb's ``mu`` [1]
+        and the time step ``dt`` [s].
+    sums : float64 array, shape (9 * LANES,)
+        Workspace: one sum a lane, added up in a fixed order at the end.
+    total : float64 array, shape (9,)
+        Overwritten: force and moment about the other body's mass centre, on the owner, other's
+        frame [N, N m]; elastic energy held, friction heat and dashpot heat of this step [J].
+
+    Notes
+    -----
+    Zhou et al. (2023), Eqs. (2), (4), (5) and (6). The shear force is kept in the frame of the
+    body whose level set is read, so that it turns with the interface; where the normal changes
+    (from a flat to a chamfer) its part along the new normal is dropped, and what the spring held
+    of it counts as dashpot heat. Friction heat is the mean shear force of the step times the
+    slip: exactly the work on the spring less the energy it gained.
+    """
+    a, b, c = half[0], half[1], half[2]
+    r00, r01, r02, r10, r11, r12, r20, r21, r22 = (
+        R[0, 0], R[0, 1], R[0, 2], R[1, 0], R[1, 1], R[1, 2], R[2, 0], R[2, 1], R[2, 2],
+    )  # fmt: skip
+    d0, d1, d2 = frame[0, 0], frame[0, 1], frame[0, 2]
+    v0, v1, v2 = frame[1, 0], frame[1, 1], frame[1, 2]
+    w0, w1, w2 = frame[2, 0], frame[2, 1], frame[2, 2]
+    p0, p1, p2 = frame[3, 0], frame[3, 1], frame[3, 2]
+    s0, s1, s2 = frame[4, 0], frame[4, 1], frame[4, 2]
+    k_n, k_s, gamma_n, mu, dt = law
+    sums[:] = 0.0
+    for packet in range(first, last):
+        nodes = packets[packet * PACKET : (packet + 1) * PACKET]
+        for lane in range(LANES):
+            px, py, pz, area = nodes[PX + lane], nodes[PY + lane], nodes[PZ + lane], nodes[AREA + lane]
+            x = r00 * px + r01 * py + r02 * pz + d0
+            y = r10 * px + r11 * py + r12 * pz + d1
+            z = r20 * px + r21 * py + r22 * pz + d2
+            phi, nx, ny, nz = box_distance(x, y, z, a, b, c, chamfer)
+
+            k_node, k_shear = k_n * area, k_s * area
+            closing = nx * (p0 + s1 * z - s2 * y) + ny * (p1 + s2 * x - s0 * z) + nz * (p2 + s0 * y - s1 * x)
+            f_n = normal_force(phi, closing, k_node, gamma_n * area)
+
+            # Eq. (4): the spring follows the tangential part of the motion since the last step
+            ux = v0 + w1 * z - w2 * y
+            uy = v1 + w2 * x - w0 * z
+            uz = v2 + w0 * y - w1 * x
+            along = ux * nx + uy * ny + uz * nz
+            ux, uy, uz = dt * (ux - along * nx), dt * (uy - along * ny), dt * (uz - along * nz)
+            ox, oy, oz = nodes[SHEAR_X + lane], nodes[SHEAR_Y + lane], nodes[SHEAR_Z + lane]
+            lost = ox * nx + oy * ny + oz * nz
+            ox, oy, oz = ox - lost * nx, oy - lost * ny, oz - lost * nz
+            qx, qy, qz = ox - k_shear * ux, oy - k_shear * uy, oz - k_shear * uz
+
+            # Eq. (5): Coulomb's limit; a node out of contact has none and lets go
+            trial = np.sqrt(qx * qx + qy * qy + qz * qz)
+            limit = mu * f_n
+            kept = limit / trial if trial > limit else 1.0
+            qx, qy, qz = kept * qx, kept * qy, kept * qz
+            nodes[SHEAR_X + lane], nodes[SHEAR_Y + lane], nodes[SHEAR_Z + lane] = qx, qy, qz
+            nodes[PHI + lane] = phi
+
+            # slip = motion less stretch; the shear force on the owner opposes it, hence the sign
+            gx, gy, gz = ux + (qx - ox) / k_shear, uy + (qy - oy) / k_shear, uz + (qz - oz) / k_shear
+            spring = -k_node * phi if phi < 0.0 else 0.0
+            sums[6 * LANES + lane] += 0.5 * (spring * spring / k_node + (qx * qx + qy * qy + qz * qz) / k_shear)
+            sums[7 * LANES + lane] -= 0.5 * ((qx + ox) * gx + (qy + oy) * gy + (qz + oz) * gz)
+            sums[8 * LANES + lane] += 0.5 * lost * lost / k_shear - (f_n - spring) * closing * dt
+
+            # Eq. (6)
+            tx, ty, tz = f_n * nx + qx, f_n * ny + qy, f_n * nz + qz
+            sums[lane] += tx
+            sums[LANES + lane] += ty
+            sums[2 * LANES + lane] += tz
+            sums[3 * LANES + lane] += y * tz - z * ty
+            sums[4 * LANES + lane] += z * tx - x * tz
+            sums[5 * LANES + lane] += x * ty - y * tx
+    for quantity in range(9):
+        total[quantity] = sums[quantity * LANES : (quantity + 1) * LANES].sum()
+
+
+@kernel
+def contact_forces_into(candidates, surfaces, interfaces, kinematics, dt, loads):
+    """Contact forces between all near pairs, added to ``loads``.
+
+    Parameters
+    ----------
+    candidates : Candidates
+        Near nodes; their shear forces are updated.
+    surfaces : Surfaces
+    interfaces : Interfaces
+    kinematics : Kinematics
+    dt : float
+        Time step [s].
+    loads : Loads
+        Force, moment, joint force and energy are added to; a pair that touches for the first
+        time gets the next joint.
+
+    Notes
+    -----
+    Each body's nodes are checked against the other's level set; each side carries half of the
+    interface's stiffness, so that a face on a face has it once. Damping belongs to the interface:
+    with the area A in touch, ``gamma_n`` per area is ``2 zeta sqrt(m k_n / A)``, Eq. (3) for the
+    mass m effective in a central impact of the two bodies, however many nodes carry it.
+    """
+    R, frame = np.empty((2, 3, 3)), np.empty((2, 5, 3))
+    R_world, total, sums = np.empty((3, 3)), np.empty(9), np.empty(9 * LANES)
+    for pair in range(candidates.pairs.shape[0]):
+        begin, middle, end = candidates.first[2 * pair], candidates.first[2 * pair + 1], candidates.first[2 * pair + 2]
+        if begin == end:
+            continue
+        a, b = candidates.pairs[pair, 0], candidates.pairs[pair, 1]
+        area = 0.0
+        for side in range(2):
+            owner, other = (a, b) if side == 0 else (b, a)
+            first, last = (begin, middle) if side == 0 else (middle, end)
+            shape = surfaces.shape[other]
+            _relative_frame_into(kinematics, owner, other, R[side], frame[side])
+            area += 0.5 * _touching_area(
+                candidates.packets, first, last, R[side], frame[side, 0],
+                surfaces.half[shape], surfaces.chamfer[shape], sums,
+            )  # fmt: skip
+        gamma_n = interfaces.damping_ratio * np.sqrt(interfaces.mass[a, b] * interfaces.k_n[a, b] / area)
+        gamma_n = gamma_n if area > 0.0 else 0.0
+        law = (0.5 * interfaces.k_n[a, b], 0.5 * interfaces.k_s[a, b], gamma_n, interfaces.mu[a, b], dt)
+        for side in range(2):
+            owner, other = (a, b) if side == 0 else (b, a)
+            first, last = (begin, middle) if side == 0 else (middle, end)
+            shape = surfaces.shape[other]
+            _side_forces_into(
+                candidates.packets, first, last, R[side], frame[side],
+                surfaces.half[shape], surfaces.chamfer[shape], law, sums, total,
+            )  # fmt: skip
+            rotation_matrix_into(kinematics.orientation[other], R_world)
+            _share_into(owner, other, b, R_world, frame[side, 0], total, loads)
+            loads.energy[ELASTIC] += total[6]
+            loads.energy[FRICTION] += total[7]
+            loads.energy[DAMPING] += total[8]
+
+
+@kernel
+def _share_into(owner, other, second, R_other, d, total, loads):
+    """Add the summed force of a side to both bodies and to the pair's joint."""
+    pair = (min(owner, other), max(owner, other))
+    joint = loads.joint[pair]
+    if joint < 0 and total[0] * total[0] + total[1] * total[1] + total[2] * total[2] > 0.0:
+        joint = loads.joint.max() + 1
+        joint = joint if joint < loads.joint_force.shape[0] else -1
+        loads.joint[pair] = joint
+    sign = 1.0 if owner == second else -1.0
+    # moment about the owner's mass centre, d away from the other's
+    mx = total[3] - (d[1] * total[2] - d[2] * total[1])
+    my = total[4] - (d[2] * total[0] - d[0] * total[2])
+    mz = total[5] - (d[0] * total[1] - d[1] * total[0])
+    for i in range(3):
+        f = R_other[i, 0] * total[0] + R_other[i, 1] * total[1] + R_other[i, 2] * total[2]
+        loads.force[owner, i] += f
+        loads.force[other, i] -= f
+        loads.moment[owner, i] += R_other[i, 0] * mx + R_other[i, 1] * my + R_other[i, 2] * mz
+        loads.moment[other, i] -= R_other[i, 0] * total[3] + R_other[i, 1] * total[4] + R_other[i, 2] * total[5]
+        if joint >= 0:
+            loads.joint_force[joint, i] += sign * f

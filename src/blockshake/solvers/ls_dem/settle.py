@@ -1,0 +1,88 @@
+"""The static equilibrium that a stack given face to face starts from, so that nothing thumps."""
+
+import numpy as np
+
+from blockshake.dynamics.free_motion import spin_into
+from blockshake.geometry.rotations import rotate_into
+from blockshake.jit import kernel
+from blockshake.solvers.ls_dem.candidates import find_candidates, lists_expired
+from blockshake.solvers.ls_dem.contact import Kinematics, Loads, contact_forces_into
+from blockshake.solvers.ls_dem.loop import clear_loads
+
+_NEAR = 1e-4  # m, contract: an equilibrium farther than this from the given poses is not the start
+_AT_REST = 1e-9  # out-of-balance force over weight; the thump it leaves is as small
+_LOCAL_DAMPING = 0.8  # Cundall's: this part of every out-of-balance force opposes the motion
+_MOST_STEPS = 400_000
+
+
+@kernel
+def settle(bodies, surfaces, interfaces, skin, dt, state, candidates):
+    """Find the equilibrium under gravity near the given poses by dynamic relaxation.
+
+    Parameters
+    ----------
+    bodies, surfaces, interfaces : Bodies, Surfaces, Interfaces
+    skin, dt : float
+        Reach of the lists [m] and pseudo time step [s].
+    state : State
+        Poses are moved to the equilibrium; velocities do not enter.
+    candidates : Candidates
+        Lists for the given poses, without shear forces.
+
+    Returns
+    -------
+    candidates : Candidates
+        Near nodes with the shear forces of the equilibrium.
+    left : bool array, shape (n_bodies,)
+        Free bodies that moved farther than 0.1 mm and so have no equilibrium near.
+    steps : int
+        Pseudo steps made.
+
+    Notes
+    -----
+    Relaxation with the local damping of Cundall (1987): a part of each component of the
+    out-of-balance force and moment acts against the velocity. A body that leaves is held where it
+    is from then on and its contacts with it, so that the others can settle.
+    """
+    n_bodies = bodies.mass.size
+    velocity, momentum, spin = np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3))
+    turn = np.empty(3)
+    left = np.zeros(n_bodies, np.bool_)
+    given = state.position.copy()
+    given_orientation = state.orientation.copy()
+    loads = Loads(
+        np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)),
+        np.full((n_bodies, n_bodies), -1, np.int64), np.zeros((0, 3)), np.zeros(3),
+    )  # fmt: skip
+    kinematics = Kinematics(state.position, state.orientation, velocity, spin, velocity, spin)
+    for step in range(_MOST_STEPS):
+        if lists_expired(candidates, surfaces, bodies.driven, state.position, state.orientation, skin):
+            candidates = find_candidates(surfaces, bodies.driven, state.position, state.orientation, skin, candidates)
+        clear_loads(bodies, loads)
+        contact_forces_into(candidates, surfaces, interfaces, kinematics, dt, loads)
+        worst = 0.0
+        for body in range(n_bodies):
+            if bodies.driven[body] or left[body]:
+                continue
+            radius = surfaces.radius[surfaces.shape[body]]
+            weight = bodies.mass[body] * np.sqrt((bodies.gravity**2).sum()) + 1e-300
+            for axis in range(3):
+                force, moment = loads.force[body, axis], loads.moment[body, axis]
+                worst = max(worst, abs(force) / weight, abs(moment) / (weight * radius))
+                force -= _LOCAL_DAMPING * abs(force) * np.sign(velocity[body, axis])
+                moment -= _LOCAL_DAMPING * abs(moment) * np.sign(momentum[body, axis])
+                velocity[body, axis] += dt * bodies.inverse_mass[body] * force
+                momentum[body, axis] += dt * moment
+                state.position[body, axis] += dt * velocity[body, axis]
+            spin_into(bodies.inverse_inertia[body], state.orientation[body], momentum[body], spin[body])
+            for axis in range(3):
+                turn[axis] = dt * spin[body, axis]
+            rotate_into(state.orientation[body], turn, state.orientation[body])
+            moved = np.sqrt(((state.position[body] - given[body]) ** 2).sum())
+            dot = abs((state.orientation[body] * given_orientation[body]).sum())
+            if moved + 2.0 * radius * np.sqrt(max(1.0 - dot * dot, 0.0)) > _NEAR:
+                left[body] = True
+                velocity[body], momentum[body], spin[body] = 0.0, 0.0, 0.0
+        if worst < _AT_REST:
+            return candidates, left, step
+    return candidates, left, _MOST_STEPS

@@ -1,0 +1,1 @@
+"""Nonsmooth contact dynamics of rigid polyhedra, implicit in time."""

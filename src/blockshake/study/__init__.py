@@ -1,0 +1,1 @@
+"""Sampling, stiffness calibration, simulations of samples, envelopes."""
