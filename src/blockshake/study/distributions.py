@@ -1,4 +1,4 @@
-"""Random variables of the study: log-normal, by dotted parameter name, Table 2 unless a config says otherwise."""
+"""Random variables of the study: log-normal, by dotted parameter name, Table 2 by default."""
 
 import re
 from typing import Annotated, Literal
@@ -122,7 +122,9 @@ def load_distributions(mapping, where):
             )
         identity = tuple(sorted(match.group(1, 2))) if match.group(1) else name
         if identity in seen:
-            raise InputError(where, f"distributions.{name}", f"expected every pair once; it is {seen[identity]} too")
+            raise InputError(
+                where, f"distributions.{name}", f"expected every pair once; it is {seen[identity]} too"
+            )
         seen[identity] = name
         variables[name] = _lognormal(entry, where, f"distributions.{name}")
     return variables

@@ -8,11 +8,12 @@ from blockshake.geometry.level_set import box_distance
 from blockshake.geometry.rotations import rotation_matrix_into
 from blockshake.jit import kernel
 
-# A packet holds LANES nodes, row by row, so that the compiler turns a loop over the lanes into vector
-# instructions; entry ``row + lane`` of a packet, with these rows:
+# A packet holds LANES nodes, row by row in one piece of memory, so that the compiler turns a loop over the
+# lanes into vector instructions without asking whether rows overlap; entry ``row + lane``, with these rows:
 LANES = 8
 PX, PY, PZ, AREA, SHEAR_X, SHEAR_Y, SHEAR_Z, PHI = 0, 8, 16, 24, 32, 40, 48, 56
-PACKET = 64
+RESULT = 64  # nine rows of results of the last evaluation, see `contact.side_forces_into`
+PACKET = 136
 # A packet is filled up with nodes that lie here [m] and so never touch.
 FAR_AWAY = 1e6
 

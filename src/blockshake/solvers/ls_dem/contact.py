@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.geometry.level_set import box_distance
-from blockshake.geometry.rotations import rotation_matrix_into
 from blockshake.jit import inline_kernel, kernel
 from blockshake.solvers.ls_dem.candidates import (
     AREA,
@@ -15,6 +14,7 @@ from blockshake.solvers.ls_dem.candidates import (
     PX,
     PY,
     PZ,
+    RESULT,
     SHEAR_X,
     SHEAR_Y,
     SHEAR_Z,
@@ -41,13 +41,13 @@ class Interfaces(NamedTuple):
 class Kinematics(NamedTuple):
     """What contact needs of the motion.
 
-    ``position``, ``orientation`` at the step; ``velocity``, ``spin`` (n_bodies, 3): mean over the
+    ``position`` and ``rotation`` (n_bodies, 3, 3), body to world, at the step; ``velocity``, ``spin`` (n_bodies, 3): mean over the
     step before, which carries the shear springs from their last to their present length;
     ``velocity_now``, ``spin_now``: at the step, for the dashpots. World frame.
     """
 
     position: np.ndarray
-    orientation: np.ndarray
+    rotation: np.ndarray
     velocity: np.ndarray
     spin: np.ndarray
     velocity_now: np.ndarray
@@ -95,28 +95,25 @@ def normal_force(phi, closing, k_n, gamma_n):
 
 
 @kernel
-def _relative_frame_into(kinematics, owner, other, R, frame):
+def _relative_frame_into(kinematics, owner, other, turned, R, frame):
     """Motion of ``owner`` in the body frame of ``other``.
 
     ``R`` (3, 3): owner's axes in the other's. ``frame`` (5, 3), rows: owner's mass centre;
     relative velocity field ``row 1 + row 2 x q`` over the step before; the same at the step,
-    rows 3 and 4, where q is a position in the other's frame.
+    rows 3 and 4, where q is a position in the other's frame. ``turned`` (3, 3) is workspace.
     """
-    R_owner, R_other = np.empty((3, 3)), np.empty((3, 3))
-    rotation_matrix_into(kinematics.orientation[owner], R_owner)
-    rotation_matrix_into(kinematics.orientation[other], R_other)
-    delta = np.empty(3)
+    R_owner, R_other = kinematics.rotation[owner], kinematics.rotation[other]
     for i in range(3):
-        delta[i] = kinematics.position[owner, i] - kinematics.position[other, i]
         for j in range(3):
             R[i, j] = R_other[0, i] * R_owner[0, j] + R_other[1, i] * R_owner[1, j] + R_other[2, i] * R_owner[2, j]
-    turned = np.zeros((3, 3))  # owner velocity difference, owner spin, other spin, all in the other's frame
-    for i in range(3):
-        frame[0, i] = R_other[0, i] * delta[0] + R_other[1, i] * delta[1] + R_other[2, i] * delta[2]
+        frame[0, i] = 0.0
+        for j in range(3):
+            frame[0, i] += R_other[j, i] * (kinematics.position[owner, j] - kinematics.position[other, j])
     d = frame[0]
     for field in range(2):
         velocity = kinematics.velocity if field == 0 else kinematics.velocity_now
         spin = kinematics.spin if field == 0 else kinematics.spin_now
+        # owner's velocity difference, owner's spin and other's spin, all in the other's frame
         for i in range(3):
             turned[0, i] = turned[1, i] = turned[2, i] = 0.0
             for j in range(3):
@@ -133,14 +130,14 @@ def _relative_frame_into(kinematics, owner, other, R, frame):
 
 
 @kernel
-def _touching_area(packets, first, last, R, d, half, chamfer, sums):
-    """Area of the listed nodes that lie inside the other body [m2]; ``sums`` is workspace (LANES,)."""
+def _touching_area(packets, first, last, R, d, half, chamfer):
+    """Area of the listed nodes that lie inside the other body [m2]."""
     a, b, c = half[0], half[1], half[2]
     r00, r01, r02, r10, r11, r12, r20, r21, r22 = (
         R[0, 0], R[0, 1], R[0, 2], R[1, 0], R[1, 1], R[1, 2], R[2, 0], R[2, 1], R[2, 2],
     )  # fmt: skip
     d0, d1, d2 = d[0], d[1], d[2]
-    sums[:] = 0.0
+    area = 0.0
     for packet in range(first, last):
         nodes = packets[packet * PACKET : (packet + 1) * PACKET]
         for lane in range(LANES):
@@ -151,12 +148,21 @@ def _touching_area(packets, first, last, R, d, half, chamfer, sums):
                 r20 * x + r21 * y + r22 * z + d2,
                 a, b, c, chamfer,
             )  # fmt: skip
-            sums[lane] += nodes[AREA + lane] if phi < 0.0 else 0.0
-    return sums[:LANES].sum()
+            nodes[RESULT + lane] = nodes[AREA + lane] if phi < 0.0 else 0.0
+        area += _sum_lanes(nodes, RESULT)
+    return area
+
+
+@inline_kernel
+def _sum_lanes(nodes, row):
+    """Sum of a packet's row, in a fixed order."""
+    return ((nodes[row] + nodes[row + 1]) + (nodes[row + 2] + nodes[row + 3])) + (
+        (nodes[row + 4] + nodes[row + 5]) + (nodes[row + 6] + nodes[row + 7])
+    )
 
 
 @kernel
-def _side_forces_into(packets, first, last, R, frame, half, chamfer, law, sums, total):
+def _side_forces_into(packets, first, last, R, frame, half, chamfer, law, total):
     """Forces of the nodes of one side, summed.
 
     Parameters
@@ -172,8 +178,6 @@ def _side_forces_into(packets, first, last, R, frame, half, chamfer, law, sums, 
     law : tuple of 5 floats
         ``k_n``, ``k_s``, ``gamma_n`` per area of node [N/m3, N/m3, N s/m3], Coulomb's ``mu`` [1]
         and the time step ``dt`` [s].
-    sums : float64 array, shape (9 * LANES,)
-        Workspace: one sum a lane, added up in a fixed order at the end.
     total : float64 array, shape (9,)
         Overwritten: force and moment about the other body's mass centre, on the owner, other's
         frame [N, N m]; elastic energy held, friction heat and dashpot heat of this step [J].
@@ -196,7 +200,7 @@ def _side_forces_into(packets, first, last, R, frame, half, chamfer, law, sums, 
     p0, p1, p2 = frame[3, 0], frame[3, 1], frame[3, 2]
     s0, s1, s2 = frame[4, 0], frame[4, 1], frame[4, 2]
     k_n, k_s, gamma_n, mu, dt = law
-    sums[:] = 0.0
+    total[:] = 0.0
     for packet in range(first, last):
         nodes = packets[packet * PACKET : (packet + 1) * PACKET]
         for lane in range(LANES):
@@ -207,6 +211,7 @@ def _side_forces_into(packets, first, last, R, frame, half, chamfer, law, sums, 
             phi, nx, ny, nz = box_distance(x, y, z, a, b, c, chamfer)
 
             k_node, k_shear = k_n * area, k_s * area
+            softness = 1.0 / k_shear
             closing = nx * (p0 + s1 * z - s2 * y) + ny * (p1 + s2 * x - s0 * z) + nz * (p2 + s0 * y - s1 * x)
             f_n = normal_force(phi, closing, k_node, gamma_n * area)
 
@@ -230,22 +235,22 @@ def _side_forces_into(packets, first, last, R, frame, half, chamfer, law, sums, 
             nodes[PHI + lane] = phi
 
             # slip = motion less stretch; the shear force on the owner opposes it, hence the sign
-            gx, gy, gz = ux + (qx - ox) / k_shear, uy + (qy - oy) / k_shear, uz + (qz - oz) / k_shear
+            gx, gy, gz = ux + softness * (qx - ox), uy + softness * (qy - oy), uz + softness * (qz - oz)
             spring = -k_node * phi if phi < 0.0 else 0.0
-            sums[6 * LANES + lane] += 0.5 * (spring * spring / k_node + (qx * qx + qy * qy + qz * qz) / k_shear)
-            sums[7 * LANES + lane] -= 0.5 * ((qx + ox) * gx + (qy + oy) * gy + (qz + oz) * gz)
-            sums[8 * LANES + lane] += 0.5 * lost * lost / k_shear - (f_n - spring) * closing * dt
+            nodes[RESULT + 6 * LANES + lane] = 0.5 * (softness * (qx * qx + qy * qy + qz * qz) - spring * phi)
+            nodes[RESULT + 7 * LANES + lane] = -0.5 * ((qx + ox) * gx + (qy + oy) * gy + (qz + oz) * gz)
+            nodes[RESULT + 8 * LANES + lane] = 0.5 * softness * lost * lost - (f_n - spring) * closing * dt
 
             # Eq. (6)
             tx, ty, tz = f_n * nx + qx, f_n * ny + qy, f_n * nz + qz
-            sums[lane] += tx
-            sums[LANES + lane] += ty
-            sums[2 * LANES + lane] += tz
-            sums[3 * LANES + lane] += y * tz - z * ty
-            sums[4 * LANES + lane] += z * tx - x * tz
-            sums[5 * LANES + lane] += x * ty - y * tx
-    for quantity in range(9):
-        total[quantity] = sums[quantity * LANES : (quantity + 1) * LANES].sum()
+            nodes[RESULT + lane] = tx
+            nodes[RESULT + LANES + lane] = ty
+            nodes[RESULT + 2 * LANES + lane] = tz
+            nodes[RESULT + 3 * LANES + lane] = y * tz - z * ty
+            nodes[RESULT + 4 * LANES + lane] = z * tx - x * tz
+            nodes[RESULT + 5 * LANES + lane] = x * ty - y * tx
+        for quantity in range(9):
+            total[quantity] += _sum_lanes(nodes, RESULT + quantity * LANES)
 
 
 @kernel
@@ -273,7 +278,7 @@ def contact_forces_into(candidates, surfaces, interfaces, kinematics, dt, loads)
     mass m effective in a central impact of the two bodies, however many nodes carry it.
     """
     R, frame = np.empty((2, 3, 3)), np.empty((2, 5, 3))
-    R_world, total, sums = np.empty((3, 3)), np.empty(9), np.empty(9 * LANES)
+    turned, total = np.empty((3, 3)), np.empty(9)
     for pair in range(candidates.pairs.shape[0]):
         begin, middle, end = candidates.first[2 * pair], candidates.first[2 * pair + 1], candidates.first[2 * pair + 2]
         if begin == end:
@@ -284,10 +289,10 @@ def contact_forces_into(candidates, surfaces, interfaces, kinematics, dt, loads)
             owner, other = (a, b) if side == 0 else (b, a)
             first, last = (begin, middle) if side == 0 else (middle, end)
             shape = surfaces.shape[other]
-            _relative_frame_into(kinematics, owner, other, R[side], frame[side])
+            _relative_frame_into(kinematics, owner, other, turned, R[side], frame[side])
             area += 0.5 * _touching_area(
                 candidates.packets, first, last, R[side], frame[side, 0],
-                surfaces.half[shape], surfaces.chamfer[shape], sums,
+                surfaces.half[shape], surfaces.chamfer[shape],
             )  # fmt: skip
         gamma_n = interfaces.damping_ratio * np.sqrt(interfaces.mass[a, b] * interfaces.k_n[a, b] / area)
         gamma_n = gamma_n if area > 0.0 else 0.0
@@ -298,10 +303,9 @@ def contact_forces_into(candidates, surfaces, interfaces, kinematics, dt, loads)
             shape = surfaces.shape[other]
             _side_forces_into(
                 candidates.packets, first, last, R[side], frame[side],
-                surfaces.half[shape], surfaces.chamfer[shape], law, sums, total,
+                surfaces.half[shape], surfaces.chamfer[shape], law, total,
             )  # fmt: skip
-            rotation_matrix_into(kinematics.orientation[other], R_world)
-            _share_into(owner, other, b, R_world, frame[side, 0], total, loads)
+            _share_into(owner, other, b, kinematics.rotation[other], frame[side, 0], total, loads)
             loads.energy[ELASTIC] += total[6]
             loads.energy[FRICTION] += total[7]
             loads.energy[DAMPING] += total[8]

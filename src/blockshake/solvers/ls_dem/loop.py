@@ -120,7 +120,7 @@ def integrate(
     momentum = np.zeros((n_bodies, 3))  # angular, at half steps
     turn = np.empty(3)
     kinematics = Kinematics(
-        state.position, state.orientation,
+        state.position, np.empty((n_bodies, 3, 3)),
         state.velocity.copy(), state.angular_velocity.copy(), state.velocity.copy(), state.angular_velocity.copy(),
     )  # fmt: skip
     loads = Loads(
@@ -143,6 +143,8 @@ def integrate(
         if step == 0:
             before[:] = now
         _put_driven_into(bodies, now, velocity, dt, before, state, kinematics)
+        for body in range(n_bodies):
+            rotation_matrix_into(state.orientation[body], kinematics.rotation[body])
 
         if lists_expired(candidates, surfaces, bodies.driven, state.position, state.orientation, skin):
             candidates = find_candidates(surfaces, bodies.driven, state.position, state.orientation, skin, candidates)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.dynamics.free_motion import spin_into
-from blockshake.geometry.rotations import rotate_into
+from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
 from blockshake.jit import kernel
 from blockshake.solvers.ls_dem.candidates import find_candidates, lists_expired
 from blockshake.solvers.ls_dem.contact import Kinematics, Loads, contact_forces_into
@@ -54,10 +54,12 @@ def settle(bodies, surfaces, interfaces, skin, dt, state, candidates):
         np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)),
         np.full((n_bodies, n_bodies), -1, np.int64), np.zeros((0, 3)), np.zeros(3),
     )  # fmt: skip
-    kinematics = Kinematics(state.position, state.orientation, velocity, spin, velocity, spin)
+    kinematics = Kinematics(state.position, np.empty((n_bodies, 3, 3)), velocity, spin, velocity, spin)
     for step in range(_MOST_STEPS):
         if lists_expired(candidates, surfaces, bodies.driven, state.position, state.orientation, skin):
             candidates = find_candidates(surfaces, bodies.driven, state.position, state.orientation, skin, candidates)
+        for body in range(n_bodies):
+            rotation_matrix_into(state.orientation[body], kinematics.rotation[body])
         clear_loads(bodies, loads)
         contact_forces_into(candidates, surfaces, interfaces, kinematics, dt, loads)
         worst = 0.0

@@ -1,0 +1,119 @@
+"""The project's own motion file: a CSV with ``time_s`` and columns of one kind, in SI."""
+
+import csv
+import io
+
+import numpy as np
+
+from blockshake.dynamics.motion import CHANNELS
+from blockshake.dynamics.records.record import finite_number
+from blockshake.errors import InputError
+from blockshake.files import write_text
+
+KINDS = ("acceleration", "velocity", "displacement")
+_AXES = ("x", "y", "z")
+
+
+def read_motion_csv(text, where):
+    """Time, columns and kind of a motion file.
+
+    Parameters
+    ----------
+    text : str
+        Content of the file: a header row, then numbers.
+    where : str
+        File that a message names.
+
+    Returns
+    -------
+    time : float64 array, shape (n_rows,)
+        Increasing, as in the file [s].
+    columns : dict of str to float64 array, shape (n_rows,)
+        By channel (``x``, ``y``, ``z``, ``pitch_y``).
+    kind : str
+        ``acceleration``, ``velocity`` or ``displacement``; ``displacement`` for a file of
+        ``pitch_y`` alone.
+
+    Raises
+    ------
+    InputError
+        Unknown, repeated or missing column, mixed kinds, fewer than two rows, a cell that is not
+        a finite number, a row of another length, time that does not increase.
+    """
+    rows = [(number, row) for number, row in _rows(text) if any(cell.strip() for cell in row)]
+    header = [cell.strip() for cell in rows[0][1]] if rows else []
+    kind = _check_header(header, where)
+    values = np.empty((len(rows) - 1, len(header)))
+    if len(values) < 2:
+        raise InputError(where, "", f"expected at least two rows of numbers, found {len(values)}")
+    for index, (number, row) in enumerate(rows[1:]):
+        if len(row) != len(header):
+            raise InputError(where, f"line {number}", f"expected {len(header)} cells, found {len(row)}")
+        values[index] = [finite_number(cell, where, f"line {number}, {name}") for name, cell in zip(header, row, strict=True)]
+    columns = {name: values[:, index] for index, name in enumerate(header)}
+    time = columns.pop("time_s")
+    backwards = np.flatnonzero(np.diff(time) <= 0.0)
+    if len(backwards):
+        line = rows[backwards[0] + 2][0]
+        raise InputError(where, f"line {line}, time_s", "expected time that increases from row to row")
+    return time, {name if name == "pitch_y" else name[-1]: column for name, column in columns.items()}, kind
+
+
+def _rows(text):
+    reader = csv.reader(io.StringIO(text.removeprefix("\ufeff")))
+    for row in reader:
+        yield reader.line_num, row
+
+
+def _check_header(header, where):
+    allowed = ["time_s", *(f"{kind}_{axis}" for kind in KINDS for axis in _AXES), "pitch_y"]
+    if "time_s" not in header:
+        raise InputError(where, "time_s", "expected this column in the header row")
+    for name in header:
+        if name not in allowed:
+            raise InputError(where, f"column '{name}'", f"expected one of {', '.join(allowed)}")
+        if header.count(name) > 1:
+            raise InputError(where, f"column '{name}'", "expected once, found more than once")
+    kinds = [kind for kind in KINDS if any(name.startswith(f"{kind}_") for name in header)]
+    if len(kinds) > 1:
+        raise InputError(where, "", f"expected columns of one kind, found {' and '.join(kinds)}")
+    if header == ["time_s"]:
+        raise InputError(where, "", "expected at least one column of motion beside time_s")
+    return kinds[0] if kinds else "displacement"
+
+
+def write_motion_csv(motion, path):
+    """Write a motion as the project's CSV, in the kind it came from, with all its digits.
+
+    Channels that never move are left out (``x`` stays when all rest). Read again, the file gives
+    the same displacement from its first row: a constant offset of a motion integrated from
+    acceleration or velocity does not exist, and that of a displacement is kept.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+    path : str or path
+        Replaced atomically.
+    """
+    breaks, coefficients = motion.table
+    order = {"displacement": 0, "velocity": 1, "acceleration": 2}[motion.kind]
+    moving = [index for index in range(4) if coefficients[:, index].any()] or [0]
+    columns = {"time_s": breaks}
+    for index in moving:
+        if CHANNELS[index] == "pitch_y":
+            columns["pitch_y"] = _at_rows(breaks, coefficients[:, index], 0)
+        else:
+            columns[f"{motion.kind}_{CHANNELS[index]}"] = _at_rows(breaks, coefficients[:, index], order)
+    lines = [",".join(columns)]
+    lines += [",".join(repr(float(cell)) for cell in row) for row in zip(*columns.values(), strict=True)]
+    write_text(path, "\n".join(lines) + "\n")
+
+
+def _at_rows(breaks, c, order):
+    """Values of a derivative of one channel at its rows, shape (n_rows,), to the last bit of the source."""
+    last = breaks[-1] - breaks[-2]
+    if order == 0:
+        return np.append(c[:, 0], c[-1, 0] + last * (c[-1, 1] + last * (c[-1, 2] + last * c[-1, 3])))
+    if order == 1:
+        return np.append(c[:, 1], c[-1, 1] + last * (2.0 * c[-1, 2] + last * 3.0 * c[-1, 3]))
+    return np.append(2.0 * c[:, 2], 2.0 * c[-1, 2] + 6.0 * last * c[-1, 3])

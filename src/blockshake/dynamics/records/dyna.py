@@ -1,0 +1,60 @@
+"""ESM and ITACA "DYNA 1.2" ASCII: header lines ``KEY: value``, then one value a line."""
+
+from blockshake.dynamics.records.record import Record, acceleration_unit, positive_number, values_of
+from blockshake.errors import InputError
+
+# header key -> name in our outputs
+_METADATA = {
+    "EVENT_NAME": "event",
+    "EVENT_ID": "event_id",
+    "EVENT_DATE_YYYYMMDD": "event_date",
+    "MAGNITUDE_W": "moment_magnitude",
+    "EPICENTRAL_DISTANCE_KM": "epicentral_distance_km",
+    "NETWORK": "network",
+    "STATION_CODE": "station",
+    "STREAM": "stream",
+    "PROCESSING": "processing",
+    "LOW_CUT_FREQUENCY_HZ": "low_cut_frequency",
+    "HIGH_CUT_FREQUENCY_HZ": "high_cut_frequency",
+    "DATA_LICENSE": "licence",
+    "DATA_CITATION": "citation",
+}
+
+
+def is_dyna(text):
+    """Whether a text looks like a DYNA file."""
+    return any(line.startswith(("SAMPLING_INTERVAL_S:", "HEADER_FORMAT: DYNA")) for line in text.splitlines()[:80])
+
+
+def read_dyna(text, where):
+    """Record from the text of an ESM or ITACA file.
+
+    The header is read by key, never by line number: the 64 lines of version 1.2 differ between
+    providers in order and number.
+
+    Raises
+    ------
+    InputError
+        A needed key is missing or wrong, the data are not accelerations, a value is not a finite
+        number, or their number differs from ``NDATA``.
+    """
+    lines = text.splitlines()
+    header = {}
+    first = len(lines)
+    for index, line in enumerate(lines):
+        key, colon, value = line.partition(":")
+        if not colon:
+            first = index
+            break
+        header[key.strip().upper()] = value.strip()
+    for key in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS", "DATA_TYPE"):
+        if not header.get(key):
+            raise InputError(where, key, "expected this key in the header, with a value")
+    if not header["DATA_TYPE"].upper().endswith("ACCELERATION"):
+        raise InputError(where, "DATA_TYPE", f"expected ACCELERATION, found '{header['DATA_TYPE']}'")
+    unit = acceleration_unit(header["UNITS"], where, "UNITS")
+    step = positive_number(header["SAMPLING_INTERVAL_S"], where, "SAMPLING_INTERVAL_S")
+    count = positive_number(header["NDATA"], where, "NDATA", int)
+    data = ((number, line.split()) for number, line in enumerate(lines[first:], first + 1))
+    metadata = {name: header[key] for key, name in _METADATA.items() if header.get(key)}
+    return Record(unit * values_of(data, count, where, "NDATA"), step, "ESM/ITACA DYNA 1.2", metadata)

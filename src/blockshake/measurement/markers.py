@@ -1,0 +1,64 @@
+"""What the optical system sees: points fixed to bodies, in the inertial frame."""
+
+import numpy as np
+
+from blockshake.errors import InputError
+from blockshake.geometry.rotations import rotation_matrices
+
+
+def marker_position(structure, position, orientation):
+    """Position of every marker.
+
+    Parameters
+    ----------
+    structure : Structure
+    position : float64 array, shape (..., n_bodies, 3)
+        Of the mass centres, inertial frame [m].
+    orientation : float64 array, shape (..., n_bodies, 4)
+        Unit quaternions (w, x, y, z), body to world.
+
+    Returns
+    -------
+    float64 array, shape (..., n_markers, 3)
+        Inertial frame [m], markers in file order; NaN where the body's pose is.
+    """
+    markers = structure.file.markers
+    bodies = np.array([structure.body_names.index(marker.body) for marker in markers], dtype=np.int64)
+    arms = np.array([marker.position for marker in markers], dtype=float).reshape(-1, 3)
+    turn = rotation_matrices(orientation[..., bodies, :])
+    return position[..., bodies, :] + np.einsum("...mij,mj->...mi", turn, arms)
+
+
+def marker_displacement(structure, position, orientation):
+    """Displacement of every marker since the first time.
+
+    Parameters
+    ----------
+    structure : Structure
+    position : float64 array, shape (n_times, n_bodies, 3)
+        Of the mass centres, inertial frame [m].
+    orientation : float64 array, shape (n_times, n_bodies, 4)
+        Unit quaternions (w, x, y, z), body to world.
+
+    Returns
+    -------
+    float64 array, shape (n_times, n_markers, 3)
+        Inertial frame [m], zero at the first time; NaN where the body's pose is.
+    """
+    places = marker_position(structure, position, orientation)
+    return places - places[:1]
+
+
+def driven_marker(structure):
+    """Name of the first marker on a driven body: the paper's slab marker.
+
+    Raises
+    ------
+    InputError
+        No driven body carries a marker.
+    """
+    driven = {body.name for body in structure.file.bodies if body.driven}
+    for marker in structure.file.markers:
+        if marker.body in driven:
+            return marker.name
+    raise InputError(structure.source, "markers", "expected a marker on a driven body")

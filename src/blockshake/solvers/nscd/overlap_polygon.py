@@ -1,0 +1,187 @@
+"""Overlap of two faces on a common plane, and its reduction to at most four contact points."""
+
+import numpy as np
+
+from blockshake.jit import kernel
+
+# Points this far outside a side plane count as inside, so that flush faces do not flicker [m].
+_FLUSH = 1e-9
+# Corners closer than this are one point; gaps that differ by less are equal [m].
+_SAME_POINT = 1e-7
+
+
+@kernel
+def clip_face(polyhedra, placed, reference, incident):
+    """Part of the incident face inside the prism over the reference face.
+
+    Parameters
+    ----------
+    polyhedra : Polyhedra
+    placed : Placed
+    reference, incident : int
+        Rows of faces.
+
+    Returns
+    -------
+    float64 array, shape (n, 3)
+        Corners of a convex polygon in the plane of the incident face [m]; n may be 0.
+
+    Notes
+    -----
+    Sutherland and Hodgman (1974).
+    """
+    first, last = polyhedra.first_corner[incident], polyhedra.first_corner[incident + 1]
+    ref_first, ref_last = polyhedra.first_corner[reference], polyhedra.first_corner[reference + 1]
+    size = (last - first) + (ref_last - ref_first) + 2
+    polygon, clipped = np.empty((size, 3)), np.empty((size, 3))
+    count = last - first
+    for corner in range(count):
+        polygon[corner] = placed.vertices[polyhedra.corners[first + corner]]
+    n = placed.normals[reference]
+    for corner in range(ref_first, ref_last):
+        start = placed.vertices[polyhedra.corners[corner]]
+        following = corner + 1 if corner + 1 < ref_last else ref_first
+        end = placed.vertices[polyhedra.corners[following]]
+        ex, ey, ez = end[0] - start[0], end[1] - start[1], end[2] - start[2]
+        # edge x normal points out of a face that is counter-clockwise about its normal
+        mx, my, mz = ey * n[2] - ez * n[1], ez * n[0] - ex * n[2], ex * n[1] - ey * n[0]
+        length = np.sqrt(mx * mx + my * my + mz * mz)
+        mx, my, mz = mx / length, my / length, mz / length
+        limit = mx * start[0] + my * start[1] + mz * start[2] + _FLUSH
+        kept = 0
+        for index in range(count):
+            here = polygon[index]
+            there = polygon[index + 1 if index + 1 < count else 0]
+            d_here = mx * here[0] + my * here[1] + mz * here[2] - limit
+            d_there = mx * there[0] + my * there[1] + mz * there[2] - limit
+            if d_here <= 0.0:
+                clipped[kept] = here
+                kept += 1
+            if (d_here < 0.0 and d_there > 0.0) or (d_here > 0.0 and d_there < 0.0):
+                share = d_here / (d_here - d_there)
+                for axis in range(3):
+                    clipped[kept, axis] = here[axis] + share * (there[axis] - here[axis])
+                kept += 1
+        polygon, clipped = clipped, polygon
+        count = kept
+        if count == 0:
+            break
+    return _without_doubles(polygon, count)
+
+
+@kernel
+def _without_doubles(polygon, count):
+    """The first ``count`` corners without those that repeat the one before."""
+    kept = 0
+    for index in range(count):
+        double = False
+        for other in (kept - 1, 0):
+            if kept > 0 and not double:
+                dx = polygon[index, 0] - polygon[other, 0]
+                dy = polygon[index, 1] - polygon[other, 1]
+                dz = polygon[index, 2] - polygon[other, 2]
+                double = dx * dx + dy * dy + dz * dz < _SAME_POINT * _SAME_POINT
+        if not double:
+            polygon[kept] = polygon[index]
+            kept += 1
+    return polygon[:kept].copy()
+
+
+@kernel
+def shrink_polygon_into(shrink, polygon):
+    """Scale a polygon by ``1 - shrink`` about its area centroid, in place."""
+    count = polygon.shape[0]
+    weight = 0.0
+    center = np.zeros(3)
+    for index in range(1, count - 1):
+        u, v = polygon[index] - polygon[0], polygon[index + 1] - polygon[0]
+        area = np.linalg.norm(np.cross(u, v))
+        weight += area
+        center += area * (polygon[0] + polygon[index] + polygon[index + 1]) / 3.0
+    if weight > 0.0:
+        center /= weight
+    else:
+        for index in range(count):
+            center += polygon[index] / count
+    for index in range(count):
+        for axis in range(3):
+            polygon[index, axis] = center[axis] + (1.0 - shrink) * (polygon[index, axis] - center[axis])
+
+
+@kernel
+def choose_four_into(points, gaps, count, normal, chosen):
+    """Indices of at most four points that hold the deepest and keep the extent; their number.
+
+    Parameters
+    ----------
+    points : float64 array, shape (n, 3)
+        Corners of a polygon in order [m]; the first ``count`` are used.
+    gaps : float64 array, shape (n,)
+        Gap at each [m].
+    count : int
+    normal : float64 array, shape (3,)
+        Unit normal of the common plane.
+    chosen : int64 array, shape (4,)
+        Overwritten with increasing indices.
+
+    Notes
+    -----
+    The deepest point (of equally deep ones the farthest from the mean), the farthest from it,
+    the one that spans the largest triangle with both, and the one that adds the largest area to
+    that triangle. A choice of this program: Cundall (1988) and the paper only say "at most four".
+    """
+    if count <= 4:
+        for index in range(count):
+            chosen[index] = index
+        return count
+    mean = np.zeros(3)
+    lowest = np.inf
+    for index in range(count):
+        lowest = min(lowest, gaps[index])
+        for axis in range(3):
+            mean[axis] += points[index, axis] / count
+    p, q, r, s = -1, -1, -1, -1
+    best = -1.0
+    for index in range(count):
+        if gaps[index] <= lowest + _SAME_POINT:
+            d = points[index] - mean
+            distance = d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
+            # the small factor keeps equal distances, rounded differently, on the first of them
+            if distance > best * (1.0 + 1e-9):
+                best, p = distance, index
+    best = -1.0
+    for index in range(count):
+        d = points[index] - points[p]
+        distance = d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
+        if distance > best * (1.0 + 1e-9):
+            best, q = distance, index
+    best = -1.0
+    for index in range(count):
+        area = abs(_signed_area(points[p], points[q], points[index], normal))
+        if index != p and index != q and area > best * (1.0 + 1e-9):
+            best, r = area, index
+    turn = 1.0 if _signed_area(points[p], points[q], points[r], normal) >= 0.0 else -1.0
+    best = 0.0
+    for index in range(count):
+        if index in (p, q, r):
+            continue
+        a = -turn * _signed_area(points[p], points[q], points[index], normal)
+        b = -turn * _signed_area(points[q], points[r], points[index], normal)
+        c = -turn * _signed_area(points[r], points[p], points[index], normal)
+        added = max(a, max(b, c))
+        if added > best * (1.0 + 1e-9):
+            best, s = added, index
+    kept = 0
+    for index in range(count):
+        if index in (p, q, r, s):
+            chosen[kept] = index
+            kept += 1
+    return kept
+
+
+@kernel
+def _signed_area(a, b, c, normal):
+    ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
+    x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    return 0.5 * (x * normal[0] + y * normal[1] + z * normal[2])

@@ -1,0 +1,28 @@
+"""Numerical parameters of the nonsmooth contact dynamics solver."""
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+
+
+class NscdParameters(BaseModel):
+    """Numerical parameters of nonsmooth contact dynamics; each is set as ``nscd.NAME``."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    theta: Annotated[float, Field(ge=0.5, le=1.0)] = Field(
+        0.5, description="weight of the velocity at the end of a step [1]; 0.5 conserves energy, Jean (1999)"
+    )
+    tolerance: Positive = Field(
+        1e-6, description="residual of complementarity and Coulomb's cone relative to the impulses [1]; chosen"
+    )
+    max_iterations: Annotated[int, Field(ge=1)] = Field(
+        2000, description="sweeps over the contacts allowed in one step [1]; chosen"
+    )
+    shrink: Annotated[float, Field(ge=0.0, lt=1.0)] = Field(
+        0.0,
+        description="contact areas are scaled about their centroid by one minus this [1]; Zhou et al. (2023) "
+        "shrink by an amount they do not state",
+    )
