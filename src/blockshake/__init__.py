@@ -1,0 +1,30 @@
+"""blockshake: how stacks of heavy blocks behave in an earthquake, and how sure we are.
+
+The same as the command line, as functions: `load_structure`, `load_motion`, `simulate`,
+`draw_samples` and `calibrate_stiffness`. They are loaded when first asked for, so that a rule that
+only draws a figure compiles no solver.
+"""
+
+import importlib
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "load_structure": "blockshake.geometry.structure",
+    "load_motion": "blockshake.dynamics.load_motion",
+    "simulate": "blockshake.study.simulation",
+    "draw_samples": "blockshake.study.sampling",
+    "calibrate_stiffness": "blockshake.study.stiffness",
+    "InputError": "blockshake.errors",
+}
+__all__ = list(_HOMES)
+
+
+def __getattr__(name):
+    if name not in _HOMES:
+        raise AttributeError(f"module 'blockshake' has no attribute '{name}'")
+    return getattr(importlib.import_module(_HOMES[name]), name)
+
+
+def __dir__():
+    return sorted([*globals(), *_HOMES])

@@ -1,45 +1,63 @@
-"""When a stack counts as collapsed."""
+"""When a structure has collapsed: a body that stood on something has tipped over or dropped."""
 
 import numpy as np
 
+from blockshake.geometry.rotations import rotation_matrix_into
 from blockshake.jit import kernel
 
-_COS_HALF_TILT = np.cos(np.pi / 8.0)  # half of 45 degrees
+# Cosine of the tilt from which a block does not come back.
+_COSINE_OF_TILT = np.sqrt(0.5)
 
 
-def supported_bodies(structure):
-    """Free bodies that touch something at the start: bool array, shape (n_bodies,).
+def collapse_limits(structure):
+    """Which bodies are watched for collapse, and how far each may drop.
 
-    A body in flight at the start has nothing to fall from.
+    Parameters
+    ----------
+    structure : Structure
+
+    Returns
+    -------
+    supported : bool array, shape (n_bodies,)
+        Bodies that are not driven and touch another at the start.
+    drop_limit : float64 array, shape (n_bodies,)
+        Half the smallest extent of each along its own axes [m].
     """
-    return structure.touching.any(axis=1) & ~structure.driven
-
-
-def drop_limits(structure):
-    """Fall of each body that counts as collapse: half its smallest extent [m], shape (n_bodies,)."""
-    return np.array([0.5 * np.ptp(structure.solid(body).vertices, axis=0).min() for body in range(len(structure.mass))])
+    smallest = [np.ptp(structure.solid(body).vertices, axis=0).min() for body in range(len(structure.mass))]
+    return structure.touching.any(axis=1) & ~structure.driven, 0.5 * np.array(smallest)
 
 
 @kernel
 def find_collapsed(bodies, state, supported, drop_limit):
-    """First supported body that has overturned or fallen, -1 when all stand.
+    """First body that has collapsed, or -1.
 
-    Overturned: tilted (or turned) by more than 45 degrees from its pose in the structure file.
-    Fallen: its mass centre has sunk by more than its ``drop_limit``, seen from the first driven
-    body.
+    Parameters
+    ----------
+    bodies : Bodies
+    state : State
+    supported, drop_limit : arrays, shape (n_bodies,)
+        From `collapse_limits`.
+
+    Notes
+    -----
+    Collapsed means that the body axis that was vertical at the start leans by more than 45
+    degrees, or that the mass centre has dropped by more than ``drop_limit`` with respect to the first driven
+    body. The criterion is this program's; the paper states none. Turning about the vertical is no collapse.
     """
-    ground = 0.0
-    for body in range(bodies.mass.size):
+    lift = 0.0
+    for body in range(supported.size):
         if bodies.driven[body]:
-            ground = state.position[body, 2] - bodies.home[body, 2]
+            lift = state.position[body, 2] - bodies.home[body, 2]
             break
-    for body in range(bodies.mass.size):
+    start, now = np.empty((3, 3)), np.empty((3, 3))
+    for body in range(supported.size):
         if not supported[body]:
             continue
-        dot = 0.0
-        for part in range(4):
-            dot += state.orientation[body, part] * bodies.home_orientation[body, part]
-        sunk = bodies.home[body, 2] + ground - state.position[body, 2]
-        if abs(dot) < _COS_HALF_TILT or sunk > drop_limit[body]:
+        if bodies.home[body, 2] + lift - state.position[body, 2] > drop_limit[body]:
+            return body
+        rotation_matrix_into(bodies.home_orientation[body], start)
+        rotation_matrix_into(state.orientation[body], now)
+        cosine = now[2, 0] * start[2, 0] + now[2, 1] * start[2, 1] + now[2, 2] * start[2, 2]
+        if cosine < _COSINE_OF_TILT:
             return body
     return -1

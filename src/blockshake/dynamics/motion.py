@@ -50,9 +50,10 @@ class GroundMotion:
         return float(self.table.breaks[-1])
 
     def scaled(self, factor):
-        """The same motion with every column multiplied by ``factor``."""
+        """The same motion with every column multiplied by ``factor``, which the attribute ``scale`` gathers."""
         table = MotionTable(self.table.breaks, self.table.coefficients * factor)
-        return replace(self, table=table, attributes={**self.attributes, "scale": float(factor)})
+        scale = float(self.attributes.get("scale", 1.0) * factor)
+        return replace(self, table=table, attributes={**self.attributes, "scale": scale})
 
     def evaluate(self, times, derivative=0):
         """Displacement (or a time derivative) and pitch at any times.

@@ -94,7 +94,7 @@ def check_correlation(matrix, names, where):
                 raise InputError(
                     where,
                     f"{name}, {names[j]}",
-                    f"expected a symmetric matrix; {matrix[i, j]:g} here is {matrix[j, i]:g} across the diagonal",
+                    f"expected a symmetric matrix; {matrix[i, j]:g} is {matrix[j, i]:g} across the diagonal",
                 )
     smallest = np.linalg.eigvalsh(matrix)[0]
     if smallest < _SMALLEST_EIGENVALUE:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy.stats import rankdata
 
 from blockshake.errors import InputError
 from blockshake.files import read_text, write_text
@@ -144,7 +143,8 @@ def draw_samples(
 
 
 def _correlated(values, kind):
-    return values if kind == "pearson" else rankdata(values, axis=0)
+    """What the correlation is of: the values, or their ranks (no two values of a column are equal)."""
+    return values if kind == "pearson" else np.argsort(np.argsort(values, axis=0), axis=0).astype(float)
 
 
 def _check_options(size, seed, stratum, kind, effort):

@@ -31,7 +31,9 @@ def read_at2(text, where):
         raise InputError(where, "", f"expected four header lines of an AT2 file, found {len(lines)} lines")
     stated = re.search(r"ACCELERATION.*UNITS? OF\s+(\S+)", lines[2], re.IGNORECASE)
     if not stated:
-        raise InputError(where, "line 3", f"expected 'ACCELERATION ... IN UNITS OF G', found '{lines[2].strip()}'")
+        raise InputError(
+            where, "line 3", f"expected 'ACCELERATION ... IN UNITS OF G', found '{lines[2].strip()}'"
+        )
     unit = acceleration_unit(stated.group(1), where, "line 3")
     sizes = _NAMED.search(lines[3]) or _TRAILING.search(lines[3])
     if not sizes:

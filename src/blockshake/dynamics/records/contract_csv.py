@@ -49,7 +49,10 @@ def read_motion_csv(text, where):
     for index, (number, row) in enumerate(rows[1:]):
         if len(row) != len(header):
             raise InputError(where, f"line {number}", f"expected {len(header)} cells, found {len(row)}")
-        values[index] = [finite_number(cell, where, f"line {number}, {name}") for name, cell in zip(header, row, strict=True)]
+        values[index] = [
+            finite_number(cell, where, f"line {number}, {name}")
+            for name, cell in zip(header, row, strict=True)
+        ]
     columns = {name: values[:, index] for index, name in enumerate(header)}
     time = columns.pop("time_s")
     backwards = np.flatnonzero(np.diff(time) <= 0.0)

@@ -56,13 +56,19 @@ def read_cosmos(text, where):
             index += rows
         index += 1
     if len(found) != 1:
-        raise InputError(where, "", f"expected one acceleration series, found {len(found)}: one channel a file")
+        raise InputError(
+            where, "", f"expected one acceleration series, found {len(found)}: one channel a file"
+        )
     if step is None:
         raise InputError(where, "", "expected a real header, which holds the sampling interval")
     index, count, rows, width, unit_text = found[0]
     unit = acceleration_unit(unit_text, where, f"line {index + 1}")
     end = min(index + 1 + rows, len(lines))
-    data = ((number + 1, _split(lines[number], width)) for number in range(index + 1, end) if not _ends(lines[number]))
+    data = (
+        (number + 1, _split(lines[number], width))
+        for number in range(index + 1, end)
+        if not _ends(lines[number])
+    )
     values = values_of(data, count, where, f"line {index + 1}")
     metadata = {"event": lines[1].strip()} if lines[1].strip() else {}
     return Record(unit * values, step, "COSMOS V2", metadata)
@@ -72,7 +78,9 @@ def _columns(fortran, where, line):
     """Columns and width of a Fortran format such as ``8F10.5`` or ``1E15.6``."""
     match = _FORTRAN.match(fortran)
     if not match:
-        raise InputError(where, f"line {line}", f"expected a Fortran format such as (8F10.3), found '({fortran})'")
+        raise InputError(
+            where, f"line {line}", f"expected a Fortran format such as (8F10.3), found '({fortran})'"
+        )
     return int(match.group(1) or 1), int(match.group(2))
 
 

@@ -23,7 +23,9 @@ _METADATA = {
 
 def is_dyna(text):
     """Whether a text looks like a DYNA file."""
-    return any(line.startswith(("SAMPLING_INTERVAL_S:", "HEADER_FORMAT: DYNA")) for line in text.splitlines()[:80])
+    return any(
+        line.startswith(("SAMPLING_INTERVAL_S:", "HEADER_FORMAT: DYNA")) for line in text.splitlines()[:80]
+    )
 
 
 def read_dyna(text, where):

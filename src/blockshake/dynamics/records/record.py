@@ -58,7 +58,9 @@ def acceleration_unit(text, where, key):
     """
     unit = text.strip().lower().replace(" ", "")
     if unit not in _ACCELERATION_UNITS:
-        raise InputError(where, key, f"expected a unit of acceleration (cm/s^2, m/s^2 or g), found '{text.strip()}'")
+        raise InputError(
+            where, key, f"expected a unit of acceleration (cm/s^2, m/s^2 or g), found '{text.strip()}'"
+        )
     return _ACCELERATION_UNITS[unit]
 
 
@@ -75,7 +77,11 @@ def positive_number(text, where, key, kind=float):
     except ValueError:
         number = 0
     if not (0 < number < np.inf):
-        raise InputError(where, key, f"expected a positive {'integer' if kind is int else 'number'}, found '{text.strip()}'")
+        raise InputError(
+            where,
+            key,
+            f"expected a positive {'integer' if kind is int else 'number'}, found '{text.strip()}'",
+        )
     return number
 
 

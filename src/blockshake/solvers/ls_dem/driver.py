@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from blockshake.dynamics.collapse import drop_limits, supported_bodies
+from blockshake.dynamics.collapse import collapse_limits
 from blockshake.dynamics.motion import rest_table
 from blockshake.dynamics.system import State, Trajectory, assemble_bodies
 from blockshake.errors import InputError
@@ -65,7 +65,7 @@ def simulate_ls_dem(structure, motion, parameters, record_times, time_step=1e-5,
     code, body, last_step, rebuilds, joint = integrate(
         bodies, surfaces, interfaces, stoppers,
         motion.table if motion is not None else rest_table(),
-        supported_bodies(structure), drop_limits(structure),
+        *collapse_limits(structure),
         parameters.skin, time_step, n_steps, np.asarray(record_times, dtype=float), state, candidates, record,
     )  # fmt: skip
     status, reason = _status(code, structure, body, last_step * time_step)

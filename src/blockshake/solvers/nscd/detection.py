@@ -153,7 +153,9 @@ def _face_points_into(polyhedra, placed, owner, other, face, margin, shrink, poi
 def _best_edge_into(polyhedra, placed, a, b, normal):
     """Largest separation along a cross of edge directions [m]; its unit vector from ``a`` to ``b``."""
     best = -np.inf
-    dx, dy, dz = placed.center[b] - placed.center[a]
+    dx = placed.center[b, 0] - placed.center[a, 0]
+    dy = placed.center[b, 1] - placed.center[a, 1]
+    dz = placed.center[b, 2] - placed.center[a, 2]
     reach = polyhedra.inradius[a] + polyhedra.inradius[b]
     for i in range(polyhedra.first_direction[a], polyhedra.first_direction[a + 1]):
         u = placed.directions[i]

@@ -93,10 +93,10 @@ def contact_residual(p_n, p_1, p_2, u_n, u_1, u_2, mu, rho):
     s_n = p_n - rho * (u_n + mu * np.sqrt(u_1 * u_1 + u_2 * u_2))
     s_1, s_2 = p_1 - rho * u_1, p_2 - rho * u_2
     size = np.sqrt(s_1 * s_1 + s_2 * s_2)
-    if size > mu * s_n:
+    if size > mu * s_n or s_n < 0.0:
         # outside the cone: onto its surface, or onto the apex from the polar cone
         along = max((s_n + mu * size) / (1.0 + mu * mu), 0.0)
-        scale = mu * along / size
+        scale = mu * along / size if size > 0.0 else 0.0
         s_n, s_1, s_2 = along, scale * s_1, scale * s_2
     d_n, d_1, d_2 = p_n - s_n, p_1 - s_1, p_2 - s_2
     return np.sqrt(d_n * d_n + d_1 * d_1 + d_2 * d_2)

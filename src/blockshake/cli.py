@@ -1,0 +1,155 @@
+"""The command line: exit 0 done, 2 bad input (one line), 3 numerical failure, 1 a bug."""
+
+import argparse
+import sys
+
+from blockshake import __version__
+from blockshake.errors import InputError
+from blockshake.files import parse_yaml, write_dataset, write_json
+
+BAD_INPUT, NUMERICAL_FAILURE = 2, 3
+_FINISHED = ("completed", "collapsed")
+
+
+class _Parser(argparse.ArgumentParser):
+    """Argument errors as one line and exit 2, like all bad input."""
+
+    def error(self, message):
+        raise InputError(self.prog, "", message)
+
+
+def main(arguments=None):
+    """Run one command; the exit code is returned."""
+    try:
+        options = _parser().parse_args(arguments)
+        return options.run(options) or 0
+    except InputError as error:
+        print(f"blockshake: {error}", file=sys.stderr)
+        return BAD_INPUT
+
+
+def _parser():
+    parser = _Parser(prog="blockshake", description="Stacked blocks on a shake table.")
+    parser.add_argument("--version", action="version", version=f"blockshake {__version__}")
+    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND", parser_class=_Parser)
+
+    command = commands.add_parser("simulate", help="one structure under one motion, to a run file")
+    command.add_argument("--structure", required=True, metavar="NAME|FILE")
+    command.add_argument("--motion", required=True, metavar="NAME|FILE")
+    command.add_argument("--scale", type=float, default=1.0, help="multiplies the motion (default 1)")
+    command.add_argument("--duration", type=float, metavar="S", help="cuts or extends (default: the motion's)")
+    command.add_argument("--model", required=True, help="ls-dem or nscd-rigid")
+    _add_settings(command)
+    command.add_argument("--time-step", type=float, metavar="S", help="default 1e-5 for ls-dem, 1e-3 for nscd-rigid")
+    command.add_argument("--output-rate", type=float, default=200.0, metavar="HZ")
+    command.add_argument("--output", required=True, metavar="RUN.nc")
+    command.set_defaults(run=_simulate)
+
+    command = commands.add_parser("sample", help="a Latin hypercube of Table 2, to a CSV")
+    command.add_argument("--size", type=int, default=50)
+    command.add_argument("--seed", type=int, default=1)
+    command.add_argument("--correlation", metavar="FILE", help="square CSV, names in the header and first column")
+    command.add_argument("--output", required=True, metavar="DESIGN.csv")
+    command.set_defaults(run=_sample)
+
+    command = commands.add_parser("calibrate-stiffness", help="contact stiffness from wave speed, to a JSON")
+    command.add_argument("--structure", default="configuration-2", metavar="NAME|FILE", help="a single tower")
+    _add_settings(command)
+    command.add_argument("--output", required=True, metavar="STIFFNESS.json")
+    command.set_defaults(run=_calibrate_stiffness)
+
+    command = commands.add_parser("convert-motion", help="a record of another format, to the project's CSV")
+    command.add_argument("file", metavar="FILE")
+    command.add_argument("--output", required=True, metavar="MOTION.csv")
+    command.set_defaults(run=_convert_motion)
+
+    command = commands.add_parser("check", help="say what is wrong with structure, motion or study files")
+    command.add_argument("files", nargs="+", metavar="FILE")
+    command.set_defaults(run=_check)
+
+    command = commands.add_parser("parameters", help="every parameter with unit, default and source")
+    command.add_argument("--structure", metavar="NAME|FILE", help="whose names to list (default configuration-1)")
+    command.set_defaults(run=_parameters)
+    return parser
+
+
+def _add_settings(command):
+    command.add_argument(
+        "--set", dest="settings", action="append", default=[], metavar="KEY=VALUE",
+        help="a parameter by dotted name, repeatable; `blockshake parameters` lists them",
+    )  # fmt: skip
+
+
+def _settings(options):
+    settings = {}
+    for setting in options.settings:
+        key, equals, value = setting.partition("=")
+        if not equals or not key:
+            raise InputError("--set", setting, "expected KEY=VALUE")
+        settings[key] = parse_yaml(value, f"--set {key}")
+    return settings
+
+
+def _simulate(options):
+    from blockshake.dynamics.load_motion import load_motion
+    from blockshake.study.simulation import simulate
+
+    run = simulate(
+        options.structure,
+        load_motion(options.motion, options.scale),
+        options.model,
+        _settings(options),
+        time_step=options.time_step,
+        duration=options.duration,
+        output_rate=options.output_rate,
+    )
+    write_dataset(options.output, run)
+    if run.attrs["status"] in _FINISHED:
+        return 0
+    print(f"blockshake: {run.attrs['status']}: {run.attrs['reason']}", file=sys.stderr)
+    return NUMERICAL_FAILURE
+
+
+def _sample(options):
+    from blockshake.study.correlation_target import load_correlation
+    from blockshake.study.sampling import draw_samples, write_design
+
+    correlation = load_correlation(options.correlation) if options.correlation else None
+    design = draw_samples(size=options.size, seed=options.seed, correlation=correlation)
+    write_design(options.output, design)
+    print(f"{len(design.values)} samples; rms correlation error {design.rms_error:.2e}")
+
+
+def _calibrate_stiffness(options):
+    from blockshake.study.stiffness import calibrate_stiffness
+
+    write_json(options.output, calibrate_stiffness(options.structure, _settings(options)))
+
+
+def _convert_motion(options):
+    from blockshake.dynamics.load_motion import load_motion
+    from blockshake.dynamics.records.contract_csv import write_motion_csv
+
+    write_motion_csv(load_motion(options.file), options.output)
+
+
+def _check(options):
+    from blockshake.study.check import check_file
+
+    wrong = 0
+    for file in options.files:
+        try:
+            print(f"{file}: {check_file(file)}")
+        except InputError as error:
+            print(f"blockshake: {error}", file=sys.stderr)
+            wrong += 1
+    return BAD_INPUT if wrong else 0
+
+
+def _parameters(options):
+    from blockshake.study.parameters import parameter_table
+
+    rows = [("name", "unit", "default", "meaning", "source"), *parameter_table(options.structure)]
+    widths = [max(len(row[column]) for row in rows) for column in range(4)]
+    for row in rows:
+        print("  ".join([*(cell.ljust(width) for cell, width in zip(row, widths, strict=False)), row[4]]))

@@ -1,0 +1,103 @@
+"""A ground motion from a name that ships with the program or from a file of any known format."""
+
+from pathlib import Path
+
+import numpy as np
+
+from blockshake.dynamics.baseline import CORNER_FREQUENCY, correct_baseline
+from blockshake.dynamics.motion import ground_motion
+from blockshake.dynamics.records.at2 import is_at2, read_at2
+from blockshake.dynamics.records.contract_csv import read_motion_csv
+from blockshake.dynamics.records.cosmos import is_cosmos, read_cosmos
+from blockshake.dynamics.records.dyna import is_dyna, read_dyna
+from blockshake.dynamics.synthetic_motion import synthesise
+from blockshake.dynamics.synthetic_schema import load_synthetic
+from blockshake.errors import InputError
+from blockshake.files import read_text, shipped, shipped_names
+
+# content decides; the ending only where a broken file of that format should say what it lacks
+_RECORD_FORMATS = (
+    (is_dyna, ".asc", read_dyna),
+    (is_cosmos, ".v2", read_cosmos),
+    (is_at2, ".at2", read_at2),
+)
+
+
+def load_motion(source, scale=1.0, correct=True):
+    """Ground motion from a shipped name or a file.
+
+    Parameters
+    ----------
+    source : str or path
+        ``alkion``, ``basso-tirreno`` (synthetic), a CSV of the project, a record in ESM/ITACA DYNA
+        1.2, PEER AT2 or COSMOS V2, or the YAML of a synthetic motion. Content tells the format.
+    scale : float
+        Multiplies every column [1].
+    correct : bool
+        Baseline correction of record formats; a CSV is never corrected.
+
+    Returns
+    -------
+    GroundMotion
+        Its time starts at zero: what the file gives as its first time is in the attribute
+        ``first_time`` where it is another. A record's component becomes x.
+
+    Raises
+    ------
+    InputError
+        Missing file, unknown name, unknown format or unit, NaN, time that does not increase,
+        mixed kinds, too few rows, a file cut short, a scale that is not a finite number.
+    """
+    if not np.isfinite(scale):
+        raise InputError(source, "scale", f"expected a finite number, found {scale}")
+    path = shipped("motions", source)
+    if not path.is_file():
+        path = Path(source)
+        if not path.exists() and path.suffix == "":
+            raise InputError(
+                source, "", f"expected a motion file or one of {', '.join(shipped_names('motions'))}"
+            )
+    motion = _read(path, correct)
+    return motion if scale == 1.0 else motion.scaled(scale)
+
+
+def _read(path, correct):
+    if path.suffix.lower() in (".yaml", ".yml"):
+        return synthesise(load_synthetic(path))
+    text = read_text(path)
+    for recognises, _, read in _RECORD_FORMATS:
+        if recognises(text):
+            return _record_motion(read(text, path), path, correct)
+    for _, ending, read in _RECORD_FORMATS:
+        if path.suffix.lower().startswith(ending):
+            return _record_motion(read(text, path), path, correct)
+    if "time_s" in text.partition("\n")[0] or path.suffix.lower() == ".csv":
+        return _csv_motion(text, path)
+    raise InputError(
+        path,
+        "",
+        "expected a motion CSV (time_s, acceleration_x, ...), ESM/ITACA DYNA 1.2, PEER AT2 or COSMOS V2",
+    )
+
+
+def _csv_motion(text, path):
+    time, columns, kind = read_motion_csv(text, path)
+    attributes = {"source": path.name, "format": "csv", "synthetic": False, "baseline": "none"}
+    if time[0] != 0.0:
+        attributes["first_time"] = float(time[0])
+    return ground_motion(path.stem, time - time[0], columns, kind, attributes)
+
+
+def _record_motion(record, path, correct):
+    acceleration, baseline = record.acceleration, "none"
+    if correct:
+        acceleration = correct_baseline(acceleration, record.time_step)
+        baseline = (
+            f"mean removed, ends tapered, Butterworth high-pass at {CORNER_FREQUENCY:g} Hz both ways, "
+            "linear acceleration removed for zero end velocity and displacement"
+        )
+    time = record.time_step * np.arange(len(acceleration))
+    attributes = {"source": path.name, "format": record.format, "synthetic": False, "baseline": baseline}
+    return ground_motion(
+        path.stem, time, {"x": acceleration}, "acceleration", {**attributes, **record.metadata}
+    )

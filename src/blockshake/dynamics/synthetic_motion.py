@@ -1,0 +1,121 @@
+"""Seeded stochastic records that stand in for waveforms that may not be redistributed.
+
+Windowed noise takes the Fourier shape of a point source and is then matched to a target response
+spectrum. The method, its sources and the figures reached are in docs/motions.md.
+"""
+
+import numpy as np
+from scipy import fft
+from scipy.optimize import brentq
+from scipy.special import gammainc, ndtri
+
+from blockshake.dynamics.baseline import close_integrals, correct_baseline, high_pass
+from blockshake.dynamics.motion import ground_motion
+from blockshake.dynamics.response_spectrum import DAMPING, pseudo_acceleration
+
+_ROUNDS = 30  # of spectral matching; the misfit stops falling after about 15
+_MATCHED_PERIODS = np.geomspace(0.04, 4.0, 60)  # s; shorter ones follow the peak acceleration
+
+
+def synthesise(parameters):
+    """Ground motion along x from the parameters of a synthetic record.
+
+    Parameters
+    ----------
+    parameters : SyntheticMotion
+
+    Returns
+    -------
+    GroundMotion
+        Of kind ``acceleration``; velocity and displacement end at zero; the peak acceleration is
+        ``parameters.peak_acceleration``. Same parameters, same motion: the noise comes from the raw
+        bits of PCG64, which numpy keeps stable between versions, not from its distributions.
+
+    Notes
+    -----
+    Boore (2003), Simulation of ground motion using the stochastic method, Pure Appl. Geophys. 160,
+    sections 3 and 4.1, for noise, window and source; the spectral matching multiplies Fourier
+    amplitudes by the ratio of target to response spectrum at the period of each frequency and
+    keeps phases, after Gasparini and Vanmarcke (1976), SIMQKE. Path attenuation and site
+    amplification are not modelled: the matching gives what they would.
+    """
+    step = parameters.time_step
+    time = step * np.arange(round(parameters.duration / step) + 1)
+    noise = standard_normal(parameters.seed, len(time)) * window(time, parameters.envelope)
+    length = fft.next_fast_len(2 * len(time), real=True)
+    frequency = fft.rfftfreq(length, step)
+    acceleration = _filtered(noise, source_shape(frequency, parameters.source), length)
+    acceleration = _in_round(acceleration, parameters)
+    target = target_acceleration(parameters, _MATCHED_PERIODS)
+    for _ in range(_ROUNDS):
+        segments = np.full(len(time) - 1, step), acceleration[:-1], acceleration[1:]
+        ratio = target / pseudo_acceleration(*segments, _MATCHED_PERIODS, DAMPING)
+        gain = np.interp(np.log(np.maximum(frequency, 1e-6)), -np.log(_MATCHED_PERIODS[::-1]), ratio[::-1])
+        acceleration = _in_round(_filtered(acceleration, gain, length), parameters)
+    acceleration = correct_baseline(acceleration, step, parameters.high_pass_frequency)
+    acceleration = _scaled(acceleration, parameters.peak_acceleration)
+    corner = parameters.high_pass_frequency
+    attributes = {
+        "source": f"stochastic method, seed {parameters.seed}: {' '.join(parameters.description.split())}",
+        "format": "synthetic",
+        "synthetic": True,
+        "baseline": f"high-pass at {corner:g} Hz both ways, zero end velocity and displacement",
+    }
+    return ground_motion(parameters.name, time, {"x": acceleration}, "acceleration", attributes)
+
+
+def target_acceleration(parameters, periods):
+    """Target pseudo-acceleration, straight in log-log between the file's points [m/s2]."""
+    points = [(np.log(point.period), np.log(point.acceleration)) for point in parameters.target_spectrum]
+    return np.exp(np.interp(np.log(periods), *zip(*points, strict=True)))
+
+
+def standard_normal(seed, count):
+    """Normal deviates by inversion of the uniform numbers in PCG64's raw bits, shape (count,)."""
+    bits = np.random.PCG64(seed).random_raw(count) >> np.uint64(11)
+    return ndtri((bits.astype(float) + 0.5) / 2.0**53)
+
+
+def window(time, envelope):
+    """Saragoni-Hart window ``(t / t_peak)^b exp(b (1 - t / t_peak))``, peak 1.
+
+    Boore (2003), Eqs. (20) to (23): ``b = -peak ln(level) / (1 + peak (ln(peak) - 1))``, and
+    ``t_peak`` is set so that the window's square gathers 5 to 95 % of its integral, a gamma
+    function, in the significant duration.
+    """
+    peak, level = envelope.peak, envelope.level
+    b = -peak * np.log(level) / (1.0 + peak * (np.log(peak) - 1.0))
+    quantiles = [
+        brentq(lambda x, share=share: gammainc(2.0 * b + 1.0, x) - share, 0.0, 100.0)
+        for share in (0.05, 0.95)
+    ]
+    peak_time = 2.0 * b * envelope.significant_duration / (quantiles[1] - quantiles[0])
+    scaled = time / peak_time
+    return scaled**b * np.exp(b * (1.0 - scaled))
+
+
+def source_shape(frequency, source):
+    """Acceleration spectrum of a point source in its shape only, shape as ``frequency`` [1].
+
+    Boore (2003), Eqs. (6) to (8) and (19), in SI: omega-squared, corner frequency
+    ``0.49 beta (stress_drop / M0)^(1/3)``, seismic moment ``M0 = 10^(1.5 Mw + 9.05)`` N m, and the decay
+    ``exp(-pi kappa f)``.
+    """
+    moment = 10.0 ** (1.5 * source.moment_magnitude + 9.05)
+    corner = 0.49 * source.shear_wave_velocity * (source.stress_drop / moment) ** (1.0 / 3.0)
+    return frequency**2 / (1.0 + (frequency / corner) ** 2) * np.exp(-np.pi * source.kappa * frequency)
+
+
+def _filtered(values, gain, length):
+    return fft.irfft(fft.rfft(values, length) * gain, length)[: len(values)]
+
+
+def _in_round(acceleration, parameters):
+    """High-passed, closed and scaled; the taper waits for the end, else it would sharpen the onset."""
+    step = parameters.time_step
+    closed = close_integrals(high_pass(acceleration, step, parameters.high_pass_frequency), step)
+    return _scaled(closed, parameters.peak_acceleration)
+
+
+def _scaled(acceleration, peak):
+    return acceleration * (peak / np.abs(acceleration).max())

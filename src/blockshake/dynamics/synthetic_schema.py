@@ -1,0 +1,86 @@
+"""The file of a synthetic motion (YAML): its keys, types and limits; whatever else is an error."""
+
+from itertools import pairwise
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from blockshake.errors import InputError
+from blockshake.files import load_yaml
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Share = Annotated[float, Field(gt=0, lt=1)]
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Ordinate(_Strict):
+    """One point of the target response spectrum."""
+
+    period: Positive = Field(description="[s]")
+    acceleration: Positive = Field(description="pseudo-acceleration at 5 % damping [m/s2]")
+    published: bool = Field(False, description="from a publication; otherwise inferred")
+
+
+class Source(_Strict):
+    """Point source that gives the Fourier spectrum its first shape."""
+
+    moment_magnitude: Annotated[float, Field(gt=0, lt=10)]
+    epicentral_distance: Positive = Field(description="[m]; stated for the record, the model does not use it")
+    stress_drop: Positive = Field(description="[Pa]")
+    shear_wave_velocity: Positive = Field(description="at the source [m/s]")
+    kappa: Positive = Field(description="high-frequency decay exp(-pi kappa f) [s]")
+
+
+class Envelope(_Strict):
+    """Saragoni-Hart window of the noise."""
+
+    significant_duration: Positive = Field(description="between 5 and 95 % of the window's energy [s]")
+    peak: Share = Field(description="time of the peak as a share of the window's length [1]")
+    level: Share = Field(description="height at the window's end as a share of the peak [1]")
+
+
+class SyntheticMotion(_Strict):
+    """The whole file."""
+
+    name: str
+    synthetic: Literal[True]
+    description: str
+    seed: Annotated[int, Field(ge=0)]
+    time_step: Positive = Field(description="[s]")
+    duration: Positive = Field(description="[s]")
+    peak_acceleration: Positive = Field(description="of the finished record, exact [m/s2]")
+    high_pass_frequency: Positive = Field(description="corner of the baseline correction [Hz]")
+    source: Source
+    envelope: Envelope
+    target_spectrum: tuple[Ordinate, ...] = Field(min_length=2)
+
+    @model_validator(mode="after")
+    def _consistent(self):
+        periods = [ordinate.period for ordinate in self.target_spectrum]
+        if any(later <= earlier for earlier, later in pairwise(periods)):
+            raise ValueError("expected target_spectrum in order of rising period")
+        if self.duration < 100.0 * self.time_step:
+            raise ValueError("expected a duration of at least 100 time steps")
+        return self
+
+
+def load_synthetic(path):
+    """Checked parameters of a synthetic motion.
+
+    Raises
+    ------
+    InputError
+        Missing file, unknown or missing key, value of the wrong type or out of range.
+    """
+    try:
+        return SyntheticMotion.model_validate(load_yaml(path))
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        if first["type"] == "extra_forbidden":
+            raise InputError(path, key, "unknown key of a synthetic motion") from None
+        message = first["msg"].removeprefix("Value error, ")
+        raise InputError(path, key, message[0].lower() + message[1:]) from None

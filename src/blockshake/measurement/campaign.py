@@ -1,0 +1,109 @@
+"""Campaigns of measured tests: the list of tests and their marker readings."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+import xarray as xr
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from blockshake.errors import InputError
+from blockshake.files import load_yaml
+
+NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Sensors(_Strict):
+    """Standard deviations of the readings."""
+
+    marker_noise: NotNegative = Field(1e-4, description="[m]")
+    accelerometer_noise: NotNegative = Field(0.02, description="[m/s2]")
+
+
+class MeasuredTest(_Strict):
+    """One test of the list: what was commanded, where it was recorded, what it may be used for."""
+
+    name: str
+    file: str
+    motion: str
+    scale: float
+    role: Literal["fit", "select", "sealed"]
+
+
+class CampaignFile(_Strict):
+    """The file ``campaign.yaml``."""
+
+    name: str
+    structure: str = Field(description="shipped name, or a file in the folder")
+    sensors: Sensors = Sensors()
+    tests: tuple[MeasuredTest, ...] = Field(min_length=1)
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """A checked campaign.
+
+    Attributes
+    ----------
+    folder : Path
+    name, structure : str
+        ``structure`` is a shipped name or the path of a file.
+    sensors : Sensors
+    tests : dict of str to MeasuredTest
+        By name.
+    """
+
+    folder: Path
+    name: str
+    structure: str
+    sensors: Sensors
+    tests: dict
+
+
+def load_campaign(folder):
+    """Campaign of a folder, its test files found but not yet read.
+
+    Raises
+    ------
+    InputError
+        Missing folder or file, unknown key, a test named twice.
+    """
+    folder = Path(folder)
+    path = folder / "campaign.yaml"
+    mapping = load_yaml(path)
+    try:
+        file = CampaignFile.model_validate(mapping)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        raise InputError(path, key, first["msg"].lower()) from None
+    tests = {test.name: test for test in file.tests}
+    if len(tests) < len(file.tests):
+        raise InputError(path, "tests", "expected every test's name once")
+    for test in file.tests:
+        if not (folder / test.file).is_file():
+            raise InputError(path, f"tests.{test.name}.file", f"expected a file in {folder}; it has no {test.file}")
+    structure = str(folder / file.structure) if (folder / file.structure).is_file() else file.structure
+    return Campaign(folder, file.name, structure, file.sensors, tests)
+
+
+def load_test(campaign, name):
+    """Readings of one test: ``marker_displacement(time, marker, axis)`` [m] and what else the file holds.
+
+    Raises
+    ------
+    InputError
+        The file is no netCDF file or lacks the marker displacements.
+    """
+    path = campaign.folder / campaign.tests[name].file
+    try:
+        test = xr.load_dataset(path)
+    except (OSError, ValueError) as error:
+        raise InputError(path, "", f"expected a netCDF file; {error}") from None
+    if "marker_displacement" not in test or set(test["marker_displacement"].dims) != {"time", "marker", "axis"}:
+        raise InputError(path, "marker_displacement", "expected displacements over time, marker and axis")
+    return test

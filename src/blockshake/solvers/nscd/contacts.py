@@ -1,0 +1,260 @@
+"""The contacts of one step: where they are, their local operators, and what they remember."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.jit import kernel
+from blockshake.solvers.nscd.detection import detect_pair_into
+from blockshake.solvers.nscd.polyhedra import find_pairs
+
+# A contact takes over the impulse of the nearest one of its pair within this share of the radius.
+_SAME_CONTACT = 0.1
+
+
+class Contacts(NamedTuple):
+    """Contacts of one step, pair by pair in fixed order, stoppers last.
+
+    ``body_a``, ``body_b`` int64 (n,): impulses act on b and, reversed, on a. ``basis`` (n, 3, 3):
+    rows are the unit normal from a to b and two tangents, world frame. ``arm_a``, ``arm_b``
+    (n, 3): point minus mass centre, world frame [m]. ``home`` (n, 3): point in the frame of a [m].
+    ``gap`` (n,) [m]; ``friction`` (n,) [1]; ``compliance`` (n,) velocity per normal impulse of a
+    stopper [1/kg], zero for a contact of bodies. ``bound`` (n, 3): velocity added to that of the contact before the
+    law is applied [m/s]. ``local`` (n, 5): ``w_n, w_1, w_2, a_1, a_2`` of `solve_contact`. ``impulse``
+    (n, 3) along the basis [N s]. ``slip`` (n,) of `solve_contact`. ``stopper`` int64 (n,): index of the stopper, or -1.
+    """
+
+    body_a: np.ndarray
+    body_b: np.ndarray
+    basis: np.ndarray
+    arm_a: np.ndarray
+    arm_b: np.ndarray
+    home: np.ndarray
+    gap: np.ndarray
+    friction: np.ndarray
+    compliance: np.ndarray
+    bound: np.ndarray
+    local: np.ndarray
+    impulse: np.ndarray
+    slip: np.ndarray
+    stopper: np.ndarray
+
+
+@kernel
+def empty_contacts(capacity):
+    """Arrays for that many contacts."""
+    return Contacts(
+        np.empty(capacity, np.int64),
+        np.empty(capacity, np.int64),
+        np.empty((capacity, 3, 3)),
+        np.empty((capacity, 3)),
+        np.empty((capacity, 3)),
+        np.empty((capacity, 3)),
+        np.empty(capacity),
+        np.empty(capacity),
+        np.zeros(capacity),
+        np.zeros((capacity, 3)),
+        np.empty((capacity, 5)),
+        np.zeros((capacity, 3)),
+        np.zeros(capacity),
+        np.full(capacity, -1, np.int64),
+    )
+
+
+@kernel
+def _first_rows(contacts, count):
+    return Contacts(
+        contacts.body_a[:count],
+        contacts.body_b[:count],
+        contacts.basis[:count],
+        contacts.arm_a[:count],
+        contacts.arm_b[:count],
+        contacts.home[:count],
+        contacts.gap[:count],
+        contacts.friction[:count],
+        contacts.compliance[:count],
+        contacts.bound[:count],
+        contacts.local[:count],
+        contacts.impulse[:count],
+        contacts.slip[:count],
+        contacts.stopper[:count],
+    )
+
+
+@kernel
+def detect_contacts(bodies, polyhedra, placed, rotations, margin, shrink, memory, n_stoppers):
+    """Contacts of all pairs of polyhedra, with room for the stoppers after them.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    polyhedra, placed : Polyhedra, Placed
+    rotations : float64 array, shape (n_bodies, 3, 3)
+        Body to world.
+    margin, shrink : float
+        As in `detect_pair_into`.
+    memory : int64 array, shape (n_bodies, n_bodies)
+        As in `detect_pair_into`.
+    n_stoppers : int
+
+    Returns
+    -------
+    contacts : Contacts
+        Geometry, friction and gap filled in; the rows of the stoppers are still empty.
+    """
+    pairs = find_pairs(placed, bodies.driven, margin)
+    contacts = empty_contacts(4 * pairs.shape[0] + n_stoppers)
+    normal, points, gaps = np.empty(3), np.empty((4, 3)), np.empty(4)
+    count = 0
+    for pair in range(pairs.shape[0]):
+        a, b = pairs[pair, 0], pairs[pair, 1]
+        found = detect_pair_into(polyhedra, placed, a, b, margin, shrink, memory, normal, points, gaps)
+        if found == 0:
+            memory[a, b] = -1
+        for point in range(found):
+            contacts.body_a[count], contacts.body_b[count] = a, b
+            contacts.gap[count] = gaps[point]
+            contacts.friction[count] = bodies.friction[a, b]
+            contacts.basis[count, 0] = normal
+            for axis in range(3):
+                contacts.arm_a[count, axis] = points[point, axis] - placed.center[a, axis]
+                contacts.arm_b[count, axis] = points[point, axis] - placed.center[b, axis]
+            contacts.home[count] = rotations[a].T @ contacts.arm_a[count]
+            count += 1
+    return _first_rows(contacts, count + n_stoppers)
+
+
+@kernel
+def _across_into(arm, inverse_mass, inertia, basis, W):
+    """Add one body's share of ``basis (1/m - arm x I^-1 arm x) basis^T`` to ``W``."""
+    lever = np.empty((3, 3))
+    for i in range(3):
+        d = basis[i]
+        lever[i, 0] = arm[1] * d[2] - arm[2] * d[1]
+        lever[i, 1] = arm[2] * d[0] - arm[0] * d[2]
+        lever[i, 2] = arm[0] * d[1] - arm[1] * d[0]
+    for i in range(3):
+        for j in range(3):
+            total = inverse_mass if i == j else 0.0
+            for k in range(3):
+                for m in range(3):
+                    total += lever[i, k] * inertia[k, m] * lever[j, m]
+            W[i, j] += total
+
+
+@kernel
+def _tangents_into(basis):
+    """Two tangents that complete a right-handed frame with the normal ``basis[0]``."""
+    n = basis[0]
+    least = 0
+    for axis in range(1, 3):
+        if abs(n[axis]) < abs(n[least]):
+            least = axis
+    e = np.zeros(3)
+    e[least] = 1.0
+    t = np.cross(n, e)
+    basis[1] = t / np.linalg.norm(t)
+    basis[2] = np.cross(n, basis[1])
+
+
+@kernel
+def prepare_operators_into(bodies, inertia, contacts):
+    """Fill in the tangents and the local operators.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    inertia : float64 array, shape (n_bodies, 3, 3)
+        Inverse inertia, world frame [1/(kg m2)]; zero for driven bodies.
+    contacts : Contacts
+        ``basis`` needs its normals; the tangents are turned such that the tangential block of
+        the local operator is diagonal.
+    """
+    W = np.empty((3, 3))
+    for contact in range(contacts.gap.size):
+        a, b = contacts.body_a[contact], contacts.body_b[contact]
+        basis = contacts.basis[contact]
+        _tangents_into(basis)
+        W[:] = 0.0
+        _across_into(contacts.arm_a[contact], bodies.inverse_mass[a], inertia[a], basis, W)
+        _across_into(contacts.arm_b[contact], bodies.inverse_mass[b], inertia[b], basis, W)
+        angle = 0.5 * np.arctan2(2.0 * W[1, 2], W[1, 1] - W[2, 2])
+        c, s = np.cos(angle), np.sin(angle)
+        for axis in range(3):
+            t_1, t_2 = basis[1, axis], basis[2, axis]
+            basis[1, axis], basis[2, axis] = c * t_1 + s * t_2, c * t_2 - s * t_1
+        local = contacts.local[contact]
+        local[0] = W[0, 0] + contacts.compliance[contact]
+        local[1] = c * c * W[1, 1] + 2.0 * c * s * W[1, 2] + s * s * W[2, 2]
+        local[2] = s * s * W[1, 1] - 2.0 * c * s * W[1, 2] + c * c * W[2, 2]
+        local[3] = c * W[0, 1] + s * W[0, 2]
+        local[4] = c * W[0, 2] - s * W[0, 1]
+
+
+@kernel
+def _before(stopper, a, b, other_stopper, other_a, other_b):
+    """Whether a contact comes before another in `Contacts`: pairs first, then stoppers."""
+    if stopper != other_stopper:
+        return stopper < other_stopper
+    return a < other_a or (a == other_a and b < other_b)
+
+
+@kernel
+def _block_of_pair(contacts, a, b, stopper, start):
+    """Rows ``first`` to ``last`` of a pair, or of a stopper, searched upwards from ``start``."""
+    first = start
+    size = contacts.gap.size
+    while first < size and _before(
+        contacts.stopper[first], contacts.body_a[first], contacts.body_b[first], stopper, a, b
+    ):
+        first += 1
+    last = first
+    while (
+        last < size
+        and contacts.stopper[last] == stopper
+        and contacts.body_a[last] == a
+        and contacts.body_b[last] == b
+    ):
+        last += 1
+    return first, last
+
+
+@kernel
+def warm_start_into(old, radius, contacts):
+    """Give each contact the impulse of the nearest one of the same pair at the step before.
+
+    Parameters
+    ----------
+    old : Contacts
+        Of the step before, sorted by pair like ``contacts``.
+    radius : float64 array, shape (n_bodies,)
+        Of the bodies [m].
+    contacts : Contacts
+        ``impulse`` is overwritten, inside Coulomb's cone; ``slip`` as well.
+    """
+    first, last = 0, 0
+    for contact in range(contacts.gap.size):
+        a, b, stopper = contacts.body_a[contact], contacts.body_b[contact], contacts.stopper[contact]
+        limit = _SAME_CONTACT * min(radius[a], radius[b])
+        nearest, found = limit * limit, -1
+        first, last = _block_of_pair(old, a, b, stopper, first)
+        for other in range(first, last):
+            distance = 0.0
+            for axis in range(3):
+                d = old.home[other, axis] - contacts.home[contact, axis]
+                distance += d * d
+            if distance < nearest:
+                nearest, found = distance, other
+        contacts.impulse[contact] = 0.0
+        contacts.slip[contact] = 0.0
+        if found < 0:
+            continue
+        world = old.impulse[found] @ old.basis[found]
+        p = contacts.basis[contact] @ world
+        limit = contacts.friction[contact] * max(p[0], 0.0)
+        size = np.sqrt(p[1] * p[1] + p[2] * p[2])
+        scale = min(1.0, limit / size) if size > 0.0 else 0.0
+        contacts.impulse[contact, 0] = max(p[0], 0.0)
+        contacts.impulse[contact, 1] = scale * p[1]
+        contacts.impulse[contact, 2] = scale * p[2]
+        contacts.slip[contact] = old.slip[found]

@@ -1,0 +1,140 @@
+"""Nonlinear Gauss-Seidel over the contacts, stopped by what is left of the contact law."""
+
+import numpy as np
+
+from blockshake.jit import kernel
+from blockshake.solvers.nscd.local_solve import contact_residual, solve_contact
+
+
+@kernel
+def relative_velocity(contacts, contact, v):
+    """Velocity of b minus that of a at a contact, along its basis [m/s].
+
+    ``v`` (n_bodies, 6): velocity [m/s] and angular velocity [rad/s] of the bodies, world frame.
+    """
+    basis = contacts.basis[contact]
+    a, b = v[contacts.body_a[contact]], v[contacts.body_b[contact]]
+    r, s = contacts.arm_a[contact], contacts.arm_b[contact]
+    x = b[0] + b[4] * s[2] - b[5] * s[1] - a[0] - a[4] * r[2] + a[5] * r[1]
+    y = b[1] + b[5] * s[0] - b[3] * s[2] - a[1] - a[5] * r[0] + a[3] * r[2]
+    z = b[2] + b[3] * s[1] - b[4] * s[0] - a[2] - a[3] * r[1] + a[4] * r[0]
+    return (
+        basis[0, 0] * x + basis[0, 1] * y + basis[0, 2] * z,
+        basis[1, 0] * x + basis[1, 1] * y + basis[1, 2] * z,
+        basis[2, 0] * x + basis[2, 1] * y + basis[2, 2] * z,
+    )
+
+
+@kernel
+def _push_into(v, arm, inverse_mass, inertia, x, y, z):
+    """Velocity of one body after an impulse (x, y, z) [N s] at ``arm`` from its mass centre."""
+    v[0] += inverse_mass * x
+    v[1] += inverse_mass * y
+    v[2] += inverse_mass * z
+    tx, ty, tz = arm[1] * z - arm[2] * y, arm[2] * x - arm[0] * z, arm[0] * y - arm[1] * x
+    v[3] += inertia[0, 0] * tx + inertia[0, 1] * ty + inertia[0, 2] * tz
+    v[4] += inertia[1, 0] * tx + inertia[1, 1] * ty + inertia[1, 2] * tz
+    v[5] += inertia[2, 0] * tx + inertia[2, 1] * ty + inertia[2, 2] * tz
+
+
+@kernel
+def apply_impulse_into(bodies, inertia, contacts, contact, p_n, p_1, p_2, v):
+    """Add the effect of an impulse [N s], along the basis, to the velocities of both bodies."""
+    basis = contacts.basis[contact]
+    x = basis[0, 0] * p_n + basis[1, 0] * p_1 + basis[2, 0] * p_2
+    y = basis[0, 1] * p_n + basis[1, 1] * p_1 + basis[2, 1] * p_2
+    z = basis[0, 2] * p_n + basis[1, 2] * p_1 + basis[2, 2] * p_2
+    a, b = contacts.body_a[contact], contacts.body_b[contact]
+    _push_into(v[b], contacts.arm_b[contact], bodies.inverse_mass[b], inertia[b], x, y, z)
+    if not bodies.driven[a]:
+        _push_into(v[a], contacts.arm_a[contact], bodies.inverse_mass[a], inertia[a], -x, -y, -z)
+
+
+@kernel
+def relative_residual(contacts, v, floor):
+    """What is left of the contact law, relative to the impulses [1].
+
+    Root of the summed squares of `contact_residual` over all contacts, divided by that of the
+    impulses or by ``floor`` [N s], whichever is larger.
+    """
+    left, load = 0.0, 0.0
+    for contact in range(contacts.gap.size):
+        u_n, u_1, u_2 = relative_velocity(contacts, contact, v)
+        p = contacts.impulse[contact]
+        bound = contacts.bound[contact]
+        local = contacts.local[contact]
+        u_n += bound[0] + contacts.compliance[contact] * p[0]
+        rho = 1.0 / max(local[0], max(local[1], local[2]))
+        part = contact_residual(
+            p[0], p[1], p[2], u_n, u_1 + bound[1], u_2 + bound[2], contacts.friction[contact], rho
+        )
+        left += part * part
+        load += p[0] * p[0] + p[1] * p[1] + p[2] * p[2]
+    return np.sqrt(left) / max(np.sqrt(load), floor)
+
+
+@kernel
+def sweep_into(bodies, inertia, contacts, upwards, v):
+    """Solve every contact once in turn, first to last if ``upwards`` and back otherwise."""
+    n_contacts = contacts.gap.size
+    for rank in range(n_contacts):
+        contact = rank if upwards else n_contacts - 1 - rank
+        u_n, u_1, u_2 = relative_velocity(contacts, contact, v)
+        p, bound, w = contacts.impulse[contact], contacts.bound[contact], contacts.local[contact]
+        q_n = u_n + bound[0] + contacts.compliance[contact] * p[0] - (w[0] * p[0] + w[3] * p[1] + w[4] * p[2])
+        q_1 = u_1 + bound[1] - (w[3] * p[0] + w[1] * p[1])
+        q_2 = u_2 + bound[2] - (w[4] * p[0] + w[2] * p[2])
+        mu = contacts.friction[contact]
+        p_n, p_1, p_2, slip = solve_contact(w[0], w[1], w[2], w[3], w[4], q_n, q_1, q_2, mu, contacts.slip[contact])
+        d_n, d_1, d_2 = p_n - p[0], p_1 - p[1], p_2 - p[2]
+        if d_n != 0.0 or d_1 != 0.0 or d_2 != 0.0:
+            apply_impulse_into(bodies, inertia, contacts, contact, d_n, d_1, d_2, v)
+            p[0], p[1], p[2] = p_n, p_1, p_2
+            contacts.slip[contact] = slip
+
+
+@kernel
+def solve_contacts_into(bodies, inertia, contacts, floor, tolerance, max_iterations, v):
+    """Impulses that satisfy the contact law of all contacts at once.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    inertia : float64 array, shape (n_bodies, 3, 3)
+        Inverse inertia, world frame [1/(kg m2)].
+    contacts : Contacts
+        ``impulse`` holds the start and, afterwards, the answer.
+    floor : float
+        As in `relative_residual` [N s].
+    tolerance : float
+        Relative residual at which the sweeps stop [1].
+    max_iterations : int
+        Sweeps allowed.
+    v : float64 array, shape (n_bodies, 6)
+        Velocities at the end of the step without contact impulses; with them afterwards.
+
+    Returns
+    -------
+    iterations : int
+        Sweeps made, at least one where there are contacts.
+    residual : float
+        Relative residual reached.
+
+    Notes
+    -----
+    Nonlinear Gauss-Seidel of Jean (1999), sweeping up and down in turn.
+    """
+    n_contacts = contacts.gap.size
+    if n_contacts == 0:
+        return 0, 0.0
+    for contact in range(n_contacts):
+        p = contacts.impulse[contact]
+        apply_impulse_into(bodies, inertia, contacts, contact, p[0], p[1], p[2], v)
+    residual = np.inf
+    iterations = 0
+    while iterations < max_iterations and not residual <= tolerance:
+        sweep_into(bodies, inertia, contacts, iterations % 2 == 0, v)
+        iterations += 1
+        if iterations <= 4 or iterations % 4 == 0 or iterations == max_iterations:
+            residual = relative_residual(contacts, v, floor)
+    return iterations, residual

@@ -1,0 +1,271 @@
+"""The parts of one time step, in physical order: predict, meet, solve, move, account."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.dynamics.motion import find_segment, ground_state_into
+from blockshake.dynamics.system import kinetic_energy, place_driven_into, potential_energy
+from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
+from blockshake.jit import kernel
+from blockshake.solvers.nscd.gauss_seidel import relative_velocity
+from blockshake.solvers.nscd.rotation_step import turn_into
+
+# Contacts are looked for at least this far apart, since a body at rest may be pushed within a step [m].
+_LEAST_MARGIN = 1e-4
+
+
+class Step(NamedTuple):
+    """Work space of a step.
+
+    ``detection`` (State): poses at which contacts are found, and the driven bodies' velocities at
+    the end of the step. ``rotations`` and ``inverse_inertia`` (n_bodies, 3, 3): body to world, and
+    [1/(kg m2)] in the world frame, there. ``v_start``, ``v`` (n_bodies, 6): velocities at the start and at the
+    end of the step. ``v_mean`` (n_bodies, 6): their mean, rotation as in `turn_into`. ``impulse``
+    (n_bodies, 6): contact impulse and its moment about the mass centre [N s, N m s].
+    """
+
+    detection: tuple
+    rotations: np.ndarray
+    inverse_inertia: np.ndarray
+    v_start: np.ndarray
+    v: np.ndarray
+    v_mean: np.ndarray
+    impulse: np.ndarray
+
+
+@kernel
+def copy_state(state):
+    """A copy that shares no array."""
+    return type(state)(
+        state.position.copy(), state.orientation.copy(), state.velocity.copy(), state.angular_velocity.copy()
+    )
+
+
+@kernel
+def ground_displacement_into(table, origin, t, segment, displacement, velocity):
+    """Ground displacement since ``origin`` and its rate at one time; the segment is returned."""
+    segment = find_segment(table.breaks, t, segment)
+    ground_state_into(table, segment, t, displacement, velocity)
+    for channel in range(4):
+        displacement[channel] -= origin[channel]
+    return segment
+
+
+@kernel
+def predict_into(bodies, state, displacement, velocity, dt, theta, step):
+    """Poses at ``(1 - theta) dt`` into the step, and velocities at its end without contact.
+
+    ``displacement`` and ``velocity`` (4,): of the ground, there and at the end of the step.
+    """
+    detection, v = step.detection, step.v
+    rotation, no_torque = np.empty(3), np.zeros(3)
+    orientation, mean = np.empty(4), np.empty(3)
+    for body in range(bodies.mass.size):
+        for axis in range(3):
+            step.v_start[body, axis] = state.velocity[body, axis]
+            step.v_start[body, 3 + axis] = state.angular_velocity[body, axis]
+        if bodies.driven[body]:
+            continue
+        for axis in range(3):
+            detection.position[body, axis] = state.position[body, axis] + (1.0 - theta) * dt * state.velocity[body, axis]
+            rotation[axis] = (1.0 - theta) * dt * state.angular_velocity[body, axis]
+            v[body, axis] = state.velocity[body, axis] + dt * bodies.gravity[axis]
+        rotate_into(state.orientation[body], rotation, detection.orientation[body])
+        turn_into(
+            state.orientation[body],
+            state.angular_velocity[body],
+            bodies.inertia[body],
+            bodies.inverse_inertia[body],
+            no_torque,
+            dt,
+            theta,
+            orientation,
+            v[body, 3:],
+            mean,
+        )
+    place_driven_into(bodies, displacement, velocity, detection)
+    for body in range(bodies.mass.size):
+        R = step.rotations[body]
+        rotation_matrix_into(detection.orientation[body], R)
+        step.inverse_inertia[body] = R @ bodies.inverse_inertia[body] @ R.T
+        if bodies.driven[body]:
+            v[body, :3] = detection.velocity[body]
+            v[body, 3:] = detection.angular_velocity[body]
+
+
+@kernel
+def contact_margin(v_start, radius, gravity, dt):
+    """Gap up to which points of two bodies are kept as contacts: what no pair can close in a step [m]."""
+    fastest = 0.0
+    for body in range(radius.size):
+        v = v_start[body]
+        speed = np.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+        spin = np.sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5])
+        fastest = max(fastest, speed + radius[body] * spin)
+    return _LEAST_MARGIN + 2.0 * dt * (fastest + dt * np.linalg.norm(gravity))
+
+
+@kernel
+def place_stoppers_into(bodies, stoppers, base, step, dt, theta, contacts):
+    """Write the stoppers, as contacts of the driven body ``base``, into the last rows."""
+    first = contacts.gap.size - stoppers.body.size
+    for stopper in range(stoppers.body.size):
+        row, body = first + stopper, stoppers.body[stopper]
+        contacts.body_a[row], contacts.body_b[row] = base, body
+        contacts.stopper[row] = stopper
+        contacts.arm_a[row] = 0.0
+        contacts.arm_b[row] = step.rotations[body] @ stoppers.point[stopper]
+        contacts.home[row] = stoppers.point[stopper]
+        contacts.basis[row, 0] = -stoppers.axis[stopper]
+        contacts.friction[row] = 0.0
+        contacts.compliance[row] = 1.0 / (theta * dt * dt * stoppers.stiffness[stopper])
+        contacts.gap[row] = -closure(bodies, stoppers, stopper, base, step.detection.position, contacts.arm_b[row])
+
+
+@kernel
+def closure(bodies, stoppers, stopper, base, position, arm):
+    """Closure of a stopper beyond its gap [m], negative while open.
+
+    ``position`` (n_bodies, 3): mass centres [m]; ``arm`` (3,): the point minus the mass centre, world frame [m].
+    """
+    body = stoppers.body[stopper]
+    start = np.empty((3, 3))
+    rotation_matrix_into(bodies.home_orientation[body], start)
+    arm_start = start @ stoppers.point[stopper]
+    moved = 0.0
+    for axis in range(3):
+        relative = position[body, axis] + arm[axis] - position[base, axis]
+        relative_start = bodies.home[body, axis] + arm_start[axis] - bodies.home[base, axis]
+        moved += stoppers.axis[stopper, axis] * (relative - relative_start)
+    return moved - stoppers.gap[stopper]
+
+
+@kernel
+def bounds_into(step, dt, theta, restitution, contacts):
+    """Fill in the velocities that the contact law adds to those of the contacts.
+
+    Notes
+    -----
+    Poses of detection are ``dt`` apart, and the velocity at the end of a step carries one to the
+    next: ``gap + dt u_n`` is the next gap. So ``u_n + max(gap, 0) / dt >= 0`` lets a contact close
+    and no more, and leaves a penetration as it is. ``u`` must be measured with the levers halfway between these
+    two poses; those at hand are ``dt / 2`` older, and the difference is the centripetal velocity added here.
+    Newton's restitution replaces the anticipated gap where the velocity at the start would close the gap within the
+    step. A stopper's law is implicit: impulse ``dt k`` times the closure at the end.
+    """
+    for contact in range(contacts.gap.size):
+        basis, bound = contacts.basis[contact], contacts.bound[contact]
+        gap = contacts.gap[contact]
+        turn = _centripetal(step.v_start[contacts.body_b[contact], 3:], contacts.arm_b[contact])
+        turn -= _centripetal(step.v_start[contacts.body_a[contact], 3:], contacts.arm_a[contact])
+        for i in range(3):
+            bound[i] = 0.5 * dt * (basis[i, 0] * turn[0] + basis[i, 1] * turn[1] + basis[i, 2] * turn[2])
+        if contacts.stopper[contact] >= 0:
+            bound[0] += gap / (theta * dt)
+            continue
+        closing, _, _ = relative_velocity(contacts, contact, step.v_start)
+        if restitution > 0.0 and closing < 0.0 and gap + dt * closing <= 0.0:
+            bound[0] += restitution * closing
+        else:
+            bound[0] += max(gap, 0.0) / dt
+
+
+@kernel
+def _centripetal(spin, arm):
+    """``spin x (spin x arm)`` [m/s2]."""
+    along = spin[0] * arm[0] + spin[1] * arm[1] + spin[2] * arm[2]
+    squared = spin[0] * spin[0] + spin[1] * spin[1] + spin[2] * spin[2]
+    return along * spin - squared * arm
+
+
+@kernel
+def move_into(bodies, displacement, velocity, dt, theta, contacts, before, step, state):
+    """Poses and velocities at the end of the step under gravity and the contacts' impulses.
+
+    ``displacement`` and ``velocity`` (4,): of the ground at the end of the step. ``before`` is overwritten
+    with the state at the start.
+    """
+    before.position[:] = state.position
+    before.orientation[:] = state.orientation
+    before.velocity[:] = state.velocity
+    before.angular_velocity[:] = state.angular_velocity
+    step.impulse[:] = 0.0
+    for contact in range(contacts.gap.size):
+        world = contacts.impulse[contact] @ contacts.basis[contact]
+        for sign, body, arm in (
+            (-1.0, contacts.body_a[contact], contacts.arm_a[contact]),
+            (1.0, contacts.body_b[contact], contacts.arm_b[contact]),
+        ):
+            step.impulse[body, :3] += sign * world
+            step.impulse[body, 3:] += sign * np.cross(arm, world)
+    place_driven_into(bodies, displacement, velocity, state)
+    for body in range(bodies.mass.size):
+        if bodies.driven[body]:
+            state.velocity[body] = step.v[body, :3]
+            state.angular_velocity[body] = step.v[body, 3:]
+            step.v_mean[body] = 0.5 * (step.v_start[body] + step.v[body])
+            continue
+        for axis in range(3):
+            old = before.velocity[body, axis]
+            new = old + dt * bodies.gravity[axis] + bodies.inverse_mass[body] * step.impulse[body, axis]
+            state.velocity[body, axis] = new
+            state.position[body, axis] += dt * ((1.0 - theta) * old + theta * new)
+            step.v_mean[body, axis] = 0.5 * (old + new)
+        turn_into(
+            before.orientation[body],
+            before.angular_velocity[body],
+            bodies.inertia[body],
+            bodies.inverse_inertia[body],
+            step.impulse[body, 3:],
+            dt,
+            theta,
+            state.orientation[body],
+            state.angular_velocity[body],
+            step.v_mean[body, 3:],
+        )
+
+
+@kernel
+def account_into(bodies, stoppers, base, state, contacts, step, work, energy):
+    """Bring the energy terms up to the end of the step.
+
+    Parameters
+    ----------
+    work : float64 array, shape (2,)
+        Net work taken out so far by friction and by normal impulses [J]; brought up to date.
+    energy : float64 array, shape (7,)
+        `ENERGY_TERMS` at the start of the step [J]; overwritten with those at its end.
+
+    Notes
+    -----
+    An impulse does the work ``p . u`` with the mean ``u`` of the velocities at the start and at the end
+    (`turn_into` for rotations), so that the terms add up to rounding at theta 0.5. A dissipated
+    term is the largest net work so far: net work can fall for a moment by the error of the scheme, and the fall
+    then shows as the energy residual.
+    """
+    elastic = 0.0
+    for contact in range(contacts.gap.size):
+        p = contacts.impulse[contact]
+        a, b = contacts.body_a[contact], contacts.body_b[contact]
+        u_n, u_1, u_2 = relative_velocity(contacts, contact, step.v_mean)
+        work[0] -= p[1] * u_1 + p[2] * u_2
+        work[1] -= p[0] * u_n
+        world = p @ contacts.basis[contact]
+        if bodies.driven[a]:
+            v = step.v_mean[a]
+            energy[6] += np.dot(world, v[:3] + np.cross(v[3:], contacts.arm_a[contact]))
+        if bodies.driven[b]:
+            v = step.v_mean[b]
+            energy[6] -= np.dot(world, v[:3] + np.cross(v[3:], contacts.arm_b[contact]))
+    R = np.empty((3, 3))
+    for stopper in range(stoppers.body.size):
+        rotation_matrix_into(state.orientation[stoppers.body[stopper]], R)
+        squeezed = closure(bodies, stoppers, stopper, base, state.position, R @ stoppers.point[stopper])
+        elastic += 0.5 * stoppers.stiffness[stopper] * max(squeezed, 0.0) ** 2
+    work[1] -= elastic - energy[2]
+    energy[0] = kinetic_energy(bodies, state.velocity, state.angular_velocity, state.orientation)
+    energy[1] = potential_energy(bodies, state.position)
+    energy[2] = elastic
+    energy[3] = max(energy[3], work[0])
+    energy[4] = max(energy[4], work[1])

@@ -1,0 +1,47 @@
+"""Say what a user's file is and what is wrong with it, before anything runs."""
+
+from pathlib import Path
+
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.errors import InputError
+from blockshake.files import load_yaml, shipped_names
+from blockshake.geometry.structure import load_structure
+from blockshake.study.config import load_config
+
+
+def check_file(source):
+    """One line that says what a good file is.
+
+    Parameters
+    ----------
+    source : str or path
+        A structure, a motion or a study's configuration, by file or shipped name.
+
+    Raises
+    ------
+    InputError
+        Whatever is wrong with it.
+    """
+    if source in shipped_names("structures"):
+        return _structure_line(source)
+    if Path(source).suffix in (".yaml", ".yml"):
+        keys = load_yaml(source).keys()
+        if "bodies" in keys:
+            return _structure_line(source)
+        if "cases" in keys:
+            return _study_line(source)
+        if "synthetic" not in keys:
+            raise InputError(source, "", "expected a structure (bodies), a study (cases) or a synthetic motion (synthetic)")
+    motion = load_motion(source)
+    return f"a motion of {motion.duration:g} s, given as {motion.kind}"
+
+
+def _structure_line(source):
+    structure = load_structure(source)
+    free = int((~structure.driven).sum())
+    return f"a structure of {free} blocks of {structure.mass[~structure.driven].sum():.0f} kg in all"
+
+
+def _study_line(source):
+    config = load_config(source)
+    return f"a study of {len(config.cases)} cases by {' and '.join(config.models)}, {config.ensemble.size} samples"

@@ -1,0 +1,151 @@
+"""The configuration of a study: every key, its type and its limits, checked before the first job."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.errors import InputError
+from blockshake.files import load_yaml
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaign import load_campaign
+from blockshake.study.distributions import TABLE_2, Lognormal, load_distributions
+from blockshake.study.sampling import SMALLEST_SIZE
+from blockshake.study.simulation import MODELS
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+ModelName = Literal[tuple(MODELS)]
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Ensemble(_Strict):
+    """The samples: how many, of which variables, how correlated."""
+
+    size: int = Field(ge=SMALLEST_SIZE, description="samples [1]")
+    seed: int = Field(ge=0, description="of the design [1]")
+    distributions: dict[str, Lognormal] = Field(TABLE_2, description="random variables by dotted name")
+    correlation: str | None = Field(None, description="CSV of the target correlation; none means uncorrelated")
+    linked: dict[str, str] = Field(
+        {}, description="parameters that take another's sampled value, by dotted names"
+    )
+
+    @field_validator("distributions", mode="before")
+    @classmethod
+    def _known_variables(cls, mapping):
+        return load_distributions(mapping, "ensemble")
+
+
+class Model(_Strict):
+    """One solver in the study."""
+
+    time_step: Positive = Field(description="[s]")
+
+
+class Measured(_Strict):
+    """The measured test that a case is compared with."""
+
+    campaign: str = Field(description="folder of the campaign")
+    test: str = Field(description="name of the test in it")
+
+
+class Case(_Strict):
+    """One structure under one motion."""
+
+    structure: str = Field(description="shipped name or file")
+    motion: str = Field(description="shipped name or file")
+    scale: Positive = Field(description="multiplies the motion [1]")
+    duration: Positive = Field(description="simulated time [s]")
+    samples: dict[ModelName, int] = Field({}, description="fewer samples than the ensemble's, by model")
+    measured: Measured
+
+    @property
+    def name(self):
+        """Structure's name, which names the case in paths."""
+        return Path(self.structure).stem
+
+
+class Ladder(_Strict):
+    """The intensities that are climbed to find each case's scale."""
+
+    motions: tuple[str, ...]
+    first: Positive = Field(description="scale of the first test [1]")
+    increment: Positive = Field(description="[1]")
+    highest: Positive = Field(description="where the ladder ends [1]")
+    largest_drift: Positive = Field(
+        description="displacement of a block relative to the slab that counts as a potential collapse [m]"
+    )
+
+
+class StudyConfig(_Strict):
+    """The whole file."""
+
+    name: str = Field(pattern=r"^[a-z0-9-]+$", description="names the folder of results and the report")
+    description: str
+    output_rate: Positive = Field(200.0, description="of the histories [Hz]")
+    samples_per_job: int = Field(10, ge=1, description="samples in one job [1]")
+    models: dict[ModelName, Model] = Field(min_length=1)
+    cases: tuple[Case, ...] = Field(min_length=1)
+    ensemble: Ensemble
+    ladder: Ladder
+
+    def case(self, name):
+        """The case of this name."""
+        return next(case for case in self.cases if case.name == name)
+
+    def samples(self, model, case):
+        """Number of samples of a case by a model."""
+        return min(self.case(case).samples.get(model, self.ensemble.size), self.ensemble.size)
+
+
+def load_config(path):
+    """Configuration from a YAML file, checked with all that it names.
+
+    Raises
+    ------
+    InputError
+        Unknown key, missing file, wrong structure or motion, a sample size below 10 and the like.
+    """
+    return check_config(load_yaml(path), path)
+
+
+def check_config(mapping, where):
+    """Configuration from a mapping, checked with all that it names; ``where`` is its file."""
+    try:
+        config = StudyConfig.model_validate(mapping)
+    except ValidationError as error:
+        raise _worded(error, where) from None
+    names = [case.name for case in config.cases]
+    for index, case in enumerate(config.cases):
+        key = f"cases.{index}"
+        if names.count(case.name) > 1:
+            raise InputError(where, key, f"expected every structure once; {case.name} stands twice")
+        for model, count in case.samples.items():
+            if not SMALLEST_SIZE <= count <= config.ensemble.size:
+                raise InputError(
+                    where, f"{key}.samples.{model}", f"expected {SMALLEST_SIZE} to {config.ensemble.size}, not {count}"
+                )
+        load_structure(case.structure)
+        load_motion(case.motion, case.scale)
+        campaign = load_campaign(case.measured.campaign)
+        if case.measured.test not in campaign.tests:
+            raise InputError(where, f"{key}.measured.test", f"expected one of {', '.join(campaign.tests)}")
+        if Path(campaign.structure).stem != case.name:
+            raise InputError(where, f"{key}.measured.campaign", f"expected a campaign of {case.name}")
+    for motion in config.ladder.motions:
+        load_motion(motion)
+    return config
+
+
+def _worded(error, where):
+    first = error.errors()[0]
+    key = ".".join(str(part) for part in first["loc"])
+    if first["type"] == "extra_forbidden":
+        return InputError(where, key, "unknown key; expected one of the study's keys")
+    if first["type"] == "missing":
+        return InputError(where, key, "missing key")
+    message = first["msg"].removeprefix("Value error, ")
+    return InputError(where, key, f"{message[0].lower()}{message[1:]}, not {first['input']!r}")

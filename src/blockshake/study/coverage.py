@@ -1,0 +1,154 @@
+"""Coverage: how much of a measured curve lies within an ensemble's bounds, never without its reference."""
+
+import numpy as np
+import xarray as xr
+
+from blockshake.errors import InputError
+from blockshake.measurement.virtual_test import noisy_reading
+from blockshake.study.ensemble import relative_to_slab
+from blockshake.study.envelope import counted_samples, over_samples
+
+REFERENCE_QUANTILES = (0.05, 0.5, 0.95)
+_SAME_TIME = 1e-6  # s
+_FEWEST_MEMBERS = 3
+
+
+def coverage(measured, ensemble, marker_noise, seed=0):
+    """Fraction of the time that a measured curve lies within the bounds, and the same of the members.
+
+    Parameters
+    ----------
+    measured : xarray.Dataset
+        ``marker_displacement(time, marker, axis)`` [m], inertial frame, relative to the first
+        reading; NaN is a gap. Its first times are the ensemble's, as far as both go.
+    ensemble : xarray.Dataset
+        From `gather_ensemble`; only completed and collapsed samples count.
+    marker_noise : float
+        Standard deviation of a measured marker's position [m].
+    seed : int
+        Of the noise given to the members.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along the markers that both have, displacement along x, inertial frame: ``coverage(marker)``
+        of the measured curve in the bounds of all members; ``member_coverage(sample, marker)`` of
+        each member, read with the same noise, in the bounds of the others; its
+        ``reference(quantile, marker)``; ``band_width(marker)`` [m], mean over time; and
+        ``measured_peak(marker)`` [m], largest absolute displacement relative to the slab's marker,
+        to hold the width against.
+
+    Raises
+    ------
+    InputError
+        Fewer than three members, no marker in common, or other times.
+
+    Notes
+    -----
+    Coverage alone has no error rate: even a further run of the same ensemble leaves the band now and
+    then, for stretches as long as the motion's correlation. The reference, leave-one-out over
+    the members, carries that correlation. Its bounds come from one member less than the measured
+    curve's, which makes it a little lower: cautious, as 1 / n. A noise-free reference would fail every
+    measured curve wherever the band is thinner than the noise.
+    """
+    members = counted_samples(ensemble)
+    if members.sizes["sample"] < _FEWEST_MEMBERS:
+        raise InputError(
+            "coverage", "samples", f"expected at least {_FEWEST_MEMBERS} completed or collapsed samples"
+        )
+    markers = [name for name in measured["marker"].values if name in members["marker"].values]
+    if not markers:
+        raise InputError("coverage", "marker", "expected a measured marker that the simulation has too")
+    n_times = _common_times(measured["time"].to_numpy(), members["time"].to_numpy())
+    read = _along_x(measured, markers, n_times)
+    curves = _along_x(members, markers, n_times)
+    lower, upper = _bounds(curves)
+    member_coverage = _members_inside(curves.to_numpy(), marker_noise, seed)
+    by_marker = {"marker": markers}
+    by_member = xr.DataArray(
+        member_coverage, dims=("sample", "marker"), coords={"sample": members["sample"], **by_marker}
+    )
+    probabilities = xr.DataArray(
+        list(REFERENCE_QUANTILES), dims="quantile", coords={"quantile": list(REFERENCE_QUANTILES)}
+    )
+    inside = _fraction(read.to_numpy(), lower, upper)
+    width = np.nanmean(upper - lower, axis=0)
+    result = xr.Dataset(
+        {
+            "coverage": ("marker", inside),
+            "reference": over_samples(by_member, probabilities),
+            "member_coverage": by_member,
+            "band_width": ("marker", width),
+            "measured_peak": ("marker", _measured_peak(measured, members.attrs["slab_marker"], markers)),
+        },
+        coords=by_marker,
+    )
+    _describe(result)
+    result.attrs = {
+        **ensemble.attrs,
+        "title": "coverage of a measured curve by an ensemble, with its leave-one-out reference",
+        "synthetic": int(measured.attrs.get("synthetic", 0)),
+        "counted": members.sizes["sample"],
+        "marker_noise": float(marker_noise),
+        "noise_seed": int(seed),
+    }
+    return result
+
+
+def _describe(result):
+    described = {
+        "coverage": ("fraction of the time that the measured curve is within the bounds", "1"),
+        "reference": ("the same of the members, each in the bounds of the others", "1"),
+        "member_coverage": ("fraction of the time that a member is within the bounds of the others", "1"),
+        "band_width": ("upper minus lower bound, mean over time", "m"),
+        "measured_peak": ("largest absolute measured displacement along x relative to the slab", "m"),
+        "quantile": ("probability of a smaller value", "1"),
+    }
+    for name, (long_name, units) in described.items():
+        result[name].attrs = {"long_name": long_name, "units": units}
+
+
+def _common_times(measured, simulated):
+    n_times = min(len(measured), len(simulated))
+    if n_times == 0 or np.abs(measured[:n_times] - simulated[:n_times]).max() > _SAME_TIME:
+        raise InputError("coverage", "time", "expected measured times that are the ensemble's output times")
+    return n_times
+
+
+def _along_x(dataset, markers, n_times):
+    chosen = dataset["marker_displacement"].sel(axis="x", marker=markers, drop=True)
+    return chosen.isel(time=slice(n_times)).transpose(..., "time", "marker")
+
+
+def _bounds(curves):
+    ends = xr.DataArray([0.0, 1.0], dims="bound", coords={"bound": ["lower", "upper"]})
+    return over_samples(curves, ends).to_numpy()
+
+
+def _fraction(curve, lower, upper):
+    """Share of the times at which curve and bounds exist that the curve is inside, by marker."""
+    known = np.isfinite(curve) & np.isfinite(lower)
+    with np.errstate(invalid="ignore"):
+        return (known & (curve >= lower) & (curve <= upper)).sum(axis=0) / known.sum(axis=0)
+
+
+def _members_inside(curves, marker_noise, seed):
+    """Leave-one-out coverage, float64 (n_samples, n_markers); ``curves`` (n_samples, n_times, n_markers)."""
+    generator = np.random.default_rng(seed)
+    rising = np.sort(curves, axis=0)[:2]
+    falling = -np.sort(-curves, axis=0)[:2]
+    inside = []
+    for curve in curves:
+        # the bound of the others is the second value where this member is the first
+        lower = np.where(curve == rising[0], rising[1], rising[0])
+        upper = np.where(curve == falling[0], falling[1], falling[0])
+        inside.append(_fraction(noisy_reading(curve, marker_noise, generator), lower, upper))
+    return np.array(inside)
+
+
+def _measured_peak(measured, slab_marker, markers):
+    displacement = measured["marker_displacement"].sel(axis="x", drop=True)
+    if slab_marker not in displacement["marker"].values:
+        return np.full(len(markers), np.nan)
+    relative = relative_to_slab(displacement, slab_marker).sel(marker=markers)
+    return np.abs(relative).max("time").to_numpy()

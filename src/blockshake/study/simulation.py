@@ -1,0 +1,218 @@
+"""One simulation: structure, motion and parameters in, a run Dataset out (design contract, run file)."""
+
+import json
+
+import numpy as np
+import xarray as xr
+from pydantic import ValidationError
+
+import blockshake
+from blockshake.dynamics.system import ENERGY_TERMS
+from blockshake.errors import InputError
+from blockshake.files import source_digest
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.accelerometers import FINE_RATE, accelerometer_readings
+from blockshake.measurement.markers import marker_displacement
+from blockshake.solvers.ls_dem.driver import simulate_ls_dem
+from blockshake.solvers.ls_dem.parameters import LsDemParameters
+from blockshake.solvers.nscd.driver import simulate_nscd
+from blockshake.solvers.nscd.parameters import NscdParameters
+
+# model name: solver, its numerical parameters, their prefix, its time step when nothing is said [s]
+MODELS = {
+    "ls-dem": (simulate_ls_dem, LsDemParameters, "ls_dem", 1e-5),
+    "nscd-rigid": (simulate_nscd, NscdParameters, "nscd", 1e-3),
+}
+_PREFIXES = tuple(f"{prefix}." for _, _, prefix, _ in MODELS.values())
+
+
+def simulate(
+    structure, motion, model, parameters=None, time_step=None, duration=None, output_rate=200.0, accelerometers=True
+):
+    """Simulate one structure under one motion.
+
+    Parameters
+    ----------
+    structure : str or path
+        Shipped name or file.
+    motion : GroundMotion
+        Already scaled.
+    model : str
+        One of `MODELS`.
+    parameters : dict of str to value, optional
+        By dotted name, physical and numerical; those of the other solver are ignored.
+    time_step : float, optional
+        [s]; the model's own by default.
+    duration : float, optional
+        [s]; the motion's by default; the ground rests after the motion's last row.
+    output_rate : float
+        [Hz]
+    accelerometers : bool
+        Compute the accelerometer channels, which takes a fine record.
+
+    Returns
+    -------
+    xarray.Dataset
+        The run file of the contract.
+
+    Raises
+    ------
+    InputError
+        Unknown model or parameter, or a structure that is wrong.
+    """
+    solve, _, _, usual_step = _solver(model)
+    physical, numerical = split_parameters(parameters or {}, model)
+    built = load_structure(structure, physical)
+    time_step = usual_step if time_step is None else time_step
+    duration = motion.duration if duration is None else duration
+    for name, value in (("time step", time_step), ("duration", duration), ("output rate", output_rate)):
+        if not (np.isfinite(value) and value > 0.0):
+            raise InputError(f"--{name.replace(' ', '-')}", "", f"expected a positive number, not {value}")
+    coarse = np.arange(int(np.floor(duration * output_rate + 1e-9)) + 1) / output_rate
+    fine = np.empty(0)
+    if accelerometers and built.file.accelerometers:
+        fine = np.arange(int(np.floor(duration * FINE_RATE + 1e-9)) + 1) / FINE_RATE
+    times = np.union1d(coarse, fine)
+    trajectory = solve(built, motion, numerical, times, time_step)
+    run = _dataset(built, trajectory, np.searchsorted(times, coarse))
+    if fine.size:
+        _add_accelerometers(run, built, trajectory, np.searchsorted(times, fine))
+    run.attrs = {
+        "Conventions": "CF-1.11",
+        "title": f"{built.file.name} under {motion.name}, {model}",
+        "model": model,
+        "structure": built.file.name,
+        "motion": motion.name,
+        "motion_scale": float(motion.attributes.get("scale", 1.0)),
+        "motion_synthetic": int(bool(motion.attributes.get("synthetic", False))),
+        "status": trajectory.status,
+        "reason": trajectory.reason,
+        "end_time": trajectory.end_time,
+        "energy_residual": energy_residual(trajectory.energy),
+        "parameters": json.dumps(effective_parameters(built, model, numerical), sort_keys=True),
+        **{f"numerics_{name}": value for name, value in trajectory.numerics.items()},
+        "blockshake_version": blockshake.__version__,
+        "source_digest": source_digest("geometry", "dynamics", "solvers", "measurement"),
+        "history": "made by blockshake simulate",
+    }
+    return run
+
+
+def split_parameters(parameters, model):
+    """Physical parameters, for the structure, and numerical ones, for the solver, of a flat mapping."""
+    _, schema, prefix, _ = _solver(model)
+    physical = {key: value for key, value in parameters.items() if not key.startswith(_PREFIXES)}
+    own = {key.removeprefix(f"{prefix}."): value for key, value in parameters.items() if key.startswith(f"{prefix}.")}
+    for key in parameters:
+        for _, other, other_prefix, _ in MODELS.values():
+            if key.startswith(f"{other_prefix}.") and key.removeprefix(f"{other_prefix}.") not in other.model_fields:
+                raise InputError("--set", key, f"expected one of {other_prefix}.{{{', '.join(other.model_fields)}}}")
+    try:
+        return physical, schema(**own)
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise InputError("--set", f"{prefix}.{first['loc'][0]}", f"{first['msg'].lower()}, not {first['input']!r}") from None
+
+
+def effective_parameters(structure, model, numerical):
+    """Every parameter that acted in a run, by dotted name."""
+    file = structure.file
+    acted = {"gravity": list(file.gravity), "restitution": file.restitution, "nscd_restitution": file.nscd_restitution}
+    for name, material in file.materials.items():
+        acted |= {f"materials.{name}.{key}": value for key, value in material.model_dump().items()}
+    for entry in file.friction:
+        acted[f"friction.{entry.pair[0]}.{entry.pair[1]}"] = entry.coefficient
+    prefix = MODELS[model][2]
+    return acted | {f"{prefix}.{key}": value for key, value in numerical.model_dump().items()}
+
+
+def energy_residual(energy):
+    """What the energy audit fails to explain, relative to the energy in play.
+
+    Parameters
+    ----------
+    energy : float64 array, shape (n_times, 7)
+        `ENERGY_TERMS` [J].
+
+    Returns
+    -------
+    float
+        Largest ``|kinetic + potential + elastic + dissipated - input - initial|`` over the larger of the
+        work done on the bodies and their largest kinetic energy [1]; 0 where nothing moved.
+    """
+    energy = energy[np.isfinite(energy).all(axis=1)]
+    if not len(energy):
+        return float("nan")
+    held = energy[:, :3].sum(axis=1)
+    missing = held + energy[:, 3:6].sum(axis=1) - energy[:, 6] - held[0]
+    in_play = max(np.abs(energy[:, 6]).max(), energy[:, 0].max())
+    return float(np.abs(missing).max() / in_play) if in_play > 0.0 else 0.0
+
+
+def _solver(model):
+    if model not in MODELS:
+        raise InputError("--model", "", f"expected one of {', '.join(MODELS)}, not '{model}'")
+    return MODELS[model]
+
+
+def _dataset(structure, trajectory, rows):
+    names = structure.body_names
+    lower, upper = ([names[body] for body in trajectory.joints[:, side]] for side in (0, 1))
+    markers = [marker.name for marker in structure.file.markers]
+    position, orientation = trajectory.position[rows], trajectory.orientation[rows]
+
+    def variable(dims, values, units, long_name):
+        return (dims, values, {"units": units, "long_name": long_name})
+
+    return xr.Dataset(
+        {
+            "position": variable(("time", "body", "axis"), position, "m", "mass centre, inertial frame"),
+            "orientation": variable(
+                ("time", "body", "quaternion"), orientation, "1", "unit quaternion, body to inertial frame"
+            ),
+            "velocity": variable(
+                ("time", "body", "axis"), trajectory.velocity[rows], "m s-1", "velocity of the mass centre, inertial frame"
+            ),
+            "angular_velocity": variable(
+                ("time", "body", "axis"), trajectory.angular_velocity[rows], "rad s-1", "angular velocity, inertial frame"
+            ),
+            "marker_displacement": variable(
+                ("time", "marker", "axis"),
+                marker_displacement(structure, position, orientation),
+                "m",
+                "displacement of the marker since the start, inertial frame",
+            ),
+            "energy": variable(("time", "term"), trajectory.energy[rows], "J", "energy audit of the free bodies"),
+            "joint_force": variable(
+                ("time", "joint", "axis"), trajectory.joint_force[rows], "N", "resultant contact force on the upper body"
+            ),
+        },
+        coords={
+            "time": variable(("time",), trajectory.time[rows], "s", "time since the start of the motion"),
+            "body": names,
+            "axis": ["x", "y", "z"],
+            "quaternion": ["w", "x", "y", "z"],
+            "marker": markers,
+            "marker_body": ("marker", [marker.body for marker in structure.file.markers]),
+            "term": list(ENERGY_TERMS),
+            "lower": ("joint", np.array(lower, dtype=str)),
+            "upper": ("joint", np.array(upper, dtype=str)),
+        },
+    )
+
+
+def _add_accelerometers(run, structure, trajectory, rows):
+    times, values, channels = accelerometer_readings(
+        structure,
+        trajectory.time[rows],
+        trajectory.orientation[rows],
+        trajectory.velocity[rows],
+        trajectory.angular_velocity[rows],
+    )
+    run["accelerometer"] = (
+        ("time_acc", "channel"),
+        values,
+        {"units": "m s-2", "long_name": "specific force along the body's axis, 50 Hz low-pass"},
+    )
+    run["time_acc"] = ("time_acc", times, {"units": "s", "long_name": "time since the start of the motion"})
+    run["channel"] = channels

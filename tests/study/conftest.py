@@ -1,0 +1,62 @@
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+from blockshake.study.ensemble import gather_ensemble
+
+TIME = np.arange(401) / 200.0
+MARKERS = ["slab-face", "block-1-face"]
+
+
+@pytest.fixture
+def make_run():
+    """Run Dataset whose block marker is at ``slab + amplitude`` along x, with a known rotation."""
+
+    def make(amplitude, slab=0.0, angle=0.0, status="completed", end=TIME[-1], sample=0):
+        displacement = np.zeros((len(TIME), 2, 3))
+        displacement[1:, :, 0] = np.broadcast_to(slab, TIME.shape)[1:, None]
+        displacement[1:, 1, 0] += np.broadcast_to(amplitude, TIME.shape)[1:]
+        position = np.zeros((len(TIME), 2, 3))
+        position[:, 1] = displacement[:, 1] + [0.0, 0.0, 0.8]
+        lean = angle * TIME / TIME[-1]
+        orientation = np.zeros((len(TIME), 2, 4))
+        orientation[:, 0, 0] = 1.0
+        orientation[:, 1, 0], orientation[:, 1, 2] = np.cos(lean / 2), np.sin(lean / 2)
+        over = end + 1e-9 < TIME
+        for values in (displacement, position, orientation):
+            values[over] = np.nan
+        return xr.Dataset(
+            {
+                "marker_displacement": (("time", "marker", "axis"), displacement, {"units": "m"}),
+                "position": (("time", "body", "axis"), position, {"units": "m"}),
+                "orientation": (("time", "body", "quaternion"), orientation, {"units": "1"}),
+            },
+            coords={
+                "time": ("time", TIME, {"units": "s"}),
+                "marker": MARKERS,
+                "body": ["slab", "block-1"],
+                "axis": ["x", "y", "z"],
+                "quaternion": ["w", "x", "y", "z"],
+            },
+            attrs={
+                "model": "ls-dem",
+                "status": status,
+                "reason": "" if status == "completed" else "fell",
+                "end_time": end,
+                "sample": sample,
+            },
+        )
+
+    return make
+
+
+@pytest.fixture
+def gather():
+    """Ensemble of runs as samples 0, 1, ... of a design with one friction value each."""
+
+    def gathered(runs):
+        design = pd.DataFrame({"friction.concrete.concrete": 0.5 + 0.01 * np.arange(len(runs))})
+        return gather_ensemble(runs, range(len(runs)), design, "slab-face")
+
+    return gathered
