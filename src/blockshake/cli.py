@@ -116,7 +116,7 @@ def _sample(options):
 
     correlation = load_correlation(options.correlation) if options.correlation else None
     design = draw_samples(size=options.size, seed=options.seed, correlation=correlation)
-    write_design(options.output, design)
+    write_design(options.output, design.values)
     print(f"{len(design.values)} samples; rms correlation error {design.rms_error:.2e}")
 
 

@@ -101,8 +101,11 @@ def test_a_wrong_config_is_refused_in_one_line(mapping, key):
 
 def test_units_follow_the_property():
     assert parameter_unit("friction.concrete.concrete") == "1"
-    assert parameter_unit("materials.concrete.density") == "kg m-3"
+    assert parameter_unit("materials.concrete.density") == "kg/m3"
     assert parameter_unit("materials.steel.viscous_modulus") == "Pa s"
+    assert parameter_unit("ls_dem.shear_stiffness") == "N/m3"
+    with pytest.raises(InputError, match=r"ls_dem\.skin: expected"):
+        parameter_unit("ls_dem.skin")
 
 
 def test_true_parameters_are_independent_draws_of_table_2():

@@ -5,7 +5,13 @@ import xarray as xr
 
 from blockshake.errors import InputError
 from blockshake.files import write_dataset
-from blockshake.study.ensemble import RESIDUAL_WINDOW, gather_ensemble, relative_to_slab
+from blockshake.study.ensemble import (
+    RESIDUAL_WINDOW,
+    gather_ensemble,
+    join_batches,
+    relative_to_slab,
+    sample_figures,
+)
 
 ROUNDING = 1e-12  # m
 
@@ -24,7 +30,7 @@ def test_runs_stand_side_by_side_with_their_parameters(make_run):
         runs[0]["marker_displacement"],
     )
     np.testing.assert_array_equal(ensemble["parameter_value"], [[0.8, 2400.0], [0.6, 2400.0]])
-    assert list(ensemble["parameter_unit"].values) == ["1", "kg m-3"]
+    assert list(ensemble["parameter_unit"].values) == ["1", "kg/m3"]
     # what all runs share, not what is one run's
     assert ensemble.attrs["model"] == "ls-dem"
     assert not {"sample", "status", "end_time"} & set(ensemble.attrs)
@@ -75,6 +81,45 @@ def test_files_and_datasets_give_the_same_ensemble_twice(make_run, gather, tmp_p
     xr.testing.assert_equal(from_files, gather(runs))
     write_dataset(tmp_path / "ensemble.nc", from_files)
     xr.testing.assert_equal(xr.load_dataset(tmp_path / "ensemble.nc"), from_files)
+
+
+def test_batches_join_to_the_ensemble_gathered_at_once(make_run, tmp_path):
+    design = pd.DataFrame({"friction.concrete.concrete": [0.5, 0.6, 0.7, 0.8]})
+    runs = [make_run(0.01 * k, status="collapsed" if k == 3 else "completed") for k in range(4)]
+    runs[0].attrs["numerics_steps"] = 7
+    for samples in ([2, 3], [0, 1]):
+        batch = gather_ensemble([runs[k] for k in samples], samples, design, "slab-face")
+        write_dataset(tmp_path / f"{samples[0]}.nc", batch)
+    joined = join_batches([tmp_path / "2.nc", tmp_path / "0.nc"])
+    at_once = gather_ensemble(runs, range(4), design, "slab-face")
+    xr.testing.assert_equal(joined, at_once)
+    assert joined.attrs == at_once.attrs
+    with pytest.raises(InputError, match="every sample in one only"):
+        join_batches([tmp_path / "2.nc", tmp_path / "2.nc"])
+    with pytest.raises(InputError, match="at least one batch"):
+        join_batches([])
+    with pytest.raises(InputError, match="same 'parameter'"):
+        join_batches(
+            [at_once.isel(sample=[0]), at_once.isel(sample=[1]).assign_coords(parameter=["restitution"])]
+        )
+
+
+def test_figures_of_the_samples_leave_the_histories_out(make_run, gather):
+    figures = sample_figures(gather([make_run(0.01), make_run(0.02)]))
+    assert "time" not in figures.dims
+    assert {"status", "reason", "peak", "residual", "peak_rotation", "end_time"} <= set(figures.data_vars)
+    np.testing.assert_array_equal(figures["parameter_value"], [[0.5], [0.51]])
+
+
+def test_figures_of_the_computation_stand_along_the_samples(make_run, gather):
+    runs = [make_run(0.01), make_run(0.02)]
+    runs[0].attrs |= {"energy_residual": 1e-3, "numerics_steps": 400, "motion": "alkion", "parameters": "{}"}
+    runs[1].attrs |= {"energy_residual": 2e-3, "motion": "alkion", "parameters": "{}"}
+    ensemble = gather(runs)
+    np.testing.assert_array_equal(ensemble["energy_residual"], [1e-3, 2e-3])
+    np.testing.assert_array_equal(ensemble["numerics_steps"], [400.0, np.nan])
+    assert ensemble.attrs["motion"] == "alkion"
+    assert not {"numerics_steps", "energy_residual", "parameters"} & set(ensemble.attrs)
 
 
 def test_every_quantity_has_a_name_and_a_unit(make_run, gather):

@@ -91,7 +91,7 @@ def test_a_target_beyond_reach_is_reported_as_missed():
 
 def test_same_seed_same_bytes_and_other_seed_other_design(tmp_path):
     for name, seed in (("a", 4), ("b", 4), ("c", 5)):
-        write_design(tmp_path / name, draw_samples(12, seed=seed, effort=1))
+        write_design(tmp_path / name, draw_samples(12, seed=seed, effort=1).values)
     first, second, other = ((tmp_path / name).read_bytes() for name in "abc")
     assert first == second
     assert first != other
@@ -104,7 +104,7 @@ def test_one_variable_needs_no_pairing():
 
 
 def test_design_csv_has_one_row_a_sample_and_loads_to_the_same_values(design, tmp_path):
-    write_design(tmp_path / "design.csv", design)
+    write_design(tmp_path / "design.csv", design.values)
     lines = (tmp_path / "design.csv").read_text().splitlines()
     assert lines[0].split(",") == list(TABLE_2)
     assert len(lines) == 51

@@ -29,7 +29,7 @@ def correct_baseline(acceleration, time_step, corner_frequency=CORNER_FREQUENCY)
     Notes
     -----
     The steps that Boore and Bommer (2005), Processing of strong-motion accelerograms, Soil Dyn.
-    Earthq. Eng. 25, sections 3 and 4, describe, with the compatible ending of Paolucci et al.
+    Earthq. Eng. 25, describe, with the compatible ending of Paolucci et al.
     (2011), Record processing in ITACA: subtract the mean; taper both ends by half-cosines over
     2 % of the record; pad with zeros for ``1.5 order / corner`` at each end; high-pass by a
     fourth-order Butterworth filter in both directions (no phase shift, amplitude

@@ -50,7 +50,7 @@ class GroundMotion:
         return float(self.table.breaks[-1])
 
     def scaled(self, factor):
-        """The same motion with every column multiplied by ``factor``, which the attribute ``scale`` gathers."""
+        """The same motion with every column multiplied by ``factor``; the attribute ``scale`` gathers it."""
         table = MotionTable(self.table.breaks, self.table.coefficients * factor)
         scale = float(self.attributes.get("scale", 1.0) * factor)
         return replace(self, table=table, attributes={**self.attributes, "scale": scale})

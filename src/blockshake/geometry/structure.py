@@ -155,15 +155,15 @@ def _replace(mapping, key, value, source):
     parts = key.split(".")
     if parts[0] == "friction":
         for entry in mapping.get("friction", []):
-            if len(parts) == 3 and sorted(entry["pair"]) == sorted(parts[1:]):
+            if len(parts) == 3 and isinstance(entry, dict) and sorted(entry.get("pair", ())) == sorted(parts[1:]):
                 entry["coefficient"] = value
                 return
         raise InputError(source, key, "expected friction.MATERIAL.MATERIAL of a pair in the file")
     place = mapping
     for part in parts[:-1]:
         if isinstance(place, list):
-            found = [item for index, item in enumerate(place) if item.get("name", str(index)) == part]
-            place = found[0] if found else None
+            items = [(index, item) for index, item in enumerate(place) if isinstance(item, dict)]
+            place = next((item for index, item in items if item.get("name", str(index)) == part), None)
         elif isinstance(place, dict):
             place = place.get(part)
         if not isinstance(place, (dict, list)):

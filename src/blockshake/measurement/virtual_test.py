@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-SHOWN = ("structure", "motion", "scale")
+_SHOWN = ("structure", "motion", "motion_scale", "motion_synthetic")
 
 
 def noisy_reading(displacement, marker_noise, generator):
@@ -67,6 +67,6 @@ def virtual_test(run, seed, marker_noise=1e-4):
             "reading",
             "marker_noise": float(marker_noise),
             "noise_seed": int(seed),
-            **{name: run.attrs[name] for name in SHOWN if name in run.attrs},
+            **{name: run.attrs[name] for name in _SHOWN if name in run.attrs},
         },
     )

@@ -2,43 +2,16 @@
 
 from pathlib import Path
 
+import pandas as pd
 import xarray as xr
 
 from blockshake.dynamics.load_motion import load_motion
+from blockshake.errors import InputError
 from blockshake.files import content_digest, write_dataset
 from blockshake.geometry.structure import load_structure
+from blockshake.study.sample_parameters import sample_parameters
+from blockshake.study.sampling import load_design
 from blockshake.study.simulation import simulate
-
-
-def sample_parameters(row, structure, linked):
-    """Parameters of one sample that this structure has.
-
-    Parameters
-    ----------
-    row : pandas.Series
-        Sampled values by dotted name, stiffness among them.
-    structure : str or path
-        What it has no material or pair for is left out: configuration 1 has no steel.
-    linked : dict of str to str
-        Parameters that take the sampled value of another.
-
-    Returns
-    -------
-    dict of str to float
-    """
-    values = {str(name): float(value) for name, value in row.items()}
-    values |= {name: values[source] for name, source in linked.items() if source in values}
-    file = load_structure(structure).file
-    pairs = {tuple(sorted(entry.pair)) for entry in file.friction}
-    return {name: value for name, value in values.items() if _has(name.split("."), file.materials, pairs)}
-
-
-def _has(parts, materials, pairs):
-    if parts[0] == "materials":
-        return parts[1] in materials
-    if parts[0] == "friction":
-        return tuple(sorted(parts[1:])) in pairs
-    return True
 
 
 def simulate_samples(case, model, time_step, output_rate, rows, linked, store, source, progress):
@@ -46,7 +19,8 @@ def simulate_samples(case, model, time_step, output_rate, rows, linked, store, s
 
     Parameters
     ----------
-    case : Case
+    case : dict
+        ``structure``, ``motion``, ``scale`` and ``duration`` [s] of a case of the configuration.
     model : str
     time_step, output_rate : float
         [s], [Hz]
@@ -67,25 +41,47 @@ def simulate_samples(case, model, time_step, output_rate, rows, linked, store, s
     list of xarray.Dataset
         Run files' content in the order of ``rows``.
     """
-    motion = load_motion(case.motion, case.scale)
-    structure = load_structure(case.structure)
+    motion = load_motion(case["motion"], case["scale"])
+    structure = load_structure(case["structure"])
     runs = []
     for sample, row in rows.iterrows():
-        parameters = sample_parameters(row, case.structure, linked)
+        parameters = sample_parameters(row, case["structure"], linked)
         key = content_digest(
             source, model, structure.file.model_dump(), motion.table.breaks.tobytes(), motion.table.coefficients.tobytes(),
-            case.duration, output_rate, time_step, parameters,
+            case["duration"], output_rate, time_step, parameters,
         )  # fmt: skip
         path = Path(store) / f"{key}.nc"
         if path.exists():
             run, how = xr.load_dataset(path), "kept"
         else:
             run = simulate(
-                case.structure, motion, model, parameters,
-                time_step=time_step, duration=case.duration, output_rate=output_rate, accelerometers=False,
+                case["structure"], motion, model, parameters,
+                time_step=time_step, duration=case["duration"], output_rate=output_rate, accelerometers=False,
             )  # fmt: skip
             write_dataset(path, run)
             how = "simulated"
-        progress(f"{case.name} {model} sample {sample}: {run.attrs['status']} ({how}) {run.attrs['reason']}".rstrip())
+        progress(f"{structure.file.name} {model} sample {sample}: {run.attrs['status']} ({how}) {run.attrs['reason']}".rstrip())
         runs.append(run)
     return runs
+
+
+def batch_rows(design, stiffness, batch):
+    """Sampled values of a batch, stiffness beside them.
+
+    Parameters
+    ----------
+    design, stiffness : str or path
+        CSV tables by sample.
+    batch : str
+        First and last sample, such as ``010-019``.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Index the sample, columns the dotted names.
+    """
+    first, last = (int(part) for part in batch.split("-"))
+    rows = pd.concat([load_design(design), load_design(stiffness)], axis=1)
+    if last not in rows.index:
+        raise InputError(str(design), f"sample {last}", f"expected samples 0 to {rows.index[-1]}")
+    return rows.loc[first:last]

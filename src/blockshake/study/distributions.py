@@ -8,18 +8,18 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from scipy.special import ndtr, ndtri
 
 from blockshake.errors import InputError
+from blockshake.quantities import PHYSICAL
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
-UNITS = {
-    "coefficient": "1",
-    "density": "kg m-3",
-    "youngs_modulus": "Pa",
-    "poisson_ratio": "1",
-    "viscous_modulus": "Pa s",
+_PROPERTIES = {
+    quantity.name.rsplit(".", 1)[1]: quantity.unit
+    for quantity in PHYSICAL
+    if quantity.name.startswith("materials.MATERIAL.")
 }
+_STIFFNESS_UNIT = "N/m3"  # of ls_dem.normal_stiffness and shear_stiffness, which follow from each sample
 _WORD = r"[^\s./]+"
-_NAME = re.compile(rf"friction\.({_WORD})\.({_WORD})|materials\.{_WORD}\.({'|'.join(list(UNITS)[1:])})")
+_NAME = re.compile(rf"friction\.({_WORD})\.({_WORD})|materials\.{_WORD}\.({'|'.join(_PROPERTIES)})")
 
 
 class Lognormal(BaseModel):
@@ -118,7 +118,7 @@ def load_distributions(mapping, where):
                 where,
                 f"distributions.{name}",
                 "unknown parameter; expected friction.MATERIAL.MATERIAL or materials.MATERIAL.PROPERTY with "
-                f"one of the properties {', '.join(list(UNITS)[1:])}",
+                f"one of the properties {', '.join(_PROPERTIES)}",
             )
         identity = tuple(sorted(match.group(1, 2))) if match.group(1) else name
         if identity in seen:
@@ -146,8 +146,18 @@ def _lognormal(entry, where, key):
 
 
 def parameter_unit(name):
-    """Unit of a dotted parameter as CF writes it, such as ``kg m-3``; friction has ``1``."""
-    return UNITS["coefficient" if name.startswith("friction.") else name.rsplit(".", 1)[-1]]
+    """Unit of a sampled or derived parameter of a design by its dotted name, such as ``kg/m3``.
+
+    Raises
+    ------
+    InputError
+        No parameter that a design can hold.
+    """
+    if _NAME.fullmatch(name):
+        return "1" if name.startswith("friction.") else _PROPERTIES[name.rsplit(".", 1)[1]]
+    if name in ("ls_dem.normal_stiffness", "ls_dem.shear_stiffness"):
+        return _STIFFNESS_UNIT
+    raise InputError("design", name, "expected a friction coefficient, a material's property or a stiffness")
 
 
 def draw_true_parameters(seed, distributions=TABLE_2):

@@ -8,6 +8,7 @@ from blockshake.study.distributions import parameter_unit
 
 RESIDUAL_WINDOW = 0.5  # s at the end of a run, averaged for the residual so that rocking on is evened out
 FRAMES = ("inertial", "slab")
+_OF_ONE_RUN = ("status", "reason", "end_time", "sample", "parameters")
 
 
 def gather_ensemble(runs, samples, parameters, slab_marker):
@@ -31,8 +32,9 @@ def gather_ensemble(runs, samples, parameters, slab_marker):
         Along ``sample``: ``marker_displacement(sample, time, marker, axis)`` and
         ``position(sample, time, body, axis)`` [m], inertial frame; ``status`` and ``reason``;
         ``end_time`` [s]; ``peak`` and ``residual(sample, frame, marker)`` [m], along x;
-        ``peak_rotation(sample, body)`` [rad]; ``parameter_value(sample, parameter)``. Attributes:
-        those that all runs share, and ``slab_marker``.
+        ``peak_rotation(sample, body)`` [rad]; ``parameter_value(sample, parameter)``; and the runs'
+        figures of their computation, ``energy_residual`` and ``numerics_*``, NaN where a run has
+        none. Attributes: the others that all runs share, and ``slab_marker``.
 
     Raises
     ------
@@ -45,27 +47,25 @@ def gather_ensemble(runs, samples, parameters, slab_marker):
     for sample in samples:
         if sample not in parameters.index:
             raise InputError("ensemble", f"sample {sample}", "expected a row of the design")
-    shared, pieces, status, reason, end_time = None, [], [], [], []
+    pieces, attributes = [], []
     for run, sample in zip(runs, samples, strict=True):
         run = run if isinstance(run, xr.Dataset) else xr.load_dataset(run)
         piece = _piece(run)
         if pieces:
             _check_alike(piece, pieces[0], sample)
         pieces.append(piece)
-        status.append(str(run.attrs["status"]))
-        reason.append(str(run.attrs.get("reason", "")))
-        end_time.append(float(run.attrs.get("end_time", np.nan)))
-        shared = _common(shared, run.attrs)
+        attributes.append(run.attrs)
     if slab_marker not in pieces[0]["marker"].values:
         raise InputError("ensemble", slab_marker, "expected a marker of the runs")
     index = xr.DataArray(samples, dims="sample", attrs={"long_name": "row of the sample in its design"})
-    ensemble = xr.concat(pieces, dim="sample").assign_coords(sample=index)
-    ensemble["status"] = ("sample", status, {"long_name": "how the run ended"})
-    ensemble["reason"] = ("sample", reason, {"long_name": "why the run ended so"})
-    ensemble["end_time"] = ("sample", end_time, {"long_name": "time reached", "units": "s"})
-    ensemble = ensemble.assign_coords(_parameter_coordinates(parameters.loc[samples]))
+    ensemble = xr.concat(
+        pieces, dim="sample", data_vars="all", coords="minimal", compat="override", join="override"
+    ).assign_coords(sample=index)
+    ensemble = ensemble.assign(_endings(attributes)).assign_coords(
+        _parameter_coordinates(parameters.loc[samples])
+    )
     ensemble.attrs = {
-        **{name: value for name, value in shared.items() if name not in ("status", "reason", "end_time")},
+        **_common(attributes),
         "Conventions": "CF-1.11",
         "title": "ensemble of simulated runs",
         "slab_marker": slab_marker,
@@ -73,9 +73,47 @@ def gather_ensemble(runs, samples, parameters, slab_marker):
     return ensemble.assign(_extremes(ensemble))
 
 
+def join_batches(batches):
+    """Ensemble whose samples were gathered in several batches.
+
+    Parameters
+    ----------
+    batches : sequence of xarray.Dataset or path
+        From `gather_ensemble`, of one structure, motion, model and design.
+
+    Returns
+    -------
+    xarray.Dataset
+        As from `gather_ensemble`, samples rising.
+
+    Raises
+    ------
+    InputError
+        No batches, a sample in two of them, or times, markers, bodies or parameters that differ.
+    """
+    parts = [batch if isinstance(batch, xr.Dataset) else xr.load_dataset(batch) for batch in batches]
+    samples = [int(sample) for part in parts for sample in part["sample"].values]
+    if not samples or len(set(samples)) < len(samples):
+        raise InputError("ensemble", "samples", "expected at least one batch, and every sample in one only")
+    for part in parts[1:]:
+        _check_alike(part, parts[0], int(part["sample"][0]), ("time", "marker", "body", "parameter"))
+    joined = xr.concat(
+        parts, dim="sample", data_vars="all", coords="minimal", compat="override", join="override"
+    ).sortby("sample")
+    joined.attrs = _common([part.attrs for part in parts])
+    return joined
+
+
+def sample_figures(ensemble):
+    """What each sample came to, without the histories: status, peaks, residuals, parameters, figures."""
+    figures = ensemble.drop_dims(["time", "axis"])
+    figures.attrs = {**ensemble.attrs, "title": "samples of an ensemble of simulated runs"}
+    return figures
+
+
 def _piece(run):
     """The variables of a run that an ensemble keeps, and the largest rotation of its bodies."""
-    piece = run[["marker_displacement", "position"]].reset_coords(drop=True)
+    piece = run[["marker_displacement", "position"]]
     piece = piece.assign(peak_rotation=_peak_rotation(run["orientation"]))
     piece.attrs = {}
     return piece.transpose("time", "marker", "body", "axis")
@@ -89,16 +127,47 @@ def _peak_rotation(orientation):
     return angle.reset_coords(drop=True)
 
 
-def _check_alike(piece, first, sample):
-    for name in ("time", "marker", "body"):
+def _check_alike(piece, first, sample, names=("time", "marker", "body")):
+    for name in names:
         if not piece[name].equals(first[name]):
             raise InputError("ensemble", f"sample {sample}", f"expected the same '{name}' in all runs")
 
 
-def _common(shared, attributes):
-    if shared is None:
-        return dict(attributes)
-    return {name: value for name, value in shared.items() if np.array_equal(attributes.get(name), value)}
+def _endings(attributes):
+    """How each run ended and the figures of its computation, along ``sample``."""
+    described = {
+        "status": "how the run ended",
+        "reason": "why the run ended so",
+    }
+    endings = {
+        name: ("sample", [str(run.get(name, "")) for run in attributes], {"long_name": long_name})
+        for name, long_name in described.items()
+    }
+    for name in sorted({name for run in attributes for name in run if _is_figure(name)}):
+        values = [float(run.get(name, np.nan)) for run in attributes]
+        endings[name] = ("sample", values, {"long_name": name.replace("_", " ")})
+    endings["end_time"] = (
+        "sample",
+        [float(run["end_time"]) for run in attributes],
+        {"long_name": "time reached", "units": "s"},
+    )
+    return endings
+
+
+def _is_figure(name):
+    return name == "energy_residual" or name.startswith("numerics_")
+
+
+def _common(attributes):
+    """Attributes that are the same in all runs and say nothing of one run only."""
+    first, *rest = attributes
+    return {
+        name: value
+        for name, value in first.items()
+        if not _is_figure(name)
+        and name not in _OF_ONE_RUN
+        and all(np.array_equal(run.get(name), value) for run in rest)
+    }
 
 
 def _parameter_coordinates(parameters):

@@ -196,10 +196,10 @@ def complete_correlation(correlation, names):
     return target
 
 
-def write_design(path, design):
+def write_design(path, values):
     """Write a design as CSV: one row a sample, columns the dotted names, every digit, atomically."""
-    lines = [",".join(design.values.columns)]
-    lines += [",".join(repr(float(value)) for value in row) for row in design.values.to_numpy()]
+    lines = [",".join(values.columns)]
+    lines += [",".join(repr(float(value)) for value in row) for row in values.to_numpy()]
     write_text(path, "\n".join(lines) + "\n")
 
 

@@ -17,6 +17,7 @@ from blockshake.solvers.ls_dem.driver import simulate_ls_dem
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.nscd.driver import simulate_nscd
 from blockshake.solvers.nscd.parameters import NscdParameters
+from blockshake.sources import run_sources
 
 # model name: solver, its numerical parameters, their prefix, its time step when nothing is said [s]
 MODELS = {
@@ -92,7 +93,7 @@ def simulate(
         "parameters": json.dumps(effective_parameters(built, model, numerical), sort_keys=True),
         **{f"numerics_{name}": value for name, value in trajectory.numerics.items()},
         "blockshake_version": blockshake.__version__,
-        "source_digest": source_digest("geometry", "dynamics", "solvers", "measurement"),
+        "source_digest": source_digest(*run_sources(model)),
         "history": "made by blockshake simulate",
     }
     return run

@@ -3,12 +3,15 @@
 from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
+import xarray as xr
 
 from blockshake.dynamics.motion import ground_motion
 from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
 from blockshake.solvers.ls_dem.driver import simulate_ls_dem
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
+from blockshake.study.sample_parameters import sample_parameters
 
 STEP_VELOCITY = 1e-3  # m/s; a larger step would open or slip the joints and measure something else
 DEFINITION = (
@@ -174,3 +177,67 @@ def _crossing(times, values, level):
         return float(times[0])
     part = (level - values[after - 1]) / (values[after] - values[after - 1])
     return float(times[after - 1] + part * (times[after] - times[after - 1]))
+
+
+def calibrate_design(structure, design, linked):
+    """Stiffness of every sample of a design.
+
+    Parameters
+    ----------
+    structure : str or path
+        The tower.
+    design : pandas.DataFrame
+        Sampled values, index the sample.
+    linked : dict of str to str
+        Parameters that take the sampled value of another.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns ``ls_dem.normal_stiffness`` and ``ls_dem.shear_stiffness`` [N/m3], index as the design's.
+    """
+    found = [calibrate_stiffness(structure, sample_parameters(row, structure, linked)) for _, row in design.iterrows()]
+    return pd.DataFrame(
+        {f"ls_dem.{name}": [one[name] for one in found] for name in ("normal_stiffness", "shear_stiffness")},
+        index=design.index,
+    )
+
+
+def wave_tests(structure):
+    """Histories of the step tests of a tower at the stiffness calibrated for its nominal parameters.
+
+    Parameters
+    ----------
+    structure : str or path
+
+    Returns
+    -------
+    xarray.Dataset
+        ``displacement`` and ``velocity(direction, time, block)`` along the step [m, m/s]; ``arrival(direction,
+        block)`` [s]; ``stiffness`` [N/m3], ``wave_speed`` and ``target_wave_speed(direction)`` [m/s]; NaN after the
+        shorter test's end. Attribute ``definition``.
+    """
+    tower = load_structure(structure)
+    calibrated = calibrate_stiffness(structure)
+    numerical = LsDemParameters(**{name: calibrated[name] for name in ("normal_stiffness", "shear_stiffness")})
+    blocks = [tower.body_names[body] for body in _blocks(tower)]
+    tests = []
+    for direction in _AXES:
+        test = measure_wave_speed(tower, numerical, direction)
+        tests.append(
+            xr.Dataset(
+                {
+                    "displacement": (("time", "block"), test.displacement, {"units": "m"}),
+                    "velocity": (("time", "block"), test.velocity, {"units": "m s-1"}),
+                    "arrival": ("block", test.arrival, {"units": "s"}),
+                    "stiffness": ((), calibrated[f"{direction}_stiffness"], {"units": "N m-3"}),
+                    "wave_speed": ((), test.wave_speed, {"units": "m s-1"}),
+                    "target_wave_speed": ((), calibrated["target_wave_speed"][direction], {"units": "m s-1"}),
+                },
+                coords={"time": ("time", test.time, {"units": "s"}), "block": blocks},
+            )
+        )
+    joined = xr.concat(tests, dim=xr.Variable("direction", list(_AXES)), join="outer")
+    joined.attrs = {"Conventions": "CF-1.11", "title": "wave tests of a tower", "definition": DEFINITION,
+                    "step_velocity": STEP_VELOCITY}  # fmt: skip
+    return joined

@@ -41,17 +41,17 @@ class Interfaces(NamedTuple):
 class Kinematics(NamedTuple):
     """What contact needs of the motion.
 
-    ``position`` and ``rotation`` (n_bodies, 3, 3), body to world, at the step; ``velocity``, ``spin`` (n_bodies, 3): mean over the
-    step before, which carries the shear springs from their last to their present length;
-    ``velocity_now``, ``spin_now``: at the step, for the dashpots. World frame.
+    ``position`` (n_bodies, 3) and ``rotation`` (n_bodies, 3, 3), body to world, at the step;
+    ``position_before``, ``rotation_before``: a step earlier, from where the shear springs stretch;
+    ``velocity``, ``spin`` (n_bodies, 3): at the step, for the dashpots. World frame.
     """
 
     position: np.ndarray
     rotation: np.ndarray
+    position_before: np.ndarray
+    rotation_before: np.ndarray
     velocity: np.ndarray
     spin: np.ndarray
-    velocity_now: np.ndarray
-    spin_now: np.ndarray
 
 
 class Loads(NamedTuple):
@@ -98,35 +98,48 @@ def normal_force(phi, closing, k_n, gamma_n):
 def _relative_frame_into(kinematics, owner, other, turned, R, frame):
     """Motion of ``owner`` in the body frame of ``other``.
 
-    ``R`` (3, 3): owner's axes in the other's. ``frame`` (5, 3), rows: owner's mass centre;
-    relative velocity field ``row 1 + row 2 x q`` over the step before; the same at the step,
-    rows 3 and 4, where q is a position in the other's frame. ``turned`` (3, 3) is workspace.
+    ``R`` (3, 3): owner's axes in the other's. ``frame`` (7, 3), rows: 0 owner's mass centre;
+    1 and 2 relative velocity field ``row 1 + row 2 x q`` at the step, where q is a position in
+    the other's frame; 3 to 6 what changed since the step before, of the mass centre and of ``R``.
+    ``turned`` (3, 3) is workspace.
+
+    The change is the difference of two poses and not a velocity times the step: taken with the
+    lever arms of the step's end, the latter would creep by ``dt / 2`` times the centripetal acceleration.
     """
-    R_owner, R_other = kinematics.rotation[owner], kinematics.rotation[other]
+    before = kinematics.position_before, kinematics.rotation_before
+    _relative_pose_into(before[0], before[1], owner, other, frame[4:7], frame[3])
+    _relative_pose_into(kinematics.position, kinematics.rotation, owner, other, R, frame[0])
+    for i in range(3):
+        frame[3, i] = frame[0, i] - frame[3, i]
+        for j in range(3):
+            frame[4 + i, j] = R[i, j] - frame[4 + i, j]
+    R_other, d = kinematics.rotation[other], frame[0]
+    # owner's velocity difference, owner's spin and other's spin, all in the other's frame
+    for i in range(3):
+        turned[0, i] = turned[1, i] = turned[2, i] = 0.0
+        for j in range(3):
+            turned[0, i] += R_other[j, i] * (kinematics.velocity[owner, j] - kinematics.velocity[other, j])
+            turned[1, i] += R_other[j, i] * kinematics.spin[owner, j]
+            turned[2, i] += R_other[j, i] * kinematics.spin[other, j]
+    v, w, u = turned[0], turned[1], turned[2]
+    # v + w x (q - d) - u x q = (v - w x d) + (w - u) x q
+    frame[1, 0] = v[0] - (w[1] * d[2] - w[2] * d[1])
+    frame[1, 1] = v[1] - (w[2] * d[0] - w[0] * d[2])
+    frame[1, 2] = v[2] - (w[0] * d[1] - w[1] * d[0])
+    for i in range(3):
+        frame[2, i] = w[i] - u[i]
+
+
+@kernel
+def _relative_pose_into(position, rotation, owner, other, R, d):
+    """Axes ``R`` (3, 3) and mass centre ``d`` (3,) of ``owner`` in the body frame of ``other``."""
+    R_owner, R_other = rotation[owner], rotation[other]
     for i in range(3):
         for j in range(3):
             R[i, j] = R_other[0, i] * R_owner[0, j] + R_other[1, i] * R_owner[1, j] + R_other[2, i] * R_owner[2, j]
-        frame[0, i] = 0.0
+        d[i] = 0.0
         for j in range(3):
-            frame[0, i] += R_other[j, i] * (kinematics.position[owner, j] - kinematics.position[other, j])
-    d = frame[0]
-    for field in range(2):
-        velocity = kinematics.velocity if field == 0 else kinematics.velocity_now
-        spin = kinematics.spin if field == 0 else kinematics.spin_now
-        # owner's velocity difference, owner's spin and other's spin, all in the other's frame
-        for i in range(3):
-            turned[0, i] = turned[1, i] = turned[2, i] = 0.0
-            for j in range(3):
-                turned[0, i] += R_other[j, i] * (velocity[owner, j] - velocity[other, j])
-                turned[1, i] += R_other[j, i] * spin[owner, j]
-                turned[2, i] += R_other[j, i] * spin[other, j]
-        v, w, u = turned[0], turned[1], turned[2]
-        # v + w x (q - d) - u x q = (v - w x d) + (w - u) x q
-        frame[1 + 2 * field, 0] = v[0] - (w[1] * d[2] - w[2] * d[1])
-        frame[1 + 2 * field, 1] = v[1] - (w[2] * d[0] - w[0] * d[2])
-        frame[1 + 2 * field, 2] = v[2] - (w[0] * d[1] - w[1] * d[0])
-        for i in range(3):
-            frame[2 + 2 * field, i] = w[i] - u[i]
+            d[i] += R_other[j, i] * (position[owner, j] - position[other, j])
 
 
 @kernel
@@ -171,13 +184,13 @@ def _side_forces_into(packets, first, last, R, frame, half, chamfer, law, total)
         As in `Candidates`; shear forces and level-set values are updated.
     first, last : int
         Packets of this side.
-    R, frame : float64 arrays, shape (3, 3) and (5, 3)
+    R, frame : float64 arrays, shape (3, 3) and (7, 3)
         From `_relative_frame_into`.
     half, chamfer : float64 array, shape (3,), and float
         Of the body whose level set is read [m].
     law : tuple of 5 floats
         ``k_n``, ``k_s``, ``gamma_n`` per area of node [N/m3, N/m3, N s/m3], Coulomb's ``mu`` [1]
-        and the time step ``dt`` [s].
+        and the time ``dt`` for which the dashpot heats [s].
     total : float64 array, shape (9,)
         Overwritten: force and moment about the other body's mass centre, on the owner, other's
         frame [N, N m]; elastic energy held, friction heat and dashpot heat of this step [J].
@@ -197,8 +210,11 @@ def _side_forces_into(packets, first, last, R, frame, half, chamfer, law, total)
     d0, d1, d2 = frame[0, 0], frame[0, 1], frame[0, 2]
     v0, v1, v2 = frame[1, 0], frame[1, 1], frame[1, 2]
     w0, w1, w2 = frame[2, 0], frame[2, 1], frame[2, 2]
-    p0, p1, p2 = frame[3, 0], frame[3, 1], frame[3, 2]
-    s0, s1, s2 = frame[4, 0], frame[4, 1], frame[4, 2]
+    m0, m1, m2 = frame[3, 0], frame[3, 1], frame[3, 2]
+    m00, m01, m02, m10, m11, m12, m20, m21, m22 = (
+        frame[4, 0], frame[4, 1], frame[4, 2], frame[5, 0], frame[5, 1], frame[5, 2],
+        frame[6, 0], frame[6, 1], frame[6, 2],
+    )  # fmt: skip
     k_n, k_s, gamma_n, mu, dt = law
     total[:] = 0.0
     for packet in range(first, last):
@@ -212,15 +228,15 @@ def _side_forces_into(packets, first, last, R, frame, half, chamfer, law, total)
 
             k_node, k_shear = k_n * area, k_s * area
             softness = 1.0 / k_shear
-            closing = nx * (p0 + s1 * z - s2 * y) + ny * (p1 + s2 * x - s0 * z) + nz * (p2 + s0 * y - s1 * x)
+            closing = nx * (v0 + w1 * z - w2 * y) + ny * (v1 + w2 * x - w0 * z) + nz * (v2 + w0 * y - w1 * x)
             f_n = normal_force(phi, closing, k_node, gamma_n * area)
 
             # Eq. (4): the spring follows the tangential part of the motion since the last step
-            ux = v0 + w1 * z - w2 * y
-            uy = v1 + w2 * x - w0 * z
-            uz = v2 + w0 * y - w1 * x
+            ux = m00 * px + m01 * py + m02 * pz + m0
+            uy = m10 * px + m11 * py + m12 * pz + m1
+            uz = m20 * px + m21 * py + m22 * pz + m2
             along = ux * nx + uy * ny + uz * nz
-            ux, uy, uz = dt * (ux - along * nx), dt * (uy - along * ny), dt * (uz - along * nz)
+            ux, uy, uz = ux - along * nx, uy - along * ny, uz - along * nz
             ox, oy, oz = nodes[SHEAR_X + lane], nodes[SHEAR_Y + lane], nodes[SHEAR_Z + lane]
             lost = ox * nx + oy * ny + oz * nz
             ox, oy, oz = ox - lost * nx, oy - lost * ny, oz - lost * nz
@@ -265,7 +281,7 @@ def contact_forces_into(candidates, surfaces, interfaces, kinematics, dt, loads)
     interfaces : Interfaces
     kinematics : Kinematics
     dt : float
-        Time step [s].
+        Time since the step before [s].
     loads : Loads
         Force, moment, joint force and energy are added to; a pair that touches for the first
         time gets the next joint.
@@ -277,7 +293,7 @@ def contact_forces_into(candidates, surfaces, interfaces, kinematics, dt, loads)
     with the area A in touch, ``gamma_n`` per area is ``2 zeta sqrt(m k_n / A)``, Eq. (3) for the
     mass m effective in a central impact of the two bodies, however many nodes carry it.
     """
-    R, frame = np.empty((2, 3, 3)), np.empty((2, 5, 3))
+    R, frame = np.empty((2, 3, 3)), np.empty((2, 7, 3))
     turned, total = np.empty((3, 3)), np.empty(9)
     for pair in range(candidates.pairs.shape[0]):
         begin, middle, end = candidates.first[2 * pair], candidates.first[2 * pair + 1], candidates.first[2 * pair + 2]

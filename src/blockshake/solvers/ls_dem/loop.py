@@ -41,17 +41,14 @@ def clear_loads(bodies, loads):
 
 
 @kernel
-def _put_driven_into(bodies, displacement, velocity, dt, before, state, kinematics):
-    """Place the driven bodies and give them the mean velocity of the step before, which the shear springs follow."""
+def _put_driven_into(bodies, displacement, velocity, state, kinematics):
+    """Place the driven bodies where the ground has them, with its velocity."""
     place_driven_into(bodies, displacement, velocity, state)
     for body in range(bodies.mass.size):
         if bodies.driven[body]:
             for axis in range(3):
-                kinematics.velocity[body, axis] = (displacement[axis] - before[axis]) / dt
-                kinematics.spin[body, axis] = 0.0
-                kinematics.velocity_now[body, axis] = state.velocity[body, axis]
-                kinematics.spin_now[body, axis] = state.angular_velocity[body, axis]
-            kinematics.spin[body, 1] = (displacement[3] - before[3]) / dt
+                kinematics.velocity[body, axis] = state.velocity[body, axis]
+                kinematics.spin[body, axis] = state.angular_velocity[body, axis]
 
 
 @kernel
@@ -65,15 +62,14 @@ def _angular_momentum_into(bodies, state, momentum):
 
 
 @kernel
-def _worst_speed(velocity):
-    worst = 0.0
+def _has_diverged(velocity):
+    """Whether a velocity is beyond the limit or no number."""
     for body in range(velocity.shape[0]):
         for axis in range(3):
-            speed = abs(velocity[body, axis])
             # not (x <= limit), so that NaN counts
-            if not speed <= worst:
-                worst = speed
-    return worst
+            if not abs(velocity[body, axis]) <= _SPEED_LIMIT:
+                return True
+    return False
 
 
 @kernel
@@ -117,11 +113,12 @@ def integrate(
     that their balance closes but for the error of the scheme.
     """
     n_bodies = bodies.mass.size
-    momentum = np.zeros((n_bodies, 3))  # angular, at half steps
+    half_velocity, half_spin = state.velocity.copy(), np.zeros((n_bodies, 3))  # at half steps, as is
+    momentum = np.zeros((n_bodies, 3))  # the angular momentum
     turn = np.empty(3)
     kinematics = Kinematics(
-        state.position, np.empty((n_bodies, 3, 3)),
-        state.velocity.copy(), state.angular_velocity.copy(), state.velocity.copy(), state.angular_velocity.copy(),
+        state.position, np.empty((n_bodies, 3, 3)), np.empty((n_bodies, 3)), np.empty((n_bodies, 3, 3)),
+        state.velocity.copy(), state.angular_velocity.copy(),
     )  # fmt: skip
     loads = Loads(
         np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)),
@@ -140,11 +137,13 @@ def integrate(
         segment = find_segment(ground.breaks, t, segment)
         ground_state_into(ground, segment, t, now, velocity)
         now -= start
-        if step == 0:
-            before[:] = now
-        _put_driven_into(bodies, now, velocity, dt, before, state, kinematics)
+        _put_driven_into(bodies, now, velocity, state, kinematics)
         for body in range(n_bodies):
             rotation_matrix_into(state.orientation[body], kinematics.rotation[body])
+        if step == 0:
+            before[:] = now
+            kinematics.position_before[:] = state.position
+            kinematics.rotation_before[:] = kinematics.rotation
 
         if lists_expired(candidates, surfaces, bodies.driven, state.position, state.orientation, skin):
             candidates = find_candidates(surfaces, bodies.driven, state.position, state.orientation, skin, candidates)
@@ -152,6 +151,8 @@ def integrate(
         clear_loads(bodies, loads)
         # the first force sees no motion before it: the springs of the start hold as they are
         contact_forces_into(candidates, surfaces, interfaces, kinematics, dt if step > 0 else 0.0, loads)
+        kinematics.position_before[:] = state.position
+        kinematics.rotation_before[:] = kinematics.rotation
         loads.energy[ELASTIC] += stopper_forces_into(bodies, stoppers, state, loads)
         friction_heat += loads.energy[FRICTION]
         damping_heat += loads.energy[DAMPING]
@@ -171,16 +172,16 @@ def integrate(
                 continue
             for axis in range(3):
                 gained = 0.5 * dt * bodies.inverse_mass[body] * loads.force[body, axis]
-                state.velocity[body, axis] = kinematics.velocity[body, axis] + (gained if step > 0 else 0.0)
-                kinematics.velocity[body, axis] = state.velocity[body, axis] + gained
-                kinematics.velocity_now[body, axis] = kinematics.velocity[body, axis] + gained
+                state.velocity[body, axis] = half_velocity[body, axis] + (gained if step > 0 else 0.0)
+                half_velocity[body, axis] = state.velocity[body, axis] + gained
+                kinematics.velocity[body, axis] = half_velocity[body, axis] + gained
                 if step > 0:
                     momentum[body, axis] += 0.5 * dt * loads.moment[body, axis]
             spin_into(bodies.inverse_inertia[body], state.orientation[body], momentum[body], state.angular_velocity[body])
             for axis in range(3):
                 momentum[body, axis] += 0.5 * dt * loads.moment[body, axis]
 
-        if not _worst_speed(state.velocity) <= _SPEED_LIMIT:
+        if _has_diverged(state.velocity):
             return DIVERGED, -1, step, rebuilds, loads.joint
         while next_time < times.size and times[next_time] < t + 0.5 * dt:
             offset = times[next_time] - t
@@ -189,7 +190,7 @@ def integrate(
                     record.position[next_time, body, axis] = (
                         state.position[body, axis] + offset * state.velocity[body, axis]
                     )
-                    slope = 2.0 * (kinematics.velocity[body, axis] - state.velocity[body, axis]) / dt
+                    slope = 2.0 * (half_velocity[body, axis] - state.velocity[body, axis]) / dt
                     record.velocity[next_time, body, axis] = state.velocity[body, axis] + (
                         0.0 if bodies.driven[body] else offset * slope
                     )
@@ -200,7 +201,9 @@ def integrate(
             energy[0] = kinetic_energy(bodies, state.velocity, state.angular_velocity, state.orientation)
             energy[1] = potential_energy(bodies, state.position)
             energy[2] = loads.energy[ELASTIC]
-            energy[3], energy[4], energy[5], energy[6] = friction_heat, damping_heat, 0.0, work
+            # a step's dashpot heat lasts to half a step ahead
+            energy[3], energy[4] = friction_heat, damping_heat - 0.5 * loads.energy[DAMPING]
+            energy[5], energy[6] = 0.0, work
             record.joint_force[next_time] = loads.joint_force
             next_time += 1
             collapsed = find_collapsed(bodies, state, supported, drop_limit)
@@ -210,12 +213,12 @@ def integrate(
         for body in range(n_bodies):
             if not bodies.driven[body]:
                 drift_into(
-                    bodies.inverse_inertia[body], kinematics.velocity[body], momentum[body],
+                    bodies.inverse_inertia[body], half_velocity[body], momentum[body],
                     state.angular_velocity[body], dt,
-                    state.position[body], state.orientation[body], kinematics.spin[body],
+                    state.position[body], state.orientation[body], half_spin[body],
                 )  # fmt: skip
                 # extrapolated half a step on, with the present moment still acting
                 for axis in range(3):
                     turn[axis] = momentum[body, axis] + 0.5 * dt * loads.moment[body, axis]
-                spin_into(bodies.inverse_inertia[body], state.orientation[body], turn, kinematics.spin_now[body])
+                spin_into(bodies.inverse_inertia[body], state.orientation[body], turn, kinematics.spin[body])
     return COMPLETED, -1, n_steps, rebuilds, loads.joint

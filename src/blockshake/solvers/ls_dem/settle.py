@@ -54,14 +54,19 @@ def settle(bodies, surfaces, interfaces, skin, dt, state, candidates):
         np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)),
         np.full((n_bodies, n_bodies), -1, np.int64), np.zeros((0, 3)), np.zeros(3),
     )  # fmt: skip
-    kinematics = Kinematics(state.position, np.empty((n_bodies, 3, 3)), velocity, spin, velocity, spin)
+    rotation = np.empty((n_bodies, 3, 3))
+    for body in range(n_bodies):
+        rotation_matrix_into(state.orientation[body], rotation[body])
+    kinematics = Kinematics(state.position, rotation, state.position.copy(), rotation.copy(), velocity, spin)
     for step in range(_MOST_STEPS):
         if lists_expired(candidates, surfaces, bodies.driven, state.position, state.orientation, skin):
             candidates = find_candidates(surfaces, bodies.driven, state.position, state.orientation, skin, candidates)
         for body in range(n_bodies):
-            rotation_matrix_into(state.orientation[body], kinematics.rotation[body])
+            rotation_matrix_into(state.orientation[body], rotation[body])
         clear_loads(bodies, loads)
         contact_forces_into(candidates, surfaces, interfaces, kinematics, dt, loads)
+        kinematics.position_before[:] = state.position
+        kinematics.rotation_before[:] = rotation
         worst = 0.0
         for body in range(n_bodies):
             if bodies.driven[body] or left[body]:

@@ -10,28 +10,32 @@ from blockshake.jit import kernel
 def stopper_forces_into(bodies, stoppers, state, loads):
     """Add the forces of closed stoppers to ``loads``; the elastic energy they hold is returned [J].
 
-    A stopper stands on the side of its signed axis, ``gap`` away at the start, and travels with
-    the first driven body. With the closure ``c`` of the body's point beyond the gap it pushes the
-    point back with ``stiffness * c`` and the driven body with the opposite.
+    A stopper is a plane across its signed axis, ``gap`` away from the body's point at the start,
+    which travels and turns with the first driven body. With the closure ``c`` of the point beyond
+    the gap it pushes the point back with ``stiffness * c`` and the driven body with the opposite.
     """
     energy = 0.0
     if stoppers.body.size == 0:
         return energy
     driven = np.argmax(bodies.driven)
-    R = np.empty((3, 3))
+    R, R_driven, R_start = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    rotation_matrix_into(bodies.home_orientation[driven], R_start)
+    rotation_matrix_into(state.orientation[driven], R_driven)
     for stop in range(stoppers.body.size):
-        body, axis = stoppers.body[stop], stoppers.axis[stop]
+        body = stoppers.body[stop]
         rotation_matrix_into(bodies.home_orientation[body], R)
-        arm_start = R @ stoppers.point[stop]
+        reach_start = bodies.home[body] + R @ stoppers.point[stop] - bodies.home[driven]
         rotation_matrix_into(state.orientation[body], R)
         arm = R @ stoppers.point[stop]
+        reach = state.position[body] + arm - state.position[driven]
+        # axis and reach in the driven body's axes, where the stopper stands still
+        axis = R_start.T @ stoppers.axis[stop]
         closure = -stoppers.gap[stop]
         for i in range(3):
-            moved = state.position[body, i] + arm[i] - bodies.home[body, i] - arm_start[i]
-            closure += axis[i] * (moved - (state.position[driven, i] - bodies.home[driven, i]))
+            for j in range(3):
+                closure += axis[i] * (R_driven[j, i] * reach[j] - R_start[j, i] * reach_start[j])
         if closure > 0.0:
-            force = -stoppers.stiffness[stop] * closure * axis
-            reach = state.position[body] + arm - state.position[driven]
+            force = -stoppers.stiffness[stop] * closure * (R_driven @ axis)
             loads.force[body] += force
             loads.moment[body] += np.cross(arm, force)
             loads.force[driven] -= force

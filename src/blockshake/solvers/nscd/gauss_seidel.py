@@ -1,4 +1,4 @@
-"""Nonlinear Gauss-Seidel over the contacts, stopped by what is left of the contact law."""
+"""Velocities at contacts, the residual of the contact law, and nonlinear Gauss-Seidel sweeps."""
 
 import numpy as np
 
@@ -75,7 +75,19 @@ def relative_residual(contacts, v, floor):
 
 @kernel
 def sweep_into(bodies, inertia, contacts, upwards, v):
-    """Solve every contact once in turn, first to last if ``upwards`` and back otherwise."""
+    """Solve every contact once in turn, first to last if ``upwards`` and back otherwise.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    inertia : float64 array, shape (n_bodies, 3, 3)
+        Inverse inertia, world frame [1/(kg m2)].
+    contacts : Contacts
+        ``impulse`` is changed.
+    upwards : bool
+    v : float64 array, shape (n_bodies, 6)
+        Velocities at the end of the step, kept in line with the impulses.
+    """
     n_contacts = contacts.gap.size
     for rank in range(n_contacts):
         contact = rank if upwards else n_contacts - 1 - rank
@@ -91,50 +103,3 @@ def sweep_into(bodies, inertia, contacts, upwards, v):
             apply_impulse_into(bodies, inertia, contacts, contact, d_n, d_1, d_2, v)
             p[0], p[1], p[2] = p_n, p_1, p_2
             contacts.slip[contact] = slip
-
-
-@kernel
-def solve_contacts_into(bodies, inertia, contacts, floor, tolerance, max_iterations, v):
-    """Impulses that satisfy the contact law of all contacts at once.
-
-    Parameters
-    ----------
-    bodies : Bodies
-    inertia : float64 array, shape (n_bodies, 3, 3)
-        Inverse inertia, world frame [1/(kg m2)].
-    contacts : Contacts
-        ``impulse`` holds the start and, afterwards, the answer.
-    floor : float
-        As in `relative_residual` [N s].
-    tolerance : float
-        Relative residual at which the sweeps stop [1].
-    max_iterations : int
-        Sweeps allowed.
-    v : float64 array, shape (n_bodies, 6)
-        Velocities at the end of the step without contact impulses; with them afterwards.
-
-    Returns
-    -------
-    iterations : int
-        Sweeps made, at least one where there are contacts.
-    residual : float
-        Relative residual reached.
-
-    Notes
-    -----
-    Nonlinear Gauss-Seidel of Jean (1999), sweeping up and down in turn.
-    """
-    n_contacts = contacts.gap.size
-    if n_contacts == 0:
-        return 0, 0.0
-    for contact in range(n_contacts):
-        p = contacts.impulse[contact]
-        apply_impulse_into(bodies, inertia, contacts, contact, p[0], p[1], p[2], v)
-    residual = np.inf
-    iterations = 0
-    while iterations < max_iterations and not residual <= tolerance:
-        sweep_into(bodies, inertia, contacts, iterations % 2 == 0, v)
-        iterations += 1
-        if iterations <= 4 or iterations % 4 == 0 or iterations == max_iterations:
-            residual = relative_residual(contacts, v, floor)
-    return iterations, residual

@@ -14,8 +14,8 @@ from blockshake.solvers.nscd.contacts import (
     prepare_operators_into,
     warm_start_into,
 )
-from blockshake.solvers.nscd.gauss_seidel import solve_contacts_into
 from blockshake.solvers.nscd.polyhedra import empty_placed, place_into
+from blockshake.solvers.nscd.solver import solve_contacts_into
 from blockshake.solvers.nscd.step import (
     Step,
     account_into,
@@ -122,6 +122,7 @@ def run(bodies, state, stoppers, polyhedra, table, settings, watch, record):
         copy_state(state),
         np.empty((n_bodies, 3, 3)),
         np.empty((n_bodies, 3, 3)),
+        np.empty((n_bodies, 3, 3)),
         np.empty((n_bodies, 6)),
         np.empty((n_bodies, 6)),
         np.empty((n_bodies, 6)),
@@ -169,7 +170,14 @@ def run(bodies, state, stoppers, polyhedra, table, settings, watch, record):
         warm_start_into(old, polyhedra.radius, contacts)
         floor = 1e-3 * dt * np.linalg.norm(bodies.gravity) * lightest + 1e-12 * _momentum(bodies, step.v) + 1e-300
         sweeps, residual = solve_contacts_into(
-            bodies, step.inverse_inertia, contacts, floor, settings.tolerance, settings.max_iterations, step.v
+            bodies,
+            step.inertia,
+            step.inverse_inertia,
+            contacts,
+            floor,
+            settings.tolerance,
+            settings.max_iterations,
+            step.v,
         )
         segment = ground_displacement_into(
             table, origin, (index + 1) * dt, segment, displacement, velocity

@@ -19,14 +19,15 @@ class Step(NamedTuple):
     """Work space of a step.
 
     ``detection`` (State): poses at which contacts are found, and the driven bodies' velocities at
-    the end of the step. ``rotations`` and ``inverse_inertia`` (n_bodies, 3, 3): body to world, and
-    [1/(kg m2)] in the world frame, there. ``v_start``, ``v`` (n_bodies, 6): velocities at the start and at the
+    the end of the step. ``rotations``, ``inertia`` and ``inverse_inertia`` (n_bodies, 3, 3): body to
+    world, and [kg m2] and [1/(kg m2)] in the world frame, there. ``v_start``, ``v`` (n_bodies, 6): velocities at the start and at the
     end of the step. ``v_mean`` (n_bodies, 6): their mean, rotation as in `turn_into`. ``impulse``
     (n_bodies, 6): contact impulse and its moment about the mass centre [N s, N m s].
     """
 
     detection: tuple
     rotations: np.ndarray
+    inertia: np.ndarray
     inverse_inertia: np.ndarray
     v_start: np.ndarray
     v: np.ndarray
@@ -88,6 +89,7 @@ def predict_into(bodies, state, displacement, velocity, dt, theta, step):
     for body in range(bodies.mass.size):
         R = step.rotations[body]
         rotation_matrix_into(detection.orientation[body], R)
+        step.inertia[body] = R @ bodies.inertia[body] @ R.T
         step.inverse_inertia[body] = R @ bodies.inverse_inertia[body] @ R.T
         if bodies.driven[body]:
             v[body, :3] = detection.velocity[body]

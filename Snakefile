@@ -1,0 +1,44 @@
+# The study: what is built, in which order. What each key of the configuration means: docs/configuration.md.
+from snakemake.utils import min_version
+
+min_version("9.27")
+
+
+configfile: "config/study.yaml"
+
+
+include: "workflow/rules/common.smk"
+include: "workflow/rules/motion.smk"
+include: "workflow/rules/sampling.smk"
+include: "workflow/rules/stiffness.smk"
+include: "workflow/rules/simulation.smk"
+include: "workflow/rules/envelope.smk"
+include: "workflow/rules/campaign.smk"
+include: "workflow/rules/report.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        f"reports/{STUDY}.html",
+        f"reports/{STUDY}.pdf",
+
+
+for case in CASES:
+
+    rule:
+        name:
+            case
+        input:
+            expand(
+                "results/{study}/{kind}/{model}/{case}.nc",
+                study=STUDY,
+                kind=["envelopes", "comparisons"],
+                model=MODELS,
+                case=case,
+            ),
+
+
+rule ladder:
+    input:
+        f"results/{STUDY}/ladder.json",

@@ -1,0 +1,74 @@
+"""A ground motion as a Dataset to draw and tabulate: histories, response spectrum, figures."""
+
+import numpy as np
+import xarray as xr
+
+from blockshake.dynamics.intensity import motion_figures
+from blockshake.dynamics.response_spectrum import DAMPING, response_spectrum
+from blockshake.dynamics.synthetic_motion import target_acceleration
+from blockshake.dynamics.synthetic_schema import load_synthetic
+
+_RATE = 200.0  # Hz, of the histories
+_PERIODS = np.geomspace(0.04, 4.0, 120)  # s
+
+
+def describe_motion(motion, definition):
+    """Histories along x, 5 % damped spectrum and intensity figures of a motion.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        Not scaled.
+    definition : str or path
+        Its file; a synthetic motion's YAML tells the target of its spectrum.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``acceleration``, ``velocity``, ``displacement(time)`` [m/s2, m/s, m];
+        ``pseudo_acceleration(period)`` [m/s2] and, for a synthetic motion, ``target(ordinate)`` at
+        ``target_period`` with ``published`` (1 where an ordinate is published). Attributes: the motion's own and
+        its figures.
+    """
+    time = np.arange(int(np.floor(motion.duration * _RATE + 1e-9)) + 1) / _RATE
+    described = xr.Dataset(
+        {
+            name: ("time", motion.evaluate(time, derivative)[:, 0], {"units": units, "long_name": f"ground {name} along x"})
+            for name, derivative, units in (("acceleration", 2, "m s-2"), ("velocity", 1, "m s-1"), ("displacement", 0, "m"))
+        },
+        coords={"time": ("time", time, {"units": "s"}), "period": ("period", _PERIODS, {"units": "s"})},
+    )
+    described["pseudo_acceleration"] = (
+        "period",
+        response_spectrum(motion, _PERIODS),
+        {"units": "m s-2", "long_name": f"pseudo-acceleration at {DAMPING:.0%} damping"},
+    )
+    if motion.attributes.get("synthetic"):
+        _add_target(described, load_synthetic(definition))
+    described.attrs = {
+        "Conventions": "CF-1.11",
+        "title": f"ground motion {motion.name}",
+        "name": motion.name,
+        **{name: _plain(value) for name, value in motion.attributes.items()},
+        **motion_figures(motion),
+    }
+    return described
+
+
+def _add_target(described, parameters):
+    ordinates = parameters.target_spectrum
+    periods = np.array([ordinate.period for ordinate in ordinates])
+    described["target"] = (
+        "ordinate",
+        target_acceleration(parameters, periods),
+        {"units": "m s-2", "long_name": "pseudo-acceleration that the synthesis aims at"},
+    )
+    described["target_period"] = ("ordinate", periods, {"units": "s"})
+    described["published"] = ("ordinate", np.array([int(ordinate.published) for ordinate in ordinates]))
+
+
+def _plain(value):
+    """Attribute as netCDF can hold it: truth values as 0 and 1, all else that is no number as text."""
+    if isinstance(value, bool):
+        return int(value)
+    return value if isinstance(value, (str, float, int)) else str(value)

@@ -1,0 +1,221 @@
+import copy
+
+import numpy as np
+import pytest
+import trimesh
+import yaml
+
+from blockshake.errors import InputError
+from blockshake.geometry.structure import build_structure, load_structure
+
+# kg; a box less its chamfers, by inclusion and exclusion: L W H - 2 c^2 (L + W + H) + 6 c^3
+BLOCK_MASS = 2400.0 * (0.8 * 2.4 * 1.6 - 2.0 * 0.02**2 * (0.8 + 2.4 + 1.6) + 6.0 * 0.02**3)
+BEAM_MASS = 2.4 * 0.2 * 0.2 * 7700.0
+HEIGHTS = {1: 4.8, 2: 6.4, 3: 7.2, 4: 7.4}  # m, facts.md 1
+N_BLOCKS = {1: 3, 2: 4, 3: 9, 4: 9}
+
+
+@pytest.mark.parametrize("number", [1, 2, 3, 4])
+def test_the_papers_four_configurations(number):
+    structure = load_structure(f"configuration-{number}")
+    top = max(
+        structure.position[body, 2] + structure.solid(body).vertices[:, 2].max()
+        for body in range(len(structure.mass))
+    )
+    assert top == pytest.approx(HEIGHTS[number], abs=1e-12)
+    free = structure.mass[~structure.driven]
+    assert len(free) == N_BLOCKS[number] + 4 * (number == 4)
+    np.testing.assert_allclose(np.sort(free)[-N_BLOCKS[number] :], BLOCK_MASS, rtol=1e-12)
+    if number == 4:
+        np.testing.assert_allclose(np.sort(free)[:4], BEAM_MASS, rtol=1e-12)
+    # every free body stands on something
+    assert structure.touching[~structure.driven].any(axis=1).all()
+
+
+def test_the_joints_of_configuration_3():
+    structure = load_structure("configuration-3")
+    names = structure.body_names
+    touching = {tuple(sorted((names[a], names[b]))) for a, b in np.argwhere(structure.touching)}
+    walls = {(f"wall-{w}-{i}", f"wall-{w}-{i + 1}") for w in "ab" for i in (1, 2, 3)}
+    assert touching == walls | {("slab", f"wall-{w}-1") for w in "ab"} | {("top", f"wall-{w}-4") for w in "ab"}
+
+
+@pytest.fixture
+def mapping(make_mapping):
+    return make_mapping(
+        [
+            {"name": "lower", "shape": "block", "position": [0.0, 0.0, 0.8]},
+            {"name": "upper", "shape": "block", "position": [0.0, 0.0, 2.4]},
+        ],
+        markers=[{"name": "face", "body": "lower", "position": [0.4, 0.0, 0.0]}],
+    )
+
+
+def _set(mapping, path, value):
+    *way, last = path
+    for part in way:
+        mapping = mapping[part]
+    mapping[last] = value
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "message"),
+    [
+        (("colour",), "red", "colour: unknown key; expected one of the structure file's keys"),
+        (("bodies", 1, "colour"), 1, "bodies.lower.colour: unknown key; expected one of the structure file's keys"),
+        (("bodies", 1), {"name": "lower", "material": "stone", "position": [0, 0, 1]}, "bodies.lower.shape: missing key"),
+        (("bodies", 2, "name"), "lower", "bodies.lower: expected every name once"),
+        (("bodies", 1, "shape"), "ball", "bodies.lower.shape: expected one of slab, block, sharp, cube, not 'ball'"),
+        (("bodies", 1, "material"), "air", "bodies.lower.material: expected one of stone, not 'air'"),
+        (
+            ("bodies", 1, "orientation"),
+            [1.0, 0.1, 0.0, 0.0],
+            "bodies.lower.orientation: expected a unit quaternion [w, x, y, z]",
+        ),
+        (
+            ("bodies", 0, "velocity"),
+            [1.0, 0.0, 0.0],
+            "bodies.slab: expected no velocity of a driven body: it follows the motion",
+        ),
+        (
+            ("bodies", 2, "position"),
+            [0.0, 0.0, 2.395],
+            "bodies.upper.position: overlaps lower by 5 mm; expected at most 1 mm",
+        ),
+        (("shapes", "block", "box"), [0.8, -2.4, 1.6], "shapes.block.box.1: input should be greater than 0, not -2.4"),
+        (("shapes", "block", "chamfer"), 0.4, "shapes.block: expected a chamfer below half the smallest edge length"),
+        (
+            ("shapes", "block", "mesh"),
+            "a.stl",
+            "shapes.block: expected either box (three edge lengths) or mesh (a file)",
+        ),
+        (("materials", "stone", "density"), "heavy", "materials.stone.density: "),
+        (("materials", "stone", "density"), float("nan"), "materials.stone.density: "),
+        (("materials", "stone", "poisson_ratio"), 0.5, "materials.stone.poisson_ratio: "),
+        (("restitution",), 1.5, "restitution: input should be less than or equal to 1, not 1.5"),
+        (("friction",), [], "friction.stone.stone: missing; expected a coefficient for this pair"),
+        (
+            ("friction", 0, "pair"),
+            ["stone", "air"],
+            "friction: expected pairs of this file's materials, not 'air'",
+        ),
+        (("friction", 0, "coefficient"), -0.1, "friction.0.coefficient: "),
+        (("markers", 0, "body"), "none", "markers.face.body: expected a body of this structure, not 'none'"),
+        (
+            ("stoppers",),
+            [{"body": "none", "position": [0, 0, 0], "axis": "+x", "gap": 0.1, "stiffness": 1e7}],
+            "stoppers.0.body: expected a body of this structure, not 'none'",
+        ),
+        (
+            ("stoppers",),
+            [{"body": "lower", "position": [0, 0, 0], "axis": "x", "gap": 0.1, "stiffness": 1e7}],
+            "stoppers.0.axis: ",
+        ),
+        (("bodies",), [], "bodies: "),
+    ],
+)
+def test_bad_input_is_one_line_that_names_the_key(mapping, path, value, message):
+    """design.md 2; each fault alone in a structure that loads without it."""
+    build_structure(copy.deepcopy(mapping), "s.yaml", ".")
+    _set(mapping, path, value)
+    with pytest.raises(InputError) as error:
+        build_structure(mapping, "s.yaml", ".")
+    assert str(error.value).startswith(f"s.yaml: {message}")
+    assert "\n" not in str(error.value)
+
+
+def test_a_pair_stated_twice_is_an_error(mapping):
+    mapping["friction"].append({"pair": ["stone", "stone"], "coefficient": 0.6})
+    with pytest.raises(InputError, match=r"s.yaml: friction.stone.stone: expected every pair once"):
+        build_structure(mapping, "s.yaml", ".")
+
+
+def test_an_overlap_below_a_millimetre_is_an_initial_penetration(mapping):
+    mapping["bodies"][2]["position"] = [0.0, 0.0, 2.3991]
+    assert build_structure(mapping, "s.yaml", ".").touching[1, 2]
+
+
+@pytest.mark.parametrize(("gap", "touching"), [(0.9e-4, True), (1.1e-4, False)])
+def test_bodies_touch_within_a_tenth_of_a_millimetre(mapping, gap, touching):
+    """design.md 9, Start."""
+    mapping["bodies"][2]["position"] = [0.0, 0.0, 2.4 + gap]
+    assert build_structure(mapping, "s.yaml", ".").touching[1, 2] == touching
+
+
+def test_a_closed_mesh_is_recentred_and_an_open_one_refused(mapping, tmp_path):
+    cube = trimesh.creation.box([0.8, 2.4, 1.6])
+    cube.apply_translation([5.0, 6.0, 7.0])
+    cube.export(tmp_path / "closed.stl")
+    cube.update_faces(np.arange(11))
+    cube.export(tmp_path / "open.stl")
+    mapping["shapes"]["block"] = {"mesh": "closed.stl"}
+    structure = build_structure(mapping, "s.yaml", tmp_path)
+    # binary STL holds single precision
+    np.testing.assert_allclose(np.abs(structure.solids["block"].vertices), [[0.4, 1.2, 0.8]] * 8, atol=1e-6)
+    assert structure.mass[1] == pytest.approx(0.8 * 2.4 * 1.6 * 2400.0, rel=1e-5)
+    mapping["shapes"]["block"] = {"mesh": "open.stl"}
+    with pytest.raises(InputError, match=r"s.yaml: shapes.block.mesh: expected a closed surface"):
+        build_structure(mapping, "s.yaml", tmp_path)
+    mapping["shapes"]["block"] = {"mesh": "none.stl"}
+    with pytest.raises(InputError, match=r"s.yaml: shapes.block.mesh: expected a readable mesh file"):
+        build_structure(mapping, "s.yaml", tmp_path)
+
+
+def test_a_nearly_unit_quaternion_is_made_one(mapping):
+    mapping["bodies"][2]["orientation"] = [1.0005, 0.0, 0.0, 0.0]
+    structure = build_structure(mapping, "s.yaml", ".")
+    np.testing.assert_allclose(structure.orientation[2], [1.0, 0.0, 0.0, 0.0], atol=1e-15)
+
+
+@pytest.fixture
+def path(mapping, tmp_path):
+    path = tmp_path / "s.yaml"
+    mapping["materials"]["rock"] = dict(mapping["materials"]["stone"])
+    mapping["friction"].append({"pair": ["stone", "rock"], "coefficient": 0.4})
+    mapping["friction"].append({"pair": ["rock", "rock"], "coefficient": 0.3})
+    mapping["bodies"][2]["material"] = "rock"
+    path.write_text(yaml.safe_dump(mapping))
+    return path
+
+
+@pytest.mark.parametrize("key", ["friction.stone.rock", "friction.rock.stone"])
+def test_a_friction_pair_is_set_in_either_order(path, key):
+    structure = load_structure(path, {key: 0.66})
+    assert structure.friction[1, 2] == structure.friction[2, 1] == 0.66
+    assert structure.friction[0, 1] == 0.5
+    assert np.isnan(structure.friction[1, 1])
+
+
+def test_dotted_parameters_reach_their_places(path):
+    plain = load_structure(path)
+    structure = load_structure(
+        path,
+        {"materials.stone.density": 1200.0, "bodies.upper.density": 4800.0, "restitution": 0.7, "gravity": [0, 0, -1]},
+    )
+    np.testing.assert_allclose(structure.mass / plain.mass, [0.5, 0.5, 2.0], rtol=1e-12)
+    np.testing.assert_allclose(structure.inertia[2], 2.0 * plain.inertia[2], rtol=1e-12)
+    assert structure.file.restitution == 0.7
+    assert structure.file.gravity == (0.0, 0.0, -1.0)
+
+
+@pytest.mark.parametrize(
+    ("key", "message"),
+    [
+        ("materials.stone.densty", "materials.stone.densty: unknown key"),
+        ("materials.steel.density", "materials.steel.density: expected a parameter of this structure"),
+        ("bodies.nobody.density", "bodies.nobody.density: expected a parameter of this structure"),
+        ("friction.stone.air", "friction.stone.air: expected friction.MATERIAL.MATERIAL of a pair in the file"),
+        ("friction.stone", "friction.stone: expected friction.MATERIAL.MATERIAL"),
+        ("bodies.slab.position.0", "bodies.slab.position.0: expected a parameter of this structure"),
+        ("bodies.slab.position.0.x", "bodies.slab.position.0.x: expected a parameter of this structure"),
+    ],
+)
+def test_a_parameter_that_the_structure_lacks_is_an_error(path, key, message):
+    with pytest.raises(InputError) as error:
+        load_structure(path, {key: 1.0})
+    assert str(error.value).startswith(f"{path}: {message}")
+
+
+def test_an_unknown_name_lists_the_shipped_ones():
+    with pytest.raises(InputError, match="configuration-9: expected a structure file or one of configuration-1, "):
+        load_structure("configuration-9")

@@ -1,0 +1,187 @@
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from blockshake import files
+from blockshake.errors import InputError
+from blockshake.files import (
+    content_digest,
+    load_yaml,
+    parse_yaml,
+    replacing,
+    source_digest,
+    write_dataset,
+    write_json,
+    write_text,
+)
+from blockshake.jit import CACHE_FOLDER, SOURCE_DIGEST
+
+
+def test_an_input_error_is_one_line_that_names_file_key_and_expectation():
+    assert str(InputError("a.yaml", "bodies.b", "expected one")) == "a.yaml: bodies.b: expected one"
+    assert str(InputError("a.yaml", "", "expected a file")) == "a.yaml: expected a file"
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [("1e-5", 1e-5), ("3.45e10", 3.45e10), ("1.0e-5", 1e-5), ("-2E3", -2000.0), (".5", 0.5), ("+1.e+2", 100.0)],
+)
+def test_every_spelling_of_a_number_is_a_number(text, value):
+    """design.md 9; plain PyYAML reads 1e-5 as text."""
+    read = parse_yaml(f"key: {text}", "t")["key"]
+    assert isinstance(read, float)
+    assert read == value
+
+
+@pytest.mark.parametrize(
+    ("text", "value"), [("12", 12), ("configuration-1", "configuration-1"), ("true", True), ("1e-5 m", "1e-5 m")]
+)
+def test_other_values_keep_their_type(text, value):
+    read = parse_yaml(f"key: {text}", "t")["key"]
+    assert read == value
+    assert type(read) is type(value)
+
+
+@pytest.mark.parametrize("text", ["a: 1\nb: 2\na: 3\n", "outer:\n  a: 1\n  a: 1\n"])
+def test_a_key_stated_twice_is_an_error(text):
+    with pytest.raises(InputError, match="file.yaml: expected YAML; the key 'a' stands twice") as error:
+        parse_yaml(text, "file.yaml")
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (None, "expected a readable file; no such file or directory"),
+        (b"\xff\xfe\x00", "expected a text file; its bytes are not UTF-8"),
+        (b"- 1\n- 2\n", "expected a mapping of keys to values at the top of the file"),
+        (b"a: [1, 2\n", "expected YAML; "),
+    ],
+)
+def test_an_unreadable_file_is_one_line(tmp_path, content, message):
+    path = tmp_path / "s.yaml"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(InputError) as error:
+        load_yaml(path)
+    assert str(error.value).startswith(f"{path}: {message}")
+    assert "\n" not in str(error.value)
+
+
+def test_replacing_puts_the_whole_new_file_or_keeps_the_old(tmp_path):
+    path = tmp_path / "folder" / "a.txt"
+    write_text(path, "old")
+    with pytest.raises(RuntimeError, match="killed"), replacing(path) as temporary:
+        temporary.write_text("half of the n")
+        raise RuntimeError("killed")
+    assert path.read_text() == "old"
+    assert [item.name for item in path.parent.iterdir()] == ["a.txt"]
+    write_text(path, "new")
+    assert path.read_text() == "new"
+    assert [item.name for item in path.parent.iterdir()] == ["a.txt"]
+
+
+def test_a_new_file_has_the_rights_of_an_ordinary_one(tmp_path):
+    (tmp_path / "plain").write_text("")
+    write_text(tmp_path / "atomic", "")
+    assert (tmp_path / "atomic").stat().st_mode == (tmp_path / "plain").stat().st_mode
+
+
+def test_json_keeps_every_digit(tmp_path):
+    write_json(tmp_path / "a.json", {"b": 0.1 + 0.2, "a": 1})
+    assert (tmp_path / "a.json").read_text() == '{\n  "b": 0.30000000000000004,\n  "a": 1\n}\n'
+
+
+def test_a_dataset_returns_as_it_was_written(tmp_path):
+    values = np.linspace(0.0, 1.0, 100) ** 3
+    values[-1] = np.nan
+    dataset = xr.Dataset({"v": ("time", values, {"units": "m"})}, attrs={"model": "ls-dem"})
+    write_dataset(tmp_path / "a.nc", dataset)
+    with xr.open_dataset(tmp_path / "a.nc") as read:
+        xr.testing.assert_identical(read.load(), dataset)
+
+
+def test_the_content_digest_tells_values_apart_and_not_the_order_of_keys():
+    assert content_digest({"a": 1, "b": 2.5}) == content_digest({"b": 2.5, "a": 1})
+    different = {content_digest(v) for v in ({"a": 1}, {"a": 2}, {"a": "1"}, [1], b"[1]x")}
+    assert len(different) == 5
+    assert content_digest("ab", "c") != content_digest("a", "bc")
+    assert len(content_digest(1)) == 12
+
+
+@pytest.fixture
+def package(tmp_path, monkeypatch):
+    monkeypatch.setattr(files, "PACKAGE", tmp_path)
+    (tmp_path / "part").mkdir()
+    (tmp_path / "part" / "a.py").write_text('"""Doc."""\n\n\ndef f(x):\n    """Add one."""\n    return x + 1\n')
+    (tmp_path / "b.py").write_text("B = 2\n")
+    source_digest.cache_clear()
+    yield tmp_path
+    source_digest.cache_clear()
+
+
+def _digests():
+    source_digest.cache_clear()
+    return source_digest(), source_digest("part"), source_digest("b.py")
+
+
+def test_the_source_digest_ignores_explanations(package):
+    before = _digests()
+    (package / "part" / "a.py").write_text(
+        '"""Other."""\n# why\ndef f( x ):\n    """Add\n    1."""\n\n    return x+1  # one\n'
+    )
+    assert _digests() == before
+
+
+def test_the_source_digest_follows_code_of_the_parts_named(package):
+    whole, part, b = _digests()
+    (package / "part" / "a.py").write_text('"""Doc."""\n\n\ndef f(x):\n    """Add one."""\n    return x + 2\n')
+    new_whole, new_part, new_b = _digests()
+    assert new_whole != whole
+    assert new_part != part
+    assert new_b == b
+    (package / "part" / "a.py").rename(package / "part" / "c.py")
+    assert _digests()[1] != new_part  # a moved module is another program
+
+
+def test_the_kernel_cache_is_named_after_the_sources():
+    assert CACHE_FOLDER.name == SOURCE_DIGEST
+
+
+_ASK = """
+import numpy as np
+from blockshake.dynamics.free_motion import spin_into
+out = np.empty(3)
+spin_into(np.eye(3), np.array([1.0, 0.0, 0.0, 0.0]), np.array([1.0, 2.0, 3.0]), out)
+print(out[0], sum(spin_into.stats.cache_hits.values()))
+"""
+
+
+def _first_spin(root, cache):
+    environment = {**os.environ, "PYTHONPATH": str(root), "BLOCKSHAKE_CACHE": str(cache)}
+    done = subprocess.run(
+        [sys.executable, "-c", _ASK], env=environment, cwd=root, capture_output=True, text=True, check=True
+    )
+    value, hits = done.stdout.split()
+    return float(value), int(hits)
+
+
+def test_an_edit_in_an_imported_module_changes_what_a_cached_kernel_computes(tmp_path):
+    """Numba issue 1833: its cache alone keeps the old physics of an imported kernel."""
+    root, cache = tmp_path / "src", tmp_path / "cache"
+    shutil.copytree(Path(files.__file__).parent, root / "blockshake", ignore=shutil.ignore_patterns("__pycache__"))
+    assert _first_spin(root, cache) == (1.0, 0)
+    assert _first_spin(root, cache) == (1.0, 1)
+    rotations = root / "blockshake" / "geometry" / "rotations.py"
+    text = rotations.read_text()
+    edited = text.replace("R[0, 0] = 1.0 - ", "R[0, 0] = 2.0 - ", 1)
+    assert edited != text
+    rotations.write_text(edited)
+    # R00 = 2 enters R J^-1 R^T twice
+    assert _first_spin(root, cache) == (4.0, 0)

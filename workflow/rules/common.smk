@@ -1,0 +1,77 @@
+"""What the rules share: the checked configuration, ids for paths, digests of sources."""
+
+import os
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(workflow.basedir, "src")))
+# scripts find the checkout's package in any environment; one thread a job, BLAS included
+os.environ["PYTHONPATH"] = str(Path(workflow.basedir, "src"))
+for library in ("OMP", "OPENBLAS", "MKL", "NUMEXPR"):
+    os.environ[f"{library}_NUM_THREADS"] = "1"
+
+from blockshake import sources
+from blockshake.errors import InputError
+from blockshake.files import source_digest
+
+
+def check_study():
+    """Check the configuration and all it names; bad input ends in one line and exit 2."""
+    from blockshake.study.config import check_config
+
+    try:
+        check_config(dict(config), " + ".join(map(str, workflow.configfiles)))
+    except InputError as error:
+        print(f"blockshake: {error}", file=sys.stderr, flush=True)
+        os._exit(2)
+
+
+def definition(kind, name):
+    """Path of a structure or motion: a shipped one by its name, else the file named."""
+    shipped = Path("config", kind, f"{name}.yaml")
+    return str(shipped if shipped.exists() else name)
+
+
+def sample_count(model, case):
+    """Samples of a case by a model."""
+    return CASES[case].get("samples", {}).get(model, config["ensemble"]["size"])
+
+
+def batches(model, case):
+    """Ids of the batches of a case: first and last sample."""
+    count, size = sample_count(model, case), config["samples_per_job"]
+    return [f"{first:03d}-{min(first + size, count) - 1:03d}" for first in range(0, count, size)]
+
+
+def batch_files(wildcards):
+    """Batch files of a case by a model."""
+    return expand(
+        "results/{study}/runs/{model}/{case}/{batch}.nc",
+        study=wildcards.study,
+        model=wildcards.model,
+        case=wildcards.case,
+        batch=batches(wildcards.model, wildcards.case),
+    )
+
+
+def case_definition(wildcards):
+    """What a run of a case depends on, of its entry in the configuration."""
+    return {key: CASES[wildcards.case][key] for key in ("structure", "motion", "scale", "duration")}
+
+
+if workflow.exec_mode == workflow.exec_mode.DEFAULT:
+    check_study()
+
+STUDY = config["name"]
+MODELS = list(config["models"])
+CASES = {Path(case["structure"]).stem: case for case in config["cases"]}
+MOTIONS = {Path(case["motion"]).stem: case["motion"] for case in CASES.values()}
+LADDER_MOTIONS = config["ladder"]["motions"]
+
+
+wildcard_constraints:
+    study="|".join([STUDY]),
+    model="|".join(MODELS),
+    case="|".join(CASES),
+    motion="|".join(MOTIONS),
+    batch=r"\d{3}-\d{3}",

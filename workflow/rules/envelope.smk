@@ -1,0 +1,33 @@
+rule make_envelope:
+    """Bounds and quantiles over the samples, and what each sample came to."""
+    input:
+        batches=batch_files,
+    output:
+        envelope="results/{study}/envelopes/{model}/{case}.nc",
+        samples="results/{study}/samples/{model}/{case}.nc",
+    log:
+        "logs/{study}/make_envelope/{model}/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        source=source_digest(*sources.ENVELOPE),
+    script:
+        "../scripts/make_envelope.py"
+
+
+rule compare_with_measurement:
+    """Coverage of the measured curves by the ensemble's bounds, with its leave-one-out reference."""
+    input:
+        batches=batch_files,
+        campaign=lambda wildcards: f"{CASES[wildcards.case]['measured']['campaign']}/campaign.yaml",
+    output:
+        "results/{study}/comparisons/{model}/{case}.nc",
+    log:
+        "logs/{study}/compare_with_measurement/{model}/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        measured=lambda wildcards: CASES[wildcards.case]["measured"],
+        source=source_digest(*sources.COMPARISON),
+    script:
+        "../scripts/compare_with_measurement.py"

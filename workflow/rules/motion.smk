@@ -1,0 +1,14 @@
+rule describe_motion:
+    """Histories, response spectrum and figures of a ground motion."""
+    input:
+        lambda wildcards: definition("motions", MOTIONS[wildcards.motion]),
+    output:
+        "results/{study}/motions/{motion}.nc",
+    log:
+        "logs/{study}/describe_motion/{motion}.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        source=source_digest(*sources.MOTION),
+    script:
+        "../scripts/describe_motion.py"

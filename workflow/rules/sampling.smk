@@ -1,0 +1,14 @@
+rule draw_samples:
+    """Latin hypercube of the random variables with controlled correlation."""
+    output:
+        design="results/{study}/design.csv",
+        summary="results/{study}/design.json",
+    log:
+        "logs/{study}/draw_samples.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        ensemble=lookup(dpath="ensemble", within=config),
+        source=source_digest(*sources.DESIGN),
+    script:
+        "../scripts/draw_samples.py"

@@ -1,0 +1,68 @@
+rule compile_kernels:
+    """Both solvers compiled once, before jobs that would all do it."""
+    output:
+        "results/kernels.json",
+    log:
+        "logs/compile_kernels.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        source=source_digest(*sources.KERNELS),
+    script:
+        "../scripts/compile_kernels.py"
+
+
+rule simulate_batch:
+    """Some samples of a case by a model; a single sample is a batch whose first is its last.
+
+    Each finished sample goes at once to the store, from which a killed batch resumes: the store is
+    no declared output, because Snakemake deletes those of a killed job.
+    """
+    input:
+        structure=lambda wildcards: definition("structures", CASES[wildcards.case]["structure"]),
+        motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
+        design="results/{study}/design.csv",
+        stiffness="results/{study}/stiffness.csv",
+        kernels=ancient("results/kernels.json"),
+    output:
+        "results/{study}/runs/{model}/{case}/{batch}.nc",
+    log:
+        "logs/{study}/simulate_batch/{model}/{case}/{batch}.log",
+    benchmark:
+        "benchmarks/{study}/simulate_batch/{model}/{case}/{batch}.jsonl"
+    conda:
+        "../envs/blockshake.yaml"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=240,
+    params:
+        case=case_definition,
+        time_step=lookup(dpath="models/{model}/time_step", within=config),
+        output_rate=lookup(dpath="output_rate", within=config),
+        linked=lookup(dpath="ensemble/linked", within=config, default={}),
+        store="results/store",
+        source=lambda wildcards: source_digest(*sources.batch_sources(wildcards.model)),
+    script:
+        "../scripts/simulate_batch.py"
+
+
+rule climb_ladder:
+    """The paper's ladder of intensities with nominal parameters: what the cases' scales were taken from."""
+    input:
+        structures=[definition("structures", case["structure"]) for case in CASES.values()],
+        motions=[definition("motions", motion) for motion in LADDER_MOTIONS],
+        kernels=ancient("results/kernels.json"),
+    output:
+        "results/{study}/ladder.json",
+    log:
+        "logs/{study}/climb_ladder.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        cases=[case for case in CASES.values()],
+        ladder=lookup(dpath="ladder", within=config),
+        time_step=lookup(dpath="models/ls-dem/time_step", within=config),
+        source=source_digest(*sources.run_sources("ls-dem"), "study/ladder.py"),
+    script:
+        "../scripts/climb_ladder.py"

@@ -1,0 +1,9 @@
+from blockshake.files import write_dataset
+from blockshake.log import logging_to
+from blockshake.study.ensemble import join_batches, sample_figures
+from blockshake.study.envelope import envelope
+
+with logging_to(snakemake.log[0]):
+    ensemble = join_batches(snakemake.input.batches)
+    write_dataset(snakemake.output.envelope, envelope(ensemble), decimals=7)
+    write_dataset(snakemake.output.samples, sample_figures(ensemble))
