@@ -21,7 +21,7 @@ quick: setup
 
 paper: setup
 	@$(BIN)/blockshake check config/paper.yaml
-	@$(BIN)/python workflow/scripts/estimate_hours.py config/paper.yaml $(CORES)
+	@$(BIN)/blockshake estimate config/paper.yaml --cores $(CORES)
 	$(SNAKEMAKE) --configfile config/paper.yaml
 	@echo "The report: $(CURDIR)/reports/paper.html and paper.pdf"
 

@@ -37,10 +37,14 @@ def _parser():
     command.add_argument("--structure", required=True, metavar="NAME|FILE")
     command.add_argument("--motion", required=True, metavar="NAME|FILE")
     command.add_argument("--scale", type=float, default=1.0, help="multiplies the motion (default 1)")
-    command.add_argument("--duration", type=float, metavar="S", help="cuts or extends (default: the motion's)")
+    command.add_argument(
+        "--duration", type=float, metavar="S", help="cuts or extends (default: the motion's)"
+    )
     command.add_argument("--model", required=True, help="ls-dem or nscd-rigid")
     _add_settings(command)
-    command.add_argument("--time-step", type=float, metavar="S", help="default 1e-5 for ls-dem, 1e-3 for nscd-rigid")
+    command.add_argument(
+        "--time-step", type=float, metavar="S", help="default 1e-5 for ls-dem, 1e-3 for nscd-rigid"
+    )
     command.add_argument("--output-rate", type=float, default=200.0, metavar="HZ")
     command.add_argument("--output", required=True, metavar="RUN.nc")
     command.set_defaults(run=_simulate)
@@ -48,7 +52,9 @@ def _parser():
     command = commands.add_parser("sample", help="a Latin hypercube of Table 2, to a CSV")
     command.add_argument("--size", type=int, default=50)
     command.add_argument("--seed", type=int, default=1)
-    command.add_argument("--correlation", metavar="FILE", help="square CSV, names in the header and first column")
+    command.add_argument(
+        "--correlation", metavar="FILE", help="square CSV, names in the header and first column"
+    )
     command.add_argument("--output", required=True, metavar="DESIGN.csv")
     command.set_defaults(run=_sample)
 
@@ -67,8 +73,17 @@ def _parser():
     command.add_argument("files", nargs="+", metavar="FILE")
     command.set_defaults(run=_check)
 
+    command = commands.add_parser(
+        "estimate", help="how long a study takes here, by trying a moment of each case"
+    )
+    command.add_argument("config", metavar="CONFIG")
+    command.add_argument("--cores", type=int, default=1)
+    command.set_defaults(run=_estimate)
+
     command = commands.add_parser("parameters", help="every parameter with unit, default and source")
-    command.add_argument("--structure", metavar="NAME|FILE", help="whose names to list (default configuration-1)")
+    command.add_argument(
+        "--structure", metavar="NAME|FILE", help="whose names to list (default configuration-1)"
+    )
     command.set_defaults(run=_parameters)
     return parser
 
@@ -144,6 +159,16 @@ def _check(options):
             print(f"blockshake: {error}", file=sys.stderr)
             wrong += 1
     return BAD_INPUT if wrong else 0
+
+
+def _estimate(options):
+    from blockshake.study.config import load_config
+    from blockshake.study.cost import estimate_hours
+
+    hours = estimate_hours(load_config(options.config))
+    print(
+        f"{options.config}: about {hours:.1f} CPU hours on this machine, {hours / options.cores:.1f} h on {options.cores} cores"
+    )
 
 
 def _parameters(options):

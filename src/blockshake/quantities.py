@@ -19,7 +19,7 @@ class Quantity(NamedTuple):
 
 _PAPER = "Zhou et al. (2023)"
 PHYSICAL = (
-    Quantity("friction.MATERIAL.MATERIAL", "mu", "1", "Coulomb's coefficient of a pair of materials", f"{_PAPER}, Table 2"),
+    Quantity("friction.MATERIAL.MATERIAL", "mu", "1", "Coulomb's coefficient of a pair", f"{_PAPER}, Table 2"),
     Quantity("materials.MATERIAL.density", "rho", "kg/m3", "mass density", f"{_PAPER}, Table 2"),
     Quantity("materials.MATERIAL.youngs_modulus", "E", "Pa", "Young's modulus", f"{_PAPER}, Table 2"),
     Quantity("materials.MATERIAL.poisson_ratio", "nu", "1", "Poisson's ratio; G = E / (2 (1 + nu))", "structure file"),
@@ -27,14 +27,14 @@ PHYSICAL = (
         "materials.MATERIAL.viscous_modulus", "eta", "Pa s", "viscous modulus; the rigid solvers do not use it",
         f"{_PAPER}, Table 2; unit by assumption",
     ),
-    Quantity("restitution", "C_res", "1", "coefficient of restitution of LS-DEM's dashpot, 0 for critical", f"{_PAPER}, Eq. (3)"),
+    Quantity("restitution", "C_res", "1", "restitution of LS-DEM's dashpot, 0 for critical", f"{_PAPER}, Eq. (3)"),
     Quantity("nscd_restitution", "e", "1", "Newton's restitution of NSCD", f"{_PAPER}, section LMGC90"),
     Quantity("gravity", "g", "m/s2", "gravity vector", "structure file"),
     Quantity("bodies.BODY.density", "rho", "kg/m3", "density of one body instead of its material's", "structure file"),
     Quantity("bodies.BODY.position", "x", "m", "mass centre at the start", "structure file"),
     Quantity("bodies.BODY.orientation", "q", "1", "unit quaternion w, x, y, z at the start", "structure file"),
     Quantity("bodies.BODY.velocity", "v", "m/s", "velocity at the start", "structure file"),
-    Quantity("bodies.BODY.angular_velocity", "omega", "rad/s", "angular velocity at the start, world frame", "structure file"),
+    Quantity("bodies.BODY.angular_velocity", "omega", "rad/s", "angular velocity at the start", "structure file"),
     Quantity("shapes.SHAPE.chamfer", "c", "m", "leg of the 45-degree chamfer of a box", f"{_PAPER}, section LS-DEM"),
     Quantity("stoppers.INDEX.gap", "g", "m", "clearance of a stopper, counted from 0", "structure file"),
     Quantity("stoppers.INDEX.stiffness", "k", "N/m", "stiffness of a stopper", "structure file"),

@@ -4,7 +4,9 @@ rule make_virtual_campaign:
     It is made here and copied there by hand, so that an edit of a solver does not move the data.
     """
     input:
-        structure=lambda wildcards: definition("structures", CASES[wildcards.case]["structure"]),
+        structure=lambda wildcards: definition(
+            "structures", CASES[wildcards.case]["structure"]
+        ),
         motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
         kernels=ancient("results/kernels.json"),
     output:
@@ -18,6 +20,8 @@ rule make_virtual_campaign:
     params:
         case=lambda wildcards: CASES[wildcards.case],
         linked=lookup(dpath="ensemble/linked", within=config, default={}),
-        source=source_digest(*sources.run_sources("ls-dem"), "measurement/virtual_test.py"),
+        source=source_digest(
+            *sources.run_sources("ls-dem"), "measurement/virtual_test.py"
+        ),
     script:
         "../scripts/make_virtual_campaign.py"

@@ -6,9 +6,13 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(workflow.basedir, "src")))
 # scripts find the checkout's package in any environment; one thread a job, BLAS included
-os.environ["PYTHONPATH"] = str(Path(workflow.basedir, "src"))
-for library in ("OMP", "OPENBLAS", "MKL", "NUMEXPR"):
-    os.environ[f"{library}_NUM_THREADS"] = "1"
+os.environ.update(
+    PYTHONPATH=str(Path(workflow.basedir, "src")),
+    OMP_NUM_THREADS="1",
+    OPENBLAS_NUM_THREADS="1",
+    MKL_NUM_THREADS="1",
+    NUMEXPR_NUM_THREADS="1",
+)
 
 from blockshake import sources
 from blockshake.errors import InputError
@@ -40,7 +44,10 @@ def sample_count(model, case):
 def batches(model, case):
     """Ids of the batches of a case: first and last sample."""
     count, size = sample_count(model, case), config["samples_per_job"]
-    return [f"{first:03d}-{min(first + size, count) - 1:03d}" for first in range(0, count, size)]
+    return [
+        f"{first:03d}-{min(first + size, count) - 1:03d}"
+        for first in range(0, count, size)
+    ]
 
 
 def batch_files(wildcards):
@@ -56,7 +63,10 @@ def batch_files(wildcards):
 
 def case_definition(wildcards):
     """What a run of a case depends on, of its entry in the configuration."""
-    return {key: CASES[wildcards.case][key] for key in ("structure", "motion", "scale", "duration")}
+    return {
+        key: CASES[wildcards.case][key]
+        for key in ("structure", "motion", "scale", "duration")
+    }
 
 
 if workflow.exec_mode == workflow.exec_mode.DEFAULT:

@@ -1,17 +1,30 @@
 rule make_report:
     """The study as one self-contained page and as a PDF, from the same content."""
     input:
-        motions=expand("results/{study}/motions/{motion}.nc", study=STUDY, motion=MOTIONS),
+        motions=expand(
+            "results/{study}/motions/{motion}.nc", study=STUDY, motion=MOTIONS
+        ),
         design=f"results/{STUDY}/design.csv",
         design_summary=f"results/{STUDY}/design.json",
         stiffness=f"results/{STUDY}/stiffness.csv",
         waves=f"results/{STUDY}/waves.nc",
         envelopes=expand(
-            "results/{study}/envelopes/{model}/{case}.nc", study=STUDY, model=MODELS, case=CASES
+            "results/{study}/envelopes/{model}/{case}.nc",
+            study=STUDY,
+            model=MODELS,
+            case=CASES,
         ),
-        samples=expand("results/{study}/samples/{model}/{case}.nc", study=STUDY, model=MODELS, case=CASES),
+        samples=expand(
+            "results/{study}/samples/{model}/{case}.nc",
+            study=STUDY,
+            model=MODELS,
+            case=CASES,
+        ),
         comparisons=expand(
-            "results/{study}/comparisons/{model}/{case}.nc", study=STUDY, model=MODELS, case=CASES
+            "results/{study}/comparisons/{model}/{case}.nc",
+            study=STUDY,
+            model=MODELS,
+            case=CASES,
         ),
     output:
         html=report("reports/{study}.html", category="Study"),

@@ -19,7 +19,9 @@ rule simulate_batch:
     no declared output, because Snakemake deletes those of a killed job.
     """
     input:
-        structure=lambda wildcards: definition("structures", CASES[wildcards.case]["structure"]),
+        structure=lambda wildcards: definition(
+            "structures", CASES[wildcards.case]["structure"]
+        ),
         motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
         design="results/{study}/design.csv",
         stiffness="results/{study}/stiffness.csv",
@@ -50,7 +52,9 @@ rule simulate_batch:
 rule climb_ladder:
     """The paper's ladder of intensities with nominal parameters: what the cases' scales were taken from."""
     input:
-        structures=[definition("structures", case["structure"]) for case in CASES.values()],
+        structures=[
+            definition("structures", case["structure"]) for case in CASES.values()
+        ],
         motions=[definition("motions", motion) for motion in LADDER_MOTIONS],
         kernels=ancient("results/kernels.json"),
     output:

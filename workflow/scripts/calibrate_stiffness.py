@@ -5,5 +5,7 @@ from blockshake.study.stiffness import calibrate_design, wave_tests
 
 with logging_to(snakemake.log[0]):
     design = load_design(snakemake.input.design)
-    write_design(snakemake.output.stiffness, calibrate_design(snakemake.input.tower, design, snakemake.params.linked))
+    write_design(
+        snakemake.output.stiffness, calibrate_design(snakemake.input.tower, design, snakemake.params.linked)
+    )
     write_dataset(snakemake.output.waves, wave_tests(snakemake.input.tower))

@@ -8,6 +8,8 @@ with logging_to(snakemake.log[0]):
     measured = snakemake.params.measured
     campaign = load_campaign(measured["campaign"])
     compared = coverage(
-        load_test(campaign, measured["test"]), join_batches(snakemake.input.batches), campaign.sensors.marker_noise
+        load_test(campaign, measured["test"]),
+        join_batches(snakemake.input.batches),
+        campaign.sensors.marker_noise,
     )
     write_dataset(snakemake.output[0], compared)

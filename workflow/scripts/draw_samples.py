@@ -1,7 +1,7 @@
 from blockshake.files import write_json
 from blockshake.log import logging_to
-from blockshake.study.distributions import load_distributions
 from blockshake.study.correlation_target import load_correlation
+from blockshake.study.distributions import load_distributions
 from blockshake.study.sampling import draw_samples, write_design
 
 with logging_to(snakemake.log[0]):

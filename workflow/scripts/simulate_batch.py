@@ -1,7 +1,7 @@
 from blockshake.files import write_dataset
+from blockshake.geometry.structure import load_structure
 from blockshake.log import logging_to
 from blockshake.measurement.markers import driven_marker
-from blockshake.geometry.structure import load_structure
 from blockshake.study.batch import batch_rows, simulate_samples
 from blockshake.study.ensemble import gather_ensemble
 

@@ -33,8 +33,16 @@ def describe_motion(motion, definition):
     time = np.arange(int(np.floor(motion.duration * _RATE + 1e-9)) + 1) / _RATE
     described = xr.Dataset(
         {
-            name: ("time", motion.evaluate(time, derivative)[:, 0], {"units": units, "long_name": f"ground {name} along x"})
-            for name, derivative, units in (("acceleration", 2, "m s-2"), ("velocity", 1, "m s-1"), ("displacement", 0, "m"))
+            name: (
+                "time",
+                motion.evaluate(time, derivative)[:, 0],
+                {"units": units, "long_name": f"ground {name} along x"},
+            )
+            for name, derivative, units in (
+                ("acceleration", 2, "m s-2"),
+                ("velocity", 1, "m s-1"),
+                ("displacement", 0, "m"),
+            )
         },
         coords={"time": ("time", time, {"units": "s"}), "period": ("period", _PERIODS, {"units": "s"})},
     )

@@ -21,7 +21,11 @@ def spin_into(inverse_inertia, orientation, angular_momentum, out):
     for i in range(3):
         out[i] = 0.0
         for j in range(3):
-            turned = inverse_inertia[j, 0] * local[0] + inverse_inertia[j, 1] * local[1] + inverse_inertia[j, 2] * local[2]
+            turned = (
+                inverse_inertia[j, 0] * local[0]
+                + inverse_inertia[j, 1] * local[1]
+                + inverse_inertia[j, 2] * local[2]
+            )
             out[i] += R[i, j] * turned
 
 

@@ -140,7 +140,9 @@ def _assemble_stoppers(structure):
     return Stoppers(
         body=np.array([structure.body_names.index(stop.body) for stop in file.stoppers], dtype=np.int64),
         point=np.array([stop.position for stop in file.stoppers], dtype=float).reshape(-1, 3),
-        axis=np.array([np.multiply(sign[stop.axis[0]], unit[stop.axis[1]]) for stop in file.stoppers]).reshape(-1, 3),
+        axis=np.array(
+            [np.multiply(sign[stop.axis[0]], unit[stop.axis[1]]) for stop in file.stoppers]
+        ).reshape(-1, 3),
         gap=np.array([stop.gap for stop in file.stoppers], dtype=float),
         stiffness=np.array([stop.stiffness for stop in file.stoppers], dtype=float),
     )

@@ -29,8 +29,12 @@ class Material(_Strict):
 class Shape(_Strict):
     """A box by its full edge lengths, chamfered or sharp, or a closed triangulated mesh."""
 
-    box: tuple[Positive, Positive, Positive] | None = Field(None, description="edge lengths along body x, y, z [m]")
-    chamfer: Annotated[float, Field(ge=0)] = Field(0.0, description="leg of the 45-degree chamfer of a box [m]")
+    box: tuple[Positive, Positive, Positive] | None = Field(
+        None, description="edge lengths along body x, y, z [m]"
+    )
+    chamfer: Annotated[float, Field(ge=0)] = Field(
+        0.0, description="leg of the 45-degree chamfer of a box [m]"
+    )
     mesh: str | None = Field(None, description="file of a closed triangulated surface, coordinates in m")
 
     @model_validator(mode="after")
@@ -51,7 +55,9 @@ class Body(_Strict):
     shape: str
     material: str
     position: Vector = Field(description="mass centre, world frame [m]")
-    orientation: Quaternion = Field((1.0, 0.0, 0.0, 0.0), description="unit quaternion w, x, y, z, body to world")
+    orientation: Quaternion = Field(
+        (1.0, 0.0, 0.0, 0.0), description="unit quaternion w, x, y, z, body to world"
+    )
     velocity: Vector = Field((0.0, 0.0, 0.0), description="of the mass centre, world frame [m/s]")
     angular_velocity: Vector = Field((0.0, 0.0, 0.0), description="world frame [rad/s]")
     driven: bool = Field(False, description="the body follows the ground motion")
@@ -105,7 +111,9 @@ class StructureFile(_Strict):
     restitution: Annotated[float, Field(ge=0, le=1)] = Field(
         0.5, description="C_res of Eq. (3), LS-DEM; 0 means critical damping [1]"
     )
-    nscd_restitution: Annotated[float, Field(ge=0, le=1)] = Field(0.0, description="Newton's restitution, NSCD [1]")
+    nscd_restitution: Annotated[float, Field(ge=0, le=1)] = Field(
+        0.0, description="Newton's restitution, NSCD [1]"
+    )
     stoppers: tuple[Stopper, ...] = ()
     markers: tuple[Marker, ...] = ()
     accelerometers: tuple[Accelerometer, ...] = ()

@@ -116,7 +116,9 @@ def load_structure(source, parameters=None):
     if not path.exists():
         path = Path(source)
         if not path.exists() and path.suffix == "":
-            raise InputError(source, "", f"expected a structure file or one of {', '.join(shipped_names('structures'))}")
+            raise InputError(
+                source, "", f"expected a structure file or one of {', '.join(shipped_names('structures'))}"
+            )
     mapping = copy.deepcopy(load_yaml(path))
     for key, value in (parameters or {}).items():
         _replace(mapping, key, value, str(source))
@@ -155,7 +157,11 @@ def _replace(mapping, key, value, source):
     parts = key.split(".")
     if parts[0] == "friction":
         for entry in mapping.get("friction", []):
-            if len(parts) == 3 and isinstance(entry, dict) and sorted(entry.get("pair", ())) == sorted(parts[1:]):
+            if (
+                len(parts) == 3
+                and isinstance(entry, dict)
+                and sorted(entry.get("pair", ())) == sorted(parts[1:])
+            ):
                 entry["coefficient"] = value
                 return
         raise InputError(source, key, "expected friction.MATERIAL.MATERIAL of a pair in the file")
@@ -205,15 +211,21 @@ def _check_names(file, source):
         for key, known in (("shape", file.shapes), ("material", file.materials)):
             if getattr(body, key) not in known:
                 raise InputError(
-                    source, f"bodies.{body.name}.{key}", f"expected one of {', '.join(known)}, not '{getattr(body, key)}'"
+                    source,
+                    f"bodies.{body.name}.{key}",
+                    f"expected one of {', '.join(known)}, not '{getattr(body, key)}'",
                 )
         if body.driven and any(body.velocity + body.angular_velocity):
-            raise InputError(source, f"bodies.{body.name}", "expected no velocity of a driven body: it follows the motion")
+            raise InputError(
+                source, f"bodies.{body.name}", "expected no velocity of a driven body: it follows the motion"
+            )
     for kind in ("stoppers", "markers", "accelerometers"):
         for index, item in enumerate(getattr(file, kind)):
             if item.body not in bodies:
                 name = getattr(item, "name", index)
-                raise InputError(source, f"{kind}.{name}.body", f"expected a body of this structure, not '{item.body}'")
+                raise InputError(
+                    source, f"{kind}.{name}.body", f"expected a body of this structure, not '{item.body}'"
+                )
     if file.stoppers and not any(body.driven for body in file.bodies):
         raise InputError(source, "stoppers", "expected a driven body to fix the stoppers to")
 
@@ -221,7 +233,9 @@ def _check_names(file, source):
 def _unit_quaternions(file, source):
     for body in file.bodies:
         if abs(np.linalg.norm(body.orientation) - 1.0) > 1e-3:
-            raise InputError(source, f"bodies.{body.name}.orientation", "expected a unit quaternion [w, x, y, z]")
+            raise InputError(
+                source, f"bodies.{body.name}.orientation", "expected a unit quaternion [w, x, y, z]"
+            )
     quaternions = np.array([body.orientation for body in file.bodies])
     return quaternions / np.linalg.norm(quaternions, axis=1)[:, None]
 
@@ -231,7 +245,9 @@ def _friction(file, source):
     for entry in file.friction:
         for material in entry.pair:
             if material not in file.materials:
-                raise InputError(source, "friction", f"expected pairs of this file's materials, not '{material}'")
+                raise InputError(
+                    source, "friction", f"expected pairs of this file's materials, not '{material}'"
+                )
         key = tuple(sorted(entry.pair))
         if key in known:
             raise InputError(source, f"friction.{entry.pair[0]}.{entry.pair[1]}", "expected every pair once")
@@ -244,7 +260,9 @@ def _friction(file, source):
                 continue
             key = tuple(sorted((body_a.material, body_b.material)))
             if key not in known:
-                raise InputError(source, f"friction.{key[0]}.{key[1]}", "missing; expected a coefficient for this pair")
+                raise InputError(
+                    source, f"friction.{key[0]}.{key[1]}", "missing; expected a coefficient for this pair"
+                )
             friction[a, b] = known[key]
     return friction
 
@@ -258,7 +276,9 @@ def _solid(name, shape, source, folder):
     try:
         mesh = trimesh.load_mesh(path)
     except Exception as error:  # trimesh raises whatever its many readers raise
-        raise InputError(source, f"shapes.{name}.mesh", f"expected a readable mesh file {path}; {error}") from None
+        raise InputError(
+            source, f"shapes.{name}.mesh", f"expected a readable mesh file {path}; {error}"
+        ) from None
     if not mesh.is_watertight or mesh.volume <= 0.0:
         raise InputError(source, f"shapes.{name}.mesh", "expected a closed surface with outward triangles")
     vertices = np.array(mesh.vertices) - mesh.center_mass
@@ -285,7 +305,12 @@ def _touching(file, source, solids, position, orientation):
             if body_a.driven and body_b.driven:
                 continue
             depth = penetration_depth(
-                solids[body_a.shape], position[a], orientation[a], solids[body_b.shape], position[b], orientation[b]
+                solids[body_a.shape],
+                position[a],
+                orientation[a],
+                solids[body_b.shape],
+                position[b],
+                orientation[b],
             )
             if depth > _DEEPEST_OVERLAP:
                 raise InputError(

@@ -86,7 +86,9 @@ def load_campaign(folder):
         raise InputError(path, "tests", "expected every test's name once")
     for test in file.tests:
         if not (folder / test.file).is_file():
-            raise InputError(path, f"tests.{test.name}.file", f"expected a file in {folder}; it has no {test.file}")
+            raise InputError(
+                path, f"tests.{test.name}.file", f"expected a file in {folder}; it has no {test.file}"
+            )
     structure = str(folder / file.structure) if (folder / file.structure).is_file() else file.structure
     return Campaign(folder, file.name, structure, file.sensors, tests)
 
@@ -104,6 +106,10 @@ def load_test(campaign, name):
         test = xr.load_dataset(path)
     except (OSError, ValueError) as error:
         raise InputError(path, "", f"expected a netCDF file; {error}") from None
-    if "marker_displacement" not in test or set(test["marker_displacement"].dims) != {"time", "marker", "axis"}:
+    if "marker_displacement" not in test or set(test["marker_displacement"].dims) != {
+        "time",
+        "marker",
+        "axis",
+    }:
         raise InputError(path, "marker_displacement", "expected displacements over time, marker and axis")
     return test

@@ -47,7 +47,7 @@ def simulate_samples(case, model, time_step, output_rate, rows, linked, store, s
     for sample, row in rows.iterrows():
         parameters = sample_parameters(row, case["structure"], linked)
         key = content_digest(
-            source, model, structure.file.model_dump(), motion.table.breaks.tobytes(), motion.table.coefficients.tobytes(),
+            source, model, structure.file.model_dump(), *(part.tobytes() for part in motion.table),
             case["duration"], output_rate, time_step, parameters,
         )  # fmt: skip
         path = Path(store) / f"{key}.nc"
@@ -60,7 +60,8 @@ def simulate_samples(case, model, time_step, output_rate, rows, linked, store, s
             )  # fmt: skip
             write_dataset(path, run)
             how = "simulated"
-        progress(f"{structure.file.name} {model} sample {sample}: {run.attrs['status']} ({how}) {run.attrs['reason']}".rstrip())
+        outcome = f"{run.attrs['status']} {run.attrs['reason']}".rstrip()
+        progress(f"{structure.file.name} {model} sample {sample}, {how}: {outcome}")
         runs.append(run)
     return runs
 

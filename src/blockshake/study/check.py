@@ -31,7 +31,9 @@ def check_file(source):
         if "cases" in keys:
             return _study_line(source)
         if "synthetic" not in keys:
-            raise InputError(source, "", "expected a structure (bodies), a study (cases) or a synthetic motion (synthetic)")
+            raise InputError(
+                source, "", "expected a structure (bodies), a study (cases) or a synthetic motion (synthetic)"
+            )
     motion = load_motion(source)
     return f"a motion of {motion.duration:g} s, given as {motion.kind}"
 

@@ -28,7 +28,9 @@ class Ensemble(_Strict):
     size: int = Field(ge=SMALLEST_SIZE, description="samples [1]")
     seed: int = Field(ge=0, description="of the design [1]")
     distributions: dict[str, Lognormal] = Field(TABLE_2, description="random variables by dotted name")
-    correlation: str | None = Field(None, description="CSV of the target correlation; none means uncorrelated")
+    correlation: str | None = Field(
+        None, description="CSV of the target correlation; none means uncorrelated"
+    )
     linked: dict[str, str] = Field(
         {}, description="parameters that take another's sampled value, by dotted names"
     )
@@ -126,7 +128,9 @@ def check_config(mapping, where):
         for model, count in case.samples.items():
             if not SMALLEST_SIZE <= count <= config.ensemble.size:
                 raise InputError(
-                    where, f"{key}.samples.{model}", f"expected {SMALLEST_SIZE} to {config.ensemble.size}, not {count}"
+                    where,
+                    f"{key}.samples.{model}",
+                    f"expected {SMALLEST_SIZE} to {config.ensemble.size}, not {count}",
                 )
         load_structure(case.structure)
         load_motion(case.motion, case.scale)

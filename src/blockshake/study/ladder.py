@@ -32,7 +32,12 @@ def climb_ladder(structure, motion, model, time_step, duration, ladder):
     count = int(np.floor((ladder.highest - ladder.first) / ladder.increment + 1e-9)) + 1
     for scale in ladder.first + ladder.increment * np.arange(count):
         run = simulate(
-            structure, load_motion(motion, float(scale)), model, time_step=time_step, duration=duration, accelerometers=False
+            structure,
+            load_motion(motion, float(scale)),
+            model,
+            time_step=time_step,
+            duration=duration,
+            accelerometers=False,
         )
         moved = run["position"].sel(axis="x") - run["position"].sel(axis="x").isel(time=0)
         drift = np.abs(moved - moved.isel(body=0)).max()

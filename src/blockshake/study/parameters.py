@@ -42,11 +42,21 @@ def _instances(pattern, file):
     if len(parts) == 1:
         return [(pattern, getattr(file, pattern))]
     held = getattr(file, parts[0])
-    named = held.items() if isinstance(held, dict) else [(getattr(item, "name", n), item) for n, item in enumerate(held)]
+    named = (
+        held.items()
+        if isinstance(held, dict)
+        else [(getattr(item, "name", n), item) for n, item in enumerate(held)]
+    )
     return [(f"{parts[0]}.{name}.{parts[2]}", getattr(item, parts[2])) for name, item in named]
 
 
 def _shown(value):
     if value is None:
         return "-"
-    return f"{value:g}" if isinstance(value, float) else str(list(value)) if isinstance(value, tuple) else str(value)
+    return (
+        f"{value:g}"
+        if isinstance(value, float)
+        else str(list(value))
+        if isinstance(value, tuple)
+        else str(value)
+    )

@@ -28,7 +28,14 @@ _PREFIXES = tuple(f"{prefix}." for _, _, prefix, _ in MODELS.values())
 
 
 def simulate(
-    structure, motion, model, parameters=None, time_step=None, duration=None, output_rate=200.0, accelerometers=True
+    structure,
+    motion,
+    model,
+    parameters=None,
+    time_step=None,
+    duration=None,
+    output_rate=200.0,
+    accelerometers=True,
 ):
     """Simulate one structure under one motion.
 
@@ -103,22 +110,37 @@ def split_parameters(parameters, model):
     """Physical parameters, for the structure, and numerical ones, for the solver, of a flat mapping."""
     _, schema, prefix, _ = _solver(model)
     physical = {key: value for key, value in parameters.items() if not key.startswith(_PREFIXES)}
-    own = {key.removeprefix(f"{prefix}."): value for key, value in parameters.items() if key.startswith(f"{prefix}.")}
+    own = {
+        key.removeprefix(f"{prefix}."): value
+        for key, value in parameters.items()
+        if key.startswith(f"{prefix}.")
+    }
     for key in parameters:
         for _, other, other_prefix, _ in MODELS.values():
-            if key.startswith(f"{other_prefix}.") and key.removeprefix(f"{other_prefix}.") not in other.model_fields:
-                raise InputError("--set", key, f"expected one of {other_prefix}.{{{', '.join(other.model_fields)}}}")
+            if (
+                key.startswith(f"{other_prefix}.")
+                and key.removeprefix(f"{other_prefix}.") not in other.model_fields
+            ):
+                raise InputError(
+                    "--set", key, f"expected one of {other_prefix}.{{{', '.join(other.model_fields)}}}"
+                )
     try:
         return physical, schema(**own)
     except ValidationError as error:
         first = error.errors()[0]
-        raise InputError("--set", f"{prefix}.{first['loc'][0]}", f"{first['msg'].lower()}, not {first['input']!r}") from None
+        raise InputError(
+            "--set", f"{prefix}.{first['loc'][0]}", f"{first['msg'].lower()}, not {first['input']!r}"
+        ) from None
 
 
 def effective_parameters(structure, model, numerical):
     """Every parameter that acted in a run, by dotted name."""
     file = structure.file
-    acted = {"gravity": list(file.gravity), "restitution": file.restitution, "nscd_restitution": file.nscd_restitution}
+    acted = {
+        "gravity": list(file.gravity),
+        "restitution": file.restitution,
+        "nscd_restitution": file.nscd_restitution,
+    }
     for name, material in file.materials.items():
         acted |= {f"materials.{name}.{key}": value for key, value in material.model_dump().items()}
     for entry in file.friction:
@@ -172,10 +194,16 @@ def _dataset(structure, trajectory, rows):
                 ("time", "body", "quaternion"), orientation, "1", "unit quaternion, body to inertial frame"
             ),
             "velocity": variable(
-                ("time", "body", "axis"), trajectory.velocity[rows], "m s-1", "velocity of the mass centre, inertial frame"
+                ("time", "body", "axis"),
+                trajectory.velocity[rows],
+                "m s-1",
+                "velocity of the mass centre, inertial frame",
             ),
             "angular_velocity": variable(
-                ("time", "body", "axis"), trajectory.angular_velocity[rows], "rad s-1", "angular velocity, inertial frame"
+                ("time", "body", "axis"),
+                trajectory.angular_velocity[rows],
+                "rad s-1",
+                "angular velocity, inertial frame",
             ),
             "marker_displacement": variable(
                 ("time", "marker", "axis"),
@@ -183,9 +211,14 @@ def _dataset(structure, trajectory, rows):
                 "m",
                 "displacement of the marker since the start, inertial frame",
             ),
-            "energy": variable(("time", "term"), trajectory.energy[rows], "J", "energy audit of the free bodies"),
+            "energy": variable(
+                ("time", "term"), trajectory.energy[rows], "J", "energy audit of the free bodies"
+            ),
             "joint_force": variable(
-                ("time", "joint", "axis"), trajectory.joint_force[rows], "N", "resultant contact force on the upper body"
+                ("time", "joint", "axis"),
+                trajectory.joint_force[rows],
+                "N",
+                "resultant contact force on the upper body",
             ),
         },
         coords={

@@ -99,10 +99,16 @@ def measure_wave_speed(structure, parameters, direction):
     duration = 3.0 * (height + pitch) / np.sqrt(stiffness * pitch / density)
     times = np.arange(0.0, duration, _TIME_STEP)
     step = ground_motion("velocity step", [0.0, 2.0 * duration], {channel: [STEP_VELOCITY] * 2}, "velocity")
-    run = simulate_ls_dem(structure, step, parameters, times, _TIME_STEP, rotations_blocked=direction == "shear")
+    run = simulate_ls_dem(
+        structure, step, parameters, times, _TIME_STEP, rotations_blocked=direction == "shear"
+    )
     velocity = run.velocity[:, blocks, axis]
     if run.status != "completed" or not (velocity >= 0.5 * STEP_VELOCITY).any(axis=0).all():
-        raise InputError(structure.source, "", f"expected a tower that passes a {direction} step of velocity on; {run.reason}")
+        raise InputError(
+            structure.source,
+            "",
+            f"expected a tower that passes a {direction} step of velocity on; {run.reason}",
+        )
     arrival = np.array([_crossing(times, history, 0.5 * STEP_VELOCITY) for history in velocity.T])
     displacement = run.position[:, blocks, axis] - run.position[0, blocks, axis]
     return WaveTest(times, displacement, velocity, arrival, float(height / (arrival[-1] - arrival[0])))
@@ -144,7 +150,9 @@ def calibrate_stiffness(structure="configuration-2", parameters=None):
     reached = {}
     for direction in _AXES:
         for _ in range(_MOST_ROUNDS):
-            numerical = LsDemParameters(normal_stiffness=stiffness["normal"], shear_stiffness=stiffness["shear"])
+            numerical = LsDemParameters(
+                normal_stiffness=stiffness["normal"], shear_stiffness=stiffness["shear"]
+            )
             reached[direction] = measure_wave_speed(tower, numerical, direction).wave_speed
             ratio = targets[direction] / reached[direction]
             if abs(ratio - 1.0) < _MATCHED:
@@ -166,7 +174,9 @@ def _blocks(structure):
     aligned = np.abs(structure.position[blocks, :2] - structure.position[blocks[:1], :2]).max() < 1e-6
     stacked = structure.touching[blocks[:-1], blocks[1:]].all()
     if len(blocks) < 2 or structure.driven.sum() != 1 or not aligned or not stacked:
-        raise InputError(structure.source, "bodies", "expected a single tower of at least two blocks on one driven body")
+        raise InputError(
+            structure.source, "bodies", "expected a single tower of at least two blocks on one driven body"
+        )
     return blocks
 
 
@@ -196,7 +206,10 @@ def calibrate_design(structure, design, linked):
     pandas.DataFrame
         Columns ``ls_dem.normal_stiffness`` and ``ls_dem.shear_stiffness`` [N/m3], index as the design's.
     """
-    found = [calibrate_stiffness(structure, sample_parameters(row, structure, linked)) for _, row in design.iterrows()]
+    found = [
+        calibrate_stiffness(structure, sample_parameters(row, structure, linked))
+        for _, row in design.iterrows()
+    ]
     return pd.DataFrame(
         {f"ls_dem.{name}": [one[name] for one in found] for name in ("normal_stiffness", "shear_stiffness")},
         index=design.index,
@@ -219,7 +232,9 @@ def wave_tests(structure):
     """
     tower = load_structure(structure)
     calibrated = calibrate_stiffness(structure)
-    numerical = LsDemParameters(**{name: calibrated[name] for name in ("normal_stiffness", "shear_stiffness")})
+    numerical = LsDemParameters(
+        **{name: calibrated[name] for name in ("normal_stiffness", "shear_stiffness")}
+    )
     blocks = [tower.body_names[body] for body in _blocks(tower)]
     tests = []
     for direction in _AXES:

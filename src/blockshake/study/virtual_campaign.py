@@ -42,7 +42,9 @@ def simulate_virtual_test(case, linked):
     drawn = draw_true_parameters(seed)
     stiffness = calibrate_stiffness(_TOWER, sample_parameters(pd.Series(drawn), _TOWER, linked))
     drawn |= {f"ls_dem.{name}": stiffness[name] for name in ("normal_stiffness", "shear_stiffness")}
-    truth = sample_parameters(pd.Series(drawn), case["structure"], linked) | {"ls_dem.node_spacing": NODE_SPACING}
+    truth = sample_parameters(pd.Series(drawn), case["structure"], linked) | {
+        "ls_dem.node_spacing": NODE_SPACING
+    }
     run = simulate(
         case["structure"], load_motion(case["motion"], case["scale"]), "ls-dem", truth,
         time_step=TIME_STEP, duration=case["duration"], accelerometers=False,
@@ -60,5 +62,3 @@ def campaign_yaml(case):
         "tests:\n"
         f"  - {{name: virtual, file: virtual.nc, motion: {case['motion']}, scale: {case['scale']}, role: fit}}\n"
     )
-
-

@@ -29,7 +29,9 @@ CUBE = {"cube": {"box": [1.0, 1.0, 1.0]}}
 
 
 def test_chamfered_block_touches_with_the_corners_of_its_flat(scene):
-    normal, points, gaps = contacts_of(scene(BLOCK, [{"name": "b", "shape": "block", "position": [0, 0, 0.8]}]))
+    normal, points, gaps = contacts_of(
+        scene(BLOCK, [{"name": "b", "shape": "block", "position": [0, 0, 0.8]}])
+    )
     np.testing.assert_allclose(normal, [0, 0, 1], atol=ROUNDING)
     np.testing.assert_allclose(np.abs(points), np.tile([0.38, 1.18, 0.0], (4, 1)), atol=ROUNDING)
     np.testing.assert_allclose(gaps, 0.0, atol=ROUNDING)
@@ -48,7 +50,9 @@ def test_overhang_is_clipped_at_the_lower_edge(scene):
     ]
     normal, points, gaps = contacts_of(scene(CUBE, bodies, floor=False))
     np.testing.assert_allclose(normal, [0, 0, 1], atol=ROUNDING)
-    np.testing.assert_allclose([points.min(axis=0), points.max(axis=0)], [[-0.2, -0.5, 1.0005], [0.5, 0.3, 1.0005]])
+    np.testing.assert_allclose(
+        [points.min(axis=0), points.max(axis=0)], [[-0.2, -0.5, 1.0005], [0.5, 0.3, 1.0005]]
+    )
     np.testing.assert_allclose(gaps, 1e-3, atol=ROUNDING)
 
 
@@ -63,7 +67,10 @@ def test_tilted_block_touches_along_its_edge_and_a_corner_alone(scene):
     np.testing.assert_allclose(gaps, 0.0, atol=ROUNDING)
     corner = quaternion(np.array([1, -1, 0]) / np.sqrt(2), np.arccos(1 / np.sqrt(3)))
     normal, points, gaps = contacts_of(
-        scene(CUBE, [{"name": "b", "shape": "cube", "position": [0, 0, 0.5 * np.sqrt(3)], "orientation": corner}])
+        scene(
+            CUBE,
+            [{"name": "b", "shape": "cube", "position": [0, 0, 0.5 * np.sqrt(3)], "orientation": corner}],
+        )
     )
     np.testing.assert_allclose(normal, [0, 0, 1], atol=ROUNDING)
     np.testing.assert_allclose(points, [[0, 0, 0]], atol=1e-9)
@@ -74,7 +81,12 @@ def test_crossed_edges_touch_in_one_point(scene):
     # two cubes on their edges, the lower edge along y, the upper along x, 2 mm apart
     high = 0.5 * np.sqrt(2)
     bodies = [
-        {"name": "low", "shape": "cube", "position": [0, 0, 0], "orientation": quaternion([0, 1, 0], np.pi / 4)},
+        {
+            "name": "low",
+            "shape": "cube",
+            "position": [0, 0, 0],
+            "orientation": quaternion([0, 1, 0], np.pi / 4),
+        },
         {
             "name": "high",
             "shape": "cube",
@@ -100,7 +112,12 @@ def test_bodies_beyond_the_margin_or_beside_each_other_do_not_touch(scene):
 def test_turned_block_keeps_the_extent_of_the_octagon(scene):
     bodies = [
         {"name": "low", "shape": "cube", "position": [0, 0, 0]},
-        {"name": "high", "shape": "cube", "position": [0, 0, 1], "orientation": quaternion([0, 0, 1], np.pi / 4)},
+        {
+            "name": "high",
+            "shape": "cube",
+            "position": [0, 0, 1],
+            "orientation": quaternion([0, 0, 1], np.pi / 4),
+        },
     ]
     _, points, _ = contacts_of(scene(CUBE, bodies, floor=False))
     assert len(points) == 4
@@ -130,7 +147,9 @@ def test_shrinking_keeps_the_centroid():
 
 
 def test_broad_phase_finds_the_pairs_of_a_wall(scene):
-    bodies = [{"name": f"c{i}", "shape": "cube", "position": [1.5 * (i % 4), 0, 0.5 + i // 4]} for i in range(8)]
+    bodies = [
+        {"name": f"c{i}", "shape": "cube", "position": [1.5 * (i % 4), 0, 0.5 + i // 4]} for i in range(8)
+    ]
     structure = scene(CUBE, bodies)
     polyhedra = pack_polyhedra(structure, np.arange(9))
     placed = empty_placed(polyhedra)
@@ -143,6 +162,9 @@ def test_broad_phase_finds_the_pairs_of_a_wall(scene):
 def test_shape_that_is_not_convex_is_refused_by_name(scene, tmp_path):
     part = trimesh.creation.annulus(0.3, 0.5, 0.4)
     part.export(tmp_path / "ring.stl")
-    structure = scene({"ring": {"mesh": str(tmp_path / "ring.stl")}}, [{"name": "r", "shape": "ring", "position": [0, 0, 2]}])
+    structure = scene(
+        {"ring": {"mesh": str(tmp_path / "ring.stl")}},
+        [{"name": "r", "shape": "ring", "position": [0, 0, 2]}],
+    )
     with pytest.raises(InputError, match=r"shapes\.ring.*convex"):
         pack_polyhedra(structure, np.arange(2))

@@ -18,7 +18,9 @@ def shaking():
 
 @pytest.fixture(scope="module")
 def rocking_stack(shaking):
-    return simulate_nscd(load_structure("configuration-1"), shaking, NscdParameters(), np.linspace(0.0, 1.5, 301))
+    return simulate_nscd(
+        load_structure("configuration-1"), shaking, NscdParameters(), np.linspace(0.0, 1.5, 301)
+    )
 
 
 def balance(run):
@@ -59,7 +61,9 @@ def test_steps_converge(rocking_stack):
 
 
 def test_same_input_same_bytes(rocking_stack, shaking):
-    again = simulate_nscd(load_structure("configuration-1"), shaking, NscdParameters(), np.linspace(0.0, 1.5, 301))
+    again = simulate_nscd(
+        load_structure("configuration-1"), shaking, NscdParameters(), np.linspace(0.0, 1.5, 301)
+    )
     for name in ("position", "orientation", "velocity", "angular_velocity", "energy", "joint_force"):
         assert getattr(again, name).tobytes() == getattr(rocking_stack, name).tobytes()
 
@@ -74,7 +78,9 @@ def test_order_of_bodies_does_not_matter(rocking_stack, shaking):
     size = np.abs(rocking_stack.position[:, :, 0]).max()
     difference = np.abs(run.position - rocking_stack.position[:, order]).max()
     assert difference < 10.0 * NscdParameters().tolerance * size
-    assert sorted(map(tuple, run.joints)) == sorted((order.index(a), order.index(b)) for a, b in rocking_stack.joints)
+    assert sorted(map(tuple, run.joints)) == sorted(
+        (order.index(a), order.index(b)) for a, b in rocking_stack.joints
+    )
 
 
 def test_free_body_tumbles_without_loss(scene, simulate):
@@ -83,7 +89,7 @@ def test_free_body_tumbles_without_loss(scene, simulate):
     assert np.ptp(run.energy[:, 0]) < 1e-11 * run.energy[0, 0]
 
 
-def test_record_times_need_not_be_uniform(scene, rocking_stack, shaking):
+def test_record_times_need_not_be_uniform(rocking_stack, shaking):
     times = np.array([0.0, 0.00037, 0.1, 0.10005, 0.5, 1.5])
     run = simulate_nscd(load_structure("configuration-1"), shaking, NscdParameters(), times)
     same = np.searchsorted(rocking_stack.time, [0.1, 0.5, 1.5])
@@ -92,13 +98,17 @@ def test_record_times_need_not_be_uniform(scene, rocking_stack, shaking):
     assert np.isfinite(run.joint_force).all()
 
 
-def test_too_few_iterations_are_told(scene, shaking):
+def test_too_few_iterations_are_told(shaking):
     run = simulate_nscd(
-        load_structure("configuration-1"), shaking, NscdParameters(max_iterations=1), np.linspace(0.0, 1.5, 16)
+        load_structure("configuration-1"),
+        shaking,
+        NscdParameters(max_iterations=1),
+        np.linspace(0.0, 0.6, 16),
     )
-    share = run.numerics["fraction_above_1e-4"]
-    assert (run.status == "not-converged") == (share > 0.01)
+    assert run.numerics["fraction_above_1e-4"] > 0.01
     assert run.numerics["capped_steps"] > 0
+    assert run.status == "not-converged"
+    assert "relative residual" in run.reason
 
 
 def test_runaway_is_told(scene, simulate):

@@ -43,10 +43,12 @@ def test_complementarity_and_coulomb_hold_on_random_problems(mu):
             assert p[1:] @ u[1:] == pytest.approx(-friction * slide, rel=1e-8, abs=1e-14)
         else:
             states.add("stick")
-    assert states == ({"open", "slip"} if mu == 0.0 else {"open", "stick", "slip"})
+    assert states == ({"open", "slip"} if mu <= 0.1 else {"open", "stick", "slip"})
 
 
-@pytest.mark.parametrize("q", [(0.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (-1e-300, 1.0, 0.0), (1.0, 5.0, 5.0)])
+@pytest.mark.parametrize(
+    "q", [(0.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (-1e-300, 1.0, 0.0), (1.0, 5.0, 5.0)]
+)
 def test_degenerate_velocities_give_finite_impulses(q):
     p, slip = solve(np.diag([2.0, 1.0, 1.0]), q, 0.5)
     assert np.isfinite(p).all()
@@ -60,7 +62,8 @@ def test_residual_is_zero_on_the_law_and_grows_off_it():
         p, _ = solve(W, q, 0.6)
         u = W @ p + q
         assert contact_residual(*p, *u, 0.6, 0.7) < ROUNDING
-        assert contact_residual(*(p + [0.0, 0.0, 0.3]), *u, 0.6, 0.7) > 1e-3
+        p[2] += 0.3
+        assert contact_residual(*p, *(W @ p + q), 0.6, 0.7) > 1e-3
 
 
 def test_residual_of_a_closing_contact_is_the_impulse_that_is_missing():

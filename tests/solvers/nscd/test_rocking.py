@@ -28,7 +28,12 @@ def exact_time_to_impact(lean):
     landed = lambda t, y: y[0]  # noqa: E731
     landed.terminal = True
     answer = solve_ivp(
-        lambda t, y: [y[1], -0.75 * G / R * np.sin(ALPHA - y[0])], (0, 5), [lean, 0.0], events=landed, rtol=1e-10, atol=1e-12
+        lambda t, y: [y[1], -0.75 * G / R * np.sin(ALPHA - y[0])],
+        (0, 5),
+        [lean, 0.0],
+        events=landed,
+        rtol=1e-10,
+        atol=1e-12,
     )
     return answer.t[-1]
 
@@ -40,7 +45,9 @@ def test_housner_ratio_of_angular_velocities(scene, simulate, time_step):
     spin, impact = run.angular_velocity[:, 1, 1], exact_time_to_impact(lean)
     before = (run.time > impact - 0.05) & (run.time < impact - 3 * time_step)
     after = (run.time > impact + 3 * time_step) & (run.time < impact + 0.05)
-    at_impact = [np.polyval(np.polyfit(run.time[part] - impact, spin[part], 2), 0.0) for part in (before, after)]
+    at_impact = [
+        np.polyval(np.polyfit(run.time[part] - impact, spin[part], 2), 0.0) for part in (before, after)
+    ]
     # Housner (1963), Eq. (9): within 1 % at 2e-4 s, and the same at 1e-3 s
     assert at_impact[1] / at_impact[0] == pytest.approx(1.0 - 1.5 * np.sin(ALPHA) ** 2, rel=0.01)
 
@@ -57,7 +64,11 @@ def test_falling_edge_follows_the_equation_of_motion(scene, simulate):
     lean = 0.5 * ALPHA
     end = 0.8 * exact_time_to_impact(lean)
     exact = solve_ivp(
-        lambda t, y: [y[1], -0.75 * G / R * np.sin(ALPHA - y[0])], (0, end), [lean, 0.0], rtol=1e-10, atol=1e-12
+        lambda t, y: [y[1], -0.75 * G / R * np.sin(ALPHA - y[0])],
+        (0, end),
+        [lean, 0.0],
+        rtol=1e-10,
+        atol=1e-12,
     ).y[0, -1]
     errors = []
     for time_step in (2e-3, 1e-3):

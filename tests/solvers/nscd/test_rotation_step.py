@@ -14,7 +14,16 @@ def spin_freely(J, spin, steps, dt=1e-3, torque=(0.0, 0.0, 0.0), theta=0.5):
     for _ in range(steps):
         new_orientation, new_spin, mean = np.empty(4), np.empty(3), np.empty(3)
         turn_into(
-            orientation, spin, J, np.linalg.inv(J), np.array(torque), dt, theta, new_orientation, new_spin, mean
+            orientation,
+            spin,
+            J,
+            np.linalg.inv(J),
+            np.array(torque),
+            dt,
+            theta,
+            new_orientation,
+            new_spin,
+            mean,
         )
         work += mean @ torque
         orientation, spin = new_orientation, new_spin
@@ -43,7 +52,16 @@ def test_rotation_about_a_principal_axis_is_exact():
     orientation, spin, mean = np.empty(4), np.empty(3), np.empty(3)
     J = np.diag([1.0, 2.0, 3.0])
     turn_into(
-        np.array([1.0, 0, 0, 0]), np.array([0, 1.5, 0]), J, np.linalg.inv(J), np.zeros(3), 0.4, 0.5, orientation, spin, mean
+        np.array([1.0, 0, 0, 0]),
+        np.array([0, 1.5, 0]),
+        J,
+        np.linalg.inv(J),
+        np.zeros(3),
+        0.4,
+        0.5,
+        orientation,
+        spin,
+        mean,
     )
     np.testing.assert_allclose(orientation, [np.cos(0.3), 0, np.sin(0.3), 0], atol=1e-15)
     np.testing.assert_allclose(spin, [0, 1.5, 0], atol=1e-15)

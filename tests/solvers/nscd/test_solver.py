@@ -60,7 +60,7 @@ def slow_reference(W, q, mu):
         u = W @ p + q
         new = np.empty_like(p)
         for c in range(0, len(p), 3):
-            s = p[c : c + 3] - rho * (u[c : c + 3] + [mu * np.hypot(u[c + 1], u[c + 2]), 0.0, 0.0])
+            s = p[c : c + 3] - rho * np.add(u[c : c + 3], [mu * np.hypot(u[c + 1], u[c + 2]), 0.0, 0.0])
             size = np.hypot(s[1], s[2])
             if size > mu * s[0]:
                 along = max((s[0] + mu * size) / (1.0 + mu * mu), 0.0)

@@ -27,7 +27,10 @@ def test_stopper_turns_a_block_round(scene, simulate, axis, sign):
     velocity[along] = sign * 0.5
     stop = {"body": "b", "position": [0, 0, 0], "axis": axis, "gap": 0.01, "stiffness": 1.0e5}
     structure = scene(
-        SHAPES, [{"name": "b", "shape": "cube", "position": [0, 0, 0.25], "velocity": velocity}], friction=0.0, stoppers=[stop]
+        SHAPES,
+        [{"name": "b", "shape": "cube", "position": [0, 0, 0.25], "velocity": velocity}],
+        friction=0.0,
+        stoppers=[stop],
     )
     run = simulate(structure, 0.2, output_step=1e-3)
     moved = sign * (run.position[:, 1, along] - run.position[0, 1, along])
@@ -41,8 +44,10 @@ def test_stopper_moves_with_the_driven_body(scene, simulate, push):
     structure = scene(
         SHAPES, [{"name": "b", "shape": "cube", "position": [0, 0, 0.25]}], friction=0.0, stoppers=[stop]
     )
-    run = simulate(structure, 1.0, motion=push(1.0, 1.5, 2.0))
-    # the stop behind the block pushes it on; oscillating about m a / k of closure
+    run = simulate(structure, 1.0, output_step=1e-3, motion=push(1.0, 1.5, 2.0))
     behind = run.position[:, 0, 0] - run.position[:, 1, 0]
-    assert behind[-1] == pytest.approx(0.01 + structure.mass[1] * 1.0 / 1.0e6, abs=6e-3)
+    # seen from the floor the block falls onto the spring: k c^2 / 2 = m a (gap + c) at the deepest
+    load = structure.mass[1] * 1.0
+    closure = (load + np.sqrt(load**2 + 2.0 * 1.0e6 * load * 0.01)) / 1.0e6
+    assert behind.max() == pytest.approx(0.01 + closure, rel=5e-3)
     assert run.position[-1, 1, 0] > 0.45

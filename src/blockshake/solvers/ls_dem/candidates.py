@@ -130,7 +130,12 @@ def find_pairs(surfaces, driven, position, orientation, skin):
                 break
             if driven[a] and driven[b]:
                 continue
-            if low[a, 1] <= high[b, 1] and low[b, 1] <= high[a, 1] and low[a, 2] <= high[b, 2] and low[b, 2] <= high[a, 2]:
+            if (
+                low[a, 1] <= high[b, 1]
+                and low[b, 1] <= high[a, 1]
+                and low[a, 2] <= high[b, 2]
+                and low[b, 2] <= high[a, 2]
+            ):
                 codes.append(min(a, b) * n_bodies + max(a, b))
     sorted_codes = np.sort(np.array(codes, dtype=np.int64)) if len(codes) > 0 else np.empty(0, np.int64)
     pairs = np.empty((sorted_codes.size, 2), np.int64)

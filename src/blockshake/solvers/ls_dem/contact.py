@@ -136,7 +136,9 @@ def _relative_pose_into(position, rotation, owner, other, R, d):
     R_owner, R_other = rotation[owner], rotation[other]
     for i in range(3):
         for j in range(3):
-            R[i, j] = R_other[0, i] * R_owner[0, j] + R_other[1, i] * R_owner[1, j] + R_other[2, i] * R_owner[2, j]
+            R[i, j] = (
+                R_other[0, i] * R_owner[0, j] + R_other[1, i] * R_owner[1, j] + R_other[2, i] * R_owner[2, j]
+            )
         d[i] = 0.0
         for j in range(3):
             d[i] += R_other[j, i] * (position[owner, j] - position[other, j])
@@ -296,7 +298,11 @@ def contact_forces_into(candidates, surfaces, interfaces, kinematics, dt, loads)
     R, frame = np.empty((2, 3, 3)), np.empty((2, 7, 3))
     turned, total = np.empty((3, 3)), np.empty(9)
     for pair in range(candidates.pairs.shape[0]):
-        begin, middle, end = candidates.first[2 * pair], candidates.first[2 * pair + 1], candidates.first[2 * pair + 2]
+        begin, middle, end = (
+            candidates.first[2 * pair],
+            candidates.first[2 * pair + 1],
+            candidates.first[2 * pair + 2],
+        )
         if begin == end:
             continue
         a, b = candidates.pairs[pair, 0], candidates.pairs[pair, 1]
@@ -346,6 +352,8 @@ def _share_into(owner, other, second, R_other, d, total, loads):
         loads.force[owner, i] += f
         loads.force[other, i] -= f
         loads.moment[owner, i] += R_other[i, 0] * mx + R_other[i, 1] * my + R_other[i, 2] * mz
-        loads.moment[other, i] -= R_other[i, 0] * total[3] + R_other[i, 1] * total[4] + R_other[i, 2] * total[5]
+        loads.moment[other, i] -= (
+            R_other[i, 0] * total[3] + R_other[i, 1] * total[4] + R_other[i, 2] * total[5]
+        )
         if joint >= 0:
             loads.joint_force[joint, i] += sign * f

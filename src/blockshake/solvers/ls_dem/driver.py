@@ -51,7 +51,9 @@ def simulate_ls_dem(structure, motion, parameters, record_times, time_step=1e-5,
         bodies = bodies._replace(inverse_inertia=np.zeros_like(bodies.inverse_inertia))
     surfaces = assemble_surfaces(structure, parameters)
     interfaces = assemble_interfaces(structure, parameters)
-    candidates, settling_steps = _start(structure, bodies, surfaces, interfaces, parameters.skin, time_step, state)
+    candidates, settling_steps = _start(
+        structure, bodies, surfaces, interfaces, parameters.skin, time_step, state
+    )
     n_bodies, n_times = len(structure.mass), len(record_times)
     record = Record(
         position=np.full((n_times, n_bodies, 3), np.nan),
@@ -97,13 +99,20 @@ def assemble_surfaces(structure, parameters):
     shapes = [structure.file.shapes[name] for name in names]
     for name, shape in zip(names, shapes, strict=True):
         if shape.box is None:
-            raise InputError(structure.source, f"shapes.{name}.mesh", "expected a box: ls-dem does not read meshes yet")
+            raise InputError(
+                structure.source, f"shapes.{name}.mesh", "expected a box: ls-dem does not read meshes yet"
+            )
         flat = min(shape.box) - 2.0 * shape.chamfer
         if 2.0 * parameters.perimeter_inset >= flat:
             raise InputError(
-                structure.source, f"shapes.{name}", f"expected flats wider than twice ls_dem.perimeter_inset, not {flat} m"
+                structure.source,
+                f"shapes.{name}",
+                f"expected flats wider than twice ls_dem.perimeter_inset, not {flat} m",
             )
-    nodes = [box_nodes(shape.box, shape.chamfer, parameters.node_spacing, parameters.perimeter_inset) for shape in shapes]
+    nodes = [
+        box_nodes(shape.box, shape.chamfer, parameters.node_spacing, parameters.perimeter_inset)
+        for shape in shapes
+    ]
     return Surfaces(
         shape=np.array([names.index(body.shape) for body in structure.file.bodies]),
         half=np.array([shape.box for shape in shapes]) / 2.0,
@@ -124,7 +133,9 @@ def assemble_interfaces(structure, parameters):
     """
     file = structure.file
     young = np.array([file.materials[body.material].youngs_modulus for body in file.bodies])
-    shear = young / (2.0 + 2.0 * np.array([file.materials[body.material].poisson_ratio for body in file.bodies]))
+    shear = young / (
+        2.0 + 2.0 * np.array([file.materials[body.material].poisson_ratio for body in file.bodies])
+    )
     reference = int(np.argmin(structure.driven))
     k_n = parameters.normal_stiffness * young / young[reference]
     k_s = parameters.shear_stiffness * shear / shear[reference]
@@ -142,7 +153,9 @@ def assemble_interfaces(structure, parameters):
 def _start(structure, bodies, surfaces, interfaces, skin, time_step, state):
     """Near nodes at the start; the poses of stacks at rest are moved to their equilibrium."""
     relaxed = State(*(part.copy() for part in state))
-    lists = find_candidates(surfaces, bodies.driven, state.position, state.orientation, skin, empty_candidates(len(bodies.mass)))
+    lists = find_candidates(
+        surfaces, bodies.driven, state.position, state.orientation, skin, empty_candidates(len(bodies.mass))
+    )
     settled, left, steps = settle(bodies, surfaces, interfaces, skin, time_step, relaxed, lists)
     free = ~structure.driven
     _, group = connected_components(structure.touching & free[:, None] & free[None, :])

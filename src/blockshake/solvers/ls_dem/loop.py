@@ -11,7 +11,14 @@ from blockshake.dynamics.system import kinetic_energy, place_driven_into, potent
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
 from blockshake.jit import kernel
 from blockshake.solvers.ls_dem.candidates import find_candidates, lists_expired
-from blockshake.solvers.ls_dem.contact import DAMPING, ELASTIC, FRICTION, Kinematics, Loads, contact_forces_into
+from blockshake.solvers.ls_dem.contact import (
+    DAMPING,
+    ELASTIC,
+    FRICTION,
+    Kinematics,
+    Loads,
+    contact_forces_into,
+)
 from blockshake.solvers.ls_dem.stoppers import stopper_forces_into
 
 COMPLETED, COLLAPSED, DIVERGED = 0, 1, 2
@@ -74,7 +81,20 @@ def _has_diverged(velocity):
 
 @kernel
 def integrate(
-    bodies, surfaces, interfaces, stoppers, ground, supported, drop_limit, skin, dt, n_steps, times, state, candidates, record
+    bodies,
+    surfaces,
+    interfaces,
+    stoppers,
+    ground,
+    supported,
+    drop_limit,
+    skin,
+    dt,
+    n_steps,
+    times,
+    state,
+    candidates,
+    record,
 ):
     """Run LS-DEM over ``n_steps`` steps.
 
@@ -146,7 +166,9 @@ def integrate(
             kinematics.rotation_before[:] = kinematics.rotation
 
         if lists_expired(candidates, surfaces, bodies.driven, state.position, state.orientation, skin):
-            candidates = find_candidates(surfaces, bodies.driven, state.position, state.orientation, skin, candidates)
+            candidates = find_candidates(
+                surfaces, bodies.driven, state.position, state.orientation, skin, candidates
+            )
             rebuilds += 1
         clear_loads(bodies, loads)
         # the first force sees no motion before it: the springs of the start hold as they are
@@ -177,7 +199,12 @@ def integrate(
                 kinematics.velocity[body, axis] = half_velocity[body, axis] + gained
                 if step > 0:
                     momentum[body, axis] += 0.5 * dt * loads.moment[body, axis]
-            spin_into(bodies.inverse_inertia[body], state.orientation[body], momentum[body], state.angular_velocity[body])
+            spin_into(
+                bodies.inverse_inertia[body],
+                state.orientation[body],
+                momentum[body],
+                state.angular_velocity[body],
+            )
             for axis in range(3):
                 momentum[body, axis] += 0.5 * dt * loads.moment[body, axis]
 

@@ -29,5 +29,6 @@ class LsDemParameters(BaseModel):
         0.005, description="distance of the outermost nodes from the perimeter of a flat [m]; chosen"
     )
     skin: Positive = Field(
-        0.01, description="distance within which nodes are kept ready for contact [m]; changes speed, never results"
+        0.01,
+        description="distance within which nodes are kept ready for contact [m]; changes speed, never results",
     )

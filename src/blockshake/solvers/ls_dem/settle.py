@@ -60,7 +60,9 @@ def settle(bodies, surfaces, interfaces, skin, dt, state, candidates):
     kinematics = Kinematics(state.position, rotation, state.position.copy(), rotation.copy(), velocity, spin)
     for step in range(_MOST_STEPS):
         if lists_expired(candidates, surfaces, bodies.driven, state.position, state.orientation, skin):
-            candidates = find_candidates(surfaces, bodies.driven, state.position, state.orientation, skin, candidates)
+            candidates = find_candidates(
+                surfaces, bodies.driven, state.position, state.orientation, skin, candidates
+            )
         for body in range(n_bodies):
             rotation_matrix_into(state.orientation[body], rotation[body])
         clear_loads(bodies, loads)

@@ -50,18 +50,20 @@ def detect_pair_into(polyhedra, placed, a, b, margin, shrink, memory, normal, po
     if separation > margin:
         return 0
     memory[a, b] = face
-    owner, other = (a, b) if face < polyhedra.first_face[a + 1] and face >= polyhedra.first_face[a] else (b, a)
+    owner, other = (
+        (a, b) if face < polyhedra.first_face[a + 1] and face >= polyhedra.first_face[a] else (b, a)
+    )
     count = _face_points_into(polyhedra, placed, owner, other, face, margin, shrink, points, gaps)
     if count == 0 or separation < -_TOUCH * size:
         edge_normal = np.empty(3)
         edge_separation = _best_edge_into(polyhedra, placed, a, b, edge_normal)
         if edge_separation > margin:
             return 0
-        if edge_separation > separation + bias:
-            if _edge_point_into(polyhedra, placed, a, b, edge_normal, points):
-                gaps[0] = edge_separation
-                normal[:] = edge_normal
-                return 1
+        better = edge_separation > separation + bias
+        if better and _edge_point_into(polyhedra, placed, a, b, edge_normal, points):
+            gaps[0] = edge_separation
+            normal[:] = edge_normal
+            return 1
     sign = 1.0 if owner == a else -1.0
     for axis in range(3):
         normal[axis] = sign * placed.normals[face, axis]

@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.dynamics.collapse import collapse_limits
 from blockshake.dynamics.motion import MotionTable
-from blockshake.dynamics.system import ENERGY_TERMS, State, Trajectory, assemble_bodies
+from blockshake.dynamics.system import ENERGY_TERMS, Trajectory, assemble_bodies
 from blockshake.solvers.nscd.loop import COLLAPSED, DIVERGED, Record, Settings, Watch, run
 from blockshake.solvers.nscd.polyhedra import pack_polyhedra
 
@@ -80,7 +80,9 @@ def simulate_nscd(structure, motion, parameters, record_times, time_step=1e-3):
         reason = f"{name} {what} at {end_time:.3f} s"
     steps = max(tally.steps, 1)
     if code != DIVERGED and tally.bad_steps > _MOST_BAD_STEPS * steps:
-        words = f"{100.0 * tally.bad_steps / steps:.1f} % of the steps ended above a relative residual of 1e-4"
+        words = (
+            f"{100.0 * tally.bad_steps / steps:.1f} % of the steps ended above a relative residual of 1e-4"
+        )
         status, reason = "not-converged", "; ".join(part for part in (words, reason) if part)
     return Trajectory(
         time=record.time,
@@ -101,7 +103,9 @@ def simulate_nscd(structure, motion, parameters, record_times, time_step=1e-3):
             "max_residual": tally.worst_residual,
             "fraction_above_1e-4": tally.bad_steps / steps,
             "capped_steps": tally.capped_steps,
-            "energy_residual": tally.energy_residual / tally.energy_scale if tally.energy_scale > 0.0 else 0.0,
+            "energy_residual": tally.energy_residual / tally.energy_scale
+            if tally.energy_scale > 0.0
+            else 0.0,
             "max_penetration": tally.deepest,
         },
     )

@@ -97,7 +97,9 @@ def sweep_into(bodies, inertia, contacts, upwards, v):
         q_1 = u_1 + bound[1] - (w[3] * p[0] + w[1] * p[1])
         q_2 = u_2 + bound[2] - (w[4] * p[0] + w[2] * p[2])
         mu = contacts.friction[contact]
-        p_n, p_1, p_2, slip = solve_contact(w[0], w[1], w[2], w[3], w[4], q_n, q_1, q_2, mu, contacts.slip[contact])
+        p_n, p_1, p_2, slip = solve_contact(
+            w[0], w[1], w[2], w[3], w[4], q_n, q_1, q_2, mu, contacts.slip[contact]
+        )
         d_n, d_1, d_2 = p_n - p[0], p_1 - p[1], p_2 - p[2]
         if d_n != 0.0 or d_1 != 0.0 or d_2 != 0.0:
             apply_impulse_into(bodies, inertia, contacts, contact, d_n, d_1, d_2, v)

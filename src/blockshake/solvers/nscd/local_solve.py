@@ -63,7 +63,9 @@ def solve_contact(w_n, w_1, w_2, a_1, a_2, q_n, q_1, q_2, mu, guess):
         slope_n = (slope_n - p_n * (a_1 * a_1 * d_1 * d_1 + a_2 * a_2 * d_2 * d_2)) / schur
         slope = -mu * slope_n
         if size > 0.0:
-            slope += (p_1 * (-a_1 * slope_n * d_1 - p_1 * d_1) + p_2 * (-a_2 * slope_n * d_2 - p_2 * d_2)) / size
+            slope += (
+                p_1 * (-a_1 * slope_n * d_1 - p_1 * d_1) + p_2 * (-a_2 * slope_n * d_2 - p_2 * d_2)
+            ) / size
         following = slip - excess / slope if slope != 0.0 else -1.0
         if not (low < following < high):
             following = 0.5 * (low + high) if high < np.inf else 4.0 * slip

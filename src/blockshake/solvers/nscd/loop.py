@@ -36,7 +36,7 @@ _ROUNDING = 1e-9  # of a step, when a record time meets the end of a step
 
 
 class Settings(NamedTuple):
-    """Numbers of the method: ``dt`` [s], ``theta``, ``tolerance``, ``max_iterations``, ``shrink``, ``restitution`` [1]."""
+    """Numbers of the method: ``dt`` [s]; ``restitution`` [1] of Newton; the rest as in `NscdParameters`."""
 
     dt: float
     theta: float
@@ -168,7 +168,9 @@ def run(bodies, state, stoppers, polyhedra, table, settings, watch, record):
         prepare_operators_into(bodies, step.inverse_inertia, contacts)
         bounds_into(step, dt, theta, settings.restitution, contacts)
         warm_start_into(old, polyhedra.radius, contacts)
-        floor = 1e-3 * dt * np.linalg.norm(bodies.gravity) * lightest + 1e-12 * _momentum(bodies, step.v) + 1e-300
+        floor = (
+            1e-3 * dt * np.linalg.norm(bodies.gravity) * lightest + 1e-12 * _momentum(bodies, step.v) + 1e-300
+        )
         sweeps, residual = solve_contacts_into(
             bodies,
             step.inertia,
@@ -179,9 +181,7 @@ def run(bodies, state, stoppers, polyhedra, table, settings, watch, record):
             settings.max_iterations,
             step.v,
         )
-        segment = ground_displacement_into(
-            table, origin, (index + 1) * dt, segment, displacement, velocity
-        )
+        segment = ground_displacement_into(table, origin, (index + 1) * dt, segment, displacement, velocity)
         move_into(bodies, displacement, velocity, dt, theta, contacts, before, step, state)
         energy_before[:] = energy
         account_into(bodies, stoppers, watch.base, state, contacts, step, work, energy)
@@ -198,16 +198,22 @@ def run(bodies, state, stoppers, polyhedra, table, settings, watch, record):
             if joint_of[a, b] < 0 and contacts.impulse[contact, 0] > 0.0:
                 if n_joints == joints.shape[0]:
                     joints = np.concatenate((joints, np.empty((n_joints, 2), np.int64)))
-                    joint_force = np.concatenate((joint_force, np.full((n_times, n_joints, 3), np.nan)), axis=1)
+                    joint_force = np.concatenate(
+                        (joint_force, np.full((n_times, n_joints, 3), np.nan)), axis=1
+                    )
                 # a pair that touches for the first time carried nothing at the times already kept
                 joint_force[:row, n_joints] = 0.0
                 joints[n_joints, 0], joints[n_joints, 1] = a, b
                 joint_of[a, b] = n_joints
                 n_joints += 1
-        scale = energy[0] + abs(energy[1] - energy_start[1]) + energy[2] + energy[3] + energy[4] + abs(energy[6])
+        scale = (
+            energy[0] + abs(energy[1] - energy_start[1]) + energy[2] + energy[3] + energy[4] + abs(energy[6])
+        )
         energy_scale = max(energy_scale, scale)
         balance = energy[0] + energy[1] + energy[2] + energy[3] + energy[4] - energy[6]
-        energy_residual = max(energy_residual, abs(balance - energy_start[0] - energy_start[1] - energy_start[2]))
+        energy_residual = max(
+            energy_residual, abs(balance - energy_start[0] - energy_start[1] - energy_start[2])
+        )
 
         culprit = _find_diverged(state)
         if culprit >= 0:
@@ -233,9 +239,7 @@ def run(bodies, state, stoppers, polyhedra, table, settings, watch, record):
             break
     if n_steps == 0:
         _record_into(bodies, state, state, energy, energy, 0.0, 0, record)
-    tally = Tally(
-        index, sweeps_sum, most_sweeps, worst, bad, capped, energy_residual, energy_scale, deepest
-    )
+    tally = Tally(index, sweeps_sum, most_sweeps, worst, bad, capped, energy_residual, energy_scale, deepest)
     end_time = min(index * dt, record.time[n_times - 1])
     return code, culprit, end_time, joints[:n_joints].copy(), joint_force[:, :n_joints].copy(), tally
 

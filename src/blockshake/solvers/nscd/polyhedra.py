@@ -74,7 +74,9 @@ def pack_polyhedra(structure, order):
     edges = [_edges(solid) for solid in solids]
     directions = [_directions(solid, pairs) for solid, pairs in zip(solids, edges, strict=True)]
     first_vertex = _first([len(solid.vertices) for solid in solids])
-    corners = [face + start for solid, start in zip(solids, first_vertex, strict=False) for face in solid.faces]
+    corners = [
+        face + start for solid, start in zip(solids, first_vertex, strict=False) for face in solid.faces
+    ]
     return Polyhedra(
         first_vertex=first_vertex,
         vertices=np.concatenate([solid.vertices for solid in solids]),
@@ -97,7 +99,9 @@ def _first(lengths):
 
 
 def _edges(solid):
-    pairs = {tuple(sorted(pair)) for face in solid.faces for pair in zip(face, np.roll(face, -1), strict=True)}
+    pairs = {
+        tuple(sorted(pair)) for face in solid.faces for pair in zip(face, np.roll(face, -1), strict=True)
+    }
     return np.array(sorted(pairs), dtype=np.int64)
 
 
@@ -155,7 +159,9 @@ def place_into(polyhedra, position, orientation, placed):
         _turn_into(R, polyhedra.normals, first, last, placed.normals)
         for face in range(first, last):
             n = placed.normals[face]
-            placed.offsets[face] = polyhedra.offsets[face] + n[0] * center[0] + n[1] * center[1] + n[2] * center[2]
+            placed.offsets[face] = (
+                polyhedra.offsets[face] + n[0] * center[0] + n[1] * center[1] + n[2] * center[2]
+            )
         first, last = polyhedra.first_direction[body], polyhedra.first_direction[body + 1]
         _turn_into(R, polyhedra.directions, first, last, placed.directions)
 

@@ -25,7 +25,9 @@ def _rotate_vector_into(rotation, x, out):
 
 
 @kernel
-def turn_into(orientation, spin, inertia, inverse_inertia, torque, dt, theta, new_orientation, new_spin, mean_spin):
+def turn_into(
+    orientation, spin, inertia, inverse_inertia, torque, dt, theta, new_orientation, new_spin, mean_spin
+):
     """Orientation and angular velocity at the end of a step.
 
     Parameters

@@ -88,7 +88,7 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
         p = contacts.impulse[contact]
         apply_impulse_into(bodies, inverse_inertia, contacts, contact, p[0], p[1], p[2], v)
     old_impulse, old_v = np.empty((n_contacts, 3)), np.empty(v.shape)
-    best, best_impulse, best_v = np.inf, contacts.impulse.copy(), v.copy()
+    best, best_impulse, best_v = relative_residual(contacts, v, floor), contacts.impulse.copy(), v.copy()
     iterations, sweeps = 0, _FIRST_SWEEPS
     while True:
         for attempt in range(len(_STIFFNESS) if unknowns <= _MOST_UNKNOWNS else 0):

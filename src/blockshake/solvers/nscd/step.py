@@ -20,7 +20,8 @@ class Step(NamedTuple):
 
     ``detection`` (State): poses at which contacts are found, and the driven bodies' velocities at
     the end of the step. ``rotations``, ``inertia`` and ``inverse_inertia`` (n_bodies, 3, 3): body to
-    world, and [kg m2] and [1/(kg m2)] in the world frame, there. ``v_start``, ``v`` (n_bodies, 6): velocities at the start and at the
+    world, and [kg m2] and [1/(kg m2)] in the world frame, there. ``v_start``, ``v`` (n_bodies, 6):
+    velocities at the start and at the
     end of the step. ``v_mean`` (n_bodies, 6): their mean, rotation as in `turn_into`. ``impulse``
     (n_bodies, 6): contact impulse and its moment about the mass centre [N s, N m s].
     """
@@ -69,7 +70,9 @@ def predict_into(bodies, state, displacement, velocity, dt, theta, step):
         if bodies.driven[body]:
             continue
         for axis in range(3):
-            detection.position[body, axis] = state.position[body, axis] + (1.0 - theta) * dt * state.velocity[body, axis]
+            detection.position[body, axis] = (
+                state.position[body, axis] + (1.0 - theta) * dt * state.velocity[body, axis]
+            )
             rotation[axis] = (1.0 - theta) * dt * state.angular_velocity[body, axis]
             v[body, axis] = state.velocity[body, axis] + dt * bodies.gravity[axis]
         rotate_into(state.orientation[body], rotation, detection.orientation[body])
@@ -122,7 +125,9 @@ def place_stoppers_into(bodies, stoppers, base, step, dt, theta, contacts):
         contacts.basis[row, 0] = -stoppers.axis[stopper]
         contacts.friction[row] = 0.0
         contacts.compliance[row] = 1.0 / (theta * dt * dt * stoppers.stiffness[stopper])
-        contacts.gap[row] = -closure(bodies, stoppers, stopper, base, step.detection.position, contacts.arm_b[row])
+        contacts.gap[row] = -closure(
+            bodies, stoppers, stopper, base, step.detection.position, contacts.arm_b[row]
+        )
 
 
 @kernel

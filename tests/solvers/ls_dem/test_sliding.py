@@ -1,0 +1,150 @@
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from blockshake.dynamics.motion import ground_motion
+
+G = 9.81
+MU = 0.5
+FLAT_CUBE = {"squat": {"box": [2.0, 1.0, 0.5]}}  # mu h/b = 0.125: slides, never rocks
+BODY = {"name": "b", "shape": "squat", "position": [0.0, 0.0, 0.25]}
+WIDE = {"slab": {"box": [8.0, 3.0, 0.2]}}
+# Elastic part of a slip: the shear springs' stretch at the friction limit, mu m g / (k_s A), metres
+STRETCH = MU * 2.0 * 1.0 * 0.5 * 2400.0 * G / (9.0e9 * 2.0)
+STEP = 5e-5
+
+
+def _incline(make_structure, slope, **keys):
+    angle = np.arctan(slope)
+    gravity = [G * np.sin(angle), 0.0, -G * np.cos(angle)]
+    structure = make_structure([BODY], friction=MU, gravity=gravity, shapes={**FLAT_CUBE, **WIDE}, **keys)
+    return structure, G * (np.sin(angle) - MU * np.cos(angle))
+
+
+def test_half_a_percent_below_the_friction_angle_nothing_creeps(make_structure, run_ls_dem):
+    """Coulomb: tan(angle) < mu holds for ever; 3 s are 60,000 steps."""
+    structure, _ = _incline(make_structure, 0.995 * MU)
+    run = run_ls_dem(structure, 3.0, rate=20)
+    # nodes still give way to one another as the last 1e-9 of imbalance dies out: a billionth of the stretch
+    assert np.abs(run.position - run.position[0]).max() < 1e-7 * STRETCH
+    assert run.energy[-1, 3] < 1e-12
+
+
+def test_half_a_percent_above_it_slides_as_coulomb_says(make_structure, run_ls_dem):
+    """Acceleration g (sin - mu cos), 0.022 m/s2 here."""
+    structure, acceleration = _incline(make_structure, 1.005 * MU)
+    run = run_ls_dem(structure, 1.0, rate=20)
+    # the start stretches the springs by STRETCH while the block is set going: as much speed as falls
+    # within their period, g sin * pi sqrt(STRETCH / g mu)
+    slack = G * 0.5 * np.pi * np.sqrt(STRETCH / (MU * G)) * 0.02
+    late = run.time >= 0.2
+    slope = np.polyfit(run.time[late], run.velocity[late, 1, 0], 1)[0]
+    assert slope == pytest.approx(acceleration, rel=1e-3)
+    np.testing.assert_allclose(run.velocity[late, 1, 0], acceleration * run.time[late], atol=slack)
+
+
+def test_a_sliding_block_stops_after_v2_over_2_mu_g(make_structure, run_ls_dem):
+    """Energy: m v^2 / 2 = mu m g s. All of it is friction heat but what the springs hold."""
+    speed = 1.0
+    structure = make_structure([{**BODY, "velocity": [speed, 0, 0]}], friction=MU, shapes={**FLAT_CUBE, **WIDE})
+    run = run_ls_dem(structure, 0.4)
+    distance = run.position[-1, 1, 0] - run.position[0, 1, 0]
+    # friction builds up over the stretch, and the block swings back on its springs by no more than it
+    assert distance == pytest.approx(speed**2 / (2.0 * MU * G), abs=2.0 * STRETCH)
+    kinetic = 0.5 * structure.mass[1] * speed**2
+    # the rest is in the dashpots: friction's moment makes the block nod as it starts and stops
+    assert run.energy[-1, 3] == pytest.approx(kinetic, rel=1e-3)
+    steady = (run.time > 0.05) & (run.time < 0.15)
+    np.testing.assert_allclose(np.diff(run.velocity[steady, 1, 0]) / 0.005, -MU * G, rtol=1e-4)
+
+
+def _newmark(acceleration, limit, duration):
+    """Newmark's (1965) rigid sliding block under a driven base, by events: slip(t) and its speed.
+
+    The block sticks while the base's acceleration stays below ``limit`` and slides with
+    ``limit`` against the relative velocity; positive slip is the block's motion ahead of the base.
+    """
+    t, slip, speed, sign = 0.0, 0.0, 0.0, 0.0
+    times, slips = [0.0], [0.0]
+    grid = np.linspace(0.0, duration, 20001)
+    sticking = True
+    while t < duration:
+        if sticking:
+            over = grid[(grid >= t) & (np.abs(acceleration(grid)) > limit)]
+            if over.size == 0:
+                break
+            t = over[0]
+            sign = -np.sign(acceleration(t))
+            times.append(t), slips.append(slip)
+            sticking = False
+            speed = sign * 1e-12
+
+        def stops(_, y, sign=sign):
+            return y[1] * sign
+
+        stops.terminal, stops.direction = True, -1.0
+        run = solve_ivp(
+            lambda s, y, sign=sign: [y[1], -sign * limit - acceleration(s)], (t, duration), [slip, speed],
+            events=stops, rtol=1e-10, atol=1e-12, max_step=1e-3,
+        )  # fmt: skip
+        times.extend(run.t[1:]), slips.extend(run.y[0][1:])
+        t, slip, speed = run.t[-1], run.y[0][-1], run.y[1][-1]
+        if run.t_events[0].size == 0:
+            break
+        # at rest: does the base's acceleration carry the block along or the other way?
+        if abs(acceleration(t)) <= limit:
+            sticking = True
+        else:
+            sign = -np.sign(acceleration(t))
+            speed = sign * 1e-12
+    return np.array(times), np.array(slips)
+
+
+def _slip(run):
+    moved = run.position - run.position[0]
+    return moved[:, 1, 0] - moved[:, 0, 0]
+
+
+def _base(values, spacing):
+    time = np.arange(len(values)) * spacing
+    motion = ground_motion("base", time, {"x": values}, "acceleration")
+    return motion, lambda t: np.interp(t, time, values)
+
+
+def test_newmarks_block_under_a_pulse(make_structure, run_ls_dem):
+    """A base accelerating at 0.8 g for 0.1 s, mu = 0.5, then at rest speed: slip by closed form."""
+    a, duration = 0.8 * G, 0.1
+    time = np.array([0.0, 1e-6, duration, duration + 1e-6, 0.5])
+    motion = ground_motion("pulse", time, {"x": np.array([0.0, a, a, 0.0, 0.0])}, "acceleration")
+    structure = make_structure([BODY], friction=MU, shapes={**FLAT_CUBE, **WIDE})
+    run = run_ls_dem(structure, 0.4, motion=motion)
+    # the base gains a t, the block mu g t; the block catches up with mu g
+    lag = a - MU * G
+    expected = -(0.5 * lag * duration**2 + (lag * duration) ** 2 / (2.0 * MU * G))
+    # the block and its springs swing about the slip at each of the three changes of sliding
+    assert _slip(run)[-1] == pytest.approx(expected, abs=3.0 * STRETCH)
+
+
+def test_newmarks_block_under_a_harmonic_base(make_structure, run_ls_dem):
+    """Amplitude 0.8 g at 3 Hz: slips both ways, four times; own event-driven integration."""
+    spacing = 1e-3
+    time = np.arange(0.0, 1.0 + spacing / 2, spacing)
+    motion, acceleration = _base(0.8 * G * np.sin(2.0 * np.pi * 3.0 * time), spacing)
+    structure = make_structure([BODY], friction=MU, shapes={**FLAT_CUBE, **WIDE})
+    run = run_ls_dem(structure, 1.0, motion=motion, rate=1000)
+    times, slips = _newmark(acceleration, MU * G, 1.0)
+    expected = np.interp(run.time, times, slips)
+    assert np.ptp(expected) > 0.02
+    # each of some six changes between stick and slip misses by the springs' stretch
+    np.testing.assert_allclose(_slip(run), expected, atol=6.0 * STRETCH)
+
+
+def test_two_horizontal_components_slide_along_their_resultant(make_structure, run_ls_dem):
+    """Coulomb's circle, not a square: a start at 30 degrees goes straight and as far as along x."""
+    angle = np.radians(30.0)
+    structure = make_structure(
+        [{**BODY, "velocity": [np.cos(angle), np.sin(angle), 0.0]}], friction=MU, shapes={**FLAT_CUBE, **WIDE}
+    )
+    run = run_ls_dem(structure, 0.4)
+    moved = run.position[-1, 1, :2] - run.position[0, 1, :2]
+    np.testing.assert_allclose(moved, [np.cos(angle) / (2 * MU * G), np.sin(angle) / (2 * MU * G)], atol=1e-4)
