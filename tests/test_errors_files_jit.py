@@ -30,7 +30,14 @@ def test_an_input_error_is_one_line_that_names_file_key_and_expectation():
 
 @pytest.mark.parametrize(
     ("text", "value"),
-    [("1e-5", 1e-5), ("3.45e10", 3.45e10), ("1.0e-5", 1e-5), ("-2E3", -2000.0), (".5", 0.5), ("+1.e+2", 100.0)],
+    [
+        ("1e-5", 1e-5),
+        ("3.45e10", 3.45e10),
+        ("1.0e-5", 1e-5),
+        ("-2E3", -2000.0),
+        (".5", 0.5),
+        ("+1.e+2", 100.0),
+    ],
 )
 def test_every_spelling_of_a_number_is_a_number(text, value):
     """design.md 9; plain PyYAML reads 1e-5 as text."""
@@ -40,7 +47,8 @@ def test_every_spelling_of_a_number_is_a_number(text, value):
 
 
 @pytest.mark.parametrize(
-    ("text", "value"), [("12", 12), ("configuration-1", "configuration-1"), ("true", True), ("1e-5 m", "1e-5 m")]
+    ("text", "value"),
+    [("12", 12), ("configuration-1", "configuration-1"), ("true", True), ("1e-5 m", "1e-5 m")],
 )
 def test_other_values_keep_their_type(text, value):
     read = parse_yaml(f"key: {text}", "t")["key"]
@@ -119,7 +127,9 @@ def test_the_content_digest_tells_values_apart_and_not_the_order_of_keys():
 def package(tmp_path, monkeypatch):
     monkeypatch.setattr(files, "PACKAGE", tmp_path)
     (tmp_path / "part").mkdir()
-    (tmp_path / "part" / "a.py").write_text('"""Doc."""\n\n\ndef f(x):\n    """Add one."""\n    return x + 1\n')
+    (tmp_path / "part" / "a.py").write_text(
+        '"""Doc."""\n\n\ndef f(x):\n    """Add one."""\n    return x + 1\n'
+    )
     (tmp_path / "b.py").write_text("B = 2\n")
     source_digest.cache_clear()
     yield tmp_path
@@ -141,7 +151,9 @@ def test_the_source_digest_ignores_explanations(package):
 
 def test_the_source_digest_follows_code_of_the_parts_named(package):
     whole, part, b = _digests()
-    (package / "part" / "a.py").write_text('"""Doc."""\n\n\ndef f(x):\n    """Add one."""\n    return x + 2\n')
+    (package / "part" / "a.py").write_text(
+        '"""Doc."""\n\n\ndef f(x):\n    """Add one."""\n    return x + 2\n'
+    )
     new_whole, new_part, new_b = _digests()
     assert new_whole != whole
     assert new_part != part
@@ -175,7 +187,9 @@ def _first_spin(root, cache):
 def test_an_edit_in_an_imported_module_changes_what_a_cached_kernel_computes(tmp_path):
     """Numba issue 1833: its cache alone keeps the old physics of an imported kernel."""
     root, cache = tmp_path / "src", tmp_path / "cache"
-    shutil.copytree(Path(files.__file__).parent, root / "blockshake", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(
+        Path(files.__file__).parent, root / "blockshake", ignore=shutil.ignore_patterns("__pycache__")
+    )
     assert _first_spin(root, cache) == (1.0, 0)
     assert _first_spin(root, cache) == (1.0, 1)
     rotations = root / "blockshake" / "geometry" / "rotations.py"

@@ -1,25 +1,43 @@
 """Which sources make which result: what a workflow rule watches so that an edit reruns what it touches."""
 
-_COMMON = ("errors.py", "files.py", "jit.py", "geometry", "dynamics")
+_COMMON = ("errors.py", "files.py", "geometry", "dynamics")
 _SOLVERS = {"ls-dem": "solvers/ls_dem", "nscd-rigid": "solvers/nscd"}
-_RUN = ("measurement/markers.py", "measurement/accelerometers.py", "study/simulation.py")
+_STATISTICS = ("errors.py", "files.py", "study/ensemble.py", "study/envelope.py", "study/distributions.py")
 
-MOTION = (*_COMMON,)
-DESIGN = ("errors.py", "files.py", "study/distributions.py", "study/sampling.py", "study/correlation_control.py",
-          "study/correlation_target.py")  # fmt: skip
-STIFFNESS = (*_COMMON, "solvers/ls_dem", "study/stiffness.py")
-ENVELOPE = ("errors.py", "files.py", "study/ensemble.py", "study/envelope.py", "study/distributions.py")
-COMPARISON = (*ENVELOPE, "study/coverage.py", "measurement/campaign.py", "measurement/virtual_test.py")
-REPORT = (*ENVELOPE, "geometry", "report")
-KERNELS = ("jit.py", "geometry", "dynamics", "solvers", "measurement", "study")
+KERNELS = (*_COMMON, "solvers", "measurement", "study")
 """Every floor that holds kernels: the report, which has none, may change without compiling anew."""
+
+MOTION = _COMMON
+DESIGN = (
+    "errors.py",
+    "files.py",
+    "study/distributions.py",
+    "study/sampling.py",
+    "study/correlation_control.py",
+    "study/correlation_target.py",
+)
+STIFFNESS = (
+    *_COMMON,
+    *DESIGN,
+    "solvers/__init__.py",
+    _SOLVERS["ls-dem"],
+    "study/stiffness.py",
+    "study/sample_parameters.py",
+)
+ENVELOPE = _STATISTICS
+COMPARISON = (*_STATISTICS, "study/coverage.py", "measurement/campaign.py", "measurement/virtual_test.py")
+REPORT = (*_STATISTICS, *DESIGN, "geometry", "dynamics", "measurement", "report")
 
 
 def run_sources(model):
     """Sources that make a run of one model."""
-    return (*_COMMON, _SOLVERS[model], *_RUN)
+    return (*_COMMON, _SOLVERS[model], "measurement", "study/simulation.py")
 
 
 def batch_sources(model):
     """Sources that make a batch of samples of one model."""
-    return (*run_sources(model), "study/batch.py", "study/ensemble.py", "study/distributions.py")
+    return (*run_sources(model), *DESIGN, "study/batch.py", "study/ensemble.py", "study/sample_parameters.py")
+
+
+LADDER = (*run_sources("ls-dem"), *DESIGN, "solvers/nscd", "study/ladder.py", "study/config.py")
+VIRTUAL_CAMPAIGN = (*run_sources("ls-dem"), *STIFFNESS, "solvers/nscd", "study/virtual_campaign.py")

@@ -69,7 +69,10 @@ def test_the_slicing_integral_itself_agrees_with_random_points():
     inside = np.all([u[:, i] + u[:, j] <= -chamfer for i, j in ((0, 1), (0, 2), (1, 2))], axis=0)
     volume, inertia = _chamfered_box_by_slices(size, chamfer)
     box = size.prod()
-    for moment, of_point in ((volume, np.ones(len(points))), (inertia[0], points[:, 1] ** 2 + points[:, 2] ** 2)):
+    for moment, of_point in (
+        (volume, np.ones(len(points))),
+        (inertia[0], points[:, 1] ** 2 + points[:, 2] ** 2),
+    ):
         counted = box * of_point * inside
         assert abs(counted.mean() - moment) < 4.0 * counted.std() / np.sqrt(len(points))
 

@@ -37,7 +37,9 @@ def test_the_joints_of_configuration_3():
     names = structure.body_names
     touching = {tuple(sorted((names[a], names[b]))) for a, b in np.argwhere(structure.touching)}
     walls = {(f"wall-{w}-{i}", f"wall-{w}-{i + 1}") for w in "ab" for i in (1, 2, 3)}
-    assert touching == walls | {("slab", f"wall-{w}-1") for w in "ab"} | {("top", f"wall-{w}-4") for w in "ab"}
+    assert touching == walls | {("slab", f"wall-{w}-1") for w in "ab"} | {
+        ("top", f"wall-{w}-4") for w in "ab"
+    }
 
 
 @pytest.fixture
@@ -62,10 +64,22 @@ def _set(mapping, path, value):
     ("path", "value", "message"),
     [
         (("colour",), "red", "colour: unknown key; expected one of the structure file's keys"),
-        (("bodies", 1, "colour"), 1, "bodies.lower.colour: unknown key; expected one of the structure file's keys"),
-        (("bodies", 1), {"name": "lower", "material": "stone", "position": [0, 0, 1]}, "bodies.lower.shape: missing key"),
+        (
+            ("bodies", 1, "colour"),
+            1,
+            "bodies.lower.colour: unknown key; expected one of the structure file's keys",
+        ),
+        (
+            ("bodies", 1),
+            {"name": "lower", "material": "stone", "position": [0, 0, 1]},
+            "bodies.lower.shape: missing key",
+        ),
         (("bodies", 2, "name"), "lower", "bodies.lower: expected every name once"),
-        (("bodies", 1, "shape"), "ball", "bodies.lower.shape: expected one of slab, block, sharp, cube, not 'ball'"),
+        (
+            ("bodies", 1, "shape"),
+            "ball",
+            "bodies.lower.shape: expected one of slab, block, sharp, cube, not 'ball'",
+        ),
         (("bodies", 1, "material"), "air", "bodies.lower.material: expected one of stone, not 'air'"),
         (
             ("bodies", 1, "orientation"),
@@ -82,8 +96,16 @@ def _set(mapping, path, value):
             [0.0, 0.0, 2.395],
             "bodies.upper.position: overlaps lower by 5 mm; expected at most 1 mm",
         ),
-        (("shapes", "block", "box"), [0.8, -2.4, 1.6], "shapes.block.box.1: input should be greater than 0, not -2.4"),
-        (("shapes", "block", "chamfer"), 0.4, "shapes.block: expected a chamfer below half the smallest edge length"),
+        (
+            ("shapes", "block", "box"),
+            [0.8, -2.4, 1.6],
+            "shapes.block.box.1: input should be greater than 0, not -2.4",
+        ),
+        (
+            ("shapes", "block", "chamfer"),
+            0.4,
+            "shapes.block: expected a chamfer below half the smallest edge length",
+        ),
         (
             ("shapes", "block", "mesh"),
             "a.stl",
@@ -190,7 +212,12 @@ def test_dotted_parameters_reach_their_places(path):
     plain = load_structure(path)
     structure = load_structure(
         path,
-        {"materials.stone.density": 1200.0, "bodies.upper.density": 4800.0, "restitution": 0.7, "gravity": [0, 0, -1]},
+        {
+            "materials.stone.density": 1200.0,
+            "bodies.upper.density": 4800.0,
+            "restitution": 0.7,
+            "gravity": [0, 0, -1],
+        },
     )
     np.testing.assert_allclose(structure.mass / plain.mass, [0.5, 0.5, 2.0], rtol=1e-12)
     np.testing.assert_allclose(structure.inertia[2], 2.0 * plain.inertia[2], rtol=1e-12)
@@ -204,7 +231,10 @@ def test_dotted_parameters_reach_their_places(path):
         ("materials.stone.densty", "materials.stone.densty: unknown key"),
         ("materials.steel.density", "materials.steel.density: expected a parameter of this structure"),
         ("bodies.nobody.density", "bodies.nobody.density: expected a parameter of this structure"),
-        ("friction.stone.air", "friction.stone.air: expected friction.MATERIAL.MATERIAL of a pair in the file"),
+        (
+            "friction.stone.air",
+            "friction.stone.air: expected friction.MATERIAL.MATERIAL of a pair in the file",
+        ),
         ("friction.stone", "friction.stone: expected friction.MATERIAL.MATERIAL"),
         ("bodies.slab.position.0", "bodies.slab.position.0: expected a parameter of this structure"),
         ("bodies.slab.position.0.x", "bodies.slab.position.0.x: expected a parameter of this structure"),
@@ -217,5 +247,7 @@ def test_a_parameter_that_the_structure_lacks_is_an_error(path, key, message):
 
 
 def test_an_unknown_name_lists_the_shipped_ones():
-    with pytest.raises(InputError, match="configuration-9: expected a structure file or one of configuration-1, "):
+    with pytest.raises(
+        InputError, match="configuration-9: expected a structure file or one of configuration-1, "
+    ):
         load_structure("configuration-9")

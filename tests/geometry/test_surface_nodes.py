@@ -46,7 +46,9 @@ def test_areas_and_second_moments_of_every_flat_are_exact(spacing, inset):
         first, second = [other for other in range(3) if other != axis]
         width, depth = SIZE[first] - 2.0 * CHAMFER, SIZE[second] - 2.0 * CHAMFER
         for side in (-0.5, 0.5):
-            flat = (np.abs(points[:, axis] - side * SIZE[axis]) == 0.0) & (np.abs(points[:, first]) < SIZE[first] / 2)
+            flat = (np.abs(points[:, axis] - side * SIZE[axis]) == 0.0) & (
+                np.abs(points[:, first]) < SIZE[first] / 2
+            )
             flat &= np.abs(points[:, second]) < SIZE[second] / 2
             p, a = points[flat], areas[flat]
             assert a.sum() == pytest.approx(width * depth, rel=ROUNDING)

@@ -20,8 +20,6 @@ rule make_virtual_campaign:
     params:
         case=lambda wildcards: CASES[wildcards.case],
         linked=lookup(dpath="ensemble/linked", within=config, default={}),
-        source=source_digest(
-            *sources.run_sources("ls-dem"), "measurement/virtual_test.py"
-        ),
+        source=source_digest(*sources.VIRTUAL_CAMPAIGN),
     script:
         "../scripts/make_virtual_campaign.py"

@@ -67,6 +67,6 @@ rule climb_ladder:
         cases=[case for case in CASES.values()],
         ladder=lookup(dpath="ladder", within=config),
         time_step=lookup(dpath="models/ls-dem/time_step", within=config),
-        source=source_digest(*sources.run_sources("ls-dem"), "study/ladder.py"),
+        source=source_digest(*sources.LADDER),
     script:
         "../scripts/climb_ladder.py"

@@ -20,7 +20,6 @@ def _error(zeta, mass, area):
     return 2.0 * zeta * omega_dt + 2.0 * omega_dt**2
 
 
-
 def _rebound(zeta, pulling):
     """Rebound speed ratio of x'' + 2 zeta x' + x = 0, released at x = 0 (or where the force vanishes)."""
 
@@ -84,7 +83,13 @@ def test_two_free_bodies_exchange_momentum(make_structure, run_ls_dem):
     """Central impact of unlike masses in zero gravity: Newton's momentum and the same rebound ratio."""
     structure = make_structure(
         [
-            {"name": "a", "shape": "cube", "position": [0.0, 0.0, 2.0], "velocity": [0.0, 0.0, SPEED], "density": 1000.0},
+            {
+                "name": "a",
+                "shape": "cube",
+                "position": [0.0, 0.0, 2.0],
+                "velocity": [0.0, 0.0, SPEED],
+                "density": 1000.0,
+            },
             {"name": "b", "shape": "cube", "position": [0.0, 0.0, 3.00001]},
         ],
         gravity=[0.0, 0.0, 0.0],
@@ -92,7 +97,9 @@ def test_two_free_bodies_exchange_momentum(make_structure, run_ls_dem):
     run = run_ls_dem(structure, 0.01, time_step=STEP)
     momentum = (structure.mass[1:, None] * run.velocity[:, 1:]).sum(axis=1)
     # rounding: 1000 steps of 1e-16 of the momentum
-    np.testing.assert_allclose(momentum, np.tile(momentum[0], (len(momentum), 1)), atol=1e-13 * momentum[0, 2])
+    np.testing.assert_allclose(
+        momentum, np.tile(momentum[0], (len(momentum), 1)), atol=1e-13 * momentum[0, 2]
+    )
     parting = run.velocity[-1, 2, 2] - run.velocity[-1, 1, 2]
     zeta = damping_ratio(0.5)
     mass = 1.0 / (1.0 / structure.mass[1] + 1.0 / structure.mass[2])
@@ -117,9 +124,13 @@ def test_an_oblique_spinning_impact_conserves_both_momenta(make_structure, run_l
     spin = []
     for body in (1, 2):
         R = Rotation.from_quat(q[:, body - 1], scalar_first=True).as_matrix()
-        spin.append(np.einsum("tij,jk,tlk,tl->ti", R, structure.inertia[body], R, run.angular_velocity[:, body]))
+        spin.append(
+            np.einsum("tij,jk,tlk,tl->ti", R, structure.inertia[body], R, run.angular_velocity[:, body])
+        )
     linear = (structure.mass[1:, None] * run.velocity[:, 1:]).sum(axis=1)
-    angular = sum(spin) + np.cross(run.position[:, 1:], structure.mass[1:, None] * run.velocity[:, 1:]).sum(axis=1)
+    angular = sum(spin) + np.cross(run.position[:, 1:], structure.mass[1:, None] * run.velocity[:, 1:]).sum(
+        axis=1
+    )
     assert np.abs(run.velocity[-1, 1] - run.velocity[0, 1]).max() > 0.1
     scale = structure.mass[1] * 1.0
     np.testing.assert_allclose(linear, np.tile(linear[0], (len(linear), 1)), atol=1e-12 * scale)

@@ -11,7 +11,12 @@ BODY = {"name": "b", "shape": "squat", "position": [0.0, 0.0, 0.25]}
 WIDE = {"slab": {"box": [8.0, 3.0, 0.2]}}
 # Elastic part of a slip: the shear springs' stretch at the friction limit, mu m g / (k_s A), metres
 STRETCH = MU * 2.0 * 1.0 * 0.5 * 2400.0 * G / (9.0e9 * 2.0)
-STEP = 5e-5
+STEP = 5e-5  # s
+# Newmark's block is rigid: a hundredfold shear stiffness brings the springs ten times nearer to it in speed
+STIFF = {"shear_stiffness": 9.0e11, "time_step": 1e-5}
+# Sliding sets in with the speed that the springs gave meanwhile, at most sqrt(2 a x) for the base's
+# acceleration a = 0.8 g and the stretch x
+ONSET = np.sqrt(2.0 * 0.8 * G * STRETCH / 100.0)
 
 
 def _incline(make_structure, slope, **keys):
@@ -34,9 +39,9 @@ def test_half_a_percent_above_it_slides_as_coulomb_says(make_structure, run_ls_d
     """Acceleration g (sin - mu cos), 0.022 m/s2 here."""
     structure, acceleration = _incline(make_structure, 1.005 * MU)
     run = run_ls_dem(structure, 1.0, rate=20)
-    # the start stretches the springs by STRETCH while the block is set going: as much speed as falls
-    # within their period, g sin * pi sqrt(STRETCH / g mu)
-    slack = G * 0.5 * np.pi * np.sqrt(STRETCH / (MU * G)) * 0.02
+    # no equilibrium, so the start is as given: until the springs hold back, the block gains at most
+    # the speed of a mass let go on them, sqrt(mu g STRETCH)
+    slack = np.sqrt(MU * G * STRETCH)
     late = run.time >= 0.2
     slope = np.polyfit(run.time[late], run.velocity[late, 1, 0], 1)[0]
     assert slope == pytest.approx(acceleration, rel=1e-3)
@@ -46,11 +51,14 @@ def test_half_a_percent_above_it_slides_as_coulomb_says(make_structure, run_ls_d
 def test_a_sliding_block_stops_after_v2_over_2_mu_g(make_structure, run_ls_dem):
     """Energy: m v^2 / 2 = mu m g s. All of it is friction heat but what the springs hold."""
     speed = 1.0
-    structure = make_structure([{**BODY, "velocity": [speed, 0, 0]}], friction=MU, shapes={**FLAT_CUBE, **WIDE})
+    structure = make_structure(
+        [{**BODY, "velocity": [speed, 0, 0]}], friction=MU, shapes={**FLAT_CUBE, **WIDE}
+    )
     run = run_ls_dem(structure, 0.4)
     distance = run.position[-1, 1, 0] - run.position[0, 1, 0]
-    # friction builds up over the stretch, and the block swings back on its springs by no more than it
-    assert distance == pytest.approx(speed**2 / (2.0 * MU * G), abs=2.0 * STRETCH)
+    # friction builds up over the stretch, and the block swings back on its springs by no more than it;
+    # at 1 m/s the stretch takes less than a step, whose trapezium misses half of it: speed dt / 2
+    assert distance == pytest.approx(speed**2 / (2.0 * MU * G), abs=2.0 * STRETCH + speed * STEP / 2.0)
     kinetic = 0.5 * structure.mass[1] * speed**2
     # the rest is in the dashpots: friction's moment makes the block nod as it starts and stops
     assert run.energy[-1, 3] == pytest.approx(kinetic, rel=1e-3)
@@ -112,17 +120,17 @@ def _base(values, spacing):
 
 
 def test_newmarks_block_under_a_pulse(make_structure, run_ls_dem):
-    """A base accelerating at 0.8 g for 0.1 s, mu = 0.5, then at rest speed: slip by closed form."""
+    """A base at 0.8 g for 0.1 s and then at steady speed, mu = 0.5: the slip in closed form."""
     a, duration = 0.8 * G, 0.1
     time = np.array([0.0, 1e-6, duration, duration + 1e-6, 0.5])
     motion = ground_motion("pulse", time, {"x": np.array([0.0, a, a, 0.0, 0.0])}, "acceleration")
     structure = make_structure([BODY], friction=MU, shapes={**FLAT_CUBE, **WIDE})
-    run = run_ls_dem(structure, 0.4, motion=motion)
+    run = run_ls_dem(structure, 0.4, motion=motion, **STIFF)
     # the base gains a t, the block mu g t; the block catches up with mu g
     lag = a - MU * G
     expected = -(0.5 * lag * duration**2 + (lag * duration) ** 2 / (2.0 * MU * G))
-    # the block and its springs swing about the slip at each of the three changes of sliding
-    assert _slip(run)[-1] == pytest.approx(expected, abs=3.0 * STRETCH)
+    sliding = duration * a / (MU * G)
+    assert _slip(run)[-1] == pytest.approx(expected, abs=ONSET * sliding)
 
 
 def test_newmarks_block_under_a_harmonic_base(make_structure, run_ls_dem):
@@ -131,12 +139,12 @@ def test_newmarks_block_under_a_harmonic_base(make_structure, run_ls_dem):
     time = np.arange(0.0, 1.0 + spacing / 2, spacing)
     motion, acceleration = _base(0.8 * G * np.sin(2.0 * np.pi * 3.0 * time), spacing)
     structure = make_structure([BODY], friction=MU, shapes={**FLAT_CUBE, **WIDE})
-    run = run_ls_dem(structure, 1.0, motion=motion, rate=1000)
+    run = run_ls_dem(structure, 1.0, motion=motion, rate=1000, **STIFF)
     times, slips = _newmark(acceleration, MU * G, 1.0)
     expected = np.interp(run.time, times, slips)
-    assert np.ptp(expected) > 0.02
-    # each of some six changes between stick and slip misses by the springs' stretch
-    np.testing.assert_allclose(_slip(run), expected, atol=6.0 * STRETCH)
+    assert np.ptp(expected) > 0.01
+    # the base passes the limit gently, so ONSET is never reached: a tenth of it over each 0.1 s of sliding
+    np.testing.assert_allclose(_slip(run), expected, atol=0.1 * ONSET * 1.0)
 
 
 def test_two_horizontal_components_slide_along_their_resultant(make_structure, run_ls_dem):

@@ -62,9 +62,13 @@ def test_a_tilted_stack_starts_on_its_stretched_shear_springs(make_structure, ru
     angle = np.arctan(0.2)
     gravity = [G * np.sin(angle), 0.0, -G * np.cos(angle)]
     body = {"name": "b", "shape": "cube", "position": [0.0, 0.0, 0.5]}
-    structure = make_structure([body], friction=5.0, gravity=gravity, shapes={"slab": {"box": [1.0, 1.0, 0.2]}})
+    structure = make_structure(
+        [body], friction=5.0, gravity=gravity, shapes={"slab": {"box": [1.0, 1.0, 0.2]}}
+    )
     run = run_ls_dem(structure, 0.2)
-    np.testing.assert_allclose(run.joint_force[:, 0], np.tile(-structure.mass[1] * np.array(gravity), (41, 1)), atol=1e-4)
+    np.testing.assert_allclose(
+        run.joint_force[:, 0], np.tile(-structure.mass[1] * np.array(gravity), (41, 1)), atol=1e-4
+    )
     np.testing.assert_array_less(np.abs(run.position - run.position[0]), 1e-13)
     lean = 2.0 * run.orientation[0, 1, 2]
     assert lean == pytest.approx(structure.mass[1] * gravity[0] * 0.5 / (K_N / 12.0), rel=1e-4)
@@ -79,7 +83,13 @@ def test_a_flying_body_is_left_as_given_beside_a_stack_that_settles(make_structu
     structure = make_structure(
         [
             {"name": "stands", "shape": "block", "position": [0.0, 0.0, 0.8]},
-            {"name": "flies", "shape": "block", "position": [0.5, 0.0, 4.0], "velocity": [1, 2, 3], "orientation": q},
+            {
+                "name": "flies",
+                "shape": "block",
+                "position": [0.5, 0.0, 4.0],
+                "velocity": [1, 2, 3],
+                "orientation": q,
+            },
         ]
     )
     run = run_ls_dem(structure, 0.1)
@@ -96,9 +106,15 @@ def test_a_flying_body_is_left_as_given_beside_a_stack_that_settles(make_structu
 def test_a_block_tilted_on_its_edge_stays_tilted(make_structure, run_ls_dem):
     """design.md 9, Start."""
     angle = 0.05
-    position = [0.4 - 0.4 * np.cos(angle) + 0.8 * np.sin(angle), 0.0, 0.4 * np.sin(angle) + 0.8 * np.cos(angle)]
+    position = [
+        0.4 - 0.4 * np.cos(angle) + 0.8 * np.sin(angle),
+        0.0,
+        0.4 * np.sin(angle) + 0.8 * np.cos(angle),
+    ]
     orientation = [np.cos(angle / 2), 0.0, np.sin(angle / 2), 0.0]
-    structure = make_structure([{"name": "b", "shape": "sharp", "position": position, "orientation": orientation}])
+    structure = make_structure(
+        [{"name": "b", "shape": "sharp", "position": position, "orientation": orientation}]
+    )
     run = run_ls_dem(structure, 0.005)
     np.testing.assert_array_equal(run.position[0, 1], position)
     np.testing.assert_array_equal(run.orientation[0, 1], structure.orientation[1])

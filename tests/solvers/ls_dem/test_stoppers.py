@@ -70,9 +70,14 @@ def test_a_stopper_turns_with_the_driven_body(make_structure, run_ls_dem):
     motion = ground_motion("p", time, {"pitch_y": pitch}, "displacement")
     stops = [_stopper(axis, (x, 0.0, 0.25), gap=1e-3) for axis, x in (("+x", 0.5), ("-x", -0.5))]
     structure = make_structure(
-        [{"name": "b", "shape": "squat", "position": [0.0, 0.0, 0.25]}], friction=0.9, shapes=SQUAT, stoppers=stops
+        [{"name": "b", "shape": "squat", "position": [0.0, 0.0, 0.25]}],
+        friction=0.9,
+        shapes=SQUAT,
+        stoppers=stops,
     )
-    free = make_structure([{"name": "b", "shape": "squat", "position": [0.0, 0.0, 0.25]}], friction=0.9, shapes=SQUAT)
+    free = make_structure(
+        [{"name": "b", "shape": "squat", "position": [0.0, 0.0, 0.25]}], friction=0.9, shapes=SQUAT
+    )
     run = run_ls_dem(structure, 1.0, motion=motion)
     # the block's top moves by 0.6 m * 0.02 = 12 mm, twelve gaps
     assert np.ptp(run.position[:, 1, 0]) > 5e-3

@@ -98,6 +98,14 @@ def test_record_times_need_not_be_uniform(rocking_stack, shaking):
     assert np.isfinite(run.joint_force).all()
 
 
+def test_start_alone_can_be_asked_for():
+    structure = load_structure("configuration-1")
+    run = simulate_nscd(structure, None, NscdParameters(), np.array([0.0]))
+    np.testing.assert_array_equal(run.position[0], structure.position)
+    assert run.joint_force.shape == (1, 0, 3)
+    assert np.isfinite(run.energy).all()
+
+
 def test_too_few_iterations_are_told(shaking):
     run = simulate_nscd(
         load_structure("configuration-1"),

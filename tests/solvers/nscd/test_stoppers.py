@@ -20,6 +20,20 @@ def test_stopper_deflects_by_force_over_stiffness(scene, simulate):
     assert run.numerics["energy_residual"] < 1e-6
 
 
+def test_stopper_holds_the_body_it_names(scene, simulate):
+    # the solver handles bodies by height and place: here in another order than the file's
+    stop = {"body": "b", "position": [0.25, 0, 0], "axis": "+x", "gap": 0.0, "stiffness": 1.0e7}
+    bodies = [
+        {"name": "far", "shape": "cube", "position": [3, 0, 0.25]},
+        {"name": "b", "shape": "cube", "position": [0, 0, 0.25]},
+    ]
+    structure = scene(SHAPES, bodies, friction=0.0, stoppers=[stop], gravity=[0.5, 0.0, -G])
+    run = simulate(structure, 1.0)
+    assert run.position[-1, 1, 0] == pytest.approx(3.25, rel=1e-3)
+    # the stop rings about its static closure for a while
+    assert 0.0 < run.position[-1, 2, 0] < 2.0 * structure.mass[2] * 0.5 / 1.0e7
+
+
 @pytest.mark.parametrize(("axis", "sign"), [("+x", 1.0), ("-x", -1.0), ("-y", -1.0)])
 def test_stopper_turns_a_block_round(scene, simulate, axis, sign):
     along = "xyz".index(axis[1])
@@ -49,5 +63,6 @@ def test_stopper_moves_with_the_driven_body(scene, simulate, push):
     # seen from the floor the block falls onto the spring: k c^2 / 2 = m a (gap + c) at the deepest
     load = structure.mass[1] * 1.0
     closure = (load + np.sqrt(load**2 + 2.0 * 1.0e6 * load * 0.01)) / 1.0e6
-    assert behind.max() == pytest.approx(0.01 + closure, rel=5e-3)
+    # 1 %: the damping of the implicit spring, omega dt / 2 = 0.03 of critical
+    assert behind.max() == pytest.approx(0.01 + closure, rel=0.01)
     assert run.position[-1, 1, 0] > 0.45

@@ -1,0 +1,105 @@
+"""Every rule watches all the sources that its script runs: else an edit would rerun nothing."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+from blockshake import sources
+from blockshake.files import PACKAGE
+
+ROOT = PACKAGE.parents[1]
+WATCHED = {
+    "describe_motion": sources.MOTION,
+    "draw_samples": sources.DESIGN,
+    "calibrate_stiffness": sources.STIFFNESS,
+    "make_envelope": sources.ENVELOPE,
+    "compare_with_measurement": sources.COMPARISON,
+    "make_report": sources.REPORT,
+    "compile_kernels": sources.KERNELS,
+    "climb_ladder": sources.LADDER,
+    "make_virtual_campaign": sources.VIRTUAL_CAMPAIGN,
+}
+# What names things or writes logs and computes nothing; and the dispatcher that imports every solver, where a run's
+# own rule watches the one that runs.
+IGNORED = {
+    "__init__.py",
+    "log.py",
+    "sources.py",
+    "jit.py",
+    "quantities.py",
+    "study/simulation.py",
+    "study/batch.py",
+}
+
+
+def imported_modules(path, seen=None):
+    """Files of the package that a file imports, directly or not."""
+    seen = set() if seen is None else seen
+    for node in ast.walk(ast.parse(Path(path).read_text())):
+        if not isinstance(node, (ast.Import, ast.ImportFrom)):
+            continue
+        names = [node.module] if isinstance(node, ast.ImportFrom) else [alias.name for alias in node.names]
+        if isinstance(node, ast.ImportFrom):
+            names += [f"{node.module}.{alias.name}" for alias in node.names]
+        for name in names:
+            if not name or not name.startswith("blockshake"):
+                continue
+            module = PACKAGE.joinpath(*name.split(".")[1:])
+            for file in (module.with_suffix(".py"), module / "__init__.py"):
+                if file.is_file() and file not in seen:
+                    seen.add(file)
+                    imported_modules(file, seen)
+    return seen
+
+
+def watched(file, listed):
+    relative = file.relative_to(PACKAGE)
+    return (
+        relative.name in IGNORED
+        or str(relative) in IGNORED
+        or any(relative == Path(one) or Path(one) in relative.parents for one in listed)
+    )
+
+
+@pytest.mark.parametrize("script", sorted(WATCHED))
+def test_rule_watches_what_its_script_imports(script):
+    missed = [
+        str(file.relative_to(PACKAGE))
+        for file in imported_modules(ROOT / "workflow" / "scripts" / f"{script}.py")
+        if not watched(file, WATCHED[script])
+    ]
+    assert missed == []
+
+
+@pytest.mark.parametrize("model", ["ls-dem", "nscd-rigid"])
+def test_batch_watches_its_own_solver_and_not_the_other(model):
+    listed = sources.batch_sources(model)
+    own, other = (
+        ("solvers/ls_dem", "solvers/nscd") if model == "ls-dem" else ("solvers/nscd", "solvers/ls_dem")
+    )
+    assert own in listed
+    assert other not in listed
+    missed = [
+        str(file.relative_to(PACKAGE))
+        for file in imported_modules(ROOT / "workflow" / "scripts" / "simulate_batch.py")
+        if not watched(file, listed) and other not in str(file)
+    ]
+    assert missed == []
+
+
+def test_every_script_is_listed():
+    scripts = {path.stem for path in (ROOT / "workflow" / "scripts").glob("*.py")}
+    assert scripts == {*WATCHED, "simulate_batch"}
+
+
+def test_every_listed_source_exists():
+    for listed in (*WATCHED.values(), sources.batch_sources("ls-dem"), sources.batch_sources("nscd-rigid")):
+        for one in listed:
+            assert (PACKAGE / one).exists(), one
+
+
+def test_every_module_with_kernels_is_in_the_cache_digest():
+    for path in PACKAGE.rglob("*.py"):
+        if "from blockshake.jit import" in path.read_text() and path.name != "compile.py":
+            assert watched(path, sources.KERNELS), path
