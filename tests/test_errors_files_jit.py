@@ -58,7 +58,7 @@ def test_other_values_keep_their_type(text, value):
 
 @pytest.mark.parametrize("text", ["a: 1\nb: 2\na: 3\n", "outer:\n  a: 1\n  a: 1\n"])
 def test_a_key_stated_twice_is_an_error(text):
-    with pytest.raises(InputError, match="file.yaml: expected YAML; the key 'a' stands twice") as error:
+    with pytest.raises(InputError, match=r"file.yaml: expected YAML; the key 'a' stands twice") as error:
         parse_yaml(text, "file.yaml")
     assert "\n" not in str(error.value)
 
@@ -85,9 +85,14 @@ def test_an_unreadable_file_is_one_line(tmp_path, content, message):
 def test_replacing_puts_the_whole_new_file_or_keeps_the_old(tmp_path):
     path = tmp_path / "folder" / "a.txt"
     write_text(path, "old")
-    with pytest.raises(RuntimeError, match="killed"), replacing(path) as temporary:
-        temporary.write_text("half of the n")
-        raise RuntimeError("killed")
+
+    def write_half():
+        with replacing(path) as temporary:
+            temporary.write_text("half of the n")
+            raise RuntimeError("killed")
+
+    with pytest.raises(RuntimeError, match="killed"):
+        write_half()
     assert path.read_text() == "old"
     assert [item.name for item in path.parent.iterdir()] == ["a.txt"]
     write_text(path, "new")

@@ -9,6 +9,7 @@ import pytest
 from blockshake.dynamics.motion import ground_motion
 from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
+from blockshake.solvers.ls_dem.loop import _has_diverged
 
 G = 9.81
 
@@ -51,6 +52,7 @@ import hashlib
 import numpy as np
 from blockshake.dynamics.motion import ground_motion
 from blockshake.geometry.structure import load_structure
+from blockshake.solvers.ls_dem.loop import _has_diverged
 from blockshake.solvers.ls_dem.driver import simulate_ls_dem
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 time = np.arange(0.0, 0.6001, 0.005)
@@ -86,8 +88,17 @@ def test_records_fall_between_steps(make_structure, run_ls_dem):
     np.testing.assert_allclose(run.velocity[:, 1, 2], -G * run.time, atol=1e-12)
 
 
-def test_meshes_and_insets_wider_than_a_flat_are_refused(make_structure, run_ls_dem, tmp_path):
+def test_an_inset_wider_than_a_flat_is_refused(make_structure, run_ls_dem):
     body = {"name": "b", "shape": "thin", "position": [0.0, 0.0, 0.5]}
     structure = make_structure([body], shapes={"thin": {"box": [0.009, 1.0, 1.0]}})
-    with pytest.raises(InputError, match="test.yaml: shapes.thin: expected flats wider than"):
+    with pytest.raises(InputError, match=r"test.yaml: shapes.thin: expected flats wider than"):
         run_ls_dem(structure, 0.01)
+
+
+@pytest.mark.parametrize("body", [0, 1, 2])
+@pytest.mark.parametrize("value", [np.nan, np.inf, -1.001e3])
+def test_one_wild_velocity_among_good_ones_is_a_divergence(body, value):
+    velocity = np.ones((3, 3))
+    assert not _has_diverged(velocity)
+    velocity[body, 1] = value
+    assert _has_diverged(velocity)

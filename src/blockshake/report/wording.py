@@ -1,0 +1,75 @@
+"""Words and numbers as the report prints them: names of models and parameters, units, digits."""
+
+import numpy as np
+
+CUBED = "\N{SUPERSCRIPT THREE}"
+SQUARED = "\N{SUPERSCRIPT TWO}"
+MISSING = "none"  # where a file holds no number
+SHOWN_QUANTILES = (0.05, 0.5, 0.95)
+_MODELS = {"ls-dem": "LS-DEM", "nscd-rigid": "NSCD rigid"}
+_PROPERTIES = {
+    "density": "density",
+    "youngs_modulus": "Young's modulus",
+    "viscous_modulus": "viscous modulus",
+    "poisson_ratio": "Poisson's ratio",
+}
+_STIFFNESS = {
+    "ls_dem.normal_stiffness": "normal stiffness k_n",
+    "ls_dem.shear_stiffness": "shear stiffness k_s",
+}
+# SI unit of a parameter: how much of it makes one of the printed unit
+_PRINTED = {
+    "1": (1.0, "1"),
+    "kg/m3": (1.0, f"kg/m{CUBED}"),
+    "Pa": (1e9, "GPa"),
+    "Pa s": (1e6, "MPa s"),
+    "N/m3": (1e9, f"GN/m{CUBED}"),
+}
+
+
+def model_label(model):
+    """Name of a solver in print."""
+    return _MODELS.get(model, model)
+
+
+def parameter_label(name):
+    """A parameter's dotted name in words, such as ``friction, concrete on steel``."""
+    if name in _STIFFNESS:
+        return _STIFFNESS[name]
+    kind, *rest = name.split(".")
+    if kind == "friction":
+        return f"friction, {rest[0]} on {rest[1]}"
+    return f"{_PROPERTIES.get(rest[1], rest[1])} of {rest[0]}"
+
+
+def printed_unit(unit):
+    """Divisor from SI and name of the unit that a parameter is printed in."""
+    return _PRINTED.get(unit, (1.0, unit))
+
+
+def number(value, digits=3):
+    """A number with so many significant digits, or `MISSING`."""
+    value = float(value)
+    if not np.isfinite(value):
+        return MISSING
+    if value == 0.0:
+        return "0"
+    magnitude = int(np.floor(np.log10(abs(value))))
+    if -3 <= magnitude < 6:
+        return f"{value:.{max(digits - 1 - magnitude, 0)}f}"
+    return f"{value:.{digits - 1}e}"
+
+
+def millimetres(value):
+    """A length [m] in mm to 0.1 mm."""
+    return f"{1e3 * float(value):.1f}" if np.isfinite(value) else MISSING
+
+
+def percent(value):
+    """A share in percent to 0.1."""
+    return f"{100.0 * float(value):.1f}" if np.isfinite(value) else MISSING
+
+
+def quantile_range(values, show):
+    """Values along ``quantile`` at 5, 50 and 95 %, each printed by ``show``, parted by slashes."""
+    return " / ".join(show(values.sel(quantile=one)) for one in SHOWN_QUANTILES)

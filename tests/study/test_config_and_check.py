@@ -1,0 +1,103 @@
+"""What a user's files may hold, and the one line that says what is wrong."""
+
+import copy
+
+import pytest
+
+from blockshake.errors import InputError
+from blockshake.files import PACKAGE, load_yaml
+from blockshake.study.check import check_file
+from blockshake.study.config import check_config, load_config
+from blockshake.study.distributions import TABLE_2
+
+ROOT = PACKAGE.parents[1]
+
+
+@pytest.fixture
+def mapping(monkeypatch):
+    monkeypatch.chdir(ROOT)  # a configuration names files from the project's root
+    return copy.deepcopy(load_yaml("config/study.yaml"))
+
+
+@pytest.mark.parametrize("study", ["study", "quick", "paper"])
+def test_shipped_configurations_are_good(study, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    config = load_config(f"config/{study}.yaml")
+    assert config.name == study
+    assert config.ensemble.distributions == TABLE_2
+
+
+def test_paper_is_the_paper(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    config = load_config("config/paper.yaml")
+    assert config.models["ls-dem"].time_step == 1e-5
+    assert config.models["nscd-rigid"].time_step == 1e-3
+    assert all(config.samples(model, case.name) == 50 for model in config.models for case in config.cases)
+
+
+def test_fewer_samples_of_one_model(mapping):
+    config = check_config(mapping, "study.yaml")
+    assert config.samples("nscd-rigid", "configuration-1") == 50
+    assert 10 <= config.samples("nscd-rigid", "configuration-4") <= 50
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "line"),
+    [
+        (("colour",), "red", "study.yaml: colour: unknown key"),
+        (
+            ("ensemble", "size"),
+            9,
+            "study.yaml: ensemble.size: input should be greater than or equal to 10, not 9",
+        ),
+        (("cases", 0, "duration"), -1.0, "study.yaml: cases.0.duration"),
+        (
+            ("cases", 0, "structure"),
+            "no-such",
+            "no-such: expected a structure file or one of configuration-1",
+        ),
+        (("cases", 0, "motion"), "no-such", "no-such: expected a motion file or one of alkion"),
+        (("cases", 1, "structure"), "configuration-1", "study.yaml: cases.0: expected every structure once"),
+        (
+            ("cases", 3, "samples"),
+            {"nscd-rigid": 5},
+            "study.yaml: cases.3.samples.nscd-rigid: expected 10 to 50, not 5",
+        ),
+        (
+            ("cases", 0, "measured", "test"),
+            "t9",
+            "study.yaml: cases.0.measured.test: expected one of virtual",
+        ),
+        (("cases", 0, "measured", "campaign"), "nowhere", "nowhere/campaign.yaml: expected a readable file"),
+        (("models", "nscd-elastic"), {"time_step": 1e-3}, "study.yaml: models.nscd-elastic"),
+        (
+            ("ensemble", "distributions", "friction.concrete.concrete", "cov"),
+            0.0,
+            "friction.concrete.concrete",
+        ),
+    ],
+)
+def test_what_is_wrong_is_named(mapping, path, value, line):
+    place = mapping
+    for key in path[:-1]:
+        place = place[key]
+    place[path[-1]] = value
+    with pytest.raises(InputError) as error:
+        check_config(mapping, "study.yaml")
+    assert line in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_check_says_what_a_good_file_is(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    assert "3 blocks of 22091 kg" in check_file("configuration-1")
+    assert "9 blocks" in check_file("config/structures/configuration-3.yaml")
+    assert "a motion of 25 s, given as acceleration" in check_file("alkion")
+    assert "a study of 4 cases by ls-dem and nscd-rigid, 50 samples" in check_file("config/study.yaml")
+
+
+@pytest.mark.parametrize("text", ["a: 1\n", "- 1\n", "a: [\n"])
+def test_check_refuses_other_yaml(tmp_path, text):
+    (tmp_path / "x.yaml").write_text(text)
+    with pytest.raises(InputError, match=r"x\.yaml"):
+        check_file(str(tmp_path / "x.yaml"))

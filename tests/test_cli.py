@@ -1,0 +1,98 @@
+"""The command line of the contract: what it writes, says and returns."""
+
+import json
+
+import pandas as pd
+import pytest
+import xarray as xr
+
+import blockshake
+from blockshake.cli import main
+
+
+def test_simulate_writes_a_run_file(tmp_path, capsys):
+    output = tmp_path / "run.nc"
+    code = main(
+        ["simulate", "--structure", "configuration-1", "--motion", "alkion", "--scale", "0.5", "--duration", "0.1",
+         "--model", "nscd-rigid", "--set", "friction.foundation.concrete=0.6", "--set", "nscd.tolerance=1e-5",
+         "--output-rate", "100", "--output", str(output)]
+    )  # fmt: skip
+    assert code == 0
+    run = xr.load_dataset(output)
+    assert run.sizes["time"] == 11
+    acted = json.loads(run.attrs["parameters"])
+    assert acted["friction.concrete.foundation"] == 0.6
+    assert acted["nscd.tolerance"] == 1e-5
+    assert run.attrs["motion_scale"] == 0.5
+    assert run.attrs["motion_synthetic"] == 1
+    assert capsys.readouterr().err == ""
+
+
+def test_sample_and_its_table(tmp_path):
+    output = tmp_path / "design.csv"
+    assert main(["sample", "--size", "12", "--seed", "3", "--output", str(output)]) == 0
+    design = pd.read_csv(output)
+    assert design.shape == (12, 9)
+    assert design.columns[0] == "friction.concrete.concrete"
+
+
+def test_convert_motion_round_trip(tmp_path):
+    assert main(["convert-motion", "basso-tirreno", "--output", str(tmp_path / "m.csv")]) == 0
+    assert (tmp_path / "m.csv").read_text().splitlines()[0].startswith("time_s,acceleration_x")
+    assert main(["check", str(tmp_path / "m.csv")]) == 0
+
+
+def test_numerical_failure_keeps_what_was_computed(tmp_path, capsys):
+    output = tmp_path / "run.nc"
+    # ten times the stable step of the stiffest contact
+    code = main(
+        ["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "ls-dem", "--duration", "0.5",
+         "--time-step", "5e-3", "--output", str(output)]
+    )  # fmt: skip
+    assert code == 3
+    assert xr.load_dataset(output).attrs["status"] == "diverged"
+    assert "diverged" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["simulate"], "the following arguments are required"),
+        (["jump"], "jump"),
+        (["check", "nowhere.yaml"], "nowhere.yaml: expected a readable file"),
+        (["sample", "--size", "5", "--output", "x.csv"], "10"),
+        (["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "ls-dem", "--set", "restitution",
+          "--output", "x.nc"], "--set: restitution: expected KEY=VALUE"),
+        (["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "ls-dem", "--set",
+          "friction.wood.wood=1", "--output", "x.nc"], "friction.wood.wood"),
+        (["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "ls-dem", "--duration", "-1",
+          "--output", "x.nc"], "--duration: expected a positive number"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_one_line_and_exit_2(arguments, line, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 2
+    said = capsys.readouterr().err.strip().splitlines()
+    assert len(said) == 1
+    assert line in said[0]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_parameters_lists_units_and_sources(capsys):
+    assert main(["parameters"]) == 0
+    table = capsys.readouterr().out
+    for word in (
+        "friction.concrete.concrete",
+        "kg/m3",
+        "ls_dem.normal_stiffness",
+        "nscd.tolerance",
+        "Table 2",
+    ):
+        assert word in table
+
+
+def test_functions_of_the_package():
+    for name in ("load_structure", "load_motion", "simulate", "draw_samples", "calibrate_stiffness"):
+        assert callable(getattr(blockshake, name))
+    with pytest.raises(AttributeError):
+        blockshake.no_such_name  # noqa: B018

@@ -1,0 +1,205 @@
+"""The workflow as a user meets it: small studies in a copy of the checkout, run by Snakemake itself."""
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import yaml
+
+from blockshake.files import PACKAGE, load_yaml
+
+ROOT = PACKAGE.parents[1]
+COPIED = ("Snakefile", "config", "data", "profiles", "src", "workflow")
+LIMIT = 300  # s, for one call of Snakemake; a small study takes a tenth of it
+
+
+class Checkout:
+    """A copy of the project with a small study of configuration 1."""
+
+    def __init__(self, folder, **changes):
+        self.folder = folder
+        for name in COPIED:
+            source = ROOT / name
+            if source.is_dir():
+                shutil.copytree(
+                    source, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info")
+                )
+            else:
+                shutil.copy(source, folder / name)
+        config = load_yaml(ROOT / "config" / "quick.yaml")
+        config["cases"] = config["cases"][:1]
+        config["cases"][0]["duration"] = 0.05
+        config["name"] = "small"
+        self.write_config(config | changes)
+
+    def write_config(self, config):
+        self.config = config
+        (self.folder / "config" / "small.yaml").write_text(yaml.safe_dump(config, sort_keys=False))
+
+    def command(self, *arguments):
+        return [
+            Path(sys.executable).with_name("snakemake"), "--cores", "2", *arguments, "--configfile", "config/small.yaml",
+        ]  # fmt: skip
+
+    def snakemake(self, *arguments):
+        return subprocess.run(
+            self.command(*arguments),
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            timeout=LIMIT,
+            check=False,
+        )
+
+    def jobs(self, *arguments):
+        """Rules that a dry run would run, with their number."""
+        answer = self.snakemake("-n", *arguments)
+        assert answer.returncode == 0, answer.stderr
+        return {
+            name: int(count)
+            for name, count in re.findall(r"^(\w[\w-]*) +(\d+)$", answer.stdout, flags=re.MULTILINE)
+        }
+
+    def append(self, source, text):
+        path = self.folder / "src" / "blockshake" / source
+        path.write_text(path.read_text() + text)
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    checkout = Checkout(tmp_path_factory.mktemp("checkout"))
+    answer = checkout.snakemake()
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+    return checkout
+
+
+def test_study_ends_with_its_reports(finished):
+    assert (finished.folder / "reports" / "small.html").stat().st_size > 0
+    assert (finished.folder / "reports" / "small.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_second_run_does_nothing(finished):
+    assert finished.jobs() == {}
+
+
+def test_every_simulating_rule_leaves_log_and_benchmark(finished):
+    for model in ("ls-dem", "nscd-rigid"):
+        batch = f"small/simulate_batch/{model}/configuration-1/000-004"
+        assert "numba" in (finished.folder / "logs" / f"{batch}.log").read_text()
+        assert "cpu_time" in (finished.folder / "benchmarks" / f"{batch}.jsonl").read_text()
+
+
+@pytest.mark.parametrize(
+    ("source", "simulated"),
+    [("solvers/nscd/driver.py", "nscd-rigid"), ("solvers/ls_dem/driver.py", "ls-dem")],
+)
+def test_edit_of_a_solver_reruns_that_solver_only(finished, source, simulated):
+    path = finished.folder / "src" / "blockshake" / source
+    before = path.read_text()
+    try:
+        finished.append(source, "\n\n# a comment changes nothing\n")
+        assert finished.jobs() == {}
+        finished.append(source, "\nANSWER = 42\n")
+        answer = finished.snakemake("-n", "--quiet", "none")
+        models = set(re.findall(r"results/small/runs/([\w-]+)/", answer.stdout))
+        rerun = set(re.findall(r"output: results/small/runs/([\w-]+)/", answer.stdout))
+        assert rerun == {simulated}, models
+    finally:
+        path.write_text(before)
+
+
+def test_edit_of_the_report_simulates_nothing(finished):
+    path = finished.folder / "src" / "blockshake" / "report" / "report.py"
+    before = path.read_text()
+    try:
+        finished.append("report/report.py", "\nANSWER = 42\n")
+        assert set(finished.jobs()) == {"make_report", "all", "total"}
+    finally:
+        path.write_text(before)
+
+
+def test_single_sample_is_a_batch_of_one(finished):
+    target = "results/small/runs/nscd-rigid/configuration-1/003-003.nc"
+    answer = finished.snakemake(target)
+    assert answer.returncode == 0, answer.stderr
+    assert "sample 3, kept" in answer.stdout
+    assert (finished.folder / target).exists()
+
+
+def test_provenance_report_needs_no_network(finished):
+    answer = finished.snakemake("--report", "provenance.zip")
+    assert answer.returncode == 0, answer.stderr
+    assert (finished.folder / "provenance.zip").exists()
+
+
+def test_killed_study_loses_no_finished_sample(tmp_path):
+    checkout = Checkout(tmp_path, samples_per_job=10)
+    config = checkout.config
+    config["cases"][0]["duration"] = 1.0
+    checkout.write_config(config)
+    running = subprocess.Popen(
+        checkout.command("configuration-1"), cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )  # fmt: skip
+    store = tmp_path / "results" / "store"
+    deadline = time.monotonic() + LIMIT
+    while len(list(store.glob("[!.]*.nc"))) < 3:
+        assert time.monotonic() < deadline
+        assert running.poll() is None
+        time.sleep(0.05)
+    os.killpg(running.pid, signal.SIGKILL)
+    running.wait()
+    finished = {path.name: path.stat().st_mtime_ns for path in store.glob("[!.]*.nc")}
+    assert len(finished) < 20
+    assert checkout.snakemake("--unlock").returncode == 0
+    answer = checkout.snakemake("configuration-1")
+    assert answer.returncode == 0, answer.stderr
+    assert answer.stdout.count(", kept:") == len(finished)
+    assert answer.stdout.count(", simulated:") == 20 - len(finished)
+    assert {name: (store / name).stat().st_mtime_ns for name in finished} == finished
+
+
+@pytest.mark.parametrize(
+    ("change", "line"),
+    [
+        ({"frequency": 1.0}, "frequency: unknown key"),
+        (
+            {"ensemble": {"size": 9, "seed": 1}},
+            "ensemble.size: input should be greater than or equal to 10, not 9",
+        ),
+        ({"models": {"ls-dem": {"time_step": -1.0}}}, "models.ls-dem.time_step"),
+    ],
+)
+def test_bad_configuration_ends_in_one_line_and_exit_2(tmp_path, change, line):
+    answer = Checkout(tmp_path, **change).snakemake()
+    assert answer.returncode == 2
+    said = [text for text in answer.stderr.splitlines() if text.startswith("blockshake:")]
+    assert len(said) == 1
+    assert "config/small.yaml" in said[0]
+    assert line in said[0]
+    assert "Traceback" not in answer.stderr
+    assert not (tmp_path / "results").exists()
+
+
+@pytest.mark.parametrize("study", ["study", "quick", "paper"])
+def test_shipped_studies_plan_without_error(study):
+    answer = subprocess.run(
+        [Path(sys.executable).with_name("snakemake"), "-n", "--cores", "1", "--forceall", "--configfile", f"config/{study}.yaml"],
+        cwd=ROOT, capture_output=True, text=True, timeout=LIMIT, check=False,
+    )  # fmt: skip
+    assert answer.returncode == 0, answer.stderr
+    assert "simulate_batch" in answer.stdout
+
+
+def test_workflow_is_free_of_lint():
+    answer = subprocess.run(
+        [Path(sys.executable).with_name("snakemake"), "--lint"],
+        cwd=ROOT, capture_output=True, text=True, timeout=LIMIT, check=False,
+    )  # fmt: skip
+    assert answer.returncode == 0, answer.stdout + answer.stderr
