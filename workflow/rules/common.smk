@@ -75,8 +75,11 @@ if workflow.exec_mode == workflow.exec_mode.DEFAULT:
 STUDY = config["name"]
 MODELS = list(config["models"])
 CASES = {Path(case["structure"]).stem: case for case in config["cases"]}
-MOTIONS = {Path(case["motion"]).stem: case["motion"] for case in CASES.values()}
 LADDER_MOTIONS = config["ladder"]["motions"]
+MOTIONS = {
+    Path(motion).stem: motion
+    for motion in [*(case["motion"] for case in CASES.values()), *LADDER_MOTIONS]
+}
 
 
 wildcard_constraints:

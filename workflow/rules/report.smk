@@ -1,6 +1,16 @@
 rule make_report:
     """The study as one self-contained page and as a PDF, from the same content."""
     input:
+        structures=[
+            definition("structures", case["structure"]) for case in CASES.values()
+        ],
+        campaigns=[
+            f"{case['measured']['campaign']}/campaign.yaml" for case in CASES.values()
+        ],
+        templates=expand(
+            "src/blockshake/report/templates/{name}",
+            name=["report.html.j2", "report.typ"],
+        ),
         motions=expand(
             "results/{study}/motions/{motion}.nc", study=STUDY, motion=MOTIONS
         ),
@@ -35,6 +45,7 @@ rule make_report:
         "../envs/blockshake.yaml"
     params:
         study=config,
+        results="results/{study}",
         benchmarks="benchmarks/{study}",
         source=source_digest(*sources.REPORT),
     script:

@@ -74,9 +74,7 @@ def plot_spectra(motions):
         axes.set_xticks([], minor=True)
         axes.grid(True, which="both")
         axes.tick_params(which="minor", color=DARK_GREY)
-        entries |= {
-            label: handle for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
-        }
+        entries |= {label: handle for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
     panels[0].set_ylabel(f"pseudo-acceleration [m/s{SQUARED}]")
     figure.legend(entries.values(), entries.keys(), loc="outside upper center", ncols=len(entries))
     return figure

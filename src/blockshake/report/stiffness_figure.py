@@ -31,7 +31,9 @@ def plot_waves(waves):
             one = test.sel(block=block)
             history, arrival = 1e6 * one["displacement"], float(one["arrival"])
             axes.plot(1e3 * one["time"], history, color=color, label=str(block))
-            axes.plot(1e3 * arrival, np.interp(arrival, one["time"], history), "o", color=color, markersize=3.5)
+            axes.plot(
+                1e3 * arrival, np.interp(arrival, one["time"], history), "o", color=color, markersize=3.5
+            )
         axes.set(title=_STEP[str(direction)], xlabel="time [ms]", xlim=(0.0, 1e3 * float(test["time"][-1])))
     panels[0].set_ylabel("displacement [\N{MICRO SIGN}m]")
     handles, labels = panels[0].get_legend_handles_labels()

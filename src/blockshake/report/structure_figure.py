@@ -175,5 +175,10 @@ def _arrow(axes, start, end):
         "",
         xy=end,
         xytext=start,
-        arrowprops={"arrowstyle": "|-|,widthA=0.15,widthB=0.15", "linewidth": 0.5, "shrinkA": 0, "shrinkB": 0},
+        arrowprops={
+            "arrowstyle": "|-|,widthA=0.15,widthB=0.15",
+            "linewidth": 0.5,
+            "shrinkA": 0,
+            "shrinkB": 0,
+        },
     )

@@ -55,7 +55,9 @@ def test_dissipated_terms_are_positive_and_grow(restitution, rocking):
         # a node that lets go while it swings back counts a step's elastic unloading the other way
         assert np.diff(e[:, term]).min() >= -1e-6 * max(e[-1, FRICTION:INPUT].sum(), 1.0)
     assert e[-1, FRICTION] > 0.0
-    assert (e[-1, CONTACT] > 0.0) == (restitution == 0.5) or e[-1, CONTACT] < 1e-3 * e[-1, FRICTION]
+    # without a dashpot the contact term is what shear springs held along a normal that turned: little
+    share = e[-1, CONTACT] / e[-1, FRICTION]
+    assert share > 0.1 if restitution == 0.5 else share < 0.02
     assert (e[:, VISCOUS] == 0.0).all()
     assert (e[:, ELASTIC] >= 0.0).all()
 

@@ -1,0 +1,56 @@
+"""Which markers of a structure are drawn and tabled, and in which order."""
+
+import numpy as np
+
+
+def face_markers(structure):
+    """One marker a block, from the top block down.
+
+    Parameters
+    ----------
+    structure : Structure
+
+    Returns
+    -------
+    dict of str to str
+        Body to marker: the one named ``BODY-face``; where no body has one, the first of each
+        free body that has any.
+    """
+    free = {body.name for body in structure.file.bodies if not body.driven}
+    chosen = {}
+    for marker in structure.file.markers:
+        if marker.body in free and marker.name.endswith("-face"):
+            chosen.setdefault(marker.body, marker.name)
+    if not chosen:
+        for marker in structure.file.markers:
+            if marker.body in free:
+                chosen.setdefault(marker.body, marker.name)
+    height = dict(zip(structure.body_names, structure.position[:, 2], strict=True))
+    return dict(sorted(chosen.items(), key=lambda item: -round(height[item[0]], 3)))
+
+
+def main_bodies(structure, bodies, most=4):
+    """Bodies for a figure of few rows: all, or of each stack every second one from its top.
+
+    Parameters
+    ----------
+    structure : Structure
+    bodies : iterable of str
+        From the top down.
+    most : int
+        Rows up to which all are shown.
+
+    Returns
+    -------
+    list of str
+        From the top down, stack by stack.
+    """
+    bodies = list(bodies)
+    if len(bodies) <= most:
+        return bodies
+    places = np.round(structure.position, 2)
+    stacks = {}
+    for body in bodies:
+        index = structure.body_names.index(body)
+        stacks.setdefault(tuple(places[index, :2]), []).append(body)
+    return [body for stack in stacks.values() for body in stack[::2]]

@@ -1,0 +1,51 @@
+import numpy as np
+import pytest
+
+from blockshake.geometry.structure import load_structure
+from blockshake.solvers.ls_dem.contact import damping_ratio, normal_force
+from blockshake.solvers.ls_dem.driver import assemble_interfaces
+from blockshake.solvers.ls_dem.parameters import LsDemParameters
+
+PARAMETERS = LsDemParameters()
+
+
+@pytest.mark.parametrize(
+    ("phi", "closing", "force"),
+    [
+        (-1e-3, 0.0, 2000.0),  # k_n of 2e6 N/m
+        (-1e-3, -0.1, 2500.0),  # approaching: the dashpot of 5,000 N s/m adds
+        (-1e-3, 0.1, 1500.0),  # parting: it takes away
+        (-1e-3, 1.0, 0.0),  # and never pulls
+        (0.0, -0.1, 0.0),
+        (1e-3, -0.1, 0.0),
+    ],
+)
+def test_equation_2_node_by_node(phi, closing, force):
+    """Zhou et al. (2023), Eq. (2), with the normal out of the other body and no tension."""
+    assert normal_force(phi, closing, 2.0e6, 5.0e3) == pytest.approx(force, rel=1e-12)
+
+
+def test_like_on_like_has_the_stiffness_given_and_unlike_ones_act_in_series():
+    """design.md 9; configuration 4: steel of 2.1e11 Pa on concrete of 3.45e10 Pa."""
+    structure = load_structure("configuration-4")
+    interfaces = assemble_interfaces(structure, PARAMETERS)
+    names = structure.body_names
+    wall, beam, top = names.index("wall-a-4"), names.index("beam-1"), names.index("top")
+    assert interfaces.k_n[wall, top] == pytest.approx(2.16e10, rel=1e-12)
+    assert interfaces.k_s[wall, top] == pytest.approx(9.0e9, rel=1e-12)
+    # half of each block's own compliance: 1/k = (1/k_concrete + 1/k_steel) / 2
+    ratio = 2.1e11 / 3.45e10
+    assert interfaces.k_n[wall, beam] == pytest.approx(2.0 / (1.0 + 1.0 / ratio) * 2.16e10, rel=1e-12)
+    shear_ratio = ratio * 1.2 / 1.3
+    assert interfaces.k_s[wall, beam] == pytest.approx(2.0 / (1.0 + 1.0 / shear_ratio) * 9.0e9, rel=1e-12)
+    for matrix in (interfaces.k_n, interfaces.k_s, interfaces.mu, interfaces.mass):
+        np.testing.assert_array_equal(matrix, matrix.T)
+
+
+def test_the_mass_of_a_contact_is_that_of_a_central_impact():
+    structure = load_structure("configuration-1")
+    interfaces = assemble_interfaces(structure, PARAMETERS)
+    block = structure.mass[1]
+    assert interfaces.mass[0, 1] == pytest.approx(block, rel=1e-12)  # the slab is driven: infinitely heavy
+    assert interfaces.mass[1, 2] == pytest.approx(block / 2.0, rel=1e-12)
+    assert interfaces.damping_ratio == damping_ratio(0.5)
