@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
+from blockshake.geometry.rotations import rotate_into
 from blockshake.jit import kernel
 
 
@@ -13,20 +13,20 @@ def spin_into(inverse_inertia, orientation, angular_momentum, out):
     ``inverse_inertia`` (3, 3) in body axes [1/(kg m2)]; ``orientation`` (4,);
     ``angular_momentum`` (3,) about the mass centre, world frame [kg m2/s].
     """
-    R, local = np.empty((3, 3)), np.zeros(3)
-    rotation_matrix_into(orientation, R)
+    w, x, y, z = orientation[0], orientation[1], orientation[2], orientation[3]
+    # rows of R^T: the body axes in the world frame
+    e0 = (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y))
+    e1 = (2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x))
+    e2 = (2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y))
+    L, J = angular_momentum, inverse_inertia
+    l0 = e0[0] * L[0] + e0[1] * L[1] + e0[2] * L[2]
+    l1 = e1[0] * L[0] + e1[1] * L[1] + e1[2] * L[2]
+    l2 = e2[0] * L[0] + e2[1] * L[1] + e2[2] * L[2]
+    s0 = J[0, 0] * l0 + J[0, 1] * l1 + J[0, 2] * l2
+    s1 = J[1, 0] * l0 + J[1, 1] * l1 + J[1, 2] * l2
+    s2 = J[2, 0] * l0 + J[2, 1] * l1 + J[2, 2] * l2
     for i in range(3):
-        for j in range(3):
-            local[i] += R[j, i] * angular_momentum[j]
-    for i in range(3):
-        out[i] = 0.0
-        for j in range(3):
-            turned = (
-                inverse_inertia[j, 0] * local[0]
-                + inverse_inertia[j, 1] * local[1]
-                + inverse_inertia[j, 2] * local[2]
-            )
-            out[i] += R[i, j] * turned
+        out[i] = e0[i] * s0 + e1[i] * s1 + e2[i] * s2
 
 
 @kernel

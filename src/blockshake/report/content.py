@@ -142,7 +142,8 @@ def load_content(study, results, benchmarks):
         distributions=load_distributions(study["ensemble"].get("distributions"), study["name"]),
         waves=_dataset(results / "waves.nc"),
         timings=read_timings(
-            benchmarks, {(model, name): one.samples for name, case in loaded.items() for model, one in case.responses.items()}
+            benchmarks,
+            {(model, case.name): one.samples for case in loaded.values() for model, one in case.responses.items()},
         ),
         digests={
             "configuration of the study": content_digest(study),

@@ -1,6 +1,8 @@
 """Ground motions as drawn in the paper's Fig. 5, and their response spectra."""
 
-from blockshake.report.drawing import BLACK, BLUE, DARK_GREY, RED, new_figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+
+from blockshake.report.drawing import BLACK, BLUE, RED, new_figure
 from blockshake.report.wording import SQUARED
 
 _ROWS = (
@@ -72,8 +74,9 @@ def plot_spectra(motions):
         axes.set(xscale="log", yscale="log", xlabel="period [s]", title=_title(motion))
         axes.set_xticks([0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0], ["0.05", "0.1", "0.2", "0.5", "1", "2", "4"])
         axes.set_xticks([], minor=True)
-        axes.grid(True, which="both")
-        axes.tick_params(which="minor", color=DARK_GREY)
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axes.yaxis.set_minor_locator(NullLocator())
         entries |= {label: handle for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
     panels[0].set_ylabel(f"pseudo-acceleration [m/s{SQUARED}]")
     figure.legend(entries.values(), entries.keys(), loc="outside upper center", ncols=len(entries))

@@ -7,7 +7,7 @@ from blockshake.report.wording import parameter_label, printed_unit
 from blockshake.study.distributions import parameter_unit
 
 _COLUMNS = 3
-_ROW_HEIGHT = 0.042  # m of paper
+_ROW_HEIGHT = 0.044  # m of paper
 
 
 def plot_samples(design, distributions):
@@ -43,6 +43,7 @@ def plot_samples(design, distributions):
         axes.set_axis_off()
     for axes in panels[:, 0]:
         axes.set_ylabel("density")
+    figure.get_layout_engine().set(hspace=0.06)
     handles, labels = panels[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=2)
     return figure

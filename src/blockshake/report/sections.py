@@ -7,7 +7,7 @@ from blockshake.report.drawing import PAGE_WIDTH, svg_of
 from blockshake.report.motion_figure import plot_motions, plot_spectra
 from blockshake.report.samples_figure import plot_correlation, plot_samples
 from blockshake.report.stiffness_figure import plot_stiffness, plot_waves
-from blockshake.report.structure_figure import plot_structure
+from blockshake.report.structure_figure import plot_structure, structure_width
 from blockshake.report.tables import (
     bodies_table,
     cases_table,
@@ -17,7 +17,7 @@ from blockshake.report.tables import (
     top_block_table,
     waves_table,
 )
-from blockshake.report.wording import model_label, number, parameter_label
+from blockshake.report.wording import given, model_label, number, parameter_label
 
 
 def summary(content):
@@ -94,7 +94,7 @@ def structures(content):
                 + ". The faces towards the reader are those at the lowest y (front view) and the largest x (side "
                 "view); sensors on hidden faces are drawn too.",
                 svg_of(plot_structure, case.structure),
-                PAGE_WIDTH,
+                structure_width(case.structure),
             ),
             bodies_table(case),
         ]
@@ -164,7 +164,7 @@ def samples(content):
         ),
         samples_table(content),
         Figure(
-            f"Correlation reached between the variables ({found['correlation_kind']}); correlation asked for: {target}. "
+            f"Correlation ({found['correlation_kind']}) reached between the variables; asked for: {target}. "
             f"Difference from the target over the pairs: {number(found['rms_correlation_error'])} rms, "
             f"{number(found['largest_correlation_error'])} at most.",
             svg_of(
@@ -189,8 +189,8 @@ def stiffness(content):
         ),
         Figure(
             "Displacement of the blocks of the tower after a step of velocity of "
-            f"{number(1e3 * content.waves.attrs['step_velocity'])} mm/s at its base, nominal parameters; dots: arrivals "
-            "(after the paper's Fig. 9).",
+            f"{given(1e3 * content.waves.attrs['step_velocity'])} mm/s at its base, nominal parameters; "
+            "dots: arrivals (after the paper's Fig. 9).",
             svg_of(plot_waves, content.waves),
             PAGE_WIDTH,
         ),

@@ -1,17 +1,19 @@
 """A structure seen from the front and from the side, to scale, with its sizes and sensors."""
 
-import os
+from itertools import pairwise
+from os.path import commonprefix
 
 import numpy as np
 from matplotlib.patches import Polygon
 from scipy.spatial import ConvexHull
 
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.report.drawing import BLUE, DARK_GREY, ORANGE, PAGE_WIDTH, new_figure
+from blockshake.report.drawing import BLUE, DARK_GREY, ORANGE, new_figure
 
-_METRE = 0.0135  # m of paper
-_AROUND = (1.15, 1.15)  # m of space for sizes beside and above the drawing, on either side
-_LEGEND = 0.022  # m of paper above the drawing
+_METRE = 0.0115  # m of paper
+_ASIDE, _BELOW, _ABOVE = 0.95, 1.05, 0.6  # m of space for sizes around the drawing
+_BETWEEN = 0.006  # m of paper between the views
+_TITLES = 0.016  # m of paper above the drawing
 _FILL = ("#eceff1", "#f7dfc0", "#cfd8dc", "#d9e8d0")
 
 
@@ -32,26 +34,47 @@ def plot_structure(structure):
     corners = _corners(structure)
     together = np.vstack(corners)
     low, high = together.min(axis=0), together.max(axis=0)
-    heights = high[2] - low[2] + 2.0 * _AROUND[1]
-    figure = new_figure(_METRE * heights + _LEGEND, PAGE_WIDTH)
-    views = figure.subplots(1, 2, sharey=True)
-    for axes, across, title in zip(views, (0, 1), ("front view", "side view"), strict=True):
+    height = high[2] - low[2] + _BELOW + _ABOVE
+    widths = high[:2] - low[:2] + 2.0 * _ASIDE
+    figure = new_figure(_METRE * height + _TITLES, structure_width(structure))
+    views = figure.subplots(1, 2, sharey=True, width_ratios=widths)
+    for axes, across, title in zip(views, (0, 1), ("front view, shaking along x", "side view"), strict=True):
         _draw_bodies(axes, structure, corners, across, names=across == 0)
         _draw_sensors(axes, structure, across)
         _draw_sizes(axes, structure, corners, across)
+        _draw_directions(axes, low[across] - 0.8 * _ASIDE, low[2] - 0.9 * _BELOW, "xy"[across])
         axes.set(
-            xlim=(low[across] - _AROUND[0], high[across] + _AROUND[0]),
-            ylim=(low[2] - _AROUND[1], high[2] + 0.7 * _AROUND[1]),
+            xlim=(low[across] - _ASIDE, high[across] + _ASIDE),
+            ylim=(low[2] - _BELOW, high[2] + _ABOVE),
             aspect="equal",
-            xlabel=f"{'xy'[across]} [m]",
-            title=title + (", shaking along x" if across == 0 else ""),
+            title=title,
         )
-        axes.grid(False)
-    views[0].set_ylabel("z [m]")
+        axes.set_axis_off()
     handles, labels = views[0].get_legend_handles_labels()
     if handles:
         figure.legend(handles, labels, loc="outside upper center", ncols=len(handles))
     return figure
+
+
+def structure_width(structure):
+    """Width of the figure [m of paper]."""
+    together = np.vstack(_corners(structure))
+    widths = np.ptp(together[:, :2], axis=0) + 2.0 * _ASIDE
+    return float(_METRE * widths.sum() + _BETWEEN)
+
+
+def _draw_directions(axes, left, bottom, across):
+    """The two axes of the view, half a metre long."""
+    for end, name in (((left + 0.5, bottom), across), ((left, bottom + 0.5), "z")):
+        axes.annotate(
+            name,
+            xy=(left, bottom),
+            xytext=end,
+            fontsize=6,
+            ha="center",
+            va="center",
+            arrowprops={"arrowstyle": "<-", "linewidth": 0.6, "shrinkA": 2, "shrinkB": 0},
+        )
 
 
 def _corners(structure):
@@ -102,7 +125,7 @@ def _write_names(axes, structure, corners, across):
 
 
 def _joint_name(names):
-    start = os.path.commonprefix(names)
+    start = commonprefix(names)  # noqa: RUF071 - names, not paths
     ends = [name.removeprefix(start) for name in names]
     return f"{start}{ends[0]} to {ends[-1]}"
 
@@ -157,7 +180,7 @@ def _edges(boxes, axis):
 
 
 def _horizontal(axes, height, edges):
-    for start, end in zip(edges[:-1], edges[1:], strict=True):
+    for start, end in pairwise(edges):
         _arrow(axes, (start, height), (end, height))
         axes.text(
             0.5 * (start + end), height + 0.05, f"{end - start:.3g}", ha="center", va="bottom", fontsize=6
@@ -165,7 +188,7 @@ def _horizontal(axes, height, edges):
 
 
 def _vertical(axes, place, edges):
-    for start, end in zip(edges[:-1], edges[1:], strict=True):
+    for start, end in pairwise(edges):
         _arrow(axes, (place, start), (place, end))
         axes.text(place + 0.08, 0.5 * (start + end), f"{end - start:.3g}", ha="left", va="center", fontsize=6)
 

@@ -8,6 +8,7 @@ from blockshake.report.wording import (
     CUBED,
     SHOWN_QUANTILES,
     SQUARED,
+    given,
     millimetres,
     model_label,
     number,
@@ -44,11 +45,11 @@ def cases_table(content):
                 (
                     case.name,
                     case.motion,
-                    number(case.settings["scale"]),
+                    given(case.settings["scale"]),
                     number(case.settings["scale"] * peak),
-                    number(case.settings["duration"]),
+                    given(case.settings["duration"]),
                     model_label(model),
-                    number(content.study["models"][model]["time_step"]),
+                    given(content.study["models"][model]["time_step"]),
                     str(response.samples.sizes["sample"]),
                     f"{completed} / {collapsed} / {failed}",
                 )
@@ -278,7 +279,7 @@ def failures_table(content):
                             str(one["status"].values),
                             number(one["end_time"]),
                             str(one["reason"].values),
-                        )  # fmt: skip
+                        )
                     )
     return Table(
         "Samples that did not complete. Collapsed ones count in the statistics up to their end, failed ones not.",
@@ -360,7 +361,7 @@ def timings_table(content):
             number(sum(one.cpu_time for one in known)),
             number(sum(one.wall_time for one in known)),
             "",
-        )  # fmt: skip
+        )
     )
     return Table(
         "Cost of the simulations on one core each, from the jobs' benchmark files.",

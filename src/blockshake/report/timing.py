@@ -68,7 +68,7 @@ def read_timings(benchmarks, samples):
                 float(end.sum()),
                 cpu_time if known else np.nan,
                 wall_time if known else np.nan,
-            )  # fmt: skip
+            )
         )
     return tuple(timings)
 

@@ -60,6 +60,11 @@ def number(value, digits=3):
     return f"{value:.{digits - 1}e}"
 
 
+def given(value):
+    """A number that somebody chose, with the digits it was given."""
+    return f"{float(value):g}"
+
+
 def millimetres(value):
     """A length [m] in mm to 0.1 mm."""
     return f"{1e3 * float(value):.1f}" if np.isfinite(value) else MISSING
