@@ -7,7 +7,7 @@ from blockshake.report.pdf import write_pdf
 from blockshake.report.result_sections import checks, limits, origin, responses, timings
 from blockshake.report.sections import motions, samples, stiffness, structures, summary
 
-_SECTIONS = (summary, structures, motions, samples, stiffness, responses, checks, timings, origin, limits)
+_SECTIONS = (summary, structures, motions, samples, stiffness, responses, checks, timings, limits, origin)
 
 
 def make_report(study, results, benchmarks, html, pdf):

@@ -17,7 +17,7 @@ from blockshake.report.tables import (
     peaks_table,
     timings_table,
 )
-from blockshake.report.wording import model_label, number
+from blockshake.report.wording import given, model_label, number
 
 _PAPER_FIGURES = {f"configuration-{place}": 10 + place for place in (1, 2, 3, 4)}
 
@@ -40,11 +40,11 @@ def responses(content):
             )
         )
     for case in content.cases.values():
-        blocks += _response(case)
+        blocks += _response(case, content.motions[case.motion])
     return Section("Displacement of the blocks", "responses", tuple(blocks))
 
 
-def _response(case):
+def _response(case, motion):
     markers = face_markers(case.structure)
     main = main_bodies(case.structure, markers)
     envelopes = {model: one.envelope for model, one in case.responses.items()}
@@ -64,16 +64,30 @@ def _response(case):
     return [
         Heading(case_title(case), f"response-{case.name}"),
         Text(
-            f"{case.motion}, scale {number(case.settings['scale'])}, {number(case.settings['duration'])} s. "
-            f"Marker noise of the {word}: {number(1e3 * case.marker_noise)} mm."
+            f"{case.motion}, scale {given(case.settings['scale'])}, first {given(case.settings['duration'])} s. "
+            f"Marker noise of the {word}: {given(1e3 * case.marker_noise)} mm (standard deviation)."
         ),
+        *_early_end(case, motion),
         *_gaps(case),
         figure(main, "inertial", f"{case.name}: displacement in the inertial frame{paper}{some}."),
+        peaks_table(case),
+        coverage_table(case),
         figure(
             list(markers), "slab", f"{case.name}: displacement relative to the slab's marker, every block."
         ),
-        peaks_table(case),
-        coverage_table(case),
+    ]
+
+
+def _early_end(case, motion):
+    """A remark where the window ends within the motion."""
+    if case.settings["duration"] >= motion.attrs["duration"]:
+        return []
+    return [
+        Text(
+            f"The window ends before the motion, which lasts {given(motion.attrs['duration'])} s (strong until "
+            f"{number(motion.attrs['significant_end'])} s): the residuals below are displacements at that moment, "
+            "not of a structure at rest."
+        )
     ]
 
 
@@ -107,9 +121,9 @@ def checks(content):
     blocks = [
         failures if failures.rows else Text("Every sample of every case and model completed."),
         Text(
-            "Energy residual: the largest amount by which kinetic, potential, elastic and dissipated energy differ from "
-            "the initial energy and the work of the base, relative to the larger of that work and the largest kinetic "
-            "energy. It holds what the time stepping and the bookkeeping lose or add; 0 would be exact."
+            "Energy residual: the largest amount by which kinetic, potential, elastic and dissipated energy differ "
+            "from the initial energy and the work of the base, relative to the larger of that work and the largest "
+            "kinetic energy. It holds what the time stepping and the bookkeeping lose or add; 0 would be exact."
         ),
         energy_table(content),
     ]
@@ -166,7 +180,10 @@ def origin(content):
             for model, one in case.responses.items()
         },
     }
-    configuration = yaml.safe_dump(content.study, sort_keys=False, allow_unicode=True, width=100)
+    configuration = yaml.safe_dump(
+        {**content.study, "description": " ".join(content.study["description"].split())},
+        sort_keys=False, allow_unicode=True, width=100,
+    )  # fmt: skip
     blocks = (
         pairs_table("Software that made this report.", ("Package", "Version"), content.versions),
         pairs_table(
@@ -202,9 +219,10 @@ def limits(content):
     items = [
         "Blocks are rigid in every model here: no deformation inside a block, no cracking, no crushing of edges.",
         "Friction is Coulomb's with one coefficient a pair of materials, constant in time, place and rate.",
-        "Shaking is along x only, and structures are symmetric about y = 0 without imperfections: no motion out of the "
-        "plane arises.",
-        "Only material parameters are random. Sizes, places, joints' condition and the input motion are taken as known.",
+        "Shaking is along x only and the structures have no imperfections; where they are symmetric about y = 0, no "
+        "motion out of the plane arises.",
+        "Only material parameters are random. Sizes, places, the joints' condition and the input motion are taken as "
+        "known.",
         "Late parts of records of strong rocking are sensitive to the smallest differences: single histories are no "
         "evidence there, statistics over samples are steadier.",
         "The convergence of results with time step and discretisation is not shown in this report.",
@@ -212,8 +230,8 @@ def limits(content):
     if any(case.synthetic for case in cases):
         items.insert(
             0,
-            "The measured curves are virtual tests (synthetic), made by a model of this program: the comparison exercises "
-            "the method and cannot show what the models get wrong.",
+            "The measured curves are virtual tests (synthetic), made by a model of this program: the comparison "
+            "exercises the method and cannot show what the models get wrong.",
         )
     if any(content.motions[case.motion].attrs.get("synthetic") for case in cases):
         items.insert(1, "The motions are synthetic stand-ins for records that may not be redistributed.")

@@ -5,7 +5,7 @@ from scipy.sparse.csgraph import connected_components
 
 from blockshake.dynamics.collapse import collapse_limits
 from blockshake.dynamics.motion import rest_table
-from blockshake.dynamics.system import State, Trajectory, assemble_bodies
+from blockshake.dynamics.system import State, Trajectory, assemble_bodies, place_driven_into
 from blockshake.errors import InputError
 from blockshake.geometry.surface_nodes import box_nodes
 from blockshake.solvers.ls_dem.candidates import (
@@ -51,6 +51,10 @@ def simulate_ls_dem(structure, motion, parameters, record_times, time_step=1e-5,
         bodies = bodies._replace(inverse_inertia=np.zeros_like(bodies.inverse_inertia))
     surfaces = assemble_surfaces(structure, parameters)
     interfaces = assemble_interfaces(structure, parameters)
+    ground = motion.table if motion is not None else rest_table()
+    # the stack settles on the slab as the motion starts, pitch included
+    at_start = np.array([0.0, 0.0, 0.0, ground.coefficients[0, 3, 0]])
+    place_driven_into(bodies, at_start, np.zeros(4), state)
     candidates, settling_steps = _start(
         structure, bodies, surfaces, interfaces, parameters.skin, time_step, state
     )
@@ -66,7 +70,7 @@ def simulate_ls_dem(structure, motion, parameters, record_times, time_step=1e-5,
     n_steps = int(np.ceil(record_times[-1] / time_step - 1e-9))
     code, body, last_step, rebuilds, joint = integrate(
         bodies, surfaces, interfaces, stoppers,
-        motion.table if motion is not None else rest_table(),
+        ground,
         *collapse_limits(structure),
         parameters.skin, time_step, n_steps, np.asarray(record_times, dtype=float), state, candidates, record,
     )  # fmt: skip

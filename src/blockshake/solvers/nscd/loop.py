@@ -115,8 +115,9 @@ def run(bodies, state, stoppers, polyhedra, table, settings, watch, record):
     displacement, following, velocity = np.empty(4), np.empty(4), np.empty(4)
     origin, segment = np.zeros(4), 0
     segment = ground_displacement_into(table, origin, 0.0, segment, displacement, velocity)
-    origin[:] = displacement
-    displacement[:] = 0.0
+    # displacement counts from its start, pitch as it is
+    origin[:3] = displacement[:3]
+    displacement[:3] = 0.0
     place_driven_into(bodies, displacement, velocity, state)
     step = Step(
         copy_state(state),
