@@ -173,14 +173,14 @@ def test_the_kernel_cache_is_named_after_the_sources():
 
 _ASK = """
 import numpy as np
-from blockshake.dynamics.free_motion import spin_into
-out = np.empty(3)
-spin_into(np.eye(3), np.array([1.0, 0.0, 0.0, 0.0]), np.array([1.0, 2.0, 3.0]), out)
-print(out[0], sum(spin_into.stats.cache_hits.values()))
+from blockshake.dynamics.free_motion import drift_into
+position, orientation, spin = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
+drift_into(np.eye(3), spin, np.array([0.0, 0.0, np.pi]), spin.copy(), 1.0, position, orientation, spin)
+print(orientation[3], sum(drift_into.stats.cache_hits.values()))
 """
 
 
-def _first_spin(root, cache):
+def _half_turn(root, cache):
     environment = {**os.environ, "PYTHONPATH": str(root), "BLOCKSHAKE_CACHE": str(cache)}
     done = subprocess.run(
         [sys.executable, "-c", _ASK], env=environment, cwd=root, capture_output=True, text=True, check=True
@@ -195,12 +195,12 @@ def test_an_edit_in_an_imported_module_changes_what_a_cached_kernel_computes(tmp
     shutil.copytree(
         Path(files.__file__).parent, root / "blockshake", ignore=shutil.ignore_patterns("__pycache__")
     )
-    assert _first_spin(root, cache) == (1.0, 0)
-    assert _first_spin(root, cache) == (1.0, 1)
+    assert _half_turn(root, cache) == (1.0, 0)
+    assert _half_turn(root, cache) == (1.0, 1)
     rotations = root / "blockshake" / "geometry" / "rotations.py"
     text = rotations.read_text()
-    edited = text.replace("R[0, 0] = 1.0 - ", "R[0, 0] = 2.0 - ", 1)
+    edited = text.replace("np.sin(0.5 * angle) / angle", "-np.sin(0.5 * angle) / angle", 1)
     assert edited != text
     rotations.write_text(edited)
-    # R00 = 2 enters R J^-1 R^T twice
-    assert _first_spin(root, cache) == (4.0, 0)
+    # now every rotation goes the other way
+    assert _half_turn(root, cache) == (-1.0, 0)

@@ -137,7 +137,11 @@ class FakeStudy:
                 "numerics_steps": 2000,
                 "blockshake_version": "0.0.7",
                 "source_digest": "0123456789ab",
-                **({"numerics_capped_steps": 17, "numerics_max_residual": 3.5e-6} if model != "ls-dem" else {}),
+                **(
+                    {"numerics_capped_steps": 17, "numerics_max_residual": 3.5e-6}
+                    if model != "ls-dem"
+                    else {}
+                ),
             },
         )
 
