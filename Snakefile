@@ -4,7 +4,11 @@ from snakemake.utils import min_version
 min_version("9.27")
 
 
-configfile: "config/study.yaml"
+# A configuration given on the command line takes the place of the default one; merged into it, a variable that
+# it leaves out would come back.
+if "cases" not in config:
+
+    configfile: "config/study.yaml"
 
 
 include: "workflow/rules/common.smk"

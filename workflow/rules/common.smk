@@ -36,6 +36,12 @@ def definition(kind, name):
     return str(shipped if shipped.exists() else name)
 
 
+def campaign_files(case):
+    """Files of the campaign that a case is compared with."""
+    folder = Path(CASES[case]["measured"]["campaign"])
+    return sorted(str(path) for path in folder.iterdir() if path.is_file())
+
+
 def sample_count(model, case):
     """Samples of a case by a model."""
     return CASES[case].get("samples", {}).get(model, config["ensemble"]["size"])

@@ -19,7 +19,7 @@ rule compare_with_measurement:
     """Coverage of the measured curves by the ensemble's bounds, with its leave-one-out reference."""
     input:
         batches=batch_files,
-        campaign=lambda wildcards: f"{CASES[wildcards.case]['measured']['campaign']}/campaign.yaml",
+        campaign=lambda wildcards: campaign_files(wildcards.case),
     output:
         "results/{study}/comparisons/{model}/{case}.nc",
     log:

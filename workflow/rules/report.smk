@@ -4,9 +4,7 @@ rule make_report:
         structures=[
             definition("structures", case["structure"]) for case in CASES.values()
         ],
-        campaigns=[
-            f"{case['measured']['campaign']}/campaign.yaml" for case in CASES.values()
-        ],
+        campaigns=[campaign_files(case) for case in CASES],
         templates=expand(
             "src/blockshake/report/templates/{name}",
             name=["report.html.j2", "report.typ"],

@@ -45,6 +45,8 @@ class Case:
         Name of its motion in `Content.motions`.
     measured : xarray.Dataset
         From `measured_curves`.
+    test_file : Path
+        Where they come from.
     synthetic : bool
         The measured test is a virtual one.
     marker_noise : float
@@ -58,6 +60,7 @@ class Case:
     structure: Structure
     motion: str
     measured: xr.Dataset
+    test_file: Path
     synthetic: bool
     marker_noise: float
     responses: dict
@@ -131,7 +134,7 @@ def load_content(study, results, benchmarks):
         motions[Path(named).stem] = _dataset(results / "motions" / f"{Path(named).stem}.nc")
     design, stiffness = results / "design.csv", results / "stiffness.csv"
     inputs = [_definition(kind, case[kind]) for kind in ("structure", "motion") for case in cases.values()]
-    campaigns = [Path(case["measured"]["campaign"], "campaign.yaml") for case in cases.values()]
+    tests = [case.test_file for case in loaded.values()]
     return Content(
         study=study,
         cases=loaded,
@@ -147,7 +150,7 @@ def load_content(study, results, benchmarks):
         ),
         digests={
             "configuration of the study": content_digest(study),
-            **{_shown(path): file_digest(path) for path in [*inputs, *campaigns, design, stiffness]},
+            **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, stiffness]},
         },
         versions={
             "blockshake": version("blockshake"),
@@ -207,6 +210,7 @@ def _case(study, results, name, settings):
         structure=load_structure(settings["structure"]),
         motion=Path(settings["motion"]).stem,
         measured=measured_curves(test, slab_marker, settings["duration"]),
+        test_file=campaign.folder / campaign.tests[settings["measured"]["test"]].file,
         synthetic=bool(test.attrs.get("synthetic", 0)),
         marker_noise=campaign.sensors.marker_noise,
         responses=responses,

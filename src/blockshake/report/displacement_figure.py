@@ -32,7 +32,7 @@ def plot_displacements(envelopes, measured, markers, labels, frame, synthetic):
         Light grey from the smallest to the largest of the samples, bounds in red, darker grey
         between the quantiles 5 and 95 %, the measured curve dashed.
     """
-    figure = new_figure(0.016 + (0.031 if len(markers) < 6 else 0.0255) * len(markers))
+    figure = new_figure(0.016 + (0.029 if len(markers) < 6 else 0.0255) * len(markers))
     panels = figure.subplots(len(markers), len(envelopes), sharex=True, sharey="row", squeeze=False)
     for column, (model, envelope) in zip(panels.T, envelopes.items(), strict=True):
         for axes, marker in zip(column, markers, strict=True):

@@ -6,9 +6,7 @@ import yaml
 from blockshake.report.blocks import Figure, Heading, Items, Listing, Section, Text
 from blockshake.report.displacement_figure import plot_displacements
 from blockshake.report.drawing import PAGE_WIDTH, svg_of
-from blockshake.report.rows import face_markers, main_bodies
-from blockshake.report.sections import case_title
-from blockshake.report.tables import (
+from blockshake.report.result_tables import (
     convergence_table,
     coverage_table,
     energy_table,
@@ -17,6 +15,8 @@ from blockshake.report.tables import (
     peaks_table,
     timings_table,
 )
+from blockshake.report.rows import face_markers, main_bodies
+from blockshake.report.sections import case_title
 from blockshake.report.wording import given, model_label, number
 
 _PAPER_FIGURES = {f"configuration-{place}": 10 + place for place in (1, 2, 3, 4)}

@@ -83,7 +83,7 @@ def plot_correlation(correlation, labels):
     axes.invert_yaxis()
     bar = figure.colorbar(shade, ax=axes, label="correlation [1]")
     bar.outline.set_linewidth(0.5)
-    bar.solids.set_edgecolor("face")
+    bar.solids.set(rasterized=False, edgecolor="face")
     return figure
 
 

@@ -4,19 +4,19 @@ from pathlib import Path
 
 from blockshake.report.blocks import Figure, Heading, Items, Section, Text
 from blockshake.report.drawing import PAGE_WIDTH, svg_of
-from blockshake.report.motion_figure import plot_motions, plot_spectra
-from blockshake.report.samples_figure import plot_correlation, plot_samples
-from blockshake.report.stiffness_figure import plot_stiffness, plot_waves
-from blockshake.report.structure_figure import plot_structure, structure_width
-from blockshake.report.tables import (
+from blockshake.report.input_tables import (
     bodies_table,
     cases_table,
     motions_table,
     outcome_counts,
     samples_table,
-    top_block_table,
     waves_table,
 )
+from blockshake.report.motion_figure import plot_motions, plot_spectra
+from blockshake.report.result_tables import top_block_table
+from blockshake.report.samples_figure import plot_correlation, plot_samples
+from blockshake.report.stiffness_figure import plot_stiffness, plot_waves
+from blockshake.report.structure_figure import plot_structure, structure_width
 from blockshake.report.wording import given, model_label, number, parameter_label
 
 
@@ -31,9 +31,9 @@ def summary(content):
     if synthetic_tests:
         blocks.append(
             Text(
-                "The measured curves are SYNTHETIC: virtual tests, each one simulated run with parameters drawn from "
-                "the study's distributions and seen through noisy markers. Nothing was measured; how near a model "
-                "comes to them says nothing about reality. "
+                "The measured curves are SYNTHETIC: virtual tests, each one simulated run with parameters drawn at "
+                "random, made by a solver of this program and seen through noisy markers. Nothing was measured; how "
+                "near a model comes to them says nothing about reality. "
                 f"This holds for {', '.join(synthetic_tests)}.",
                 strong=True,
             )
@@ -67,7 +67,7 @@ def _fewer_samples(content):
     size = len(content.design)
     return [
         f"{model_label(model)} ran {one.samples.sizes['sample']} of the {size} samples on {case.name}: its extremes "
-        "and outer quantiles are narrower for that alone."
+        "reach less far for that alone."
         for case in content.cases.values()
         for model, one in case.responses.items()
         if one.samples.sizes["sample"] < size
@@ -164,7 +164,7 @@ def samples(content):
         ),
         samples_table(content),
         Figure(
-            f"Correlation ({found['correlation_kind']}) reached between the variables; asked for: {target}. "
+            f"{found['correlation_kind'].capitalize()} correlation reached between the variables; asked for: {target}. "
             f"Difference from the target over the pairs: {number(found['rms_correlation_error'])} rms, "
             f"{number(found['largest_correlation_error'])} at most.",
             svg_of(

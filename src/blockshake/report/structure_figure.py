@@ -120,9 +120,8 @@ def _write_names(axes, structure, corners, across):
         label = members[0] if len(members) == 1 else _joint_name(members)
         thin = top - bottom < 0.5
         height = 0.5 * (bottom + top) if thin else bottom + 0.67 * (top - bottom)
-        place = left + (0.7 if thin else 0.5) * (
-            right - left
-        )  # beside the marker in the middle of a thin one
+        share = 0.7 if thin else 0.5  # in a thin one beside the marker in its middle
+        place = left + share * (right - left)
         axes.text(place, height, label, ha="center", va="center", fontsize=5.5, color="#1a1a1a")
 
 

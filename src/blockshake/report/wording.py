@@ -48,12 +48,12 @@ def printed_unit(unit):
 
 
 def number(value, digits=3):
-    """A number with so many significant digits, or `MISSING`."""
+    """A number with so many significant digits, a whole number below a million with all, or `MISSING`."""
     value = float(value)
     if not np.isfinite(value):
         return MISSING
-    if value == 0.0:
-        return "0"
+    if value.is_integer() and abs(value) < 1e6:
+        return f"{value:.0f}"
     magnitude = int(np.floor(np.log10(abs(value))))
     if -3 <= magnitude < 6:
         return f"{value:.{max(digits - 1 - magnitude, 0)}f}"

@@ -1,23 +1,17 @@
-"""Tables of the report: rows of text from Datasets."""
+"""Tables of what came out: peaks, coverage, failures, energy, convergence, cost."""
 
 import numpy as np
 
 from blockshake.report.blocks import Table
 from blockshake.report.rows import face_markers
 from blockshake.report.wording import (
-    CUBED,
     SHOWN_QUANTILES,
-    SQUARED,
-    given,
     millimetres,
     model_label,
     number,
-    parameter_label,
     percent,
-    printed_unit,
     quantile_range,
 )
-from blockshake.study.distributions import parameter_unit
 
 _QUANTILES = " / ".join(f"{100 * one:.0f}" for one in SHOWN_QUANTILES) + " %"
 
@@ -25,43 +19,6 @@ _QUANTILES = " / ".join(f"{100 * one:.0f}" for one in SHOWN_QUANTILES) + " %"
 def measured_word(synthetic):
     """What the measured curve is called in a header."""
     return "Virtual test (synthetic)" if synthetic else "Measured"
-
-
-def outcome_counts(samples):
-    """How many samples completed, collapsed and failed otherwise."""
-    status = samples["status"].values.astype(str)
-    completed, collapsed = (int((status == one).sum()) for one in ("completed", "collapsed"))
-    return completed, collapsed, len(status) - completed - collapsed
-
-
-def cases_table(content):
-    """What was simulated: structure, motion, scale, peak acceleration, window, samples by model and their ends."""
-    rows = []
-    for case in content.cases.values():
-        peak = content.motions[case.motion].attrs["peak_acceleration"]
-        for model, response in case.responses.items():
-            completed, collapsed, failed = outcome_counts(response.samples)
-            rows.append(
-                (
-                    case.name,
-                    case.motion,
-                    given(case.settings["scale"]),
-                    number(case.settings["scale"] * peak),
-                    given(case.settings["duration"]),
-                    model_label(model),
-                    given(content.study["models"][model]["time_step"]),
-                    str(response.samples.sizes["sample"]),
-                    f"{completed} / {collapsed} / {failed}",
-                )
-            )
-    header = (
-        "Case", "Motion", "Scale", f"Peak acceleration [m/s{SQUARED}]", "Window [s]", "Model", "Time step [s]",
-        "Samples", "completed / collapsed / failed",
-    )  # fmt: skip
-    return Table(
-        "Cases and models. The peak acceleration is the scaled motion's; the window is counted from its start.",
-        header, tuple(rows), "llrrrlrrr",
-    )  # fmt: skip
 
 
 def top_block_table(content):
@@ -91,119 +48,6 @@ def top_block_table(content):
         "Peak displacement of the top block along x relative to the slab: quantiles over the n samples that "
         "completed or collapsed.",
         header, tuple(rows), "llr" + "r" * len(models),
-    )  # fmt: skip
-
-
-def bodies_table(case):
-    """Bodies of a structure with size, material and mass."""
-    rows = []
-    for body, mass in zip(case.structure.file.bodies, case.structure.mass, strict=True):
-        shape = case.structure.file.shapes[body.shape]
-        size = " x ".join(f"{edge:g}" for edge in shape.box) if shape.box else f"mesh {shape.mesh}"
-        rows.append(
-            (
-                body.name + (" (driven)" if body.driven else ""),
-                size,
-                f"{shape.chamfer:g}",
-                body.material,
-                f"{body.density or case.structure.file.materials[body.material].density:g}",
-                f"{mass:.0f}",
-            )
-        )
-    return Table(
-        f"Bodies of {case.name}; sizes along x, y, z; masses of the chamfered shapes at nominal density.",
-        ("Body", "Size [m]", "Chamfer [m]", "Material", f"Density [kg/m{CUBED}]", "Mass [kg]"),
-        tuple(_merged(rows)), "lrrlrr",
-    )  # fmt: skip
-
-
-def _merged(rows):
-    """Rows that differ in the body's name only become one."""
-    merged = {}
-    for name, *rest in rows:
-        merged.setdefault(tuple(rest), []).append(name)
-    return [(", ".join(names), *rest) for rest, names in merged.items()]
-
-
-def motions_table(motions):
-    """Figures of the motions at 100 %."""
-    shown = (
-        (f"PGA [m/s{SQUARED}]", "peak_acceleration", 1.0),
-        ("PGV [m/s]", "peak_velocity", 1.0),
-        ("PGD [mm]", "peak_displacement", 1e3),
-        ("Arias intensity [m/s]", "arias_intensity", 1.0),
-        ("Significant duration, 5 to 95 % [s]", "significant_duration", 1.0),
-        ("Record [s]", "duration", 1.0),
-    )
-    rows = [
-        (
-            motion.attrs["name"],
-            "synthetic" if motion.attrs.get("synthetic") else motion.attrs.get("format", ""),
-            *(number(factor * motion.attrs[key]) for _, key, factor in shown),
-        )
-        for motion in motions.values()
-    ]
-    return Table(
-        "Motions at 100 %: peak ground acceleration, velocity and displacement along x, Arias intensity and "
-        "durations.",
-        ("Motion", "Kind", *(label for label, _, _ in shown)), tuple(rows), "ll" + "r" * len(shown),
-    )  # fmt: skip
-
-
-def samples_table(content):
-    """Mean and coefficient of variation asked for and reached."""
-    rows = []
-    for name, target in content.distributions.items():
-        factor, unit = printed_unit(parameter_unit(name))
-        rows.append(
-            (
-                parameter_label(name),
-                unit,
-                number(target.mean / factor, 4),
-                number(content.design_summary["mean"][name] / factor, 4),
-                percent(target.cov),
-                percent(content.design_summary["cov"][name]),
-                ", ".join(_users(content, name)) or "no case",
-            )
-        )
-    return Table(
-        "Random variables, all log-normal: mean and coefficient of variation (COV) of the target and of the "
-        "samples, and the cases whose structure has the material or the pair.",
-        ("Variable", "Unit", "Mean, target", "Mean, samples", "COV, target [%]", "COV, samples [%]", "Cases"),
-        tuple(rows), "llrrrrl",
-    )  # fmt: skip
-
-
-def _users(content, name):
-    """Short names of the cases whose structure holds what a variable describes."""
-    kind, *rest = name.split(".")
-    wanted = set(rest) if kind == "friction" else {rest[0]}
-    return [
-        case.name.removeprefix("configuration-")
-        for case in content.cases.values()
-        if wanted <= set(case.structure.file.materials)
-    ]
-
-
-def waves_table(waves):
-    """Wave speed reached against its target at nominal parameters."""
-    rows = []
-    for direction in waves["direction"].values:
-        one = waves.sel(direction=direction)
-        factor, unit = printed_unit("N/m3")
-        reached, target = float(one["wave_speed"]), float(one["target_wave_speed"])
-        rows.append(
-            (
-                str(direction),
-                number(target, 5),
-                number(reached, 5),
-                f"{1e6 * (reached / target - 1.0):.0f}",
-                f"{number(float(one['stiffness']) / factor, 4)} {unit}",
-            )
-        )
-    return Table(
-        "Effective wave speed at the calibrated stiffness, nominal parameters.",
-        ("Direction", "Target [m/s]", "Reached [m/s]", "Difference [ppm]", "Stiffness"), tuple(rows), "lrrrr",
     )  # fmt: skip
 
 
@@ -333,7 +177,6 @@ _NUMERICS = {
         ("max_penetration", "Deepest penetration [mm]", 1e3, np.max),
     ),
     "ls-dem": (
-        ("time_step", "Time step [s]", 1.0, np.max),
         ("steps", "Steps of a run", 1.0, np.max),
         ("settling_steps", "Most settling steps before a run", 1.0, np.max),
         ("list_searches", "Most searches for near pairs", 1.0, np.max),

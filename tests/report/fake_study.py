@@ -1,0 +1,203 @@
+"""A small study whose results are made up: right in form, never simulated."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from blockshake.files import write_dataset, write_json, write_text
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.virtual_test import virtual_test
+from blockshake.study.coverage import coverage
+from blockshake.study.distributions import TABLE_2
+from blockshake.study.ensemble import gather_ensemble, sample_figures
+from blockshake.study.envelope import envelope
+from blockshake.study.sampling import draw_samples
+
+MODELS = {"ls-dem": {"time_step": 5e-5}, "nscd-rigid": {"time_step": 1e-3}}
+COLLAPSE_REASON = "wall-b-4 tipped over or dropped at 1.000 s"
+PEAK_ACCELERATION = 1.234  # m/s2
+CPU_TIME = 43.21  # s, of every job
+
+
+class FakeStudy:
+    """Writes the files of a study: configuration-1 complete, configuration-4 with fewer NSCD samples, two of
+    which collapsed or failed."""
+
+    def __init__(self, folder, size=10, duration=2.0, rate=50.0):
+        self.folder, self.size = Path(folder), size
+        self.results, self.benchmarks = self.folder / "results", self.folder / "benchmarks"
+        self.time = np.arange(round(duration * rate) + 1) / rate
+        names = ("configuration-1", "configuration-4")
+        self.study = {
+            "name": "fake",
+            "description": "made-up results\n",
+            "models": MODELS,
+            "cases": [
+                {
+                    "structure": name,
+                    "motion": "basso-tirreno",
+                    "scale": 2.0,
+                    "duration": duration,
+                    "samples": {"nscd-rigid": 6} if name == "configuration-4" else {},
+                    "measured": {"campaign": str(self.folder / "campaigns" / name), "test": "virtual"},
+                }
+                for name in names
+            ],
+            "ensemble": {
+                "size": size,
+                "seed": 77,
+                "distributions": {name: one.model_dump() for name, one in TABLE_2.items()},
+            },
+            "ladder": {"motions": ["alkion", "basso-tirreno"]},
+        }
+        for place, name in enumerate(("basso-tirreno", "alkion")):
+            write_dataset(self.results / "motions" / f"{name}.nc", motion(name, place))
+        self._write_design()
+        write_dataset(self.results / "waves.nc", waves())
+        for case in self.study["cases"]:
+            self._write_case(case)
+
+    def _write_design(self):
+        design = draw_samples(self.size, 77, effort=1)
+        self.design = design.values
+        stiffness = pd.DataFrame(
+            {
+                "ls_dem.normal_stiffness": np.linspace(1.5e10, 2.2e10, self.size),
+                "ls_dem.shear_stiffness": np.linspace(0.8e10, 1.1e10, self.size),
+            }
+        )
+        write_text(self.results / "design.csv", self.design.to_csv(index=False))
+        write_json(self.results / "design.json", design.summary())
+        write_text(self.results / "stiffness.csv", stiffness.to_csv(index=False))
+
+    def _write_case(self, case):
+        name = case["structure"]
+        structure = load_structure(name)
+        folder = Path(case["measured"]["campaign"])
+        test = virtual_test(self.run(structure, "ls-dem", 1.1), seed=3)
+        write_dataset(folder / "virtual.nc", test)
+        write_text(
+            folder / "campaign.yaml",
+            f"name: fake\nstructure: {name}\n"
+            "tests:\n  - {name: virtual, file: virtual.nc, motion: basso-tirreno, scale: 2.0, role: fit}\n",
+        )
+        for model in MODELS:
+            count = case["samples"].get(model, self.size)
+            runs = [self.run(structure, model, 0.8 + 0.4 * sample / count) for sample in range(count)]
+            if count < self.size:
+                end(runs[2], "collapsed", COLLAPSE_REASON, 1.0)
+                end(runs[4], "not-converged", "2.0 % of the steps ended above a residual", self.time[-1])
+            ensemble = gather_ensemble(runs, range(count), self.design, "slab-face")
+            for kind, result in (
+                ("envelopes", envelope(ensemble)),
+                ("samples", sample_figures(ensemble)),
+                ("comparisons", coverage(test, ensemble, 1e-4)),
+            ):
+                write_dataset(self.results / kind / model / f"{name}.nc", result)
+            record = self.benchmarks / "simulate_batch" / model / name / f"000-{count - 1:03d}.jsonl"
+            write_text(record, json.dumps({"cpu_time": CPU_TIME, "s": 50.0}) + "\n")
+
+    def run(self, structure, model, strength):
+        """A run whose blocks sway the more the higher they stand; peaks are ``strength`` times the height in cm."""
+        bodies = structure.body_names
+        height = dict(zip(bodies, np.maximum(structure.position[:, 2], 0.0), strict=True))
+        sway = 0.01 * strength * np.sin(2.0 * np.pi * self.time) * np.minimum(self.time, 1.0)
+        slab = 0.02 * np.sin(3.0 * self.time)
+        markers = structure.file.markers
+        displacement = np.zeros((len(self.time), len(markers), 3))
+        for place, marker in enumerate(markers):
+            displacement[:, place, 0] = slab + height[marker.body] * sway
+        still = np.zeros((len(self.time), len(bodies), 4))
+        still[..., 0] = 1.0
+        return xr.Dataset(
+            {
+                "marker_displacement": (("time", "marker", "axis"), displacement, {"units": "m"}),
+                "position": (("time", "body", "axis"), np.zeros((len(self.time), len(bodies), 3))),
+                "orientation": (("time", "body", "quaternion"), still),
+            },
+            coords={
+                "time": self.time,
+                "marker": [marker.name for marker in markers],
+                "body": bodies,
+                "axis": ["x", "y", "z"],
+                "quaternion": ["w", "x", "y", "z"],
+            },
+            attrs={
+                "model": model,
+                "structure": structure.file.name,
+                "motion": "basso-tirreno",
+                "status": "completed",
+                "reason": "",
+                "end_time": float(self.time[-1]),
+                "energy_residual": 1.25e-4 * strength,
+                "numerics_steps": 2000,
+                "blockshake_version": "0.0.7",
+                "source_digest": "0123456789ab",
+                **(
+                    {"numerics_capped_steps": 17, "numerics_max_residual": 3.5e-6}
+                    if model != "ls-dem"
+                    else {}
+                ),
+            },
+        )
+
+
+def end(run, status, reason, time):
+    """Let a run end at a time."""
+    after = run["time"].to_numpy() > time
+    run["marker_displacement"][after] = np.nan
+    run.attrs |= {"status": status, "reason": reason, "end_time": float(time)}
+
+
+def motion(name, place):
+    """A motion's Dataset as `describe_motion` makes it."""
+    time = np.arange(0.0, 4.0, 0.02)
+    sine = np.sin((place + 4.0) * time)
+    periods = np.geomspace(0.04, 4.0, 30)
+    return xr.Dataset(
+        {
+            "acceleration": ("time", PEAK_ACCELERATION * sine),
+            "velocity": ("time", 0.1 * sine),
+            "displacement": ("time", 0.02 * sine),
+            "pseudo_acceleration": ("period", 3.0 / (1.0 + periods)),
+            "target": ("ordinate", [2.5, 1.5]),
+            "target_period": ("ordinate", [0.2, 1.0]),
+            "published": ("ordinate", [1, 0]),
+        },
+        coords={"time": time, "period": periods},
+        attrs={
+            "name": name,
+            "synthetic": 1,
+            "source": "made up",
+            "format": "synthetic",
+            "peak_acceleration": PEAK_ACCELERATION,
+            "peak_velocity": 0.1,
+            "peak_displacement": 0.02,
+            "arias_intensity": 0.3,
+            "significant_duration": 2.5,
+            "significant_end": 3.0,
+            "duration": 4.0,
+        },
+    )
+
+
+def waves():
+    """Wave tests as `wave_tests` makes them; the second is the longer one."""
+    time = np.arange(0.0, 8e-3, 1e-4)
+    arrival = np.array([[4e-4, 9e-4], [7e-4, 1.4e-3]])
+    displacement = 1e-3 * np.maximum(time[None, :, None] - arrival[:, None, :], 0.0)
+    displacement[0, time > 6e-3] = np.nan
+    return xr.Dataset(
+        {
+            "displacement": (("direction", "time", "block"), displacement),
+            "arrival": (("direction", "block"), arrival),
+            "stiffness": ("direction", [1.8e10, 0.9e10]),
+            "wave_speed": ("direction", [3791.3, 2447.1]),
+            "target_wave_speed": ("direction", [3791.4, 2447.4]),
+        },
+        coords={"direction": ["normal", "shear"], "time": time, "block": ["block-1", "block-2"]},
+        attrs={"definition": "half of the step", "step_velocity": 1e-3},
+    )

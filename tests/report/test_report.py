@@ -1,0 +1,211 @@
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+import xarray as xr
+from fake_study import COLLAPSE_REASON, CPU_TIME, MODELS, PEAK_ACCELERATION, FakeStudy
+
+from blockshake.errors import InputError
+from blockshake.report.content import load_content
+from blockshake.report.html import write_html
+from blockshake.report.pdf import write_pdf
+from blockshake.report.report import compose, make_report
+from blockshake.report.result_sections import checks
+
+VOID = {"meta", "link", "br", "img", "hr", "input"}
+CLAIMS = ("validated", "good agreement", "excellent", "accurate", "remarkable")
+
+
+class Page(HTMLParser):
+    """Checks that tags close in order and gathers ids, references and the text."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.ids, self.references, self.tags, self.words = [], [], [], [], []
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append(tag)
+        for name, value in attributes:
+            if name == "id":
+                self.ids.append(value)
+            if name in ("href", "src", "xlink:href", "srcset", "action", "data"):
+                self.references.append(value)
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        self.handle_starttag(tag, attributes)
+        if tag not in VOID:
+            self.open.pop()
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if not {"style", "svg"} & set(self.open):
+            self.words.append(data)
+
+
+@pytest.fixture(scope="module")
+def report(fake, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    paths = folder / "fake.html", folder / "fake.pdf"
+    make_report(fake.study, fake.results, fake.benchmarks, *paths)
+    return paths
+
+
+@pytest.fixture(scope="module")
+def document(fake):
+    """Composed a second time from the same files."""
+    return compose(load_content(fake.study, fake.results, fake.benchmarks))
+
+
+@pytest.fixture(scope="module")
+def page(report):
+    parsed = Page()
+    parsed.feed(report[0].read_text(encoding="utf-8"))
+    parsed.close()
+    return parsed
+
+
+@pytest.fixture(scope="module")
+def text(page):
+    return " ".join(" ".join(page.words).split())
+
+
+def test_tags_close_and_ids_are_unique(page):
+    assert page.open == []
+    assert len(set(page.ids)) == len(page.ids)
+
+
+def test_page_refers_to_nothing_outside_itself(page):
+    inside = {f"#{one}" for one in page.ids}
+    for reference in page.references:
+        assert reference in inside or reference.startswith("data:"), reference
+    assert not {"script", "link", "iframe", "object"} & set(page.tags)
+
+
+def test_style_and_drawings_refer_to_nothing_outside(report, page):
+    html = report[0].read_text(encoding="utf-8")
+    used = set(re.findall(r"url\(([^)]*)\)", html))
+    assert used  # clipped curves are
+    assert used <= {f"#{one}" for one in page.ids}
+    assert "@import" not in html
+
+
+@pytest.mark.parametrize(
+    "title",
+    [
+        "Summary", "Structures", "Ground motions", "Samples", "Contact stiffness", "Displacement of the blocks",
+        "Completion, energy and convergence", "Timings", "Origin", "What is not in this study",
+    ],
+)  # fmt: skip
+def test_sections_and_contents(text, title):
+    assert text.count(title) >= 2  # in the table of contents and over the section
+
+
+def test_synthetic_is_said_where_it_shows(report, text):
+    assert "The measured curves are SYNTHETIC" in text
+    assert "ground motions are synthetic" in text
+    assert "Peak, virtual test (synthetic)" in text
+    assert not [claim for claim in CLAIMS if claim in text.lower()]
+
+
+def test_peaks_are_those_of_the_files(fake, text):
+    for model in MODELS:
+        envelope = xr.load_dataset(fake.results / "envelopes" / model / "configuration-4.nc")
+        peak = envelope["peak"].sel(frame="slab", marker="top-face")
+        shown = " / ".join(f"{1e3 * float(peak.sel(quantile=one)):.1f}" for one in (0.05, 0.5, 0.95))
+        assert f"{shown} (n = {envelope.attrs['counted']})" in text
+        assert text.count(shown) >= 2  # in the summary and among the blocks
+
+
+def test_measured_peak_is_that_of_the_simulated_window(fake, tmp_path):
+    study = {**fake.study, "cases": [{**fake.study["cases"][0], "duration": 1.0}]}
+    case = load_content(study, fake.results, fake.benchmarks).cases["configuration-1"]
+    test = xr.load_dataset(f"{study['cases'][0]['measured']['campaign']}/virtual.nc")
+    along = test["marker_displacement"].sel(axis="x")
+    relative = np.abs(along.sel(marker="block-3-face") - along.sel(marker="slab-face"))
+    shown = float(case.measured["peak"].sel(frame="slab", marker="block-3-face"))
+    assert shown == float(relative.sel(time=slice(0.0, 1.0 + 1e-9)).max())
+    assert shown < float(relative.max())
+
+
+def test_coverage_never_stands_alone(fake, text):
+    compared = xr.load_dataset(fake.results / "comparisons" / "ls-dem" / "configuration-1.nc").sel(
+        marker="block-2-face"
+    )
+    reference = " / ".join(f"{100 * float(one):.1f}" for one in compared["reference"])
+    width = f"{1e3 * float(compared['band_width']):.1f}"
+    assert f"{100 * float(compared['coverage']):.1f} {reference} {width}" in text
+
+
+def test_samples_that_did_not_complete_are_listed_with_their_reason(text):
+    assert f"configuration-4 NSCD rigid 2 collapsed 1 {COLLAPSE_REASON}" in text
+    assert "configuration-4 NSCD rigid 4 not-converged" in text
+    assert "36 runs: 34 completed, 1 collapsed, 1 failed" in text
+    assert "NSCD rigid: 5 samples contribute until" in text
+    assert "1 failed samples are left out" in text
+
+
+def test_fewer_samples_of_a_model_are_said_first(text):
+    assert text.index("NSCD rigid ran 6 of the 10 samples on configuration-4") < text.index("Table 1.")
+
+
+def test_figures_of_motion_computation_and_cost(text):
+    assert f"{2.0 * PEAK_ACCELERATION:.2f}" in text  # scaled by the case
+    assert "3.50e-06" in text  # residual of NSCD
+    simulated = 10 * 2.0
+    assert f"{simulated:.0f} {CPU_TIME:.1f} 50 {CPU_TIME / simulated:.2f}" in text
+
+
+def test_origin_holds_configuration_digests_and_seed(text):
+    assert "0123456789ab (blockshake 0.0.7)" in text
+    assert "seed: 77" in text
+    assert "friction.concrete.concrete" in text
+    assert "snakemake -c2 reports/fake.html" in text
+
+
+def test_figures_and_tables_are_counted(document):
+    for kind in ("figure", "table"):
+        blocks = [block for section in document.sections for block in section.blocks if block.kind == kind]
+        assert [block.number for block in blocks] == list(range(1, len(blocks) + 1))
+        assert len(blocks) > 8
+
+
+def test_rows_are_as_long_as_their_header(document):
+    tables = [block for section in document.sections for block in section.blocks if block.kind == "table"]
+    for table in tables:
+        assert {len(table.header), len(table.align)} == {len(row) for row in table.rows}
+
+
+def test_pdf_has_pages_and_vector_figures(report):
+    pdf = report[1].read_bytes()
+    assert pdf.startswith(b"%PDF")
+    assert len(re.findall(rb"/Type\s*/Page\b", pdf)) > 8
+    assert b"CreationDate" not in pdf
+    assert b"/Subtype/Image" not in pdf.replace(b" ", b"")
+
+
+def test_same_results_same_bytes(document, report, tmp_path):
+    again = tmp_path / "fake.html", tmp_path / "fake.pdf"
+    write_html(again[0], document)
+    write_pdf(again[1], document)
+    for first, second in zip(report, again, strict=True):
+        assert first.read_bytes() == second.read_bytes()
+
+
+def test_complete_study_says_that_all_completed(fake):
+    study = {**fake.study, "cases": fake.study["cases"][:1]}
+    section = checks(load_content(study, fake.results, fake.benchmarks))
+    assert section.blocks[0].text == "Every sample of every case and model completed."
+
+
+def test_missing_results_are_named(tmp_path):
+    fake = FakeStudy(tmp_path, size=10)
+    missing = fake.results / "envelopes" / "ls-dem" / "configuration-1.nc"
+    missing.unlink()
+    with pytest.raises(InputError, match=r"envelopes/ls-dem/configuration-1\.nc"):
+        make_report(fake.study, fake.results, fake.benchmarks, tmp_path / "a.html", tmp_path / "a.pdf")
+    assert not (tmp_path / "a.html").exists()
