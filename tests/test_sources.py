@@ -16,7 +16,6 @@ WATCHED = {
     "make_envelope": sources.ENVELOPE,
     "compare_with_measurement": sources.COMPARISON,
     "make_report": sources.REPORT,
-    "compile_kernels": sources.KERNELS,
     "climb_ladder": sources.LADDER,
     "make_virtual_campaign": sources.VIRTUAL_CAMPAIGN,
 }
@@ -88,9 +87,15 @@ def test_batch_watches_its_own_solver_and_not_the_other(model):
     assert missed == []
 
 
+@pytest.mark.parametrize("model", ["ls-dem", "nscd-rigid"])
+def test_kernels_marked_as_compiled_are_those_a_run_watches(model):
+    assert set(sources.kernel_sources(model)) <= set(sources.run_sources(model))
+    assert set(sources.kernel_sources("ls-dem")) <= set(sources.STIFFNESS)
+
+
 def test_every_script_is_listed():
     scripts = {path.stem for path in (ROOT / "workflow" / "scripts").glob("*.py")}
-    assert scripts == {*WATCHED, "simulate_batch"}
+    assert scripts == {*WATCHED, "simulate_batch", "compile_kernels"}
 
 
 def test_every_listed_source_exists():

@@ -166,9 +166,8 @@ def _estimate(options):
     from blockshake.study.cost import estimate_hours
 
     hours = estimate_hours(load_config(options.config))
-    print(
-        f"{options.config}: about {hours:.1f} CPU hours on this machine, {hours / options.cores:.1f} h on {options.cores} cores"
-    )
+    spread = f"{hours / options.cores:.1f} h on {options.cores} cores"
+    print(f"{options.config}: about {hours:.1f} CPU hours on this machine, {spread}")
 
 
 def _parameters(options):

@@ -29,9 +29,14 @@ COMPARISON = (*_STATISTICS, "study/coverage.py", "measurement/campaign.py", "mea
 REPORT = (*_STATISTICS, *DESIGN, "geometry", "dynamics", "measurement", "report")
 
 
+def kernel_sources(model):
+    """Sources of the kernels of one model."""
+    return (*_COMMON, _SOLVERS[model])
+
+
 def run_sources(model):
     """Sources that make a run of one model."""
-    return (*_COMMON, _SOLVERS[model], "measurement", "study/simulation.py")
+    return (*kernel_sources(model), "measurement", "study/simulation.py")
 
 
 def batch_sources(model):

@@ -12,7 +12,9 @@ from blockshake.solvers.nscd.parameters import NscdParameters
 
 PITCH = 1e-5  # rad; the slab's top rises by 4 um under the block's edge, within the 0.1 mm of an equilibrium
 SOLVERS = {
-    "ls-dem": lambda structure, motion, times: simulate_ls_dem(structure, motion, LsDemParameters(), times, 5e-5),
+    "ls-dem": lambda structure, motion, times: simulate_ls_dem(
+        structure, motion, LsDemParameters(), times, 5e-5
+    ),
     "nscd": lambda structure, motion, times: simulate_nscd(structure, motion, NscdParameters(), times, 1e-3),
 }
 
@@ -21,7 +23,9 @@ SOLVERS = {
 def test_start_of_displacement_is_taken_off_and_of_pitch_is_not(solver):
     structure = load_structure("configuration-1")
     time = np.linspace(0.0, 1.0, 11)
-    motion = ground_motion("tilted", time, {"x": np.full(11, 0.3), "pitch_y": np.full(11, PITCH)}, "displacement")
+    motion = ground_motion(
+        "tilted", time, {"x": np.full(11, 0.3), "pitch_y": np.full(11, PITCH)}, "displacement"
+    )
     run = SOLVERS[solver](structure, motion, np.linspace(0.0, 0.2, 41))
     assert run.status == "completed"
     np.testing.assert_allclose(run.position[:, 0], structure.position[0] + np.zeros((41, 3)), atol=1e-15)

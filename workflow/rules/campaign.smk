@@ -8,7 +8,7 @@ rule make_virtual_campaign:
             "structures", CASES[wildcards.case]["structure"]
         ),
         motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
-        kernels=ancient("results/kernels.json"),
+        kernels=kernels("ls-dem"),
     output:
         test="results/{study}/virtual-campaign/{case}/virtual.nc",
         campaign="results/{study}/virtual-campaign/{case}/campaign.yaml",

@@ -67,6 +67,26 @@ def batch_files(wildcards):
     )
 
 
+def kernels(model):
+    """Mark that a model's kernels are compiled.
+
+    Its name holds their digest, so that it goes out of date just when the model's runs do. Snakemake's `ancient`
+    would not do: with it a study whose compilation is due runs that and nothing else (issue 4166).
+    """
+    return (
+        f"results/kernels/{model}-{source_digest(*sources.kernel_sources(model))}.json"
+    )
+
+
+def stiffness_file(wildcards):
+    """Calibrated stiffness of the samples, for the model that has any: an edit of LS-DEM reruns no NSCD."""
+    return (
+        f"results/{wildcards.study}/stiffness.csv"
+        if wildcards.model == "ls-dem"
+        else []
+    )
+
+
 def case_definition(wildcards):
     """What a run of a case depends on, of its entry in the configuration."""
     return {
@@ -94,3 +114,4 @@ wildcard_constraints:
     case="|".join(CASES),
     motion="|".join(MOTIONS),
     batch=r"\d{3}-\d{3}",
+    digest="[0-9a-f]{12}",

@@ -1,13 +1,13 @@
 rule compile_kernels:
-    """Both solvers compiled once, before jobs that would all do it."""
+    """A solver compiled once, before jobs that would all do it."""
     output:
-        "results/kernels.json",
+        "results/kernels/{model}-{digest}.json",
     log:
-        "logs/compile_kernels.log",
+        "logs/compile_kernels/{model}-{digest}.log",
+    benchmark:
+        "benchmarks/compile_kernels/{model}-{digest}.jsonl"
     conda:
         "../envs/blockshake.yaml"
-    params:
-        source=source_digest(*sources.KERNELS),
     script:
         "../scripts/compile_kernels.py"
 
@@ -24,8 +24,8 @@ rule simulate_batch:
         ),
         motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
         design="results/{study}/design.csv",
-        stiffness="results/{study}/stiffness.csv",
-        kernels=ancient("results/kernels.json"),
+        stiffness=stiffness_file,
+        kernels=lambda wildcards: kernels(wildcards.model),
     output:
         "results/{study}/runs/{model}/{case}/{batch}.nc",
     log:
@@ -56,7 +56,7 @@ rule climb_ladder:
             definition("structures", case["structure"]) for case in CASES.values()
         ],
         motions=[definition("motions", motion) for motion in LADDER_MOTIONS],
-        kernels=ancient("results/kernels.json"),
+        kernels=kernels("ls-dem"),
     output:
         "results/{study}/ladder.json",
     log:

@@ -3,7 +3,7 @@ rule calibrate_stiffness:
     input:
         design="results/{study}/design.csv",
         tower="config/structures/configuration-2.yaml",
-        kernels=ancient("results/kernels.json"),
+        kernels=kernels("ls-dem"),
     output:
         stiffness="results/{study}/stiffness.csv",
         waves="results/{study}/waves.nc",

@@ -3,4 +3,4 @@ from blockshake.log import logging_to
 from blockshake.study.compile import compile_kernels
 
 with logging_to(snakemake.log[0]):
-    write_json(snakemake.output[0], compile_kernels())
+    write_json(snakemake.output[0], compile_kernels(snakemake.wildcards.model))

@@ -7,7 +7,7 @@ from blockshake.study.ensemble import gather_ensemble
 
 with logging_to(snakemake.log[0]) as say:
     case = snakemake.params.case
-    rows = batch_rows(snakemake.input.design, snakemake.input.stiffness, snakemake.wildcards.batch)
+    rows = batch_rows(snakemake.wildcards.batch, snakemake.input.design, snakemake.input.stiffness)
     runs = simulate_samples(
         case,
         snakemake.wildcards.model,

@@ -66,15 +66,17 @@ def simulate_samples(case, model, time_step, output_rate, rows, linked, store, s
     return runs
 
 
-def batch_rows(design, stiffness, batch):
-    """Sampled values of a batch, stiffness beside them.
+def batch_rows(batch, design, stiffness):
+    """Sampled values of a batch, contact stiffness beside them where the model has any.
 
     Parameters
     ----------
-    design, stiffness : str or path
-        CSV tables by sample.
     batch : str
         First and last sample, such as ``010-019``.
+    design : str or path
+        CSV table by sample.
+    stiffness : str, path or empty
+        The same, for a model with contact stiffness.
 
     Returns
     -------
@@ -82,7 +84,8 @@ def batch_rows(design, stiffness, batch):
         Index the sample, columns the dotted names.
     """
     first, last = (int(part) for part in batch.split("-"))
-    rows = pd.concat([load_design(design), load_design(stiffness)], axis=1)
+    tables = [load_design(path) for path in (design, stiffness) if path]
+    rows = pd.concat(tables, axis=1)
     if last not in rows.index:
         raise InputError(str(design), f"sample {last}", f"expected samples 0 to {rows.index[-1]}")
     return rows.loc[first:last]
