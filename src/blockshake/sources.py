@@ -1,16 +1,16 @@
 """Which sources make which result: what a workflow rule watches so that an edit reruns what it touches."""
 
-_COMMON = ("errors.py", "files.py", "geometry", "dynamics")
+_ROOT = ("errors.py", "files.py", "validation.py")
+_COMMON = (*_ROOT, "geometry", "dynamics")
 _SOLVERS = {"ls-dem": "solvers/ls_dem", "nscd-rigid": "solvers/nscd"}
-_STATISTICS = ("errors.py", "files.py", "study/ensemble.py", "study/envelope.py", "study/distributions.py")
+_STATISTICS = (*_ROOT, "study/ensemble.py", "study/envelope.py", "study/distributions.py")
 
 KERNELS = (*_COMMON, "solvers", "measurement", "study")
 """Every floor that holds kernels: the report, which has none, may change without compiling anew."""
 
 MOTION = _COMMON
 DESIGN = (
-    "errors.py",
-    "files.py",
+    *_ROOT,
     "study/distributions.py",
     "study/sampling.py",
     "study/correlation_control.py",

@@ -3,20 +3,16 @@
 from itertools import pairwise
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
-from blockshake.errors import InputError
 from blockshake.files import load_yaml
+from blockshake.validation import Strict, validated
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Share = Annotated[float, Field(gt=0, lt=1)]
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Ordinate(_Strict):
+class Ordinate(Strict):
     """One point of the target response spectrum."""
 
     period: Positive = Field(description="[s]")
@@ -24,7 +20,7 @@ class Ordinate(_Strict):
     published: bool = Field(False, description="from a publication; otherwise inferred")
 
 
-class Source(_Strict):
+class Source(Strict):
     """Point source that gives the Fourier spectrum its first shape."""
 
     moment_magnitude: Annotated[float, Field(gt=0, lt=10)]
@@ -34,7 +30,7 @@ class Source(_Strict):
     kappa: Positive = Field(description="high-frequency decay exp(-pi kappa f) [s]")
 
 
-class Envelope(_Strict):
+class Envelope(Strict):
     """Saragoni-Hart window of the noise."""
 
     significant_duration: Positive = Field(description="between 5 and 95 % of the window's energy [s]")
@@ -42,7 +38,7 @@ class Envelope(_Strict):
     level: Share = Field(description="height at the window's end as a share of the peak [1]")
 
 
-class SyntheticMotion(_Strict):
+class SyntheticMotion(Strict):
     """The whole file."""
 
     name: str
@@ -75,12 +71,4 @@ def load_synthetic(path):
     InputError
         Missing file, unknown or missing key, value of the wrong type or out of range.
     """
-    try:
-        return SyntheticMotion.model_validate(load_yaml(path))
-    except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        if first["type"] == "extra_forbidden":
-            raise InputError(path, key, "unknown key of a synthetic motion") from None
-        message = first["msg"].removeprefix("Value error, ")
-        raise InputError(path, key, message[0].lower() + message[1:]) from None
+    return validated(SyntheticMotion, load_yaml(path), path)

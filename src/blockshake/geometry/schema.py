@@ -2,7 +2,9 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
+
+from blockshake.validation import Strict
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
@@ -11,11 +13,7 @@ Quaternion = tuple[Finite, Finite, Finite, Finite]
 Name = Annotated[str, Field(min_length=1, pattern=r"^[^\s./]+$")]
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Material(_Strict):
+class Material(Strict):
     """Bulk properties of a material."""
 
     density: Positive = Field(description="mass density [kg/m3]")
@@ -26,7 +24,7 @@ class Material(_Strict):
     )
 
 
-class Shape(_Strict):
+class Shape(Strict):
     """A box by its full edge lengths, chamfered or sharp, or a closed triangulated mesh."""
 
     box: tuple[Positive, Positive, Positive] | None = Field(
@@ -48,7 +46,7 @@ class Shape(_Strict):
         return self
 
 
-class Body(_Strict):
+class Body(Strict):
     """One rigid body: where it starts and how it moves then."""
 
     name: Name
@@ -64,14 +62,14 @@ class Body(_Strict):
     density: Positive | None = Field(None, description="of this body instead of its material's [kg/m3]")
 
 
-class Friction(_Strict):
+class Friction(Strict):
     """Coulomb's coefficient of a pair of materials."""
 
     pair: tuple[str, str]
     coefficient: Annotated[float, Field(ge=0, allow_inf_nan=False)]
 
 
-class Stopper(_Strict):
+class Stopper(Strict):
     """A one-sided elastic stop fixed to the driven body."""
 
     body: str
@@ -81,7 +79,7 @@ class Stopper(_Strict):
     stiffness: Positive = Field(description="force per closure beyond the gap [N/m]")
 
 
-class Marker(_Strict):
+class Marker(Strict):
     """A point of a body whose displacement is measured."""
 
     name: Name
@@ -89,7 +87,7 @@ class Marker(_Strict):
     position: Vector = Field(description="body frame [m]")
 
 
-class Accelerometer(_Strict):
+class Accelerometer(Strict):
     """An accelerometer fixed to a body, one channel an axis."""
 
     name: Name
@@ -98,7 +96,7 @@ class Accelerometer(_Strict):
     axes: tuple[Literal["x", "y", "z"], ...] = Field(min_length=1)
 
 
-class StructureFile(_Strict):
+class StructureFile(Strict):
     """The whole file."""
 
     name: str

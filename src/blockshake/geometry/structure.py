@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
-from pydantic import ValidationError
 
 from blockshake.errors import InputError
 from blockshake.files import load_yaml, shipped, shipped_names
@@ -20,6 +19,8 @@ from blockshake.geometry.polyhedron import (
     triangles,
 )
 from blockshake.geometry.schema import StructureFile
+from blockshake.geometry.structure_file import check_names, friction_matrix, replace_into, unit_quaternions
+from blockshake.validation import validated
 
 _DEEPEST_OVERLAP = 1e-3  # m, contract; deeper is a wrong structure, not an initial penetration
 _TOUCHING = 1e-4  # m, contract: an equilibrium within this of the given poses is the start
@@ -121,21 +122,18 @@ def load_structure(source, parameters=None):
             )
     mapping = copy.deepcopy(load_yaml(path))
     for key, value in (parameters or {}).items():
-        _replace(mapping, key, value, str(source))
+        replace_into(mapping, key, value, str(source))
     return build_structure(mapping, str(source), path.parent)
 
 
 def build_structure(mapping, source, folder):
     """Structure from the mapping of a structure file; ``folder`` is where its meshes lie."""
-    try:
-        file = StructureFile.model_validate(mapping)
-    except ValidationError as error:
-        raise _worded(error, mapping, source) from None
-    _check_names(file, source)
+    file = validated(StructureFile, mapping, source)
+    check_names(file, source)
     solids = {name: _solid(name, shape, source, folder) for name, shape in file.shapes.items()}
     mass, inertia = _masses(file, solids)
     position = np.array([body.position for body in file.bodies])
-    orientation = _unit_quaternions(file, source)
+    orientation = unit_quaternions(file, source)
     return Structure(
         file=file,
         source=source,
@@ -147,124 +145,9 @@ def build_structure(mapping, source, folder):
         orientation=orientation,
         velocity=np.array([body.velocity for body in file.bodies]),
         angular_velocity=np.array([body.angular_velocity for body in file.bodies]),
-        friction=_friction(file, source),
+        friction=friction_matrix(file, source),
         touching=_touching(file, source, solids, position, orientation),
     )
-
-
-def _replace(mapping, key, value, source):
-    """Set one dotted key of a structure mapping; friction pairs in either order."""
-    parts = key.split(".")
-    if parts[0] == "friction":
-        for entry in mapping.get("friction", []):
-            if (
-                len(parts) == 3
-                and isinstance(entry, dict)
-                and sorted(entry.get("pair", ())) == sorted(parts[1:])
-            ):
-                entry["coefficient"] = value
-                return
-        raise InputError(source, key, "expected friction.MATERIAL.MATERIAL of a pair in the file")
-    place = mapping
-    for part in parts[:-1]:
-        if isinstance(place, list):
-            items = [(index, item) for index, item in enumerate(place) if isinstance(item, dict)]
-            place = next((item for index, item in items if item.get("name", str(index)) == part), None)
-        elif isinstance(place, dict):
-            place = place.get(part)
-        if not isinstance(place, (dict, list)):
-            raise InputError(source, key, f"expected a parameter of this structure; it has no '{part}' here")
-    if not isinstance(place, dict):
-        raise InputError(source, key, "expected a parameter of this structure")
-    place[parts[-1]] = value
-
-
-def _worded(error, mapping, source):
-    """First of pydantic's complaints as one line that names the key."""
-    first = error.errors()[0]
-    place, words = mapping, []
-    for part in first["loc"]:
-        if isinstance(place, (list, tuple)) and isinstance(part, int) and part < len(place):
-            place = place[part]
-            words.append(str(place.get("name", part)) if isinstance(place, dict) else str(part))
-        else:
-            place = place.get(part) if isinstance(place, dict) else None
-            words.append(str(part))
-    message = first["msg"].removeprefix("Value error, ")
-    if first["type"] == "extra_forbidden":
-        message = "unknown key; expected one of the structure file's keys"
-    elif first["type"] == "missing":
-        message = "missing key"
-    elif "input" in first and not isinstance(first["input"], dict):
-        message = f"{message[0].lower()}{message[1:]}, not {first['input']!r}"
-    return InputError(source, ".".join(words), message)
-
-
-def _check_names(file, source):
-    for kind in ("bodies", "markers", "accelerometers"):
-        names = [item.name for item in getattr(file, kind)]
-        for name in names:
-            if names.count(name) > 1:
-                raise InputError(source, f"{kind}.{name}", "expected every name once")
-    bodies = {body.name for body in file.bodies}
-    for body in file.bodies:
-        for key, known in (("shape", file.shapes), ("material", file.materials)):
-            if getattr(body, key) not in known:
-                raise InputError(
-                    source,
-                    f"bodies.{body.name}.{key}",
-                    f"expected one of {', '.join(known)}, not '{getattr(body, key)}'",
-                )
-        if body.driven and any(body.velocity + body.angular_velocity):
-            raise InputError(
-                source, f"bodies.{body.name}", "expected no velocity of a driven body: it follows the motion"
-            )
-    for kind in ("stoppers", "markers", "accelerometers"):
-        for index, item in enumerate(getattr(file, kind)):
-            if item.body not in bodies:
-                name = getattr(item, "name", index)
-                raise InputError(
-                    source, f"{kind}.{name}.body", f"expected a body of this structure, not '{item.body}'"
-                )
-    if file.stoppers and not any(body.driven for body in file.bodies):
-        raise InputError(source, "stoppers", "expected a driven body to fix the stoppers to")
-
-
-def _unit_quaternions(file, source):
-    for body in file.bodies:
-        if abs(np.linalg.norm(body.orientation) - 1.0) > 1e-3:
-            raise InputError(
-                source, f"bodies.{body.name}.orientation", "expected a unit quaternion [w, x, y, z]"
-            )
-    quaternions = np.array([body.orientation for body in file.bodies])
-    return quaternions / np.linalg.norm(quaternions, axis=1)[:, None]
-
-
-def _friction(file, source):
-    known = {}
-    for entry in file.friction:
-        for material in entry.pair:
-            if material not in file.materials:
-                raise InputError(
-                    source, "friction", f"expected pairs of this file's materials, not '{material}'"
-                )
-        key = tuple(sorted(entry.pair))
-        if key in known:
-            raise InputError(source, f"friction.{entry.pair[0]}.{entry.pair[1]}", "expected every pair once")
-        known[key] = entry.coefficient
-    n_bodies = len(file.bodies)
-    friction = np.full((n_bodies, n_bodies), np.nan)
-    for a, body_a in enumerate(file.bodies):
-        for b, body_b in enumerate(file.bodies):
-            if a == b or (body_a.driven and body_b.driven):
-                continue
-            key = tuple(sorted((body_a.material, body_b.material)))
-            if key not in known:
-                raise InputError(
-                    source, f"friction.{key[0]}.{key[1]}", "missing; expected a coefficient for this pair"
-                )
-            friction[a, b] = known[key]
-    return friction
 
 
 def _solid(name, shape, source, folder):

@@ -5,26 +5,23 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import xarray as xr
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field
 
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
+from blockshake.validation import Strict, validated
 
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Sensors(_Strict):
+class Sensors(Strict):
     """Standard deviations of the readings."""
 
     marker_noise: NotNegative = Field(1e-4, description="[m]")
     accelerometer_noise: NotNegative = Field(0.02, description="[m/s2]")
 
 
-class MeasuredTest(_Strict):
+class MeasuredTest(Strict):
     """One test of the list: what was commanded, where it was recorded, what it may be used for."""
 
     name: str
@@ -34,7 +31,7 @@ class MeasuredTest(_Strict):
     role: Literal["fit", "select", "sealed"]
 
 
-class CampaignFile(_Strict):
+class CampaignFile(Strict):
     """The file ``campaign.yaml``."""
 
     name: str
@@ -74,13 +71,7 @@ def load_campaign(folder):
     """
     folder = Path(folder)
     path = folder / "campaign.yaml"
-    mapping = load_yaml(path)
-    try:
-        file = CampaignFile.model_validate(mapping)
-    except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        raise InputError(path, key, first["msg"].lower()) from None
+    file = validated(CampaignFile, load_yaml(path), path)
     tests = {test.name: test for test in file.tests}
     if len(tests) < len(file.tests):
         raise InputError(path, "tests", "expected every test's name once")

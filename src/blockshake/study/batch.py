@@ -9,13 +9,17 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import content_digest, write_dataset
 from blockshake.geometry.structure import load_structure
+from blockshake.measurement.markers import driven_marker
+from blockshake.study.ensemble import gather_ensemble
 from blockshake.study.sample_parameters import sample_parameters
 from blockshake.study.sampling import load_design
 from blockshake.study.simulation import simulate
 
+DECIMALS = 7  # of a metre kept in histories: 0.1 um, a thousandth of a marker's noise
+
 
 def simulate_samples(case, model, time_step, output_rate, rows, linked, store, source, progress):
-    """Runs of some samples of a case, taken from the store where they are there.
+    """Ensembles of one sample each, simulated where the store has not got them.
 
     Parameters
     ----------
@@ -25,11 +29,11 @@ def simulate_samples(case, model, time_step, output_rate, rows, linked, store, s
     time_step, output_rate : float
         [s], [Hz]
     rows : pandas.DataFrame
-        Sampled values, index the sample, stiffness columns included.
+        Sampled values, index the sample, contact stiffness included.
     linked : dict of str to str
         As in `sample_parameters`.
     store : str or path
-        Folder of finished runs, named by the digest of all that made them. A run goes there
+        Folder of finished samples, named by the digest of all that made them. A sample goes there
         at once, whole or not at all.
     source : str
         Digest of the sources that compute.
@@ -38,32 +42,37 @@ def simulate_samples(case, model, time_step, output_rate, rows, linked, store, s
 
     Returns
     -------
-    list of xarray.Dataset
-        Run files' content in the order of ``rows``.
+    list of Path
+        Files in the store, in the order of ``rows``: what `gather_ensemble` keeps of a run.
     """
     motion = load_motion(case["motion"], case["scale"])
     structure = load_structure(case["structure"])
-    runs = []
+    finished = []
     for sample, row in rows.iterrows():
         parameters = sample_parameters(row, case["structure"], linked)
         key = content_digest(
             source, model, structure.file.model_dump(), *(part.tobytes() for part in motion.table),
-            case["duration"], output_rate, time_step, parameters,
+            case["duration"], output_rate, time_step, parameters, int(sample), row.to_dict(),
         )  # fmt: skip
         path = Path(store) / f"{key}.nc"
-        if path.exists():
-            run, how = xr.load_dataset(path), "kept"
-        else:
+        how = "kept"
+        if not path.exists():
             run = simulate(
                 case["structure"], motion, model, parameters,
                 time_step=time_step, duration=case["duration"], output_rate=output_rate, accelerometers=False,
             )  # fmt: skip
-            write_dataset(path, run)
+            write_dataset(path, gather_ensemble([run], [sample], rows, driven_marker(structure)), DECIMALS)
             how = "simulated"
-        outcome = f"{run.attrs['status']} {run.attrs['reason']}".rstrip()
+        outcome = sample_outcome(path)
         progress(f"{structure.file.name} {model} sample {sample}, {how}: {outcome}")
-        runs.append(run)
-    return runs
+        finished.append(path)
+    return finished
+
+
+def sample_outcome(path):
+    """Status and reason of a stored sample, as one line."""
+    with xr.open_dataset(path) as kept:
+        return f"{kept['status'].item()} {kept['reason'].item()}".rstrip()
 
 
 def batch_rows(batch, design, stiffness):

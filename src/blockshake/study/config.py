@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic import Field, field_validator
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
@@ -13,16 +13,13 @@ from blockshake.measurement.campaign import load_campaign
 from blockshake.study.distributions import TABLE_2, Lognormal, load_distributions
 from blockshake.study.sampling import SMALLEST_SIZE
 from blockshake.study.simulation import MODELS
+from blockshake.validation import Strict, validated
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 ModelName = Literal[tuple(MODELS)]
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Ensemble(_Strict):
+class Ensemble(Strict):
     """The samples: how many, of which variables, how correlated."""
 
     size: int = Field(ge=SMALLEST_SIZE, description="samples [1]")
@@ -41,20 +38,20 @@ class Ensemble(_Strict):
         return load_distributions(mapping, "ensemble")
 
 
-class Model(_Strict):
+class Model(Strict):
     """One solver in the study."""
 
     time_step: Positive = Field(description="[s]")
 
 
-class Measured(_Strict):
+class Measured(Strict):
     """The measured test that a case is compared with."""
 
     campaign: str = Field(description="folder of the campaign")
     test: str = Field(description="name of the test in it")
 
 
-class Case(_Strict):
+class Case(Strict):
     """One structure under one motion."""
 
     structure: str = Field(description="shipped name or file")
@@ -70,7 +67,7 @@ class Case(_Strict):
         return Path(self.structure).stem
 
 
-class Ladder(_Strict):
+class Ladder(Strict):
     """The intensities that are climbed to find each case's scale."""
 
     motions: tuple[str, ...]
@@ -82,7 +79,7 @@ class Ladder(_Strict):
     )
 
 
-class StudyConfig(_Strict):
+class StudyConfig(Strict):
     """The whole file."""
 
     name: str = Field(pattern=r"^[a-z0-9-]+$", description="names the folder of results and the report")
@@ -116,10 +113,7 @@ def load_config(path):
 
 def check_config(mapping, where):
     """Configuration from a mapping, checked with all that it names; ``where`` is its file."""
-    try:
-        config = StudyConfig.model_validate(mapping)
-    except ValidationError as error:
-        raise _worded(error, where) from None
+    config = validated(StudyConfig, mapping, where)
     names = [case.name for case in config.cases]
     for index, case in enumerate(config.cases):
         key = f"cases.{index}"
@@ -142,14 +136,3 @@ def check_config(mapping, where):
     for motion in config.ladder.motions:
         load_motion(motion)
     return config
-
-
-def _worded(error, where):
-    first = error.errors()[0]
-    key = ".".join(str(part) for part in first["loc"])
-    if first["type"] == "extra_forbidden":
-        return InputError(where, key, "unknown key; expected one of the study's keys")
-    if first["type"] == "missing":
-        return InputError(where, key, "missing key")
-    message = first["msg"].removeprefix("Value error, ")
-    return InputError(where, key, f"{message[0].lower()}{message[1:]}, not {first['input']!r}")

@@ -4,11 +4,12 @@ import re
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field
 from scipy.special import ndtr, ndtri
 
 from blockshake.errors import InputError
 from blockshake.quantities import PHYSICAL
+from blockshake.validation import Strict, validated
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
@@ -22,14 +23,12 @@ _WORD = r"[^\s./]+"
 _NAME = re.compile(rf"friction\.({_WORD})\.({_WORD})|materials\.{_WORD}\.({'|'.join(_PROPERTIES)})")
 
 
-class Lognormal(BaseModel):
+class Lognormal(Strict):
     """A positive variable whose logarithm is normal, given by its mean and coefficient of variation.
 
     The two parameters of the logarithm follow exactly: variance ``ln(1 + cov^2)`` and mean
     ``ln(mean) - variance / 2``.
     """
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
     distribution: Literal["lognormal"] = "lognormal"
     mean: Positive = Field(description="mean of the variable itself, SI")
@@ -126,23 +125,8 @@ def load_distributions(mapping, where):
                 where, f"distributions.{name}", f"expected every pair once; it is {seen[identity]} too"
             )
         seen[identity] = name
-        variables[name] = _lognormal(entry, where, f"distributions.{name}")
+        variables[name] = validated(Lognormal, entry, where, f"distributions.{name}")
     return variables
-
-
-def _lognormal(entry, where, key):
-    try:
-        return Lognormal.model_validate(entry)
-    except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join([key, *(str(part) for part in first["loc"])])
-        if first["type"] == "extra_forbidden":
-            message = "unknown key; expected distribution, mean and cov"
-        elif first["type"] == "missing":
-            message = "missing key"
-        else:
-            message = f"{first['msg'][0].lower()}{first['msg'][1:]}, not {first['input']!r}"
-        raise InputError(where, place, message) from None
 
 
 def parameter_unit(name):

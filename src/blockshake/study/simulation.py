@@ -4,7 +4,6 @@ import json
 
 import numpy as np
 import xarray as xr
-from pydantic import ValidationError
 
 import blockshake
 from blockshake.dynamics.system import ENERGY_TERMS
@@ -18,6 +17,7 @@ from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.nscd.driver import simulate_nscd
 from blockshake.solvers.nscd.parameters import NscdParameters
 from blockshake.sources import run_sources
+from blockshake.validation import validated
 
 # model name: solver, its numerical parameters, their prefix, its time step when nothing is said [s]
 MODELS = {
@@ -124,13 +124,7 @@ def split_parameters(parameters, model):
                 raise InputError(
                     "--set", key, f"expected one of {other_prefix}.{{{', '.join(other.model_fields)}}}"
                 )
-    try:
-        return physical, schema(**own)
-    except ValidationError as error:
-        first = error.errors()[0]
-        raise InputError(
-            "--set", f"{prefix}.{first['loc'][0]}", f"{first['msg'].lower()}, not {first['input']!r}"
-        ) from None
+    return physical, validated(schema, own, "--set", prefix)
 
 
 def effective_parameters(structure, model, numerical):

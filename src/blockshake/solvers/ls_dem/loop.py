@@ -15,10 +15,10 @@ from blockshake.solvers.ls_dem.contact import (
     DAMPING,
     ELASTIC,
     FRICTION,
-    Kinematics,
     Loads,
     contact_forces_into,
 )
+from blockshake.solvers.ls_dem.relative_motion import Kinematics
 from blockshake.solvers.ls_dem.stoppers import stopper_forces_into
 
 COMPLETED, COLLAPSED, DIVERGED = 0, 1, 2

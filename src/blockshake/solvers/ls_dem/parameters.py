@@ -2,15 +2,15 @@
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
+
+from blockshake.validation import Strict
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 
-class LsDemParameters(BaseModel):
+class LsDemParameters(Strict):
     """Numerical parameters of LS-DEM; each is set as ``ls_dem.NAME``."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
     normal_stiffness: Positive = Field(
         2.16e10,

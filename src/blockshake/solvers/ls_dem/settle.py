@@ -6,8 +6,9 @@ from blockshake.dynamics.free_motion import spin_into
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
 from blockshake.jit import kernel
 from blockshake.solvers.ls_dem.candidates import find_candidates, lists_expired
-from blockshake.solvers.ls_dem.contact import Kinematics, Loads, contact_forces_into
+from blockshake.solvers.ls_dem.contact import Loads, contact_forces_into
 from blockshake.solvers.ls_dem.loop import clear_loads
+from blockshake.solvers.ls_dem.relative_motion import Kinematics
 
 _NEAR = 1e-4  # m, contract: an equilibrium farther than this from the given poses is not the start
 _AT_REST = 1e-9  # out-of-balance force over weight; the thump it leaves is as small

@@ -2,15 +2,15 @@
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
+
+from blockshake.validation import Strict
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 
-class NscdParameters(BaseModel):
+class NscdParameters(Strict):
     """Numerical parameters of nonsmooth contact dynamics; each is set as ``nscd.NAME``."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
     theta: Annotated[float, Field(ge=0.5, le=1.0)] = Field(
         0.5, description="weight of the velocity at the end of a step [1]; 0.5 conserves energy, Jean (1999)"
