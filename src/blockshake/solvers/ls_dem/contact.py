@@ -80,13 +80,14 @@ def normal_force(phi, closing, k_n, gamma_n):
 
 
 @kernel
-def _touching_area(packets, first, last, R, d, half, chamfer):
+def _touching_area(packets, first, last, R, frame, side, half, chamfer, shape):
     """Area of the listed nodes that lie inside the other body [m2]."""
-    a, b, c = half[0], half[1], half[2]
+    a, b, c, leg = half[shape, 0], half[shape, 1], half[shape, 2], chamfer[shape]
     r00, r01, r02, r10, r11, r12, r20, r21, r22 = (
-        R[0, 0], R[0, 1], R[0, 2], R[1, 0], R[1, 1], R[1, 2], R[2, 0], R[2, 1], R[2, 2],
+        R[side, 0, 0], R[side, 0, 1], R[side, 0, 2], R[side, 1, 0], R[side, 1, 1], R[side, 1, 2],
+        R[side, 2, 0], R[side, 2, 1], R[side, 2, 2],
     )  # fmt: skip
-    d0, d1, d2 = d[0], d[1], d[2]
+    d0, d1, d2 = frame[side, 0, 0], frame[side, 0, 1], frame[side, 0, 2]
     area = 0.0
     for packet in range(first, last):
         nodes = packets[packet * PACKET : (packet + 1) * PACKET]
@@ -96,7 +97,7 @@ def _touching_area(packets, first, last, R, d, half, chamfer):
                 r00 * x + r01 * y + r02 * z + d0,
                 r10 * x + r11 * y + r12 * z + d1,
                 r20 * x + r21 * y + r22 * z + d2,
-                a, b, c, chamfer,
+                a, b, c, leg,
             )  # fmt: skip
             nodes[RESULT + lane] = nodes[AREA + lane] if phi < 0.0 else 0.0
         area += _sum_lanes(nodes, RESULT)
@@ -112,7 +113,7 @@ def _sum_lanes(nodes, row):
 
 
 @kernel
-def _side_forces_into(packets, first, last, R, frame, half, chamfer, law, total):
+def _side_forces_into(packets, first, last, R, frame, side, half, chamfer, shape, law, total):
     """Forces of the nodes of one side, summed.
 
     Parameters
@@ -121,9 +122,9 @@ def _side_forces_into(packets, first, last, R, frame, half, chamfer, law, total)
         As in `Candidates`; shear forces and level-set values are updated.
     first, last : int
         Packets of this side.
-    R, frame : float64 arrays, shape (3, 3) and (7, 3)
+    R, frame, side : float64 arrays, shape (2, 3, 3) and (2, 7, 3), int
         From `relative_frame_into`.
-    half, chamfer : float64 array, shape (3,), and float
+    half, chamfer, shape : as in `Surfaces`, int
         Of the body whose level set is read [m].
     law : tuple of 5 floats
         ``k_n``, ``k_s``, ``gamma_n`` per area of node [N/m3, N/m3, N s/m3], Coulomb's ``mu`` [1]
@@ -140,17 +141,18 @@ def _side_forces_into(packets, first, last, R, frame, half, chamfer, law, total)
     of it counts as dashpot heat. Friction heat is the mean shear force of the step times the
     slip: exactly the work on the spring less the energy it gained.
     """
-    a, b, c = half[0], half[1], half[2]
+    a, b, c, leg = half[shape, 0], half[shape, 1], half[shape, 2], chamfer[shape]
     r00, r01, r02, r10, r11, r12, r20, r21, r22 = (
-        R[0, 0], R[0, 1], R[0, 2], R[1, 0], R[1, 1], R[1, 2], R[2, 0], R[2, 1], R[2, 2],
+        R[side, 0, 0], R[side, 0, 1], R[side, 0, 2], R[side, 1, 0], R[side, 1, 1], R[side, 1, 2],
+        R[side, 2, 0], R[side, 2, 1], R[side, 2, 2],
     )  # fmt: skip
-    d0, d1, d2 = frame[0, 0], frame[0, 1], frame[0, 2]
-    v0, v1, v2 = frame[1, 0], frame[1, 1], frame[1, 2]
-    w0, w1, w2 = frame[2, 0], frame[2, 1], frame[2, 2]
-    m0, m1, m2 = frame[3, 0], frame[3, 1], frame[3, 2]
+    d0, d1, d2 = frame[side, 0, 0], frame[side, 0, 1], frame[side, 0, 2]
+    v0, v1, v2 = frame[side, 1, 0], frame[side, 1, 1], frame[side, 1, 2]
+    w0, w1, w2 = frame[side, 2, 0], frame[side, 2, 1], frame[side, 2, 2]
+    m0, m1, m2 = frame[side, 3, 0], frame[side, 3, 1], frame[side, 3, 2]
     m00, m01, m02, m10, m11, m12, m20, m21, m22 = (
-        frame[4, 0], frame[4, 1], frame[4, 2], frame[5, 0], frame[5, 1], frame[5, 2],
-        frame[6, 0], frame[6, 1], frame[6, 2],
+        frame[side, 4, 0], frame[side, 4, 1], frame[side, 4, 2], frame[side, 5, 0], frame[side, 5, 1],
+        frame[side, 5, 2], frame[side, 6, 0], frame[side, 6, 1], frame[side, 6, 2],
     )  # fmt: skip
     k_n, k_s, gamma_n, mu, dt = law
     total[:] = 0.0
@@ -161,7 +163,7 @@ def _side_forces_into(packets, first, last, R, frame, half, chamfer, law, total)
             x = r00 * px + r01 * py + r02 * pz + d0
             y = r10 * px + r11 * py + r12 * pz + d1
             z = r20 * px + r21 * py + r22 * pz + d2
-            phi, nx, ny, nz = box_distance(x, y, z, a, b, c, chamfer)
+            phi, nx, ny, nz = box_distance(x, y, z, a, b, c, leg)
 
             k_node, k_shear = k_n * area, k_s * area
             softness = 1.0 / k_shear
@@ -232,63 +234,59 @@ def contact_forces_into(candidates, surfaces, interfaces, kinematics, dt, loads)
     """
     R, frame = np.empty((2, 3, 3)), np.empty((2, 7, 3))
     turned, total = np.empty((3, 3)), np.empty(9)
-    for pair in range(candidates.pairs.shape[0]):
-        begin, middle, end = (
-            candidates.first[2 * pair],
-            candidates.first[2 * pair + 1],
-            candidates.first[2 * pair + 2],
-        )
-        if begin == end:
+    pairs, bounds, packets = candidates.pairs, candidates.first, candidates.packets
+    shapes, half, chamfer = surfaces.shape, surfaces.half, surfaces.chamfer
+    k_n, k_s, mu, mass = interfaces.k_n, interfaces.k_s, interfaces.mu, interfaces.mass
+    energy = loads.energy
+    for pair in range(pairs.shape[0]):
+        if bounds[2 * pair] == bounds[2 * pair + 2]:
             continue
-        a, b = candidates.pairs[pair, 0], candidates.pairs[pair, 1]
+        a, b = pairs[pair, 0], pairs[pair, 1]
         area = 0.0
         for side in range(2):
             owner, other = (a, b) if side == 0 else (b, a)
-            first, last = (begin, middle) if side == 0 else (middle, end)
-            shape = surfaces.shape[other]
-            relative_frame_into(kinematics, owner, other, turned, R[side], frame[side])
+            relative_frame_into(kinematics, owner, other, side, turned, R, frame)
             area += 0.5 * _touching_area(
-                candidates.packets, first, last, R[side], frame[side, 0],
-                surfaces.half[shape], surfaces.chamfer[shape],
+                packets, bounds[2 * pair + side], bounds[2 * pair + side + 1], R, frame, side,
+                half, chamfer, shapes[other],
             )  # fmt: skip
-        gamma_n = interfaces.damping_ratio * np.sqrt(interfaces.mass[a, b] * interfaces.k_n[a, b] / area)
-        gamma_n = gamma_n if area > 0.0 else 0.0
-        law = (0.5 * interfaces.k_n[a, b], 0.5 * interfaces.k_s[a, b], gamma_n, interfaces.mu[a, b], dt)
+        gamma_n = interfaces.damping_ratio * np.sqrt(mass[a, b] * k_n[a, b] / area) if area > 0.0 else 0.0
+        law = (0.5 * k_n[a, b], 0.5 * k_s[a, b], gamma_n, mu[a, b], dt)
         for side in range(2):
             owner, other = (a, b) if side == 0 else (b, a)
-            first, last = (begin, middle) if side == 0 else (middle, end)
-            shape = surfaces.shape[other]
             _side_forces_into(
-                candidates.packets, first, last, R[side], frame[side],
-                surfaces.half[shape], surfaces.chamfer[shape], law, total,
+                packets, bounds[2 * pair + side], bounds[2 * pair + side + 1], R, frame, side,
+                half, chamfer, shapes[other], law, total,
             )  # fmt: skip
-            _share_into(owner, other, b, kinematics.rotation[other], frame[side, 0], total, loads)
-            loads.energy[ELASTIC] += total[6]
-            loads.energy[FRICTION] += total[7]
-            loads.energy[DAMPING] += total[8]
+            _share_into(owner, other, b, kinematics.rotation, frame, side, total, loads)
+            energy[ELASTIC] += total[6]
+            energy[FRICTION] += total[7]
+            energy[DAMPING] += total[8]
 
 
 @kernel
-def _share_into(owner, other, second, R_other, d, total, loads):
+def _share_into(owner, other, second, rotation, frame, side, total, loads):
     """Add the summed force of a side to both bodies and to the pair's joint."""
-    pair = (min(owner, other), max(owner, other))
-    joint = loads.joint[pair]
+    first = min(owner, other)
+    last = max(owner, other)
+    joint = loads.joint[first, last]
     if joint < 0 and total[0] * total[0] + total[1] * total[1] + total[2] * total[2] > 0.0:
         joint = loads.joint.max() + 1
         joint = joint if joint < loads.joint_force.shape[0] else -1
-        loads.joint[pair] = joint
+        loads.joint[first, last] = joint
     sign = 1.0 if owner == second else -1.0
     # moment about the owner's mass centre, d away from the other's
-    mx = total[3] - (d[1] * total[2] - d[2] * total[1])
-    my = total[4] - (d[2] * total[0] - d[0] * total[2])
-    mz = total[5] - (d[0] * total[1] - d[1] * total[0])
+    d0, d1, d2 = frame[side, 0, 0], frame[side, 0, 1], frame[side, 0, 2]
+    f0, f1, f2 = total[0], total[1], total[2]
+    m0, m1, m2 = total[3], total[4], total[5]
+    o0, o1, o2 = m0 - (d1 * f2 - d2 * f1), m1 - (d2 * f0 - d0 * f2), m2 - (d0 * f1 - d1 * f0)
+    force, moment, joint_force = loads.force, loads.moment, loads.joint_force
     for i in range(3):
-        f = R_other[i, 0] * total[0] + R_other[i, 1] * total[1] + R_other[i, 2] * total[2]
-        loads.force[owner, i] += f
-        loads.force[other, i] -= f
-        loads.moment[owner, i] += R_other[i, 0] * mx + R_other[i, 1] * my + R_other[i, 2] * mz
-        loads.moment[other, i] -= (
-            R_other[i, 0] * total[3] + R_other[i, 1] * total[4] + R_other[i, 2] * total[5]
-        )
+        e0, e1, e2 = rotation[other, i, 0], rotation[other, i, 1], rotation[other, i, 2]
+        f = e0 * f0 + e1 * f1 + e2 * f2
+        force[owner, i] += f
+        force[other, i] -= f
+        moment[owner, i] += e0 * o0 + e1 * o1 + e2 * o2
+        moment[other, i] -= e0 * m0 + e1 * m1 + e2 * m2
         if joint >= 0:
-            loads.joint_force[joint, i] += sign * f
+            joint_force[joint, i] += sign * f

@@ -24,50 +24,46 @@ class Kinematics(NamedTuple):
 
 
 @kernel
-def relative_frame_into(kinematics, owner, other, turned, R, frame):
+def relative_frame_into(kinematics, owner, other, side, turned, R, frame):
     """Motion of ``owner`` in the body frame of ``other``.
 
-    ``R`` (3, 3): owner's axes in the other's. ``frame`` (7, 3), rows: 0 owner's mass centre;
-    1 and 2 relative velocity field ``row 1 + row 2 x q`` at the step, where q is a position in
-    the other's frame; 3 to 6 what changed since the step before, of the mass centre and of ``R``.
-    ``turned`` (3, 3) is workspace.
+    ``R[side]`` (3, 3): owner's axes in the other's. ``frame[side]`` (7, 3), rows: 0 owner's mass
+    centre; 1 and 2 relative velocity field ``row 1 + row 2 x q`` at the step, where q is a
+    position in the other's frame; 3 to 6 what changed since the step before, of the mass centre
+    and of ``R``. ``turned`` (3, 3) is workspace. Whole arrays and an index are passed because a
+    slice costs more than what is done with it here.
 
     The change is the difference of two poses and not a velocity times the step: taken with the
     lever arms of the step's end, the latter would creep by ``dt / 2`` times the centripetal acceleration.
     """
-    before = kinematics.position_before, kinematics.rotation_before
-    _relative_pose_into(before[0], before[1], owner, other, frame[4:7], frame[3])
-    _relative_pose_into(kinematics.position, kinematics.rotation, owner, other, R, frame[0])
+    position, rotation = kinematics.position, kinematics.rotation
+    velocity, spin = kinematics.velocity, kinematics.spin
+    position_before, rotation_before = kinematics.position_before, kinematics.rotation_before
     for i in range(3):
-        frame[3, i] = frame[0, i] - frame[3, i]
         for j in range(3):
-            frame[4 + i, j] = R[i, j] - frame[4 + i, j]
-    R_other, d = kinematics.rotation[other], frame[0]
-    # owner's velocity difference, owner's spin and other's spin, all in the other's frame
-    for i in range(3):
-        turned[0, i] = turned[1, i] = turned[2, i] = 0.0
-        for j in range(3):
-            turned[0, i] += R_other[j, i] * (kinematics.velocity[owner, j] - kinematics.velocity[other, j])
-            turned[1, i] += R_other[j, i] * kinematics.spin[owner, j]
-            turned[2, i] += R_other[j, i] * kinematics.spin[other, j]
-    v, w, u = turned[0], turned[1], turned[2]
+            now, before = 0.0, 0.0
+            for k in range(3):
+                now += rotation[other, k, i] * rotation[owner, k, j]
+                before += rotation_before[other, k, i] * rotation_before[owner, k, j]
+            R[side, i, j] = now
+            frame[side, 4 + i, j] = now - before
+        now, before = 0.0, 0.0
+        # owner's velocity difference, owner's spin and other's spin, all in the other's frame
+        v, w, u = 0.0, 0.0, 0.0
+        for k in range(3):
+            now += rotation[other, k, i] * (position[owner, k] - position[other, k])
+            before += rotation_before[other, k, i] * (position_before[owner, k] - position_before[other, k])
+            v += rotation[other, k, i] * (velocity[owner, k] - velocity[other, k])
+            w += rotation[other, k, i] * spin[owner, k]
+            u += rotation[other, k, i] * spin[other, k]
+        frame[side, 0, i] = now
+        frame[side, 3, i] = now - before
+        turned[0, i], turned[1, i], turned[2, i] = v, w, u
     # v + w x (q - d) - u x q = (v - w x d) + (w - u) x q
-    frame[1, 0] = v[0] - (w[1] * d[2] - w[2] * d[1])
-    frame[1, 1] = v[1] - (w[2] * d[0] - w[0] * d[2])
-    frame[1, 2] = v[2] - (w[0] * d[1] - w[1] * d[0])
+    d0, d1, d2 = frame[side, 0, 0], frame[side, 0, 1], frame[side, 0, 2]
+    w0, w1, w2 = turned[1, 0], turned[1, 1], turned[1, 2]
+    frame[side, 1, 0] = turned[0, 0] - (w1 * d2 - w2 * d1)
+    frame[side, 1, 1] = turned[0, 1] - (w2 * d0 - w0 * d2)
+    frame[side, 1, 2] = turned[0, 2] - (w0 * d1 - w1 * d0)
     for i in range(3):
-        frame[2, i] = w[i] - u[i]
-
-
-@kernel
-def _relative_pose_into(position, rotation, owner, other, R, d):
-    """Axes ``R`` (3, 3) and mass centre ``d`` (3,) of ``owner`` in the body frame of ``other``."""
-    R_owner, R_other = rotation[owner], rotation[other]
-    for i in range(3):
-        for j in range(3):
-            R[i, j] = (
-                R_other[0, i] * R_owner[0, j] + R_other[1, i] * R_owner[1, j] + R_other[2, i] * R_owner[2, j]
-            )
-        d[i] = 0.0
-        for j in range(3):
-            d[i] += R_other[j, i] * (position[owner, j] - position[other, j])
+        frame[side, 2, i] = turned[1, i] - turned[2, i]
