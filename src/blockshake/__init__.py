@@ -15,6 +15,7 @@ _HOMES = {
     "simulate": "blockshake.study.simulation",
     "draw_samples": "blockshake.study.sampling",
     "calibrate_stiffness": "blockshake.study.stiffness",
+    "load_campaign": "blockshake.measurement.campaign",
     "InputError": "blockshake.errors",
 }
 __all__ = list(_HOMES)

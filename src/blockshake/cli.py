@@ -5,7 +5,7 @@ import sys
 
 from blockshake import __version__
 from blockshake.errors import InputError
-from blockshake.files import parse_yaml, write_dataset, write_json
+from blockshake.files import check_output, parse_yaml, write_dataset, write_json
 
 BAD_INPUT, NUMERICAL_FAILURE = 2, 3
 _FINISHED = ("completed", "collapsed")
@@ -106,6 +106,7 @@ def _settings(options):
 
 
 def _simulate(options):
+    check_output(options.output)
     from blockshake.dynamics.load_motion import load_motion
     from blockshake.study.simulation import simulate
 
@@ -126,6 +127,7 @@ def _simulate(options):
 
 
 def _sample(options):
+    check_output(options.output)
     from blockshake.study.correlation_target import load_correlation
     from blockshake.study.sampling import draw_samples, write_design
 
@@ -136,12 +138,14 @@ def _sample(options):
 
 
 def _calibrate_stiffness(options):
+    check_output(options.output)
     from blockshake.study.stiffness import calibrate_stiffness
 
     write_json(options.output, calibrate_stiffness(options.structure, _settings(options)))
 
 
 def _convert_motion(options):
+    check_output(options.output)
     from blockshake.dynamics.load_motion import load_motion
     from blockshake.dynamics.records.contract_csv import write_motion_csv
 

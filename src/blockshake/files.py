@@ -50,7 +50,7 @@ def parse_yaml(text, where):
     """
     try:
         return yaml.load(text, Loader=_StrictLoader)
-    except yaml.YAMLError as error:
+    except (yaml.YAMLError, ValueError, TypeError, RecursionError) as error:
         raise InputError(where, "", "expected YAML; " + " ".join(str(error).split())) from None
 
 
@@ -94,6 +94,26 @@ def shipped_names(kind):
     return sorted(path.stem for path in (_SHIPPED / kind).glob("*.yaml"))
 
 
+def check_output(path):
+    """Path of a file that can be written, its folder made where it is missing.
+
+    Raises
+    ------
+    InputError
+        The path is empty or a folder, or its own folder cannot be made or written to.
+    """
+    if not str(path) or Path(path).is_dir():
+        raise InputError(path or "output", "", "expected the path of a file to write, not a folder")
+    folder = Path(path).parent
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(path, "", f"expected a folder to write to; {error.strerror.lower()}") from None
+    if not os.access(folder, os.W_OK):
+        raise InputError(path, "", "expected a folder to write to; permission denied")
+    return Path(path)
+
+
 @contextlib.contextmanager
 def replacing(path):
     """Temporary path beside ``path`` that takes its place when the block ends well.
@@ -101,8 +121,7 @@ def replacing(path):
     A reader sees the whole old file or the whole new one; a failed or killed writer leaves the
     old one.
     """
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
+    path = check_output(path)
     handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=path.suffix, dir=path.parent)
     os.close(handle)
     try:

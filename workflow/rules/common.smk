@@ -30,6 +30,18 @@ def check_study():
         os._exit(2)
 
 
+def with_numbers(value):
+    """Configuration with numbers where Snakemake's YAML reads text: `1e-3` is a number here."""
+    if isinstance(value, dict):
+        return {key: with_numbers(entry) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [with_numbers(entry) for entry in value]
+    try:
+        return float(value) if isinstance(value, str) else value
+    except ValueError:
+        return value
+
+
 def definition(kind, name):
     """Path of a structure or motion: a shipped one by its name, else the file named."""
     shipped = Path("config", kind, f"{name}.yaml")
@@ -95,6 +107,9 @@ def case_definition(wildcards):
     }
 
 
+config.update(with_numbers(config))
+config.setdefault("samples_per_job", 10)
+config.setdefault("output_rate", 200.0)
 if workflow.exec_mode == workflow.exec_mode.DEFAULT:
     check_study()
 
@@ -113,5 +128,5 @@ wildcard_constraints:
     model="|".join(MODELS),
     case="|".join(CASES),
     motion="|".join(MOTIONS),
-    batch=r"\d{3}-\d{3}",
+    batch=r"\d{3,}-\d{3,}",
     digest="[0-9a-f]{12}",

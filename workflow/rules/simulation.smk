@@ -66,7 +66,7 @@ rule climb_ladder:
     params:
         cases=[case for case in CASES.values()],
         ladder=lookup(dpath="ladder", within=config),
-        time_step=lookup(dpath="models/ls-dem/time_step", within=config),
+        time_step=lookup(dpath="models/ls-dem/time_step", within=config, default=1e-5),
         source=source_digest(*sources.LADDER),
     script:
         "../scripts/climb_ladder.py"

@@ -19,12 +19,14 @@ def collapse_limits(structure):
     Returns
     -------
     supported : bool array, shape (n_bodies,)
-        Bodies that are not driven and touch another at the start.
+        Bodies that are not driven and touch another at the start; none where nothing is driven.
     drop_limit : float64 array, shape (n_bodies,)
         Half the smallest extent of each along its own axes [m].
     """
     smallest = [np.ptp(structure.solid(body).vertices, axis=0).min() for body in range(len(structure.mass))]
-    return structure.touching.any(axis=1) & ~structure.driven, 0.5 * np.array(smallest)
+    return structure.touching.any(axis=1) & ~structure.driven & structure.driven.any(), 0.5 * np.array(
+        smallest
+    )
 
 
 @kernel

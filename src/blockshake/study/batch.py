@@ -53,6 +53,7 @@ def simulate_samples(case, model, time_step, output_rate, rows, linked, store, s
         key = content_digest(
             source, model, structure.file.model_dump(), *(part.tobytes() for part in motion.table),
             case["duration"], output_rate, time_step, parameters, int(sample), row.to_dict(),
+            *(solid.vertices.tobytes() for solid in structure.solids.values()),
         )  # fmt: skip
         path = Path(store) / f"{key}.nc"
         how = "kept"

@@ -6,6 +6,7 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import load_yaml, shipped_names
 from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaign import load_campaign, load_test
 from blockshake.study.config import load_config
 
 
@@ -15,13 +16,15 @@ def check_file(source):
     Parameters
     ----------
     source : str or path
-        A structure, a motion or a study's configuration, by file or shipped name.
+        A structure, a motion, a campaign or a study's configuration, by file, folder or shipped name.
 
     Raises
     ------
     InputError
         Whatever is wrong with it.
     """
+    if (Path(source) / "campaign.yaml").is_file():
+        return _campaign_line(Path(source))
     if source in shipped_names("structures"):
         return _structure_line(source)
     if Path(source).suffix in (".yaml", ".yml"):
@@ -30,6 +33,8 @@ def check_file(source):
             return _structure_line(source)
         if "cases" in keys:
             return _study_line(source)
+        if "tests" in keys:
+            return _campaign_line(Path(source).parent)
         if "synthetic" not in keys:
             raise InputError(
                 source, "", "expected a structure (bodies), a study (cases) or a synthetic motion (synthetic)"
@@ -42,6 +47,13 @@ def _structure_line(source):
     structure = load_structure(source)
     free = int((~structure.driven).sum())
     return f"a structure of {free} blocks of {structure.mass[~structure.driven].sum():.0f} kg in all"
+
+
+def _campaign_line(folder):
+    campaign = load_campaign(folder)
+    for name in campaign.tests:
+        load_test(campaign, name)
+    return f"a campaign on {campaign.structure} with the tests {', '.join(campaign.tests)}"
 
 
 def _study_line(source):

@@ -10,6 +10,7 @@ from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaign import load_campaign
+from blockshake.study.correlation_target import load_correlation
 from blockshake.study.distributions import TABLE_2, Lognormal, load_distributions
 from blockshake.study.sampling import SMALLEST_SIZE
 from blockshake.study.simulation import MODELS
@@ -133,6 +134,13 @@ def check_config(mapping, where):
             raise InputError(where, f"{key}.measured.test", f"expected one of {', '.join(campaign.tests)}")
         if Path(campaign.structure).stem != case.name:
             raise InputError(where, f"{key}.measured.campaign", f"expected a campaign of {case.name}")
+    for target, source in config.ensemble.linked.items():
+        if source not in config.ensemble.distributions:
+            raise InputError(
+                where, f"ensemble.linked.{target}", f"expected one of the random variables, not {source}"
+            )
+    if config.ensemble.correlation is not None:
+        load_correlation(config.ensemble.correlation)
     for motion in config.ladder.motions:
         load_motion(motion)
     return config

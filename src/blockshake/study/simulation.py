@@ -6,9 +6,13 @@ import numpy as np
 import xarray as xr
 
 import blockshake
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.motion import GroundMotion
 from blockshake.dynamics.system import ENERGY_TERMS
 from blockshake.errors import InputError
 from blockshake.files import source_digest
+from blockshake.geometry.overlap import penetration_depth
+from blockshake.geometry.rotations import rotate_into
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.accelerometers import FINE_RATE, accelerometer_readings
 from blockshake.measurement.markers import marker_displacement
@@ -24,6 +28,8 @@ MODELS = {
     "ls-dem": (simulate_ls_dem, LsDemParameters, "ls_dem", 1e-5),
     "nscd-rigid": (simulate_nscd, NscdParameters, "nscd", 1e-3),
 }
+_WORST_RESIDUAL = 0.05  # a run whose energy audit misses more is not to be trusted
+_DEEPEST_START = 1e-4  # m, contract: an equilibrium farther than this is not the start
 _PREFIXES = tuple(f"{prefix}." for _, _, prefix, _ in MODELS.values())
 
 
@@ -43,8 +49,8 @@ def simulate(
     ----------
     structure : str or path
         Shipped name or file.
-    motion : GroundMotion
-        Already scaled.
+    motion : GroundMotion, str or path
+        Already scaled; or a shipped name or file.
     model : str
         One of `MODELS`.
     parameters : dict of str to value, optional
@@ -71,6 +77,8 @@ def simulate(
     solve, _, _, usual_step = _solver(model)
     physical, numerical = split_parameters(parameters or {}, model)
     built = load_structure(structure, physical)
+    motion = motion if isinstance(motion, GroundMotion) else load_motion(motion)
+    _check_start(built, motion)
     time_step = usual_step if time_step is None else time_step
     duration = motion.duration if duration is None else duration
     for name, value in (("time step", time_step), ("duration", duration), ("output rate", output_rate)):
@@ -85,18 +93,27 @@ def simulate(
     run = _dataset(built, trajectory, np.searchsorted(times, coarse))
     if fine.size:
         _add_accelerometers(run, built, trajectory, np.searchsorted(times, fine))
+    status, reason, residual = trajectory.status, trajectory.reason, energy_residual(trajectory.energy)
+    if status in ("completed", "collapsed") and residual > _WORST_RESIDUAL:
+        reason = f"the energy audit misses {residual:.0%} of the energy in play: take a smaller time step; {reason}"
+        status, reason = "not-converged", reason.removesuffix("; ")
     run.attrs = {
         "Conventions": "CF-1.11",
         "title": f"{built.file.name} under {motion.name}, {model}",
         "model": model,
         "structure": built.file.name,
         "motion": motion.name,
-        "motion_scale": float(motion.attributes.get("scale", 1.0)),
-        "motion_synthetic": int(bool(motion.attributes.get("synthetic", False))),
-        "status": trajectory.status,
-        "reason": trajectory.reason,
+        "status": status,
+        "reason": reason,
         "end_time": trajectory.end_time,
-        "energy_residual": energy_residual(trajectory.energy),
+        "energy_residual": residual,
+        "time_step": time_step,
+        "output_rate": output_rate,
+        "seed": "none: a run is deterministic",
+        "structure_file": built.file.model_dump_json(),
+        "motion_scale": 1.0,
+        "motion_synthetic": 0,
+        **{f"motion_{name}": _plain(value) for name, value in motion.attributes.items()},
         "parameters": json.dumps(effective_parameters(built, model, numerical), sort_keys=True),
         **{f"numerics_{name}": value for name, value in trajectory.numerics.items()},
         "blockshake_version": blockshake.__version__,
@@ -154,16 +171,48 @@ def energy_residual(energy):
     Returns
     -------
     float
-        Largest ``|kinetic + potential + elastic + dissipated - input - initial|`` over the larger of the
-        work done on the bodies and their largest kinetic energy [1]; 0 where nothing moved.
+        Largest ``|kinetic + potential + elastic + dissipated - input - initial|`` over the largest of the
+        work done on the bodies, their kinetic and their elastic energy and a millionth of their potential
+        energy [1].
     """
     energy = energy[np.isfinite(energy).all(axis=1)]
     if not len(energy):
         return float("nan")
     held = energy[:, :3].sum(axis=1)
     missing = held + energy[:, 3:6].sum(axis=1) - energy[:, 6] - held[0]
-    in_play = max(np.abs(energy[:, 6]).max(), energy[:, 0].max())
+    least = 1e-6 * np.abs(energy[:, 1]).max()
+    in_play = max(np.abs(energy[:, 6]).max(), energy[:, 0].max(), energy[:, 2].max(), least)
     return float(np.abs(missing).max() / in_play) if in_play > 0.0 else 0.0
+
+
+def _check_start(structure, motion):
+    """Refuse a first pitch that pushes the driven body into what stands on it."""
+    pitch = float(motion.evaluate(np.zeros(1))[0, 3])
+    if pitch == 0.0:
+        return
+    orientation = structure.orientation.copy()
+    turned = np.array([0.0, pitch, 0.0])
+    for driven in np.flatnonzero(structure.driven):
+        rotate_into(structure.orientation[driven], turned, orientation[driven])
+        for body in np.flatnonzero(~structure.driven):
+            depth = penetration_depth(
+                structure.solid(driven), structure.position[driven], orientation[driven],
+                structure.solid(body), structure.position[body], orientation[body],
+            )  # fmt: skip
+            if depth > _DEEPEST_START:
+                name = structure.body_names[body]
+                raise InputError(
+                    motion.name,
+                    "pitch_y",
+                    f"its first value pushes the slab {1e3 * depth:.2g} mm into {name}",
+                )
+
+
+def _plain(value):
+    """Attribute as netCDF can hold it."""
+    if isinstance(value, bool):
+        return int(value)
+    return value if isinstance(value, (str, float, int)) else str(value)
 
 
 def _solver(model):
@@ -175,7 +224,7 @@ def _solver(model):
 def _dataset(structure, trajectory, rows):
     names = structure.body_names
     lower, upper = ([names[body] for body in trajectory.joints[:, side]] for side in (0, 1))
-    markers = [marker.name for marker in structure.file.markers]
+    markers = np.array([marker.name for marker in structure.file.markers], dtype=str)
     position, orientation = trajectory.position[rows], trajectory.orientation[rows]
 
     def variable(dims, values, units, long_name):
@@ -221,7 +270,10 @@ def _dataset(structure, trajectory, rows):
             "axis": ["x", "y", "z"],
             "quaternion": ["w", "x", "y", "z"],
             "marker": markers,
-            "marker_body": ("marker", [marker.body for marker in structure.file.markers]),
+            "marker_body": (
+                "marker",
+                np.array([marker.body for marker in structure.file.markers], dtype=str),
+            ),
             "term": list(ENERGY_TERMS),
             "lower": ("joint", np.array(lower, dtype=str)),
             "upper": ("joint", np.array(upper, dtype=str)),

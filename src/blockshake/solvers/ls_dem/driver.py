@@ -117,6 +117,11 @@ def assemble_surfaces(structure, parameters):
         box_nodes(shape.box, shape.chamfer, parameters.node_spacing, parameters.perimeter_inset)
         for shape in shapes
     ]
+    for name, (_, areas) in zip(names, nodes, strict=True):
+        if areas.min() <= 0.0:
+            raise InputError(
+                structure.source, f"shapes.{name}", "expected flats much wider than ls_dem.perimeter_inset"
+            )
     return Surfaces(
         shape=np.array([names.index(body.shape) for body in structure.file.bodies]),
         half=np.array([shape.box for shape in shapes]) / 2.0,
