@@ -96,3 +96,26 @@ def test_functions_of_the_package():
         assert callable(getattr(blockshake, name))
     with pytest.raises(AttributeError):
         blockshake.no_such_name  # noqa: B018
+
+
+@pytest.mark.parametrize("output", ["", ".", "file/run.nc"])
+def test_output_that_cannot_be_written_is_bad_input_before_anything_runs(
+    output, capsys, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").write_text("")
+    code = main(
+        ["simulate", "--structure", "no-such", "--motion", "alkion", "--model", "ls-dem", "--output", output]
+    )
+    assert code == 2
+    assert "no-such" not in capsys.readouterr().err
+
+
+def test_step_too_large_to_trust_is_a_numerical_failure(tmp_path, capsys):
+    """Half of the step at which it blows up: the run ends, but its energy audit tells."""
+    code = main(
+        ["simulate", "--structure", "configuration-1", "--motion", "basso-tirreno", "--scale", "2.25",
+         "--duration", "4", "--model", "ls-dem", "--time-step", "5e-4", "--output", str(tmp_path / "run.nc")]
+    )  # fmt: skip
+    assert code == 3
+    assert xr.load_dataset(tmp_path / "run.nc").attrs["status"] in ("not-converged", "diverged")

@@ -144,3 +144,24 @@ def test_what_does_not_belong_together_is_refused(make_run):
         gather_ensemble([], [], design, "slab-face")
     with pytest.raises(InputError, match="table: expected a marker"):
         gather_ensemble([run], [0], design, "table")
+
+
+def test_joined_texts_keep_their_length_through_a_file(tmp_path):
+    """A text read from a file must not cut longer ones joined to it: short status first, long after."""
+    for sample, status in enumerate(("ok", "not-converged")):
+        part = xr.Dataset(
+            {
+                "marker_displacement": (("sample", "time", "marker", "axis"), np.zeros((1, 2, 1, 1))),
+                "status": ("sample", [status]),
+            },
+            coords={
+                "sample": [sample],
+                "time": [0.0, 1.0],
+                "marker": ["m"],
+                "body": ["b"],
+                "parameter": ["p"],
+            },
+        )
+        write_dataset(tmp_path / f"{sample}.nc", part)
+    write_dataset(tmp_path / "joined.nc", join_batches([tmp_path / "0.nc", tmp_path / "1.nc"]))
+    assert list(xr.load_dataset(tmp_path / "joined.nc")["status"].values) == ["ok", "not-converged"]
