@@ -128,5 +128,5 @@ wildcard_constraints:
     model="|".join(MODELS),
     case="|".join(CASES),
     motion="|".join(MOTIONS),
-    batch=r"\d{3,}-\d{3,}",
+    batch=r"\d\d\d+-\d\d\d+",
     digest="[0-9a-f]{12}",
