@@ -20,6 +20,19 @@ class Quantity(NamedTuple):
 _PAPER = "Zhou et al. (2023)"
 PHYSICAL = (
     Quantity("friction.MATERIAL.MATERIAL", "mu", "1", "Coulomb's coefficient of a pair", f"{_PAPER}, Table 2"),
+    Quantity(
+        "friction.MATERIAL.MATERIAL.rate_drop", "D_v", "1", "share of mu lost at high slip rate", "docs/method.md"
+    ),
+    Quantity(
+        "friction.MATERIAL.MATERIAL.rate_scale", "v_c", "m/s", "slip rate at which 63 % is lost", "docs/method.md"
+    ),
+    Quantity("friction.MATERIAL.MATERIAL.slip_drop", "D_S", "1", "share of mu lost after long slip", "docs/method.md"),
+    Quantity("friction.MATERIAL.MATERIAL.slip_scale", "S_c", "m", "slip after which 63 % is lost", "docs/method.md"),
+    Quantity(
+        "friction.MATERIAL.MATERIAL.asymmetry", "a", "1",
+        "share by which mu is larger for slip of a joint's second body along its first's +x", "docs/method.md",
+    ),
+    Quantity("joints.BODY.BODY.friction_factor", "f", "1", "factor on mu of one joint", "docs/method.md"),
     Quantity("materials.MATERIAL.density", "rho", "kg/m3", "mass density", f"{_PAPER}, Table 2"),
     Quantity("materials.MATERIAL.youngs_modulus", "E", "Pa", "Young's modulus", f"{_PAPER}, Table 2"),
     Quantity("materials.MATERIAL.poisson_ratio", "nu", "1", "Poisson's ratio; G = E / (2 (1 + nu))", "structure file"),

@@ -1,5 +1,7 @@
 """Level set of a chamfered box: the signed distance of Eq. (1) and its gradient, in closed form."""
 
+from math import copysign
+
 import numpy as np
 
 from blockshake.jit import inline_kernel
@@ -32,41 +34,28 @@ def box_distance(x, y, z, a, b, c, chamfer):
     Notes
     -----
     Zhou et al. (2023), Eq. (1). The box is symmetric, so that three flats and three chamfers
-    in ``(|x|, |y|, |z|)`` are all its 18 faces. There is no branch: each choice is a select.
-    Ties go to the flats, then to x before y before z.
+    in ``(|x|, |y|, |z|)`` are all its 18 faces, and of the chamfers the nearest is that between the
+    two nearest flats. There is no branch: each choice is a select. A tie between a flat and a
+    chamfer goes to the flat; where two flats (or two chamfers) tie, the normal is still a unit
+    vector, that of the axis that comes first.
     """
-    ux, uy, uz = abs(x), abs(y), abs(z)
-    fx, fy, fz = ux - a, uy - b, uz - c
-    exy = (fx + fy + chamfer) * HALF_SQRT2
-    exz = (fx + fz + chamfer) * HALF_SQRT2
-    eyz = (fy + fz + chamfer) * HALF_SQRT2
-    phi = fx
-    nx, ny, nz = 1.0, 0.0, 0.0
-    nearer = fy > phi
-    phi = fy if nearer else phi
-    nx = 0.0 if nearer else nx
-    ny = 1.0 if nearer else ny
-    nearer = fz > phi
-    phi = fz if nearer else phi
-    nx = 0.0 if nearer else nx
-    ny = 0.0 if nearer else ny
-    nz = 1.0 if nearer else nz
-    nearer = exy > phi
-    phi = exy if nearer else phi
-    nx = HALF_SQRT2 if nearer else nx
-    ny = HALF_SQRT2 if nearer else ny
-    nz = 0.0 if nearer else nz
-    nearer = exz > phi
-    phi = exz if nearer else phi
-    nx = HALF_SQRT2 if nearer else nx
-    ny = 0.0 if nearer else ny
-    nz = HALF_SQRT2 if nearer else nz
-    nearer = eyz > phi
-    phi = eyz if nearer else phi
-    nx = 0.0 if nearer else nx
-    ny = HALF_SQRT2 if nearer else ny
-    nz = HALF_SQRT2 if nearer else nz
-    nx = -nx if x < 0.0 else nx
-    ny = -ny if y < 0.0 else ny
-    nz = -nz if z < 0.0 else nz
-    return phi, nx, ny, nz
+    fx, fy, fz = abs(x) - a, abs(y) - b, abs(z) - c
+    x_over_y, x_over_z, y_over_z = fx >= fy, fx >= fz, fy >= fz
+    # farthest out of the flats' planes, and the next
+    larger = fx if x_over_y else fy
+    smaller = fy if x_over_y else fx
+    first = larger if larger >= fz else fz
+    other = fz if larger >= fz else larger
+    second = smaller if smaller >= other else other
+    cut = (first + second + chamfer) * HALF_SQRT2
+    on_flat = first >= cut
+    phi = first if on_flat else cut
+    share = 1.0 if on_flat else HALF_SQRT2
+    # each axis by how many of the others lie farther out: on a flat none may, on a chamfer one
+    x_rank = (0.0 if x_over_y else 1.0) + (0.0 if x_over_z else 1.0)
+    y_rank = (1.0 if x_over_y else 0.0) + (0.0 if y_over_z else 1.0)
+    allowed = 0.0 if on_flat else 1.0
+    nx = share if x_rank <= allowed else 0.0
+    ny = share if y_rank <= allowed else 0.0
+    nz = share if 3.0 - x_rank - y_rank <= allowed else 0.0
+    return phi, copysign(nx, x), copysign(ny, y), copysign(nz, z)

@@ -4,6 +4,42 @@ import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
 
+_MOST_AT_ONCE = 2**19  # pairs of edges, or of faces and corners, held at a time: some tens of megabytes
+
+
+def near_pairs(solids, position, orientation, clearance):
+    """Pairs of bodies whose bounding boxes, along the world's axes, are nearer than ``clearance``.
+
+    Parameters
+    ----------
+    solids : list of Solid
+        Shape of each body.
+    position, orientation : float64 arrays, shape (n_bodies, 3) and (n_bodies, 4)
+        Mass centres [m]; unit quaternions (w, x, y, z), body to world.
+    clearance : float
+        [m]
+
+    Returns
+    -------
+    int64 array, shape (n_pairs, 2)
+        First index below the second, sorted.
+    """
+    turned = rotation_matrices(orientation)
+    corners = [solid.vertices @ rotation.T for solid, rotation in zip(solids, turned, strict=True)]
+    low = position + [points.min(axis=0) for points in corners] - 0.5 * clearance
+    high = position + [points.max(axis=0) for points in corners] + 0.5 * clearance
+    # sweep along the axis where the bodies are spread most
+    sweep = np.ptp(position, axis=0).argmax()
+    order = np.argsort(low[:, sweep], kind="stable")
+    last = np.searchsorted(low[order, sweep], high[order, sweep], side="right")
+    pairs = [np.empty((0, 2), dtype=np.int64)]
+    for rank, body in enumerate(order):
+        others = order[rank + 1 : last[rank]]
+        others = others[((low[others] <= high[body]) & (low[body] <= high[others])).all(axis=1)]
+        pairs.append(np.stack([np.minimum(body, others), np.maximum(body, others)], axis=1))
+    pairs = np.concatenate(pairs)
+    return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
+
 
 def penetration_depth(solid_a, position_a, orientation_a, solid_b, position_b, orientation_b):
     """Depth of overlap of two convex solids along the axis of least overlap.
@@ -28,28 +64,104 @@ def penetration_depth(solid_a, position_a, orientation_a, solid_b, position_b, o
     distance = np.linalg.norm(position_b - position_a)
     if distance > radius_a + radius_b:
         return radius_a + radius_b - distance
-    if solid_a.polyhedron is None or solid_b.polyhedron is None:
-        return 0.0
-    rotation_a, rotation_b = rotation_matrices(orientation_a), rotation_matrices(orientation_b)
-    points_a = solid_a.vertices @ rotation_a.T
-    points_b = solid_b.vertices @ rotation_b.T + (position_b - position_a)
-    axes_a = solid_a.polyhedron.normals @ rotation_a.T
-    axes_b = solid_b.polyhedron.normals @ rotation_b.T
-    edges_a = _edge_directions(solid_a.polyhedron) @ rotation_a.T
-    edges_b = _edge_directions(solid_b.polyhedron) @ rotation_b.T
-    crosses = np.cross(edges_a[:, None], edges_b[None]).reshape(-1, 3)
-    lengths = np.linalg.norm(crosses, axis=1)
-    crosses = crosses[lengths > 1e-6] / lengths[lengths > 1e-6, None]
-    axes = np.vstack([axes_a, axes_b, crosses])
-    along_a, along_b = points_a @ axes.T, points_b @ axes.T
-    overlap = np.minimum(along_a.max(axis=0) - along_b.min(axis=0), along_b.max(axis=0) - along_a.min(axis=0))
-    return float(overlap.min())
-
-
-def _edge_directions(polyhedron):
-    edges = np.concatenate(
-        [polyhedron.vertices[np.roll(face, -1)] - polyhedron.vertices[face] for face in polyhedron.faces]
+    depths = penetration_depths(
+        solid_a, position_a[None], orientation_a[None], solid_b, position_b[None], orientation_b[None]
     )
-    edges /= np.linalg.norm(edges, axis=1)[:, None]
-    edges *= np.where(edges[np.arange(len(edges)), np.abs(edges).argmax(axis=1)] < 0.0, -1.0, 1.0)[:, None]
-    return np.unique(np.round(edges, 9), axis=0)
+    return float(depths[0])
+
+
+def penetration_depths(solid_a, positions_a, orientations_a, solid_b, positions_b, orientations_b):
+    """`penetration_depth` of many pairs of the same two shapes, near each other.
+
+    Parameters
+    ----------
+    solid_a, solid_b : Solid
+    positions_a, positions_b : float64 arrays, shape (n_pairs, 3)
+        [m]
+    orientations_a, orientations_b : float64 arrays, shape (n_pairs, 4)
+
+    Returns
+    -------
+    float64 array, shape (n_pairs,)
+        [m]
+    """
+    depths = np.zeros(len(positions_a))
+    if solid_a.polyhedron is None or solid_b.polyhedron is None:
+        return depths
+    # everything in the frame of a, where its own normals and edges are the same for all pairs
+    world_a, world_b = rotation_matrices(orientations_a), rotation_matrices(orientations_b)
+    rotation = world_a.transpose(0, 2, 1) @ world_b
+    offset = np.einsum("pji,pj->pi", world_a, positions_b - positions_a)
+    edges_a, edges_b = _edges(solid_a.polyhedron), _edges(solid_b.polyhedron)
+    at_once = max(1, _MOST_AT_ONCE // (len(edges_a[0]) * len(edges_b[0])))
+    for first in range(0, len(depths), at_once):
+        pairs = slice(first, first + at_once)
+        turn, shift = rotation[pairs], offset[pairs]
+        back = -np.einsum("pji,pj->pi", turn, shift)
+        depth = np.minimum(
+            _face_overlap(solid_a, solid_b, turn, shift),
+            _face_overlap(solid_b, solid_a, turn.transpose(0, 2, 1), back),
+        )
+        rows = max(1, _MOST_AT_ONCE // len(edges_b[0]))
+        for start in range(0, len(edges_a[0]), rows):
+            part = [values[start : start + rows] for values in edges_a]
+            depth = np.minimum(depth, _edge_overlap(part, edges_b, turn, shift))
+        depths[pairs] = depth
+    return depths
+
+
+def _face_overlap(solid, other, rotation, offset):
+    """Least overlap along the normals of one solid's faces, in its frame, for every pose of the other [m]."""
+    normals, reach = solid.polyhedron.normals, solid.polyhedron.offsets
+    least = np.full(len(rotation), np.inf)
+    rows = max(1, _MOST_AT_ONCE // (len(rotation) * len(other.vertices)))
+    for start in range(0, len(normals), rows):
+        part = normals[start : start + rows]
+        nearest = ((part @ rotation) @ other.vertices.T).min(axis=2) + offset @ part.T
+        least = np.minimum(least, (reach[start : start + rows] - nearest).min(axis=1))
+    return least
+
+
+def _edge_overlap(edges_a, edges_b, rotation, offset):
+    """Least overlap along the normals to an edge of each, for every pose of the second [m].
+
+    Only two edges that form a face of the Minkowski difference can have the least: those whose
+    arcs between their faces' normals cross on the unit sphere, the second's turned around
+    (Gregorius 2013, The separating axis test between convex polyhedra, Game Developers Conference).
+    """
+    point_a, along_a, left_a, right_a = edges_a
+    point_b, along_b, left_b, right_b = (values @ rotation.transpose(0, 2, 1) for values in edges_b)
+    point_b = point_b + offset[:, None]
+    # sides of the plane of one arc on which the ends of the other lie
+    b_left, b_right = -along_a @ left_b.transpose(0, 2, 1), -along_a @ right_b.transpose(0, 2, 1)
+    a_left = left_a @ along_b.transpose(0, 2, 1)
+    a_right = right_a @ along_b.transpose(0, 2, 1)
+    crossing = (b_left * b_right < 0.0) & (a_left * a_right < 0.0) & (b_left * a_right > 0.0)
+    pair, a, b = np.nonzero(crossing)
+    axes = np.cross(along_a[a], along_b[pair, b])
+    lengths = np.linalg.norm(axes, axis=1)
+    kept = lengths > 1e-9
+    pair, a, b, axes = pair[kept], a[kept], b[kept], axes[kept] / lengths[kept, None]
+    axes *= np.sign((axes * (left_a[a] + right_a[a])).sum(axis=1))[:, None]
+    least = np.full(len(rotation), np.inf)
+    np.minimum.at(least, pair, (axes * (point_a[a] - point_b[pair, b])).sum(axis=1))
+    return least
+
+
+def _edges(polyhedron):
+    """Start, unit direction and the unit normals of the faces to the left and right of every edge, (n_edges, 3)."""
+    starts = np.concatenate(polyhedron.faces)
+    ends = np.concatenate([np.roll(face, -1) for face in polyhedron.faces])
+    face = np.repeat(np.arange(len(polyhedron.faces)), [len(face) for face in polyhedron.faces])
+    n_vertices = len(polyhedron.vertices)
+    there, back = np.argsort(starts * n_vertices + ends), np.argsort(ends * n_vertices + starts)
+    once = starts[there] < ends[there]
+    there, back = there[once], back[once]
+    along = polyhedron.vertices[ends[there]] - polyhedron.vertices[starts[there]]
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    return [
+        polyhedron.vertices[starts[there]],
+        along,
+        polyhedron.normals[face[there]],
+        polyhedron.normals[face[back]],
+    ]

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import trimesh
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, cKDTree
 
 # Two facets of a hull belong to one face when their unit normals and offsets agree to this much,
 # relative to the size of the body: far above rounding, far below any intended edge.
@@ -92,17 +92,19 @@ def convex_polyhedron(vertices):
     hull = ConvexHull(vertices)
     scale = np.ptp(vertices, axis=0).max()
     planes = np.column_stack([hull.equations[:, :3], -hull.equations[:, 3] / scale])
-    order = np.lexsort(np.round(planes, 6).T)
+    tree = cKDTree(planes)
+    fresh = np.ones(len(planes), dtype=bool)
     distinct = []
-    for index in order:
-        if not any(np.abs(planes[index] - planes[kept]).max() < _SAME_PLANE for kept in distinct):
+    for index in np.lexsort(np.round(planes, 6).T):
+        if fresh[index]:
             distinct.append(index)
+            fresh[tree.query_ball_point(planes[index], _SAME_PLANE, p=np.inf)] = False
     normals = planes[distinct, :3]
     offsets = planes[distinct, 3] * scale
+    is_corner = np.isin(np.arange(len(vertices)), hull.vertices)
     faces = []
     for normal, offset in zip(normals, offsets, strict=True):
-        on_face = np.flatnonzero(np.abs(vertices @ normal - offset) < _SAME_PLANE * scale)
-        on_face = np.array([index for index in on_face if index in hull.vertices])
+        on_face = np.flatnonzero((np.abs(vertices @ normal - offset) < _SAME_PLANE * scale) & is_corner)
         faces.append(_counter_clockwise(vertices, on_face, normal))
     used = np.unique(np.concatenate(faces))
     renumbered = np.full(len(vertices), -1)

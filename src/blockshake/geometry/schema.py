@@ -6,8 +6,11 @@ from pydantic import Field, model_validator
 
 from blockshake.validation import Strict
 
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-Finite = Annotated[float, Field(allow_inf_nan=False)]
+# a whole number is one too; a text or true and false are not
+Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Positive = Annotated[Finite, Field(gt=0)]
+NotNegative = Annotated[Finite, Field(ge=0)]
+Share = Annotated[Finite, Field(ge=0, le=1)]
 Vector = tuple[Finite, Finite, Finite]
 Quaternion = tuple[Finite, Finite, Finite, Finite]
 Name = Annotated[str, Field(min_length=1, pattern=r"^[^\s./]+$")]
@@ -18,8 +21,8 @@ class Material(Strict):
 
     density: Positive = Field(description="mass density [kg/m3]")
     youngs_modulus: Positive = Field(description="Young's modulus [Pa]")
-    poisson_ratio: float = Field(gt=-1.0, lt=0.5, description="Poisson's ratio [1]")
-    viscous_modulus: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(
+    poisson_ratio: Finite = Field(gt=-1.0, lt=0.5, description="Poisson's ratio [1]")
+    viscous_modulus: NotNegative = Field(
         0.0, description="viscous modulus of the bulk [Pa s, by assumption]; the rigid solvers do not use it"
     )
 
@@ -30,9 +33,7 @@ class Shape(Strict):
     box: tuple[Positive, Positive, Positive] | None = Field(
         None, description="edge lengths along body x, y, z [m]"
     )
-    chamfer: Annotated[float, Field(ge=0)] = Field(
-        0.0, description="leg of the 45-degree chamfer of a box [m]"
-    )
+    chamfer: NotNegative = Field(0.0, description="leg of the 45-degree chamfer of a box [m]")
     mesh: str | None = Field(None, description="file of a closed triangulated surface, coordinates in m")
 
     @model_validator(mode="after")
@@ -58,15 +59,30 @@ class Body(Strict):
     )
     velocity: Vector = Field((0.0, 0.0, 0.0), description="of the mass centre, world frame [m/s]")
     angular_velocity: Vector = Field((0.0, 0.0, 0.0), description="world frame [rad/s]")
-    driven: bool = Field(False, description="the body follows the ground motion")
+    driven: bool = Field(False, strict=True, description="the body follows the ground motion")
     density: Positive | None = Field(None, description="of this body instead of its material's [kg/m3]")
 
 
 class Friction(Strict):
-    """Coulomb's coefficient of a pair of materials."""
+    """Coulomb's coefficient of a pair of materials; it may fall with slip rate and slip, and differ by direction."""
 
     pair: tuple[str, str]
-    coefficient: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+    coefficient: NotNegative = Field(description="at rest, before any slip [1]")
+    rate_drop: Share = Field(0.0, description="share of the coefficient lost at high slip rate [1]")
+    rate_scale: Positive = Field(0.01, description="slip rate at which 63 % of it is lost [m/s]")
+    slip_drop: Share = Field(0.0, description="share of the coefficient lost after long slip [1]")
+    slip_scale: Positive = Field(0.01, description="slip after which 63 % of it is lost [m]")
+    asymmetry: Annotated[Finite, Field(gt=-1, lt=1)] = Field(
+        0.0,
+        description="share by which it is larger for slip of the joint's second body along its first's +x [1]",
+    )
+
+
+class Joint(Strict):
+    """A joint that differs from others of its materials."""
+
+    bodies: tuple[str, str] = Field(description="the two bodies, in either order")
+    friction_factor: NotNegative = Field(1.0, description="on the coefficient of friction [1]")
 
 
 class Stopper(Strict):
@@ -75,7 +91,7 @@ class Stopper(Strict):
     body: str
     position: Vector = Field(description="point of the body, body frame [m]")
     axis: Literal["+x", "-x", "+y", "-y", "+z", "-z"] = Field(description="side on which the stop stands")
-    gap: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(description="clearance at the start [m]")
+    gap: NotNegative = Field(description="clearance at the start [m]")
     stiffness: Positive = Field(description="force per closure beyond the gap [N/m]")
 
 
@@ -106,12 +122,9 @@ class StructureFile(Strict):
     shapes: dict[Name, Shape]
     bodies: tuple[Body, ...] = Field(min_length=1)
     friction: tuple[Friction, ...] = ()
-    restitution: Annotated[float, Field(ge=0, le=1)] = Field(
-        0.5, description="C_res of Eq. (3), LS-DEM; 0 means critical damping [1]"
-    )
-    nscd_restitution: Annotated[float, Field(ge=0, le=1)] = Field(
-        0.0, description="Newton's restitution, NSCD [1]"
-    )
+    joints: tuple[Joint, ...] = ()
+    restitution: Share = Field(0.5, description="C_res of Eq. (3), LS-DEM; 0 means critical damping [1]")
+    nscd_restitution: Share = Field(0.0, description="Newton's restitution, NSCD [1]")
     stoppers: tuple[Stopper, ...] = ()
     markers: tuple[Marker, ...] = ()
     accelerometers: tuple[Accelerometer, ...] = ()

@@ -9,7 +9,7 @@ import trimesh
 
 from blockshake.errors import InputError
 from blockshake.files import load_yaml, shipped, shipped_names
-from blockshake.geometry.overlap import penetration_depth
+from blockshake.geometry.overlap import near_pairs, penetration_depths
 from blockshake.geometry.polyhedron import (
     MassProperties,
     Polyhedron,
@@ -162,7 +162,7 @@ def _solid(name, shape, source, folder):
         raise InputError(
             source, f"shapes.{name}.mesh", f"expected a readable mesh file {path}; {error}"
         ) from None
-    if not mesh.is_watertight or mesh.volume <= 0.0:
+    if not mesh.is_volume:
         raise InputError(source, f"shapes.{name}.mesh", "expected a closed surface with outward triangles")
     vertices = np.array(mesh.vertices) - mesh.center_mass
     faces = np.array(mesh.faces)
@@ -180,26 +180,28 @@ def _masses(file, solids):
 
 def _touching(file, source, solids, position, orientation):
     """Pairs that touch at the start; an overlap too deep to be an initial penetration is an error."""
-    n_bodies = len(file.bodies)
-    touching = np.zeros((n_bodies, n_bodies), dtype=bool)
-    for a, body_a in enumerate(file.bodies):
-        for b in range(a + 1, n_bodies):
-            body_b = file.bodies[b]
-            if body_a.driven and body_b.driven:
-                continue
-            depth = penetration_depth(
-                solids[body_a.shape],
-                position[a],
-                orientation[a],
-                solids[body_b.shape],
-                position[b],
-                orientation[b],
-            )
-            if depth > _DEEPEST_OVERLAP:
-                raise InputError(
-                    source,
-                    f"bodies.{body_b.name}.position",
-                    f"overlaps {body_a.name} by {1e3 * depth:.3g} mm; expected at most {1e3 * _DEEPEST_OVERLAP:.0f} mm",
-                )
-            touching[a, b] = touching[b, a] = depth > -_TOUCHING
+    bodies = file.bodies
+    shape = [body.shape for body in bodies]
+    driven = np.array([body.driven for body in bodies])
+    pairs = near_pairs([solids[name] for name in shape], position, orientation, _TOUCHING)
+    depth = np.empty(len(pairs))
+    by_shapes = {}
+    for place, (a, b) in enumerate(pairs):
+        by_shapes.setdefault((shape[a], shape[b]), []).append(place)
+    for (first, second), places in by_shapes.items():
+        a, b = pairs[places].T
+        depth[places] = penetration_depths(
+            solids[first], position[a], orientation[a], solids[second], position[b], orientation[b]
+        )
+    for place in np.flatnonzero(depth > _DEEPEST_OVERLAP)[:1]:
+        a, b = pairs[place]
+        raise InputError(
+            source,
+            f"bodies.{bodies[b].name}.position",
+            f"overlaps {bodies[a].name} by {1e3 * depth[place]:.3g} mm; "
+            f"expected at most {1e3 * _DEEPEST_OVERLAP:.0f} mm",
+        )
+    touching = np.zeros((len(bodies), len(bodies)), dtype=bool)
+    a, b = pairs[(depth > -_TOUCHING) & ~driven[pairs].all(axis=1)].T
+    touching[a, b] = touching[b, a] = True
     return touching

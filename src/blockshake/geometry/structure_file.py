@@ -1,12 +1,14 @@
 """The mapping of a structure file: parameters replaced in it, names checked, pairs of materials resolved."""
 
+from collections import Counter
+
 import numpy as np
 
 from blockshake.errors import InputError
 
 
 def replace_into(mapping, key, value, source):
-    """Set one dotted key of a structure's mapping in place; friction pairs in either order.
+    """Set one dotted key of a structure's mapping in place; pairs of materials or bodies in either order.
 
     Raises
     ------
@@ -15,15 +17,25 @@ def replace_into(mapping, key, value, source):
     """
     parts = key.split(".")
     if parts[0] == "friction":
-        for entry in mapping.get("friction", []):
-            if (
-                len(parts) == 3
-                and isinstance(entry, dict)
-                and sorted(entry.get("pair", ())) == sorted(parts[1:])
-            ):
-                entry["coefficient"] = value
-                return
-        raise InputError(source, key, "expected friction.MATERIAL.MATERIAL of a pair in the file")
+        entry = _entry_of_pair(mapping, "friction", "pair", parts)
+        if entry is None:
+            raise InputError(
+                source,
+                key,
+                "expected friction.MATERIAL.MATERIAL or friction.MATERIAL.MATERIAL.KEY of a pair in the file",
+            )
+        entry[parts[3] if len(parts) == 4 else "coefficient"] = value
+        return
+    if parts[0] == "joints":
+        if len(parts) != 4:
+            raise InputError(source, key, "expected joints.BODY.BODY.KEY")
+        entry = _entry_of_pair(mapping, "joints", "bodies", parts)
+        if entry is None:
+            # two bodies have a joint whether the file says something of it or not
+            entry = {"bodies": parts[1:3]}
+            mapping["joints"] = [*mapping.get("joints", ()), entry]
+        entry[parts[3]] = value
+        return
     place = mapping
     for part in parts[:-1]:
         if isinstance(place, list):
@@ -38,12 +50,23 @@ def replace_into(mapping, key, value, source):
     place[parts[-1]] = value
 
 
+def _entry_of_pair(mapping, kind, named, parts):
+    """Entry of a list whose two names are the second and third part of a key, or None."""
+    for entry in mapping.get(kind, ()):
+        if (
+            len(parts) in (3, 4)
+            and isinstance(entry, dict)
+            and sorted(entry.get(named, ())) == sorted(parts[1:3])
+        ):
+            return entry
+    return None
+
+
 def check_names(file, source):
     """Check that names stand once and that what they point at exists, or raise `InputError`."""
     for kind in ("bodies", "markers", "accelerometers"):
-        names = [item.name for item in getattr(file, kind)]
-        for name in names:
-            if names.count(name) > 1:
+        for name, count in Counter(item.name for item in getattr(file, kind)).items():
+            if count > 1:
                 raise InputError(source, f"{kind}.{name}", "expected every name once")
     bodies = {body.name for body in file.bodies}
     for body in file.bodies:
@@ -65,6 +88,16 @@ def check_names(file, source):
                 raise InputError(
                     source, f"{kind}.{name}.body", f"expected a body of this structure, not '{item.body}'"
                 )
+    joints = set()
+    for joint in file.joints:
+        key = f"joints.{joint.bodies[0]}.{joint.bodies[1]}"
+        for name in joint.bodies:
+            if name not in bodies:
+                raise InputError(source, key, f"expected two bodies of this structure, not '{name}'")
+        pair = frozenset(joint.bodies)
+        if len(pair) == 1 or pair in joints:
+            raise InputError(source, key, "expected two different bodies, and every joint once")
+        joints.add(pair)
     if file.stoppers and not any(body.driven for body in file.bodies):
         raise InputError(source, "stoppers", "expected a driven body to fix the stoppers to")
 
@@ -93,16 +126,20 @@ def friction_matrix(file, source):
         if key in known:
             raise InputError(source, f"friction.{entry.pair[0]}.{entry.pair[1]}", "expected every pair once")
         known[key] = entry.coefficient
-    n_bodies = len(file.bodies)
-    friction = np.full((n_bodies, n_bodies), np.nan)
-    for a, body_a in enumerate(file.bodies):
-        for b, body_b in enumerate(file.bodies):
-            if a == b or (body_a.driven and body_b.driven):
-                continue
-            key = tuple(sorted((body_a.material, body_b.material)))
-            if key not in known:
+    # materials in the order of the bodies, so that the pair named first is the first one met
+    materials = list(dict.fromkeys(body.material for body in file.bodies))
+    material = np.array([materials.index(body.material) for body in file.bodies])
+    driven = np.array([body.driven for body in file.bodies])
+    together = driven[:, None] & driven[None, :]
+    np.fill_diagonal(together, True)
+    coefficient = np.full((len(materials), len(materials)), np.nan)
+    for a, first in enumerate(materials):
+        for b, second in enumerate(materials):
+            key = tuple(sorted((first, second)))
+            if key in known:
+                coefficient[a, b] = known[key]
+            elif not together[np.ix_(material == a, material == b)].all():
                 raise InputError(
                     source, f"friction.{key[0]}.{key[1]}", "missing; expected a coefficient for this pair"
                 )
-            friction[a, b] = known[key]
-    return friction
+    return np.where(together, np.nan, coefficient[material[:, None], material[None, :]])

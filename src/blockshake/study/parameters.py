@@ -3,6 +3,7 @@
 import re
 
 from blockshake.files import shipped_names
+from blockshake.geometry.schema import Joint
 from blockshake.geometry.structure import load_structure
 from blockshake.quantities import PHYSICAL
 from blockshake.study.simulation import MODELS
@@ -38,7 +39,13 @@ def _instances(pattern, file):
     """Dotted names of this structure that a pattern stands for, with the structure's values."""
     parts = pattern.split(".")
     if parts[0] == "friction":
-        return [(f"friction.{entry.pair[0]}.{entry.pair[1]}", entry.coefficient) for entry in file.friction]
+        suffix, key = (f".{parts[3]}", parts[3]) if len(parts) == 4 else ("", "coefficient")
+        return [(f"friction.{'.'.join(entry.pair)}{suffix}", getattr(entry, key)) for entry in file.friction]
+    if parts[0] == "joints":
+        named = [
+            (f"joints.{'.'.join(joint.bodies)}.{parts[3]}", getattr(joint, parts[3])) for joint in file.joints
+        ]
+        return named or [(pattern, Joint.model_fields[parts[3]].default)]
     if len(parts) == 1:
         return [(pattern, getattr(file, pattern))]
     held = getattr(file, parts[0])
