@@ -155,7 +155,13 @@ def effective_parameters(structure, model, numerical):
     for name, material in file.materials.items():
         acted |= {f"materials.{name}.{key}": value for key, value in material.model_dump().items()}
     for entry in file.friction:
-        acted[f"friction.{entry.pair[0]}.{entry.pair[1]}"] = entry.coefficient
+        pair = f"friction.{'.'.join(entry.pair)}"
+        acted[pair] = entry.coefficient
+        acted |= {
+            f"{pair}.{key}": value for key, value in entry.model_dump(exclude={"pair", "coefficient"}).items()
+        }
+    for joint in file.joints:
+        acted[f"joints.{'.'.join(joint.bodies)}.friction_factor"] = joint.friction_factor
     prefix = MODELS[model][2]
     return acted | {f"{prefix}.{key}": value for key, value in numerical.model_dump().items()}
 

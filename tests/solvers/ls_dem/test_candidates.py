@@ -26,7 +26,7 @@ def test_the_skin_changes_speed_and_never_results(rocked, skin):
     short, long = rocked[0.005], rocked[skin]
     assert 2.0 * np.abs(short.orientation[:, 1:, 2]).max() > 0.005
     assert short.numerics["list_searches"] > 10
-    assert rocked[20.0].numerics["list_searches"] == 0
+    assert rocked[20.0].numerics["list_searches"] == 1
     np.testing.assert_allclose(short.position, long.position, atol=rounding)
     np.testing.assert_allclose(short.orientation, long.orientation, atol=rounding)
 

@@ -2,8 +2,13 @@ import numpy as np
 import pytest
 
 from blockshake.geometry.structure import load_structure
-from blockshake.solvers.ls_dem.contact import damping_ratio, normal_force
-from blockshake.solvers.ls_dem.driver import assemble_interfaces
+from blockshake.solvers.ls_dem.contact_law import normal_force
+from blockshake.solvers.ls_dem.interfaces import (
+    assemble_interfaces,
+    damping_ratio,
+    dashpot_coefficient,
+    in_series,
+)
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 
 PARAMETERS = LsDemParameters()
@@ -22,7 +27,12 @@ PARAMETERS = LsDemParameters()
 )
 def test_equation_2_node_by_node(phi, closing, force):
     """Zhou et al. (2023), Eq. (2), with the normal out of the other body and no tension."""
-    assert normal_force(phi, closing, 2.0e6, 5.0e3) == pytest.approx(force, rel=1e-12)
+    assert normal_force(phi, closing, 2.0e6, 5.0e3, 0.0) == pytest.approx(force, rel=1e-12)
+
+
+def test_equation_2_as_printed_may_pull_while_inside():
+    assert normal_force(-1e-3, 1.0, 2.0e6, 5.0e3, -np.inf) == pytest.approx(-3000.0, rel=1e-12)
+    assert normal_force(1e-3, 1.0, 2.0e6, 5.0e3, -np.inf) == 0.0
 
 
 def test_like_on_like_has_the_stiffness_given_and_unlike_ones_act_in_series():
@@ -31,21 +41,27 @@ def test_like_on_like_has_the_stiffness_given_and_unlike_ones_act_in_series():
     interfaces = assemble_interfaces(structure, PARAMETERS)
     names = structure.body_names
     wall, beam, top = names.index("wall-a-4"), names.index("beam-1"), names.index("top")
-    assert interfaces.k_n[wall, top] == pytest.approx(2.16e10, rel=1e-12)
-    assert interfaces.k_s[wall, top] == pytest.approx(9.0e9, rel=1e-12)
+    assert in_series(interfaces.k_n, wall, top) == pytest.approx(2.16e10, rel=1e-12)
+    assert in_series(interfaces.k_s, wall, top) == pytest.approx(9.0e9, rel=1e-12)
     # half of each block's own compliance: 1/k = (1/k_concrete + 1/k_steel) / 2
     ratio = 2.1e11 / 3.45e10
-    assert interfaces.k_n[wall, beam] == pytest.approx(2.0 / (1.0 + 1.0 / ratio) * 2.16e10, rel=1e-12)
+    assert in_series(interfaces.k_n, wall, beam) == pytest.approx(
+        2.0 / (1.0 + 1.0 / ratio) * 2.16e10, rel=1e-12
+    )
     shear_ratio = ratio * 1.2 / 1.3
-    assert interfaces.k_s[wall, beam] == pytest.approx(2.0 / (1.0 + 1.0 / shear_ratio) * 9.0e9, rel=1e-12)
-    for matrix in (interfaces.k_n, interfaces.k_s, interfaces.mu, interfaces.mass):
-        np.testing.assert_array_equal(matrix, matrix.T)
+    assert in_series(interfaces.k_s, wall, beam) == pytest.approx(
+        2.0 / (1.0 + 1.0 / shear_ratio) * 9.0e9, rel=1e-12
+    )
+    assert in_series(interfaces.k_s, beam, wall) == in_series(interfaces.k_s, wall, beam)
 
 
-def test_the_mass_of_a_contact_is_that_of_a_central_impact():
+@pytest.mark.parametrize(("bodies", "share"), [((0, 1), 1.0), ((1, 2), 0.5)])
+def test_the_mass_of_a_contact_is_that_of_a_central_impact(bodies, share):
+    """Eq. (3), both sides together: 2 zeta sqrt(m k) of the interface; the slab is driven, so infinitely heavy."""
     structure = load_structure("configuration-1")
     interfaces = assemble_interfaces(structure, PARAMETERS)
-    block = structure.mass[1]
-    assert interfaces.mass[0, 1] == pytest.approx(block, rel=1e-12)  # the slab is driven: infinitely heavy
-    assert interfaces.mass[1, 2] == pytest.approx(block / 2.0, rel=1e-12)
     assert interfaces.damping_ratio == damping_ratio(0.5)
+    area, k_n = 1.28, 2.16e10
+    of_both_sides = 2.0 * area * dashpot_coefficient(interfaces, *bodies, 0.3, k_n, area)
+    mass = share * structure.mass[1]
+    assert of_both_sides == pytest.approx(2.0 * 0.3 * np.sqrt(mass * k_n * area), rel=1e-12)

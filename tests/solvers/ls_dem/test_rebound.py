@@ -3,7 +3,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from blockshake.solvers.ls_dem.contact import damping_ratio
+from blockshake.solvers.ls_dem.interfaces import damping_ratio
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 
 SPEED = 0.1  # m/s, downwards; gravity off, so that the theory is a spring and a dashpot alone

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from blockshake.geometry.structure import load_structure
-from blockshake.solvers.ls_dem.driver import assemble_surfaces
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
+from blockshake.solvers.ls_dem.surfaces import assemble_surfaces
 
 G = 9.81
 K_N = LsDemParameters().normal_stiffness

@@ -3,7 +3,7 @@ import pytest
 from scipy.linalg import expm
 
 from blockshake.dynamics.motion import ground_motion
-from blockshake.solvers.ls_dem.contact import damping_ratio
+from blockshake.solvers.ls_dem.interfaces import damping_ratio
 
 SPEED = 1e-3  # m/s; facts.md 3.16: no joint opens (static penetration 2e-6 m, wave 4e-7 m)
 K_N, AREA = 2.16e10, 0.76 * 2.36

@@ -15,18 +15,27 @@ from blockshake.solvers.ls_dem.contact import (
     DAMPING,
     ELASTIC,
     FRICTION,
-    Loads,
+    clear_loads,
     contact_forces_into,
+    no_loads,
 )
-from blockshake.solvers.ls_dem.relative_motion import Kinematics
+from blockshake.solvers.ls_dem.progress import (
+    DAMPING_HEAT,
+    FRICTION_HEAT,
+    MOST_FRICTION_HEAT,
+    NEXT_RECORD,
+    SEARCHES,
+    STEP,
+    WORK,
+)
 from blockshake.solvers.ls_dem.stoppers import stopper_forces_into
 
-COMPLETED, COLLAPSED, DIVERGED = 0, 1, 2
+COMPLETED, COLLAPSED, DIVERGED, PAUSED = 0, 1, 2, 3
 _SPEED_LIMIT = 1e3  # m/s; nothing that falls or shakes here comes near it
 
 
 class Record(NamedTuple):
-    """What a run leaves, NaN where it did not come to; arrays as in `Trajectory`."""
+    """What a run leaves, NaN where it did not come to; arrays as in `Trajectory`, ``joint_force`` of all joints."""
 
     position: np.ndarray
     orientation: np.ndarray
@@ -34,49 +43,6 @@ class Record(NamedTuple):
     angular_velocity: np.ndarray
     energy: np.ndarray
     joint_force: np.ndarray
-
-
-@kernel
-def clear_loads(bodies, loads):
-    """Start a force evaluation: gravity on every free body, nothing else."""
-    loads.moment[:] = 0.0
-    loads.joint_force[:] = 0.0
-    loads.energy[:] = 0.0
-    for body in range(bodies.mass.size):
-        for axis in range(3):
-            loads.force[body, axis] = 0.0 if bodies.driven[body] else bodies.mass[body] * bodies.gravity[axis]
-
-
-@kernel
-def _put_driven_into(bodies, displacement, velocity, state, kinematics):
-    """Place the driven bodies where the ground has them, with its velocity."""
-    place_driven_into(bodies, displacement, velocity, state)
-    for body in range(bodies.mass.size):
-        if bodies.driven[body]:
-            for axis in range(3):
-                kinematics.velocity[body, axis] = state.velocity[body, axis]
-                kinematics.spin[body, axis] = state.angular_velocity[body, axis]
-
-
-@kernel
-def _angular_momentum_into(bodies, state, momentum):
-    """Angular momentum of every free body about its mass centre, world frame [kg m2/s]."""
-    R = np.empty((3, 3))
-    for body in range(bodies.mass.size):
-        if not bodies.driven[body]:
-            rotation_matrix_into(state.orientation[body], R)
-            momentum[body] = R @ (bodies.inertia[body] @ (R.T @ state.angular_velocity[body]))
-
-
-@kernel
-def _has_diverged(velocity):
-    """Whether a velocity is beyond the limit or no number."""
-    for body in range(velocity.shape[0]):
-        for axis in range(3):
-            # not (x <= limit), so that NaN counts
-            if not abs(velocity[body, axis]) <= _SPEED_LIMIT:
-                return True
-    return False
 
 
 @kernel
@@ -91,12 +57,14 @@ def integrate(
     skin,
     dt,
     n_steps,
+    pause,
     times,
-    state,
+    progress,
     candidates,
+    joints,
     record,
 ):
-    """Run LS-DEM over ``n_steps`` steps.
+    """Run LS-DEM from where ``progress`` stands to its last step, or to a pause.
 
     Parameters
     ----------
@@ -108,146 +76,170 @@ def integrate(
         Criterion of collapse, see `find_collapsed` [m].
     skin, dt : float
         Reach of the lists [m], time step [s].
-    n_steps : int
+    n_steps, pause : int
+        Last step, and the step before which to pause.
     times : float64 array, shape (n_times,)
         When to record, increasing from 0 [s].
-    state : State
-        At the start; at the end of the run on return.
-    candidates : Candidates
-        Near nodes with the shear forces of the start.
+    progress : Progress
+    candidates, joints : Candidates, Joints
+        Near nodes with the shear springs of the step before.
     record : Record
-        Overwritten.
+        Filled from the next record on.
 
     Returns
     -------
-    status, body, step, rebuilds : int
-        Status code, body that collapsed or -1, last step, number of list searches.
-    joint : int64 array, shape (n_bodies, n_bodies)
-        Row of ``record.joint_force`` of each pair (first < second), -1 where they never touched.
+    status, body : int
+        `PAUSED` also where ``record`` has no room for a further joint; body that collapsed or -1.
+    candidates, joints : Candidates, Joints
+        To go on with.
 
     Notes
     -----
-    Leapfrog (velocity Verlet): momenta at half steps, poses at full steps. The force at a step
-    sees the dashpot velocities extrapolated to that step, ``v(n-1/2) + dt/2 a(n-1)``, which keeps
-    the scheme of second order with damping. Heat, input work and elastic energy are summed so
-    that their balance closes but for the error of the scheme.
+    Leapfrog (velocity Verlet): momenta at half steps, poses at full steps, of second order with
+    damping too (see `node_force`). Heat, input work and elastic energy are summed so that their balance
+    closes but for the error of the scheme.
     """
     n_bodies = bodies.mass.size
-    half_velocity, half_spin = state.velocity.copy(), np.zeros((n_bodies, 3))  # at half steps, as is
-    momentum = np.zeros((n_bodies, 3))  # the angular momentum
-    turn = np.empty(3)
-    kinematics = Kinematics(
-        state.position, np.empty((n_bodies, 3, 3)), np.empty((n_bodies, 3)), np.empty((n_bodies, 3, 3)),
-        state.velocity.copy(), state.angular_velocity.copy(),
-    )  # fmt: skip
-    loads = Loads(
-        np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)),
-        np.full((n_bodies, n_bodies), -1, np.int64), np.zeros((record.joint_force.shape[1], 3)), np.zeros(3),
-    )  # fmt: skip
-    _angular_momentum_into(bodies, state, momentum)
-    now, before, velocity = np.zeros(4), np.zeros(4), np.zeros(4)
-    driven_force, driven_moment = np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3))
-    friction_heat = most_friction = damping_heat = work = 0.0
-    segment = rebuilds = next_time = 0
+    state, poses = progress.state, progress.poses
+    loads = no_loads(n_bodies, joints)
+    now, velocity = np.zeros(4), np.zeros(4)
+    workspace = np.zeros(3)
     start = ground.coefficients[0, :, 0].copy()
     start[3] = 0.0
-    for step in range(n_steps + 1):
+    segment = 0
+    while progress.clock[STEP] <= n_steps:
+        step = progress.clock[STEP]
+        if step == pause:
+            return PAUSED, -1, candidates, joints
         t = step * dt
-        before[:] = now
         segment = find_segment(ground.breaks, t, segment)
         ground_state_into(ground, segment, t, now, velocity)
         now -= start
-        _put_driven_into(bodies, now, velocity, state, kinematics)
+        place_driven_into(bodies, now, velocity, state)
         for body in range(n_bodies):
-            rotation_matrix_into(state.orientation[body], kinematics.rotation[body])
+            rotation_matrix_into(state.orientation[body], poses.rotation[body])
         if step == 0:
-            before[:] = now
-            kinematics.position_before[:] = state.position
-            kinematics.rotation_before[:] = kinematics.rotation
+            progress.ground[:] = now
+            poses.position_before[:] = state.position
+            poses.rotation_before[:] = poses.rotation
 
-        if lists_expired(candidates, surfaces, bodies.driven, state.position, state.orientation, skin):
-            candidates = find_candidates(
-                surfaces, bodies.driven, state.position, state.orientation, skin, candidates
+        if step == 0 or lists_expired(
+            candidates, surfaces, bodies.driven, state.position, state.orientation, skin
+        ):
+            candidates, joints = find_candidates(
+                surfaces, bodies.driven, poses, state.orientation, skin, candidates, joints
             )
-            rebuilds += 1
+            loads = no_loads(n_bodies, joints)
+            progress.clock[SEARCHES] += 1
+            if joints.slip.size > record.joint_force.shape[1]:
+                return PAUSED, -1, candidates, joints
         clear_loads(bodies, loads)
         # the first force sees no motion before it: the springs of the start hold as they are
-        contact_forces_into(candidates, surfaces, interfaces, kinematics, dt if step > 0 else 0.0, loads)
-        kinematics.position_before[:] = state.position
-        kinematics.rotation_before[:] = kinematics.rotation
+        contact_forces_into(candidates, surfaces, interfaces, poses, dt if step > 0 else 0.0, loads)
+        poses.position_before[:] = state.position
+        poses.rotation_before[:] = poses.rotation
         loads.energy[ELASTIC] += stopper_forces_into(bodies, stoppers, state, loads)
-        friction_heat += loads.energy[FRICTION]
-        # a node that lets go while its slip reverses gives back some microjoules of a step's error
-        most_friction = max(most_friction, friction_heat)
-        damping_heat += loads.energy[DAMPING]
-        for body in range(n_bodies):
-            if bodies.driven[body]:
-                for axis in range(3):
-                    moved = now[axis] - before[axis]
-                    turned = now[3] - before[3] if axis == 1 else 0.0
-                    work -= 0.5 * (loads.force[body, axis] + driven_force[body, axis]) * moved
-                    work -= 0.5 * (loads.moment[body, axis] + driven_moment[body, axis]) * turned
-                    driven_force[body, axis] = loads.force[body, axis]
-                    driven_moment[body, axis] = loads.moment[body, axis]
+        _book(bodies, loads, now, progress)
 
-        # kick: momenta from half a step before to half a step after; the first is half a kick
-        for body in range(n_bodies):
-            if bodies.driven[body]:
-                continue
-            for axis in range(3):
-                gained = 0.5 * dt * bodies.inverse_mass[body] * loads.force[body, axis]
-                state.velocity[body, axis] = half_velocity[body, axis] + (gained if step > 0 else 0.0)
-                half_velocity[body, axis] = state.velocity[body, axis] + gained
-                kinematics.velocity[body, axis] = half_velocity[body, axis] + gained
-                if step > 0:
-                    momentum[body, axis] += 0.5 * dt * loads.moment[body, axis]
-            spin_into(
-                bodies.inverse_inertia[body],
-                state.orientation[body],
-                momentum[body],
-                state.angular_velocity[body],
-            )
-            for axis in range(3):
-                momentum[body, axis] += 0.5 * dt * loads.moment[body, axis]
-
+        _kick(bodies, loads, dt, step > 0, progress)
         if _has_diverged(state.velocity):
-            return DIVERGED, -1, step, rebuilds, loads.joint
-        while next_time < times.size and times[next_time] < t + 0.5 * dt:
-            offset = times[next_time] - t
-            for body in range(n_bodies):
-                for axis in range(3):
-                    record.position[next_time, body, axis] = (
-                        state.position[body, axis] + offset * state.velocity[body, axis]
-                    )
-                    slope = 2.0 * (half_velocity[body, axis] - state.velocity[body, axis]) / dt
-                    record.velocity[next_time, body, axis] = state.velocity[body, axis] + (
-                        0.0 if bodies.driven[body] else offset * slope
-                    )
-                    record.angular_velocity[next_time, body, axis] = state.angular_velocity[body, axis]
-                    turn[axis] = offset * state.angular_velocity[body, axis]
-                rotate_into(state.orientation[body], turn, record.orientation[next_time, body])
-            energy = record.energy[next_time]
-            energy[0] = kinetic_energy(bodies, state.velocity, state.angular_velocity, state.orientation)
-            energy[1] = potential_energy(bodies, state.position)
-            energy[2] = loads.energy[ELASTIC]
-            # a step's dashpot heat lasts to half a step ahead
-            energy[3], energy[4] = most_friction, damping_heat - 0.5 * loads.energy[DAMPING]
-            energy[5], energy[6] = 0.0, work
-            record.joint_force[next_time] = loads.joint_force
-            next_time += 1
+            return DIVERGED, -1, candidates, joints
+        while progress.clock[NEXT_RECORD] < times.size and times[progress.clock[NEXT_RECORD]] < t + 0.5 * dt:
+            row = progress.clock[NEXT_RECORD]
+            _record_into(bodies, loads, times[row] - t, dt, progress, workspace, row, record)
+            progress.clock[NEXT_RECORD] += 1
             collapsed = find_collapsed(bodies, state, supported, drop_limit)
             if collapsed >= 0:
-                return COLLAPSED, collapsed, step, rebuilds, loads.joint
+                return COLLAPSED, collapsed, candidates, joints
+        _drift(bodies, dt, workspace, progress)
+        progress.clock[STEP] += 1
+    return COMPLETED, -1, candidates, joints
 
-        for body in range(n_bodies):
-            if not bodies.driven[body]:
-                drift_into(
-                    bodies.inverse_inertia[body], half_velocity[body], momentum[body],
-                    state.angular_velocity[body], dt,
-                    state.position[body], state.orientation[body], half_spin[body],
-                )  # fmt: skip
-                # extrapolated half a step on, with the present moment still acting
-                for axis in range(3):
-                    turn[axis] = momentum[body, axis] + 0.5 * dt * loads.moment[body, axis]
-                spin_into(bodies.inverse_inertia[body], state.orientation[body], turn, kinematics.spin[body])
-    return COMPLETED, -1, n_steps, rebuilds, loads.joint
+
+@kernel
+def _book(bodies, loads, now, progress):
+    """Heat of the step, and work of the driven bodies: their mean force since the step before times their motion."""
+    audit, ground = progress.audit, progress.ground
+    audit[FRICTION_HEAT] += loads.energy[FRICTION]
+    # a node that lets go while its slip reverses gives back some microjoules of a step's error
+    audit[MOST_FRICTION_HEAT] = max(audit[MOST_FRICTION_HEAT], audit[FRICTION_HEAT])
+    audit[DAMPING_HEAT] += loads.energy[DAMPING]
+    for body in range(bodies.mass.size):
+        if bodies.driven[body]:
+            for axis in range(3):
+                moved = now[axis] - ground[axis]
+                turned = now[3] - ground[3] if axis == 1 else 0.0
+                audit[WORK] -= 0.5 * (loads.force[body, axis] + progress.driven_force[body, axis]) * moved
+                audit[WORK] -= 0.5 * (loads.moment[body, axis] + progress.driven_moment[body, axis]) * turned
+                progress.driven_force[body, axis] = loads.force[body, axis]
+                progress.driven_moment[body, axis] = loads.moment[body, axis]
+    ground[:] = now
+
+
+@kernel
+def _kick(bodies, loads, dt, under_way, progress):
+    """Momenta from half a step before to half a step after; the first is half a kick."""
+    state, half_velocity, momentum = progress.state, progress.half_velocity, progress.half_momentum
+    for body in range(bodies.mass.size):
+        if bodies.driven[body]:
+            continue
+        for axis in range(3):
+            gained = 0.5 * dt * bodies.inverse_mass[body] * loads.force[body, axis]
+            state.velocity[body, axis] = half_velocity[body, axis] + (gained if under_way else 0.0)
+            half_velocity[body, axis] = state.velocity[body, axis] + gained
+            if under_way:
+                momentum[body, axis] += 0.5 * dt * loads.moment[body, axis]
+        spin_into(
+            bodies.inverse_inertia[body],
+            state.orientation[body],
+            momentum[body],
+            state.angular_velocity[body],
+        )
+        for axis in range(3):
+            momentum[body, axis] += 0.5 * dt * loads.moment[body, axis]
+
+
+@kernel
+def _drift(bodies, dt, spin, progress):
+    """Poses a step on."""
+    state = progress.state
+    for body in range(bodies.mass.size):
+        if not bodies.driven[body]:
+            drift_into(
+                bodies.inverse_inertia[body], progress.half_velocity[body], progress.half_momentum[body],
+                state.angular_velocity[body], dt, state.position[body], state.orientation[body], spin,
+            )  # fmt: skip
+
+
+@kernel
+def _record_into(bodies, loads, offset, dt, progress, turn, row, record):
+    """State and audit at a time ``offset`` from the step, at most half a step away, in one row of the record."""
+    state, audit = progress.state, progress.audit
+    for body in range(bodies.mass.size):
+        for axis in range(3):
+            velocity = state.velocity[body, axis]
+            slope = 0.0 if bodies.driven[body] else 2.0 * (progress.half_velocity[body, axis] - velocity) / dt
+            record.position[row, body, axis] = state.position[body, axis] + offset * velocity
+            record.velocity[row, body, axis] = velocity + offset * slope
+            record.angular_velocity[row, body, axis] = state.angular_velocity[body, axis]
+            turn[axis] = offset * state.angular_velocity[body, axis]
+        rotate_into(state.orientation[body], turn, record.orientation[row, body])
+    energy = record.energy[row]
+    energy[0] = kinetic_energy(bodies, state.velocity, state.angular_velocity, state.orientation)
+    energy[1] = potential_energy(bodies, state.position)
+    energy[2] = loads.energy[ELASTIC]
+    # a step's dashpot heat lasts to half a step ahead
+    energy[3], energy[4] = audit[MOST_FRICTION_HEAT], audit[DAMPING_HEAT] - 0.5 * loads.energy[DAMPING]
+    energy[5], energy[6] = 0.0, audit[WORK]
+    record.joint_force[row, : loads.joints.slip.size] = loads.joints.force
+
+
+@kernel
+def _has_diverged(velocity):
+    """Whether a velocity is beyond the limit or no number."""
+    for body in range(velocity.shape[0]):
+        for axis in range(3):
+            # not (x <= limit), so that NaN counts
+            if not abs(velocity[body, axis]) <= _SPEED_LIMIT:
+                return True
+    return False

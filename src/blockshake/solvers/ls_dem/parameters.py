@@ -1,6 +1,6 @@
 """Numerical parameters of LS-DEM."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -28,7 +28,33 @@ class LsDemParameters(Strict):
     perimeter_inset: Positive = Field(
         0.005, description="distance of the outermost nodes from the perimeter of a flat [m]; chosen"
     )
+    edge_spacing: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(
+        0.0,
+        description="aimed distance of further nodes along the chamfers of boxes [m]; chosen: 0 for none, they "
+        "matter only where edges meet edges",
+    )
+    level_set: Literal["exact", "grid"] = Field(
+        "exact",
+        description="how the distance to a box is found [exact or grid], by its formula or, as for a mesh, sampled; "
+        "Zhou et al. (2023), Eq. (1), sample it",
+    )
+    grid_spacing: Positive = Field(
+        0.02,
+        description="spacing of the lattice of a sampled distance [m]; Zhou et al. (2023), section LS-DEM",
+    )
     skin: Positive = Field(
         0.01,
         description="distance within which nodes are kept ready for contact [m]; changes speed, never results",
+    )
+    damping: Literal["interface", "node"] = Field(
+        "interface",
+        description="whose mass and stiffness Eq. (3) reads [interface or node]: the interface's, or literally each "
+        "node's; Zhou et al. (2023), Eq. (3), docs/method.md",
+    )
+    pulling: bool = Field(
+        False,
+        description="whether the damped force of Eq. (2) may pull [true or false]; printed so, chosen: it does not",
+    )
+    shear_damping_ratio: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(
+        0.0, description="dashpot beside the shear spring, as a fraction of critical [1]; the paper has none"
     )

@@ -6,9 +6,8 @@ from blockshake.dynamics.free_motion import spin_into
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
 from blockshake.jit import kernel
 from blockshake.solvers.ls_dem.candidates import find_candidates, lists_expired
-from blockshake.solvers.ls_dem.contact import Loads, contact_forces_into
-from blockshake.solvers.ls_dem.loop import clear_loads
-from blockshake.solvers.ls_dem.relative_motion import Kinematics
+from blockshake.solvers.ls_dem.contact import clear_loads, contact_forces_into, no_loads
+from blockshake.solvers.ls_dem.relative_pose import Poses
 
 _NEAR = 1e-4  # m, contract: an equilibrium farther than this from the given poses is not the start
 _AT_REST = 1e-9  # out-of-balance force over weight; the thump it leaves is as small
@@ -17,7 +16,7 @@ _MOST_STEPS = 400_000
 
 
 @kernel
-def settle(bodies, surfaces, interfaces, skin, dt, state, candidates):
+def settle(bodies, surfaces, interfaces, skin, dt, state, candidates, joints):
     """Find the equilibrium under gravity near the given poses by dynamic relaxation.
 
     Parameters
@@ -27,13 +26,13 @@ def settle(bodies, surfaces, interfaces, skin, dt, state, candidates):
         Reach of the lists [m] and pseudo time step [s].
     state : State
         Poses are moved to the equilibrium; velocities do not enter.
-    candidates : Candidates
-        Lists for the given poses, without shear forces.
+    candidates, joints : Candidates, Joints
+        Before the first search.
 
     Returns
     -------
-    candidates : Candidates
-        Near nodes with the shear forces of the equilibrium.
+    candidates, joints : Candidates, Joints
+        Near nodes with the shear springs of the equilibrium, and the pairs they belong to.
     left : bool array, shape (n_bodies,)
         Free bodies that moved farther than 0.1 mm and so have no equilibrium near.
     steps : int
@@ -51,25 +50,25 @@ def settle(bodies, surfaces, interfaces, skin, dt, state, candidates):
     left = np.zeros(n_bodies, np.bool_)
     given = state.position.copy()
     given_orientation = state.orientation.copy()
-    loads = Loads(
-        np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)),
-        np.full((n_bodies, n_bodies), -1, np.int64), np.zeros((0, 3)), np.zeros(3),
-    )  # fmt: skip
     rotation = np.empty((n_bodies, 3, 3))
     for body in range(n_bodies):
         rotation_matrix_into(state.orientation[body], rotation[body])
-    kinematics = Kinematics(state.position, rotation, state.position.copy(), rotation.copy(), velocity, spin)
+    poses = Poses(state.position, rotation, state.position.copy(), rotation.copy())
+    loads = no_loads(n_bodies, joints)
     for step in range(_MOST_STEPS):
-        if lists_expired(candidates, surfaces, bodies.driven, state.position, state.orientation, skin):
-            candidates = find_candidates(
-                surfaces, bodies.driven, state.position, state.orientation, skin, candidates
-            )
         for body in range(n_bodies):
             rotation_matrix_into(state.orientation[body], rotation[body])
+        if step == 0 or lists_expired(
+            candidates, surfaces, bodies.driven, state.position, state.orientation, skin
+        ):
+            candidates, joints = find_candidates(
+                surfaces, bodies.driven, poses, state.orientation, skin, candidates, joints
+            )
+            loads = no_loads(n_bodies, joints)
         clear_loads(bodies, loads)
-        contact_forces_into(candidates, surfaces, interfaces, kinematics, dt, loads)
-        kinematics.position_before[:] = state.position
-        kinematics.rotation_before[:] = rotation
+        contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads)
+        poses.position_before[:] = state.position
+        poses.rotation_before[:] = rotation
         worst = 0.0
         for body in range(n_bodies):
             if bodies.driven[body] or left[body]:
@@ -94,5 +93,5 @@ def settle(bodies, surfaces, interfaces, skin, dt, state, candidates):
                 left[body] = True
                 velocity[body], momentum[body], spin[body] = 0.0, 0.0, 0.0
         if worst < _AT_REST:
-            return candidates, left, step
-    return candidates, left, _MOST_STEPS
+            return candidates, joints, left, step
+    return candidates, joints, left, _MOST_STEPS

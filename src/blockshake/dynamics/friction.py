@@ -1,0 +1,87 @@
+"""Coulomb's coefficient of a joint: by pair of materials, slip rate, slip, direction and joint."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.jit import kernel
+
+# Columns of a law
+COEFFICIENT, RATE_DROP, RATE_SCALE, SLIP_DROP, SLIP_SCALE, ASYMMETRY, N_LAW = 0, 1, 2, 3, 4, 5, 6
+
+
+class FrictionLaws(NamedTuple):
+    """Friction of every pair of bodies.
+
+    ``material`` int64 (n_bodies,); ``law`` float64 (n_materials, n_materials, N_LAW), symmetric;
+    ``joint`` int64 (n_own, 2) and ``factor`` (n_own,): joints, first body below second by index,
+    with a factor of their own on the coefficient [1].
+    """
+
+    material: np.ndarray
+    law: np.ndarray
+    joint: np.ndarray
+    factor: np.ndarray
+
+
+def assemble_friction(structure):
+    """Friction laws of a structure file; the coefficient alone acts unless it says more."""
+    file = structure.file
+    names = list(file.materials)
+    law = np.zeros((len(names), len(names), N_LAW))
+    law[:, :, [RATE_SCALE, SLIP_SCALE]] = 1.0
+    for entry in file.friction:
+        a, b = (names.index(material) for material in entry.pair)
+        law[a, b] = law[b, a] = (
+            entry.coefficient, entry.rate_drop, entry.rate_scale, entry.slip_drop, entry.slip_scale, entry.asymmetry,
+        )  # fmt: skip
+    bodies = structure.body_names
+    own = [sorted(bodies.index(name) for name in joint.bodies) for joint in file.joints]
+    return FrictionLaws(
+        material=np.array([names.index(body.material) for body in file.bodies]),
+        law=law,
+        joint=np.array(own, dtype=np.int64).reshape(-1, 2),
+        factor=np.array([joint.friction_factor for joint in file.joints], dtype=float),
+    )
+
+
+@kernel
+def friction_coefficient(laws, a, b, slip_rate, slip):
+    """Coulomb's coefficient of the joint of two bodies, before its direction is known [1].
+
+    Parameters
+    ----------
+    laws : FrictionLaws
+    a, b : int
+        Bodies.
+    slip_rate : float
+        Of the joint, at the step before [m/s].
+    slip : float
+        That the joint has made so far, either way [m].
+
+    Notes
+    -----
+    ``mu (1 - D_v (1 - exp(-v / v_c))) (1 - D_S (1 - exp(-S / S_c)))``: the first bracket is the
+    Stribeck form of rate weakening, the second a slip weakening of the same form; ``D = 0`` leaves
+    the coefficient as it is, to the bit. What the literature says of concrete is in docs/method.md.
+    """
+    first, second, law = laws.material[a], laws.material[b], laws.law
+    mu = law[first, second, COEFFICIENT]
+    if slip_rate > 0.0:
+        mu *= 1.0 - law[first, second, RATE_DROP] * (
+            1.0 - np.exp(-slip_rate / law[first, second, RATE_SCALE])
+        )
+    if slip > 0.0:
+        mu *= 1.0 - law[first, second, SLIP_DROP] * (1.0 - np.exp(-slip / law[first, second, SLIP_SCALE]))
+    for own in range(laws.factor.size):
+        if (laws.joint[own, 0] == a and laws.joint[own, 1] == b) or (
+            laws.joint[own, 0] == b and laws.joint[own, 1] == a
+        ):
+            mu *= laws.factor[own]
+    return mu
+
+
+@kernel
+def friction_asymmetry(laws, a, b):
+    """Share by which the coefficient is larger for slip along +x of the joint's first body, smaller along -x [1]."""
+    return laws.law[laws.material[a], laws.material[b], ASYMMETRY]

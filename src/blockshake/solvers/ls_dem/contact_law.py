@@ -1,0 +1,112 @@
+"""The contact law of a node: Eqs. (2), (4) and (5) of Zhou et al. (2023), and the energy it moves."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.jit import inline_kernel
+
+
+class Law(NamedTuple):
+    """What the nodes of one side obey.
+
+    ``k_n``, ``k_s``: stiffness per area of node [N/m3]; ``gamma_n``: dashpot, per unit of a node's
+    damping weight; ``mu``: Coulomb's coefficient and ``bias`` its change by direction: it is ``mu + bias s_x``
+    for the unit vector s of the owner's slip in the other's frame; ``least_force``: the cut of
+    Eq. (2) [N]; ``rate``: the inverse of the time since the step before, zero at the first step [1/s].
+    """
+
+    k_n: float
+    k_s: float
+    gamma_n: float
+    mu: float
+    bias: float
+    least_force: float
+    rate: float
+
+
+@inline_kernel
+def normal_force(phi, closing, k_n, gamma_n, least):
+    """Magnitude of a node's normal force, Eq. (2) [N].
+
+    ``phi`` is the level-set value (negative inside) [m], ``closing`` the velocity of the node
+    along the outward normal of the other body [m/s], negative when approaching; ``k_n`` [N/m]
+    and ``gamma_n`` [N s/m] are the node's. The damped force is cut at ``least``: at zero because
+    concrete does not stick to concrete, so that a ``gamma_n`` made for a restitution of 0.50 rebounds
+    at 0.55; at -inf it may pull, as printed.
+    """
+    force = -k_n * phi - gamma_n * closing
+    return force if (force > least and phi < 0.0) else 0.0
+
+
+@inline_kernel
+def kept_stretch(tx, ty, tz, f_n, k_s, mu, bias):
+    """Share of a trial stretch that Coulomb's limit lets a shear spring keep, Eq. (5), and the stretch squared.
+
+    ``tx, ty, tz`` [m]; ``f_n`` the normal force, not below zero [N]; ``k_s`` of the node [N/m]. A node out
+    of contact has no limit force and lets go.
+    """
+    squared = tx * tx + ty * ty + tz * tz
+    limit = f_n * (mu * np.sqrt(squared) + bias * tx)
+    reach = k_s * squared
+    return limit / reach if reach > limit else 1.0, squared
+
+
+@inline_kernel
+def node_force(phi, nx, ny, nz, ux, uy, uz, ox, oy, oz, closed, area, weight, law):
+    """Force of one node, its springs afterwards, and the energy it moved.
+
+    Parameters
+    ----------
+    phi, nx, ny, nz : float
+        Level-set value [m] and outward normal of the other body there.
+    ux, uy, uz : float
+        Change of place since the step before, other's frame [m].
+    ox, oy, oz : float
+        Stretch of the shear spring so far, other's frame [m].
+    closed : float
+        Change of place along the normal in the step before [m].
+    area, weight : float
+        Of the node [m2]; what its dashpot goes with.
+    law : Law
+
+    Returns
+    -------
+    fx, fy, fz : float
+        On the owner, other's frame [N].
+    sx, sy, sz, closed : float
+        Stretch and change along the normal now [m].
+    held, slid, damped : float
+        Energy that the springs hold, friction heat and dashpot heat of the step [J].
+
+    Notes
+    -----
+    The stretch is kept in the frame of the body whose level set is read, so that it turns with
+    the interface; where the normal changes (from a flat to a chamfer) its part along the new
+    normal is dropped, and what the spring held of it counts as dashpot heat. The velocity of the
+    dashpot is that of the last two half steps carried on to the step, which is of second order.
+    Friction heat is the mean shear force of the step times the slip: exactly the work on the
+    spring less the energy it gained.
+    """
+    k_node, k_shear = law.k_n * area, law.k_s * area
+    lost = ox * nx + oy * ny + oz * nz
+    tx, ty, tz = ox + ux, oy + uy, oz + uz
+    along = tx * nx + ty * ny + tz * nz
+    now_closed = along - lost
+    moved = 1.5 * now_closed - 0.5 * closed
+    f_n = normal_force(phi, moved * law.rate, k_node, law.gamma_n * weight, law.least_force)
+
+    # Eq. (4): the spring follows the tangential part of the motion since the last step
+    tx, ty, tz = tx - along * nx, ty - along * ny, tz - along * nz
+    kept, squared = kept_stretch(tx, ty, tz, max(f_n, 0.0), k_shear, law.mu, law.bias)
+    sx, sy, sz = kept * tx, kept * ty, kept * tz
+
+    # slip is the trial stretch less what was kept of it
+    depth = -phi if phi < 0.0 else 0.0
+    spring, half = k_node * depth, 0.5 * k_shear
+    after = kept * squared
+    held = half * kept * after + 0.5 * spring * depth
+    slid = half * (1.0 - kept) * (ox * tx + oy * ty + oz * tz + after)
+    damped = half * lost * lost - (f_n - spring) * moved
+    fx, fy, fz = f_n * nx - k_shear * sx, f_n * ny - k_shear * sy, f_n * nz - k_shear * sz
+    return fx, fy, fz, sx, sy, sz, now_closed, held, slid, damped

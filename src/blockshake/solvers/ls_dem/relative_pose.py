@@ -1,0 +1,41 @@
+"""How one body stands in the frame of another: what contact at its nodes needs, once a pair and step."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.jit import kernel
+
+
+class Poses(NamedTuple):
+    """Poses now and a step earlier, world frame.
+
+    ``position``, ``position_before`` (n_bodies, 3) [m]; ``rotation``, ``rotation_before`` (n_bodies, 3, 3),
+    body to world.
+    """
+
+    position: np.ndarray
+    rotation: np.ndarray
+    position_before: np.ndarray
+    rotation_before: np.ndarray
+
+
+@kernel
+def relative_pose_into(position, rotation, owner, other, side, R, d):
+    """Pose of ``owner`` in the body frame of ``other``: its axes ``R[side]`` (3, 3) and mass centre ``d[side]`` (3,).
+
+    Whole arrays and an index are passed, and no tuples of arrays, because their counting of references
+    costs more than what is done with them here.
+    """
+    for i in range(3):
+        for j in range(3):
+            R[side, i, j] = (
+                rotation[other, 0, i] * rotation[owner, 0, j]
+                + rotation[other, 1, i] * rotation[owner, 1, j]
+                + rotation[other, 2, i] * rotation[owner, 2, j]
+            )
+        d[side, i] = (
+            rotation[other, 0, i] * (position[owner, 0] - position[other, 0])
+            + rotation[other, 1, i] * (position[owner, 1] - position[other, 1])
+            + rotation[other, 2, i] * (position[owner, 2] - position[other, 2])
+        )

@@ -1,0 +1,111 @@
+"""A run that was cut and goes on has the bytes of one that was not."""
+
+import numpy as np
+import pytest
+
+from blockshake.dynamics.motion import ground_motion
+from blockshake.geometry.structure import load_structure
+from blockshake.solvers.ls_dem import driver
+from blockshake.solvers.ls_dem.parameters import LsDemParameters
+
+G = 9.81
+TIMES = np.arange(0.0, 0.3001, 0.005)
+
+
+class CutShortError(Exception):
+    pass
+
+
+@pytest.fixture(scope="module")
+def motion():
+    time = np.arange(0.0, 0.3001, 0.001)
+    return ground_motion("sine", time, {"x": 0.6 * G * np.sin(2 * np.pi * 3.0 * time)}, "acceleration")
+
+
+def _run(motion, parameters=None, **keys):
+    return driver.simulate_ls_dem(
+        load_structure("configuration-1"), motion, parameters or LsDemParameters(), TIMES, 5e-5, **keys
+    )
+
+
+def _cut_after(monkeypatch, n_savings):
+    """Save at every pause of 500 steps, and fall over after so many savings."""
+    made = []
+
+    def save(*content):
+        original(*content)
+        made.append(content[0])
+        if len(made) == n_savings:
+            raise CutShortError
+
+    original = driver.save_checkpoint
+    monkeypatch.setattr(driver, "_PAUSE_STEPS", 500)
+    monkeypatch.setattr(driver, "save_checkpoint", save)
+
+
+def _assert_same(one, other):
+    for field in (
+        "position", "orientation", "velocity", "angular_velocity", "energy", "joints", "joint_force",
+    ):  # fmt: skip
+        assert getattr(one, field).tobytes() == getattr(other, field).tobytes(), field
+    assert (one.status, one.reason, one.end_time, one.numerics) == (
+        other.status, other.reason, other.end_time, other.numerics,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def whole(motion):
+    return _run(motion)
+
+
+def test_a_cut_run_goes_on_bit_by_bit(whole, motion, tmp_path, monkeypatch):
+    path = tmp_path / "run.npz"
+    with monkeypatch.context() as patch:
+        _cut_after(patch, 5)
+        with pytest.raises(CutShortError):
+            _run(motion, checkpoint=path, checkpoint_interval=0.0)
+    assert path.exists()
+    with monkeypatch.context() as patch:
+        _cut_after(patch, 3)
+        with pytest.raises(CutShortError):
+            _run(motion, checkpoint=path, checkpoint_interval=0.0)
+    steps = []
+    original = driver.load_checkpoint
+    monkeypatch.setattr(driver, "load_checkpoint", lambda *a: steps.append(original(*a)) or steps[-1])
+    resumed = _run(motion, checkpoint=path)
+    assert steps[0][0].clock[0] >= 0  # it did read the checkpoint
+    _assert_same(whole, resumed)
+    assert not path.exists()
+    assert np.abs(whole.orientation[:, 1:, 2]).max() > 1e-3  # it rocked, so that springs and lists mattered
+
+
+def test_the_checkpoint_of_another_run_is_not_taken(motion, tmp_path, monkeypatch):
+    path = tmp_path / "run.npz"
+    with monkeypatch.context() as patch:
+        _cut_after(patch, 2)
+        with pytest.raises(CutShortError):
+            _run(motion, checkpoint=path, checkpoint_interval=0.0)
+    softer = LsDemParameters(normal_stiffness=2.0e10)
+    _assert_same(_run(motion, softer, checkpoint=path), _run(motion, softer))
+
+
+@pytest.mark.parametrize("content", [b"", b"PK\x03\x04 cut short", b"not a checkpoint"])
+def test_a_checkpoint_that_cannot_be_read_starts_anew(content, whole, motion, tmp_path):
+    path = tmp_path / "run.npz"
+    path.write_bytes(content)
+    _assert_same(whole, _run(motion, checkpoint=path))
+
+
+def test_bodies_that_meet_late_find_room_in_the_record(make_structure, run_ls_dem, monkeypatch):
+    """A row of cubes falls one after the other: every landing is a new joint, and the record grows in between."""
+    cubes = [
+        {"name": f"c{index}", "shape": "cube", "position": [3.0 * index, 0.0, 0.5 + 0.002 * (index + 1)]}
+        for index in range(6)
+    ]
+    wide = {"slab": {"box": [40.0, 3.0, 0.2]}}
+    structure = make_structure(cubes, shapes=wide)
+    plenty = run_ls_dem(structure, 0.1, skin=0.0005)
+    monkeypatch.setattr(driver, "_SPARE_JOINTS", 0)
+    scarce = run_ls_dem(structure, 0.1, skin=0.0005)
+    assert len(plenty.joints) == 6
+    _assert_same(plenty, scarce)
