@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/ready
 SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 
-.PHONY: study quick paper test test-slow setup lint lock clean
+.PHONY: study quick paper test test-slow bench setup lint lock clean
 
 study: setup
 	@$(BIN)/blockshake check config/study.yaml
@@ -30,6 +30,10 @@ test: setup
 
 test-slow: setup
 	$(BIN)/pytest -m slow
+
+# how fast LS-DEM is on this machine, for maintainers: minutes on a machine that does nothing else
+bench: setup
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/bench.py
 
 setup: $(READY)
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.friction import friction_asymmetry, friction_coefficient
-from blockshake.jit import kernel
+from blockshake.jit import inline_kernel, kernel
 from blockshake.solvers.ls_dem.contact_law import Law
 from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series
 from blockshake.solvers.ls_dem.joints import Joints
@@ -144,7 +144,7 @@ def _share_into(owner, other, side, rotation, d, sums, force, moment, joint, joi
         joint_force[joint, i] += sign * f
 
 
-@kernel
+@inline_kernel
 def _slip_into(joints, joint, mu, heat, dt):
     """Slip of a joint in this step: its friction heat over Coulomb's limit, a mean weighted by the force."""
     fx, fy, fz = joints.force[joint, 0], joints.force[joint, 1], joints.force[joint, 2]

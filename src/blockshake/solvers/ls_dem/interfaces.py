@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.friction import FrictionLaws, assemble_friction
-from blockshake.jit import kernel
+from blockshake.jit import inline_kernel, kernel
 
 
 class Interfaces(NamedTuple):
@@ -64,13 +64,13 @@ def assemble_interfaces(structure, parameters):
     )
 
 
-@kernel
+@inline_kernel
 def in_series(stiffness, a, b):
     """Stiffness between two bodies, each giving half of the compliance: per area [N/m3]."""
     return 2.0 / (1.0 / stiffness[a] + 1.0 / stiffness[b])
 
 
-@kernel
+@inline_kernel
 def dashpot_coefficient(interfaces, a, b, ratio, stiffness, area):
     """Coefficient of one side's dashpot, per area of node [N s/m3] or, literally, per root of it [N s/m2].
 

@@ -1,0 +1,86 @@
+"""The bench's results as text."""
+
+import force_evaluation
+import walls
+
+
+def as_text(result):
+    """Table of all parts that were measured."""
+    machine, versions = result["machine"], result["versions"]
+    lines = [
+        f"{machine['processor']} ({machine['instruction_set']}), {machine['cores']} cores, "
+        f"{machine['clock_ghz']['median']:.2f} GHz at work",
+        ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in versions.items()),
+    ]
+    for part, write in _PARTS.items():
+        if part in result:
+            lines += ["", *write(result[part])]
+    return "\n".join(lines) + "\n"
+
+
+def _range(values, digits):
+    """Median with its quartiles."""
+    median, low, high = (values[key] for key in ("median", "lower_quartile", "upper_quartile"))
+    return f"{median:.{digits}f} ({low:.{digits}f} to {high:.{digits}f})"
+
+
+def _force_evaluation(result):
+    yield "Cost of a node evaluation [ns], all contact work of a three-block stack over its listed nodes"
+    yield f"  {'level set':<16}{'median (quartiles)':<26}{'target':<8}{'node alone':<12}{'pair':<8}nodes, pairs"
+    for name, cost in result.items():
+        yield (
+            f"  {name:<16}{_range(cost['ns_per_node'], 2):<26}{force_evaluation.TARGET_NS[name]:<8g}"
+            f"{cost['ns_per_node_alone']:<12.2f}{cost['ns_per_pair']:<8.0f}{cost['nodes']}, {cost['pairs']}"
+        )
+
+
+def _arithmetic(result):
+    peak = result["peak_gflops"]
+    yield "Share of the core's peak, exact distance"
+    for loop in result["loops"]:
+        yield (
+            f"  loop of {loop['operations_per_node']:.0f} operations a node, "
+            f"{100 * loop['packed_share']:.0f} % packed, {loop['vector_bits']} bits"
+            f"{', with gathers' if loop['gathers'] else ''}"
+        )
+    yield (
+        f"  peak {peak['fused']['median']:.1f} Gflop/s fused, {peak['separate']['median']:.1f} separate; "
+        f"reached {result['reached_gflops']:.1f}: {100 * result['share_of_peak']:.0f} % of the peak"
+    )
+
+
+def _simulated_second(result):
+    yield "CPU seconds per simulated second, 1 Hz, 1.5 m/s2"
+    for name, costs in result.items():
+        yield f"  {name:<18}" + "".join(f"{step}: {_range(cost, 3):<28}" for step, cost in costs.items())
+
+
+def _walls(result):
+    yield "Bonded walls: cost of a step for a block, dt 1e-5 s"
+    yield f"  {'blocks':<8}{'us a step and block':<26}{'joints a block':<16}{'us a step and joint':<21}MiB"
+    for wall in result["sizes"]:
+        joints = wall["joints"] / wall["blocks"]
+        cost = wall["us_per_step_and_block"]
+        yield (
+            f"  {wall['blocks']:<8}{_range(cost, 3):<26}{joints:<16.2f}{cost['median'] / joints:<21.3f}"
+            f"{wall['peak_memory_mib']:.0f}"
+        )
+    for unit in ("block", "joint"):
+        share = result[f"spread_by_{unit}"]
+        verdict = "linear" if share <= walls.LINEAR_WITHIN else "not linear"
+        yield (
+            f"  by {unit}: dearest size {100 * share:.0f} % above the cheapest, "
+            f"{verdict} within {100 * walls.LINEAR_WITHIN:.0f} %"
+        )
+    yield (
+        f"  a step grows as blocks^{result['exponent']:.2f}; "
+        f"memory {result['memory_kib_per_block']:.0f} KiB a block"
+    )
+
+
+_PARTS = {
+    "force_evaluation": _force_evaluation,
+    "arithmetic": _arithmetic,
+    "simulated_second": _simulated_second,
+    "walls": _walls,
+}
