@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import inline_kernel, kernel
+from blockshake.jit import inline_kernel
 
 # Columns of a law
 COEFFICIENT, RATE_DROP, RATE_SCALE, SLIP_DROP, SLIP_SCALE, ASYMMETRY, N_LAW = 0, 1, 2, 3, 4, 5, 6

@@ -118,3 +118,43 @@ def test_a_block_tilted_on_its_edge_stays_tilted(make_structure, run_ls_dem):
     run = run_ls_dem(structure, 0.005)
     np.testing.assert_array_equal(run.position[0, 1], position)
     np.testing.assert_array_equal(run.orientation[0, 1], structure.orientation[1])
+
+
+def test_a_stack_with_open_joints_starts_closed(make_structure, run_ls_dem):
+    """Dry blocks laid with 0.03 mm between them: the equilibrium lies within 0.1 mm, and is the start."""
+    gap = 3e-5
+    bodies = [
+        {"name": f"b{index}", "shape": "cube", "position": [0.0, 0.0, 0.5 + index + (index + 1) * gap]}
+        for index in range(2)
+    ]
+    structure = make_structure(bodies)
+    run = run_ls_dem(structure, 0.05)
+    weight = structure.mass[1] * G
+    areas = np.array([_area_in_touch(structure, a, a + 1) for a in range(2)])
+    closed = np.cumsum([2.0 * weight, weight] / (K_N * areas))
+    without_gaps = structure.position[1:, 2] - gap * np.array([1.0, 2.0])
+    np.testing.assert_allclose(without_gaps - run.position[0, 1:, 2], closed, rtol=1e-6)
+    assert np.abs(run.position - run.position[0]).max() < 1e-12
+    assert run.numerics["settling_steps"] < 10
+
+
+def test_a_tower_of_eight_settles_without_relaxation(make_structure, run_ls_dem):
+    """Relaxation takes steps with the square of the height; Newton's method on linear springs takes none."""
+    bodies = [
+        {"name": f"b{index}", "shape": "cube", "position": [0.0, 0.0, 0.5 + index]} for index in range(8)
+    ]
+    run = run_ls_dem(make_structure(bodies), 0.05)
+    assert run.numerics["settling_steps"] == 0
+    assert np.abs(run.position - run.position[0]).max() < 1e-11
+
+
+def test_a_tower_that_sinks_farther_than_the_contract_allows_starts_as_given(make_structure, run_ls_dem):
+    """Twelve blocks on soft joints sink by 0.1 mm and more: design.md 9 takes the given poses then."""
+    bodies = [
+        {"name": f"b{index}", "shape": "cube", "position": [0.0, 0.0, 0.5 + index]} for index in range(12)
+    ]
+    structure = make_structure(bodies)
+    run = run_ls_dem(structure, 0.01, normal_stiffness=5e9)
+    np.testing.assert_array_equal(run.position[0], structure.position)
+    assert run.numerics["settling_steps"] == 0
+    assert run.position[-1, 12, 2] < structure.position[12, 2]

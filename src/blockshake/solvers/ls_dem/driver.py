@@ -8,9 +8,10 @@ from scipy.sparse.csgraph import connected_components
 
 from blockshake.dynamics.collapse import collapse_limits
 from blockshake.dynamics.motion import rest_table
-from blockshake.dynamics.system import ENERGY_TERMS, State, Trajectory, assemble_bodies, place_driven_into
+from blockshake.dynamics.system import ENERGY_TERMS, Trajectory, assemble_bodies, place_driven_into
 from blockshake.solvers.ls_dem.candidates import empty_candidates
 from blockshake.solvers.ls_dem.checkpoint import load_checkpoint, run_key, save_checkpoint
+from blockshake.solvers.ls_dem.equilibrium import approach_equilibrium
 from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
 from blockshake.solvers.ls_dem.joints import no_joints
 from blockshake.solvers.ls_dem.loop import COLLAPSED, DIVERGED, PAUSED, Record, integrate
@@ -23,6 +24,7 @@ _log = logging.getLogger(__name__)
 _PAUSE_STEPS = 20_000  # steps between looks at the clock
 _NEWS = 10.0  # s of wall time between lines of progress
 _SPARE_JOINTS = 64
+_NEAR = 1e-4  # m, contract: an equilibrium farther than this from the given poses is not the start
 
 
 def simulate_ls_dem(
@@ -131,17 +133,14 @@ def simulate_ls_dem(
 
 def _start(structure, bodies, surfaces, interfaces, skin, time_step, state):
     """Near nodes at the start; the poses of stacks at rest are moved to their equilibrium."""
-    relaxed = State(*(part.copy() for part in state))
-    candidates, joints, left, steps = settle(
-        bodies,
-        surfaces,
-        interfaces,
-        skin,
-        time_step,
-        relaxed,
-        empty_candidates(len(bodies.mass)),
-        no_joints(),
+    position, orientation, at_rest, left = approach_equilibrium(
+        bodies, surfaces, interfaces, skin, state, _NEAR
     )
+    relaxed = state._replace(position=position, orientation=orientation)
+    candidates, joints, steps = settle(
+        bodies, surfaces, interfaces, skin, time_step, state, relaxed, _NEAR, at_rest, left,
+        empty_candidates(len(bodies.mass)), no_joints(),
+    )  # fmt: skip
     free = ~structure.driven
     _, group = connected_components(structure.touching & free[:, None] & free[None, :])
     at_rest = free & ~np.isin(group, group[left])

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.friction import FrictionLaws, assemble_friction
-from blockshake.jit import inline_kernel, kernel
+from blockshake.jit import inline_kernel
 
 
 class Interfaces(NamedTuple):

@@ -1,4 +1,4 @@
-"""The static equilibrium that a stack given face to face starts from, so that nothing thumps."""
+"""The static equilibrium that a stack given face to face starts from, so that nothing thumps: relaxation."""
 
 import numpy as np
 
@@ -9,14 +9,12 @@ from blockshake.solvers.ls_dem.candidates import find_candidates, lists_expired
 from blockshake.solvers.ls_dem.contact import clear_loads, contact_forces_into, no_loads
 from blockshake.solvers.ls_dem.relative_pose import Poses
 
-_NEAR = 1e-4  # m, contract: an equilibrium farther than this from the given poses is not the start
-_AT_REST = 1e-9  # out-of-balance force over weight; the thump it leaves is as small
 _LOCAL_DAMPING = 0.8  # Cundall's: this part of every out-of-balance force opposes the motion
 _MOST_STEPS = 400_000
 
 
 @kernel
-def settle(bodies, surfaces, interfaces, skin, dt, state, candidates, joints):
+def settle(bodies, surfaces, interfaces, skin, dt, given, state, near, at_rest, left, candidates, joints):
     """Find the equilibrium under gravity near the given poses by dynamic relaxation.
 
     Parameters
@@ -24,8 +22,15 @@ def settle(bodies, surfaces, interfaces, skin, dt, state, candidates, joints):
     bodies, surfaces, interfaces : Bodies, Surfaces, Interfaces
     skin, dt : float
         Reach of the lists [m] and pseudo time step [s].
-    state : State
-        Poses are moved to the equilibrium; velocities do not enter.
+    given, state : State
+        Poses from where motion counts, and poses to start from, which are moved to the equilibrium;
+        velocities do not enter.
+    near : float
+        A body that moves farther than this from its given pose has no equilibrium [m].
+    at_rest : float64 array, shape (n_bodies,)
+        Out-of-balance force below which a body is at rest [N].
+    left : bool array, shape (n_bodies,)
+        Free bodies known to have no equilibrium; those found to have none are added.
     candidates, joints : Candidates, Joints
         Before the first search.
 
@@ -33,8 +38,6 @@ def settle(bodies, surfaces, interfaces, skin, dt, state, candidates, joints):
     -------
     candidates, joints : Candidates, Joints
         Near nodes with the shear springs of the equilibrium, and the pairs they belong to.
-    left : bool array, shape (n_bodies,)
-        Free bodies that moved farther than 0.1 mm and so have no equilibrium near.
     steps : int
         Pseudo steps made.
 
@@ -47,13 +50,10 @@ def settle(bodies, surfaces, interfaces, skin, dt, state, candidates, joints):
     n_bodies = bodies.mass.size
     velocity, momentum, spin = np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3))
     turn = np.empty(3)
-    left = np.zeros(n_bodies, np.bool_)
-    given = state.position.copy()
-    given_orientation = state.orientation.copy()
-    rotation = np.empty((n_bodies, 3, 3))
+    rotation, rotation_before = np.empty((n_bodies, 3, 3)), np.empty((n_bodies, 3, 3))
     for body in range(n_bodies):
-        rotation_matrix_into(state.orientation[body], rotation[body])
-    poses = Poses(state.position, rotation, state.position.copy(), rotation.copy())
+        rotation_matrix_into(given.orientation[body], rotation_before[body])
+    poses = Poses(state.position, rotation, given.position.copy(), rotation_before)
     loads = no_loads(n_bodies, joints)
     for step in range(_MOST_STEPS):
         for body in range(n_bodies):
@@ -66,18 +66,19 @@ def settle(bodies, surfaces, interfaces, skin, dt, state, candidates, joints):
             )
             loads = no_loads(n_bodies, joints)
         clear_loads(bodies, loads)
-        contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads)
+        # the way from the given poses stretches springs and is no velocity
+        contact_forces_into(candidates, surfaces, interfaces, poses, dt if step > 0 else 0.0, loads)
         poses.position_before[:] = state.position
         poses.rotation_before[:] = rotation
-        worst = 0.0
+        settled = True
         for body in range(n_bodies):
             if bodies.driven[body] or left[body]:
                 continue
             radius = surfaces.radius[surfaces.shape[body]]
-            weight = bodies.mass[body] * np.sqrt((bodies.gravity**2).sum()) + 1e-300
             for axis in range(3):
                 force, moment = loads.force[body, axis], loads.moment[body, axis]
-                worst = max(worst, abs(force) / weight, abs(moment) / (weight * radius))
+                if not (abs(force) < at_rest[body] and abs(moment) < at_rest[body] * radius):
+                    settled = False
                 force -= _LOCAL_DAMPING * abs(force) * np.sign(velocity[body, axis])
                 moment -= _LOCAL_DAMPING * abs(moment) * np.sign(momentum[body, axis])
                 velocity[body, axis] += dt * bodies.inverse_mass[body] * force
@@ -87,11 +88,11 @@ def settle(bodies, surfaces, interfaces, skin, dt, state, candidates, joints):
             for axis in range(3):
                 turn[axis] = dt * spin[body, axis]
             rotate_into(state.orientation[body], turn, state.orientation[body])
-            moved = np.sqrt(((state.position[body] - given[body]) ** 2).sum())
-            dot = abs((state.orientation[body] * given_orientation[body]).sum())
-            if moved + 2.0 * radius * np.sqrt(max(1.0 - dot * dot, 0.0)) > _NEAR:
+            moved = np.sqrt(((state.position[body] - given.position[body]) ** 2).sum())
+            dot = abs((state.orientation[body] * given.orientation[body]).sum())
+            if moved + 2.0 * radius * np.sqrt(max(1.0 - dot * dot, 0.0)) > near:
                 left[body] = True
                 velocity[body], momentum[body], spin[body] = 0.0, 0.0, 0.0
-        if worst < _AT_REST:
-            return candidates, joints, left, step
-    return candidates, joints, left, _MOST_STEPS
+        if settled:
+            return candidates, joints, step
+    return candidates, joints, _MOST_STEPS
