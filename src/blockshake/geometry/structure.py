@@ -22,7 +22,7 @@ from blockshake.geometry.schema import StructureFile
 from blockshake.geometry.structure_file import check_names, friction_matrix, replace_into, unit_quaternions
 from blockshake.validation import validated
 
-_DEEPEST_OVERLAP = 1e-3  # m, contract; deeper is a wrong structure, not an initial penetration
+DEEPEST_OVERLAP = 1e-3  # m, contract; deeper is a wrong structure, not an initial penetration
 _TOUCHING = 1e-4  # m, contract: an equilibrium within this of the given poses is the start
 
 
@@ -193,13 +193,13 @@ def _touching(file, source, solids, position, orientation):
         depth[places] = penetration_depths(
             solids[first], position[a], orientation[a], solids[second], position[b], orientation[b]
         )
-    for place in np.flatnonzero(depth > _DEEPEST_OVERLAP)[:1]:
+    for place in np.flatnonzero(depth > DEEPEST_OVERLAP)[:1]:
         a, b = pairs[place]
         raise InputError(
             source,
             f"bodies.{bodies[b].name}.position",
             f"overlaps {bodies[a].name} by {1e3 * depth[place]:.3g} mm; "
-            f"expected at most {1e3 * _DEEPEST_OVERLAP:.0f} mm",
+            f"expected at most {1e3 * DEEPEST_OVERLAP:.0f} mm",
         )
     touching = np.zeros((len(bodies), len(bodies)), dtype=bool)
     a, b = pairs[(depth > -_TOUCHING) & ~driven[pairs].all(axis=1)].T
