@@ -25,7 +25,13 @@ STIFFNESS = (
     "study/sample_parameters.py",
 )
 ENVELOPE = _STATISTICS
-COMPARISON = (*_STATISTICS, "study/coverage.py", "measurement/campaign.py", "measurement/virtual_test.py")
+COMPARISON = (
+    *_STATISTICS,
+    "study/coverage.py",
+    "study/compared_curves.py",
+    "measurement/campaign.py",
+    "measurement/virtual_test.py",
+)
 REPORT = (*_STATISTICS, *DESIGN, "geometry", "dynamics", "measurement", "report")
 
 

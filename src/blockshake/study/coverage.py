@@ -5,11 +5,11 @@ import xarray as xr
 
 from blockshake.errors import InputError
 from blockshake.measurement.virtual_test import noisy_reading
+from blockshake.study.compared_curves import curves_along_x
 from blockshake.study.ensemble import relative_to_slab
 from blockshake.study.envelope import counted_samples, over_samples
 
 REFERENCE_QUANTILES = (0.05, 0.5, 0.95)
-_SAME_TIME = 1e-6  # s
 _FEWEST_MEMBERS = 3
 
 
@@ -56,12 +56,8 @@ def coverage(measured, ensemble, marker_noise, seed=0):
         raise InputError(
             "coverage", "samples", f"expected at least {_FEWEST_MEMBERS} completed or collapsed samples"
         )
-    markers = [name for name in measured["marker"].values if name in members["marker"].values]
-    if not markers:
-        raise InputError("coverage", "marker", "expected a measured marker that the simulation has too")
-    n_times = _common_times(measured["time"].to_numpy(), members["time"].to_numpy())
-    read = _along_x(measured, markers, n_times)
-    curves = _along_x(members, markers, n_times)
+    read, curves = curves_along_x(measured, members)
+    markers = list(read["marker"].values)
     lower, upper = _bounds(curves)
     member_coverage = _members_inside(curves.to_numpy(), marker_noise, seed)
     by_marker = {"marker": markers}
@@ -106,18 +102,6 @@ def _describe(result):
     }
     for name, (long_name, units) in described.items():
         result[name].attrs = {"long_name": long_name, "units": units}
-
-
-def _common_times(measured, simulated):
-    n_times = min(len(measured), len(simulated))
-    if n_times == 0 or np.abs(measured[:n_times] - simulated[:n_times]).max() > _SAME_TIME:
-        raise InputError("coverage", "time", "expected measured times that are the ensemble's output times")
-    return n_times
-
-
-def _along_x(dataset, markers, n_times):
-    chosen = dataset["marker_displacement"].sel(axis="x", marker=markers, drop=True)
-    return chosen.isel(time=slice(n_times)).transpose(..., "time", "marker")
 
 
 def _bounds(curves):

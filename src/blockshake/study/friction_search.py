@@ -1,0 +1,93 @@
+"""The friction calibration of one case: replicated ensembles for every candidate mean, against its measured test."""
+
+import numpy as np
+import pandas as pd
+
+from blockshake.study.batch import simulate_samples
+from blockshake.study.coverage import coverage
+from blockshake.study.ensemble import join_batches
+from blockshake.study.friction_calibration import mean_score, search_mean, with_mean
+from blockshake.study.sampling import draw_samples
+from blockshake.study.stiffness import calibrate_design
+
+
+def calibrate_friction(case, run_settings, ensemble, search, measured, marker_noise, store, source, say):
+    """Search the mean coefficient of friction of a case.
+
+    Parameters
+    ----------
+    case : dict
+        As for `simulate_samples`.
+    run_settings : dict
+        ``model``, ``time_step`` [s], ``output_rate`` [Hz], and ``tower``, the structure that gives the
+        stiffness of LS-DEM's samples.
+    ensemble : dict
+        ``distributions``, ``seed``, ``linked``.
+    search : dict
+        ``variables``, ``lowest``, ``highest``, ``step``, ``finest`` [1]; ``size`` of an ensemble, ``replicates``.
+    measured : xarray.Dataset
+        The measured test.
+    marker_noise : float
+        [m]
+    store, source : as for `simulate_samples`
+        Finished samples are kept, so that a search that was cut goes on.
+    say : callable
+        Called with a line of text as it goes.
+
+    Returns
+    -------
+    FrictionCalibration
+    beside : pandas.DataFrame
+        By mean, medians over the replicates: ``coverage`` of the measured curves and its leave-one-out
+        ``reference``, medians over the markers [1]; ``residual``, the largest over the markers of the samples' median
+        residual relative to the slab [m].
+    """
+    distributions, linked = ensemble["distributions"], ensemble["linked"]
+    designs = [
+        _replicate(search["size"], ensemble["seed"], index, distributions)
+        for index in range(search["replicates"])
+    ]
+    if run_settings["model"] == "ls-dem":
+        tower = run_settings["tower"]
+        designs = [pd.concat([design, calibrate_design(tower, design, linked)], axis=1) for design in designs]
+    beside = {}
+
+    def evaluate(mean):
+        scores, covered = [], []
+        for index, design in enumerate(designs):
+            rows = with_mean(design, distributions, search["variables"], mean)
+            finished = simulate_samples(
+                case, run_settings["model"], run_settings["time_step"], run_settings["output_rate"],
+                rows, linked, store, source, lambda line: None,
+            )  # fmt: skip
+            members = join_batches(finished)
+            scores.append(mean_score(members, measured, marker_noise, seed=index))
+            covered.append(_beside(members, measured, marker_noise))
+        beside[mean] = pd.DataFrame(covered).median()
+        say(
+            f"mean friction {mean:g}: score {1e3 * sum(scores) / len(scores):.3f} mm of {len(scores)} ensembles"
+        )
+        return scores
+
+    found = search_mean(
+        evaluate, search["lowest"], search["highest"], search["step"], search["finest"], marker_noise
+    )
+    say(found.answer)
+    return found, pd.DataFrame(beside).T.rename_axis("mean").sort_index()
+
+
+def _replicate(size, seed, index, distributions):
+    """Values of one of the independent designs, its seed made of the study's and its own number."""
+    own = int(np.random.SeedSequence([seed, index]).generate_state(1)[0])
+    return draw_samples(size, seed=own, distributions=distributions).values
+
+
+def _beside(members, measured, marker_noise):
+    """What is told beside the score of one ensemble."""
+    compared = coverage(measured, members, marker_noise)
+    residual = np.abs(members["residual"].sel(frame="slab")).median("sample")
+    return {
+        "coverage": float(compared["coverage"].median()),
+        "reference": float(compared["reference"].sel(quantile=0.5).median()),
+        "residual": float(residual.max()),
+    }
