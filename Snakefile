@@ -17,6 +17,7 @@ include: "workflow/rules/sampling.smk"
 include: "workflow/rules/stiffness.smk"
 include: "workflow/rules/simulation.smk"
 include: "workflow/rules/envelope.smk"
+include: "workflow/rules/friction.smk"
 include: "workflow/rules/campaign.smk"
 include: "workflow/rules/report.smk"
 

@@ -12,6 +12,7 @@ ROOT = PACKAGE.parents[1]
 WATCHED = {
     "describe_motion": sources.MOTION,
     "draw_samples": sources.DESIGN,
+    "calibrate_friction": sources.friction_sources("nscd-rigid"),
     "calibrate_stiffness": sources.STIFFNESS,
     "make_envelope": sources.ENVELOPE,
     "compare_with_measurement": sources.COMPARISON,

@@ -50,5 +50,25 @@ def batch_sources(model):
     return (*run_sources(model), *DESIGN, "study/batch.py", "study/ensemble.py", "study/sample_parameters.py")
 
 
-LADDER = (*run_sources("ls-dem"), *DESIGN, "solvers/nscd", "study/ladder.py", "study/config.py")
+LADDER = (
+    *run_sources("ls-dem"),
+    *DESIGN,
+    "solvers/nscd",
+    "study/ladder.py",
+    "study/config.py",
+    "study/friction_settings.py",
+)
 VIRTUAL_CAMPAIGN = (*run_sources("ls-dem"), *STIFFNESS, "solvers/nscd", "study/virtual_campaign.py")
+
+
+def friction_sources(model):
+    """Sources of the friction calibration by one model; LS-DEM's stiffness is imported in any case."""
+    return (
+        *batch_sources(model),
+        *COMPARISON,
+        *STIFFNESS,
+        "study/friction_search.py",
+        "study/friction_settings.py",
+        "study/friction_calibration.py",
+        "study/scores.py",
+    )

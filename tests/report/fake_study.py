@@ -52,7 +52,9 @@ class FakeStudy:
                 "distributions": {name: one.model_dump() for name, one in TABLE_2.items()},
             },
             "ladder": {"motions": ["alkion", "basso-tirreno"]},
+            "friction_calibration": {"cases": ["configuration-1"]},
         }
+        write_json(self.results / "friction" / "configuration-1.json", friction())
         for place, name in enumerate(("basso-tirreno", "alkion")):
             write_dataset(self.results / "motions" / f"{name}.nc", motion(name, place))
         self._write_design()
@@ -143,6 +145,33 @@ class FakeStudy:
                 ),
             },
         )
+
+
+def friction():
+    """A friction calibration that refuses the lowest mean only."""
+    return {
+        "answer": "not informed above 0.4",
+        "best": 0.6,
+        "lower": 0.3,
+        "upper": None,
+        "synthetic": 1,
+        "model": "nscd-rigid",
+        "variables": ["friction.concrete.concrete"],
+        "lowest": 0.3,
+        "highest": 0.8,
+        "size": 10,
+        "replicates": 3,
+        "means": {
+            "mean": [0.3, 0.4, 0.6, 0.8],
+            "score": [9.5e-3, 3.1e-3, 3.0e-3, 3.2e-3],
+            "excess": [6.5e-3, 1e-4, 0.0, 2e-4],
+            "error": [1e-3, 2e-4, 0.0, 2e-4],
+            "accepted": [False, True, True, True],
+            "coverage": [0.4, 0.8, 0.83, 0.8],
+            "reference": [0.8, 0.8, 0.84, 0.8],
+            "residual": [3e-2, 2e-4, 1e-4, 1e-4],
+        },
+    }
 
 
 def end(run, status, reason, time):

@@ -209,3 +209,20 @@ def test_missing_results_are_named(tmp_path):
     with pytest.raises(InputError, match=r"envelopes/ls-dem/configuration-1\.nc"):
         make_report(fake.study, fake.results, fake.benchmarks, tmp_path / "a.html", tmp_path / "a.pdf")
     assert not (tmp_path / "a.html").exists()
+
+
+def test_the_friction_calibration_says_what_the_test_does_not_tell(document):
+    section = next(section for section in document.sections if section.key == "friction")
+    table = next(block for block in section.blocks if block.kind == "table")
+    row = dict(zip(table.header, table.rows[0], strict=True))
+    assert row["Mean friction is"] == "not informed above 0.4"
+    assert row["Best"] == "0.6"
+    assert row["Score [mm]"] == "3"
+    assert row["Coverage"] == "0.830"
+    assert row["Test"] == "synthetic"
+
+
+def test_a_study_without_a_friction_calibration_has_no_such_section(fake):
+    study = {name: value for name, value in fake.study.items() if name != "friction_calibration"}
+    made = compose(load_content(study, fake.results, fake.benchmarks))
+    assert "friction" not in [section.key for section in made.sections]

@@ -116,6 +116,7 @@ if workflow.exec_mode == workflow.exec_mode.DEFAULT:
 STUDY = config["name"]
 MODELS = list(config["models"])
 CASES = {Path(case["structure"]).stem: case for case in config["cases"]}
+FRICTION_SEARCH = config.get("friction_calibration") or {}
 LADDER_MOTIONS = config["ladder"]["motions"]
 MOTIONS = {
     Path(motion).stem: motion

@@ -34,6 +34,11 @@ rule make_report:
             model=MODELS,
             case=CASES,
         ),
+        friction=expand(
+            "results/{study}/friction/{case}.json",
+            study=STUDY,
+            case=FRICTION_SEARCH.get("cases", []),
+        ),
     output:
         html=report("reports/{study}.html", category="Study"),
         pdf=report("reports/{study}.pdf", category="Study"),

@@ -87,6 +87,8 @@ class Content:
     design_summary : dict
     distributions : dict of str to Lognormal
     waves : xarray.Dataset
+    friction : dict of str to dict
+        Friction calibrations by case; empty where the study asks for none.
     timings : tuple of Timing
     digests : dict of str to str
         Of input files and of tables that all samples come from, by path.
@@ -102,6 +104,7 @@ class Content:
     design_summary: dict
     distributions: dict
     waves: xr.Dataset
+    friction: dict
     timings: tuple
     digests: dict
     versions: dict
@@ -144,6 +147,10 @@ def load_content(study, results, benchmarks):
         design_summary=json.loads(read_text(results / "design.json")),
         distributions=load_distributions(study["ensemble"].get("distributions"), study["name"]),
         waves=_dataset(results / "waves.nc"),
+        friction={
+            name: json.loads(read_text(results / "friction" / f"{name}.json"))
+            for name in (study.get("friction_calibration") or {}).get("cases", ())
+        },
         timings=read_timings(
             benchmarks,
             {(model, case.name): one.samples for case in loaded.values() for model, one in case.responses.items()},

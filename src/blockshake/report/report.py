@@ -2,12 +2,25 @@
 
 from blockshake.report.blocks import Document, numbered
 from blockshake.report.content import load_content
+from blockshake.report.friction_section import friction
 from blockshake.report.html import write_html
 from blockshake.report.pdf import write_pdf
 from blockshake.report.result_sections import checks, limits, origin, responses, timings
 from blockshake.report.sections import motions, samples, stiffness, structures, summary
 
-_SECTIONS = (summary, structures, motions, samples, stiffness, responses, checks, timings, limits, origin)
+_SECTIONS = (
+    summary,
+    structures,
+    motions,
+    samples,
+    stiffness,
+    responses,
+    friction,
+    checks,
+    timings,
+    limits,
+    origin,
+)
 
 
 def make_report(study, results, benchmarks, html, pdf):
@@ -38,6 +51,6 @@ def compose(content):
         Document(
             title=f"blockshake: {content.study['name']}",
             subtitle=" ".join(content.study["description"].split()),
-            sections=tuple(section(content) for section in _SECTIONS),
+            sections=tuple(made for section in _SECTIONS if (made := section(content)) is not None),
         )
     )

@@ -12,6 +12,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaign import load_campaign
 from blockshake.study.correlation_target import load_correlation
 from blockshake.study.distributions import TABLE_2, Lognormal, load_distributions
+from blockshake.study.friction_settings import FrictionSearch
 from blockshake.study.sampling import SMALLEST_SIZE
 from blockshake.study.simulation import MODELS
 from blockshake.validation import Strict, validated
@@ -91,6 +92,7 @@ class StudyConfig(Strict):
     cases: tuple[Case, ...] = Field(min_length=1)
     ensemble: Ensemble
     ladder: Ladder
+    friction_calibration: FrictionSearch | None = None
 
     def case(self, name):
         """The case of this name."""
@@ -139,8 +141,36 @@ def check_config(mapping, where):
             raise InputError(
                 where, f"ensemble.linked.{target}", f"expected one of the random variables, not {source}"
             )
+    _check_friction_search(config, where)
     if config.ensemble.correlation is not None:
         load_correlation(config.ensemble.correlation)
     for motion in config.ladder.motions:
         load_motion(motion)
     return config
+
+
+def _check_friction_search(config, where):
+    search = config.friction_calibration
+    if search is None:
+        return
+    for kind, names, known in (
+        ("cases", search.cases, [case.name for case in config.cases]),
+        (
+            "variables",
+            search.variables,
+            [name for name in config.ensemble.distributions if name.startswith("friction.")],
+        ),
+    ):
+        for name in names:
+            if name not in known:
+                raise InputError(
+                    where, f"friction_calibration.{kind}", f"expected one of {', '.join(known)}, not {name}"
+                )
+    if search.model not in config.models:
+        raise InputError(
+            where, "friction_calibration.model", f"expected a model of the study, not {search.model}"
+        )
+    if search.lowest + search.step > search.highest + 1e-9:
+        raise InputError(
+            where, "friction_calibration.step", "expected at least two candidates between lowest and highest"
+        )

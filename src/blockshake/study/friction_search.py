@@ -76,6 +76,19 @@ def calibrate_friction(case, run_settings, ensemble, search, measured, marker_no
     return found, pd.DataFrame(beside).T.rename_axis("mean").sort_index()
 
 
+def friction_summary(found, beside, search, measured):
+    """A calibration as JSON-like values, with what it was made of; refused bounds that are missing are null."""
+    return {
+        "answer": found.answer,
+        "best": found.best,
+        "lower": None if np.isnan(found.lower) else found.lower,
+        "upper": None if np.isnan(found.upper) else found.upper,
+        "synthetic": int(measured.attrs.get("synthetic", 0)),
+        **search,
+        "means": found.table.join(beside).reset_index().to_dict("list"),
+    }
+
+
 def _replicate(size, seed, index, distributions):
     """Values of one of the independent designs, its seed made of the study's and its own number."""
     own = int(np.random.SeedSequence([seed, index]).generate_state(1)[0])
