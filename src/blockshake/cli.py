@@ -1,6 +1,7 @@
 """The command line: exit 0 done, 2 bad input (one line), 3 numerical failure, 1 a bug."""
 
 import argparse
+import logging
 import sys
 
 from blockshake import __version__
@@ -110,6 +111,9 @@ def _simulate(options):
     from blockshake.dynamics.load_motion import load_motion
     from blockshake.study.simulation import simulate
 
+    logging.basicConfig(format="blockshake: %(message)s")
+    logging.getLogger("blockshake").setLevel(logging.INFO)
+
     run = simulate(
         options.structure,
         load_motion(options.motion, options.scale),
@@ -118,6 +122,7 @@ def _simulate(options):
         time_step=options.time_step,
         duration=options.duration,
         output_rate=options.output_rate,
+        checkpoint=f"{options.output}.checkpoint",
     )
     write_dataset(options.output, run)
     if run.attrs["status"] in _FINISHED:

@@ -23,6 +23,7 @@ def logging_to(path):
         handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
         root = logging.getLogger()
         root.addHandler(handler)
+        logging.getLogger("blockshake").setLevel(logging.INFO)
         logging.captureWarnings(True)
         versions = " ".join(f"{name} {version(name)}" for name in _VERSIONS)
         log.write(f"python {sys.version.split()[0]} {versions}\n")

@@ -3,9 +3,10 @@
 _ROOT = ("errors.py", "files.py", "validation.py")
 _COMMON = (*_ROOT, "geometry", "dynamics")
 _SOLVERS = {"ls-dem": "solvers/ls_dem", "nscd-rigid": "solvers/nscd"}
+_BOTH_SOLVERS = ("solvers/__init__.py", "solvers/record.py", "solvers/checkpoint.py")
 _STATISTICS = (*_ROOT, "study/ensemble.py", "study/envelope.py", "study/distributions.py")
 
-KERNELS = (*_COMMON, "solvers", "study/correlation_control.py")
+KERNELS = (*_COMMON, "solvers", "measurement/kalman.py", "study/correlation_control.py")
 """All that holds kernels: the rest may change without compiling anew."""
 
 MOTION = _COMMON
@@ -19,7 +20,7 @@ DESIGN = (
 STIFFNESS = (
     *_COMMON,
     *DESIGN,
-    "solvers/__init__.py",
+    *_BOTH_SOLVERS,
     _SOLVERS["ls-dem"],
     "study/stiffness.py",
     "study/sample_parameters.py",
@@ -37,7 +38,7 @@ REPORT = (*_STATISTICS, *DESIGN, "geometry", "dynamics", "measurement", "report"
 
 def kernel_sources(model):
     """Sources of the kernels of one model."""
-    return (*_COMMON, _SOLVERS[model])
+    return (*_COMMON, *_BOTH_SOLVERS, _SOLVERS[model])
 
 
 def run_sources(model):

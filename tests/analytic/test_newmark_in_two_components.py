@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from sliding_theory import MU, TWO_COMPONENTS, shaken, slide, slips
 
 from blockshake.dynamics.motion import ground_motion
 
 G = 9.81
-MU = 0.5
 # mu h/b of 0.125 along x and 0.25 along y: no part of the face lifts
 SHAPES = {"squat": {"box": [2.0, 1.0, 0.5]}, "slab": {"box": [8.0, 6.0, 0.2]}}
 BODY = {"name": "b", "shape": "squat", "position": [0.0, 0.0, 0.25]}
@@ -18,29 +18,6 @@ STRETCH = MU * 0.5 * 2400.0 * G / STIFF["shear_stiffness"]
 ONSET = np.sqrt(2.0 * G * STRETCH)
 
 
-def _slip(run):
-    moved = run.position - run.position[0]
-    return moved[:, 1, :2] - moved[:, 0, :2]
-
-
-def _slide(acceleration, duration):
-    """Slip of a rigid block on a base with the given acceleration [m/s2], (n, 2): the reference.
-
-    ``s'' = -a - mu g s'/|s'|``, and rest while ``|a| <= mu g``: a step of implicit Euler in the velocity
-    has both in one formula, Moreau's (1988): what friction may take off the trial velocity, it takes.
-    """
-    dt = duration / len(acceleration)
-    speed, slip = np.zeros(2), np.zeros(2)
-    slips = [slip]
-    for a in acceleration:
-        trial = speed - dt * a
-        size = np.hypot(*trial)
-        speed = np.zeros(2) if size <= MU * G * dt else trial * (1.0 - MU * G * dt / size)
-        slip = slip + dt * speed
-        slips.append(slip)
-    return np.array(slips)
-
-
 def test_the_reference_is_newmarks_in_one_component():
     """Closed form: a base that gains 0.8 g for 0.1 s; the block lags, then catches up at mu g."""
     n = 40_000
@@ -50,7 +27,7 @@ def test_the_reference_is_newmarks_in_one_component():
     lag = 0.3 * G
     expected = -(0.5 * lag * 0.1**2 + (lag * 0.1) ** 2 / (2.0 * MU * G))
     # implicit Euler: of first order in the step, speed dt at the most
-    assert _slide(a, 0.4)[-1, 1] == pytest.approx(expected, abs=lag * 0.1 * 0.4 / n)
+    assert slide(a, 0.4)[-1, 1] == pytest.approx(expected, abs=lag * 0.1 * 0.4 / n)
 
 
 def test_a_ramp_of_acceleration(make_structure, run_ls_dem):
@@ -62,7 +39,7 @@ def test_a_ramp_of_acceleration(make_structure, run_ls_dem):
     since = np.maximum(run.time - MU * G / jerk, 0.0)
     expected = -jerk * since**3 / 6.0
     assert expected[-1] < -0.02
-    slip = _slip(run)
+    slip = slips(run)
     # Before it slides the block gives way by STRETCH and by its nod, mu m g h^2 / k_theta at the mass centre,
     # and so starts with the rate of that; the nodes slip one after the other from the lightly pressed end on,
     # which softens the joint: a small factor, 6, on the rate. 5e-7 m of 0.03 m in all.
@@ -74,33 +51,16 @@ def test_a_ramp_of_acceleration(make_structure, run_ls_dem):
     assert np.abs(slip[:, 1]).max() < 1e-9
 
 
-@pytest.mark.parametrize(
-    ("x", "y", "sticks"),
-    [
-        (
-            (0.9, 3.0, 0.5 * np.pi),
-            (0.7, 3.0, 0.0),
-            False,
-        ),  # an ellipse outside Coulomb's circle: never at rest
-        ((0.9, 3.0, 0.0), (0.35, 3.0, 0.5 * np.pi), None),  # an ellipse that dips into it
-        ((0.7, 2.0, 0.0), (0.6, 5.0, 0.0), True),  # two frequencies: rests and slides by turns
-    ],
-)
+@pytest.mark.parametrize(("x", "y", "sticks"), TWO_COMPONENTS)
 def test_two_components_slide_along_the_relative_velocity(x, y, sticks, make_structure, run_ls_dem):
     """Friction opposes the slip velocity, not each component: a square limit or a lagging direction shows.
 
     ``x`` and ``y``: amplitude [g], frequency [Hz], phase of the base's acceleration.
     """
     duration = 1.0
-    spacing = 1e-3
-    time = np.arange(0.0, duration + spacing / 2, spacing)
-    a = np.column_stack([part * G * np.sin(2 * np.pi * f * time + phase) for part, f, phase in (x, y)])
-    motion = ground_motion("base", time, {"x": a[:, 0], "y": a[:, 1]}, "acceleration")
+    motion, reference = shaken(x, y, duration)
     run = run_ls_dem(make_structure([BODY], friction=MU, shapes=SHAPES), duration, motion=motion, **STIFF)
-    n = 100_000
-    fine = (np.arange(n) + 0.5) * duration / n
-    reference = _slide(np.column_stack([np.interp(fine, time, part) for part in a.T]), duration)
-    expected = reference[:: n // (len(run.time) - 1)]
+    expected = reference[:: (len(reference) - 1) // (len(run.time) - 1)]
     assert np.ptp(expected, axis=0).min() > 0.005
     rests = (np.linalg.norm(np.diff(reference, axis=0), axis=1) == 0.0).mean()
     if sticks is not None:
@@ -108,4 +68,4 @@ def test_two_components_slide_along_the_relative_velocity(x, y, sticks, make_str
     # every onset of sliding may miss ONSET of speed until the slip velocity has forgotten it, about
     # ONSET / (mu g); the first starts with a jerk where the base does, and is felt longest
     felt = 0.1
-    np.testing.assert_allclose(_slip(run), expected, atol=ONSET * felt)
+    np.testing.assert_allclose(slips(run), expected, atol=ONSET * felt)

@@ -1,50 +1,22 @@
-"""Overturning by one cycle of a sine, against event-driven integration of Housner's equation.
-
-After Zhang & Makris (2001), Rocking response of free-standing blocks under cycloidal pulses: a block overturns
-without an impact (a limit that no law of impact enters) or after one (which the kept part r decides).
-"""
-
-import functools
+"""Overturning by one cycle of a sine, against event-driven integration of Housner's equation."""
 
 import numpy as np
 import pytest
-from rocking_theory import H, Rocker, leans, rock
+from overturning_theory import AFTER, limit, pulse
+from rocking_theory import H, Rocker, leans
 
 from blockshake.dynamics.motion import ground_motion
 
 G = 9.81
-AFTER = 2.5  # s of rest after the cycle
 ROCKER = Rocker(0.005)
 # Tenfold stiffness: at the default the block leans on its springs before it rocks, which takes 1.0 % off the
 # limit without impact; 0.28 % at tenfold and 0.06 % at a hundredfold stiffness (measured at 1.2 Hz)
 STIFF = {"normal_stiffness": 2.16e11, "shear_stiffness": 9.0e10}
 
 
-def _pulse(frequency, amplitude):
-    n = 400
-    time = np.concatenate([np.arange(n + 1) / n, [1.0 + 1e-6, 1.0 + 4.0 * frequency]]) / frequency
-    a = np.concatenate([amplitude * np.sin(2.0 * np.pi * np.arange(n) / n), [0.0, 0.0, 0.0]])
-    return time, a
-
-
-@functools.cache
-def _limit(frequency, low, high, ratio, impacts):
-    """Least amplitude [m/s2] of the reference between ``low`` and ``high`` g that overturns so, by bisection."""
-    low, high = low * G, high * G
-    for _ in range(12):
-        middle = 0.5 * (low + high)
-        time, a = _pulse(frequency, middle)
-        fell, hits = rock(ROCKER, lambda t: np.interp(t, time, a), 1.0 / frequency + AFTER, ratio)  # noqa: B023
-        if fell and hits <= impacts:
-            high = middle
-        else:
-            low = middle
-    return high
-
-
 def _overturns(make_structure, run_ls_dem, frequency, amplitude, **parameters):
     """Whether the block overturned, and whether it did so towards the side it first leaned to."""
-    time, a = _pulse(frequency, amplitude)
+    time, a = pulse(frequency, amplitude)
     motion = ground_motion("cycle", time, {"x": a}, "acceleration")
     structure = make_structure([{"name": "b", "shape": "sharp", "position": [0.0, 0.0, H]}], friction=3.0)
     run = run_ls_dem(structure, 1.0 / frequency + AFTER, motion=motion, **parameters)
@@ -56,9 +28,9 @@ def _overturns(make_structure, run_ls_dem, frequency, amplitude, **parameters):
 @pytest.mark.parametrize("frequency", [0.8, 1.2, 1.5])
 def test_overturning_without_an_impact(frequency, make_structure, run_ls_dem):
     """Free of any law of impact: within 0.5 % of the rigid block's amplitude (1.0, 1.6 and 2.1 g)."""
-    limit = _limit(frequency, 1.0, 4.0, 0.86, 0)
+    least = limit(ROCKER, frequency, 1.0, 4.0, 0.86, 0)
     for part, falls in ((0.993, False), (1.002, True)):
-        fell, at_once = _overturns(make_structure, run_ls_dem, frequency, part * limit, **STIFF)
+        fell, at_once = _overturns(make_structure, run_ls_dem, frequency, part * least, **STIFF)
         assert at_once == falls
         # below, it comes back, and what follows is another mode's
         assert fell or not falls
@@ -73,10 +45,10 @@ def test_overturning_after_an_impact(frequency, low, high, make_structure, run_l
     """
     free = make_structure([ROCKER.body(0.1)], friction=3.0)
     ratio = round(ROCKER.kept(run_ls_dem(free, 0.4, rate=2000), 6e-3), 3)
-    limit = _limit(frequency, low, high, ratio, 1)
-    assert low * G < 0.94 * limit
-    assert 1.06 * limit < 1.1 * high * G
+    least = limit(ROCKER, frequency, low, high, ratio, 1)
+    assert low * G < 0.94 * least
+    assert 1.06 * least < 1.1 * high * G
     for part, falls in ((0.95, False), (1.05, True)):
-        fell, at_once = _overturns(make_structure, run_ls_dem, frequency, part * limit)
+        fell, at_once = _overturns(make_structure, run_ls_dem, frequency, part * least)
         assert fell == falls
         assert not at_once

@@ -24,7 +24,7 @@ class Bodies(NamedTuple):
 
     ``mass`` (n_bodies,) [kg]; ``inertia`` and ``inverse_inertia`` (n_bodies, 3, 3), body axes
     [kg m2]; ``inverse_mass`` (n_bodies,), zero with ``inverse_inertia`` for driven bodies;
-    ``driven`` bool (n_bodies,); ``friction`` (n_bodies, n_bodies) [1]; ``gravity`` (3,) [m/s2];
+    ``driven`` bool (n_bodies,); ``gravity`` (3,) [m/s2];
     ``home`` (n_bodies, 3) and ``home_orientation`` (n_bodies, 4): poses of the structure file.
     """
 
@@ -33,7 +33,6 @@ class Bodies(NamedTuple):
     inverse_mass: np.ndarray
     inverse_inertia: np.ndarray
     driven: np.ndarray
-    friction: np.ndarray
     gravity: np.ndarray
     home: np.ndarray
     home_orientation: np.ndarray
@@ -119,7 +118,6 @@ def assemble_bodies(structure):
         inverse_mass=inverse_mass,
         inverse_inertia=inverse_inertia,
         driven=structure.driven,
-        friction=np.nan_to_num(structure.friction),
         gravity=np.array(structure.file.gravity),
         home=structure.position.copy(),
         home_orientation=structure.orientation.copy(),

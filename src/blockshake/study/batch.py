@@ -34,7 +34,7 @@ def simulate_samples(case, model, time_step, output_rate, rows, linked, store, s
         As in `sample_parameters`.
     store : str or path
         Folder of finished samples, named by the digest of all that made them. A sample goes there
-        at once, whole or not at all.
+        at once, whole or not at all; one that was cut short goes on from its checkpoint there.
     source : str
         Digest of the sources that compute.
     progress : callable
@@ -61,6 +61,7 @@ def simulate_samples(case, model, time_step, output_rate, rows, linked, store, s
             run = simulate(
                 case["structure"], motion, model, parameters,
                 time_step=time_step, duration=case["duration"], output_rate=output_rate, accelerometers=False,
+                checkpoint=path.with_suffix(".checkpoint"),
             )  # fmt: skip
             write_dataset(path, gather_ensemble([run], [sample], rows, driven_marker(structure)), DECIMALS)
             how = "simulated"

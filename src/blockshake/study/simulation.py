@@ -42,6 +42,7 @@ def simulate(
     duration=None,
     output_rate=200.0,
     accelerometers=True,
+    checkpoint=None,
 ):
     """Simulate one structure under one motion.
 
@@ -63,6 +64,8 @@ def simulate(
         [Hz]
     accelerometers : bool
         Compute the accelerometer channels, which takes a fine record.
+    checkpoint : path, optional
+        Where a long run is saved every minute, and from where it goes on, bit-identical, if it was cut short.
 
     Returns
     -------
@@ -89,7 +92,7 @@ def simulate(
     if accelerometers and built.file.accelerometers:
         fine = np.arange(int(np.floor(duration * FINE_RATE + 1e-9)) + 1) / FINE_RATE
     times = np.union1d(coarse, fine)
-    trajectory = solve(built, motion, numerical, times, time_step)
+    trajectory = solve(built, motion, numerical, times, time_step, checkpoint=checkpoint)
     run = _dataset(built, trajectory, np.searchsorted(times, coarse))
     if fine.size:
         _add_accelerometers(run, built, trajectory, np.searchsorted(times, fine))

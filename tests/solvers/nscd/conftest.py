@@ -11,9 +11,14 @@ G = 9.81
 
 @pytest.fixture(scope="session")
 def scene():
-    """Structure of bodies on a driven floor whose top is at z = 0, all of one stone."""
+    """Structure of bodies on a driven floor whose top is at z = 0, all of one stone; friction may be a law."""
 
     def make(shapes, bodies, *, friction=0.5, floor=True, **keys):
+        laws = (
+            friction
+            if isinstance(friction, list)
+            else [{"pair": ["stone", "stone"], "coefficient": friction}]
+        )
         ground = {"name": "floor", "shape": "floor", "position": [0.0, 0.0, -0.1], "driven": True}
         return build_structure(
             {
@@ -21,7 +26,7 @@ def scene():
                 "materials": {"stone": {"density": 2400.0, "youngs_modulus": 3.45e10, "poisson_ratio": 0.2}},
                 "shapes": {"floor": {"box": [12.0, 8.0, 0.2]}, **shapes},
                 "bodies": [{"material": "stone", **body} for body in ([ground] if floor else []) + bodies],
-                "friction": [{"pair": ["stone", "stone"], "coefficient": friction}],
+                "friction": laws,
                 **keys,
             },
             "test.yaml",

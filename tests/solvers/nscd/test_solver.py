@@ -19,7 +19,7 @@ def random_problem(rng, n_bodies, n_contacts, mu):
     driven = np.arange(n_bodies) == 0
     bodies = Bodies(
         mass, inertia, np.where(driven, 0.0, 1.0 / mass), inverse, driven,
-        np.full((n_bodies, n_bodies), mu), np.zeros(3), np.zeros((n_bodies, 3)), np.zeros((n_bodies, 4)),
+        np.zeros(3), np.zeros((n_bodies, 3)), np.zeros((n_bodies, 4)),
     )  # fmt: skip
     contacts = empty_contacts(n_contacts)
     for contact in range(n_contacts):

@@ -1,6 +1,8 @@
 import numpy as np
 import pytest
 
+from blockshake.dynamics.motion import ground_motion
+
 G = 9.81
 SHAPES = {"cube": {"box": [0.5, 0.5, 0.5]}}
 
@@ -66,3 +68,44 @@ def test_stopper_moves_with_the_driven_body(scene, simulate, push):
     # 1 %: the damping of the implicit spring, omega dt / 2 = 0.03 of critical
     assert behind.max() == pytest.approx(0.01 + closure, rel=0.01)
     assert run.position[-1, 1, 0] > 0.45
+
+
+def pitching(angle):
+    """Ground motion that pitches to ``angle`` within a second and stays there."""
+    time = np.linspace(0.0, 10.0, 2001)
+    share = np.clip(time, 0.0, 1.0)
+    pitch = angle * share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+    return ground_motion("p", time, {"pitch_y": pitch}, "displacement")
+
+
+def test_stopper_turns_with_the_driven_body(scene, simulate):
+    # design.md 9: fixed to the driven body; its pitch of the whole closes no stopper high up
+    stops = [
+        {"body": "b", "position": [x, 0, 0.25], "axis": axis, "gap": 1e-3, "stiffness": 1.0e6}
+        for axis, x in (("+x", 0.25), ("-x", -0.25))
+    ]
+    bodies = [{"name": "b", "shape": "cube", "position": [0, 0, 0.25]}]
+    keys = {"motion": pitching(0.02)}
+    held = simulate(scene(SHAPES, bodies, friction=0.9, stoppers=stops), 2.0, **keys)
+    free = simulate(scene(SHAPES, bodies, friction=0.9), 2.0, **keys)
+    # the block's top moves by 0.6 m * 0.02 = 12 mm, twelve gaps
+    assert np.ptp(held.position[:, 1, 0]) > 5e-3
+    np.testing.assert_array_equal(held.position, free.position)
+
+
+def test_stopper_pushes_along_its_turned_axis(scene, simulate):
+    # a smooth block slides down the pitched floor against the stop: k c = m g sin(angle) along the floor
+    angle, gap, stiffness = 0.02, 0.002, 1.0e7
+    stop = {"body": "b", "position": [0, 0, 0], "axis": "+x", "gap": gap, "stiffness": stiffness}
+    structure = scene(
+        SHAPES, [{"name": "b", "shape": "cube", "position": [0, 0, 0.25]}], friction=0.0, stoppers=[stop]
+    )
+    run = simulate(structure, 20.0, motion=pitching(angle))
+    along = np.array([np.cos(angle), 0.0, -np.sin(angle)])
+    moved = (run.position[-1, 1] - run.position[-1, 0]) @ along
+    closure = structure.mass[1] * G * np.sin(angle) / stiffness
+    # it bounces first; then the implicit spring's damping, omega dt / 2 = 0.09 of critical, ends it in a second
+    assert moved == pytest.approx(gap + closure, abs=1e-3 * closure)
+    # seen from the block, 0.35 m above the slab's centre, a stop that does not turn is 7 mm away
+    assert abs(run.position[-1, 1, 0] - gap - closure) > 5e-3
+    assert run.numerics["energy_residual"] < 1e-4

@@ -1,30 +1,31 @@
 """LS-DEM from a structure and a motion to a trajectory."""
 
 import logging
-import time
+from pathlib import Path
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from blockshake.dynamics.collapse import collapse_limits
 from blockshake.dynamics.motion import rest_table
-from blockshake.dynamics.system import ENERGY_TERMS, Trajectory, assemble_bodies, place_driven_into
+from blockshake.dynamics.system import Trajectory, assemble_bodies, place_driven_into
 from blockshake.errors import InputError
 from blockshake.geometry.structure import DEEPEST_OVERLAP
+from blockshake.solvers.checkpoint import NEWS, Due, run_key
 from blockshake.solvers.ls_dem.candidates import empty_candidates
-from blockshake.solvers.ls_dem.checkpoint import load_checkpoint, run_key, save_checkpoint
+from blockshake.solvers.ls_dem.checkpoint import load_checkpoint, save_checkpoint
 from blockshake.solvers.ls_dem.equilibrium import approach_equilibrium
 from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
 from blockshake.solvers.ls_dem.joints import no_joints
-from blockshake.solvers.ls_dem.loop import COLLAPSED, DIVERGED, PAUSED, Record, integrate
+from blockshake.solvers.ls_dem.loop import COLLAPSED, DIVERGED, PAUSED, integrate
 from blockshake.solvers.ls_dem.packets import FORCE_X, NORMAL_X, PHI, STRETCH_X
 from blockshake.solvers.ls_dem.progress import NEXT_RECORD, SEARCHES, STEP, start_progress
 from blockshake.solvers.ls_dem.settle import settle
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces
+from blockshake.solvers.record import empty_record, with_room
 
 _log = logging.getLogger(__name__)
 _PAUSE_STEPS = 20_000  # steps between looks at the clock
-_NEWS = 10.0  # s of wall time between lines of progress
 _SPARE_JOINTS = 64
 _NEAR = 1e-4  # m, contract: an equilibrium farther than this from the given poses is not the start
 
@@ -76,6 +77,7 @@ def simulate_ls_dem(
     interfaces = assemble_interfaces(structure, parameters)
     ground = motion.table if motion is not None else rest_table()
     n_steps = int(np.ceil(record_times[-1] / time_step - 1e-9))
+    checkpoint = Path(checkpoint) if checkpoint is not None else None
     key = run_key(structure, ground, parameters, record_times, time_step, rotations_blocked)
     saved = load_checkpoint(checkpoint, key) if checkpoint is not None else None
     if saved is not None:
@@ -89,23 +91,20 @@ def simulate_ls_dem(
             structure, bodies, surfaces, interfaces, parameters.skin, time_step, state
         )
         progress = start_progress(bodies, state)
-        record = _empty_record(len(record_times), len(structure.mass))
+        record = empty_record(len(record_times), len(structure.mass))
     limits = collapse_limits(structure)
-    saved_at = told_at = time.monotonic()
+    news, saving = Due(NEWS), Due(checkpoint_interval)
     code = PAUSED
     while code == PAUSED:
-        record = _with_room(record, len(joints.slip))
+        record = with_room(record, len(joints.slip), _SPARE_JOINTS)
         pause = int(progress.clock[STEP]) + _PAUSE_STEPS
         code, body, candidates, joints = integrate(
             bodies, surfaces, interfaces, stoppers, ground, *limits, parameters.skin, time_step,
             n_steps, pause, record_times, progress, candidates, joints, record,
         )  # fmt: skip
-        now = time.monotonic()
-        if now - told_at > _NEWS:
-            told_at = now
+        if news():
             _log.info("%.3f of %.3f s", progress.clock[STEP] * time_step, record_times[-1])
-        if code == PAUSED and checkpoint is not None and now - saved_at >= checkpoint_interval:
-            saved_at = now
+        if code == PAUSED and checkpoint is not None and saving():
             save_checkpoint(checkpoint, key, progress, candidates, joints, record, settling_steps)
     if checkpoint is not None:
         checkpoint.unlink(missing_ok=True)
@@ -168,27 +167,6 @@ def _check_overlap(structure, candidates):
             f"overlaps {structure.body_names[a]} by {1e3 * depth.max():.3g} mm; "
             f"expected at most {1e3 * DEEPEST_OVERLAP:.0f} mm",
         )
-
-
-def _empty_record(n_times, n_bodies):
-    return Record(
-        position=np.full((n_times, n_bodies, 3), np.nan),
-        orientation=np.full((n_times, n_bodies, 4), np.nan),
-        velocity=np.full((n_times, n_bodies, 3), np.nan),
-        angular_velocity=np.full((n_times, n_bodies, 3), np.nan),
-        energy=np.full((n_times, len(ENERGY_TERMS)), np.nan),
-        joint_force=np.zeros((n_times, 0, 3)),
-    )
-
-
-def _with_room(record, n_joints):
-    """The record, its joints grown to hold these and some more."""
-    n_times, room, _ = record.joint_force.shape
-    if n_joints <= room:
-        return record
-    force = np.zeros((n_times, n_joints + n_joints // 4 + _SPARE_JOINTS, 3))
-    force[:, :room] = record.joint_force
-    return record._replace(joint_force=force)
 
 
 def _status(code, structure, body, time):

@@ -1,7 +1,5 @@
 """The time loop of LS-DEM, compiled whole: detect, force, kick, record, drift."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from blockshake.dynamics.collapse import find_collapsed
@@ -32,17 +30,6 @@ from blockshake.solvers.ls_dem.stoppers import stopper_forces_into
 
 COMPLETED, COLLAPSED, DIVERGED, PAUSED = 0, 1, 2, 3
 _SPEED_LIMIT = 1e3  # m/s; nothing that falls or shakes here comes near it
-
-
-class Record(NamedTuple):
-    """What a run leaves, NaN where it did not come to; arrays as in `Trajectory`, ``joint_force`` of all joints."""
-
-    position: np.ndarray
-    orientation: np.ndarray
-    velocity: np.ndarray
-    angular_velocity: np.ndarray
-    energy: np.ndarray
-    joint_force: np.ndarray
 
 
 @kernel

@@ -8,9 +8,6 @@ from blockshake.jit import kernel
 from blockshake.solvers.nscd.detection import detect_pair_into
 from blockshake.solvers.nscd.polyhedra import find_pairs
 
-# A contact takes over the impulse of the nearest one of its pair within this share of the radius.
-_SAME_CONTACT = 0.1
-
 
 class Contacts(NamedTuple):
     """Contacts of one step, pair by pair in fixed order, stoppers last.
@@ -18,7 +15,8 @@ class Contacts(NamedTuple):
     ``body_a``, ``body_b`` int64 (n,): impulses act on b and, reversed, on a. ``basis`` (n, 3, 3):
     rows are the unit normal from a to b and two tangents, world frame. ``arm_a``, ``arm_b``
     (n, 3): point minus mass centre, world frame [m]. ``home`` (n, 3): point in the frame of a [m].
-    ``gap`` (n,) [m]; ``friction`` (n,) [1]; ``compliance`` (n,) velocity per normal impulse of a
+    ``gap`` (n,) [m]; ``friction`` (n,) [1] and ``bias`` (n, 2) [1]: the coefficient is ``friction + bias . s`` for
+    slip of b along the unit vector s of the tangents. ``compliance`` (n,) velocity per normal impulse of a
     stopper [1/kg], zero for a contact of bodies. ``bound`` (n, 3): velocity added to that of the contact before the
     law is applied [m/s]. ``local`` (n, 5): ``w_n, w_1, w_2, a_1, a_2`` of `solve_contact`. ``impulse``
     (n, 3) along the basis [N s]. ``slip`` (n,) of `solve_contact`. ``stopper`` int64 (n,): index of the stopper, or -1.
@@ -32,6 +30,7 @@ class Contacts(NamedTuple):
     home: np.ndarray
     gap: np.ndarray
     friction: np.ndarray
+    bias: np.ndarray
     compliance: np.ndarray
     bound: np.ndarray
     local: np.ndarray
@@ -51,7 +50,8 @@ def empty_contacts(capacity):
         np.empty((capacity, 3)),
         np.empty((capacity, 3)),
         np.empty(capacity),
-        np.empty(capacity),
+        np.zeros(capacity),
+        np.zeros((capacity, 2)),
         np.zeros(capacity),
         np.zeros((capacity, 3)),
         np.empty((capacity, 5)),
@@ -72,6 +72,7 @@ def _first_rows(contacts, count):
         contacts.home[:count],
         contacts.gap[:count],
         contacts.friction[:count],
+        contacts.bias[:count],
         contacts.compliance[:count],
         contacts.bound[:count],
         contacts.local[:count],
@@ -100,7 +101,7 @@ def detect_contacts(bodies, polyhedra, placed, rotations, margin, shrink, memory
     Returns
     -------
     contacts : Contacts
-        Geometry, friction and gap filled in; the rows of the stoppers are still empty.
+        Geometry and gap filled in; the rows of the stoppers are still empty.
     """
     pairs = find_pairs(placed, bodies.driven, margin)
     contacts = empty_contacts(4 * pairs.shape[0] + n_stoppers)
@@ -114,7 +115,6 @@ def detect_contacts(bodies, polyhedra, placed, rotations, margin, shrink, memory
         for point in range(found):
             contacts.body_a[count], contacts.body_b[count] = a, b
             contacts.gap[count] = gaps[point]
-            contacts.friction[count] = bodies.friction[a, b]
             contacts.basis[count, 0] = normal
             for axis in range(3):
                 contacts.arm_a[count, axis] = points[point, axis] - placed.center[a, axis]
@@ -189,72 +189,3 @@ def prepare_operators_into(bodies, inertia, contacts):
         local[2] = s * s * W[1, 1] - 2.0 * c * s * W[1, 2] + c * c * W[2, 2]
         local[3] = c * W[0, 1] + s * W[0, 2]
         local[4] = c * W[0, 2] - s * W[0, 1]
-
-
-@kernel
-def _before(stopper, a, b, other_stopper, other_a, other_b):
-    """Whether a contact comes before another in `Contacts`: pairs first, then stoppers."""
-    if stopper != other_stopper:
-        return stopper < other_stopper
-    return a < other_a or (a == other_a and b < other_b)
-
-
-@kernel
-def _block_of_pair(contacts, a, b, stopper, start):
-    """Rows ``first`` to ``last`` of a pair, or of a stopper, searched upwards from ``start``."""
-    first = start
-    size = contacts.gap.size
-    while first < size and _before(
-        contacts.stopper[first], contacts.body_a[first], contacts.body_b[first], stopper, a, b
-    ):
-        first += 1
-    last = first
-    while (
-        last < size
-        and contacts.stopper[last] == stopper
-        and contacts.body_a[last] == a
-        and contacts.body_b[last] == b
-    ):
-        last += 1
-    return first, last
-
-
-@kernel
-def warm_start_into(old, radius, contacts):
-    """Give each contact the impulse of the nearest one of the same pair at the step before.
-
-    Parameters
-    ----------
-    old : Contacts
-        Of the step before, sorted by pair like ``contacts``.
-    radius : float64 array, shape (n_bodies,)
-        Of the bodies [m].
-    contacts : Contacts
-        ``impulse`` is overwritten, inside Coulomb's cone; ``slip`` as well.
-    """
-    first, last = 0, 0
-    for contact in range(contacts.gap.size):
-        a, b, stopper = contacts.body_a[contact], contacts.body_b[contact], contacts.stopper[contact]
-        limit = _SAME_CONTACT * min(radius[a], radius[b])
-        nearest, found = limit * limit, -1
-        first, last = _block_of_pair(old, a, b, stopper, first)
-        for other in range(first, last):
-            distance = 0.0
-            for axis in range(3):
-                d = old.home[other, axis] - contacts.home[contact, axis]
-                distance += d * d
-            if distance < nearest:
-                nearest, found = distance, other
-        contacts.impulse[contact] = 0.0
-        contacts.slip[contact] = 0.0
-        if found < 0:
-            continue
-        world = old.impulse[found] @ old.basis[found]
-        p = contacts.basis[contact] @ world
-        limit = contacts.friction[contact] * max(p[0], 0.0)
-        size = np.sqrt(p[1] * p[1] + p[2] * p[2])
-        scale = min(1.0, limit / size) if size > 0.0 else 0.0
-        contacts.impulse[contact, 0] = max(p[0], 0.0)
-        contacts.impulse[contact, 1] = scale * p[1]
-        contacts.impulse[contact, 2] = scale * p[2]
-        contacts.slip[contact] = old.slip[found]

@@ -1,18 +1,47 @@
 """Nonsmooth contact dynamics of rigid convex bodies: one call, one trajectory."""
 
+import logging
+import time
+from pathlib import Path
+
 import numpy as np
 
 from blockshake.dynamics.collapse import collapse_limits
-from blockshake.dynamics.motion import MotionTable
-from blockshake.dynamics.system import ENERGY_TERMS, Trajectory, assemble_bodies
-from blockshake.solvers.nscd.loop import COLLAPSED, DIVERGED, Record, Settings, Watch, run
+from blockshake.dynamics.motion import MotionTable, rest_table
+from blockshake.dynamics.system import Trajectory, assemble_bodies
+from blockshake.solvers.checkpoint import NEWS, Due, run_key
+from blockshake.solvers.nscd.checkpoint import load_checkpoint, save_checkpoint
+from blockshake.solvers.nscd.contacts import empty_contacts
+from blockshake.solvers.nscd.friction import ordered_friction
+from blockshake.solvers.nscd.joints import no_joints
+from blockshake.solvers.nscd.loop import COLLAPSED, DIVERGED, PAUSED, Settings, Watch, integrate
 from blockshake.solvers.nscd.polyhedra import pack_polyhedra
+from blockshake.solvers.nscd.progress import (
+    BAD_STEPS,
+    CAPPED_STEPS,
+    DEEPEST,
+    IN_PLAY,
+    ITERATIONS,
+    MISFIT,
+    MOST_ITERATIONS,
+    NEXT_RECORD,
+    STEP,
+    WORST_RESIDUAL,
+    start_progress,
+)
+from blockshake.solvers.record import empty_record
 
+_log = logging.getLogger(__name__)
 # Share of badly solved steps above which a run is not to be trusted; fixed by the project's contract.
 _MOST_BAD_STEPS = 0.01
+# Steps between looks at the clock, doubled as long as they take less than _PIECE.
+_PAUSE_STEPS = 100
+_PIECE = 0.5  # s of wall time
 
 
-def simulate_nscd(structure, motion, parameters, record_times, time_step=1e-3):
+def simulate_nscd(
+    structure, motion, parameters, record_times, time_step=1e-3, checkpoint=None, checkpoint_interval=60.0
+):
     """Motion of rigid blocks with Signorini's condition and Coulomb's friction at their contacts.
 
     Parameters
@@ -25,6 +54,11 @@ def simulate_nscd(structure, motion, parameters, record_times, time_step=1e-3):
         Increasing, the first is 0 [s]; the run ends at the last.
     time_step : float
         [s]
+    checkpoint : path, optional
+        Where the run is saved as it goes, and from where it goes on if it was cut short; bit-identical
+        to a run in one piece. The file is taken away at the end.
+    checkpoint_interval : float
+        Wall time between savings [s].
 
     Returns
     -------
@@ -46,10 +80,15 @@ def simulate_nscd(structure, motion, parameters, record_times, time_step=1e-3):
     Theta scheme of Moreau (1988) and Jean (1999) as in Dubois et al. (2018); ``docs/nscd.md`` has the equations.
     Bodies are handled from the lowest upwards, whatever their order in the file.
     """
+    times = np.ascontiguousarray(record_times, dtype=float)
     order = np.lexsort((structure.position[:, 1], structure.position[:, 0], structure.position[:, 2]))
-    bodies, state, stoppers = (_reordered(part, order) for part in assemble_bodies(structure))
     place = np.argsort(order)
+    bodies, state, stoppers = assemble_bodies(structure)
+    bodies = _reordered(bodies._replace(gravity=None), order)._replace(gravity=bodies.gravity)
     stoppers = stoppers._replace(body=place[stoppers.body])
+    polyhedra, friction = pack_polyhedra(structure, order), ordered_friction(structure, order)
+    ground = rest_table() if motion is None else motion.table
+    ground = MotionTable(*(np.ascontiguousarray(part) for part in ground))
     driven = np.flatnonzero(structure.driven)
     supported, drop_limit = collapse_limits(structure)
     watch = Watch(supported[order], drop_limit[order], int(place[driven[0]]) if len(driven) else -1)
@@ -61,84 +100,80 @@ def simulate_nscd(structure, motion, parameters, record_times, time_step=1e-3):
         parameters.shrink,
         structure.file.nscd_restitution,
     )
-    record = _empty_record(np.ascontiguousarray(record_times, dtype=float), len(order))
-    code, culprit, end_time, joints, joint_force, tally = run(
-        bodies,
-        state,
-        stoppers,
-        pack_polyhedra(structure, order),
-        _table(motion),
-        settings,
-        watch,
-        record,
-    )
-    status, reason = "completed", ""
-    if code in (COLLAPSED, DIVERGED):
-        name = structure.body_names[order[culprit]]
-        status = "collapsed" if code == COLLAPSED else "diverged"
-        what = "tipped over or dropped" if code == COLLAPSED else "is faster than 1000 m/s or not finite"
-        reason = f"{name} {what} at {end_time:.3f} s"
-    steps = max(tally.steps, 1)
-    if code != DIVERGED and tally.bad_steps > _MOST_BAD_STEPS * steps:
-        words = (
-            f"{100.0 * tally.bad_steps / steps:.1f} % of the steps ended above a relative residual of 1e-4"
-        )
-        status, reason = "not-converged", "; ".join(part for part in (words, reason) if part)
+    checkpoint = Path(checkpoint) if checkpoint is not None else None
+    key = run_key(structure, ground, parameters, times, time_step)
+    saved = load_checkpoint(checkpoint, key) if checkpoint is not None else None
+    if saved is not None:
+        progress, contacts, joints, record = saved
+        _log.info("goes on from %.3f s", progress.clock[STEP] * time_step)
+    else:
+        progress, contacts = start_progress(_reordered(state, order)), empty_contacts(0)
+        joints, record = no_joints(len(order)), empty_record(len(times), len(order))
+    news, saving = Due(NEWS), Due(checkpoint_interval)
+    code, steps = PAUSED, _PAUSE_STEPS
+    while code == PAUSED:
+        began = time.monotonic()
+        code, culprit, contacts, joints, record = integrate(
+            bodies, friction, stoppers, polyhedra, ground, settings, watch, times,
+            int(progress.clock[STEP]) + steps, progress, contacts, joints, record,
+        )  # fmt: skip
+        if time.monotonic() - began < _PIECE:
+            steps *= 2
+        if news():
+            _log.info("%.3f of %.3f s", progress.clock[STEP] * time_step, times[-1])
+        if code == PAUSED and checkpoint is not None and saving():
+            save_checkpoint(checkpoint, key, progress, contacts, joints, record)
+    if checkpoint is not None:
+        checkpoint.unlink(missing_ok=True)
+    end_time = min(int(progress.clock[STEP]) * time_step, float(times[-1]))
+    name = structure.body_names[order[culprit]]
+    status, reason = _status(code, name, end_time, progress.clock)
+    joint_force = record.joint_force[:, : len(joints.slip)]
+    joint_force[progress.clock[NEXT_RECORD] :] = np.nan
     return Trajectory(
-        time=record.time,
+        time=times,
         position=record.position[:, place],
         orientation=record.orientation[:, place],
         velocity=record.velocity[:, place],
         angular_velocity=record.angular_velocity[:, place],
         energy=record.energy,
-        joints=order[joints],
-        joint_force=joint_force,
+        joints=order[joints.pair],
+        joint_force=np.ascontiguousarray(joint_force),
         status=status,
         reason=reason,
         end_time=end_time,
-        numerics={
-            "steps": tally.steps,
-            "mean_iterations": tally.sweeps / steps,
-            "max_iterations": tally.most_sweeps,
-            "max_residual": tally.worst_residual,
-            "fraction_above_1e-4": tally.bad_steps / steps,
-            "capped_steps": tally.capped_steps,
-            "energy_residual": tally.energy_residual / tally.energy_scale
-            if tally.energy_scale > 0.0
-            else 0.0,
-            "max_penetration": tally.deepest,
-        },
+        numerics=_numerics(progress),
     )
 
 
 def _reordered(part, order):
-    """Bodies, State or Stoppers with their bodies in another order; stoppers stay as they are."""
-    if type(part).__name__ == "Stoppers":
-        return part
-    fields = {}
-    for name, values in part._asdict().items():
-        if name == "friction":
-            values = values[np.ix_(order, order)]
-        elif name != "gravity":
-            values = values[order]
-        fields[name] = np.ascontiguousarray(values)
-    return type(part)(**fields)
+    """Bodies or State with their bodies in another order."""
+    return type(part)(*(values if values is None else np.ascontiguousarray(values[order]) for values in part))
 
 
-def _empty_record(times, n_bodies):
-    vectors = (len(times), n_bodies, 3)
-    return Record(
-        times,
-        np.full(vectors, np.nan),
-        np.full((len(times), n_bodies, 4), np.nan),
-        np.full(vectors, np.nan),
-        np.full(vectors, np.nan),
-        np.full((len(times), len(ENERGY_TERMS)), np.nan),
-    )
+def _status(code, name, end_time, clock):
+    status, reason = "completed", ""
+    if code in (COLLAPSED, DIVERGED):
+        status = "collapsed" if code == COLLAPSED else "diverged"
+        what = "tipped over or dropped" if code == COLLAPSED else "is faster than 1000 m/s or not finite"
+        reason = f"{name} {what} at {end_time:.3f} s"
+    bad = clock[BAD_STEPS] / max(clock[STEP], 1)
+    if code != DIVERGED and bad > _MOST_BAD_STEPS:
+        words = f"{100.0 * bad:.1f} % of the steps ended above a relative residual of 1e-4"
+        status, reason = "not-converged", "; ".join(part for part in (words, reason) if part)
+    return status, reason
 
 
-def _table(motion):
-    """The motion's polynomials, or those of rest."""
-    if motion is None:
-        return MotionTable(np.array([0.0, 1.0]), np.zeros((1, 4, 4)))
-    return MotionTable(*(np.ascontiguousarray(part) for part in motion.table))
+def _numerics(progress):
+    clock, audit = progress.clock, progress.audit
+    steps = max(int(clock[STEP]), 1)
+    return {
+        "steps": int(clock[STEP]),
+        "mean_iterations": int(clock[ITERATIONS]) / steps,
+        "max_iterations": int(clock[MOST_ITERATIONS]),
+        "max_residual": float(audit[WORST_RESIDUAL]),
+        "fraction_above_1e-4": int(clock[BAD_STEPS]) / steps,
+        "capped_steps": int(clock[CAPPED_STEPS]),
+        "energy_residual": float(audit[MISFIT] / audit[IN_PLAY]) if audit[IN_PLAY] > 0.0 else 0.0,
+        "max_penetration": float(audit[DEEPEST]),
+    }

@@ -3,6 +3,7 @@
 import numpy as np
 
 from blockshake.jit import kernel
+from blockshake.solvers.nscd.friction import coefficient_along
 from blockshake.solvers.nscd.local_solve import contact_residual, solve_contact
 
 
@@ -63,11 +64,10 @@ def relative_residual(contacts, v, floor):
         p = contacts.impulse[contact]
         bound = contacts.bound[contact]
         local = contacts.local[contact]
-        u_n += bound[0] + contacts.compliance[contact] * p[0]
+        u_n, u_1, u_2 = u_n + bound[0] + contacts.compliance[contact] * p[0], u_1 + bound[1], u_2 + bound[2]
         rho = 1.0 / max(local[0], max(local[1], local[2]))
-        part = contact_residual(
-            p[0], p[1], p[2], u_n, u_1 + bound[1], u_2 + bound[2], contacts.friction[contact], rho
-        )
+        mu = coefficient_along(contacts, contact, p[1] - rho * u_1, p[2] - rho * u_2)
+        part = contact_residual(p[0], p[1], p[2], u_n, u_1, u_2, mu, rho)
         left += part * part
         load += p[0] * p[0] + p[1] * p[1] + p[2] * p[2]
     return np.sqrt(left) / max(np.sqrt(load), floor)
@@ -96,7 +96,10 @@ def sweep_into(bodies, inertia, contacts, upwards, v):
         q_n = u_n + bound[0] + contacts.compliance[contact] * p[0] - (w[0] * p[0] + w[3] * p[1] + w[4] * p[2])
         q_1 = u_1 + bound[1] - (w[3] * p[0] + w[1] * p[1])
         q_2 = u_2 + bound[2] - (w[4] * p[0] + w[2] * p[2])
-        mu = contacts.friction[contact]
+        rho = 1.0 / max(w[0], max(w[1], w[2]))
+        mu = coefficient_along(
+            contacts, contact, p[1] - rho * (u_1 + bound[1]), p[2] - rho * (u_2 + bound[2])
+        )
         p_n, p_1, p_2, slip = solve_contact(
             w[0], w[1], w[2], w[3], w[4], q_n, q_1, q_2, mu, contacts.slip[contact]
         )

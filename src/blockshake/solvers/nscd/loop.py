@@ -1,38 +1,37 @@
-"""The whole run in compiled code: detect, solve, move, account, record."""
+"""The time loop in compiled code: detect, solve, move, account, record."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from blockshake.dynamics.collapse import find_collapsed
-from blockshake.dynamics.system import State, kinetic_energy, place_driven_into, potential_energy
-from blockshake.geometry.rotations import rotate_into
+from blockshake.dynamics.system import place_driven_into
 from blockshake.jit import kernel
-from blockshake.solvers.nscd.contacts import (
-    detect_contacts,
-    empty_contacts,
-    prepare_operators_into,
-    warm_start_into,
-)
+from blockshake.solvers.nscd.audit import account_into, count_into, start_audit
+from blockshake.solvers.nscd.contacts import detect_contacts, prepare_operators_into
+from blockshake.solvers.nscd.friction import friction_into
+from blockshake.solvers.nscd.joints import slip_into, with_joint
 from blockshake.solvers.nscd.polyhedra import empty_placed, place_into
+from blockshake.solvers.nscd.progress import NEXT_RECORD, STEP
+from blockshake.solvers.nscd.recording import record_driven_into, record_forces_into, record_into
 from blockshake.solvers.nscd.solver import solve_contacts_into
 from blockshake.solvers.nscd.step import (
-    Step,
-    account_into,
     bounds_into,
     contact_margin,
     copy_state,
+    empty_step,
     ground_displacement_into,
     move_into,
-    place_stoppers_into,
     predict_into,
 )
+from blockshake.solvers.nscd.stoppers import place_stoppers_into
+from blockshake.solvers.nscd.warm_start import warm_start_into
+from blockshake.solvers.record import with_room
 
-COMPLETED, COLLAPSED, DIVERGED = 0, 1, 2
-# Relative residual above which a step counts as badly solved; fixed by the project's contract.
-BAD_RESIDUAL = 1e-4
+COMPLETED, COLLAPSED, DIVERGED, PAUSED = 0, 1, 2, 3
 _FASTEST = 1e3  # m/s; nothing in an earthquake is, so the run has blown up
 _ROUNDING = 1e-9  # of a step, when a record time meets the end of a step
+_SPARE_JOINTS = 16
 
 
 class Settings(NamedTuple):
@@ -54,125 +53,104 @@ class Watch(NamedTuple):
     base: int
 
 
-class Record(NamedTuple):
-    """What is kept at the record times; arrays as in `Trajectory`, written in place."""
-
-    time: np.ndarray
-    position: np.ndarray
-    orientation: np.ndarray
-    velocity: np.ndarray
-    angular_velocity: np.ndarray
-    energy: np.ndarray
-
-
-class Tally(NamedTuple):
-    """Figures of a run, counted as it goes."""
-
-    steps: int
-    sweeps: int
-    most_sweeps: int
-    worst_residual: float
-    bad_steps: int
-    capped_steps: int
-    energy_residual: float
-    energy_scale: float
-    deepest: float
-
-
 @kernel
-def run(bodies, state, stoppers, polyhedra, table, settings, watch, record):
-    """Integrate to the last record time, or to collapse or divergence.
+def integrate(
+    bodies,
+    friction,
+    stoppers,
+    polyhedra,
+    ground,
+    settings,
+    watch,
+    times,
+    pause,
+    progress,
+    contacts,
+    joints,
+    record,
+):
+    """Integrate from where ``progress`` stands to the last record time, to a pause, to collapse or divergence.
 
     Parameters
     ----------
-    bodies : Bodies
-    state : State
-        At time zero; changed in place.
-    stoppers : Stoppers
-    polyhedra : Polyhedra
-    table : MotionTable
-    settings : Settings
-    watch : Watch
+    bodies, friction, stoppers, polyhedra : Bodies, Friction, Stoppers, Polyhedra
+    ground : MotionTable
+        Motion of the driven bodies.
+    settings, watch : Settings, Watch
+    times : float64 array, shape (n_times,)
+        When to record, increasing from 0 [s].
+    pause : int
+        Number of steps made after which to pause.
+    progress : Progress
+        Changed in place.
+    contacts : Contacts
+        Of the step before, to start the next one from.
+    joints : Joints
     record : Record
-        ``time`` is given, the rest starts as NaN and is filled in.
+        Filled from the next record on.
 
     Returns
     -------
     code : int
-        `COMPLETED`, `COLLAPSED` or `DIVERGED`.
+        `COMPLETED`, `COLLAPSED`, `DIVERGED` or `PAUSED`.
     culprit : int
         Body that collapsed or ran away, else -1.
-    end_time : float
-        [s]
-    joints : int64 array, shape (n_joints, 2)
-        Pairs that touched, the body with the lower index first.
-    joint_force : float64 array, shape (n_times, n_joints, 3)
-        On the second body [N].
-    tally : Tally
+    contacts, joints, record : Contacts, Joints, Record
+        To go on with.
     """
     dt, theta = settings.dt, settings.theta
-    n_bodies, n_times = bodies.mass.size, record.time.size
+    state, clock = progress.state, progress.clock
     displacement, following, velocity = np.empty(4), np.empty(4), np.empty(4)
-    origin, segment = np.zeros(4), 0
-    segment = ground_displacement_into(table, origin, 0.0, segment, displacement, velocity)
     # displacement counts from its start, pitch as it is
+    origin, segment = np.zeros(4), 0
+    segment = ground_displacement_into(ground, origin, 0.0, segment, displacement, velocity)
     origin[:3] = displacement[:3]
-    displacement[:3] = 0.0
-    place_driven_into(bodies, displacement, velocity, state)
-    step = Step(
-        copy_state(state),
-        np.empty((n_bodies, 3, 3)),
-        np.empty((n_bodies, 3, 3)),
-        np.empty((n_bodies, 3, 3)),
-        np.empty((n_bodies, 6)),
-        np.empty((n_bodies, 6)),
-        np.empty((n_bodies, 6)),
-        np.empty((n_bodies, 6)),
-    )
-    before = copy_state(state)
+    if clock[STEP] == 0:
+        displacement[:3] = 0.0
+        place_driven_into(bodies, displacement, velocity, state)
+        start_audit(bodies, progress)
+    step, before, energy_before = empty_step(state), copy_state(state), progress.energy.copy()
     placed = empty_placed(polyhedra)
-    memory = np.full((n_bodies, n_bodies), -1, np.int64)
-    old = empty_contacts(0)
-    joint_of = np.full((n_bodies, n_bodies), -1, np.int64)
-    joints, joint_force = np.empty((16, 2), np.int64), np.full((n_times, 16, 3), np.nan)
-    n_joints = 0
-    energy, energy_before, work = np.zeros(7), np.empty(7), np.zeros(2)
-    energy[0] = kinetic_energy(bodies, state.velocity, state.angular_velocity, state.orientation)
-    energy[1] = potential_energy(bodies, state.position)
-    energy_start = energy.copy()
-    weight = 0.0
-    lightest = np.inf
-    for body in range(n_bodies):
-        if not bodies.driven[body]:
-            weight += bodies.mass[body] * np.linalg.norm(bodies.gravity)
-            lightest = min(lightest, bodies.mass[body])
-    # the energy that lifts everything by a millimetre: less is never "in play"
-    energy_scale, energy_residual = 1e-3 * weight, 0.0
-    sweeps_sum, most_sweeps, worst, bad, capped, deepest = 0, 0, 0.0, 0, 0, 0.0
-    code, culprit, row, index = COMPLETED, -1, 0, 0
-    n_steps = int(np.ceil(record.time[n_times - 1] / dt - _ROUNDING))
-    segment = ground_displacement_into(table, origin, (1.0 - theta) * dt, segment, following, velocity)
-    while index < n_steps:
+    least_impulse = 1e-3 * dt * np.linalg.norm(bodies.gravity) * _lightest(bodies)
+    n_steps = int(np.ceil(times[times.size - 1] / dt - _ROUNDING))
+    if n_steps == 0:
+        record_into(bodies, state, state, progress.energy, progress.energy, 0.0, 0, record)
+        clock[NEXT_RECORD] = 1
+    segment = ground_displacement_into(
+        ground, origin, (clock[STEP] + 1.0 - theta) * dt, segment, following, velocity
+    )
+    while clock[STEP] < n_steps:
+        index = clock[STEP]
+        if index == pause:
+            return PAUSED, -1, contacts, joints, record
         displacement[:] = following
         segment = ground_displacement_into(
-            table, origin, (index + 2.0 - theta) * dt, segment, following, velocity
+            ground, origin, (index + 2.0 - theta) * dt, segment, following, velocity
         )
         for channel in range(4):
             velocity[channel] = (following[channel] - displacement[channel]) / dt
         predict_into(bodies, state, displacement, velocity, dt, theta, step)
         place_into(polyhedra, step.detection.position, step.detection.orientation, placed)
         margin = contact_margin(step.v_start, polyhedra.radius, bodies.gravity, dt)
+        old = contacts
         contacts = detect_contacts(
-            bodies, polyhedra, placed, step.rotations, margin, settings.shrink, memory, stoppers.body.size
+            bodies,
+            polyhedra,
+            placed,
+            step.rotations,
+            margin,
+            settings.shrink,
+            progress.face,
+            stoppers.body.size,
         )
+        n_contacts = contacts.gap.size - stoppers.body.size
         place_stoppers_into(bodies, stoppers, watch.base, step, dt, theta, contacts)
         prepare_operators_into(bodies, step.inverse_inertia, contacts)
+        friction_into(friction, joints, step.rotations, contacts)
         bounds_into(step, dt, theta, settings.restitution, contacts)
         warm_start_into(old, polyhedra.radius, contacts)
-        floor = (
-            1e-3 * dt * np.linalg.norm(bodies.gravity) * lightest + 1e-12 * _momentum(bodies, step.v) + 1e-300
-        )
-        sweeps, residual = solve_contacts_into(
+        floor = least_impulse + 1e-12 * _momentum(bodies, step.v) + 1e-300
+        iterations, residual = solve_contacts_into(
             bodies,
             step.inertia,
             step.inverse_inertia,
@@ -182,67 +160,45 @@ def run(bodies, state, stoppers, polyhedra, table, settings, watch, record):
             settings.max_iterations,
             step.v,
         )
-        segment = ground_displacement_into(table, origin, (index + 1) * dt, segment, displacement, velocity)
+        segment = ground_displacement_into(ground, origin, (index + 1) * dt, segment, displacement, velocity)
         move_into(bodies, displacement, velocity, dt, theta, contacts, before, step, state)
-        energy_before[:] = energy
-        account_into(bodies, stoppers, watch.base, state, contacts, step, work, energy)
-        index += 1
-
-        sweeps_sum += sweeps
-        most_sweeps = max(most_sweeps, sweeps)
-        worst = max(worst, residual)
-        bad += 1 if residual > BAD_RESIDUAL else 0
-        capped += 1 if residual > settings.tolerance else 0
-        for contact in range(contacts.gap.size - stoppers.body.size):
-            deepest = max(deepest, -contacts.gap[contact])
+        energy_before[:] = progress.energy
+        account_into(bodies, stoppers, watch.base, state, contacts, step, progress.audit, progress.energy)
+        for contact in range(n_contacts):
             a, b = contacts.body_a[contact], contacts.body_b[contact]
-            if joint_of[a, b] < 0 and contacts.impulse[contact, 0] > 0.0:
-                if n_joints == joints.shape[0]:
-                    joints = np.concatenate((joints, np.empty((n_joints, 2), np.int64)))
-                    joint_force = np.concatenate(
-                        (joint_force, np.full((n_times, n_joints, 3), np.nan)), axis=1
-                    )
-                # a pair that touches for the first time carried nothing at the times already kept
-                joint_force[:row, n_joints] = 0.0
-                joints[n_joints, 0], joints[n_joints, 1] = a, b
-                joint_of[a, b] = n_joints
-                n_joints += 1
-        scale = (
-            energy[0] + abs(energy[1] - energy_start[1]) + energy[2] + energy[3] + energy[4] + abs(energy[6])
-        )
-        energy_scale = max(energy_scale, scale)
-        balance = energy[0] + energy[1] + energy[2] + energy[3] + energy[4] - energy[6]
-        energy_residual = max(
-            energy_residual, abs(balance - energy_start[0] - energy_start[1] - energy_start[2])
-        )
+            if joints.row[a, b] < 0 and contacts.impulse[contact, 0] > 0.0:
+                joints = with_joint(joints, a, b)
+        slip_into(contacts, n_contacts, step.v, dt, theta, joints)
+        clock[STEP] += 1
+        count_into(iterations, residual, settings.tolerance, contacts, n_contacts, progress)
 
         culprit = _find_diverged(state)
         if culprit >= 0:
-            code = DIVERGED
-            break
-        while row < n_times and record.time[row] <= (index + _ROUNDING) * dt:
-            share = min(max(record.time[row] / dt - (index - 1), 0.0), 1.0)
-            _record_into(bodies, before, state, energy_before, energy, share, row, record)
-            segment = ground_displacement_into(
-                table, origin, record.time[row], segment, displacement, velocity
-            )
-            _record_driven_into(bodies, displacement, velocity, row, record)
-            joint_force[row, :n_joints] = 0.0
-            for contact in range(contacts.gap.size - stoppers.body.size):
-                joint = joint_of[contacts.body_a[contact], contacts.body_b[contact]]
-                if joint >= 0:
-                    joint_force[row, joint] += contacts.impulse[contact] @ contacts.basis[contact] / dt
-            row += 1
-        old = contacts
+            return DIVERGED, culprit, contacts, joints, record
+        record = with_room(record, joints.slip.size, _SPARE_JOINTS)
+        while clock[NEXT_RECORD] < times.size and times[clock[NEXT_RECORD]] <= (index + 1 + _ROUNDING) * dt:
+            row = clock[NEXT_RECORD]
+            t = times[row]
+            share = min(max(t / dt - index, 0.0), 1.0)
+            record_into(bodies, before, state, energy_before, progress.energy, share, row, record)
+            segment = ground_displacement_into(ground, origin, t, segment, displacement, velocity)
+            record_driven_into(bodies, displacement, velocity, row, record)
+            record_forces_into(contacts, n_contacts, joints, dt, row, record)
+            clock[NEXT_RECORD] += 1
         culprit = find_collapsed(bodies, state, watch.supported, watch.drop_limit)
         if culprit >= 0:
-            code = COLLAPSED
-            break
-    if n_steps == 0:
-        _record_into(bodies, state, state, energy, energy, 0.0, 0, record)
-    tally = Tally(index, sweeps_sum, most_sweeps, worst, bad, capped, energy_residual, energy_scale, deepest)
-    end_time = min(index * dt, record.time[n_times - 1])
-    return code, culprit, end_time, joints[:n_joints].copy(), joint_force[:, :n_joints].copy(), tally
+            return COLLAPSED, culprit, contacts, joints, record
+    return COMPLETED, -1, contacts, joints, record
+
+
+@kernel
+def _lightest(bodies):
+    """Least mass of a free body [kg]."""
+    lightest = np.inf
+    for body in range(bodies.mass.size):
+        if not bodies.driven[body]:
+            lightest = min(lightest, bodies.mass[body])
+    return lightest
 
 
 @kernel
@@ -267,46 +223,3 @@ def _find_diverged(state):
         if not speed < _FASTEST:
             return body
     return -1
-
-
-@kernel
-def _record_into(bodies, before, after, energy_before, energy, share, row, record):
-    """Keep the state at a share of the step: linear, rotations along the step's own."""
-    turn = np.empty(3)
-    for body in range(bodies.mass.size):
-        for axis in range(3):
-            for kept, old, new in (
-                (record.position, before.position, after.position),
-                (record.velocity, before.velocity, after.velocity),
-                (record.angular_velocity, before.angular_velocity, after.angular_velocity),
-            ):
-                kept[row, body, axis] = (1.0 - share) * old[body, axis] + share * new[body, axis]
-        _rotation_between_into(before.orientation[body], after.orientation[body], turn)
-        rotate_into(before.orientation[body], share * turn, record.orientation[row, body])
-    for term in range(energy.size):
-        record.energy[row, term] = (1.0 - share) * energy_before[term] + share * energy[term]
-
-
-@kernel
-def _rotation_between_into(start, end, rotation):
-    """World rotation vector [rad] that turns quaternion ``start`` into ``end``."""
-    w, x, y, z = start[0], -start[1], -start[2], -start[3]
-    a, b, c, d = end[0], end[1], end[2], end[3]
-    scalar = a * w - b * x - c * y - d * z
-    rotation[0] = a * x + b * w + c * z - d * y
-    rotation[1] = a * y - b * z + c * w + d * x
-    rotation[2] = a * z + b * y - c * x + d * w
-    sine = np.sqrt(rotation[0] ** 2 + rotation[1] ** 2 + rotation[2] ** 2)
-    if sine > 0.0:
-        factor = 2.0 * np.arctan2(sine, scalar) / sine
-        for axis in range(3):
-            rotation[axis] *= factor
-
-
-@kernel
-def _record_driven_into(bodies, displacement, velocity, row, record):
-    """Overwrite the driven bodies with the ground motion itself at the record time."""
-    kept = State(
-        record.position[row], record.orientation[row], record.velocity[row], record.angular_velocity[row]
-    )
-    place_driven_into(bodies, displacement, velocity, kept)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from blockshake.jit import kernel
+from blockshake.solvers.nscd.friction import coefficient_along
 from blockshake.solvers.nscd.gauss_seidel import apply_impulse_into, relative_velocity
 
 
@@ -30,12 +31,12 @@ def linear_law_into(contacts, contact, v, stiffness, D, c):
     Open: no impulse. Sticking: ``p = p_old - r (u + bound)`` with a large ``r``, the proximal form of ``u +
     bound = 0``, which stays regular however many contacts share a load. Slipping: the normal
     part of that; friction ``mu p_n`` along the slip, and across it the linear part of ``-mu p_n u_t /
-    |u_t|``. A stopper's compliance adds to ``1 / r``.
+    |u_t|``, the coefficient taken for the direction at hand. A stopper's compliance adds to ``1 / r``.
     """
     D[:] = 0.0
     c[:] = 0.0
     p, bound, local = contacts.impulse[contact], contacts.bound[contact], contacts.local[contact]
-    mu, compliance = contacts.friction[contact], contacts.compliance[contact]
+    compliance = contacts.compliance[contact]
     u_n, u_1, u_2 = relative_velocity(contacts, contact, v)
     u_n, u_1, u_2 = u_n + bound[0] + compliance * p[0], u_1 + bound[1], u_2 + bound[2]
     rho = 1.0 / max(local[0], max(local[1], local[2]))
@@ -45,9 +46,10 @@ def linear_law_into(contacts, contact, v, stiffness, D, c):
     stiff = stiffness * rho
     D[0, 0] = stiff / (1.0 + stiff * compliance)
     c[0] = (p[0] - stiff * bound[0]) / (1.0 + stiff * compliance)
+    s_1, s_2 = p[1] - rho * u_1, p[2] - rho * u_2
+    mu = coefficient_along(contacts, contact, s_1, s_2)
     if mu == 0.0:
         return
-    s_1, s_2 = p[1] - rho * u_1, p[2] - rho * u_2
     size = np.sqrt(s_1 * s_1 + s_2 * s_2)
     limit = mu * trial_n
     if size <= limit:
@@ -205,7 +207,10 @@ def newton_step_into(bodies, inertia, inverse_inertia, row_of, contacts, stiffne
         for i in range(3):
             p[i] = c[i] - D[i, 0] * d_n - D[i, 1] * d_1 - D[i, 2] * d_2
         p[0] = max(p[0], 0.0)
-        size, limit = np.sqrt(p[1] * p[1] + p[2] * p[2]), contacts.friction[contact] * p[0]
+        size, limit = (
+            np.sqrt(p[1] * p[1] + p[2] * p[2]),
+            coefficient_along(contacts, contact, p[1], p[2]) * p[0],
+        )
         if size > limit:
             p[1], p[2] = p[1] * limit / size, p[2] * limit / size
     v[:] = v_free

@@ -1,11 +1,11 @@
-"""The parts of one time step, in physical order: predict, meet, solve, move, account."""
+"""The parts of one time step, in physical order: predict, bound, move."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from blockshake.dynamics.motion import find_segment, ground_state_into
-from blockshake.dynamics.system import kinetic_energy, place_driven_into, potential_energy
+from blockshake.dynamics.system import place_driven_into
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
 from blockshake.jit import kernel
 from blockshake.solvers.nscd.gauss_seidel import relative_velocity
@@ -34,6 +34,22 @@ class Step(NamedTuple):
     v: np.ndarray
     v_mean: np.ndarray
     impulse: np.ndarray
+
+
+@kernel
+def empty_step(state):
+    """Work space for the bodies of a state."""
+    n_bodies = state.position.shape[0]
+    return Step(
+        copy_state(state),
+        np.empty((n_bodies, 3, 3)),
+        np.empty((n_bodies, 3, 3)),
+        np.empty((n_bodies, 3, 3)),
+        np.empty((n_bodies, 6)),
+        np.empty((n_bodies, 6)),
+        np.empty((n_bodies, 6)),
+        np.empty((n_bodies, 6)),
+    )
 
 
 @kernel
@@ -109,43 +125,6 @@ def contact_margin(v_start, radius, gravity, dt):
         spin = np.sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5])
         fastest = max(fastest, speed + radius[body] * spin)
     return _LEAST_MARGIN + 2.0 * dt * (fastest + dt * np.linalg.norm(gravity))
-
-
-@kernel
-def place_stoppers_into(bodies, stoppers, base, step, dt, theta, contacts):
-    """Write the stoppers, as contacts of the driven body ``base``, into the last rows."""
-    first = contacts.gap.size - stoppers.body.size
-    for stopper in range(stoppers.body.size):
-        row, body = first + stopper, stoppers.body[stopper]
-        contacts.body_a[row], contacts.body_b[row] = base, body
-        contacts.stopper[row] = stopper
-        contacts.arm_a[row] = 0.0
-        contacts.arm_b[row] = step.rotations[body] @ stoppers.point[stopper]
-        contacts.home[row] = stoppers.point[stopper]
-        contacts.basis[row, 0] = -stoppers.axis[stopper]
-        contacts.friction[row] = 0.0
-        contacts.compliance[row] = 1.0 / (theta * dt * dt * stoppers.stiffness[stopper])
-        contacts.gap[row] = -closure(
-            bodies, stoppers, stopper, base, step.detection.position, contacts.arm_b[row]
-        )
-
-
-@kernel
-def closure(bodies, stoppers, stopper, base, position, arm):
-    """Closure of a stopper beyond its gap [m], negative while open.
-
-    ``position`` (n_bodies, 3): mass centres [m]; ``arm`` (3,): the point minus the mass centre, world frame [m].
-    """
-    body = stoppers.body[stopper]
-    start = np.empty((3, 3))
-    rotation_matrix_into(bodies.home_orientation[body], start)
-    arm_start = start @ stoppers.point[stopper]
-    moved = 0.0
-    for axis in range(3):
-        relative = position[body, axis] + arm[axis] - position[base, axis]
-        relative_start = bodies.home[body, axis] + arm_start[axis] - bodies.home[base, axis]
-        moved += stoppers.axis[stopper, axis] * (relative - relative_start)
-    return moved - stoppers.gap[stopper]
 
 
 @kernel
@@ -231,48 +210,3 @@ def move_into(bodies, displacement, velocity, dt, theta, contacts, before, step,
             state.angular_velocity[body],
             step.v_mean[body, 3:],
         )
-
-
-@kernel
-def account_into(bodies, stoppers, base, state, contacts, step, work, energy):
-    """Bring the energy terms up to the end of the step.
-
-    Parameters
-    ----------
-    work : float64 array, shape (2,)
-        Net work taken out so far by friction and by normal impulses [J]; brought up to date.
-    energy : float64 array, shape (7,)
-        `ENERGY_TERMS` at the start of the step [J]; overwritten with those at its end.
-
-    Notes
-    -----
-    An impulse does the work ``p . u`` with the mean ``u`` of the velocities at the start and at the end
-    (`turn_into` for rotations), so that the terms add up to rounding at theta 0.5. A dissipated
-    term is the largest net work so far: net work can fall for a moment by the error of the scheme, and the fall
-    then shows as the energy residual.
-    """
-    elastic = 0.0
-    for contact in range(contacts.gap.size):
-        p = contacts.impulse[contact]
-        a, b = contacts.body_a[contact], contacts.body_b[contact]
-        u_n, u_1, u_2 = relative_velocity(contacts, contact, step.v_mean)
-        work[0] -= p[1] * u_1 + p[2] * u_2
-        work[1] -= p[0] * u_n
-        world = p @ contacts.basis[contact]
-        if bodies.driven[a]:
-            v = step.v_mean[a]
-            energy[6] += np.dot(world, v[:3] + np.cross(v[3:], contacts.arm_a[contact]))
-        if bodies.driven[b]:
-            v = step.v_mean[b]
-            energy[6] -= np.dot(world, v[:3] + np.cross(v[3:], contacts.arm_b[contact]))
-    R = np.empty((3, 3))
-    for stopper in range(stoppers.body.size):
-        rotation_matrix_into(state.orientation[stoppers.body[stopper]], R)
-        squeezed = closure(bodies, stoppers, stopper, base, state.position, R @ stoppers.point[stopper])
-        elastic += 0.5 * stoppers.stiffness[stopper] * max(squeezed, 0.0) ** 2
-    work[1] -= elastic - energy[2]
-    energy[0] = kinetic_energy(bodies, state.velocity, state.angular_velocity, state.orientation)
-    energy[1] = potential_energy(bodies, state.position)
-    energy[2] = elastic
-    energy[3] = max(energy[3], work[0])
-    energy[4] = max(energy[4], work[1])

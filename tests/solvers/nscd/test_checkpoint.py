@@ -1,0 +1,131 @@
+"""A run that was cut and goes on has the bytes of one that was not."""
+
+import numpy as np
+import pytest
+
+from blockshake.dynamics.motion import ground_motion
+from blockshake.geometry.structure import load_structure
+from blockshake.solvers.nscd import driver
+from blockshake.solvers.nscd.parameters import NscdParameters
+
+TIMES = np.arange(0.0, 1.2001, 0.005)
+
+
+class CutShortError(Exception):
+    pass
+
+
+@pytest.fixture(scope="module")
+def structure():
+    """The blocks of configuration 1 with every law of friction, so that slips and impulses matter."""
+    laws = {"rate_drop": 0.2, "slip_drop": 0.3, "asymmetry": 0.1}
+    return load_structure(
+        "configuration-1",
+        {"friction.concrete.concrete": 0.3}
+        | {f"friction.concrete.concrete.{key}": value for key, value in laws.items()},
+    )
+
+
+@pytest.fixture(scope="module")
+def motion():
+    time = np.linspace(0.0, 1.3, 261)
+    return ground_motion(
+        "sine", time, {"x": 4.0 * np.sin(9.0 * time), "y": 2.0 * np.cos(14.0 * time)}, "acceleration"
+    )
+
+
+def _run(structure, motion, parameters=None, **keys):
+    return driver.simulate_nscd(
+        structure, motion, parameters or NscdParameters(theta=0.6), TIMES, 1e-3, **keys
+    )
+
+
+def _cut_after(monkeypatch, n_savings):
+    """Save at every pause of 70 steps, and fall over after so many savings."""
+    made = []
+
+    def save(*content):
+        original(*content)
+        made.append(content[0])
+        if len(made) == n_savings:
+            raise CutShortError
+
+    original = driver.save_checkpoint
+    monkeypatch.setattr(driver, "_PAUSE_STEPS", 70)
+    monkeypatch.setattr(driver, "_PIECE", 0.0)
+    monkeypatch.setattr(driver, "save_checkpoint", save)
+
+
+def _assert_same(one, other):
+    for field in (
+        "position", "orientation", "velocity", "angular_velocity", "energy", "joints", "joint_force",
+    ):  # fmt: skip
+        assert getattr(one, field).tobytes() == getattr(other, field).tobytes(), field
+    assert (one.status, one.reason, one.end_time, one.numerics) == (
+        other.status, other.reason, other.end_time, other.numerics,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def whole(structure, motion):
+    return _run(structure, motion)
+
+
+def test_a_cut_run_goes_on_bit_by_bit(structure, whole, motion, tmp_path, monkeypatch):
+    path = tmp_path / "run.checkpoint"
+    for savings in (5, 3):
+        with monkeypatch.context() as patch:
+            _cut_after(patch, savings)
+            with pytest.raises(CutShortError):
+                _run(structure, motion, checkpoint=path, checkpoint_interval=0.0)
+    assert path.exists()
+    steps = []
+    original = driver.load_checkpoint
+    monkeypatch.setattr(driver, "load_checkpoint", lambda *a: steps.append(original(*a)) or steps[-1])
+    resumed = _run(structure, motion, checkpoint=str(path))
+    # it did read the checkpoint, of 5 + 3 pieces
+    assert steps[0][0].clock[0] >= 560
+    _assert_same(whole, resumed)
+    assert not path.exists()
+    # it rocked and slid, so that impulses, faces and slips mattered
+    assert np.abs(whole.orientation[:, 1:, 2]).max() > 1e-3
+    assert whole.energy[-1, 3] > 100.0
+
+
+def test_pauses_change_nothing(structure, whole, motion, monkeypatch):
+    monkeypatch.setattr(driver, "_PAUSE_STEPS", 1)
+    monkeypatch.setattr(driver, "_PIECE", 0.0)
+    _assert_same(whole, _run(structure, motion))
+
+
+def test_the_checkpoint_of_another_run_is_not_taken(structure, motion, tmp_path, monkeypatch):
+    path = tmp_path / "run.checkpoint"
+    with monkeypatch.context() as patch:
+        _cut_after(patch, 2)
+        with pytest.raises(CutShortError):
+            _run(structure, motion, checkpoint=path, checkpoint_interval=0.0)
+    other = NscdParameters(theta=0.6, shrink=0.02)
+    _assert_same(_run(structure, motion, other, checkpoint=path), _run(structure, motion, other))
+
+
+@pytest.mark.parametrize("content", [b"", b"PK\x03\x04 cut short", b"not a checkpoint"])
+def test_a_checkpoint_that_cannot_be_read_starts_anew(content, structure, whole, motion, tmp_path):
+    path = tmp_path / "run.checkpoint"
+    path.write_bytes(content)
+    _assert_same(whole, _run(structure, motion, checkpoint=path))
+
+
+def test_bodies_that_meet_late_find_room_in_the_record(scene, simulate):
+    """A row of forty cubes falls one after the other: every landing is a new joint, nothing before it."""
+    cubes = [
+        {"name": f"c{index}", "shape": "cube", "position": [1.0 * index, 0.0, 0.25 + 0.0004 * (index + 1)]}
+        for index in range(40)
+    ]
+    shapes = {"cube": {"box": [0.5, 0.5, 0.5]}, "floor": {"box": [100.0, 3.0, 0.2]}}
+    run = simulate(scene(shapes, cubes), 0.3, output_step=1e-3)
+    assert len(run.joints) == 40
+    weight = 0.5**3 * 2400.0 * 9.81
+    landed = np.sqrt(2.0 * 0.0004 * run.joints[:, 1] / 9.81)
+    for joint, instant in enumerate(landed):
+        assert (run.joint_force[run.time < instant - 2e-3, joint] == 0.0).all()
+    np.testing.assert_allclose(run.joint_force[-1, :, 2], weight, rtol=1e-6)

@@ -1,0 +1,117 @@
+"""A killed simulation goes on where it was and writes the run file of one that was not killed."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+from blockshake.study.batch import simulate_samples
+from blockshake.study.simulation import MODELS, simulate
+
+# seconds of motion that take some seconds of wall time, whatever the model
+LONG = {"ls-dem": 25.0, "nscd-rigid": 100.0}
+ARRAYS = (
+    "position", "orientation", "velocity", "angular_velocity", "marker_displacement", "energy", "joint_force",
+)  # fmt: skip
+
+# the command line, saving every tenth of a second
+SIMULATE = """
+import sys
+from blockshake.cli import main
+from blockshake.solvers.checkpoint import Due
+from blockshake.solvers.{package} import driver
+driver.Due = lambda interval: Due(0.1)
+sys.exit(main(sys.argv[1:]))
+"""
+PACKAGES = {"ls-dem": "ls_dem", "nscd-rigid": "nscd"}
+
+
+def _command(model, output):
+    return [
+        sys.executable, "-c", SIMULATE.format(package=PACKAGES[model]),
+        "simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", model, "--output-rate", "50",
+        "--duration", str(LONG[model]), "--output", str(output), *(["--time-step", "5e-5"] * (model == "ls-dem")),
+    ]  # fmt: skip
+
+
+def _assert_same(one, other):
+    for name in ARRAYS:
+        assert one[name].values.tobytes() == other[name].values.tobytes(), name
+    assert {key: value for key, value in one.attrs.items() if key != "history"} == {
+        key: value for key, value in other.attrs.items() if key != "history"
+    }
+
+
+@pytest.mark.parametrize("model", sorted(MODELS))
+def test_a_killed_command_goes_on(model, tmp_path):
+    output, checkpoint = tmp_path / "run.nc", tmp_path / "run.nc.checkpoint"
+    killed = subprocess.Popen(_command(model, output), stderr=subprocess.PIPE)
+    deadline = time.monotonic() + 300.0
+    while not checkpoint.exists() and killed.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.01)
+    os.kill(killed.pid, signal.SIGKILL)
+    killed.communicate()
+    assert killed.returncode == -signal.SIGKILL
+    assert checkpoint.exists()
+    assert not output.exists()
+    again = subprocess.run(_command(model, output), capture_output=True, text=True, check=True)
+    # it says so, and from where: neither the start nor the end
+    reached = float(re.search(r"goes on from ([0-9.]+) s", again.stderr)[1])
+    assert 0.0 < reached < LONG[model]
+    assert not checkpoint.exists()
+    whole = simulate(
+        "configuration-1", "alkion", model, time_step=5e-5 if model == "ls-dem" else None, duration=LONG[model],
+        output_rate=50.0,
+    )  # fmt: skip
+    _assert_same(xr.load_dataset(output), whole)
+
+
+class CutShortError(Exception):
+    pass
+
+
+@pytest.mark.parametrize("model", sorted(MODELS))
+def test_a_killed_sample_goes_on_in_the_store(model, tmp_path, monkeypatch):
+    """The second attempt starts from the checkpoint beside where the sample goes, and leaves none behind."""
+    case = {"structure": "configuration-1", "motion": "alkion", "scale": 1.0, "duration": 1.0}
+    rows = pd.DataFrame({"friction.concrete.concrete": [0.6]}, index=[3])
+    step = 5e-5 if model == "ls-dem" else 1e-3
+
+    def attempt(store):
+        return simulate_samples(case, model, step, 50.0, rows, {}, store, "source", lambda line: None)
+
+    solve, *settings = MODELS[model]
+    driver = sys.modules[solve.__module__]
+    (whole,) = attempt(tmp_path / "whole")
+
+    def often(*given, **keys):
+        return solve(*given, **keys, checkpoint_interval=0.0)
+
+    def save_and_die(*content):
+        original(*content)
+        raise CutShortError
+
+    original = driver.save_checkpoint
+    with monkeypatch.context() as patch:
+        patch.setitem(MODELS, model, (often, *settings))
+        patch.setattr(driver, "_PAUSE_STEPS", 300)
+        patch.setattr(driver, "save_checkpoint", save_and_die)
+        with pytest.raises(CutShortError):
+            attempt(tmp_path / "cut")
+    assert [path.suffix for path in (tmp_path / "cut").iterdir()] == [".checkpoint"]
+    loaded = []
+    load = driver.load_checkpoint
+    monkeypatch.setattr(driver, "load_checkpoint", lambda *given: loaded.append(load(*given)) or loaded[-1])
+    (resumed,) = attempt(tmp_path / "cut")
+    assert loaded[0] is not None
+    assert list((tmp_path / "cut").iterdir()) == [resumed]
+    one, other = xr.load_dataset(whole), xr.load_dataset(resumed)
+    for name in one.data_vars:
+        np.testing.assert_array_equal(one[name].values, other[name].values, err_msg=name)
