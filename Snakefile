@@ -38,7 +38,7 @@ for case in CASES:
             expand(
                 "results/{study}/{kind}/{model}/{case}.nc",
                 study=STUDY,
-                kind=["envelopes", "comparisons"],
+                kind=["envelopes", "comparisons", "sensitivities"],
                 model=MODELS,
                 case=case,
             ),

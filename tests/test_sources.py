@@ -16,6 +16,7 @@ WATCHED = {
     "calibrate_stiffness": sources.STIFFNESS,
     "make_envelope": sources.ENVELOPE,
     "compare_with_measurement": sources.COMPARISON,
+    "measure_sensitivity": sources.SENSITIVITY,
     "make_report": sources.REPORT,
     "climb_ladder": sources.LADDER,
     "make_virtual_campaign": sources.VIRTUAL_CAMPAIGN,

@@ -33,6 +33,15 @@ COMPARISON = (
     "measurement/campaign.py",
     "measurement/virtual_test.py",
 )
+SENSITIVITY = (
+    *_STATISTICS,
+    *_COMMON,
+    "study/sensitivity.py",
+    "study/sensitivity_histories.py",
+    "study/sensitivity_measures.py",
+    "study/sample_parameters.py",
+    *DESIGN,
+)
 REPORT = (*_STATISTICS, *DESIGN, "geometry", "dynamics", "measurement", "report")
 
 

@@ -15,6 +15,7 @@ from blockshake.study.distributions import TABLE_2
 from blockshake.study.ensemble import gather_ensemble, sample_figures
 from blockshake.study.envelope import envelope
 from blockshake.study.sampling import draw_samples
+from blockshake.study.sensitivity import sensitivity
 
 MODELS = {"ls-dem": {"time_step": 5e-5}, "nscd-rigid": {"time_step": 1e-3}}
 COLLAPSE_REASON = "wall-b-4 tipped over or dropped at 1.000 s"
@@ -97,6 +98,7 @@ class FakeStudy:
                 ("envelopes", envelope(ensemble)),
                 ("samples", sample_figures(ensemble)),
                 ("comparisons", coverage(test, ensemble, 1e-4)),
+                ("sensitivities", sensitivity(ensemble, list(self.design.columns))),
             ):
                 write_dataset(self.results / kind / model / f"{name}.nc", result)
             record = self.benchmarks / "simulate_batch" / model / name / f"000-{count - 1:03d}.jsonl"
@@ -123,6 +125,7 @@ class FakeStudy:
             coords={
                 "time": self.time,
                 "marker": [marker.name for marker in markers],
+                "marker_body": ("marker", [marker.body for marker in markers]),
                 "body": bodies,
                 "axis": ["x", "y", "z"],
                 "quaternion": ["w", "x", "y", "z"],

@@ -35,6 +35,7 @@ def make_run():
             coords={
                 "time": ("time", TIME, {"units": "s"}),
                 "marker": MARKERS,
+                "marker_body": ("marker", ["slab", "block-1"]),
                 "body": ["slab", "block-1"],
                 "axis": ["x", "y", "z"],
                 "quaternion": ["w", "x", "y", "z"],

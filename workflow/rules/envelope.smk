@@ -31,3 +31,25 @@ rule compare_with_measurement:
         source=source_digest(*sources.COMPARISON),
     script:
         "../scripts/compare_with_measurement.py"
+
+
+rule measure_sensitivity:
+    """Which random variable makes the samples differ, block by block, with intervals and the level of chance."""
+    input:
+        batches=batch_files,
+        structure=lambda wildcards: definition(
+            "structures", CASES[wildcards.case]["structure"]
+        ),
+        design="results/{study}/design.csv",
+    output:
+        "results/{study}/sensitivities/{model}/{case}.nc",
+    log:
+        "logs/{study}/measure_sensitivity/{model}/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        structure=lambda wildcards: CASES[wildcards.case]["structure"],
+        linked=lookup(dpath="ensemble/linked", within=config, default={}),
+        source=source_digest(*sources.SENSITIVITY),
+    script:
+        "../scripts/measure_sensitivity.py"

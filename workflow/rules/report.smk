@@ -39,6 +39,12 @@ rule make_report:
             study=STUDY,
             case=FRICTION_SEARCH.get("cases", []),
         ),
+        sensitivities=expand(
+            "results/{study}/sensitivities/{model}/{case}.nc",
+            study=STUDY,
+            model=MODELS,
+            case=CASES,
+        ),
     output:
         html=report("reports/{study}.html", category="Study"),
         pdf=report("reports/{study}.pdf", category="Study"),

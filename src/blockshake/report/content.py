@@ -24,11 +24,13 @@ _PACKAGES = ("numpy", "scipy", "numba", "xarray", "pandas", "snakemake", "matplo
 
 @dataclass(frozen=True)
 class Response:
-    """What one model made of one case: its envelope, its samples' figures, its coverage of the measured curves."""
+    """What one model made of one case: its envelope, its samples' figures, its coverage of the measured curves,
+    its sensitivity to the random variables."""
 
     envelope: xr.Dataset
     samples: xr.Dataset
     comparison: xr.Dataset
+    sensitivity: xr.Dataset
 
 
 @dataclass(frozen=True)
@@ -203,7 +205,7 @@ def _case(study, results, name, settings):
         model: Response(
             *(
                 _dataset(results / kind / model / f"{name}.nc")
-                for kind in ("envelopes", "samples", "comparisons")
+                for kind in ("envelopes", "samples", "comparisons", "sensitivities")
             )
         )
         for model in study["models"]

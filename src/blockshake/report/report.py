@@ -7,6 +7,7 @@ from blockshake.report.html import write_html
 from blockshake.report.pdf import write_pdf
 from blockshake.report.result_sections import checks, limits, origin, responses, timings
 from blockshake.report.sections import motions, samples, stiffness, structures, summary
+from blockshake.report.sensitivity_section import sensitivities
 
 _SECTIONS = (
     summary,
@@ -15,6 +16,7 @@ _SECTIONS = (
     samples,
     stiffness,
     responses,
+    sensitivities,
     friction,
     checks,
     timings,

@@ -54,3 +54,27 @@ def main_bodies(structure, bodies, most=4):
         index = structure.body_names.index(body)
         stacks.setdefault(tuple(places[index, :2]), []).append(body)
     return [body for stack in stacks.values() for body in stack[::2]]
+
+
+def bodies_by_height(structure, bodies, most=5):
+    """One body of each height, from the lowest up: in two equal walls those of the first.
+
+    Parameters
+    ----------
+    structure : Structure
+    bodies : iterable of str
+        From the top down.
+    most : int
+        Columns that a figure has room for; of more, the lowest, the highest and those evenly between.
+
+    Returns
+    -------
+    list of str
+    """
+    heights = {}
+    for body in bodies:
+        height = round(float(structure.position[structure.body_names.index(body), 2]), 3)
+        heights.setdefault(height, body)
+    chosen = [heights[height] for height in sorted(heights)]
+    places = np.unique(np.linspace(0, len(chosen) - 1, min(most, len(chosen))).round().astype(int))
+    return [chosen[place] for place in places]

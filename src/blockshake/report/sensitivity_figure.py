@@ -1,0 +1,165 @@
+"""Sensitivity of a case's blocks to the random variables: dots with intervals over the level of chance."""
+
+import numpy as np
+
+from blockshake.report.drawing import BLUE, DARK_GREY, GREEN, GREY, LIGHT_GREY, ORANGE, RED, new_figure
+from blockshake.report.wording import model_label, number, parameter_label
+
+SHOWN = {
+    "first_order": ("history", "share of the envelope's thickness [1]", (-0.25, 1.02)),
+    "rank_correlation": ("peak", "partial rank correlation with the peak [1]", (-1.02, 1.02)),
+}
+_COLORS = {"first_order": BLUE, "rank_correlation": RED}
+_LINES = (BLUE, ORANGE, GREEN, RED)
+_FINEST = 1e-4  # mm; histories are stored to this
+_ROW = 0.0034  # m of paper, of one variable
+
+
+def plot_sensitivity(sensitivities, markers, noise):
+    """Measures of every variable, one column a block, one row of panels a measure and model.
+
+    Parameters
+    ----------
+    sensitivities : dict of str to xarray.Dataset
+        By model, from `sensitivity`.
+    markers : dict of str to str
+        Body to marker, from the lowest up.
+    noise : float
+        Standard deviation of a measured marker's position [m]: where samples differ by less, nothing is drawn.
+
+    Returns
+    -------
+    matplotlib.figure.Figure or None
+        None where no model has anything to show. Filled dots: variables of use to model and structure; hollow: the
+        others, controls. Lines: 95 % intervals. Grey:
+        what chance reaches.
+    """
+    variables = [str(name) for name in next(iter(sensitivities.values()))["parameter"].values]
+    rows = [
+        (measure, model)
+        for measure in SHOWN
+        for model, result in sensitivities.items()
+        if has_something(result, markers.values(), measure, noise)
+    ]
+    if not rows:
+        return None
+    figure = new_figure(len(rows) * (0.011 + _ROW * len(variables)) + 0.006)
+    panels = figure.subplots(len(rows), len(markers), sharey=True, squeeze=False)
+    for place, (measure, model) in enumerate(rows):
+        line = panels[place]
+        result = sensitivities[model]
+        quantity, label, limits = SHOWN[measure]
+        for axes, (body, marker) in zip(line, markers.items(), strict=True):
+            _draw_panel(axes, result.sel(quantity=quantity, marker=marker), measure, noise)
+            axes.set_xlim(limits)
+            if place == 0:
+                axes.set_title(body)
+        line[len(line) // 2].set_xlabel(label)
+        line[0].set_ylabel(f"{model_label(model)}, n = {int(result['used'].sel(quantity=quantity))}")
+        line[0].set_yticks(range(len(variables)), [parameter_label(name) for name in variables])
+        for text, control in zip(line[0].get_yticklabels(), result["control"].values, strict=True):
+            text.set(fontsize=5.5, color=DARK_GREY if control else "black")
+    panels[0, 0].set_ylim(len(variables) - 0.4, -0.6)
+    figure.align_ylabels(panels[:, 0])
+    return figure
+
+
+def has_something(result, markers, measure, noise):
+    """Whether a measure of a model can be shown for any of the markers: they differ, and the samples suffice."""
+    one = result.sel(quantity=SHOWN[measure][0], marker=list(markers))
+    return bool((one["spread"] >= noise).any()) and bool(np.isfinite(one[f"{measure}_chance"]))
+
+
+def plot_sensitivity_over_time(sensitivities, marker, noise):
+    """Spread of the top block second by second, and what each variable explains of it.
+
+    Parameters
+    ----------
+    sensitivities : dict of str to xarray.Dataset
+        By model.
+    marker : str
+    noise : float
+        [m]; seconds in which samples differ by less have no shares.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Above: standard deviation over the samples [mm], dashed the marker's noise. Below: first-order shares of
+        the variables
+        of use, the four largest in colour; grey: what chance reaches.
+    """
+    figure = new_figure(0.085)
+    panels = figure.subplots(2, len(sensitivities), sharex=True, sharey="row", squeeze=False)
+    shares = [result["window_first_order"].sel(marker=marker) for result in sensitivities.values()]
+    thick = [result["window_spread"].sel(marker=marker) >= noise for result in sensitivities.values()]
+    largest = np.max(
+        [share.where(there).max("window").fillna(-1.0) for share, there in zip(shares, thick, strict=True)],
+        axis=0,
+    )
+    used = ~np.all([result["control"] for result in sensitivities.values()], axis=0)
+    leading = np.argsort(np.where(used, -largest, np.inf), kind="stable")[: min(len(_LINES), int(used.sum()))]
+    for (above, below), (model, result) in zip(panels.T, sensitivities.items(), strict=True):
+        spread, share = (
+            result["window_spread"].sel(marker=marker),
+            result["window_first_order"].sel(marker=marker),
+        )
+        above.semilogy(result["window"], 1e3 * spread, color="black", marker=".", markersize=3)
+        above.axhline(1e3 * noise, color=DARK_GREY, linestyle=(0, (4, 2)), linewidth=0.7)
+        above.set_title(f"{model_label(model)}, n = {int(result['used'].sel(quantity='history'))}")
+        level = float(result["window_first_order_chance"])
+        below.axhspan(-level, level, color=LIGHT_GREY, linewidth=0.0)
+        shown = share.where(spread >= noise)
+        for place in np.flatnonzero(used):
+            order = list(leading).index(place) if place in leading else None
+            style = (
+                {"color": GREY, "linewidth": 0.5} if order is None else {"color": _LINES[order], "zorder": 3}
+            )
+            label = (
+                "other variables"
+                if order is None
+                else parameter_label(str(result["parameter"].values[place]))
+            )
+            below.plot(
+                result["window"], shown.isel(parameter=place), marker=".", markersize=3, label=label, **style
+            )
+        below.set(ylim=(-0.3, 1.02), xlabel="time [s]")
+        if not (spread >= noise).any():
+            _say(below, "samples differ by less\nthan the marker's noise")
+            below.tick_params(labelbottom=True, bottom=True)
+    panels[0, 0].set_ylim(bottom=_FINEST)
+    panels[0, 0].set_ylabel("spread [mm]")
+    panels[1, 0].set_ylabel("share of it [1]")
+    handles = dict(zip(*reversed(panels[1, 0].get_legend_handles_labels()), strict=True))
+    figure.legend(handles.values(), handles.keys(), loc="outside upper center", ncols=3)
+    return figure
+
+
+def _draw_panel(axes, result, measure, noise):
+    level = float(result[f"{measure}_chance"])
+    found = result[measure].to_numpy()
+    axes.grid(False, axis="y")
+    axes.tick_params(left=False)
+    if float(result["spread"]) < noise:
+        _say(axes, f"samples differ by\n{number(1e3 * result['spread'], 2)} mm")
+        return
+    if not np.isfinite(level):
+        _say(axes, f"{int(result['used'])} samples:\ntoo few")
+        return
+    axes.axvspan(-level, level, color=LIGHT_GREY, linewidth=0.0)
+    axes.axvline(0.0, color=DARK_GREY, linewidth=0.5)
+    low, high = (result[f"{measure}_interval"].sel(bound=one).to_numpy() for one in ("lower", "upper"))
+    color = _COLORS[measure]
+    for row, control in enumerate(result["control"].values):
+        axes.plot([low[row], high[row]], [row, row], color=color, linewidth=0.8)
+        axes.plot(
+            found[row], row, "o", color=color, markersize=3.4, markeredgewidth=0.8,
+            markerfacecolor="white" if control else color,
+        )  # fmt: skip
+
+
+def _say(axes, words):
+    axes.text(
+        0.5, 0.5, words, ha="center", va="center", transform=axes.transAxes, fontsize=6.5, color=DARK_GREY
+    )
+    axes.tick_params(labelbottom=False, bottom=False)
+    axes.grid(False)
