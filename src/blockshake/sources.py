@@ -4,7 +4,13 @@ _ROOT = ("errors.py", "files.py", "validation.py")
 _COMMON = (*_ROOT, "geometry", "dynamics")
 _SOLVERS = {"ls-dem": "solvers/ls_dem", "nscd-rigid": "solvers/nscd"}
 _BOTH_SOLVERS = ("solvers/__init__.py", "solvers/record.py", "solvers/checkpoint.py")
-_STATISTICS = (*_ROOT, "study/ensemble.py", "study/envelope.py", "study/distributions.py")
+_STATISTICS = (
+    *_ROOT,
+    "study/ensemble.py",
+    "study/envelope.py",
+    "study/intervals.py",
+    "study/distributions.py",
+)
 
 KERNELS = (*_COMMON, "solvers", "measurement/kalman.py", "study/correlation_control.py")
 """All that holds kernels: the rest may change without compiling anew."""
@@ -27,11 +33,12 @@ STIFFNESS = (
 )
 ENVELOPE = _STATISTICS
 COMPARISON = (
+    "geometry",
+    "dynamics",
+    "measurement",
     *_STATISTICS,
     "study/coverage.py",
     "study/compared_curves.py",
-    "measurement/campaign.py",
-    "measurement/virtual_test.py",
 )
 SENSITIVITY = (
     *_STATISTICS,

@@ -95,7 +95,7 @@ class FakeStudy:
                 end(runs[4], "not-converged", "2.0 % of the steps ended above a residual", self.time[-1])
             ensemble = gather_ensemble(runs, range(count), self.design, "slab-face")
             for kind, result in (
-                ("envelopes", envelope(ensemble)),
+                ("envelopes", envelope(ensemble, 0.4)),
                 ("samples", sample_figures(ensemble)),
                 ("comparisons", coverage(test, ensemble, 1e-4)),
                 ("sensitivities", sensitivity(ensemble, list(self.design.columns))),

@@ -10,6 +10,7 @@ rule make_envelope:
     conda:
         "../envs/blockshake.yaml"
     params:
+        largest_drift=lookup(dpath="ladder/largest_drift", within=config),
         source=source_digest(*sources.ENVELOPE),
     script:
         "../scripts/make_envelope.py"

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
-import xarray as xr
 from pydantic import Field
 
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.measured_test import read_test
 from blockshake.validation import Strict, validated
 
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
@@ -85,22 +86,5 @@ def load_campaign(folder):
 
 
 def load_test(campaign, name):
-    """Readings of one test: ``marker_displacement(time, marker, axis)`` [m] and what else the file holds.
-
-    Raises
-    ------
-    InputError
-        The file is no netCDF file or lacks the marker displacements.
-    """
-    path = campaign.folder / campaign.tests[name].file
-    try:
-        test = xr.load_dataset(path)
-    except (OSError, ValueError) as error:
-        raise InputError(path, "", f"expected a netCDF file; {error}") from None
-    if "marker_displacement" not in test or set(test["marker_displacement"].dims) != {
-        "time",
-        "marker",
-        "axis",
-    }:
-        raise InputError(path, "marker_displacement", "expected displacements over time, marker and axis")
-    return test
+    """Readings of one test, checked against the campaign's structure; see `read_test`."""
+    return read_test(campaign.folder / campaign.tests[name].file, load_structure(campaign.structure))

@@ -49,6 +49,12 @@ def marker_displacement(structure, position, orientation):
     return places - places[:1]
 
 
+def marker_bodies(structure, names):
+    """Names of the bodies that carry these markers, list of str."""
+    bodies = {marker.name: marker.body for marker in structure.file.markers}
+    return [bodies[str(name)] for name in names]
+
+
 def driven_marker(structure):
     """Name of the first marker on a driven body: the paper's slab marker.
 

@@ -6,6 +6,7 @@ import yaml
 from blockshake.report.blocks import Figure, Heading, Items, Listing, Section, Text
 from blockshake.report.displacement_figure import plot_displacements
 from blockshake.report.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.probability_table import probability_table
 from blockshake.report.result_tables import (
     convergence_table,
     coverage_table,
@@ -39,6 +40,7 @@ def responses(content):
                 "where nothing slips all its samples are nearly the same run and its band closes to a line."
             )
         )
+    blocks.append(probability_table(content))
     for case in content.cases.values():
         blocks += _response(case, content.motions[case.motion])
     return Section("Displacement of the blocks", "responses", tuple(blocks))

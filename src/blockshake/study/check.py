@@ -6,12 +6,12 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import load_yaml, shipped_names
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaign import load_campaign, load_test
+from blockshake.measurement.campaign_check import campaign_lines
 from blockshake.study.config import load_config
 
 
 def check_file(source):
-    """One line that says what a good file is.
+    """What a good file is, in one line; a campaign in one for every test, and its inconsistencies.
 
     Parameters
     ----------
@@ -50,10 +50,7 @@ def _structure_line(source):
 
 
 def _campaign_line(folder):
-    campaign = load_campaign(folder)
-    for name in campaign.tests:
-        load_test(campaign, name)
-    return f"a campaign on {campaign.structure} with the tests {', '.join(campaign.tests)}"
+    return "\n".join(campaign_lines(folder))
 
 
 def _study_line(source):
