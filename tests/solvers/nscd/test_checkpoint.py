@@ -36,7 +36,7 @@ def motion():
 
 def _run(structure, motion, parameters=None, **keys):
     return driver.simulate_nscd(
-        structure, motion, parameters or NscdParameters(theta=0.6), TIMES, 1e-3, **keys
+        structure, motion, parameters or NscdParameters(theta=0.6, impact_parts=3), TIMES, 1e-3, **keys
     )
 
 
@@ -90,6 +90,7 @@ def test_a_cut_run_goes_on_bit_by_bit(structure, whole, motion, tmp_path, monkey
     # it rocked and slid, so that impulses, faces and slips mattered
     assert np.abs(whole.orientation[:, 1:, 2]).max() > 1e-3
     assert whole.energy[-1, 3] > 100.0
+    assert whole.numerics["parted_steps"] > 0
 
 
 def test_pauses_change_nothing(structure, whole, motion, monkeypatch):

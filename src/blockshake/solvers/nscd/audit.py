@@ -12,9 +12,11 @@ from blockshake.solvers.nscd.progress import (
     FRICTION_WORK,
     IN_PLAY,
     ITERATIONS,
+    LAST_STEP,
     MISFIT,
     MOST_ITERATIONS,
     NORMAL_WORK,
+    PARTED_STEPS,
     WORST_RESIDUAL,
 )
 from blockshake.solvers.nscd.stoppers import closure_into
@@ -24,8 +26,12 @@ _BAD_RESIDUAL = 1e-4
 
 
 @kernel
-def start_audit(bodies, progress):
-    """Energy at the start; what lifts everything by a millimetre is the least that is ever "in play"."""
+def start_audit(bodies, dt, progress):
+    """Energy at the start; what lifts everything by a millimetre is the least that is ever "in play".
+
+    ``dt``: of the step that the first step takes for the one before it [s].
+    """
+    progress.audit[LAST_STEP] = dt
     state, energy = progress.state, progress.energy
     energy[0] = kinetic_energy(bodies, state.velocity, state.angular_velocity, state.orientation)
     energy[1] = potential_energy(bodies, state.position)
@@ -38,14 +44,20 @@ def start_audit(bodies, progress):
 
 
 @kernel
-def count_into(iterations, residual, tolerance, contacts, n_contacts, progress):
-    """Add a step to the counts, and its misfit of energy to the audit."""
-    clock, audit, energy, start = progress.clock, progress.audit, progress.energy, progress.energy_start
+def count_into(iterations, residual, tolerance, parts, clock, audit):
+    """Add a step to the counts; ``residual`` is the worst and ``iterations`` the sum of its ``parts``."""
     clock[ITERATIONS] += iterations
     clock[MOST_ITERATIONS] = max(clock[MOST_ITERATIONS], iterations)
     clock[BAD_STEPS] += 1 if residual > _BAD_RESIDUAL else 0
     clock[CAPPED_STEPS] += 1 if residual > tolerance else 0
+    clock[PARTED_STEPS] += 1 if parts > 1 else 0
     audit[WORST_RESIDUAL] = max(audit[WORST_RESIDUAL], residual)
+
+
+@kernel
+def audit_into(contacts, n_contacts, progress):
+    """Bring the deepest penetration, the energy in play and its misfit up to the end of a step."""
+    audit, energy, start = progress.audit, progress.energy, progress.energy_start
     for contact in range(n_contacts):
         audit[DEEPEST] = max(audit[DEEPEST], -contacts.gap[contact])
     in_play = energy[0] + abs(energy[1] - start[1]) + energy[2] + energy[3] + energy[4] + abs(energy[6])
@@ -60,7 +72,7 @@ def account_into(bodies, stoppers, base, state, contacts, step, audit, energy):
 
     Parameters
     ----------
-    audit : float64 array, shape (6,)
+    audit : float64 array, shape (7,)
         Of `Progress`: the net work taken out so far is brought up to date [J].
     energy : float64 array, shape (7,)
         `ENERGY_TERMS` at the start of the step [J]; overwritten with those at its end.

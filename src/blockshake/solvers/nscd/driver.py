@@ -25,6 +25,7 @@ from blockshake.solvers.nscd.progress import (
     MISFIT,
     MOST_ITERATIONS,
     NEXT_RECORD,
+    PARTED_STEPS,
     STEP,
     WORST_RESIDUAL,
     start_progress,
@@ -67,6 +68,7 @@ def simulate_nscd(
         rotation of the step; a joint's force is the mean over the step in which the time falls.
         ``numerics``: ``steps``, ``mean_iterations``, ``max_iterations``, ``max_residual``,
         ``fraction_above_1e-4`` (of the steps, by residual), ``capped_steps`` (stopped short of the tolerance),
+        ``parted_steps`` (in which bodies met, with ``impact_parts``),
         ``energy_residual`` (largest misfit of the energy terms, relative to the energy in play)
         and ``max_penetration`` [m].
 
@@ -99,6 +101,7 @@ def simulate_nscd(
         parameters.max_iterations,
         parameters.shrink,
         structure.file.nscd_restitution,
+        parameters.impact_parts,
     )
     checkpoint = Path(checkpoint) if checkpoint is not None else None
     key = run_key(structure, ground, parameters, times, time_step)
@@ -174,6 +177,7 @@ def _numerics(progress):
         "max_residual": float(audit[WORST_RESIDUAL]),
         "fraction_above_1e-4": int(clock[BAD_STEPS]) / steps,
         "capped_steps": int(clock[CAPPED_STEPS]),
+        "parted_steps": int(clock[PARTED_STEPS]),
         "energy_residual": float(audit[MISFIT] / audit[IN_PLAY]) if audit[IN_PLAY] > 0.0 else 0.0,
         "max_penetration": float(audit[DEEPEST]),
     }

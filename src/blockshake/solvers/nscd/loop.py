@@ -7,15 +7,16 @@ import numpy as np
 from blockshake.dynamics.collapse import find_collapsed
 from blockshake.dynamics.system import place_driven_into
 from blockshake.jit import kernel
-from blockshake.solvers.nscd.audit import account_into, count_into, start_audit
+from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit
 from blockshake.solvers.nscd.contacts import detect_contacts, prepare_operators_into
 from blockshake.solvers.nscd.friction import friction_into
 from blockshake.solvers.nscd.joints import slip_into, with_joint
 from blockshake.solvers.nscd.polyhedra import empty_placed, place_into
-from blockshake.solvers.nscd.progress import NEXT_RECORD, STEP
+from blockshake.solvers.nscd.progress import LAST_STEP, NEXT_RECORD, STEP
 from blockshake.solvers.nscd.recording import record_driven_into, record_forces_into, record_into
 from blockshake.solvers.nscd.solver import solve_contacts_into
 from blockshake.solvers.nscd.step import (
+    bodies_meet,
     bounds_into,
     contact_margin,
     copy_state,
@@ -43,6 +44,7 @@ class Settings(NamedTuple):
     max_iterations: int
     shrink: float
     restitution: float
+    impact_parts: int
 
 
 class Watch(NamedTuple):
@@ -108,83 +110,97 @@ def integrate(
     if clock[STEP] == 0:
         displacement[:3] = 0.0
         place_driven_into(bodies, displacement, velocity, state)
-        start_audit(bodies, progress)
+        start_audit(bodies, dt, progress)
     step, before, energy_before = empty_step(state), copy_state(state), progress.energy.copy()
     placed = empty_placed(polyhedra)
-    least_impulse = 1e-3 * dt * np.linalg.norm(bodies.gravity) * _lightest(bodies)
+    gravity, lightest = np.linalg.norm(bodies.gravity), _lightest(bodies)
     n_steps = int(np.ceil(times[times.size - 1] / dt - _ROUNDING))
     if n_steps == 0:
         record_into(bodies, state, state, progress.energy, progress.energy, 0.0, 0, record)
         clock[NEXT_RECORD] = 1
-    segment = ground_displacement_into(
-        ground, origin, (clock[STEP] + 1.0 - theta) * dt, segment, following, velocity
-    )
     while clock[STEP] < n_steps:
-        index = clock[STEP]
-        if index == pause:
+        if clock[STEP] == pause:
             return PAUSED, -1, contacts, joints, record
-        displacement[:] = following
-        segment = ground_displacement_into(
-            ground, origin, (index + 2.0 - theta) * dt, segment, following, velocity
-        )
-        for channel in range(4):
-            velocity[channel] = (following[channel] - displacement[channel]) / dt
-        predict_into(bodies, state, displacement, velocity, dt, theta, step)
-        place_into(polyhedra, step.detection.position, step.detection.orientation, placed)
-        margin = contact_margin(step.v_start, polyhedra.radius, bodies.gravity, dt)
-        old = contacts
-        contacts = detect_contacts(
-            bodies,
-            polyhedra,
-            placed,
-            step.rotations,
-            margin,
-            settings.shrink,
-            progress.face,
-            stoppers.body.size,
-        )
-        n_contacts = contacts.gap.size - stoppers.body.size
-        place_stoppers_into(bodies, stoppers, watch.base, step, dt, theta, contacts)
-        prepare_operators_into(bodies, step.inverse_inertia, contacts)
-        friction_into(friction, joints, step.rotations, contacts)
-        bounds_into(step, dt, theta, settings.restitution, contacts)
-        warm_start_into(old, polyhedra.radius, contacts)
-        floor = least_impulse + 1e-12 * _momentum(bodies, step.v) + 1e-300
-        iterations, residual = solve_contacts_into(
-            bodies,
-            step.inertia,
-            step.inverse_inertia,
-            contacts,
-            floor,
-            settings.tolerance,
-            settings.max_iterations,
-            step.v,
-        )
-        segment = ground_displacement_into(ground, origin, (index + 1) * dt, segment, displacement, velocity)
-        move_into(bodies, displacement, velocity, dt, theta, contacts, before, step, state)
-        energy_before[:] = progress.energy
-        account_into(bodies, stoppers, watch.base, state, contacts, step, progress.audit, progress.energy)
-        for contact in range(n_contacts):
-            a, b = contacts.body_a[contact], contacts.body_b[contact]
-            if joints.row[a, b] < 0 and contacts.impulse[contact, 0] > 0.0:
-                joints = with_joint(joints, a, b)
-        slip_into(contacts, n_contacts, step.v, dt, theta, joints)
-        clock[STEP] += 1
-        count_into(iterations, residual, settings.tolerance, contacts, n_contacts, progress)
+        iterations, residual, part, parts = 0, 0.0, 0, 1
+        while part < parts:
+            # a step in which bodies meet is taken in parts, each like a step of its own
+            h, place = dt / parts, clock[STEP] * parts + part
+            segment = ground_displacement_into(
+                ground, origin, (place + 1.0 - theta) * h, segment, displacement, velocity
+            )
+            segment = ground_displacement_into(
+                ground, origin, (place + 2.0 - theta) * h, segment, following, velocity
+            )
+            for channel in range(4):
+                velocity[channel] = (following[channel] - displacement[channel]) / h
+            predict_into(bodies, state, displacement, velocity, h, theta, step)
+            place_into(polyhedra, step.detection.position, step.detection.orientation, placed)
+            margin = contact_margin(step.v_start, polyhedra.radius, bodies.gravity, h)
+            found = detect_contacts(
+                bodies,
+                polyhedra,
+                placed,
+                step.rotations,
+                margin,
+                settings.shrink,
+                progress.face,
+                stoppers.body.size,
+            )
+            n_contacts = found.gap.size - stoppers.body.size
+            place_stoppers_into(bodies, stoppers, watch.base, step, h, theta, found)
+            prepare_operators_into(bodies, step.inverse_inertia, found)
+            friction_into(friction, joints, step.rotations, found)
+            bounds_into(step, h, theta, settings.restitution, found)
+            warm_start_into(contacts, polyhedra.radius, h / progress.audit[LAST_STEP], found)
+            floor = 1e-3 * h * gravity * lightest + 1e-12 * _momentum(bodies, step.v) + 1e-300
+            tried, left = solve_contacts_into(
+                bodies,
+                step.inertia,
+                step.inverse_inertia,
+                found,
+                floor,
+                settings.tolerance,
+                settings.max_iterations,
+                step.v,
+            )
+            iterations += tried
+            if parts < settings.impact_parts and bodies_meet(found, n_contacts, step.v_start, gravity * dt):
+                parts = settings.impact_parts
+                continue
+            contacts = found
+            residual = max(residual, left)
+            progress.audit[LAST_STEP] = h
+            end = (place + 1) * h
+            segment = ground_displacement_into(ground, origin, end, segment, displacement, velocity)
+            move_into(bodies, displacement, velocity, h, theta, contacts, before, step, state)
+            energy_before[:] = progress.energy
+            account_into(bodies, stoppers, watch.base, state, contacts, step, progress.audit, progress.energy)
+            for contact in range(n_contacts):
+                a, b = contacts.body_a[contact], contacts.body_b[contact]
+                if joints.row[a, b] < 0 and contacts.impulse[contact, 0] > 0.0:
+                    joints = with_joint(joints, a, b)
+            slip_into(contacts, n_contacts, step.v, h, theta, joints)
+            audit_into(contacts, n_contacts, progress)
+            part += 1
 
-        culprit = _find_diverged(state)
-        if culprit >= 0:
-            return DIVERGED, culprit, contacts, joints, record
-        record = with_room(record, joints.slip.size, _SPARE_JOINTS)
-        while clock[NEXT_RECORD] < times.size and times[clock[NEXT_RECORD]] <= (index + 1 + _ROUNDING) * dt:
-            row = clock[NEXT_RECORD]
-            t = times[row]
-            share = min(max(t / dt - index, 0.0), 1.0)
-            record_into(bodies, before, state, energy_before, progress.energy, share, row, record)
-            segment = ground_displacement_into(ground, origin, t, segment, displacement, velocity)
-            record_driven_into(bodies, displacement, velocity, row, record)
-            record_forces_into(contacts, n_contacts, joints, dt, row, record)
-            clock[NEXT_RECORD] += 1
+            culprit = _find_diverged(state)
+            if culprit >= 0:
+                clock[STEP] += 1
+                return DIVERGED, culprit, contacts, joints, record
+            record = with_room(record, joints.slip.size, _SPARE_JOINTS)
+            while (
+                clock[NEXT_RECORD] < times.size and times[clock[NEXT_RECORD]] <= (place + 1 + _ROUNDING) * h
+            ):
+                row = clock[NEXT_RECORD]
+                t = times[row]
+                share = min(max(t / h - place, 0.0), 1.0)
+                record_into(bodies, before, state, energy_before, progress.energy, share, row, record)
+                segment = ground_displacement_into(ground, origin, t, segment, displacement, velocity)
+                record_driven_into(bodies, displacement, velocity, row, record)
+                record_forces_into(contacts, n_contacts, joints, h, row, record)
+                clock[NEXT_RECORD] += 1
+        count_into(iterations, residual, settings.tolerance, parts, clock, progress.audit)
+        clock[STEP] += 1
         culprit = find_collapsed(bodies, state, watch.supported, watch.drop_limit)
         if culprit >= 0:
             return COLLAPSED, culprit, contacts, joints, record

@@ -23,6 +23,9 @@ class NscdParameters(Strict):
     max_iterations: Annotated[int, Field(ge=1)] = Field(
         500, description="Newton steps and sweeps over the contacts allowed in one step [1]; chosen"
     )
+    impact_parts: Annotated[int, Field(ge=1)] = Field(
+        1, description="parts into which a step is cut in which bodies meet [1]; 1 takes it whole"
+    )
     shrink: Annotated[float, Field(ge=0.0, lt=1.0)] = Field(
         0.0,
         description="contact areas are scaled about their centroid by one minus this [1]; Zhou et al. (2023) "

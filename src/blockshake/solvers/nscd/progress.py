@@ -7,10 +7,11 @@ import numpy as np
 from blockshake.dynamics.system import ENERGY_TERMS, State
 
 # Entries of ``clock``: steps made, next record, then sums and counts over the steps made
-STEP, NEXT_RECORD, ITERATIONS, MOST_ITERATIONS, BAD_STEPS, CAPPED_STEPS = 0, 1, 2, 3, 4, 5
+STEP, NEXT_RECORD, ITERATIONS, MOST_ITERATIONS, BAD_STEPS, CAPPED_STEPS, PARTED_STEPS = 0, 1, 2, 3, 4, 5, 6
 # Entries of ``audit``: net work taken out so far by friction and by normal impulses, largest misfit of the
-# energy terms and largest energy in play [J], largest relative residual [1], deepest penetration [m]
-FRICTION_WORK, NORMAL_WORK, MISFIT, IN_PLAY, WORST_RESIDUAL, DEEPEST = 0, 1, 2, 3, 4, 5
+# energy terms and largest energy in play [J], largest relative residual [1], deepest penetration [m], length of
+# the last step or part of a step [s]
+FRICTION_WORK, NORMAL_WORK, MISFIT, IN_PLAY, WORST_RESIDUAL, DEEPEST, LAST_STEP = 0, 1, 2, 3, 4, 5, 6
 
 
 class Progress(NamedTuple):
@@ -18,7 +19,7 @@ class Progress(NamedTuple):
 
     ``state``: at the last step. ``energy``, ``energy_start`` (7,): `ENERGY_TERMS` at the last step and
     at the first [J]. ``face`` int64 (n_bodies, n_bodies): of each pair, as in `detect_pair_into`.
-    ``clock`` int64 (6,). ``audit`` (6,).
+    ``clock`` int64 (7,). ``audit`` (7,).
     """
 
     state: State
@@ -37,6 +38,6 @@ def start_progress(state):
         energy=np.zeros(len(ENERGY_TERMS)),
         energy_start=np.zeros(len(ENERGY_TERMS)),
         face=np.full((n_bodies, n_bodies), -1, np.int64),
-        clock=np.zeros(6, np.int64),
-        audit=np.zeros(6),
+        clock=np.zeros(7, np.int64),
+        audit=np.zeros(7),
     )

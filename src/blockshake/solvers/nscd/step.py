@@ -158,6 +158,17 @@ def bounds_into(step, dt, theta, restitution, contacts):
 
 
 @kernel
+def bodies_meet(contacts, n_contacts, v_start, speed):
+    """Whether a contact of bodies presses that closed faster than ``speed`` [m/s] when the step began."""
+    for contact in range(n_contacts):
+        if contacts.impulse[contact, 0] > 0.0:
+            closing, _, _ = relative_velocity(contacts, contact, v_start)
+            if closing < -speed:
+                return True
+    return False
+
+
+@kernel
 def _centripetal(spin, arm):
     """``spin x (spin x arm)`` [m/s2]."""
     along = spin[0] * arm[0] + spin[1] * arm[1] + spin[2] * arm[2]

@@ -38,7 +38,7 @@ def _block_of_pair(contacts, a, b, stopper, start):
 
 
 @kernel
-def warm_start_into(old, radius, contacts):
+def warm_start_into(old, radius, share, contacts):
     """Give each contact the impulse of the nearest one of the same pair at the step before.
 
     Parameters
@@ -47,6 +47,8 @@ def warm_start_into(old, radius, contacts):
         Of the step before, sorted by pair like ``contacts``.
     radius : float64 array, shape (n_bodies,)
         Of the bodies [m].
+    share : float
+        Length of this step over that of the step before [1]: what impulses of resting contacts go with.
     contacts : Contacts
         ``impulse`` is overwritten, inside Coulomb's cone; ``slip`` as well.
     """
@@ -67,7 +69,7 @@ def warm_start_into(old, radius, contacts):
         contacts.slip[contact] = 0.0
         if found < 0:
             continue
-        world = old.impulse[found] @ old.basis[found]
+        world = share * (old.impulse[found] @ old.basis[found])
         p = contacts.basis[contact] @ world
         limit = coefficient_along(contacts, contact, p[1], p[2]) * max(p[0], 0.0)
         size = np.sqrt(p[1] * p[1] + p[2] * p[2])
