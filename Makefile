@@ -1,13 +1,15 @@
 # make study   sets up and runs the default study      make quick   the same DAG in minutes
 # make test    sets up and runs the tests               make paper   the paper's full size, hours
+# make peers   LMGC90 and MuJoCo, for comparisons alone: docs/peers.md
 PYTHON ?= python3
 CORES ?= $(shell nproc)
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
+PEERS := .venv-peers
 SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 
-.PHONY: study quick paper test test-slow bench setup lint lock clean
+.PHONY: study quick paper test test-slow bench peers setup lint lock clean
 
 study: setup
 	@$(BIN)/blockshake check config/study.yaml
@@ -31,9 +33,19 @@ test: setup
 test-slow: setup
 	$(BIN)/pytest -m slow
 
-# how fast LS-DEM is on this machine, for maintainers: minutes on a machine that does nothing else
+# how fast the solvers are on this machine, for maintainers: minutes on a machine that does nothing else
 bench: setup
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/bench.py
+
+# other people's programs, under their own licences, in an environment of their own; nothing else needs it
+peers: $(PEERS)/ready
+
+$(PEERS)/ready:
+	@echo "Setting up $(PEERS) ..."
+	@$(PYTHON) -m venv --clear $(PEERS)
+	@$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check numpy mujoco==4.0.0
+	@$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps compas_lmgc90==0.1.11
+	@touch $@
 
 setup: $(READY)
 

@@ -1,4 +1,4 @@
-"""The program behind ``make bench``: measures how fast LS-DEM is, prints a table, writes JSON.
+"""The program behind ``make bench``: measures how fast the solvers are, prints a table, writes JSON.
 
 Times are CPU seconds of one process, medians and quartiles of repeats; compiling is left out.
 """
@@ -12,6 +12,8 @@ from pathlib import Path
 import arithmetic
 import force_evaluation
 import machine
+import nscd_step
+import nscd_walls
 import simulated_second
 import tables
 import walls
@@ -20,14 +22,15 @@ from blockshake.files import write_json
 
 REPEATS = 5
 BLOCKS = (10, 30, 100, 300, 1000, 2000)
-PARTS = ("force_evaluation", "arithmetic", "simulated_second", "walls")
+NSCD_BLOCKS = (10, 30, 100, 300, 1000)
+PARTS = ("force_evaluation", "arithmetic", "simulated_second", "walls", "nscd_step", "nscd_walls")
 
 
 def main(arguments=None):
     """Run the parts asked for."""
     parser = argparse.ArgumentParser(prog="bench", description=__doc__.partition("\n")[0])
     parser.add_argument("--only", choices=PARTS, action="append", help="measure this part; may be repeated")
-    parser.add_argument("--blocks", type=int, nargs="+", default=BLOCKS, help="sizes of the walls")
+    parser.add_argument("--blocks", type=int, nargs="+", help="sizes of the walls")
     parser.add_argument("--quick", action="store_true", help="smallest runs, to see that the program works")
     parser.add_argument("--output", type=Path, default=Path("results/bench.json"))
     options = parser.parse_args(arguments)
@@ -56,14 +59,25 @@ def measure(parts, blocks, quick):
             else simulated_second.measure_simulated_second(repeats)
         )
     if "walls" in parts:
-        sizes, steps = ((10, 30), ("100", "1000")) if quick else (blocks, ())
-        result["walls"] = walls.summary([_wall(n_blocks, repeats, *steps) for n_blocks in sizes])
+        sizes, steps = ((10, 30), ("100", "1000")) if quick else (blocks or BLOCKS, ())
+        result["walls"] = walls.summary([_wall(walls, n_blocks, repeats, *steps) for n_blocks in sizes])
+    if "nscd_step" in parts:
+        result["nscd_step"] = (
+            nscd_step.measure_nscd_step(repeats, 0.02, ("configuration-1",))
+            if quick
+            else nscd_step.measure_nscd_step(repeats)
+        )
+    if "nscd_walls" in parts:
+        sizes, steps = ((10, 30), ("2", "20")) if quick else (blocks or NSCD_BLOCKS, ())
+        result["nscd_walls"] = nscd_walls.summary(
+            [_wall(nscd_walls, n_blocks, repeats, *steps) for n_blocks in sizes]
+        )
     return result
 
 
-def _wall(n_blocks, repeats, *steps):
+def _wall(program, n_blocks, repeats, *steps):
     """One wall in a process of its own, so that its memory is its own."""
-    command = [sys.executable, walls.__file__, str(n_blocks), str(repeats), *steps]
+    command = [sys.executable, program.__file__, str(n_blocks), str(repeats), *steps]
     return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout)
 
 

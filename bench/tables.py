@@ -78,9 +78,34 @@ def _walls(result):
     )
 
 
+def _nscd_step(result):
+    yield "Nonsmooth contact dynamics: CPU us of a step of 1 ms, 1 Hz, 1.5 m/s2"
+    yield f"  {'':<18}{'median (quartiles)':<28}{'iterations':<12}{'capped':<9}worst residual"
+    for name, cost in result.items():
+        yield f"  {name:<18}{_solved(cost, 1)}"
+
+
+def _nscd_walls(result):
+    yield "Nonsmooth contact dynamics: bonded walls, CPU us of a step of 1 ms"
+    yield f"  {'blocks':<18}{'median (quartiles)':<28}{'iterations':<12}{'capped':<9}{'worst residual':<17}MiB"
+    for wall in result["sizes"]:
+        yield f"  {wall['blocks']:<18}{_solved(wall, 0)}{'':<12}{wall['peak_memory_mib']:.0f}"
+    yield f"  a step grows as blocks^{result['exponent']:.2f}"
+
+
+def _solved(cost, digits):
+    """Time of a step and how it was solved."""
+    return (
+        f"{_range(cost['us_per_step'], digits):<28}{cost['iterations']:<12.1f}"
+        f"{100 * cost['capped']:>4.0f} %   {cost['max_residual']:.0e}"
+    )
+
+
 _PARTS = {
     "force_evaluation": _force_evaluation,
     "arithmetic": _arithmetic,
     "simulated_second": _simulated_second,
     "walls": _walls,
+    "nscd_step": _nscd_step,
+    "nscd_walls": _nscd_walls,
 }

@@ -28,7 +28,8 @@ def result(tmp_path_factory):
 
 def test_the_smallest_run_reports_every_part(result):
     assert set(result) == {
-        "machine", "versions", "force_evaluation", "arithmetic", "simulated_second", "walls", "table"
+        "machine", "versions", "force_evaluation", "arithmetic", "simulated_second", "walls", "nscd_step",
+        "nscd_walls", "table",
     }  # fmt: skip
     assert set(result["machine"]) == {"processor", "instruction_set", "cores", "system", "clock_ghz"}
     assert {"python", "numba", "llvmlite", "numpy", "blockshake", "kernel_source_digest"} <= set(
@@ -37,7 +38,8 @@ def test_the_smallest_run_reports_every_part(result):
     assert set(result["walls"]) == {
         "sizes", "spread_by_block", "spread_by_joint", "exponent", "memory_kib_per_block"
     }  # fmt: skip
-    for heading in ("node evaluation", "core's peak", "simulated second", "Bonded walls"):
+    assert set(result["nscd_walls"]) == {"sizes", "exponent"}
+    for heading in ("node evaluation", "core's peak", "simulated second", "Bonded walls", "Nonsmooth"):
         assert heading in result["table"]
 
 
@@ -127,3 +129,56 @@ def test_the_comparison_with_yade_skips_where_there_is_none(tmp_path):
     assert (run.returncode, run.stderr) == (0, "")
     assert run.stdout == "skipped: there is no yade on this machine\n"
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("peer", ["lmgc90", "mujoco"])
+def test_a_comparison_with_a_peer_skips_where_there_is_none(tmp_path, peer):
+    # the program's own folder, copied: beside it there is no environment of the peers
+    for program in BENCH.glob("*.py"):
+        (tmp_path / "bench").mkdir(exist_ok=True)
+        (tmp_path / "bench" / program.name).write_text(program.read_text())
+    output = tmp_path / "result.json"
+    command = [sys.executable, tmp_path / "bench" / f"compare_{peer}.py", "--output", output]
+    run = subprocess.run(command, capture_output=True, text=True)
+    assert (run.returncode, run.stderr) == (0, "")
+    assert run.stdout.startswith("skipped: ")
+    assert "make peers" in run.stdout
+    assert not output.exists()
+
+
+def test_the_law_s_residual_of_a_peer_is_what_our_steps_end_by():
+    from residuals import law_residual
+
+    from blockshake.geometry.structure import build_structure
+
+    mapping = {
+        "name": "cube",
+        "materials": {"stone": {"density": 1000.0, "youngs_modulus": 3.45e10, "poisson_ratio": 0.2}},
+        "shapes": {"slab": {"box": [3.0, 3.0, 0.2]}, "cube": {"box": [1.0, 1.0, 1.0]}},
+        "bodies": [
+            {"name": "slab", "shape": "slab", "material": "stone", "position": [0, 0, -0.1], "driven": True},
+            {"name": "cube", "shape": "cube", "material": "stone", "position": [0, 0, 0.5]},
+        ],
+        "friction": [{"pair": ["stone", "stone"], "coefficient": 0.5}],
+    }
+    structure = build_structure(mapping, "cube", ".")
+    corners = np.array([[x, y, 0.0] for x in (-0.5, 0.5) for y in (-0.5, 0.5)])
+    # normal up from the slab to the cube, force on the cube, which is named first
+    answer = {
+        "time": np.array([1e-3]),
+        "position": structure.position[None],
+        "rotation": np.tile(np.eye(3), (1, 2, 1, 1)),
+        "1_bodies": np.tile([1, 0], (4, 1)),
+        "1_point": corners,
+        "1_basis": np.tile([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], (4, 1, 1)),
+        "1_force": np.tile([0.25 * 1000.0 * 9.81, 0.0, 0.0], (4, 1)),
+        "1_velocity": np.zeros((4, 3)),
+        "1_gap": np.zeros(4),
+    }
+    assert law_residual(structure, answer, 1, 1e-3) == (0.0, 0.0)
+    # contacts that open under load are off by rho u each, rho the effective mass: of a cube's corner, with
+    # J = m / 6 and r = (1/2, 1/2, 1/2), 1 / rho is 4 / m along the normal and at most 5.5 / m across it
+    answer["1_velocity"][:, 0] = 1e-3
+    residual, deepest = law_residual(structure, answer, 1, 1e-3)
+    assert residual == pytest.approx((1000.0 / 5.5 * 1e-3) / (0.25 * 1000.0 * 9.81 * 1e-3), rel=1e-9)
+    assert deepest == 0.0
