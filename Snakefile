@@ -22,6 +22,11 @@ include: "workflow/rules/campaign.smk"
 include: "workflow/rules/report.smk"
 
 
+if config.get("convergence"):
+
+    include: "workflow/rules/convergence.smk"
+
+
 rule all:
     default_target: True
     input:

@@ -17,8 +17,10 @@ WATCHED = {
     "make_envelope": sources.ENVELOPE,
     "compare_with_measurement": sources.COMPARISON,
     "measure_sensitivity": sources.SENSITIVITY,
+    "compare_definitions": sources.DEFINITIONS,
     "make_report": sources.REPORT,
     "climb_ladder": sources.LADDER,
+    "study_convergence": sources.CONVERGENCE,
     "make_virtual_campaign": sources.VIRTUAL_CAMPAIGN,
 }
 # What names things or writes logs and computes nothing; and the dispatcher that imports every solver, where a run's

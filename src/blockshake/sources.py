@@ -29,6 +29,7 @@ STIFFNESS = (
     *_BOTH_SOLVERS,
     _SOLVERS["ls-dem"],
     "study/stiffness.py",
+    "study/wave_step.py",
     "study/sample_parameters.py",
 )
 ENVELOPE = _STATISTICS
@@ -49,7 +50,15 @@ SENSITIVITY = (
     "study/sample_parameters.py",
     *DESIGN,
 )
-REPORT = (*_STATISTICS, *DESIGN, "geometry", "dynamics", "measurement", "report")
+REPORT = (
+    *_STATISTICS,
+    *DESIGN,
+    "geometry",
+    "dynamics",
+    "measurement",
+    "study/convergence_table.py",
+    "report",
+)
 
 
 def kernel_sources(model):
@@ -74,7 +83,17 @@ LADDER = (
     "study/ladder.py",
     "study/config.py",
     "study/friction_settings.py",
+    "study/convergence_settings.py",
 )
+CONVERGENCE = (
+    *run_sources("ls-dem"),
+    "solvers/nscd",
+    "study/convergence.py",
+    "study/convergence_runs.py",
+    "study/convergence_settings.py",
+    "study/convergence_table.py",
+)
+DEFINITIONS = (*run_sources("ls-dem"), *STIFFNESS, "solvers/nscd", "study/stiffness_definitions.py")
 VIRTUAL_CAMPAIGN = (*run_sources("ls-dem"), *STIFFNESS, "solvers/nscd", "study/virtual_campaign.py")
 
 

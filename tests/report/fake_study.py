@@ -6,10 +6,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import xarray as xr
+from fake_inputs import definitions, motion, waves
 
 from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.virtual_test import virtual_test
+from blockshake.study.convergence_table import COLUMNS, EXACT, OBSERVABLES, write_convergence
 from blockshake.study.coverage import coverage
 from blockshake.study.distributions import TABLE_2
 from blockshake.study.ensemble import gather_ensemble, sample_figures
@@ -19,7 +21,6 @@ from blockshake.study.sensitivity import sensitivity
 
 MODELS = {"ls-dem": {"time_step": 5e-5}, "nscd-rigid": {"time_step": 1e-3}}
 COLLAPSE_REASON = "wall-b-4 tipped over or dropped at 1.000 s"
-PEAK_ACCELERATION = 1.234  # m/s2
 CPU_TIME = 43.21  # s, of every job
 
 
@@ -54,12 +55,15 @@ class FakeStudy:
             },
             "ladder": {"motions": ["alkion", "basso-tirreno"]},
             "friction_calibration": {"cases": ["configuration-1"]},
+            "convergence": {"structure": "configuration-1"},
         }
         write_json(self.results / "friction" / "configuration-1.json", friction())
         for place, name in enumerate(("basso-tirreno", "alkion")):
             write_dataset(self.results / "motions" / f"{name}.nc", motion(name, place))
         self._write_design()
         write_dataset(self.results / "waves.nc", waves())
+        write_convergence(self.results / "convergence.csv", convergence_table())
+        write_dataset(self.results / "stiffness-definitions.nc", definitions())
         for case in self.study["cases"]:
             self._write_case(case)
 
@@ -184,52 +188,23 @@ def end(run, status, reason, time):
     run.attrs |= {"status": status, "reason": reason, "end_time": float(time)}
 
 
-def motion(name, place):
-    """A motion's Dataset as `describe_motion` makes it."""
-    time = np.arange(0.0, 4.0, 0.02)
-    sine = np.sin((place + 4.0) * time)
-    periods = np.geomspace(0.04, 4.0, 30)
-    return xr.Dataset(
-        {
-            "acceleration": ("time", PEAK_ACCELERATION * sine),
-            "velocity": ("time", 0.1 * sine),
-            "displacement": ("time", 0.02 * sine),
-            "pseudo_acceleration": ("period", 3.0 / (1.0 + periods)),
-            "target": ("ordinate", [2.5, 1.5]),
-            "target_period": ("ordinate", [0.2, 1.0]),
-            "published": ("ordinate", [1, 0]),
-        },
-        coords={"time": time, "period": periods},
-        attrs={
-            "name": name,
-            "synthetic": 1,
-            "source": "made up",
-            "format": "synthetic",
-            "peak_acceleration": PEAK_ACCELERATION,
-            "peak_velocity": 0.1,
-            "peak_displacement": 0.02,
-            "arias_intensity": 0.3,
-            "significant_duration": 2.5,
-            "significant_end": 3.0,
-            "duration": 4.0,
-        },
-    )
-
-
-def waves():
-    """Wave tests as `wave_tests` makes them; the second is the longer one."""
-    time = np.arange(0.0, 8e-3, 1e-4)
-    arrival = np.array([[4e-4, 9e-4], [7e-4, 1.4e-3]])
-    displacement = 1e-3 * np.maximum(time[None, :, None] - arrival[:, None, :], 0.0)
-    displacement[0, time > 6e-3] = np.nan
-    return xr.Dataset(
-        {
-            "displacement": (("direction", "time", "block"), displacement),
-            "arrival": (("direction", "block"), arrival),
-            "stiffness": ("direction", [1.8e10, 0.9e10]),
-            "wave_speed": ("direction", [3791.3, 2447.1]),
-            "target_wave_speed": ("direction", [3791.4, 2447.4]),
-        },
-        coords={"direction": ["normal", "shear"], "time": time, "block": ["block-1", "block-2"]},
-        attrs={"definition": "half of the step", "step_velocity": 1e-3},
-    )
+def convergence_table():
+    """A convergence study whose differences grow with the square of the setting, the sink's excepted."""
+    rows = []
+    settings = {
+        "time_step": (1e-5, 1e-4),
+        "node_spacing": (0.05, 0.2),
+        "perimeter_inset": (0.005, 0.01),
+        "grid_spacing": (EXACT, 0.02),
+    }
+    for parameter, values in settings.items():
+        for setting in values:
+            for name, unit in OBSERVABLES.items():
+                difference = (
+                    0.0
+                    if name == "sink"
+                    else 0.1 * ((setting / values[-1]) ** 2 - (values[0] / values[-1]) ** 2)
+                )
+                usual = setting == {"node_spacing": 0.2}.get(parameter, values[0])
+                rows.append((parameter, setting, usual, name, unit, 0.25 + difference, difference, 1e-5))
+    return pd.DataFrame(rows, columns=COLUMNS)

@@ -4,7 +4,8 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 import xarray as xr
-from fake_study import COLLAPSE_REASON, CPU_TIME, MODELS, PEAK_ACCELERATION, FakeStudy
+from fake_inputs import PEAK_ACCELERATION
+from fake_study import COLLAPSE_REASON, CPU_TIME, MODELS, FakeStudy
 
 from blockshake.errors import InputError
 from blockshake.report.content import load_content
@@ -12,6 +13,7 @@ from blockshake.report.html import write_html
 from blockshake.report.pdf import write_pdf
 from blockshake.report.report import compose, make_report
 from blockshake.report.result_sections import checks
+from blockshake.study.convergence_table import load_convergence
 
 VOID = {"meta", "link", "br", "img", "hr", "input"}
 CLAIMS = ("validated", "good agreement", "excellent", "accurate", "remarkable")
@@ -99,7 +101,7 @@ def test_style_and_drawings_refer_to_nothing_outside(report, page):
     [
         "Summary", "Structures", "Ground motions", "Samples", "Contact stiffness", "Displacement of the blocks",
         "What makes the envelopes thick", "Completion, energy and convergence", "Timings", "Origin",
-        "What is not in this study",
+        "What is not in this study", "Annex: numerical parameters of LS-DEM",
     ],
 )  # fmt: skip
 def test_sections_and_contents(text, title):
@@ -201,6 +203,31 @@ def test_complete_study_says_that_all_completed(fake):
     study = {**fake.study, "cases": fake.study["cases"][:1]}
     section = checks(load_content(study, fake.results, fake.benchmarks))
     assert section.blocks[0].text == "Every sample of every case and model completed."
+
+
+def test_annex_has_the_numbers_of_the_convergence_table_and_marks_defaults(fake, text):
+    table = load_convergence(fake.results / "convergence.csv")
+    value = table.set_index(["parameter", "setting", "observable"])["value"][
+        "node_spacing", 0.2, "peak_drift"
+    ]
+    row = text[text.index("node spacing 200 mm *") :]
+    assert f"{1e3 * value:.2f}" in row[:120]
+    assert "grid spacing exact *" in text
+    assert "node spacing 50 mm 250000.00" in text  # sink, in micrometres
+
+
+def test_study_without_convergence_has_no_annex_and_says_so(fake):
+    study = {name: value for name, value in fake.study.items() if name != "convergence"}
+    document = compose(load_content(study, fake.results, fake.benchmarks))
+    assert "convergence" not in [section.key for section in document.sections]
+    said = [
+        item
+        for section in document.sections
+        for block in section.blocks
+        if block.kind == "items"
+        for item in block.items
+    ]
+    assert sum("convergence of these cases" in item and "annex" not in item for item in said) == 1
 
 
 def test_missing_results_are_named(tmp_path):

@@ -69,6 +69,12 @@ def test_fewer_samples_of_one_model(mapping):
             "study.yaml: cases.0.measured.test: expected one of virtual",
         ),
         (("cases", 0, "measured", "campaign"), "nowhere", "nowhere/campaign.yaml: expected a readable file"),
+        (
+            ("convergence", "time_steps"),
+            [1e-5],
+            "study.yaml: convergence.time_steps: tuple should have at least 2",
+        ),
+        (("convergence", "structure"), "no-such", "no-such: expected a structure file"),
         (("models", "nscd-elastic"), {"time_step": 1e-3}, "study.yaml: models.nscd-elastic"),
         (
             ("ensemble", "distributions", "friction.concrete.concrete", "cov"),

@@ -9,12 +9,12 @@ from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.study.stiffness import (
-    STEP_VELOCITY,
     calibrate_stiffness,
     measure_wave_speed,
     target_wave_speeds,
     wave_tests,
 )
+from blockshake.study.wave_step import STEP_VELOCITY
 
 AREA = 0.76 * 2.36  # m2, flats of two chamfered faces
 

@@ -36,6 +36,7 @@ class Checkout:
         config = load_yaml(ROOT / "config" / "quick.yaml")
         config["cases"] = config["cases"][:1]
         config["cases"][0]["duration"] = 0.05
+        config["convergence"]["duration"] = 0.05
         config["name"] = "small"
         self.write_config(config | changes)
 
@@ -81,6 +82,17 @@ def finished(tmp_path_factory):
 def test_study_ends_with_its_reports(finished):
     assert (finished.folder / "reports" / "small.html").stat().st_size > 0
     assert (finished.folder / "reports" / "small.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_convergence_study_leaves_its_table_and_says_what_each_run_cost(finished):
+    assert (
+        (finished.folder / "results" / "small" / "convergence.csv")
+        .read_text()
+        .startswith("parameter,setting")
+    )
+    said = (finished.folder / "logs" / "small" / "study_convergence.log").read_text()
+    assert said.count("CPU s") == 9
+    assert (finished.folder / "benchmarks" / "small" / "study_convergence.jsonl").exists()
 
 
 def test_second_run_does_nothing(finished):
@@ -184,6 +196,11 @@ def test_bad_configuration_ends_in_one_line_and_exit_2(tmp_path, change, line):
     assert line in said[0]
     assert "Traceback" not in answer.stderr
     assert not (tmp_path / "results").exists()
+
+
+def test_study_without_convergence_plans_none(tmp_path):
+    assert "study_convergence" in Checkout(tmp_path / "with").jobs()
+    assert "study_convergence" not in Checkout(tmp_path / "without", convergence=None).jobs()
 
 
 @pytest.mark.parametrize("study", ["study", "quick", "paper"])

@@ -16,6 +16,10 @@ rule make_report:
         design_summary=f"results/{STUDY}/design.json",
         stiffness=f"results/{STUDY}/stiffness.csv",
         waves=f"results/{STUDY}/waves.nc",
+        convergence=(
+            f"results/{STUDY}/convergence.csv" if config.get("convergence") else []
+        ),
+        definitions=f"results/{STUDY}/stiffness-definitions.nc",
         envelopes=expand(
             "results/{study}/envelopes/{model}/{case}.nc",
             study=STUDY,

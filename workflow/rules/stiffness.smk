@@ -18,3 +18,26 @@ rule calibrate_stiffness:
         source=source_digest(*sources.STIFFNESS),
     script:
         "../scripts/calibrate_stiffness.py"
+
+
+rule compare_definitions:
+    """What the definition of a wave's arrival and the damping do to the stiffness, and that to a stack's peak."""
+    input:
+        tower="config/structures/configuration-2.yaml",
+        structure=definition("structures", config["cases"][0]["structure"]),
+        motion=definition("motions", config["cases"][0]["motion"]),
+        kernels=kernels("ls-dem"),
+    output:
+        "results/{study}/stiffness-definitions.nc",
+    log:
+        "logs/{study}/compare_definitions.log",
+    benchmark:
+        "benchmarks/{study}/compare_definitions.jsonl"
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        case=lookup(dpath="cases/0", within=config),
+        time_step=lookup(dpath="models/ls-dem/time_step", within=config, default=5e-5),
+        source=source_digest(*sources.DEFINITIONS),
+    script:
+        "../scripts/compare_definitions.py"

@@ -15,6 +15,7 @@ from blockshake.files import content_digest, file_digest, read_text, shipped
 from blockshake.geometry.structure import Structure, load_structure
 from blockshake.measurement.campaign import load_campaign, load_test
 from blockshake.report.timing import read_timings
+from blockshake.study.convergence_table import load_convergence
 from blockshake.study.distributions import load_distributions
 from blockshake.study.ensemble import RESIDUAL_WINDOW, in_frames
 from blockshake.study.sampling import load_design
@@ -88,9 +89,11 @@ class Content:
         One row a sample.
     design_summary : dict
     distributions : dict of str to Lognormal
-    waves : xarray.Dataset
+    waves, definitions : xarray.Dataset
     friction : dict of str to dict
         Friction calibrations by case; empty where the study asks for none.
+    convergence : pandas.DataFrame or None
+        From `study_convergence`, where the study has one.
     timings : tuple of Timing
     digests : dict of str to str
         Of input files and of tables that all samples come from, by path.
@@ -106,7 +109,9 @@ class Content:
     design_summary: dict
     distributions: dict
     waves: xr.Dataset
+    definitions: xr.Dataset
     friction: dict
+    convergence: pd.DataFrame | None
     timings: tuple
     digests: dict
     versions: dict
@@ -149,10 +154,12 @@ def load_content(study, results, benchmarks):
         design_summary=json.loads(read_text(results / "design.json")),
         distributions=load_distributions(study["ensemble"].get("distributions"), study["name"]),
         waves=_dataset(results / "waves.nc"),
+        definitions=_dataset(results / "stiffness-definitions.nc"),
         friction={
             name: json.loads(read_text(results / "friction" / f"{name}.json"))
             for name in (study.get("friction_calibration") or {}).get("cases", ())
         },
+        convergence=load_convergence(results / "convergence.csv") if study.get("convergence") else None,
         timings=read_timings(
             benchmarks,
             {(model, case.name): one.samples for case in loaded.values() for model, one in case.responses.items()},

@@ -2,6 +2,7 @@
 
 from blockshake.report.blocks import Document, numbered
 from blockshake.report.content import load_content
+from blockshake.report.convergence_section import convergence
 from blockshake.report.friction_section import friction
 from blockshake.report.html import write_html
 from blockshake.report.pdf import write_pdf
@@ -22,6 +23,7 @@ _SECTIONS = (
     timings,
     limits,
     origin,
+    convergence,
 )
 
 

@@ -227,7 +227,8 @@ def limits(content):
         "known.",
         "Late parts of records of strong rocking are sensitive to the smallest differences: single histories are no "
         "evidence there, statistics over samples are steadier.",
-        "The convergence of results with time step and discretisation is not shown in this report.",
+        "The convergence of these cases' own results with time step and discretisation is not shown in this report"
+        + ("; the annex has that of two short runs by LS-DEM." if content.convergence is not None else "."),
     ]
     if any(case.synthetic for case in cases):
         items.insert(

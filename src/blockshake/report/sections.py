@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from blockshake.report.blocks import Figure, Heading, Items, Section, Text
+from blockshake.report.definition_tables import definition_blocks
 from blockshake.report.drawing import PAGE_WIDTH, svg_of
 from blockshake.report.input_tables import (
     bodies_table,
@@ -200,6 +201,7 @@ def stiffness(content):
             svg_of(plot_stiffness, content.stiffness),
             PAGE_WIDTH,
         ),
+        *definition_blocks(content.definitions),
     )
     return Section("Contact stiffness", "stiffness", blocks)
 

@@ -10,6 +10,7 @@ from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaign import load_campaign
+from blockshake.study.convergence_settings import Convergence
 from blockshake.study.correlation_target import load_correlation
 from blockshake.study.distributions import TABLE_2, Lognormal, load_distributions
 from blockshake.study.friction_settings import FrictionSearch
@@ -93,6 +94,7 @@ class StudyConfig(Strict):
     ensemble: Ensemble
     ladder: Ladder
     friction_calibration: FrictionSearch | None = None
+    convergence: Convergence | None = Field(None, description="none: no study of the numerical parameters")
 
     def case(self, name):
         """The case of this name."""
@@ -146,6 +148,8 @@ def check_config(mapping, where):
         load_correlation(config.ensemble.correlation)
     for motion in config.ladder.motions:
         load_motion(motion)
+    if config.convergence is not None:
+        load_structure(config.convergence.structure)
     return config
 
 

@@ -1,0 +1,88 @@
+"""Made-up inputs of a study: motions, wave tests, stiffness by definition."""
+
+import numpy as np
+import xarray as xr
+
+PEAK_ACCELERATION = 1.234  # m/s2
+
+
+def motion(name, place):
+    """A motion's Dataset as `describe_motion` makes it."""
+    time = np.arange(0.0, 4.0, 0.02)
+    sine = np.sin((place + 4.0) * time)
+    periods = np.geomspace(0.04, 4.0, 30)
+    return xr.Dataset(
+        {
+            "acceleration": ("time", PEAK_ACCELERATION * sine),
+            "velocity": ("time", 0.1 * sine),
+            "displacement": ("time", 0.02 * sine),
+            "pseudo_acceleration": ("period", 3.0 / (1.0 + periods)),
+            "target": ("ordinate", [2.5, 1.5]),
+            "target_period": ("ordinate", [0.2, 1.0]),
+            "published": ("ordinate", [1, 0]),
+        },
+        coords={"time": time, "period": periods},
+        attrs={
+            "name": name,
+            "synthetic": 1,
+            "source": "made up",
+            "format": "synthetic",
+            "peak_acceleration": PEAK_ACCELERATION,
+            "peak_velocity": 0.1,
+            "peak_displacement": 0.02,
+            "arias_intensity": 0.3,
+            "significant_duration": 2.5,
+            "significant_end": 3.0,
+            "duration": 4.0,
+        },
+    )
+
+
+def waves():
+    """Wave tests as `wave_tests` makes them; the second is the longer one."""
+    time = np.arange(0.0, 8e-3, 1e-4)
+    arrival = np.array([[4e-4, 9e-4], [7e-4, 1.4e-3]])
+    displacement = 1e-3 * np.maximum(time[None, :, None] - arrival[:, None, :], 0.0)
+    displacement[0, time > 6e-3] = np.nan
+    return xr.Dataset(
+        {
+            "displacement": (("direction", "time", "block"), displacement),
+            "arrival": (("direction", "block"), arrival),
+            "stiffness": ("direction", [1.8e10, 0.9e10]),
+            "wave_speed": ("direction", [3791.3, 2447.1]),
+            "target_wave_speed": ("direction", [3791.4, 2447.4]),
+        },
+        coords={"direction": ["normal", "shear"], "time": time, "block": ["block-1", "block-2"]},
+        attrs={"definition": "half of the step", "step_velocity": 1e-3},
+    )
+
+
+def definitions():
+    """Stiffness by definition as `compare_definitions` makes it; one definition names no instant."""
+    pair, triple = ("restitution", "definition"), ("direction", "restitution", "definition")
+    stiffness = 1.8e10 * np.array([[[0.5, np.nan], [1.0, 3.0]], [[0.5, 1.0], [0.5, 1.0]]])
+    return xr.Dataset(
+        {
+            "stiffness": (triple, stiffness),
+            "wave_speed": (triple, 3.8e3 / np.sqrt(stiffness / 1.8e10)),
+            "top_peak": (pair, [[0.2013, np.nan], [0.1507, 0.3021]]),
+            "top_peak_same_damping": (pair, [[0.1808, np.nan], [0.1507, 0.3021]]),
+            "target_wave_speed": ("direction", [3791.4, 2447.4]),
+            "free_speed": ("factor", [278.1, 276.1]),
+            "blocked_speed": ("factor", [2447.4, 7739.4]),
+        },
+        coords={
+            "direction": ["normal", "shear"],
+            "restitution": [0.1, 0.5],
+            "definition": ["50 %", "first peak"],
+            "factor": [1.0, 10.0],
+        },
+        attrs={
+            "structure": "configuration-1",
+            "motion": "basso-tirreno",
+            "motion_scale": 2.0,
+            "duration": 6.0,
+            "definition": "50 %",
+            "study_restitution": 0.5,
+        },
+    )
