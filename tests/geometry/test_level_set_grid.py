@@ -21,7 +21,7 @@ def _evaluate_into(points, table, shape, result):
     first, o, n = table.first[shape], table.origin[shape], table.counts[shape]
     for i in range(points.shape[0]):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
-        result[i, 0], result[i, 1], result[i, 2], result[i, 3] = grid_distance(
+        result[i, 0], result[i, 1], result[i, 2], result[i, 3], _ = grid_distance(
             x, y, z, table.values, first, o[0], o[1], o[2], n[0], n[1], n[2], 1.0 / table.spacing[shape]
         )
 

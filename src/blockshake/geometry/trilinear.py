@@ -57,7 +57,7 @@ def corner_values(values, at, n_y, n_z):
 
 @inline_kernel
 def interpolate(c000, c001, c010, c011, c100, c101, c110, c111, fx, fy, fz, beyond, inverse_spacing):
-    """Level-set value and unit gradient from a cell's corners; arguments as `locate` gives them."""
+    """Level-set value, unit gradient and its length from a cell's corners; arguments as `locate` gives them."""
     d00, d01, d10, d11 = c001 - c000, c011 - c010, c101 - c100, c111 - c110
     a00, a01, a10, a11 = c000 + fz * d00, c010 + fz * d01, c100 + fz * d10, c110 + fz * d11
     e0, e1 = a01 - a00, a11 - a10
@@ -72,12 +72,13 @@ def interpolate(c000, c001, c010, c011, c100, c101, c110, c111, fx, fy, fz, beyo
     spacing = 1.0 / inverse_spacing
     away, bound = beyond * spacing, phi - spacing
     bound = away if away > bound else bound
-    return bound if beyond > 0.0 else phi, gx * scale, gy * scale, gz * scale
+    slope = length * inverse_spacing
+    return bound if beyond > 0.0 else phi, gx * scale, gy * scale, gz * scale, slope
 
 
 @inline_kernel
 def grid_distance(x, y, z, values, first, ox, oy, oz, n_x, n_y, n_z, inverse_spacing):
-    """Level-set value and unit gradient of a sampled shape at a point.
+    """Level-set value, unit gradient and its length of a sampled shape at a point.
 
     Parameters
     ----------
@@ -102,6 +103,8 @@ def grid_distance(x, y, z, values, first, ox, oy, oz, n_x, n_y, n_z, inverse_spa
     nx, ny, nz : float
         The gradient of the interpolation, made a unit vector; zero where it has none. Beyond
         the grid, that of the nearest point of the grid.
+    slope : float
+        Length of the gradient [1]: 1 over a flat, less where a cell holds an edge.
 
     Notes
     -----

@@ -45,9 +45,8 @@ def _words(definitions):
         f"definitions at the study's damping, and {_range(among_levels)} times over levels of velocity and dampings. "
         f"The largest displacement of the highest block of {definitions.attrs['structure']} in the first "
         f"{given(definitions.attrs['duration'])} s then lies between {millimetres(np.nanmin(peaks))} and "
-        f"{millimetres(np.nanmax(peaks))} mm in runs that differ in nothing else: in strong rocking that is the "
-        f"scatter of "
-        "single runs, not a trend with stiffness."
+        f"{millimetres(np.nanmax(peaks))} mm in nominal runs that differ in stiffness and damping only, without a "
+        "trend: in strong rocking any small change moves a single run so far."
     )
 
 

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 PAGE_WIDTH = 0.17  # m, of the text on A4
 # Okabe and Ito's palette with Tol's red in place of vermilion, told apart by colour-blind readers
 BLACK, ORANGE, BLUE, GREEN, RED = "#000000", "#e69f00", "#0072b2", "#009e73", "#cc3311"
+SKY, PURPLE = "#56b4e9", "#cc79a7"
 LIGHT_GREY, GREY, DARK_GREY = "#e2e2e2", "#b8b8b8", "#555555"
 _INCH = 0.0254  # m
 _STYLE = {

@@ -2,17 +2,35 @@
 
 import numpy as np
 
-from blockshake.report.drawing import BLUE, DARK_GREY, GREEN, GREY, LIGHT_GREY, ORANGE, RED, new_figure
+from blockshake.report.drawing import (
+    BLACK,
+    BLUE,
+    DARK_GREY,
+    GREEN,
+    GREY,
+    LIGHT_GREY,
+    ORANGE,
+    PURPLE,
+    RED,
+    SKY,
+    new_figure,
+)
 from blockshake.report.wording import model_label, number, parameter_label
 
 SHOWN = {
-    "first_order": ("history", "share of the envelope's thickness [1]", (-0.25, 1.02)),
-    "rank_correlation": ("peak", "partial rank correlation with the peak [1]", (-1.02, 1.02)),
+    "first_order": ("history", "share of the envelope's thickness [1]", (-0.25, 1.05), (0.0, 0.5, 1.0)),
+    "rank_correlation": (
+        "peak",
+        "partial rank correlation with the peak [1]",
+        (-1.05, 1.05),
+        (-0.5, 0.5),
+    ),
 }
 _COLORS = {"first_order": BLUE, "rank_correlation": RED}
-_LINES = (BLUE, ORANGE, GREEN, RED)
+# by place of the variable, so that one has its colour in every case
+_LINES = (BLUE, ORANGE, SKY, GREEN, RED, GREY, PURPLE, BLACK, DARK_GREY)
 _FINEST = 1e-4  # mm; histories are stored to this
-_ROW = 0.0034  # m of paper, of one variable
+_ROW = 0.003  # m of paper, of one variable
 
 
 def plot_sensitivity(sensitivities, markers, noise):
@@ -43,15 +61,16 @@ def plot_sensitivity(sensitivities, markers, noise):
     ]
     if not rows:
         return None
-    figure = new_figure(len(rows) * (0.011 + _ROW * len(variables)) + 0.006)
+    figure = new_figure(len(rows) * (0.010 + _ROW * len(variables)) + 0.006)
     panels = figure.subplots(len(rows), len(markers), sharey=True, squeeze=False)
     for place, (measure, model) in enumerate(rows):
         line = panels[place]
         result = sensitivities[model]
-        quantity, label, limits = SHOWN[measure]
+        quantity, label, limits, ticks = SHOWN[measure]
         for axes, (body, marker) in zip(line, markers.items(), strict=True):
             _draw_panel(axes, result.sel(quantity=quantity, marker=marker), measure, noise)
             axes.set_xlim(limits)
+            axes.set_xticks(ticks)
             if place == 0:
                 axes.set_title(body)
         line[len(line) // 2].set_xlabel(label)
@@ -73,54 +92,44 @@ def has_something(result, markers, measure, noise):
 def plot_sensitivity_over_time(sensitivities, marker, noise):
     """Spread of the top block second by second, and what each variable explains of it.
 
-    Parameters
-    ----------
-    sensitivities : dict of str to xarray.Dataset
-        By model.
-    marker : str
-    noise : float
-        [m]; seconds in which samples differ by less have no shares.
+        Parameters
+        ----------
+        sensitivities : dict of str to xarray.Dataset
+            By model.
+        marker : str
+        noise : float
+            [m]; seconds in which samples differ by less have no shares.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Above: standard deviation over the samples [mm], dashed the marker's noise. Below: first-order shares of
-        the variables
-        of use, the four largest in colour; grey: what chance reaches.
-    """
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Above: standard deviation over the samples [mm], dashed the marker's noise. Below: first-order shares of
+            the variables
+    of use;"""
     figure = new_figure(0.085)
     panels = figure.subplots(2, len(sensitivities), sharex=True, sharey="row", squeeze=False)
-    shares = [result["window_first_order"].sel(marker=marker) for result in sensitivities.values()]
-    thick = [result["window_spread"].sel(marker=marker) >= noise for result in sensitivities.values()]
-    largest = np.max(
-        [share.where(there).max("window").fillna(-1.0) for share, there in zip(shares, thick, strict=True)],
-        axis=0,
-    )
     used = ~np.all([result["control"] for result in sensitivities.values()], axis=0)
-    leading = np.argsort(np.where(used, -largest, np.inf), kind="stable")[: min(len(_LINES), int(used.sum()))]
     for (above, below), (model, result) in zip(panels.T, sensitivities.items(), strict=True):
         spread, share = (
             result["window_spread"].sel(marker=marker),
             result["window_first_order"].sel(marker=marker),
         )
-        above.semilogy(result["window"], 1e3 * spread, color="black", marker=".", markersize=3)
+        above.semilogy(result["window"], 1e3 * spread, color=BLACK, marker=".", markersize=3)
         above.axhline(1e3 * noise, color=DARK_GREY, linestyle=(0, (4, 2)), linewidth=0.7)
         above.set_title(f"{model_label(model)}, n = {int(result['used'].sel(quantity='history'))}")
         level = float(result["window_first_order_chance"])
         below.axhspan(-level, level, color=LIGHT_GREY, linewidth=0.0)
         shown = share.where(spread >= noise)
         for place in np.flatnonzero(used):
-            order = list(leading).index(place) if place in leading else None
-            style = (
-                {"color": GREY, "linewidth": 0.5} if order is None else {"color": _LINES[order], "zorder": 3}
-            )
-            label = (
-                "other variables"
-                if order is None
-                else parameter_label(str(result["parameter"].values[place]))
-            )
+            name = parameter_label(str(result["parameter"].values[place]))
+            color = _LINES[place % len(_LINES)]
             below.plot(
-                result["window"], shown.isel(parameter=place), marker=".", markersize=3, label=label, **style
+                result["window"],
+                shown.isel(parameter=place),
+                color=color,
+                marker=".",
+                markersize=3,
+                label=name,
             )
         below.set(ylim=(-0.3, 1.02), xlabel="time [s]")
         if not (spread >= noise).any():

@@ -73,7 +73,7 @@ def test_a_cut_run_goes_on_bit_by_bit(whole, motion, tmp_path, monkeypatch):
     original = driver.load_checkpoint
     monkeypatch.setattr(driver, "load_checkpoint", lambda *a: steps.append(original(*a)) or steps[-1])
     resumed = _run(motion, checkpoint=path)
-    assert steps[0][0].clock[0] >= 0  # it did read the checkpoint
+    assert steps[0][0].clock[0] > 0  # it did read the checkpoint
     _assert_same(whole, resumed)
     assert not path.exists()
     assert np.abs(whole.orientation[:, 1:, 2]).max() > 1e-3  # it rocked, so that springs and lists mattered

@@ -27,12 +27,12 @@ PARAMETERS = LsDemParameters()
 )
 def test_equation_2_node_by_node(phi, closing, force):
     """Zhou et al. (2023), Eq. (2), with the normal out of the other body and no tension."""
-    assert normal_force(phi, closing, 2.0e6, 5.0e3, 0.0) == pytest.approx(force, rel=1e-12)
+    assert normal_force(phi, 1.0, closing, 2.0e6, 5.0e3, 0.0) == pytest.approx(force, rel=1e-12)
 
 
 def test_equation_2_as_printed_may_pull_while_inside():
-    assert normal_force(-1e-3, 1.0, 2.0e6, 5.0e3, -np.inf) == pytest.approx(-3000.0, rel=1e-12)
-    assert normal_force(1e-3, 1.0, 2.0e6, 5.0e3, -np.inf) == 0.0
+    assert normal_force(-1e-3, 1.0, 1.0, 2.0e6, 5.0e3, -np.inf) == pytest.approx(-3000.0, rel=1e-12)
+    assert normal_force(1e-3, 1.0, 1.0, 2.0e6, 5.0e3, -np.inf) == 0.0
 
 
 def test_like_on_like_has_the_stiffness_given_and_unlike_ones_act_in_series():

@@ -9,7 +9,12 @@ SHAPES = {"squat": {"box": [2.0, 1.0, 0.5]}, "slab": {"box": [8.0, 3.0, 0.2]}}
 SPEED = 1.0
 
 
-def _slide(make_structure, run_ls_dem, *, law=None, direction=1.0, duration=0.15, order=(0, 1), **keys):
+TURNS = {"none": [1, 0, 0, 0], "half turn": [0, 0, 0, 1], "upside down": [0, 0, 1, 0]}
+
+
+def _slide(
+    make_structure, run_ls_dem, *, law=None, direction=1.0, duration=0.15, order=(0, 1), turn="none", **keys
+):
     """A squat block thrown along x or against it; its run and its index."""
     slab = {"name": "slab", "shape": "slab", "position": [0.0, 0.0, -0.1], "driven": True}
     block = {
@@ -17,6 +22,7 @@ def _slide(make_structure, run_ls_dem, *, law=None, direction=1.0, duration=0.15
         "shape": "squat",
         "position": [0.0, 0.0, 0.25],
         "velocity": [direction * SPEED, 0.0, 0.0],
+        "orientation": TURNS[turn],
     }
     bodies = [(slab, block)[index] for index in order]
     entry = {"pair": ["stone", "stone"], "coefficient": MU, **(law or {})}
@@ -83,10 +89,15 @@ def test_slip_weakening_follows_its_law(make_structure, run_ls_dem):
 
 @pytest.mark.parametrize("order", [(0, 1), (1, 0)])
 @pytest.mark.parametrize("direction", [1.0, -1.0])
-def test_friction_may_differ_by_direction(direction, order, make_structure, run_ls_dem):
+@pytest.mark.parametrize("turn", TURNS)
+def test_friction_may_differ_by_direction(turn, direction, order, make_structure, run_ls_dem):
     """mu (1 + a) for slip of the second body along the first's +x, mu (1 - a) the other way."""
-    run, block = _slide(make_structure, run_ls_dem, law={"asymmetry": 0.2}, direction=direction, order=order)
+    run, block = _slide(
+        make_structure, run_ls_dem, law={"asymmetry": 0.2}, direction=direction, order=order, turn=turn
+    )
     second_moves_along_x = direction if block == 1 else -direction
+    if block == 0 and turn != "none":  # the first body is the one that is turned, and its x points back
+        second_moves_along_x *= -1.0
     assert direction * _deceleration(run, block) == pytest.approx(
         (1.0 + 0.2 * second_moves_along_x) * MU * G, rel=1e-3
     )

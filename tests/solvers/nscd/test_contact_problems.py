@@ -7,6 +7,7 @@ from scipy.optimize import nnls
 
 from blockshake.geometry.structure import load_structure
 from blockshake.solvers.nscd.contacts import prepare_operators_into
+from blockshake.solvers.nscd.gauss_seidel import relative_residual
 from blockshake.solvers.nscd.solver import solve_contacts_into
 
 G, DT = 9.81, 1e-3
@@ -185,3 +186,25 @@ def test_a_body_that_is_crushed_is_told_and_not_hidden():
     assert iterations == 300
     assert residual > 1e-3 or contacts.impulse.max() > 1e3
     assert np.isfinite(v).all()
+
+
+@pytest.mark.parametrize("cap", [3, 104])
+@pytest.mark.parametrize("n_bodies", [2, 120])
+def test_the_cap_ends_the_search_with_the_best_answer_met(n_bodies, cap):
+    """A crushed body has no answer; 104 ends among the sweeps, and 120 bodies stand for structures of any size."""
+    rng = np.random.default_rng(3)
+    bodies, inertia, inverse, contacts, v = random_problem(rng, n_bodies, 2, 0.0)
+    contacts.body_a[:], contacts.body_b[:] = 0, 1
+    contacts.arm_a[:] = contacts.arm_b[:] = 0.0
+    contacts.basis[:, 0] = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]
+    contacts.bound[:, 0] = -1.0
+    prepare_operators_into(bodies, inverse, contacts)
+    v[:] = 0.0
+    free = v.copy()
+    iterations, residual = solve((bodies, inertia, inverse, contacts, v), iterations=cap)
+    assert iterations == cap
+    # the residual told is that of the impulses and velocities handed back, which belong together
+    assert residual == relative_residual(contacts, v, 1e-12)
+    J, M_inverse = dense(bodies, inverse, contacts)
+    expected = free.ravel() + M_inverse @ J.T @ contacts.impulse.ravel()
+    np.testing.assert_allclose(v.ravel(), expected, rtol=1e-12, atol=1e-12 * np.abs(contacts.impulse).max())

@@ -19,6 +19,7 @@ from blockshake.solvers.ls_dem.packets import (
     POINT_X,
     POINT_Y,
     POINT_Z,
+    SLOPE,
     STRETCH_X,
     STRETCH_Y,
     STRETCH_Z,
@@ -219,6 +220,7 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
                 packets[packet, lane + DAMPING] = surfaces.damping[node[place]]
             else:
                 packets[packet, lane + POINT_X] = FAR_AWAY
+            packets[packet, lane + SLOPE] = 1.0
         owner, other = pairs[side // 2, side % 2], pairs[side // 2, 1 - side % 2]
         relative_pose_into(poses.position_before, poses.rotation_before, owner, other, 0, R, d)
         locate_nodes_into(

@@ -1,7 +1,5 @@
 """What an LS-DEM run leaves on disk to go on from."""
 
-import numpy as np
-
 from blockshake.dynamics.system import State
 from blockshake.solvers.checkpoint import load_parts, save_parts
 from blockshake.solvers.ls_dem.candidates import Candidates
@@ -11,7 +9,7 @@ from blockshake.solvers.ls_dem.relative_pose import Poses
 from blockshake.solvers.record import Record
 
 
-def save_checkpoint(path, key, progress, candidates, joints, record, settling_steps):
+def save_checkpoint(path, key, progress, candidates, joints, record, started):
     """Write a run's state, in place of an earlier one only when it is whole."""
     parts = {
         "state": progress.state,
@@ -20,7 +18,7 @@ def save_checkpoint(path, key, progress, candidates, joints, record, settling_st
         "candidates": candidates,
         "joints": joints,
         "record": record,
-        "settling": (np.array(settling_steps),),
+        "started": (started,),
     }
     save_parts(path, key, parts)
 
@@ -37,5 +35,5 @@ def load_checkpoint(path, key):
         Candidates(*parts["candidates"]),
         Joints(*parts["joints"]),
         Record(*parts["record"]),
-        int(parts["settling"][0]),
+        parts["started"][0],
     )

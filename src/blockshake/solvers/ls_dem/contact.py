@@ -16,6 +16,9 @@ from blockshake.solvers.ls_dem.side_forces import side_forces_into
 
 # Entries of the energy bookkeeping of one step [J]
 ELASTIC, FRICTION, DAMPING, N_ENERGIES = 0, 1, 2, 3
+_RATE_TIME = (
+    1e-3  # s, of the slip rate's delay; the time step of the nonsmooth solver, which has one of its own
+)
 
 
 class Loads(NamedTuple):
@@ -62,7 +65,7 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
     dt : float
         Time since the step before, zero at the first [s].
     loads : Loads
-        Force, moment and energy are added to; force and slip of the joints are overwritten.
+        Force, moment and energy are added to, and force and slip of the joints.
 
     Notes
     -----
@@ -99,10 +102,13 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
         bias = mu * friction_asymmetry(interfaces.friction, a, b)
         heat = 0.0
         for side in range(2):
-            # the first body's slip against the second is the reverse of the second's against the first
-            law = Law(
-                0.5 * k_n, 0.5 * k_s, gamma_n, mu, bias if side == 1 else -bias, interfaces.least_force, rate
+            # along the first body's x in the other's frame; its own slip is the reverse of the second's
+            bx, by, bz = (
+                (bias, 0.0, 0.0)
+                if side == 1
+                else (-bias * R[0, 0, 0], -bias * R[0, 1, 0], -bias * R[0, 2, 0])
             )
+            law = Law(0.5 * k_n, 0.5 * k_s, gamma_n, mu, bx, by, bz, interfaces.least_force, rate)
             side_forces_into(
                 packets, bounds[2 * pair + side], bounds[2 * pair + side + 1], law, gamma_s, lanes, sums
             )
@@ -146,7 +152,11 @@ def _share_into(owner, other, side, rotation, d, sums, force, moment, joint, joi
 
 @inline_kernel
 def _slip_into(joints, joint, mu, heat, dt):
-    """Slip of a joint in this step: its friction heat over Coulomb's limit, a mean weighted by the force."""
+    """Slip of a joint in this step: its friction heat over Coulomb's limit, a mean weighted by the force.
+
+    Its rate follows with a delay of `_RATE_TIME`: taken step by step, it is that of springs without mass, and a
+    coefficient that falls with it would jump up and down the more, the smaller the step.
+    """
     fx, fy, fz = joints.force[joint, 0], joints.force[joint, 1], joints.force[joint, 2]
     squared = fx * fx + fy * fy + fz * fz
     if squared > 0.0:
@@ -155,4 +165,5 @@ def _slip_into(joints, joint, mu, heat, dt):
     limit = mu * np.sqrt(squared / (1.0 + mu * mu))
     slip = max(heat, 0.0) / limit if limit > 0.0 else 0.0
     joints.slip[joint] += slip
-    joints.slip_rate[joint] = slip / dt if dt > 0.0 else 0.0
+    if dt > 0.0:
+        joints.slip_rate[joint] += (slip / dt - joints.slip_rate[joint]) * dt / (_RATE_TIME + dt)

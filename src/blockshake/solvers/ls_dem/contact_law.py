@@ -11,8 +11,8 @@ class Law(NamedTuple):
     """What the nodes of one side obey.
 
     ``k_n``, ``k_s``: stiffness per area of node [N/m3]; ``gamma_n``: dashpot, per unit of a node's
-    damping weight; ``mu``: Coulomb's coefficient and ``bias`` its change by direction: it is ``mu + bias s_x``
-    for the unit vector s of the owner's slip in the other's frame; ``least_force``: the cut of
+    damping weight; ``mu``: Coulomb's coefficient, and ``bias_x, bias_y, bias_z`` its change by direction: it is
+    ``mu + bias . s`` for the unit vector s of the owner's slip, other's frame; ``least_force``: the cut of
     Eq. (2) [N]; ``rate``: the inverse of the time since the step before, zero at the first step [1/s].
     """
 
@@ -20,46 +20,49 @@ class Law(NamedTuple):
     k_s: float
     gamma_n: float
     mu: float
-    bias: float
+    bias_x: float
+    bias_y: float
+    bias_z: float
     least_force: float
     rate: float
 
 
 @inline_kernel
-def normal_force(phi, closing, k_n, gamma_n, least):
+def normal_force(phi, slope, closing, k_n, gamma_n, least):
     """Magnitude of a node's normal force, Eq. (2) [N].
 
-    ``phi`` is the level-set value (negative inside) [m], ``closing`` the velocity of the node
-    along the outward normal of the other body [m/s], negative when approaching; ``k_n`` [N/m]
-    and ``gamma_n`` [N s/m] are the node's. The damped force is cut at ``least``: at zero because
-    concrete does not stick to concrete, so that a ``gamma_n`` made for a restitution of 0.50 rebounds
-    at 0.55; at -inf it may pull, as printed.
+    ``phi`` is the level-set value (negative inside) [m], ``slope`` the length of its gradient: the spring's force
+    is that of the energy ``k_n phi^2 / 2``, which a sampled level set keeps only so where it rounds an edge.
+    ``closing`` is the velocity of the node along the outward normal of the other body [m/s], negative when
+    approaching; ``k_n`` [N/m] and ``gamma_n`` [N s/m] are the node's. The damped force is cut at ``least``: at zero
+    because concrete does not stick to concrete, so that a ``gamma_n`` made for a restitution of 0.50
+    rebounds at 0.55; at -inf it may pull, as printed.
     """
-    force = -k_n * phi - gamma_n * closing
+    force = -k_n * phi * slope - gamma_n * closing
     return force if (force > least and phi < 0.0) else 0.0
 
 
 @inline_kernel
-def kept_stretch(tx, ty, tz, f_n, k_s, mu, bias):
+def kept_stretch(tx, ty, tz, f_n, k_s, law):
     """Share of a trial stretch that Coulomb's limit lets a shear spring keep, Eq. (5), and the stretch squared.
 
     ``tx, ty, tz`` [m]; ``f_n`` the normal force, not below zero [N]; ``k_s`` of the node [N/m]. A node out
     of contact has no limit force and lets go.
     """
     squared = tx * tx + ty * ty + tz * tz
-    limit = f_n * (mu * np.sqrt(squared) + bias * tx)
+    limit = f_n * (law.mu * np.sqrt(squared) + law.bias_x * tx + law.bias_y * ty + law.bias_z * tz)
     reach = k_s * squared
     return limit / reach if reach > limit else 1.0, squared
 
 
 @inline_kernel
-def node_force(phi, nx, ny, nz, ux, uy, uz, ox, oy, oz, closed, area, weight, law):
+def node_force(phi, slope, nx, ny, nz, ux, uy, uz, ox, oy, oz, closed, area, weight, law):
     """Force of one node, its springs afterwards, and the energy it moved.
 
     Parameters
     ----------
-    phi, nx, ny, nz : float
-        Level-set value [m] and outward normal of the other body there.
+    phi, slope, nx, ny, nz : float
+        Level-set value [m], length of its gradient [1] and outward normal of the other body there.
     ux, uy, uz : float
         Change of place since the step before, other's frame [m].
     ox, oy, oz : float
@@ -94,18 +97,18 @@ def node_force(phi, nx, ny, nz, ux, uy, uz, ox, oy, oz, closed, area, weight, la
     along = tx * nx + ty * ny + tz * nz
     now_closed = along - lost
     moved = 1.5 * now_closed - 0.5 * closed
-    f_n = normal_force(phi, moved * law.rate, k_node, law.gamma_n * weight, law.least_force)
+    f_n = normal_force(phi, slope, moved * law.rate, k_node, law.gamma_n * weight, law.least_force)
 
     # Eq. (4): the spring follows the tangential part of the motion since the last step
     tx, ty, tz = tx - along * nx, ty - along * ny, tz - along * nz
-    kept, squared = kept_stretch(tx, ty, tz, max(f_n, 0.0), k_shear, law.mu, law.bias)
+    kept, squared = kept_stretch(tx, ty, tz, max(f_n, 0.0), k_shear, law)
     sx, sy, sz = kept * tx, kept * ty, kept * tz
 
     # slip is the trial stretch less what was kept of it
     depth = -phi if phi < 0.0 else 0.0
-    spring, half = k_node * depth, 0.5 * k_shear
+    spring, half = k_node * depth * slope, 0.5 * k_shear
     after = kept * squared
-    held = half * kept * after + 0.5 * spring * depth
+    held = half * kept * after + 0.5 * k_node * depth * depth
     slid = half * (1.0 - kept) * (ox * tx + oy * ty + oz * tz + after)
     damped = half * lost * lost - (f_n - spring) * moved
     fx, fy, fz = f_n * nx - k_shear * sx, f_n * ny - k_shear * sy, f_n * nz - k_shear * sz

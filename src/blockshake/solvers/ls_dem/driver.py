@@ -81,13 +81,13 @@ def simulate_ls_dem(
     key = run_key(structure, ground, parameters, record_times, time_step, rotations_blocked)
     saved = load_checkpoint(checkpoint, key) if checkpoint is not None else None
     if saved is not None:
-        progress, candidates, joints, record, settling_steps = saved
+        progress, candidates, joints, record, started = saved
         _log.info("goes on from %.3f s", progress.clock[STEP] * time_step)
     else:
         # the stack settles on the slab as the motion starts, pitch included
         at_start = np.array([0.0, 0.0, 0.0, ground.coefficients[0, 3, 0]])
         place_driven_into(bodies, at_start, np.zeros(4), state)
-        candidates, joints, settling_steps = _start(
+        candidates, joints, started = _start(
             structure, bodies, surfaces, interfaces, parameters.skin, time_step, state
         )
         progress = start_progress(bodies, state)
@@ -105,7 +105,7 @@ def simulate_ls_dem(
         if news():
             _log.info("%.3f of %.3f s", progress.clock[STEP] * time_step, record_times[-1])
         if code == PAUSED and checkpoint is not None and saving():
-            save_checkpoint(checkpoint, key, progress, candidates, joints, record, settling_steps)
+            save_checkpoint(checkpoint, key, progress, candidates, joints, record, started)
     if checkpoint is not None:
         checkpoint.unlink(missing_ok=True)
     end_time = min(min(int(progress.clock[STEP]), n_steps) * time_step, float(record_times[-1]))
@@ -126,17 +126,22 @@ def simulate_ls_dem(
         numerics={
             "time_step": time_step,
             "steps": min(int(progress.clock[STEP]), n_steps),
-            "settling_steps": settling_steps,
+            "settling_steps": int(started[0]),
+            "stable_time_step": float(started[1]),
             "list_searches": int(progress.clock[SEARCHES]),
         },
     )
 
 
 def _start(structure, bodies, surfaces, interfaces, skin, time_step, state):
-    """Near nodes at the start; the poses of stacks at rest are moved to their equilibrium."""
-    position, orientation, at_rest, left = approach_equilibrium(
+    """Near nodes at the start, settling steps and stable step; the poses of stacks at rest become their equilibrium."""
+    position, orientation, at_rest, left, stable_step = approach_equilibrium(
         bodies, surfaces, interfaces, skin, state, _NEAR
     )
+    if time_step > stable_step:
+        _log.warning(
+            "a time step of %g s is above the joints' limit of stability, %.2g s", time_step, stable_step
+        )
     relaxed = state._replace(position=position, orientation=orientation)
     candidates, joints, steps = settle(
         bodies, surfaces, interfaces, skin, time_step, state, relaxed, _NEAR, at_rest, left,
@@ -148,11 +153,13 @@ def _start(structure, bodies, surfaces, interfaces, skin, time_step, state):
     at_rest = free & ~np.isin(group, group[left])
     state.position[at_rest] = relaxed.position[at_rest]
     state.orientation[at_rest] = relaxed.orientation[at_rest]
+    # what was slipped on the way to the equilibrium is not the run's
+    joints.slip[:], joints.slip_rate[:], joints.touched[:] = 0.0, 0.0, False
     for pair, (a, b) in enumerate(candidates.pairs):
         if not (at_rest[a] or at_rest[b]):
             first, last = candidates.first[2 * pair], candidates.first[2 * pair + 2]
             candidates.packets[first:last, STRETCH_X:FORCE_X] = 0.0
-    return candidates, joints, steps
+    return candidates, joints, np.array([steps, stable_step])
 
 
 def _check_overlap(structure, candidates):

@@ -9,10 +9,11 @@ from blockshake.geometry.rotations import rotate_into, rotation_matrices
 from blockshake.jit import kernel
 from blockshake.solvers.ls_dem.candidates import empty_candidates, find_candidates
 from blockshake.solvers.ls_dem.contact import clear_loads, contact_forces_into, no_loads
-from blockshake.solvers.ls_dem.interfaces import in_series
+from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series
 from blockshake.solvers.ls_dem.joints import no_joints
-from blockshake.solvers.ls_dem.packets import AREA, LANES, NORMAL_X, PHI, PLACE_X
+from blockshake.solvers.ls_dem.packets import AREA, DAMPING, LANES, NORMAL_X, PHI, PLACE_X
 from blockshake.solvers.ls_dem.relative_pose import Poses
+from blockshake.solvers.ls_dem.stability import stable_time_step
 
 _MOST_ITERATIONS = 20
 _AT_REST = 1e-9  # out-of-balance force over weight; the thump it leaves is as small
@@ -43,12 +44,15 @@ def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near):
     left : bool array, shape (n_bodies,)
         Free bodies of stacks that would move farther even with their joints bonded: they have no
         equilibrium near.
+    stable_step : float
+        Largest stable time step of the joints in touch, see `stable_time_step` [s].
 
     Notes
     -----
     Newton's method on the forces of `contact_forces_into`, whose stiffness is the springs of the nodes in
-    touch. At the first iteration all nodes within ``near`` count, those of an open joint pulling it
-    close. Where joints open or slide it may not converge, and relaxation has more to do.
+    touch. At the first iteration all nodes within ``near`` count, those of an open joint across which gravity acts
+    pulling it close. Where joints open or slide it may not converge, and relaxation has more to do. Bodies
+    without inverse inertia do not turn.
     """
     n_bodies = len(bodies.mass)
     position, orientation = state.position.copy(), state.orientation.copy()
@@ -60,21 +64,26 @@ def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near):
     loads = no_loads(n_bodies, joints)
     radius = surfaces.radius[surfaces.shape]
     at_rest = _AT_REST * bodies.mass * np.linalg.norm(bodies.gravity) + 1e-300
-    group = _groups(candidates.pairs, bodies.driven)
+    down = bodies.gravity / max(np.linalg.norm(bodies.gravity), 1e-300)
+    moves = np.repeat([[True] * 3 + [False] * 3], n_bodies, axis=0)
+    moves[bodies.inverse_inertia.any(axis=(1, 2)), 3:] = True
     solved, left = ~bodies.driven, np.zeros(n_bodies, dtype=bool)
     for iteration in range(_MOST_ITERATIONS):
         clear_loads(bodies, loads)
         contact_forces_into(candidates, surfaces, interfaces, poses, 0.0, loads)
         poses.position_before[:] = position
         poses.rotation_before[:] = rotation
-        stiffness, pull = _joint_stiffness(candidates, interfaces, poses, near if iteration == 0 else 0.0)
+        reach = near if iteration == 0 else 0.0
+        stiffness, pull, touching, relaxation = _joint_stiffness(candidates, interfaces, poses, reach, down)
         if iteration == 0:
+            stable_step = _stable_step(candidates.pairs, stiffness, relaxation, bodies)
             at_rest = np.maximum(at_rest, _rounding(candidates.pairs, stiffness, position))
-        load = (np.concatenate([loads.force, loads.moment], axis=1) + pull)[solved]
+            group = _groups(candidates.pairs[touching], bodies.driven)
+        load = np.where(moves, np.concatenate([loads.force, loads.moment], axis=1) + pull, 0.0)
         limit = np.where(np.arange(6) < 3, 1.0, radius[:, None]) * at_rest[:, None]
-        if not solved.any() or (iteration > 0 and (np.abs(load) < limit[solved]).all()):
+        if not solved.any() or (np.abs(load) < limit)[solved].all():
             break
-        move = _solve(candidates.pairs, stiffness, solved, load)
+        move = _solve(candidates.pairs, stiffness, solved[:, None] & moves, load)[solved]
         for body, (shift, turn) in zip(np.flatnonzero(solved), move, strict=True):
             position[body] += shift
             rotate_into(orientation[body], turn, orientation[body])
@@ -89,7 +98,25 @@ def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near):
         if iteration == 0:
             left = lost & ~bodies.driven
         rotation[:] = rotation_matrices(orientation)
-    return position, orientation, at_rest, left
+    return position, orientation, at_rest, left, stable_step
+
+
+def _stable_step(pairs, stiffness, relaxation, bodies):
+    """Largest stable time step with this stiffness of the pairs and dashpots of these relaxation times [s]."""
+    free = np.flatnonzero(~bodies.driven)
+    chosen = (6 * free[:, None] + np.arange(6)).ravel()
+    size = 6 * len(bodies.mass)
+    parts = [stiffness, stiffness * relaxation[:, None, None]]
+    K, C = (_assembled(pairs, part, size)[chosen][:, chosen] for part in parts)
+    return stable_time_step(K, C, bodies, free)
+
+
+def _assembled(pairs, stiffness, size):
+    """Sparse matrix of the pairs' 12 x 12 blocks."""
+    entries = (6 * pairs[:, :, None] + np.arange(6)).reshape(-1, 12)
+    row = np.repeat(entries, 12, axis=1).ravel()
+    column = np.tile(entries, (1, 12)).ravel()
+    return coo_array((stiffness.ravel(), (row, column)), shape=(size, size)).tocsr()
 
 
 def _rounding(pairs, stiffness, position):
@@ -100,26 +127,24 @@ def _rounding(pairs, stiffness, position):
 
 
 def _groups(pairs, driven):
-    """Number of the group of near bodies that each belongs to, driven ones left out: int array (n_bodies,)."""
+    """Number of the group of touching bodies that each belongs to, driven ones left out: int array (n_bodies,)."""
     free = pairs[~driven[pairs].any(axis=1)]
     links = coo_array((np.ones(len(free)), free.T), shape=(len(driven), len(driven)))
     return connected_components(links, directed=False)[1]
 
 
 def _solve(pairs, stiffness, solved, load):
-    """Displacements and rotations of the bodies solved for under these loads: (n_solved, 2, 3) [m, rad]."""
-    entries = (6 * pairs[:, :, None] + np.arange(6)).reshape(-1, 12)
-    row = np.repeat(entries, 12, axis=1).ravel()
-    column = np.tile(entries, (1, 12)).ravel()
-    size = 6 * len(solved)
-    chosen = np.flatnonzero(np.repeat(solved, 6))
-    matrix = coo_array((stiffness.ravel(), (row, column)), shape=(size, size)).tocsr()[chosen][:, chosen]
+    """Displacements and rotations under these loads, zero where not solved for: (n_bodies, 2, 3) [m, rad]."""
+    chosen = np.flatnonzero(solved)
+    matrix = _assembled(pairs, stiffness, solved.size)[chosen][:, chosen]
     soft = _SOFT * abs(matrix).max() + 1e-300
-    return splu((matrix + soft * eye_array(len(chosen))).tocsc()).solve(load.ravel()).reshape(-1, 2, 3)
+    move = np.zeros(solved.size)
+    move[chosen] = splu((matrix + soft * eye_array(len(chosen))).tocsc()).solve(load.ravel()[chosen])
+    return move.reshape(-1, 2, 3)
 
 
 @kernel
-def _joint_stiffness(candidates, interfaces, poses, reach):
+def _joint_stiffness(candidates, interfaces, poses, reach, down):
     """Stiffness of each pair for the displacements and rotations of its two bodies, and the pull of open nodes.
 
     Parameters
@@ -130,20 +155,29 @@ def _joint_stiffness(candidates, interfaces, poses, reach):
     poses : Poses
     reach : float
         Nodes whose level-set value is below this are in touch [m].
+    down : float64 array, shape (3,)
+        Direction of gravity; zero without any.
 
     Returns
     -------
     stiffness : float64 array, shape (n_pairs, 12, 12)
         World frame, about the mass centres [N/m, N, N m].
     pull : float64 array, shape (n_bodies, 6)
-        Force and moment that nodes in touch but not inside would have if springs could pull [N, N m].
+        Force and moment that nodes in touch but not inside would have if springs could pull [N, N m], where the
+        normal lies within 60 degrees of gravity: what the weight cannot close stays open.
+    touching : bool array, shape (n_pairs,)
+        Whether a pair has a node in touch.
+    relaxation : float64 array, shape (n_pairs,)
+        Coefficient of a pair's dashpots over the stiffness of its springs [s].
     """
     n_pairs = candidates.pairs.shape[0]
     stiffness, pull = np.zeros((n_pairs, 12, 12)), np.zeros((poses.position.shape[0], 6))
+    touching, relaxation = np.zeros(n_pairs, np.bool_), np.zeros(n_pairs)
     B, DB = np.zeros((3, 12)), np.empty((3, 12))
     for pair in range(n_pairs):
         a, b = candidates.pairs[pair, 0], candidates.pairs[pair, 1]
         k_n, k_s = in_series(interfaces.k_n, a, b), in_series(interfaces.k_s, a, b)
+        area, weight = 0.0, 0.0
         for side in range(2):
             owner, other = candidates.pairs[pair, side], candidates.pairs[pair, 1 - side]
             R = poses.rotation[other]
@@ -158,7 +192,12 @@ def _joint_stiffness(candidates, interfaces, poses, reach):
                         for j in range(3):
                             n[i] += R[i, j] * node[NORMAL_X + j * LANES + lane]
                             arm[i] += R[i, j] * node[PLACE_X + j * LANES + lane]
+                    if phi >= 0.0 and abs(n[0] * down[0] + n[1] * down[1] + n[2] * down[2]) < 0.5:
+                        continue
+                    touching[pair] = True
                     half_area = 0.5 * node[AREA + lane]
+                    area += half_area
+                    weight += node[DAMPING + lane]
                     place = poses.position[other] + arm
                     _relative_motion_into(place - poses.position[a], place - poses.position[b], B)
                     for column in range(12):
@@ -175,7 +214,10 @@ def _joint_stiffness(candidates, interfaces, poses, reach):
                         pull[owner, 3:] += np.cross(place - poses.position[owner], force)
                         pull[other, :3] -= force
                         pull[other, 3:] -= np.cross(arm, force)
-    return stiffness, pull
+        if area > 0.0:
+            gamma = dashpot_coefficient(interfaces, a, b, interfaces.damping_ratio, k_n, area)
+            relaxation[pair] = gamma * weight / (k_n * area)
+    return stiffness, pull, touching, relaxation
 
 
 @kernel

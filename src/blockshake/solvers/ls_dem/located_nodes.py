@@ -20,6 +20,7 @@ from blockshake.solvers.ls_dem.packets import (
     POINT_X,
     POINT_Y,
     POINT_Z,
+    SLOPE,
     sum_lanes,
 )
 from blockshake.solvers.ls_dem.surfaces import (
@@ -42,7 +43,7 @@ def locate_nodes_into(packets, first, last, half, chamfer, lattice, values, shap
     ----------
     packets : float64 array, shape (n_packets, PACKET)
         Place, change of place, level-set value and normal are overwritten; by a sampled level set the
-        forces too.
+        slope and the forces too.
     first, last : int
         Packets of this side.
     half, chamfer, lattice, values, shape : as in `Surfaces`, int
@@ -149,7 +150,7 @@ def _locate_in_lattice_into(packets, first, last, lattice, values, shape, R, d, 
                 packets[packet, CORNERS + 7 * LANES + lane],
             ) = corner_values(values, packets[packet, CORNERS + lane], n_y, n_z)
         for lane in range(LANES):
-            phi, nx, ny, nz = interpolate(
+            phi, nx, ny, nz, slope = interpolate(
                 packets[packet, CORNERS + lane],
                 packets[packet, CORNERS + LANES + lane],
                 packets[packet, CORNERS + 2 * LANES + lane],
@@ -164,6 +165,7 @@ def _locate_in_lattice_into(packets, first, last, lattice, values, shape, R, d, 
                 packets[packet, PHI + lane],
                 inverse,
             )
+            packets[packet, SLOPE + lane] = slope
             packets[packet, PHI + lane] = phi
             packets[packet, NORMAL_X + lane] = nx
             packets[packet, NORMAL_Y + lane] = ny

@@ -14,6 +14,7 @@ LANES = 8
     MOVED_X, MOVED_Y, MOVED_Z,  # change of the place in the last step [m]
     PHI,  # level-set value there [m]
     NORMAL_X, NORMAL_Y, NORMAL_Z,  # outward normal there, in the other body's frame
+    SLOPE,  # length of the level set's gradient there: 1, but near the edges of a sampled one
     CLOSED,  # change of the place along the normal in the last step [m]
     STRETCH_X, STRETCH_Y, STRETCH_Z,  # of the shear spring, in the other body's frame [m]
     FORCE_X, FORCE_Y, FORCE_Z,  # of the last evaluation on the owner, other's frame [N]
@@ -21,7 +22,7 @@ LANES = 8
     SLID, DAMPED,  # friction heat and dashpot heat of the step [J]
     HELD,  # energy in the springs [J]; not zero where one is stretched
     PACKET,
-) = range(0, 29 * LANES, LANES)  # fmt: skip
+) = range(0, 30 * LANES, LANES)  # fmt: skip
 # Quantities that a side adds up: those from FORCE_X on.
 N_SUMS = (PACKET - FORCE_X) // LANES
 # Where a sampled level set puts the values at the eight corners of a cell meanwhile; the forces come after.

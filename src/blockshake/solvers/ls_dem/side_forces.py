@@ -1,5 +1,7 @@
 """Forces of the located nodes of one side of a pair of bodies: the law at each, and their sum, Eq. (6)."""
 
+import numpy as np
+
 from blockshake.jit import kernel
 from blockshake.solvers.ls_dem.contact_law import node_force
 from blockshake.solvers.ls_dem.packets import (
@@ -27,6 +29,7 @@ from blockshake.solvers.ls_dem.packets import (
     PLACE_Y,
     PLACE_Z,
     SLID,
+    SLOPE,
     STRETCH_X,
     STRETCH_Y,
     STRETCH_Z,
@@ -74,6 +77,7 @@ def side_forces_into(packets, first, last, law, gamma_s, lanes, sums):
         for lane in range(LANES):
             fx, fy, fz, sx, sy, sz, closed, held, slid, damped = node_force(
                 packets[packet, PHI + lane],
+                packets[packet, SLOPE + lane],
                 packets[packet, NORMAL_X + lane],
                 packets[packet, NORMAL_Y + lane],
                 packets[packet, NORMAL_Z + lane],
@@ -104,7 +108,7 @@ def side_forces_into(packets, first, last, law, gamma_s, lanes, sums):
             packets[packet, SLID + lane] = slid
             packets[packet, DAMPED + lane] = damped
         if gamma_s > 0.0:
-            _add_shear_dashpots_into(packets, packet, gamma_s * law.rate)
+            _add_shear_dashpots_into(packets, packet, gamma_s * law.rate, law)
         for entry in range(N_SUMS * LANES):
             lanes[entry] += packets[packet, FORCE_X + entry]
     for quantity in range(N_SUMS):
@@ -112,11 +116,11 @@ def side_forces_into(packets, first, last, law, gamma_s, lanes, sums):
 
 
 @kernel
-def _add_shear_dashpots_into(packets, packet, gamma_rate):
+def _add_shear_dashpots_into(packets, packet, gamma_rate, law):
     """Dashpots beside the shear springs of one packet's nodes, as long as these do not slide.
 
     The velocity is the mean of the step, the tangential change of place over the step, whose inverse is in
-    ``gamma_rate``.
+    ``gamma_rate``: of first order in the step. Spring and dashpot together stay below Coulomb's limit.
     """
     for lane in range(LANES):
         x, y = packets[packet, PLACE_X + lane], packets[packet, PLACE_Y + lane]
@@ -129,6 +133,17 @@ def _add_shear_dashpots_into(packets, packet, gamma_rate):
         # a node sticks where this step made no friction heat
         sticks = phi < 0.0 and packets[packet, SLID + lane] == 0.0
         c = gamma_rate * packets[packet, DAMPING + lane] if sticks else 0.0
+        gx, gy = packets[packet, FORCE_X + lane], packets[packet, FORCE_Y + lane]
+        gz = packets[packet, FORCE_Z + lane]
+        f_n = gx * nx + gy * ny + gz * nz
+        gx, gy, gz = gx - f_n * nx, gy - f_n * ny, gz - f_n * nz
+        # the share of it that Coulomb's limit leaves: |g - share c u| = mu f_n
+        square = c * c * (ux * ux + uy * uy + uz * uz)
+        along_u = -c * (gx * ux + gy * uy + gz * uz)
+        room = law.mu * law.mu * f_n * f_n - (gx * gx + gy * gy + gz * gz)
+        root = np.sqrt(max(along_u * along_u + square * max(room, 0.0), 0.0))
+        share = (root - along_u) / square if square > 0.0 else 0.0
+        c *= min(max(share, 0.0), 1.0)
         fx, fy, fz = -c * ux, -c * uy, -c * uz
         packets[packet, FORCE_X + lane] += fx
         packets[packet, FORCE_Y + lane] += fy

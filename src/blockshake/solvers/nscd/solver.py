@@ -123,6 +123,8 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
             best = residual
             best_impulse[:] = contacts.impulse
             best_v[:] = v
-        if best <= tolerance:
+        if best <= tolerance or iterations == max_iterations:
+            contacts.impulse[:] = best_impulse
+            v[:] = best_v
             return iterations, best
         sweeps *= 2
