@@ -25,6 +25,7 @@ class Checkout:
 
     def __init__(self, folder, **changes):
         self.folder = folder
+        folder.mkdir(parents=True, exist_ok=True)
         for name in COPIED:
             source = ROOT / name
             if source.is_dir():

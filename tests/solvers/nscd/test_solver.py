@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 from contact_problems import dense, random_problem, slow_reference
 
+from blockshake.solvers.nscd.block_elimination import block_system, find_block, solve_blocks_into
 from blockshake.solvers.nscd.gauss_seidel import sweep_into
-from blockshake.solvers.nscd.newton import solve_linear_into
+from blockshake.solvers.nscd.newton import linear_law_into
 from blockshake.solvers.nscd.solver import solve_contacts_into
 
 TOLERANCE = 1e-10
@@ -56,13 +57,68 @@ def test_sweeps_alone_reach_the_same_velocities():
     np.testing.assert_allclose(swept, v, atol=1e-8)
 
 
-def test_elimination_solves_banded_and_full_systems():
-    rng = np.random.default_rng(3)
-    for band in (2, 30):
-        K = rng.normal(size=(30, 30))
-        K[np.abs(np.subtract.outer(np.arange(30), np.arange(30))) > band] = 0.0
-        x = rng.normal(size=30)
-        right = K @ x
-        assert solve_linear_into(K.copy(), right)
-        np.testing.assert_allclose(right, x, rtol=1e-9, atol=1e-9)
-    assert not solve_linear_into(np.zeros((3, 3)), np.ones(3))
+@pytest.mark.parametrize("n_pairs", [0, 19, 60])
+def test_elimination_of_touching_bodies_gives_the_dense_answer(n_pairs):
+    """Random unsymmetric blocks against NumPy's dense solution; 60 pairs of 20 bodies fill in."""
+    rng = np.random.default_rng(n_pairs)
+    pairs = np.array(
+        [sorted(rng.choice(21, 2, replace=False)) for _ in range(n_pairs)], dtype=np.int64
+    ).reshape(-1, 2)
+    driven = np.arange(21) == 5
+    system = block_system(driven, pairs[:, 0].copy(), pairs[:, 1].copy())
+    assert sorted(system.rank) == list(range(-1, 20))
+    for part in (system.diagonal, system.right_of, system.below):
+        part[:] = 0.0
+    K = np.zeros((20, 6, 20, 6))
+    for k in range(20):
+        # a small corner, so that rows must be exchanged within the block
+        K[k, :, k] = system.diagonal[k] = rng.normal(size=(6, 6)) + 8.0 * np.eye(6) * (np.arange(6) > 0)
+    for i, j in {tuple(sorted(system.rank[pair])) for pair in pairs}:
+        if i >= 0:
+            block = find_block(system, i, j)
+            assert system.column[block] == j
+            K[i, :, j], K[j, :, i] = rng.normal(size=(2, 6, 6))
+            system.right_of[block], system.below[block] = K[i, :, j], K[j, :, i].T
+    K = K.reshape(120, 120)
+    x = rng.normal(size=120)
+    system.x[:] = (K @ x).reshape(20, 6)
+    assert solve_blocks_into(system)
+    # rounding times the condition number and the growth without exchanges between blocks
+    np.testing.assert_allclose(system.x.ravel(), x, atol=1e-13 * np.linalg.cond(K))
+
+
+def test_a_singular_block_is_told():
+    system = block_system(np.zeros(1, bool), np.empty(0, np.int64), np.empty(0, np.int64))
+    system.diagonal[:], system.x[:] = 0.0, 1.0
+    assert not solve_blocks_into(system)
+
+
+def test_elimination_of_a_lattice_fills_in_little():
+    """Minimum degree: a square of 30 x 30 keeps 31/4 n log2 n entries (George 1973) at most, not n sqrt n."""
+    place = np.arange(900).reshape(30, 30)
+    a = np.concatenate([place[:-1].ravel(), place[:, :-1].ravel()])
+    b = np.concatenate([place[1:].ravel(), place[:, 1:].ravel()])
+    system = block_system(np.zeros(900, bool), a, b)
+    assert len(system.column) < 12_000
+
+
+@pytest.mark.parametrize(
+    ("impulse", "velocity", "state"),
+    [
+        # a support that carries nothing, off by rounding; and off by more
+        ([0.0, 0.0, 0.0], [1e-13, 0.0, 0.0], "stuck"),
+        ([0.0, 0.0, 0.0], [1e-6, 0.0, 0.0], "open"),
+        # friction at the cone's edge, beyond by rounding; and beyond by more
+        ([1.0, 0.5, 0.0], [0.0, -1e-13, 0.0], "stuck"),
+        ([1.0, 0.5, 0.0], [0.0, -1e-6, 0.0], "slipping"),
+    ],
+)
+def test_states_do_not_change_within_the_slack(impulse, velocity, state):
+    rng = np.random.default_rng(0)
+    _, _, _, contacts, _ = random_problem(rng, 2, 1, 0.5)
+    contacts.impulse[0] = impulse
+    D, c = np.empty((3, 3)), np.empty(3)
+    linear_law_into(contacts, 0, np.array(velocity), 1e6, 1e-10, D, c)
+    assert (D[0, 0] > 0.0) == (state != "open")
+    # a stuck contact resists slip either way with all its stiffness
+    assert (D[1, 1] == D[2, 2] > 0.0) == (state == "stuck")

@@ -20,6 +20,7 @@ from blockshake.solvers.nscd.progress import (
     WORST_RESIDUAL,
 )
 from blockshake.solvers.nscd.stoppers import closure_into
+from blockshake.solvers.nscd.vectors import dot, turned_back, velocity_at
 
 # Relative residual above which a step counts as badly solved; fixed by the project's contract.
 _BAD_RESIDUAL = 1e-4
@@ -91,13 +92,12 @@ def account_into(bodies, stoppers, base, state, contacts, step, audit, energy):
         u_n, u_1, u_2 = relative_velocity(contacts, contact, step.v_mean)
         audit[FRICTION_WORK] -= p[1] * u_1 + p[2] * u_2
         audit[NORMAL_WORK] -= p[0] * u_n
-        world = p @ contacts.basis[contact]
         if bodies.driven[a]:
-            v = step.v_mean[a]
-            energy[6] += np.dot(world, v[:3] + np.cross(v[3:], contacts.arm_a[contact]))
+            world = turned_back(contacts.basis[contact], p)
+            energy[6] += dot(world, velocity_at(step.v_mean[a], contacts.arm_a[contact]))
         if bodies.driven[b]:
-            v = step.v_mean[b]
-            energy[6] -= np.dot(world, v[:3] + np.cross(v[3:], contacts.arm_b[contact]))
+            world = turned_back(contacts.basis[contact], p)
+            energy[6] -= dot(world, velocity_at(step.v_mean[b], contacts.arm_b[contact]))
     reach, arm, toward = np.empty(3), np.empty(3), np.empty(3)
     for stopper in range(stoppers.body.size):
         squeezed = closure_into(bodies, stoppers, stopper, base, state, reach, arm, toward)

@@ -7,6 +7,7 @@ import numpy as np
 from blockshake.jit import kernel
 from blockshake.solvers.nscd.detection import detect_pair_into
 from blockshake.solvers.nscd.polyhedra import find_pairs
+from blockshake.solvers.nscd.vectors import cross, dot, put_into, turned, turned_back
 
 
 class Contacts(NamedTuple):
@@ -115,11 +116,11 @@ def detect_contacts(bodies, polyhedra, placed, rotations, margin, shrink, memory
         for point in range(found):
             contacts.body_a[count], contacts.body_b[count] = a, b
             contacts.gap[count] = gaps[point]
-            contacts.basis[count, 0] = normal
+            put_into(normal, contacts.basis[count, 0])
             for axis in range(3):
                 contacts.arm_a[count, axis] = points[point, axis] - placed.center[a, axis]
                 contacts.arm_b[count, axis] = points[point, axis] - placed.center[b, axis]
-            contacts.home[count] = rotations[a].T @ contacts.arm_a[count]
+            put_into(turned_back(rotations[a], contacts.arm_a[count]), contacts.home[count])
             count += 1
     return _first_rows(contacts, count + n_stoppers)
 
@@ -127,19 +128,12 @@ def detect_contacts(bodies, polyhedra, placed, rotations, margin, shrink, memory
 @kernel
 def _across_into(arm, inverse_mass, inertia, basis, W):
     """Add one body's share of ``basis (1/m - arm x I^-1 arm x) basis^T`` to ``W``."""
-    lever = np.empty((3, 3))
+    levers = (cross(arm, basis[0]), cross(arm, basis[1]), cross(arm, basis[2]))
     for i in range(3):
-        d = basis[i]
-        lever[i, 0] = arm[1] * d[2] - arm[2] * d[1]
-        lever[i, 1] = arm[2] * d[0] - arm[0] * d[2]
-        lever[i, 2] = arm[0] * d[1] - arm[1] * d[0]
-    for i in range(3):
+        spin = turned(inertia, levers[i])
+        W[i, i] += inverse_mass
         for j in range(3):
-            total = inverse_mass if i == j else 0.0
-            for k in range(3):
-                for m in range(3):
-                    total += lever[i, k] * inertia[k, m] * lever[j, m]
-            W[i, j] += total
+            W[i, j] += dot(levers[j], spin)
 
 
 @kernel
@@ -150,11 +144,10 @@ def _tangents_into(basis):
     for axis in range(1, 3):
         if abs(n[axis]) < abs(n[least]):
             least = axis
-    e = np.zeros(3)
-    e[least] = 1.0
-    t = np.cross(n, e)
-    basis[1] = t / np.linalg.norm(t)
-    basis[2] = np.cross(n, basis[1])
+    t = cross(n, (1.0 * (least == 0), 1.0 * (least == 1), 1.0 * (least == 2)))
+    size = np.sqrt(dot(t, t))
+    put_into((t[0] / size, t[1] / size, t[2] / size), basis[1])
+    put_into(cross(n, basis[1]), basis[2])
 
 
 @kernel

@@ -4,6 +4,7 @@ import numpy as np
 
 from blockshake.jit import kernel
 from blockshake.solvers.nscd.overlap_polygon import choose_four_into, clip_face, shrink_polygon_into
+from blockshake.solvers.nscd.vectors import put_into
 
 # Relative to the smaller radius of the pair: an axis must separate this much better than the one of
 # the step before, or an edge axis than a face, to take its place; so resting contacts do not flip.
@@ -139,7 +140,7 @@ def _face_points_into(polyhedra, placed, owner, other, face, margin, shrink, poi
         x = polygon[index]
         gap = n[0] * x[0] + n[1] * x[1] + n[2] * x[2] - offset
         if gap <= margin:
-            polygon[count] = x
+            put_into(x, polygon[count])
             distance[count] = gap
             count += 1
     chosen = np.empty(4, np.int64)

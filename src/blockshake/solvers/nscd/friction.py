@@ -11,6 +11,7 @@ from blockshake.dynamics.friction import (
     friction_coefficient,
 )
 from blockshake.jit import kernel
+from blockshake.solvers.nscd.vectors import dot
 
 
 class Friction(NamedTuple):
@@ -67,7 +68,7 @@ def friction_into(friction, joints, rotations, contacts):
                 toward[axis] = share * rotations[a][axis, 0] if a_is_first else -share * rotations[b][axis, 0]
         contacts.friction[contact] = mu
         for tangent in range(2):
-            contacts.bias[contact, tangent] = np.dot(contacts.basis[contact, 1 + tangent], toward)
+            contacts.bias[contact, tangent] = dot(contacts.basis[contact, 1 + tangent], toward)
 
 
 @kernel

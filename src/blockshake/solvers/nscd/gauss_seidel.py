@@ -5,6 +5,7 @@ import numpy as np
 from blockshake.jit import kernel
 from blockshake.solvers.nscd.friction import coefficient_along
 from blockshake.solvers.nscd.local_solve import contact_residual, solve_contact
+from blockshake.solvers.nscd.vectors import cross, turned, turned_back
 
 
 @kernel
@@ -52,13 +53,46 @@ def apply_impulse_into(bodies, inertia, contacts, contact, p_n, p_1, p_2, v):
 
 
 @kernel
+def apply_impulses_into(bodies, inertia, contacts, v_free, v):
+    """Overwrite ``v`` with ``v_free`` and the effect of all impulses."""
+    v[:] = 0.0
+    for contact in range(contacts.gap.size):
+        world = turned_back(contacts.basis[contact], contacts.impulse[contact])
+        a, b = v[contacts.body_a[contact]], v[contacts.body_b[contact]]
+        moment_a, moment_b = cross(contacts.arm_a[contact], world), cross(contacts.arm_b[contact], world)
+        for axis in range(3):
+            a[axis] -= world[axis]
+            a[3 + axis] -= moment_a[axis]
+            b[axis] += world[axis]
+            b[3 + axis] += moment_b[axis]
+    for body in range(bodies.mass.size):
+        if bodies.driven[body]:
+            v[body] = v_free[body]
+            continue
+        spin = turned(inertia[body], v[body, 3:])
+        for axis in range(3):
+            v[body, axis] = v_free[body, axis] + bodies.inverse_mass[body] * v[body, axis]
+            v[body, 3 + axis] = v_free[body, 3 + axis] + spin[axis]
+
+
+@kernel
+def impulse_norm(contacts):
+    """Root of the summed squares of all impulses [N s]."""
+    load = 0.0
+    for contact in range(contacts.gap.size):
+        p = contacts.impulse[contact]
+        load += p[0] * p[0] + p[1] * p[1] + p[2] * p[2]
+    return np.sqrt(load)
+
+
+@kernel
 def relative_residual(contacts, v, floor):
     """What is left of the contact law, relative to the impulses [1].
 
     Root of the summed squares of `contact_residual` over all contacts, divided by that of the
     impulses or by ``floor`` [N s], whichever is larger.
     """
-    left, load = 0.0, 0.0
+    left = 0.0
     for contact in range(contacts.gap.size):
         u_n, u_1, u_2 = relative_velocity(contacts, contact, v)
         p = contacts.impulse[contact]
@@ -69,8 +103,7 @@ def relative_residual(contacts, v, floor):
         mu = coefficient_along(contacts, contact, p[1] - rho * u_1, p[2] - rho * u_2)
         part = contact_residual(p[0], p[1], p[2], u_n, u_1, u_2, mu, rho)
         left += part * part
-        load += p[0] * p[0] + p[1] * p[1] + p[2] * p[2]
-    return np.sqrt(left) / max(np.sqrt(load), floor)
+    return np.sqrt(left) / max(impulse_norm(contacts), floor)
 
 
 @kernel

@@ -26,6 +26,7 @@ from blockshake.solvers.nscd.step import (
     predict_into,
 )
 from blockshake.solvers.nscd.stoppers import place_stoppers_into
+from blockshake.solvers.nscd.vectors import dot
 from blockshake.solvers.nscd.warm_start import warm_start_into
 from blockshake.solvers.record import with_room
 
@@ -223,7 +224,7 @@ def _momentum(bodies, v):
     total = 0.0
     for body in range(bodies.mass.size):
         if not bodies.driven[body]:
-            total += bodies.mass[body] * np.linalg.norm(v[body, :3])
+            total += bodies.mass[body] * np.sqrt(dot(v[body, :3], v[body, :3]))
     return total
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from blockshake.jit import kernel
+from blockshake.solvers.nscd.vectors import put_into
 
 # Points this far outside a side plane count as inside, so that flush faces do not flicker [m].
 _FLUSH = 1e-9
@@ -36,7 +37,7 @@ def clip_face(polyhedra, placed, reference, incident):
     polygon, clipped = np.empty((size, 3)), np.empty((size, 3))
     count = last - first
     for corner in range(count):
-        polygon[corner] = placed.vertices[polyhedra.corners[first + corner]]
+        put_into(placed.vertices[polyhedra.corners[first + corner]], polygon[corner])
     n = placed.normals[reference]
     for corner in range(ref_first, ref_last):
         start = placed.vertices[polyhedra.corners[corner]]
@@ -55,7 +56,7 @@ def clip_face(polyhedra, placed, reference, incident):
             d_here = mx * here[0] + my * here[1] + mz * here[2] - limit
             d_there = mx * there[0] + my * there[1] + mz * there[2] - limit
             if d_here <= 0.0:
-                clipped[kept] = here
+                put_into(here, clipped[kept])
                 kept += 1
             if (d_here < 0.0 and d_there > 0.0) or (d_here > 0.0 and d_there < 0.0):
                 share = d_here / (d_here - d_there)
@@ -77,14 +78,17 @@ def _without_doubles(polygon, count):
         double = False
         for other in (kept - 1, 0):
             if kept > 0 and not double:
-                dx = polygon[index, 0] - polygon[other, 0]
-                dy = polygon[index, 1] - polygon[other, 1]
-                dz = polygon[index, 2] - polygon[other, 2]
-                double = dx * dx + dy * dy + dz * dz < _SAME_POINT * _SAME_POINT
+                double = _squared_distance(polygon[index], polygon[other]) < _SAME_POINT * _SAME_POINT
         if not double:
-            polygon[kept] = polygon[index]
+            put_into(polygon[index], polygon[kept])
             kept += 1
-    return polygon[:kept].copy()
+    return polygon[:kept]
+
+
+@kernel
+def _squared_distance(x, y):
+    dx, dy, dz = x[0] - y[0], x[1] - y[1], x[2] - y[2]
+    return dx * dx + dy * dy + dz * dz
 
 
 @kernel
@@ -144,15 +148,13 @@ def choose_four_into(points, gaps, count, normal, chosen):
     best = -1.0
     for index in range(count):
         if gaps[index] <= lowest + _SAME_POINT:
-            d = points[index] - mean
-            distance = d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
+            distance = _squared_distance(points[index], mean)
             # the small factor keeps equal distances, rounded differently, on the first of them
             if distance > best * (1.0 + 1e-9):
                 best, p = distance, index
     best = -1.0
     for index in range(count):
-        d = points[index] - points[p]
-        distance = d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
+        distance = _squared_distance(points[index], points[p])
         if distance > best * (1.0 + 1e-9):
             best, q = distance, index
     best = -1.0

@@ -4,13 +4,14 @@ import numpy as np
 
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
 from blockshake.jit import kernel
+from blockshake.solvers.nscd.vectors import put_into, turned, turned_back
 
 _MAX_ITERATIONS = 50
 _ROUNDING = 1e-15
 
 
 @kernel
-def _rotate_vector_into(rotation, x, out):
+def _rotated(rotation, x):
     """Vector ``x`` turned by a rotation vector [rad], by Rodrigues' formula."""
     rx, ry, rz = rotation[0], rotation[1], rotation[2]
     angle = np.sqrt(rx * rx + ry * ry + rz * rz)
@@ -19,9 +20,21 @@ def _rotate_vector_into(rotation, x, out):
     half = np.sin(0.5 * angle)
     c = 0.5 - angle * angle / 24.0 if angle < 1e-4 else 2.0 * half * half / (angle * angle)
     ux, uy, uz = ry * x[2] - rz * x[1], rz * x[0] - rx * x[2], rx * x[1] - ry * x[0]
-    out[0] = x[0] + s * ux + c * (ry * uz - rz * uy)
-    out[1] = x[1] + s * uy + c * (rz * ux - rx * uz)
-    out[2] = x[2] + s * uz + c * (rx * uy - ry * ux)
+    return (
+        x[0] + s * ux + c * (ry * uz - rz * uy),
+        x[1] + s * uy + c * (rz * ux - rx * uz),
+        x[2] + s * uz + c * (rx * uy - ry * ux),
+    )
+
+
+@kernel
+def _weighted(start, end, theta, factor):
+    """``factor`` times the mean of two vectors, the second with weight ``theta``."""
+    return (
+        factor * ((1.0 - theta) * start[0] + theta * end[0]),
+        factor * ((1.0 - theta) * start[1] + theta * end[1]),
+        factor * ((1.0 - theta) * start[2] + theta * end[2]),
+    )
 
 
 @kernel
@@ -57,25 +70,18 @@ def turn_into(
     """
     R = np.empty((3, 3))
     rotation_matrix_into(orientation, R)
-    start = R.T @ spin
-    target = inertia @ start + R.T @ torque
-    end = inverse_inertia @ target
-    turned, rotation = np.empty(3), np.empty(3)
+    start, added = turned_back(R, spin), turned_back(R, torque)
+    kept = turned(inertia, start)
+    target = (kept[0] + added[0], kept[1] + added[1], kept[2] + added[2])
+    end = turned(inverse_inertia, target)
     for _ in range(_MAX_ITERATIONS):
-        for axis in range(3):
-            rotation[axis] = -dt * ((1.0 - theta) * start[axis] + theta * end[axis])
-        _rotate_vector_into(rotation, target, turned)
-        following = inverse_inertia @ turned
-        change, size = 0.0, 0.0
-        for axis in range(3):
-            change = max(change, abs(following[axis] - end[axis]))
-            size = max(size, abs(following[axis]))
-        end[:] = following
+        following = turned(inverse_inertia, _rotated(_weighted(start, end, theta, -dt), target))
+        change = max(abs(following[0] - end[0]), max(abs(following[1] - end[1]), abs(following[2] - end[2])))
+        size = max(abs(following[0]), max(abs(following[1]), abs(following[2])))
+        end = following
         if change <= _ROUNDING * size:
             break
-    for axis in range(3):
-        rotation[axis] = dt * ((1.0 - theta) * start[axis] + theta * end[axis])
-    rotate_into(orientation, R @ rotation, new_orientation)
-    mean_spin[:] = R @ (0.5 * (start + end))
+    rotate_into(orientation, turned(R, _weighted(start, end, theta, dt)), new_orientation)
+    put_into(turned(R, _weighted(start, end, 0.5, 1.0)), mean_spin)
     rotation_matrix_into(new_orientation, R)
-    new_spin[:] = R @ end
+    put_into(turned(R, end), new_spin)

@@ -3,8 +3,13 @@
 import numpy as np
 
 from blockshake.jit import kernel
-from blockshake.solvers.nscd.gauss_seidel import apply_impulse_into, relative_residual, sweep_into
-from blockshake.solvers.nscd.newton import newton_step_into
+from blockshake.solvers.nscd.gauss_seidel import (
+    apply_impulses_into,
+    impulse_norm,
+    relative_residual,
+    sweep_into,
+)
+from blockshake.solvers.nscd.newton import newton_space, newton_step_into
 
 # Newton settles within a few steps, or wanders among states that do not fit together: the stiffer the
 # proximal term the faster, the softer the surer. Tried in turn, each with its limit of steps.
@@ -14,8 +19,8 @@ _NEWTON_STEPS = (10, 15, 25, 50)
 _SHARES = (0.5, 0.25, 0.125)
 # Sweeps before Newton is tried again from the start; they double after each failure.
 _FIRST_SWEEPS = 8
-# Unknowns above which the elimination costs more than sweeps do.
-_MOST_UNKNOWNS = 600
+# Share of the tolerance that the impulses may lie beyond a state's limits before it changes.
+_SLACK = 0.1
 
 
 @kernel
@@ -77,29 +82,31 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
     n_contacts = contacts.gap.size
     if n_contacts == 0:
         return 0, 0.0
-    row_of = np.full(bodies.mass.size, -1, np.int64)
-    unknowns = 0
-    for body in range(bodies.mass.size):
-        if not bodies.driven[body]:
-            row_of[body] = unknowns
-            unknowns += 6
     v_free = v.copy()
-    for contact in range(n_contacts):
-        p = contacts.impulse[contact]
-        apply_impulse_into(bodies, inverse_inertia, contacts, contact, p[0], p[1], p[2], v)
+    apply_impulses_into(bodies, inverse_inertia, contacts, v_free, v)
     old_impulse, old_v = np.empty((n_contacts, 3)), np.empty(v.shape)
     best, best_impulse, best_v = relative_residual(contacts, v, floor), contacts.impulse.copy(), v.copy()
     iterations, sweeps = 0, _FIRST_SWEEPS
+    newton = newton_space(bodies, contacts)
     while True:
-        for attempt in range(len(_STIFFNESS) if unknowns <= _MOST_UNKNOWNS else 0):
+        for attempt in range(len(_STIFFNESS)):
             for _ in range(_NEWTON_STEPS[attempt]):
                 if iterations == max_iterations:
                     break
                 iterations += 1
                 old_impulse[:] = contacts.impulse
                 old_v[:] = v
+                slack = _SLACK * tolerance * max(impulse_norm(contacts), floor)
                 if not newton_step_into(
-                    bodies, inertia, inverse_inertia, row_of, contacts, _STIFFNESS[attempt], v_free, v
+                    bodies,
+                    inertia,
+                    inverse_inertia,
+                    contacts,
+                    _STIFFNESS[attempt],
+                    slack,
+                    v_free,
+                    v,
+                    newton,
                 ):
                     break
                 residual = _shorten_into(contacts, v, floor, old_impulse, old_v, tolerance)

@@ -10,6 +10,7 @@ from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
 from blockshake.jit import kernel
 from blockshake.solvers.nscd.gauss_seidel import relative_velocity
 from blockshake.solvers.nscd.rotation_step import turn_into
+from blockshake.solvers.nscd.vectors import cross, dot, put_into, turned_back, turned_tensor_into
 
 # Contacts are looked for at least this far apart, since a body at rest may be pushed within a step [m].
 _LEAST_MARGIN = 1e-4
@@ -108,11 +109,11 @@ def predict_into(bodies, state, displacement, velocity, dt, theta, step):
     for body in range(bodies.mass.size):
         R = step.rotations[body]
         rotation_matrix_into(detection.orientation[body], R)
-        step.inertia[body] = R @ bodies.inertia[body] @ R.T
-        step.inverse_inertia[body] = R @ bodies.inverse_inertia[body] @ R.T
+        turned_tensor_into(R, bodies.inertia[body], step.inertia[body])
+        turned_tensor_into(R, bodies.inverse_inertia[body], step.inverse_inertia[body])
         if bodies.driven[body]:
-            v[body, :3] = detection.velocity[body]
-            v[body, 3:] = detection.angular_velocity[body]
+            put_into(detection.velocity[body], v[body, :3])
+            put_into(detection.angular_velocity[body], v[body, 3:])
 
 
 @kernel
@@ -121,10 +122,8 @@ def contact_margin(v_start, radius, gravity, dt):
     fastest = 0.0
     for body in range(radius.size):
         v = v_start[body]
-        speed = np.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
-        spin = np.sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5])
-        fastest = max(fastest, speed + radius[body] * spin)
-    return _LEAST_MARGIN + 2.0 * dt * (fastest + dt * np.linalg.norm(gravity))
+        fastest = max(fastest, np.sqrt(dot(v[:3], v[:3])) + radius[body] * np.sqrt(dot(v[3:], v[3:])))
+    return _LEAST_MARGIN + 2.0 * dt * (fastest + dt * np.sqrt(dot(gravity, gravity)))
 
 
 @kernel
@@ -143,10 +142,11 @@ def bounds_into(step, dt, theta, restitution, contacts):
     for contact in range(contacts.gap.size):
         basis, bound = contacts.basis[contact], contacts.bound[contact]
         gap = contacts.gap[contact]
-        turn = _centripetal(step.v_start[contacts.body_b[contact], 3:], contacts.arm_b[contact])
-        turn -= _centripetal(step.v_start[contacts.body_a[contact], 3:], contacts.arm_a[contact])
+        of_b = _centripetal(step.v_start[contacts.body_b[contact], 3:], contacts.arm_b[contact])
+        of_a = _centripetal(step.v_start[contacts.body_a[contact], 3:], contacts.arm_a[contact])
+        turn = (of_b[0] - of_a[0], of_b[1] - of_a[1], of_b[2] - of_a[2])
         for i in range(3):
-            bound[i] = 0.5 * dt * (basis[i, 0] * turn[0] + basis[i, 1] * turn[1] + basis[i, 2] * turn[2])
+            bound[i] = 0.5 * dt * dot(basis[i], turn)
         if contacts.stopper[contact] >= 0:
             bound[0] += gap / (theta * dt)
             continue
@@ -171,9 +171,12 @@ def bodies_meet(contacts, n_contacts, v_start, speed):
 @kernel
 def _centripetal(spin, arm):
     """``spin x (spin x arm)`` [m/s2]."""
-    along = spin[0] * arm[0] + spin[1] * arm[1] + spin[2] * arm[2]
-    squared = spin[0] * spin[0] + spin[1] * spin[1] + spin[2] * spin[2]
-    return along * spin - squared * arm
+    along, squared = dot(spin, arm), dot(spin, spin)
+    return (
+        along * spin[0] - squared * arm[0],
+        along * spin[1] - squared * arm[1],
+        along * spin[2] - squared * arm[2],
+    )
 
 
 @kernel
@@ -189,19 +192,22 @@ def move_into(bodies, displacement, velocity, dt, theta, contacts, before, step,
     before.angular_velocity[:] = state.angular_velocity
     step.impulse[:] = 0.0
     for contact in range(contacts.gap.size):
-        world = contacts.impulse[contact] @ contacts.basis[contact]
+        world = turned_back(contacts.basis[contact], contacts.impulse[contact])
         for sign, body, arm in (
             (-1.0, contacts.body_a[contact], contacts.arm_a[contact]),
             (1.0, contacts.body_b[contact], contacts.arm_b[contact]),
         ):
-            step.impulse[body, :3] += sign * world
-            step.impulse[body, 3:] += sign * np.cross(arm, world)
+            total, moment = step.impulse[body], cross(arm, world)
+            for axis in range(3):
+                total[axis] += sign * world[axis]
+                total[3 + axis] += sign * moment[axis]
     place_driven_into(bodies, displacement, velocity, state)
     for body in range(bodies.mass.size):
         if bodies.driven[body]:
-            state.velocity[body] = step.v[body, :3]
-            state.angular_velocity[body] = step.v[body, 3:]
-            step.v_mean[body] = 0.5 * (step.v_start[body] + step.v[body])
+            put_into(step.v[body, :3], state.velocity[body])
+            put_into(step.v[body, 3:], state.angular_velocity[body])
+            for i in range(6):
+                step.v_mean[body, i] = 0.5 * (step.v_start[body, i] + step.v[body, i])
             continue
         for axis in range(3):
             old = before.velocity[body, axis]

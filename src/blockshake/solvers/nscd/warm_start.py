@@ -4,6 +4,7 @@ import numpy as np
 
 from blockshake.jit import kernel
 from blockshake.solvers.nscd.friction import coefficient_along
+from blockshake.solvers.nscd.vectors import turned, turned_back
 
 # A contact takes over the impulse of the nearest one of its pair within this share of the radius.
 _SAME_CONTACT = 0.1
@@ -69,8 +70,8 @@ def warm_start_into(old, radius, share, contacts):
         contacts.slip[contact] = 0.0
         if found < 0:
             continue
-        world = share * (old.impulse[found] @ old.basis[found])
-        p = contacts.basis[contact] @ world
+        world = turned_back(old.basis[found], old.impulse[found])
+        p = turned(contacts.basis[contact], (share * world[0], share * world[1], share * world[2]))
         limit = coefficient_along(contacts, contact, p[1], p[2]) * max(p[0], 0.0)
         size = np.sqrt(p[1] * p[1] + p[2] * p[2])
         scale = min(1.0, limit / size) if size > 0.0 else 0.0
