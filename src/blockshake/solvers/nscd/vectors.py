@@ -1,0 +1,60 @@
+"""Products of three numbers, without arrays in between: vectors are anything with three entries, answers are tuples."""
+
+from blockshake.jit import kernel
+
+
+@kernel
+def turned(A, x):
+    """``A x`` for a matrix of three rows and columns."""
+    return (
+        A[0, 0] * x[0] + A[0, 1] * x[1] + A[0, 2] * x[2],
+        A[1, 0] * x[0] + A[1, 1] * x[1] + A[1, 2] * x[2],
+        A[2, 0] * x[0] + A[2, 1] * x[1] + A[2, 2] * x[2],
+    )
+
+
+@kernel
+def turned_back(A, x):
+    """``A^T x``: into the axes that the rows of a rotation or of a contact's basis are given in."""
+    return (
+        A[0, 0] * x[0] + A[1, 0] * x[1] + A[2, 0] * x[2],
+        A[0, 1] * x[0] + A[1, 1] * x[1] + A[2, 1] * x[2],
+        A[0, 2] * x[0] + A[1, 2] * x[1] + A[2, 2] * x[2],
+    )
+
+
+@kernel
+def cross(x, y):
+    """``x`` cross ``y``."""
+    return (x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0])
+
+
+@kernel
+def dot(x, y):
+    """``x`` times ``y``."""
+    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
+
+
+@kernel
+def put_into(x, out):
+    """Copy three numbers into an array."""
+    out[0], out[1], out[2] = x[0], x[1], x[2]
+
+
+@kernel
+def turned_tensor_into(R, A, out):
+    """``R A R^T``: a symmetric body-frame tensor in the world frame, written into ``out``."""
+    for i in range(3):
+        row = turned_back(A, R[i])
+        for j in range(3):
+            out[i, j] = row[0] * R[j, 0] + row[1] * R[j, 1] + row[2] * R[j, 2]
+
+
+@kernel
+def velocity_at(v, arm):
+    """Velocity [m/s] of a body's point at ``arm`` from its mass centre; ``v`` (6,) as in `Step`."""
+    return (
+        v[0] + v[4] * arm[2] - v[5] * arm[1],
+        v[1] + v[5] * arm[0] - v[3] * arm[2],
+        v[2] + v[3] * arm[1] - v[4] * arm[0],
+    )
