@@ -105,6 +105,7 @@ def friction_sources(model):
         *STIFFNESS,
         "study/friction_search.py",
         "study/friction_settings.py",
+        "study/replicates.py",
         "study/friction_calibration.py",
         "study/scores.py",
     )

@@ -7,7 +7,7 @@ from blockshake.study.batch import simulate_samples
 from blockshake.study.coverage import coverage
 from blockshake.study.ensemble import join_batches
 from blockshake.study.friction_calibration import mean_score, search_mean, with_mean
-from blockshake.study.sampling import draw_samples
+from blockshake.study.replicates import replicated_designs
 from blockshake.study.stiffness import calibrate_design
 
 
@@ -43,10 +43,10 @@ def calibrate_friction(case, run_settings, ensemble, search, measured, marker_no
         residual relative to the slab [m].
     """
     distributions, linked = ensemble["distributions"], ensemble["linked"]
-    designs = [
-        _replicate(search["size"], ensemble["seed"], index, distributions)
-        for index in range(search["replicates"])
-    ]
+    drawn = replicated_designs(
+        search["replicates"], search["size"], ensemble["seed"], distributions=distributions
+    )
+    designs = [one.values for one in drawn]
     if run_settings["model"] == "ls-dem":
         tower = run_settings["tower"]
         designs = [pd.concat([design, calibrate_design(tower, design, linked)], axis=1) for design in designs]
@@ -87,12 +87,6 @@ def friction_summary(found, beside, search, measured):
         **search,
         "means": found.table.join(beside).reset_index().to_dict("list"),
     }
-
-
-def _replicate(size, seed, index, distributions):
-    """Values of one of the independent designs, its seed made of the study's and its own number."""
-    own = int(np.random.SeedSequence([seed, index]).generate_state(1)[0])
-    return draw_samples(size, seed=own, distributions=distributions).values
 
 
 def _beside(members, measured, marker_noise):

@@ -4,7 +4,6 @@ from contact_problems import dense, random_problem, slow_reference
 
 from blockshake.solvers.nscd.block_elimination import block_system, find_block, solve_blocks_into
 from blockshake.solvers.nscd.gauss_seidel import sweep_into
-from blockshake.solvers.nscd.newton import linear_law_into
 from blockshake.solvers.nscd.solver import solve_contacts_into
 
 TOLERANCE = 1e-10
@@ -100,25 +99,3 @@ def test_elimination_of_a_lattice_fills_in_little():
     b = np.concatenate([place[1:].ravel(), place[:, 1:].ravel()])
     system = block_system(np.zeros(900, bool), a, b)
     assert len(system.column) < 12_000
-
-
-@pytest.mark.parametrize(
-    ("impulse", "velocity", "state"),
-    [
-        # a support that carries nothing, off by rounding; and off by more
-        ([0.0, 0.0, 0.0], [1e-13, 0.0, 0.0], "stuck"),
-        ([0.0, 0.0, 0.0], [1e-6, 0.0, 0.0], "open"),
-        # friction at the cone's edge, beyond by rounding; and beyond by more
-        ([1.0, 0.5, 0.0], [0.0, -1e-13, 0.0], "stuck"),
-        ([1.0, 0.5, 0.0], [0.0, -1e-6, 0.0], "slipping"),
-    ],
-)
-def test_states_do_not_change_within_the_slack(impulse, velocity, state):
-    rng = np.random.default_rng(0)
-    _, _, _, contacts, _ = random_problem(rng, 2, 1, 0.5)
-    contacts.impulse[0] = impulse
-    D, c = np.empty((3, 3)), np.empty(3)
-    linear_law_into(contacts, 0, np.array(velocity), 1e6, 1e-10, D, c)
-    assert (D[0, 0] > 0.0) == (state != "open")
-    # a stuck contact resists slip either way with all its stiffness
-    assert (D[1, 1] == D[2, 2] > 0.0) == (state == "stuck")

@@ -76,23 +76,13 @@ def apply_impulses_into(bodies, inertia, contacts, v_free, v):
 
 
 @kernel
-def impulse_norm(contacts):
-    """Root of the summed squares of all impulses [N s]."""
-    load = 0.0
-    for contact in range(contacts.gap.size):
-        p = contacts.impulse[contact]
-        load += p[0] * p[0] + p[1] * p[1] + p[2] * p[2]
-    return np.sqrt(load)
-
-
-@kernel
 def relative_residual(contacts, v, floor):
     """What is left of the contact law, relative to the impulses [1].
 
     Root of the summed squares of `contact_residual` over all contacts, divided by that of the
     impulses or by ``floor`` [N s], whichever is larger.
     """
-    left = 0.0
+    left, load = 0.0, 0.0
     for contact in range(contacts.gap.size):
         u_n, u_1, u_2 = relative_velocity(contacts, contact, v)
         p = contacts.impulse[contact]
@@ -103,7 +93,8 @@ def relative_residual(contacts, v, floor):
         mu = coefficient_along(contacts, contact, p[1] - rho * u_1, p[2] - rho * u_2)
         part = contact_residual(p[0], p[1], p[2], u_n, u_1, u_2, mu, rho)
         left += part * part
-    return np.sqrt(left) / max(impulse_norm(contacts), floor)
+        load += p[0] * p[0] + p[1] * p[1] + p[2] * p[2]
+    return np.sqrt(left) / max(np.sqrt(load), floor)
 
 
 @kernel

@@ -44,7 +44,7 @@ def newton_space(bodies, contacts):
 
 
 @kernel
-def linear_law_into(contacts, contact, u, stiffness, slack, D, c):
+def linear_law_into(contacts, contact, u, stiffness, D, c):
     """Linear law ``p = c - D u`` of one contact, from its state and where that points.
 
     Parameters
@@ -56,8 +56,6 @@ def linear_law_into(contacts, contact, u, stiffness, slack, D, c):
     stiffness : float
         Of the proximal term, in effective masses of the contact [1]: the error it leaves in the contact
         law is the change of the impulse divided by this.
-    slack : float
-        What an impulse must lie beyond zero to open, and beyond the cone to slip [N s].
     D : float64 array, shape (3, 3)
         Overwritten [kg], along the contact's basis.
     c : float64 array, shape (3,)
@@ -70,9 +68,6 @@ def linear_law_into(contacts, contact, u, stiffness, slack, D, c):
     bound = 0``, which stays regular however many contacts share a load. Slipping: the normal
     part of that; friction ``mu p_n`` along the slip, and across it the linear part of ``-mu p_n u_t /
     |u_t|``, the coefficient taken for the direction at hand. A stopper's compliance adds to ``1 / r``.
-
-    Redundant supports often carry nothing, or just stick, by rounding only: the slack keeps those closed and stuck
-    from one step to the next, where they would change at random.
     """
     D[:] = 0.0
     c[:] = 0.0
@@ -81,7 +76,7 @@ def linear_law_into(contacts, contact, u, stiffness, slack, D, c):
     u_n, u_1, u_2 = u[0] + bound[0] + compliance * p[0], u[1] + bound[1], u[2] + bound[2]
     rho = 1.0 / max(local[0], max(local[1], local[2]))
     trial_n = p[0] - rho * u_n
-    if trial_n <= -slack:
+    if trial_n <= 0.0:
         return
     stiff = stiffness * rho
     D[0, 0] = stiff / (1.0 + stiff * compliance)
@@ -91,8 +86,8 @@ def linear_law_into(contacts, contact, u, stiffness, slack, D, c):
     if mu == 0.0:
         return
     size = np.sqrt(s_1 * s_1 + s_2 * s_2)
-    limit = mu * max(trial_n, 0.0)
-    if size <= limit + slack:
+    limit = mu * trial_n
+    if size <= limit:
         D[1, 1] = D[2, 2] = stiff
         c[1], c[2] = p[1] - stiff * bound[1], p[2] - stiff * bound[2]
         return
@@ -166,7 +161,7 @@ def _add_impulse_into(sign, arm, f, x):
 
 
 @kernel
-def _assemble_into(bodies, inertia, contacts, stiffness, slack, v, newton):
+def _assemble_into(bodies, inertia, contacts, stiffness, v, newton):
     """Linear laws of all contacts, and the system that they give."""
     system = newton.system
     system.diagonal[:] = 0.0
@@ -184,7 +179,7 @@ def _assemble_into(bodies, inertia, contacts, stiffness, slack, v, newton):
     for contact in range(contacts.gap.size):
         D, c, p = newton.slope[contact], newton.offset[contact], contacts.impulse[contact]
         u = relative_velocity(contacts, contact, v)
-        linear_law_into(contacts, contact, u, stiffness, slack, D, c)
+        linear_law_into(contacts, contact, u, stiffness, D, c)
         due = turned(D, u)
         c[0], c[1], c[2] = c[0] - due[0], c[1] - due[1], c[2] - due[2]
         change = turned_back(contacts.basis[contact], (c[0] - p[0], c[1] - p[1], c[2] - p[2]))
@@ -198,7 +193,7 @@ def _assemble_into(bodies, inertia, contacts, stiffness, slack, v, newton):
 
 
 @kernel
-def newton_step_into(bodies, inertia, inverse_inertia, contacts, stiffness, slack, v_free, v, newton):
+def newton_step_into(bodies, inertia, inverse_inertia, contacts, stiffness, v_free, v, newton):
     """Replace the impulses by those of one Newton step, inside Coulomb's cone, and the velocities with them.
 
     Parameters
@@ -208,7 +203,7 @@ def newton_step_into(bodies, inertia, inverse_inertia, contacts, stiffness, slac
         World frame [kg m2, 1/(kg m2)].
     contacts : Contacts
         ``impulse`` is changed.
-    stiffness, slack : float
+    stiffness : float
         As in `linear_law_into`.
     v_free, v : float64 arrays, shape (n_bodies, 6)
         Velocities without contact impulses; ``v`` with them, before, and overwritten with those after.
@@ -225,7 +220,7 @@ def newton_step_into(bodies, inertia, inverse_inertia, contacts, stiffness, slac
     ``(M + J^T D J) dv = J^T (c - D u - p)`` with the linear laws of `linear_law_into`.
     """
     system = newton.system
-    _assemble_into(bodies, inertia, contacts, stiffness, slack, v, newton)
+    _assemble_into(bodies, inertia, contacts, stiffness, v, newton)
     if not solve_blocks_into(system):
         return False
     # the change of the velocities, until impulses inside the cone give the velocities themselves

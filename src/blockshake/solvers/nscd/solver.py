@@ -5,7 +5,6 @@ import numpy as np
 from blockshake.jit import kernel
 from blockshake.solvers.nscd.gauss_seidel import (
     apply_impulses_into,
-    impulse_norm,
     relative_residual,
     sweep_into,
 )
@@ -19,8 +18,6 @@ _NEWTON_STEPS = (10, 15, 25, 50)
 _SHARES = (0.5, 0.25, 0.125)
 # Sweeps before Newton is tried again from the start; they double after each failure.
 _FIRST_SWEEPS = 8
-# Share of the tolerance that the impulses may lie beyond a state's limits before it changes.
-_SLACK = 0.1
 
 
 @kernel
@@ -96,14 +93,12 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
                 iterations += 1
                 old_impulse[:] = contacts.impulse
                 old_v[:] = v
-                slack = _SLACK * tolerance * max(impulse_norm(contacts), floor)
                 if not newton_step_into(
                     bodies,
                     inertia,
                     inverse_inertia,
                     contacts,
                     _STIFFNESS[attempt],
-                    slack,
                     v_free,
                     v,
                     newton,
