@@ -13,6 +13,7 @@ from blockshake.report.html import write_html
 from blockshake.report.pdf import write_pdf
 from blockshake.report.report import compose, make_report
 from blockshake.report.result_sections import checks
+from blockshake.report.wording import number
 from blockshake.study.convergence_table import load_convergence
 
 VOID = {"meta", "link", "br", "img", "hr", "input"}
@@ -141,7 +142,8 @@ def test_coverage_never_stands_alone(fake, text):
     )
     reference = " / ".join(f"{100 * float(one):.1f}" for one in compared["reference"])
     width = f"{1e3 * float(compared['band_width']):.1f}"
-    assert f"{100 * float(compared['coverage']):.1f} {reference} {width}" in text
+    chance = number(float(compared["curve_probability"]), 2)
+    assert f"{100 * float(compared['coverage']):.1f} {reference} {chance} {width}" in text
 
 
 def test_samples_that_did_not_complete_are_listed_with_their_reason(text):

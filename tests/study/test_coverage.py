@@ -91,3 +91,24 @@ def test_what_cannot_be_compared_is_refused(make_run, gather):
         coverage(run.assign_coords(time=run["time"] + 0.001), ensemble, NOISE)
     with pytest.raises(InputError, match="measured marker"):
         coverage(run.assign_coords(marker=["a", "b"]), ensemble, NOISE)
+
+
+def test_the_chance_of_a_whole_curve_is_calibrated(make_run, gather):
+    """Draws of the same distribution fall below 0.1 in at most a tenth of the cases, a larger motion nearly always."""
+    generator = np.random.default_rng(5)
+    time = make_run(0.0)["time"].to_numpy()
+
+    def draw(size=1.0):
+        terms = (generator.normal(0, 0.01) * np.sin(k * time + generator.uniform(0, 6)) for k in range(1, 6))
+        return make_run(size * sum(terms))
+
+    alike, larger = [], []
+    for _ in range(40):
+        ensemble = gather([draw() for _ in range(19)])
+        for size, found in ((1.0, alike), (8.0, larger)):
+            result = coverage(draw(size), ensemble, marker_noise=0.0)
+            found.append(float(result["curve_probability"].sel(marker="block-1-face")))
+    assert min(alike + larger) >= 1.0 / 20.0
+    # 4 of 40 expected at the most, with a standard deviation of 1.9
+    assert np.sum(np.array(alike) <= 0.1) <= 4 + 3 * 1.9
+    assert np.mean(np.array(larger) <= 0.1) > 0.8

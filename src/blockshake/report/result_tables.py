@@ -90,6 +90,7 @@ def coverage_table(case):
                     model_label(model),
                     percent(at["coverage"]),
                     quantile_range(at["reference"], percent),
+                    number(float(at["curve_probability"]), 2),
                     millimetres(at["band_width"]),
                     percent(at["band_width"] / peak),
                 )
@@ -98,12 +99,13 @@ def coverage_table(case):
     return Table(
         f"{case.name}: share of the time that the {word} lies within the bounds (inertial frame), beside the same "
         "for each sample in the bounds of the others (leave one out, read with the markers' noise), quantiles "
-        f"{_QUANTILES}; mean width of the band, in mm and relative to the {word}'s peak relative to the slab.",
+        f"{_QUANTILES}, and the chance of a coverage as low for one more sample; mean width of the band, in mm and "
+        f"relative to the {word}'s peak relative to the slab.",
         (
-            "Block", "Model", f"Coverage of the {word} [%]", "Reference, leave one out [%]", "Band width [mm]",
-            "Band width over peak [%]",
+            "Block", "Model", f"Coverage of the {word} [%]", "Reference, leave one out [%]", "Chance",
+            "Band width [mm]", "Band width over peak [%]",
         ),
-        tuple(rows), "llrrrr",
+        tuple(rows), "llrrrrr",
     )  # fmt: skip
 
 

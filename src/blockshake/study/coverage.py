@@ -34,7 +34,8 @@ def coverage(measured, ensemble, marker_noise, seed=0):
         Along the markers that both have, displacement along x, inertial frame: ``coverage(marker)``
         of the measured curve in the bounds of all members; ``member_coverage(sample, marker)`` of
         each member, read with the same noise, in the bounds of the others; its
-        ``reference(quantile, marker)``; ``band_width(marker)`` [m], mean over time; and
+        ``reference(quantile, marker)``; ``curve_probability(marker)``, the rank of the measured curve's coverage
+        among the members', from 1 / (n + 1) to 1; ``band_width(marker)`` [m], mean over time; and
         ``measured_peak(marker)`` [m], largest absolute displacement relative to the slab's marker,
         to hold the width against.
 
@@ -74,6 +75,9 @@ def coverage(measured, ensemble, marker_noise, seed=0):
             "coverage": ("marker", inside),
             "reference": over_samples(by_member, probabilities),
             "member_coverage": by_member,
+            "curve_probability": (by_member <= xr.DataArray(inside, dims="marker"))
+            .sum("sample")
+            .pipe(lambda lower: (1.0 + lower) / (1.0 + len(member_coverage))),
             "band_width": ("marker", width),
             "measured_peak": ("marker", _measured_peak(measured, members.attrs["slab_marker"], markers)),
         },
@@ -96,6 +100,10 @@ def _describe(result):
         "coverage": ("fraction of the time that the measured curve is within the bounds", "1"),
         "reference": ("the same of the members, each in the bounds of the others", "1"),
         "member_coverage": ("fraction of the time that a member is within the bounds of the others", "1"),
+        "curve_probability": (
+            "chance of a coverage as low if the measured curve were one of the members",
+            "1",
+        ),
         "band_width": ("upper minus lower bound, mean over time", "m"),
         "measured_peak": ("largest absolute measured displacement along x relative to the slab", "m"),
         "quantile": ("probability of a smaller value", "1"),
