@@ -1,9 +1,12 @@
 import numpy as np
+import pandas as pd
 import pytest
+import xarray as xr
 
 from blockshake.errors import InputError
 from blockshake.study.distributions import TABLE_2
 from blockshake.study.friction_calibration import search_mean, weigh_means, with_mean
+from blockshake.study.friction_search import friction_summary
 from blockshake.study.sampling import draw_samples
 
 NOISE = 1e-4
@@ -79,3 +82,14 @@ def test_another_mean_keeps_variation_and_pairing():
         np.testing.assert_allclose(scaled[name], design[name] * 0.5 / 0.75, rtol=1e-12)
     others = [name for name in design if name not in names]
     assert scaled[others].equals(design[others])
+
+
+@pytest.mark.parametrize(
+    ("chance", "answer"), [(0.4, "not informed above 0.4"), (0.02, "unknown: no mean fits")]
+)
+def test_where_no_mean_fits_nothing_is_said_of_friction(chance, answer):
+    scores = {0.3: [2e-2, 2.1e-2], 0.4: [1e-2, 1.001e-2], 0.5: [1e-2, 1.002e-2]}
+    found = weigh_means({mean: np.array(values) for mean, values in scores.items()}, NOISE)
+    beside = pd.DataFrame({"chance": chance, "coverage": 0.5}, index=found.table.index)
+    made = friction_summary(found, beside, {"size": 50}, xr.Dataset())
+    assert made["answer"].startswith(answer)

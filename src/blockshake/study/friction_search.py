@@ -10,6 +10,8 @@ from blockshake.study.friction_calibration import mean_score, search_mean, with_
 from blockshake.study.replicates import replicated_designs
 from blockshake.study.stiffness import calibrate_design
 
+_UNLIKELY = 0.05  # chance of a whole curve at or below which an ensemble does not fit
+
 
 def calibrate_friction(case, run_settings, ensemble, search, measured, marker_noise, store, source, say):
     """Search the mean coefficient of friction of a case.
@@ -38,9 +40,9 @@ def calibrate_friction(case, run_settings, ensemble, search, measured, marker_no
     -------
     FrictionCalibration
     beside : pandas.DataFrame
-        By mean, medians over the replicates: ``coverage`` of the measured curves and its leave-one-out
-        ``reference``, medians over the markers [1]; ``residual``, the largest over the markers of the samples' median
-        residual relative to the slab [m].
+        By mean, medians over the replicates: ``coverage`` of the measured curves, its leave-one-out ``reference``
+        and ``chance`` of whole curves, medians over the markers [1]; ``residual``, the largest over the markers of
+        the samples' median residual relative to the slab [m].
     """
     distributions, linked = ensemble["distributions"], ensemble["linked"]
     drawn = replicated_designs(
@@ -77,9 +79,14 @@ def calibrate_friction(case, run_settings, ensemble, search, measured, marker_no
 
 
 def friction_summary(found, beside, search, measured):
-    """A calibration as JSON-like values, with what it was made of; refused bounds that are missing are null."""
+    """A calibration as JSON-like values, with what it was made of; refused bounds that are missing are null.
+
+    Where the measured curves are unlike those of the best mean's ensembles too, the differences between means say
+    nothing of friction, and the answer is that no mean fits.
+    """
+    fits = beside["chance"].loc[found.best] > max(_UNLIKELY, 1.0 / (1.0 + search["size"]))
     return {
-        "answer": found.answer,
+        "answer": found.answer if fits else "unknown: no mean fits the measured curves",
         "best": found.best,
         "lower": None if np.isnan(found.lower) else found.lower,
         "upper": None if np.isnan(found.upper) else found.upper,
@@ -94,6 +101,7 @@ def _beside(members, measured, marker_noise):
     compared = coverage(measured, members, marker_noise)
     residual = np.abs(members["residual"].sel(frame="slab")).median("sample")
     return {
+        "chance": float(compared["curve_probability"].median()),
         "coverage": float(compared["coverage"].median()),
         "reference": float(compared["reference"].sel(quantile=0.5).median()),
         "residual": float(residual.max()),
