@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from blockshake.geometry.structure import load_structure
+from blockshake.geometry.structure import build_structure, load_structure
 from blockshake.solvers.ls_dem.contact_law import normal_force
 from blockshake.solvers.ls_dem.interfaces import (
     assemble_interfaces,
@@ -65,3 +65,19 @@ def test_the_mass_of_a_contact_is_that_of_a_central_impact(bodies, share):
     of_both_sides = 2.0 * area * dashpot_coefficient(interfaces, *bodies, 0.3, k_n, area)
     mass = share * structure.mass[1]
     assert of_both_sides == pytest.approx(2.0 * 0.3 * np.sqrt(mass * k_n * area), rel=1e-12)
+
+
+def test_the_order_of_bodies_does_not_change_the_stiffness():
+    """The reference material is that of most free mass: concrete, though a steel beam came first."""
+    structure = load_structure("configuration-4")
+    bodies = list(structure.file.bodies)
+    beam = next(index for index, body in enumerate(bodies) if body.name == "beam-1")
+    order = [0, beam, *(index for index in range(1, len(bodies)) if index != beam)]
+    mapping = structure.file.model_dump()
+    mapping["bodies"] = [mapping["bodies"][index] for index in order]
+    other = build_structure(mapping, "test", ".")
+    for name in ("k_n", "k_s"):
+        expected = getattr(assemble_interfaces(structure, PARAMETERS), name)[order]
+        np.testing.assert_allclose(
+            getattr(assemble_interfaces(other, PARAMETERS), name), expected, rtol=1e-12
+        )

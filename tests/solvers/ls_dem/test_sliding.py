@@ -156,3 +156,15 @@ def test_two_horizontal_components_slide_along_their_resultant(make_structure, r
     run = run_ls_dem(structure, 0.4)
     moved = run.position[-1, 1, :2] - run.position[0, 1, :2]
     np.testing.assert_allclose(moved, [np.cos(angle) / (2 * MU * G), np.sin(angle) / (2 * MU * G)], atol=1e-4)
+
+
+def test_spring_and_dashpot_together_stay_below_coulombs_limit(make_structure, run_ls_dem):
+    """|T| <= mu N with a dashpot beside the shear spring too, near and beyond the onset of slip."""
+    time = np.arange(0.0, 0.4001, 0.001)
+    motion = ground_motion("sine", time, {"x": 0.6 * G * np.sin(2 * np.pi * 5.0 * time)}, "acceleration")
+    structure = make_structure([BODY], friction=MU, shapes={**FLAT_CUBE, **WIDE})
+    run = run_ls_dem(structure, 0.4, motion=motion, rate=2000, shear_damping_ratio=1.0)
+    force = run.joint_force[:, 0]
+    ratio = np.hypot(force[:, 0], force[:, 1]) / force[:, 2]
+    # 0.71 before it was capped
+    assert 0.99 * MU < ratio.max() < MU * (1.0 + 1e-9)

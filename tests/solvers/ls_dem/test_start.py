@@ -158,3 +158,26 @@ def test_a_tower_that_sinks_farther_than_the_contract_allows_starts_as_given(mak
     np.testing.assert_array_equal(run.position[0], structure.position)
     assert run.numerics["settling_steps"] == 0
     assert run.position[-1, 12, 2] < structure.position[12, 2]
+
+
+def test_a_gap_that_no_weight_closes_stays_open(make_structure, run_ls_dem):
+    """Two cubes at rest, 0.05 mm apart, without gravity: that is their equilibrium."""
+    bodies = [
+        {"name": "a", "shape": "cube", "position": [0.0, 0.0, 5.0]},
+        {"name": "b", "shape": "cube", "position": [1.00005, 0.0, 5.0]},
+    ]
+    structure = make_structure(bodies, slab=False, gravity=[0.0, 0.0, 0.0])
+    run = run_ls_dem(structure, 0.01)
+    np.testing.assert_array_equal(run.position[0], structure.position)
+    np.testing.assert_array_equal(run.position[-1], structure.position)
+
+
+def test_a_falling_neighbour_does_not_spoil_the_start(make_structure, run_ls_dem):
+    """Groups are of bodies in touch, whatever the skin lists: the standing cube starts in its equilibrium."""
+    bodies = [
+        {"name": "stands", "shape": "cube", "position": [0.0, 0.0, 0.5]},
+        {"name": "falls", "shape": "cube", "position": [1.005, 0.0, 1.5]},
+    ]
+    starts = [run_ls_dem(make_structure(bodies), 0.002, skin=skin).position[0, 1] for skin in (0.01, 0.002)]
+    np.testing.assert_array_equal(starts[0], starts[1])
+    assert starts[0][2] < 0.5
