@@ -29,7 +29,7 @@ tests:
 
 
 @pytest.fixture
-def test_data():
+def readings():
     """Every marker follows the table, with noise and gaps: a synthetic test of a stack that never moves."""
     time = np.arange(2001) / 200.0
     motion = load_motion("basso-tirreno").evaluate(time)
@@ -60,8 +60,8 @@ def campaign(tmp_path):
     return write
 
 
-def test_a_good_campaign_is_described_and_never_changed(test_data, campaign):
-    folder = campaign(test_data)
+def test_a_good_campaign_is_described_and_never_changed(readings, campaign):
+    folder = campaign(readings)
     before = file_digest(folder / "t1.nc")
     lines = campaign_lines(folder)
     assert "10 s at 200 Hz, 12 markers on 4 bodies" in lines[1]
@@ -71,23 +71,23 @@ def test_a_good_campaign_is_described_and_never_changed(test_data, campaign):
     assert file_digest(folder / "t1.nc") == before
 
 
-def test_noise_is_found_in_the_quiet_part(test_data, campaign):
-    lines = campaign_lines(campaign(test_data, noise=1e-3))
+def test_noise_is_found_in_the_quiet_part(readings, campaign):
+    lines = campaign_lines(campaign(readings, noise=1e-3))
     found = float(re.search(r"marker noise ([\d.]+) mm", lines[1]).group(1))
     # 36 channels of 100 readings: a standard error of 1.2 %
     assert found == pytest.approx(1e3 * NOISE, rel=0.05)
     assert any("stated 1 mm" in line for line in lines)
 
 
-def test_of_a_sealed_test_shape_and_noise_are_told_and_no_more(test_data, campaign):
-    lines = campaign_lines(campaign(test_data, role="sealed"))
+def test_of_a_sealed_test_shape_and_noise_are_told_and_no_more(readings, campaign):
+    lines = campaign_lines(campaign(readings, role="sealed"))
     assert "12 markers" in lines[1]
     assert "table reached" not in lines[1]
 
 
-def test_a_marker_that_no_test_reads_and_a_weak_table_are_remarked(test_data, campaign):
-    test_data["marker_displacement"][:] *= 0.5
-    lines = campaign_lines(campaign(test_data.sel(marker=MARKERS[:-1])))
+def test_a_marker_that_no_test_reads_and_a_weak_table_are_remarked(readings, campaign):
+    readings["marker_displacement"][:] *= 0.5
+    lines = campaign_lines(campaign(readings.sel(marker=MARKERS[:-1])))
     assert any(f"marker {MARKERS[-1]} of the structure is in no test" in line for line in lines)
     assert any("table's peak is 0.5" in line for line in lines)
 
@@ -132,26 +132,26 @@ BAD = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_bad_files_get_one_clear_line(what, test_data, campaign):
+def test_bad_files_get_one_clear_line(what, readings, campaign):
     spoil, message = BAD[what]
-    spoil(test_data)
-    folder = campaign(test_data)
+    spoil(readings)
+    folder = campaign(readings)
     with pytest.raises(InputError) as error:
         campaign_lines(folder)
     assert str(error.value).startswith(f"{folder / 't1.nc'}: {message}")
     assert "\n" not in str(error.value)
 
 
-def test_a_missing_slab_marker_is_named(test_data, campaign):
+def test_a_missing_slab_marker_is_named(readings, campaign):
     driven = {body.name for body in STRUCTURE.file.bodies if body.driven}
     slab = [marker.name for marker in STRUCTURE.file.markers if marker.body in driven]
-    folder = campaign(test_data.drop_sel(marker=slab))
+    folder = campaign(readings.drop_sel(marker=slab))
     with pytest.raises(InputError, match=f"marker of the driven body, which is the input: {slab[0]}"):
         campaign_lines(folder)
 
 
-def test_a_truncated_file_is_one_line(test_data, campaign):
-    folder = campaign(test_data)
+def test_a_truncated_file_is_one_line(readings, campaign):
+    folder = campaign(readings)
     content = (folder / "t1.nc").read_bytes()
     (folder / "t1.nc").write_bytes(content[: len(content) // 2])
     with pytest.raises(InputError, match=r"t1.nc: expected a netCDF file") as error:
@@ -159,11 +159,11 @@ def test_a_truncated_file_is_one_line(test_data, campaign):
     assert "\n" not in str(error.value)
 
 
-def test_a_spreadsheet_of_readings_goes_in(test_data, campaign, tmp_path):
+def test_a_spreadsheet_of_readings_goes_in(readings, campaign, tmp_path):
     """The same test as two CSV tables gives the same readings."""
-    folder = campaign(test_data)
+    folder = campaign(readings)
     expected = load_test(load_campaign(folder), "t1")
-    displacement = test_data["marker_displacement"]
+    displacement = readings["marker_displacement"]
     names = [f"{marker}.{axis}" for marker in MARKERS for axis in "xyz"]
     table = displacement.to_numpy().reshape(displacement.sizes["time"], -1)
     rows = [
@@ -171,11 +171,11 @@ def test_a_spreadsheet_of_readings_goes_in(test_data, campaign, tmp_path):
         for time, row in zip(displacement["time"].values.tolist(), table, strict=True)
     ]
     (tmp_path / "t1.csv").write_text(f"time_s,{','.join(names)}\n" + "\n".join(rows) + "\n")
-    readings = test_data["accelerometer"].to_numpy()[:, 0]
-    times = test_data["time_acc"].values.tolist()
+    acceleration = readings["accelerometer"].to_numpy()[:, 0]
+    times = readings["time_acc"].values.tolist()
     (tmp_path / "t1-acc.csv").write_text(
         "time_s,a-x\n"
-        + "\n".join(f"{t!r},{v!r}" for t, v in zip(times, readings.tolist(), strict=True))
+        + "\n".join(f"{t!r},{v!r}" for t, v in zip(times, acceleration.tolist(), strict=True))
         + "\n"
     )
     (folder / "campaign.yaml").write_text(CAMPAIGN.format(file="t1.csv", role="fit", noise=NOISE))

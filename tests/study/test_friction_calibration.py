@@ -70,7 +70,7 @@ def test_a_refused_mean_between_accepted_ones_is_accepted():
 
 
 def test_one_replicate_tells_nothing():
-    with pytest.raises(InputError, match="replicates: expected at least two"):
+    with pytest.raises(InputError, match="expected at least two, not 1"):
         weigh_means({0.3: np.array([1.0])}, NOISE)
 
 

@@ -38,7 +38,7 @@ def run_key(structure, ground, parameters, record_times, time_step, *choices):
     digest.update(parameters.model_dump_json().encode())
     digest.update(repr((time_step, *choices)).encode())
     for solid in structure.solids.values():
-        digest.update(solid.vertices.tobytes())
+        digest.update(solid.vertices.tobytes() + solid.triangles.tobytes())
     for values in (*ground, record_times):
         digest.update(np.ascontiguousarray(values).tobytes())
     return digest.hexdigest()

@@ -11,9 +11,8 @@ from blockshake.study.convergence_table import OBSERVABLES
 from blockshake.study.simulation import energy_residual
 
 _KICK = 0.5  # rad/s, turns the 1.6 m block by 2 degrees, a tenth of what overturns it
-_KICKED_DURATION = (
-    1.0  # s; such a block is upright again after 0.3 s, and turns back from the other side after 0.5 s
-)
+# s; such a block is upright again after 0.3 s, and turns back from the other side after 0.5 s
+_KICKED_DURATION = 1.0
 _LEANT = 1e-3  # rad; a block that leaned so much has left its seat
 _RATE = 5000  # records a second
 _ROWS = 400  # of the sine

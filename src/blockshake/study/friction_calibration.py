@@ -10,6 +10,7 @@ from blockshake.errors import InputError
 from blockshake.measurement.virtual_test import noisy_reading
 from blockshake.study.compared_curves import curves_along_x
 from blockshake.study.envelope import counted_samples
+from blockshake.study.replicates import replicate_error
 from blockshake.study.scores import crps
 
 LEVEL = 0.95  # of the one-sided test by which a mean is refused
@@ -140,14 +141,9 @@ def weigh_means(scores, marker_noise):
     """
     means = np.array(sorted(scores))
     values = np.array([scores[mean] for mean in means])
-    n_replicates = values.shape[1]
-    if n_replicates < 2:
-        raise InputError("friction calibration", "replicates", f"expected at least two, not {n_replicates}")
     best = int(values.mean(axis=1).argmin())
-    difference = values - values[best]
-    excess = difference.mean(axis=1)
-    error = difference.std(axis=1, ddof=1) / np.sqrt(n_replicates)
-    limit = student.ppf(LEVEL, n_replicates - 1) * error + _NO_DIFFERENCE * marker_noise
+    excess, _, error = replicate_error((values - values[best]).T)
+    limit = student.ppf(LEVEL, values.shape[1] - 1) * error + _NO_DIFFERENCE * marker_noise
     accepted = excess <= limit
     # what lies between two accepted means is not told from them
     first, last = np.flatnonzero(accepted)[[0, -1]]

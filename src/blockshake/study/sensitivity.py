@@ -24,9 +24,11 @@ _MEASURES = {
     "first_order": first_order_share,
     "rank_correlation": lambda *pair: partial_rank_correlation(*pair)[0],
 }
-# what a model has a use for whatever the structure: rigid blocks have no viscosity, rigid joints no elasticity, and
-# LS-DEM's joints that of the material whose wave speed is matched
-_ELASTIC = {"ls-dem": ("materials.concrete.youngs_modulus",), "nscd-rigid": ()}
+# what a model has no use for whatever the structure: rigid blocks have no viscosity, and NSCD's joints no elasticity
+_UNUSED = {
+    "ls-dem": ("viscous_modulus",),
+    "nscd-rigid": ("viscous_modulus", "youngs_modulus"),
+}
 
 
 def sensitivity(ensemble, variables, controls=()):
@@ -105,15 +107,7 @@ def unused_variables(variables, model, parameters):
     -------
     list of str
     """
-    return [name for name in variables if name not in parameters or not _used(name, model)]
-
-
-def _used(name, model):
-    kind = name.rsplit(".", 1)[1]
-    rigid = model in _ELASTIC
-    if kind == "youngs_modulus":
-        return not rigid or name in _ELASTIC[model]
-    return not (rigid and kind == "viscous_modulus")
+    return [name for name in variables if name not in parameters or name.rsplit(".", 1)[1] in _UNUSED[model]]
 
 
 def _outputs(counted, quantity, markers, slab):

@@ -150,13 +150,13 @@ def _start(structure, bodies, surfaces, interfaces, skin, time_step, state):
     _check_overlap(structure, candidates)
     free = ~structure.driven
     _, group = connected_components(structure.touching & free[:, None] & free[None, :])
-    at_rest = free & ~np.isin(group, group[left])
-    state.position[at_rest] = relaxed.position[at_rest]
-    state.orientation[at_rest] = relaxed.orientation[at_rest]
+    settled = free & ~np.isin(group, group[left])
+    state.position[settled] = relaxed.position[settled]
+    state.orientation[settled] = relaxed.orientation[settled]
     # what was slipped on the way to the equilibrium is not the run's
     joints.slip[:], joints.slip_rate[:], joints.touched[:] = 0.0, 0.0, False
     for pair, (a, b) in enumerate(candidates.pairs):
-        if not (at_rest[a] or at_rest[b]):
+        if not (settled[a] or settled[b]):
             first, last = candidates.first[2 * pair], candidates.first[2 * pair + 2]
             candidates.packets[first:last, STRETCH_X:FORCE_X] = 0.0
     return candidates, joints, np.array([steps, stable_step])

@@ -226,13 +226,7 @@ def _relative_motion_into(arm_a, arm_b, B):
     for i in range(3):
         B[i, i], B[i, 6 + i] = 1.0, -1.0
     # rotation x arm
-    B[0, 4], B[0, 5], B[1, 3], B[1, 5], B[2, 3], B[2, 4] = (
-        arm_a[2],
-        -arm_a[1],
-        -arm_a[2],
-        arm_a[0],
-        arm_a[1],
-        -arm_a[0],
-    )
+    B[0, 4], B[0, 5], B[1, 3] = arm_a[2], -arm_a[1], -arm_a[2]
+    B[1, 5], B[2, 3], B[2, 4] = arm_a[0], arm_a[1], -arm_a[0]
     B[0, 10], B[0, 11], B[1, 9] = -arm_b[2], arm_b[1], arm_b[2]
     B[1, 11], B[2, 9], B[2, 10] = -arm_b[0], -arm_b[1], arm_b[0]

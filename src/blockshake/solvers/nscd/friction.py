@@ -76,7 +76,5 @@ def coefficient_along(contacts, contact, p_1, p_2):
     """Coefficient of a contact whose friction pushes b along (p_1, p_2), so that it slips the other way [1]."""
     mu = contacts.friction[contact]
     bias_1, bias_2 = contacts.bias[contact, 0], contacts.bias[contact, 1]
-    if bias_1 == 0.0 and bias_2 == 0.0:
-        return mu
     size = np.sqrt(p_1 * p_1 + p_2 * p_2)
     return mu - (bias_1 * p_1 + bias_2 * p_2) / size if size > 0.0 else mu
