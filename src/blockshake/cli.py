@@ -3,6 +3,7 @@
 import argparse
 import logging
 import sys
+from pathlib import Path
 
 from blockshake import __version__
 from blockshake.errors import InputError
@@ -69,6 +70,17 @@ def _parser():
     command.add_argument("file", metavar="FILE")
     command.add_argument("--output", required=True, metavar="MOTION.csv")
     command.set_defaults(run=_convert_motion)
+
+    command = commands.add_parser(
+        "generate-campaign", help="synthetic tests on a virtual shake table, to a folder"
+    )
+    command.add_argument("settings", metavar="SETTINGS.yaml", help="such as config/virtual-campaign.yaml")
+    command.add_argument("--structure", required=True, metavar="NAME|FILE")
+    command.add_argument("--output", required=True, metavar="DIR", help="of the campaign")
+    command.add_argument(
+        "--truth", required=True, metavar="DIR", help="of what is true, outside the campaign"
+    )
+    command.set_defaults(run=_generate_campaign)
 
     command = commands.add_parser("check", help="say what is wrong with structure, motion or study files")
     command.add_argument("files", nargs="+", metavar="FILE")
@@ -155,6 +167,24 @@ def _convert_motion(options):
     from blockshake.dynamics.records.contract_csv import write_motion_csv
 
     write_motion_csv(load_motion(options.file), options.output)
+
+
+def _generate_campaign(options):
+    from blockshake import sources
+    from blockshake.files import source_digest
+    from blockshake.virtual.generate import generate_campaign
+    from blockshake.virtual.settings import load_settings
+
+    settings = load_settings(options.settings)
+    for folder in (options.output, options.truth):
+        check_output(f"{folder}/campaign.yaml")
+    if Path(options.output).resolve() in (
+        Path(options.truth).resolve(),
+        *Path(options.truth).resolve().parents,
+    ):
+        raise InputError("--truth", options.truth, "expected a folder outside the campaign's")
+    source = source_digest(*sources.virtual_sources(settings.model))
+    generate_campaign(settings, options.structure, options.output, options.truth, source, print)
 
 
 def _check(options):

@@ -10,7 +10,7 @@ from fake_inputs import definitions, motion, waves
 
 from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.virtual_test import virtual_test
+from blockshake.measurement.marker_noise import noisy_reading
 from blockshake.study.convergence_table import COLUMNS, EXACT, OBSERVABLES, write_convergence
 from blockshake.study.coverage import coverage
 from blockshake.study.distributions import TABLE_2
@@ -84,7 +84,11 @@ class FakeStudy:
         name = case["structure"]
         structure = load_structure(name)
         folder = Path(case["measured"]["campaign"])
-        test = virtual_test(self.run(structure, "ls-dem", 1.1), seed=3)
+        test = self.run(structure, "ls-dem", 1.1)[["marker_displacement"]]
+        test["marker_displacement"].values = noisy_reading(
+            test["marker_displacement"].to_numpy(), 1e-4, np.random.default_rng(3)
+        )
+        test.attrs = {"synthetic": 1}
         write_dataset(folder / "virtual.nc", test)
         write_text(
             folder / "campaign.yaml",

@@ -3,6 +3,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 
+from blockshake.measurement.marker_noise import noisy_reading
 from blockshake.study.ensemble import gather_ensemble
 
 TIME = np.arange(401) / 200.0
@@ -61,3 +62,17 @@ def gather():
         return gather_ensemble(runs, range(len(runs)), design, "slab-face")
 
     return gathered
+
+
+@pytest.fixture
+def read_with_noise():
+    """Synthetic measurement of a run: its markers with independent Gaussian noise."""
+
+    def read(run, noise, seed):
+        displacement = run["marker_displacement"].transpose("time", "marker", "axis")
+        noisy = displacement.copy(
+            data=noisy_reading(displacement.to_numpy(), noise, np.random.default_rng(seed))
+        )
+        return xr.Dataset({"marker_displacement": noisy}, attrs={"synthetic": 1})
+
+    return read

@@ -66,7 +66,7 @@ def test_fewer_samples_of_one_model(mapping):
         (
             ("cases", 0, "measured", "test"),
             "t9",
-            "study.yaml: cases.0.measured.test: expected one of virtual",
+            "study.yaml: cases.0.measured.test: expected a test that is not sealed: ",
         ),
         (("cases", 0, "measured", "campaign"), "nowhere", "nowhere/campaign.yaml: expected a readable file"),
         (

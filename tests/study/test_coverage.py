@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 from blockshake.errors import InputError
-from blockshake.measurement.virtual_test import virtual_test
 from blockshake.study.coverage import coverage
 
 NOISE = 1e-4  # m
@@ -37,10 +36,10 @@ def test_equal_members_support_each_other(make_run, gather):
     np.testing.assert_array_equal(result["member_coverage"], 1.0)
 
 
-def test_the_reference_carries_the_noise_of_the_measurement(make_run, gather):
+def test_the_reference_carries_the_noise_of_the_measurement(make_run, gather, read_with_noise):
     # a band of no width: the noisy curve is outside it nearly always, and so is a noisy member
     ensemble = _levels(make_run, gather, [0.02] * 20)
-    result = coverage(virtual_test(make_run(0.02), seed=1, marker_noise=NOISE), ensemble, NOISE)
+    result = coverage(read_with_noise(make_run(0.02), NOISE, 1), ensemble, NOISE)
     assert result["coverage"].sel(marker="block-1-face") < 0.05
     assert result["reference"].sel(marker="block-1-face", quantile=0.95) < 0.05
     assert result.attrs["synthetic"] == 1

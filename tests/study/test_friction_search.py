@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from blockshake.dynamics.load_motion import load_motion
-from blockshake.measurement.virtual_test import virtual_test
 from blockshake.study.distributions import Lognormal
 from blockshake.study.friction_search import calibrate_friction
 from blockshake.study.simulation import simulate
@@ -36,7 +35,7 @@ SEARCH = {
 
 
 @pytest.fixture
-def search(tmp_path):
+def search(tmp_path, read_with_noise):
     def run(block, motion, truth, duration=2.0, **changes):
         structure = tmp_path / "one-block.yaml"
         structure.write_text(STRUCTURE.format(**block))
@@ -61,7 +60,7 @@ def search(tmp_path):
             {"model": "nscd-rigid", "time_step": 1e-3, "output_rate": 200.0, "tower": None},
             {"distributions": DISTRIBUTIONS, "seed": 1, "linked": {}},
             SEARCH | changes,
-            virtual_test(true, seed=5, marker_noise=NOISE),
+            read_with_noise(true, NOISE, 5),
             NOISE,
             tmp_path / "store",
             "test",

@@ -1,25 +1,20 @@
 rule make_virtual_campaign:
-    """The synthetic test that ships in data/: one run with parameters drawn from Table 2, seen through noisy markers.
+    """A campaign like the one that ships in data/: synthetic tests with an effect drawn by seed, and their truth.
 
     It is made here and copied there by hand, so that an edit of a solver does not move the data.
     """
     input:
-        structure=lambda wildcards: definition(
-            "structures", CASES[wildcards.case]["structure"]
-        ),
-        motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
+        settings="config/virtual-campaign.yaml",
+        structure=lambda wildcards: definition("structures", wildcards.structure),
         kernels=kernels("ls-dem"),
     output:
-        test="results/{study}/virtual-campaign/{case}/virtual.nc",
-        campaign="results/{study}/virtual-campaign/{case}/campaign.yaml",
-        truth="results/{study}/virtual-truth/{case}.json",
+        campaign="results/virtual-campaign/{structure}/campaign.yaml",
+        truth="results/virtual-truth/{structure}/truth.json",
     log:
-        "logs/{study}/make_virtual_campaign/{case}.log",
+        "logs/make_virtual_campaign/{structure}.log",
     conda:
         "../envs/blockshake.yaml"
     params:
-        case=lambda wildcards: CASES[wildcards.case],
-        linked=lookup(dpath="ensemble/linked", within=config, default={}),
-        source=source_digest(*sources.VIRTUAL_CAMPAIGN),
+        source=source_digest(*sources.virtual_sources("ls-dem")),
     script:
         "../scripts/make_virtual_campaign.py"

@@ -17,6 +17,7 @@ os.environ.update(
 from blockshake import sources
 from blockshake.errors import InputError
 from blockshake.files import source_digest
+from blockshake.measurement.campaign import load_campaign
 
 
 def check_study():
@@ -49,9 +50,12 @@ def definition(kind, name):
 
 
 def campaign_files(case):
-    """Files of the campaign that a case is compared with."""
-    folder = Path(CASES[case]["measured"]["campaign"])
-    return sorted(str(path) for path in folder.iterdir() if path.is_file())
+    """The test that a case is compared with and what describes it; never another, which may be sealed."""
+    campaign = load_campaign(CASES[case]["measured"]["campaign"])
+    test = campaign.tests[CASES[case]["measured"]["test"]]
+    files = [campaign.folder / "campaign.yaml", campaign.folder / test.file]
+    beside = [campaign.folder / f"{Path(test.file).stem}-acc.csv", Path(campaign.structure)]
+    return [str(path) for path in (*files, *filter(Path.is_file, beside))]
 
 
 def sample_count(model, case):

@@ -5,5 +5,7 @@ from blockshake.study.envelope import envelope
 
 with logging_to(snakemake.log[0]):
     ensemble = join_batches(snakemake.input.batches)
-    write_dataset(snakemake.output.envelope, envelope(ensemble, snakemake.params.largest_drift), decimals=7)
+    write_dataset(
+        snakemake.output.envelope, envelope(ensemble, snakemake.params.largest_drift), decimals={"m": 7}
+    )
     write_dataset(snakemake.output.samples, sample_figures(ensemble))

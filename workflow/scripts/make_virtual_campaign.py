@@ -1,9 +1,15 @@
-from blockshake.files import write_dataset, write_json, write_text
-from blockshake.log import logging_to
-from blockshake.study.virtual_campaign import campaign_yaml, simulate_virtual_test
+from pathlib import Path
 
-with logging_to(snakemake.log[0]):
-    test, truth = simulate_virtual_test(snakemake.params.case, snakemake.params.linked)
-    write_dataset(snakemake.output.test, test, decimals=6)
-    write_text(snakemake.output.campaign, campaign_yaml(snakemake.params.case))
-    write_json(snakemake.output.truth, truth)
+from blockshake.log import logging_to
+from blockshake.virtual.generate import generate_campaign
+from blockshake.virtual.settings import load_settings
+
+with logging_to(snakemake.log[0]) as say:
+    generate_campaign(
+        load_settings(snakemake.input.settings),
+        snakemake.wildcards.structure,
+        Path(snakemake.output.campaign).parent,
+        Path(snakemake.output.truth).parent,
+        snakemake.params.source,
+        say,
+    )

@@ -5,7 +5,7 @@ from typing import Annotated
 import numpy as np
 import xarray as xr
 from pydantic import Field
-from scipy.interpolate import make_interp_spline
+from scipy.interpolate import CubicSpline
 
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
@@ -127,16 +127,17 @@ def _displacements(run, structure, instruments):
 
 
 def _delayed(displacement, time, lag):
-    """Histories ``lag`` later; a cubic spline between states, at rest before the first."""
-    if lag == 0.0:
-        return displacement
+    """Histories ``lag`` later; a cubic spline through the states, at rest before the first.
+
+    Without a lag it gives the states themselves, to the bit, for one more knot after the last.
+    """
     whole = np.isfinite(displacement).all(axis=(1, 2))
+    known, states = time[whole], displacement[whole]
+    spline = CubicSpline(np.append(known, 2.0 * known[-1] - known[-2]), np.concatenate([states, states[-1:]]))
+    asked = np.maximum(time - lag, known[0])
     shifted = np.full_like(displacement, np.nan)
-    asked = time - lag
-    last = time[whole][-1]
-    spline = make_interp_spline(time[whole], displacement[whole], k=3)
-    known = asked <= last
-    shifted[known] = spline(np.clip(asked[known], time[0], last))
+    reached = asked <= known[-1]
+    shifted[reached] = spline(asked[reached])
     return shifted
 
 

@@ -15,7 +15,7 @@ from blockshake.study.sample_parameters import sample_parameters
 from blockshake.study.sampling import load_design
 from blockshake.study.simulation import simulate
 
-DECIMALS = 7  # of a metre kept in histories: 0.1 um, a thousandth of a marker's noise
+DECIMALS = {"m": 7}  # digits kept in histories: 0.1 um, a thousandth of a marker's noise
 
 
 def simulate_samples(case, model, time_step, output_rate, rows, linked, store, source, progress):

@@ -133,11 +133,7 @@ def check_config(mapping, where):
                 )
         load_structure(case.structure)
         load_motion(case.motion, case.scale)
-        campaign = load_campaign(case.measured.campaign)
-        if case.measured.test not in campaign.tests:
-            raise InputError(where, f"{key}.measured.test", f"expected one of {', '.join(campaign.tests)}")
-        if Path(campaign.structure).stem != case.name:
-            raise InputError(where, f"{key}.measured.campaign", f"expected a campaign of {case.name}")
+        _check_measured(case, where, f"{key}.measured")
     for target, source in config.ensemble.linked.items():
         if source not in config.ensemble.distributions:
             raise InputError(
@@ -151,6 +147,23 @@ def check_config(mapping, where):
     if config.convergence is not None:
         load_structure(config.convergence.structure)
     return config
+
+
+def _check_measured(case, where, key):
+    """The test a case is compared with: of its structure, motion and scale, and not sealed."""
+    campaign = load_campaign(case.measured.campaign)
+    if Path(campaign.structure).stem != case.name:
+        raise InputError(where, f"{key}.campaign", f"expected a campaign of {case.name}")
+    open_tests = [name for name, test in campaign.tests.items() if test.role != "sealed"]
+    if case.measured.test not in open_tests:
+        raise InputError(where, f"{key}.test", f"expected a test that is not sealed: {', '.join(open_tests)}")
+    test = campaign.tests[case.measured.test]
+    if (Path(test.motion).stem, test.scale) != (Path(case.motion).stem, case.scale):
+        raise InputError(
+            where,
+            f"{key}.test",
+            f"expected one of {case.motion} at {case.scale:g}, not {test.motion} at {test.scale:g}",
+        )
 
 
 def _check_friction_search(config, where):

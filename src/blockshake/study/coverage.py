@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.errors import InputError
-from blockshake.measurement.virtual_test import noisy_reading
+from blockshake.measurement.marker_noise import noisy_reading
 from blockshake.study.compared_curves import curves_along_x
 from blockshake.study.ensemble import relative_to_slab
 from blockshake.study.envelope import counted_samples, over_samples

@@ -7,7 +7,7 @@ import pandas as pd
 from scipy.stats import t as student
 
 from blockshake.errors import InputError
-from blockshake.measurement.virtual_test import noisy_reading
+from blockshake.measurement.marker_noise import noisy_reading
 from blockshake.study.compared_curves import curves_along_x
 from blockshake.study.envelope import counted_samples
 from blockshake.study.replicates import replicate_error

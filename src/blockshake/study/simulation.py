@@ -129,7 +129,7 @@ def simulate(
 def split_parameters(parameters, model):
     """Physical parameters, for the structure, and numerical ones, for the solver, of a flat mapping."""
     _, schema, prefix, _ = _solver(model)
-    physical = {key: value for key, value in parameters.items() if not key.startswith(_PREFIXES)}
+    physical = {key: value for key, value in parameters.items() if not is_numerical(key)}
     own = {
         key.removeprefix(f"{prefix}."): value
         for key, value in parameters.items()
@@ -145,6 +145,11 @@ def split_parameters(parameters, model):
                     "--set", key, f"expected one of {other_prefix}.{{{', '.join(other.model_fields)}}}"
                 )
     return physical, validated(schema, own, "--set", prefix)
+
+
+def is_numerical(name):
+    """Whether a dotted name is a solver's own parameter and none of the structure."""
+    return name.startswith(_PREFIXES)
 
 
 def effective_parameters(structure, model, numerical):

@@ -1,0 +1,132 @@
+"""What an effect is: equation, parameters, where it acts, what it leaves in the data, what it is taken for."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from blockshake.dynamics.motion import GroundMotion
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.instruments import Instruments
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """One test as a solver and the sensors are given it; an effect turns one into another.
+
+    Attributes
+    ----------
+    structure : str
+        Shipped name or file.
+    parameters : dict of str to value
+        Of the structure, by dotted name.
+    motion : GroundMotion
+    instruments : Instruments
+    """
+
+    structure: str
+    parameters: dict
+    motion: GroundMotion
+    instruments: Instruments
+
+    def load(self):
+        """The structure with its parameters."""
+        return load_structure(self.structure, self.parameters)
+
+    def with_parameters(self, **changed):
+        """The same test with these parameters too; keys with dots are given as ``**{...}``."""
+        return replace(self, parameters={**self.parameters, **changed})
+
+    def with_instruments(self, **changed):
+        """The same test read with these faults too."""
+        return replace(self, instruments=Instruments(**{**self.instruments.model_dump(), **changed}))
+
+    def with_motion(self, channel, polynomials):
+        """The same test with polynomials added to one channel of the motion, as in `MotionTable`."""
+        coefficients = self.motion.table.coefficients.copy()
+        coefficients[:, channel] += polynomials
+        table = self.motion.table._replace(coefficients=coefficients)
+        return replace(self, motion=replace(self.motion, table=table))
+
+
+@dataclass(frozen=True)
+class EffectParameter:
+    """One number of an effect.
+
+    Attributes
+    ----------
+    name, unit, meaning : str
+    null : float
+        At which the effect is absent, or, of a parameter that has no such value, its usual one.
+    lower, upper : float
+        Ends of the prior, uniform between them.
+    visible : float
+        A size at which a test that moves the blocks should show it; half of it is the small size of the tests.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    null: float
+    lower: float
+    upper: float
+    visible: float
+
+
+@dataclass(frozen=True)
+class Signature:
+    """How what an effect adds to a test looks.
+
+    Attributes
+    ----------
+    phase : str
+        When it shows: in the ``quiet`` phase already and then in proportion to the motion, only after ``onset`` of
+        rocking or sliding, or only beyond a ``displacement``.
+    symmetry : str
+        ``symmetric``: the mirrored motion adds the mirror image; or ``one-sided``.
+    profile : str
+        Where: from the ``slab`` on up, at a ``joint``, a ``block`` or a ``marker``, or in ``all`` the stack.
+    """
+
+    phase: Literal["quiet", "onset", "displacement"]
+    symmetry: Literal["symmetric", "one-sided"]
+    profile: Literal["slab", "joint", "block", "marker", "all"]
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An entry of the registry.
+
+    Attributes
+    ----------
+    name : str
+        Of the contract, as in ``verdict.json``.
+    title : str
+        As in reports.
+    acts : str
+        Where: on the ``input``, the ``contact``, the ``geometry``, a ``force`` or the ``observation``.
+    equation, source : str
+        What it does, and from where that is taken.
+    parameters : tuple of EffectParameter
+        The first is the size: at its null value nothing is changed, whatever the others.
+    signature : Signature
+    confused_with : tuple of str
+        Names of effects that leave nearly the same.
+    told_apart_by : str
+        The measurement that tells them apart.
+    places : callable
+        Of a structure: where the effect may be, list of dict (``{}`` where it has no place).
+    act : callable
+        Of an experiment, the values by parameter name, and the place: the experiment with the effect.
+    """
+
+    name: str
+    title: str
+    acts: Literal["input", "contact", "geometry", "force", "observation"]
+    equation: str
+    source: str
+    parameters: tuple[EffectParameter, ...]
+    signature: Signature
+    confused_with: tuple[str, ...]
+    told_apart_by: str
+    places: Callable
+    act: Callable

@@ -1,0 +1,30 @@
+"""Where an effect may be in a structure: nowhere in particular, a joint, a block or a marker."""
+
+from blockshake.measurement.joint_coordinates import find_joints
+
+
+def nowhere(structure):
+    """The one place of an effect that has none."""
+    return [{}]
+
+
+def joints(structure):
+    """Every joint, ``{"joint": [lower, upper]}``."""
+    pairs, _ = find_joints(structure)
+    names = structure.body_names
+    return [{"joint": [names[lower], names[upper]]} for lower, upper in pairs]
+
+
+def blocks(structure):
+    """Every free body, ``{"body": name}``."""
+    return [{"body": body.name} for body in structure.file.bodies if not body.driven]
+
+
+def markers(structure):
+    """Every marker, ``{"marker": name}``."""
+    return [{"marker": marker.name} for marker in structure.file.markers]
+
+
+def stops(structure):
+    """Both sides of every free body, ``{"body": name, "axis": "+x" or "-x"}``."""
+    return [{**place, "axis": axis} for place in blocks(structure) for axis in ("+x", "-x")]

@@ -1,0 +1,64 @@
+"""The registry of effects: the contract's names, each with its entry."""
+
+from blockshake.effects import (
+    clock_lag,
+    eccentricity,
+    impact_restitution,
+    joint_compliance,
+    marker_offset,
+    rate_weakening_friction,
+    reduced_bearing,
+    sensor_gain,
+    stopper_contact,
+    table_pitch,
+    vertical_motion,
+    weak_joint,
+)
+from blockshake.errors import InputError
+
+_FILES = (
+    table_pitch,
+    vertical_motion,
+    clock_lag,
+    sensor_gain,
+    marker_offset,
+    stopper_contact,
+    impact_restitution,
+    reduced_bearing,
+    eccentricity,
+    weak_joint,
+    rate_weakening_friction,
+    joint_compliance,
+)
+EFFECTS = {file.EFFECT.name: file.EFFECT for file in _FILES}
+
+
+def with_effect(experiment, name, values, place):
+    """An experiment with an effect in it.
+
+    Parameters
+    ----------
+    experiment : Experiment
+    name : str
+        Of `EFFECTS`.
+    values : dict of str to float
+        By parameter; one that is left out has its null value.
+    place : dict
+        One of the effect's places in the structure.
+
+    Raises
+    ------
+    InputError
+        An effect, parameter or place that does not exist.
+    """
+    if name not in EFFECTS:
+        raise InputError("effect", name, f"expected one of {', '.join(EFFECTS)}")
+    effect = EFFECTS[name]
+    known = {parameter.name: parameter.null for parameter in effect.parameters}
+    for key in values:
+        if key not in known:
+            raise InputError("effect", f"{name}.{key}", f"expected one of {', '.join(known)}")
+    places = effect.places(experiment.load())
+    if place not in places:
+        raise InputError("effect", f"{name}.place", f"expected one of {places}, not {place}")
+    return effect.act(experiment, {**known, **values}, place)

@@ -1,0 +1,41 @@
+"""The table pitches about its transverse axis as it accelerates: an oscillator driven by the acceleration."""
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.signal import lsim
+
+from blockshake.dynamics.motion import CHANNELS
+from blockshake.effects.effect import Effect, EffectParameter, Signature
+from blockshake.effects.places import nowhere
+
+_DAMPING = 0.05  # of critical; tables are lightly damped
+_PITCH = CHANNELS.index("pitch_y")
+
+
+def _act(experiment, values, place):
+    breaks = experiment.motion.table.breaks
+    step = np.diff(breaks).min()
+    times = step * np.arange(int(np.ceil((breaks[-1] - breaks[0]) / step)) + 1)
+    acceleration = experiment.motion.evaluate(breaks[0] + times, derivative=2)[:, 0]
+    omega = 2.0 * np.pi * values["frequency"]
+    _, response, _ = lsim(([omega**2], [1.0, 2.0 * _DAMPING * omega, omega**2]), acceleration, times)
+    pitch = values["coefficient"] * np.interp(breaks, breaks[0] + times, response)
+    return experiment.with_motion(_PITCH, CubicSpline(breaks, pitch).c[::-1].T)
+
+
+EFFECT = Effect(
+    name="table-pitch",
+    title="pitch of the table",
+    acts="input",
+    equation="pitch'' + 2 zeta w pitch' + w^2 pitch = w^2 c a_x, zeta = 0.05, about y through the slab's centre",
+    source="single-degree-of-freedom oscillator; pitch of shake tables under overturning: Conte and Trombetti (2000)",
+    parameters=(
+        EffectParameter("coefficient", "rad s2/m", "static pitch by acceleration", 0.0, -1.5e-3, 1.5e-3, 6e-4),
+        EffectParameter("frequency", "Hz", "of the table's pitching", 15.0, 5.0, 30.0, 15.0),
+    ),
+    signature=Signature("quiet", "symmetric", "slab"),
+    confused_with=("joint-compliance",),
+    told_apart_by="vertical displacement of two markers on the slab, apart along x",
+    places=nowhere,
+    act=_act,
+)  # fmt: skip

@@ -1,0 +1,24 @@
+"""One joint slides at less friction than the others of its materials."""
+
+from blockshake.effects.effect import Effect, EffectParameter, Signature
+from blockshake.effects.places import joints
+
+
+def _act(experiment, values, place):
+    key = f"joints.{'.'.join(place['joint'])}.friction_factor"
+    return experiment.with_parameters(**{key: values["factor"]})
+
+
+EFFECT = Effect(
+    name="weak-joint",
+    title="joint of low friction",
+    acts="contact",
+    equation="mu of the joint = r mu",
+    source="Coulomb",
+    parameters=(EffectParameter("factor", "1", "on the coefficient of friction", 1.0, 0.1, 1.0, 0.25),),
+    signature=Signature("onset", "symmetric", "joint"),
+    confused_with=("rate-weakening-friction",),
+    told_apart_by="slip of each joint in a test that exceeds r mu g",
+    places=joints,
+    act=_act,
+)

@@ -1,0 +1,188 @@
+"""A virtual campaign: ladders of strong tests climbed on the virtual table, written as a laboratory would."""
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.records.contract_csv import write_motion_csv
+from blockshake.files import content_digest, shipped_names, write_dataset, write_json, write_text
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.markers import driven_marker
+from blockshake.study.ensemble import relative_to_slab
+from blockshake.virtual.shake_table import final_places, shake, swelling_sine
+from blockshake.virtual.truth import hidden_effect, true_parameters
+
+DECIMALS = {"m": 6, "m s-2": 3}  # digits kept of a reading: a hundredth and a twentieth of its usual noise
+_PLACES = 4  # stream of the seed
+_HEADER = "# SYNTHETIC: simulated runs seen through noisy sensors. Nothing here was measured.\n"
+
+
+def generate_campaign(settings, structure, folder, truth, source, progress):
+    """Make the folder of a campaign and, apart, that of its truth.
+
+    Parameters
+    ----------
+    settings : VirtualCampaign
+    structure : str
+        Shipped name or file.
+    folder, truth : str or path
+        The second holds ``truth.json`` and, by test, what happened.
+    source : str
+        Digest of the sources that compute; tests that another digest made are made anew.
+    progress : callable
+        Called with a line of text after each test.
+
+    Notes
+    -----
+    A motion's ladder ends with the first test in which a marker drifts too far, as read; one in which a block
+    fell, whose markers fell with it, is not part of the campaign. What an earlier call has finished is kept.
+    """
+    folder, truth = Path(folder), Path(truth)
+    table = _Table(settings, structure, folder, truth, source, progress)
+    tests, gentle = [], []
+    for motion in settings.motions:
+        called = _in_folder(motion, folder)
+        for scale in _scales(settings.intensities):
+            gentle += table.sine(len(tests))
+            entry = {
+                "name": f"{Path(motion).stem}-{round(100 * scale):03d}",
+                "motion": called,
+                "scale": scale,
+            }
+            drift = table.test(entry, load_motion(motion, scale), settings.duration)
+            if drift is not None:
+                tests.append(entry)
+            if drift is None or drift > settings.intensities.largest_drift:
+                break
+    entries = [*({**entry, "role": "fit"} for entry in gentle), *with_roles(tests)]
+    named = structure
+    if structure not in shipped_names("structures"):
+        named = "structure.yaml"
+        shutil.copyfile(structure, folder / named)
+    write_text(folder / "campaign.yaml", _campaign_yaml(settings, named, entries))
+    write_json(
+        truth / "truth.json",
+        {
+            "effect": table.effect, "parameters": table.parameters, "structure": structure,
+            "settings": settings.model_dump(mode="json"), "source": source,
+        },
+    )  # fmt: skip
+
+
+def with_roles(tests):
+    """Strong tests, motion by motion and rising, with what each may be used for.
+
+    Every motion's strongest is sealed; the strongest but one of the last motion is for selection; the others are
+    for fitting. A motion of one test only has it for fitting.
+    """
+    roles = ["fit"] * len(tests)
+    for place, test in enumerate(tests):
+        same = [other["motion"] == test["motion"] for other in tests]
+        last = max(index for index, is_same in enumerate(same) if is_same)
+        if sum(same) > 1 and place == last:
+            roles[place] = "sealed"
+        elif sum(same) > 2 and place == last - 1 and last == len(tests) - 1:
+            roles[place] = "select"
+    return [{**test, "role": role} for test, role in zip(tests, roles, strict=True)]
+
+
+class _Table:
+    """The table, its truth, and the stack as the last test left it."""
+
+    def __init__(self, settings, structure, folder, truth, source, progress):
+        self.settings, self.structure, self.folder, self.truth = settings, structure, folder, truth
+        self.source, self.progress = source, progress
+        self.effect = hidden_effect(settings.hidden, structure, settings.seed)
+        self.parameters = true_parameters(structure, settings.seed)
+        self.driven = load_structure(structure).driven
+        self.count = 0
+        self.places = self._put_back()
+
+    def test(self, entry, motion, duration):
+        """Largest drift read in a test [m], or None where a block fell or the run failed."""
+        self.count += 1
+        if self.settings.restored:
+            self.places = self._put_back()
+        made_by = content_digest(
+            self.source, self.settings.model_dump(mode="json"), self.parameters, self.effect, self.count,
+            self.places.tobytes(), *(part.tobytes() for part in motion.table), duration,
+        )  # fmt: skip
+        entry["file"] = f"{entry['name']}.nc"
+        path, record = self.folder / entry["file"], self.truth / f"{entry['name']}.json"
+        happened = json.loads(record.read_text()) if record.exists() else {}
+        if happened.get("made_by") != made_by or (happened["status"] == "completed" and not path.exists()):
+            happened = {"made_by": made_by, **self._shake(path, entry, motion, duration)}
+            write_json(record, happened)
+        self.places = np.array(happened["places_left"])
+        self.progress(
+            f"{entry['name']}: {happened['status']}, largest drift {1e3 * happened['drift']:.1f} mm"
+        )
+        return happened["drift"] if happened["status"] == "completed" else None
+
+    def sine(self, after):
+        """Entry of the low-amplitude test after so many strong ones, in a list, or an empty one."""
+        if self.settings.sine is None:
+            return []
+        motion = swelling_sine(self.settings.sine)
+        write_motion_csv(motion, self.folder / "sine.csv")
+        entry = {"name": f"sine-{after:02d}", "motion": "sine.csv", "scale": 1.0}
+        return [entry] if self.test(entry, motion, self.settings.sine.duration) is not None else []
+
+    def _shake(self, path, entry, motion, duration):
+        test, run = shake(
+            self.structure, self.parameters, self.effect, motion, self.settings, self.places, duration,
+            int(content_digest(self.settings.seed, self.count), 16),
+        )  # fmt: skip
+        test.attrs |= {"motion": entry["motion"], "motion_scale": entry["scale"]}
+        if run.attrs["status"] == "completed":
+            write_dataset(path, test, DECIMALS)
+        slab = driven_marker(load_structure(self.structure))
+        drift = np.abs(relative_to_slab(test["marker_displacement"], slab).sel(axis="x")).max()
+        return {
+            "status": run.attrs["status"],
+            "reason": run.attrs["reason"],
+            "drift": float(drift),
+            "places": self.places.tolist(),
+            "places_left": final_places(run, self.structure, self.places).tolist(),
+        }
+
+    def _put_back(self):
+        """Where the blocks stand once put back: off their places along x and y, not turned."""
+        generator = np.random.default_rng([self.settings.seed, _PLACES, self.count])
+        places = np.zeros((len(self.driven), 3))
+        places[~self.driven, :2] = generator.normal(
+            0.0, self.settings.misplacement, ((~self.driven).sum(), 2)
+        )
+        return places
+
+
+def _in_folder(motion, folder):
+    """What the campaign calls a motion: a shipped name, or the file that it gets in the folder."""
+    if motion in shipped_names("motions"):
+        return motion
+    write_motion_csv(load_motion(motion), folder / f"{Path(motion).stem}.csv")
+    return f"{Path(motion).stem}.csv"
+
+
+def _scales(intensities):
+    count = int(np.floor((intensities.highest - intensities.first) / intensities.increment + 1e-9)) + 1
+    return [float(intensities.first + intensities.increment * step) for step in range(count)]
+
+
+def _campaign_yaml(settings, structure, entries):
+    noise = settings.instruments
+    lines = [
+        f"name: {settings.name}",
+        f"structure: {structure}",
+        f"sensors: {{marker_noise: {noise.marker_noise}, accelerometer_noise: {noise.accelerometer_noise}}}",
+        "tests:",
+        *(
+            f"  - {{name: {entry['name']}, file: {entry['file']}, motion: {entry['motion']}, "
+            f"scale: {entry['scale']:g}, role: {entry['role']}}}"
+            for entry in entries
+        ),
+    ]
+    return _HEADER + "\n".join(lines) + "\n"

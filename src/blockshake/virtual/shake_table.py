@@ -1,0 +1,125 @@
+"""One test on the virtual shake table: the stack put in place, surveyed, shaken and read."""
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from blockshake.dynamics.motion import ground_motion
+from blockshake.effects.effect import Experiment
+from blockshake.effects.registry import with_effect
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.instruments import observe
+from blockshake.study.simulation import is_numerical, simulate
+
+RATE = 200.0  # Hz, of the optical system
+_SINE_ROWS = 1000  # a second
+
+
+def shake(structure, parameters, effect, motion, settings, places, duration, seed):
+    """Readings of one test.
+
+    Parameters
+    ----------
+    structure : str or path
+    parameters : dict of str to float
+        True ones.
+    effect : dict or None
+        From `hidden_effect`.
+    motion : GroundMotion
+        Commanded.
+    settings : VirtualCampaign
+    places : float64 array, shape (n_bodies, 3)
+        Where the blocks stand off the structure file: along x and y [m], turned about z [rad].
+    duration : float
+        [s]
+    seed : int
+        Of noise and survey.
+
+    Returns
+    -------
+    test : xarray.Dataset
+        As in a campaign's test file, with ``initial_offset`` and ``initial_rotation`` as surveyed.
+    run : xarray.Dataset
+        What happened: the truth.
+    """
+    numerics = {name: value for name, value in parameters.items() if is_numerical(name)} | settings.numerics
+    physical = {name: value for name, value in parameters.items() if not is_numerical(name)}
+    experiment = Experiment(
+        str(structure), physical | _poses(structure, places), motion, settings.instruments
+    )
+    if effect is not None:
+        experiment = with_effect(experiment, **effect)
+    run = simulate(
+        experiment.structure, experiment.motion, settings.model, experiment.parameters | numerics,
+        time_step=settings.time_step, duration=duration, output_rate=RATE,
+    )  # fmt: skip
+    test = observe(run, experiment.load(), experiment.instruments, seed)
+    _add_survey(test, run, places, settings.survey_noise, seed)
+    return test, run
+
+
+def swelling_sine(sine):
+    """Ground motion of a low-amplitude test: a sine along x that swells, stays and fades, ending at rest.
+
+    Notes
+    -----
+    The displacement is given, so that the table ends where it started.
+    """
+    time = np.arange(round(sine.duration * _SINE_ROWS) + 1) / _SINE_ROWS
+    omega = 2.0 * np.pi * sine.frequency
+    swell = np.clip(np.minimum(time, time[-1] - time) / (0.2 * sine.duration), 0.0, 1.0)
+    displacement = -sine.acceleration / omega**2 * np.sin(omega * time) * swell**2 * (3.0 - 2.0 * swell)
+    return ground_motion("sine", time, {"x": displacement}, "displacement", {"synthetic": True})
+
+
+def final_places(run, structure, places):
+    """Where the blocks stand after a test, off the structure file in the slab's frame, as `shake` takes it.
+
+    A block at rest lies flat: what is left of height and tilt is not carried on.
+    """
+    driven = load_structure(structure).driven
+    slab = int(np.argmax(driven))
+    moved = (run["position"].isel(time=-1) - run["position"].isel(time=0)).to_numpy()
+    moved -= moved[slab]
+    first, last = (
+        Rotation.from_quat(run["orientation"].isel(time=time).to_numpy(), scalar_first=True)
+        for time in (0, -1)
+    )
+    left = places.copy()
+    left[:, :2] += moved[:, :2]
+    left[:, 2] += (last * first.inv()).as_rotvec()[:, 2]
+    left[driven] = 0.0
+    return left
+
+
+def _poses(structure, places):
+    """Start poses of the free bodies as parameters of the structure."""
+    poses = {}
+    for body, place in zip(load_structure(structure).file.bodies, places, strict=True):
+        if body.driven:
+            continue
+        x, y, z = body.position
+        turned = Rotation.from_rotvec([0.0, 0.0, place[2]]) * Rotation.from_quat(
+            body.orientation, scalar_first=True
+        )
+        poses[f"bodies.{body.name}.position"] = [x + float(place[0]), y + float(place[1]), z]
+        poses[f"bodies.{body.name}.orientation"] = turned.as_quat(scalar_first=True).tolist()
+    return poses
+
+
+def _add_survey(test, run, places, noise, seed):
+    """Places as a survey finds them, on the free bodies; it turns nothing about x or y."""
+    generator = np.random.default_rng([seed, 3])
+    free = np.abs(places).sum(axis=1) > 0.0
+    read = places + generator.normal(0.0, noise, places.shape)
+    read = np.where(free[:, None], read, 0.0)
+    zero = np.zeros(len(places))
+    names = [str(name) for name in run["body"].values]
+    test.coords["body"] = names
+    test["initial_offset"] = (
+        ("body", "axis"), np.column_stack([read[:, 0], read[:, 1], zero]),
+        {"units": "m", "long_name": "surveyed place of the mass centre against the structure file"},
+    )  # fmt: skip
+    test["initial_rotation"] = (
+        ("body", "axis"), np.column_stack([zero, zero, read[:, 2]]),
+        {"units": "rad", "long_name": "surveyed rotation vector against the structure file"},
+    )  # fmt: skip

@@ -1,0 +1,87 @@
+"""What is true on the virtual table: parameters and effect, drawn by seed, for no reader of the tests."""
+
+import numpy as np
+import pandas as pd
+
+from blockshake.effects.registry import EFFECTS
+from blockshake.errors import InputError
+from blockshake.geometry.structure import load_structure
+from blockshake.study.distributions import draw_true_parameters
+from blockshake.study.sample_parameters import sample_parameters
+from blockshake.study.stiffness import calibrate_stiffness
+
+_TOWER = "configuration-2"  # of whose blocks the wave speed is matched
+_LINKED = {
+    "materials.foundation.youngs_modulus": "materials.concrete.youngs_modulus",
+    "friction.steel.foundation": "friction.concrete.steel",
+    "friction.steel.steel": "friction.concrete.steel",
+}
+_EFFECT, _PLACE, _VALUES = range(3)  # streams of the seed
+_SIZES = (0.5, 1.5)  # of the visible size
+
+
+def true_parameters(structure, seed):
+    """Parameters of the tested structure, drawn independently from Table 2, with their contact stiffness.
+
+    Returns
+    -------
+    dict of str to float
+        By dotted name; those the structure has not are left out.
+    """
+    drawn = draw_true_parameters(seed)
+    tower = calibrate_stiffness(_TOWER, sample_parameters(pd.Series(drawn), _TOWER, _LINKED))
+    drawn |= {f"ls_dem.{name}": tower[name] for name in ("normal_stiffness", "shear_stiffness")}
+    return sample_parameters(pd.Series(drawn), structure, _LINKED)
+
+
+def hidden_effect(hidden, structure, seed):
+    """Name, values and place of the effect in the data; None where there is none.
+
+    Parameters
+    ----------
+    hidden : Hidden
+        What is not said in it is drawn: any effect of the registry with the same chance, any place of it, a
+        size of 0.5 to 1.5 times the visible one with either sign where the prior has both, the other
+        parameters from their priors.
+    structure : str or path
+    seed : int
+
+    Returns
+    -------
+    dict or None
+        ``name``, ``values`` and ``place``.
+
+    Raises
+    ------
+    InputError
+        An effect without a place in this structure.
+    """
+    if hidden.effect == "none":
+        return None
+    name = hidden.effect
+    if name == "drawn":
+        name = list(EFFECTS)[_stream(seed, _EFFECT).integers(len(EFFECTS))]
+    effect = EFFECTS[name]
+    places = effect.places(load_structure(structure))
+    if not places:
+        raise InputError(structure, name, "expected a structure that has a place for this effect")
+    place = hidden.place
+    if place is None:
+        place = places[_stream(seed, _PLACE).integers(len(places))]
+    place = {kind: list(names) if isinstance(names, tuple) else names for kind, names in place.items()}
+    return {"name": name, "values": _values(effect, seed) | hidden.values, "place": place}
+
+
+def _values(effect, seed):
+    generator = _stream(seed, _VALUES)
+    size, *others = effect.parameters
+    share = generator.uniform(*_SIZES)
+    both = size.lower < size.null < size.upper
+    sign = -1.0 if both and generator.random() < 0.5 else 1.0
+    drawn = {size.name: float(size.null + sign * share * (size.visible - size.null))}
+    drawn[size.name] = min(max(drawn[size.name], size.lower), size.upper)
+    return drawn | {item.name: float(generator.uniform(item.lower, item.upper)) for item in others}
+
+
+def _stream(seed, number):
+    return np.random.default_rng([seed, number])
