@@ -21,7 +21,7 @@ WATCHED = {
     "make_report": sources.REPORT,
     "climb_ladder": sources.LADDER,
     "study_convergence": sources.CONVERGENCE,
-    "make_virtual_campaign": sources.virtual_sources("ls-dem"),
+    "make_virtual_campaign": sources.VIRTUAL_CAMPAIGN,
 }
 # What names things or writes logs and computes nothing; and the dispatcher that imports every solver, where a run's
 # own rule watches the one that runs.

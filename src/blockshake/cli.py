@@ -183,7 +183,7 @@ def _generate_campaign(options):
         *Path(options.truth).resolve().parents,
     ):
         raise InputError("--truth", options.truth, "expected a folder outside the campaign's")
-    source = source_digest(*sources.virtual_sources(settings.model))
+    source = source_digest(*sources.VIRTUAL_CAMPAIGN)
     generate_campaign(settings, options.structure, options.output, options.truth, source, print)
 
 

@@ -94,11 +94,14 @@ CONVERGENCE = (
     "study/convergence_table.py",
 )
 DEFINITIONS = (*run_sources("ls-dem"), *STIFFNESS, "solvers/nscd", "study/stiffness_definitions.py")
-
-
-def virtual_sources(model):
-    """Sources that make a virtual campaign by one model; LS-DEM's stiffness is calibrated in any case."""
-    return (*run_sources(model), *STIFFNESS, "effects", "virtual", "study/ensemble.py")
+VIRTUAL_CAMPAIGN = (
+    *run_sources("ls-dem"),
+    *run_sources("nscd-rigid"),
+    *STIFFNESS,
+    "effects",
+    "virtual",
+    "study/ensemble.py",
+)
 
 
 def friction_sources(model):

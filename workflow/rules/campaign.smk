@@ -15,6 +15,6 @@ rule make_virtual_campaign:
     conda:
         "../envs/blockshake.yaml"
     params:
-        source=source_digest(*sources.virtual_sources("ls-dem")),
+        source=source_digest(*sources.VIRTUAL_CAMPAIGN),
     script:
         "../scripts/make_virtual_campaign.py"

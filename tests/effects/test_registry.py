@@ -1,0 +1,173 @@
+"""Every effect: null to the byte, its signature in both solvers, its names and places."""
+
+import numpy as np
+import pytest
+import yaml
+
+from blockshake.dynamics.motion import ground_motion
+from blockshake.effects.effect import Experiment
+from blockshake.effects.registry import EFFECTS, with_effect
+from blockshake.errors import InputError
+from blockshake.measurement.instruments import Instruments, observe
+from blockshake.study.simulation import simulate
+
+STEPS = {"nscd-rigid": 1e-3, "ls-dem": 5e-5}
+WEAK, STRONG = (
+    0.4,
+    4.0,
+)  # m/s2; the stack rocks at 2.4, slides with friction of 0.2 at 1.96, a weak joint of it at 0.49
+FREQUENCY, DURATION = 1.5, 1.0  # Hz, s
+SILENT = Instruments(marker_noise=0.0, accelerometer_noise=0.0)
+SLIDES = ("weak-joint", "rate-weakening-friction")
+# what an effect that shows only later leaves of its largest difference before: rounding, grown by contact
+LEFT_BEFORE = 1e-6
+# of the largest difference: how far the mirror image of a symmetric effect may be off; the order of contact points
+# changes with the mirror, and the solvers' sums with it
+MIRROR = 1e-3
+
+
+@pytest.fixture
+def structure(tmp_path, make_mapping):
+    def make(friction):
+        blocks = [
+            {"name": f"block-{n}", "shape": "block", "position": [0.0, 0.0, 0.8 + 1.6 * (n - 1)]}
+            for n in (1, 2)
+        ]
+        markers = [
+            {"name": f"{body}-{n}", "body": body, "position": place}
+            for body, places in (
+                ("slab", ([1.2, 0.0, 0.0], [-1.2, 0.0, 0.0], [0.0, 1.2, 0.0])),
+                ("block-1", ([0.4, 0.0, 0.6], [-0.4, 0.0, 0.6], [0.0, -1.2, -0.6])),
+                ("block-2", ([0.4, 0.0, 0.6], [-0.4, 0.0, 0.6], [0.0, -1.2, -0.6])),
+            )
+            for n, place in enumerate(places)
+        ]
+        path = tmp_path / f"stack-{friction}.yaml"
+        path.write_text(yaml.safe_dump(make_mapping(blocks, friction=friction, markers=markers)))
+        return str(path)
+
+    return make
+
+
+def _motion(amplitude):
+    """One cycle of a sine, of an acceleration that ends the table at rest."""
+    time = np.arange(0.0, DURATION + 1e-9, 0.002)
+    omega = 2.0 * np.pi * FREQUENCY
+    acceleration = amplitude * np.sin(omega * time) * (time <= 1.0 / FREQUENCY)
+    return ground_motion("sine", time, {"x": acceleration}, "acceleration")
+
+
+def _place(effect, structure):
+    """The place highest up, where most is to be seen."""
+    return effect.places(structure)[-1]
+
+
+def _experiment(structure, name, amplitude):
+    friction = 0.2 if name in SLIDES else 0.75
+    return Experiment(structure(friction), {}, _motion(amplitude), SILENT)
+
+
+def _readings(experiment, model):
+    run = simulate(
+        experiment.structure, experiment.motion, model, experiment.parameters, time_step=STEPS[model],
+        duration=DURATION, accelerometers=False,
+    )  # fmt: skip
+    assert run.attrs["status"] == "completed"
+    return run, observe(run, experiment.load(), experiment.instruments, seed=1)
+
+
+@pytest.fixture(scope="module")
+def nominal():
+    """Runs without an effect by friction, amplitude and model; many tests share them."""
+    return {}
+
+
+def _nominal(nominal, structure, name, amplitude, model):
+    key = (name in SLIDES, amplitude, model)
+    if key not in nominal:
+        nominal[key] = _readings(_experiment(structure, name, amplitude), model)
+    return nominal[key]
+
+
+def _with(structure, name, amplitude, share):
+    """The experiment with a share of the effect's visible size; its other parameters are such that it shows here."""
+    effect = EFFECTS[name]
+    experiment = _experiment(structure, name, amplitude)
+    size = effect.parameters[0]
+    values = {size.name: size.null + share * (size.visible - size.null)} | SHOWN.get(name, {})
+    return with_effect(experiment, name, values, _place(effect, experiment.load()))
+
+
+SHOWN = {"stopper-contact": {"gap": 0.02}}
+
+
+def _added(nominal, structure, name, amplitude, model, share=1.0):
+    """Displacement that the effect adds at the markers, float64 (n_times, n_markers, 3) [m]."""
+    _, plain = _nominal(nominal, structure, name, amplitude, model)
+    _, read = _readings(_with(structure, name, amplitude, share), model)
+    return (read["marker_displacement"] - plain["marker_displacement"]).to_numpy()
+
+
+@pytest.mark.parametrize("model", STEPS)
+@pytest.mark.parametrize("name", EFFECTS)
+def test_the_null_value_gives_the_nominal_run_to_the_byte(name, model, structure, nominal):
+    run, read = _readings(_with(structure, name, STRONG, 0.0), model)
+    plain_run, plain = _nominal(nominal, structure, name, STRONG, model)
+    for variable in plain_run.data_vars:
+        assert run[variable].to_numpy().tobytes() == plain_run[variable].to_numpy().tobytes(), variable
+    assert (
+        read["marker_displacement"].to_numpy().tobytes() == plain["marker_displacement"].to_numpy().tobytes()
+    )
+
+
+@pytest.mark.parametrize("model", STEPS)
+@pytest.mark.parametrize("name", EFFECTS)
+def test_it_shows_when_its_signature_says(name, model, structure, nominal):
+    effect = EFFECTS[name]
+    strong = np.abs(_added(nominal, structure, name, STRONG, model)).max()
+    weak = np.abs(_added(nominal, structure, name, WEAK, model)).max()
+    # a tenth of a marker's noise could not be seen
+    assert strong > 1e-4
+    if effect.signature.phase == "quiet":
+        doubled = np.abs(_added(nominal, structure, name, 2.0 * WEAK, model)).max()
+        # in proportion to the motion
+        assert doubled == pytest.approx(2.0 * weak, rel=0.02)
+    else:
+        assert weak < LEFT_BEFORE * strong
+
+
+@pytest.mark.parametrize("model", STEPS)
+@pytest.mark.parametrize("name", [name for name in EFFECTS if name != "clock-lag"])
+def test_the_mirrored_motion_adds_what_its_signature_says(name, model, structure, nominal):
+    there = _added(nominal, structure, name, STRONG, model)[..., 0]
+    back = _added(nominal, structure, name, -STRONG, model)[..., 0]
+    # the mirror exchanges the markers on the two sides
+    for body in range(3):
+        first = 3 * body
+        back[:, [first, first + 1]] = back[:, [first + 1, first]]
+    off = np.abs(there + back).max() / np.abs(there).max()
+    assert off < MIRROR if EFFECTS[name].signature.symmetry == "symmetric" else off > 0.1
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_an_entry_is_whole(name):
+    effect = EFFECTS[name]
+    assert effect.name == name
+    assert set(effect.confused_with) <= set(EFFECTS)
+    for parameter in effect.parameters:
+        assert parameter.lower <= parameter.null <= parameter.upper
+        assert parameter.lower <= parameter.visible <= parameter.upper
+    assert effect.parameters[0].visible != effect.parameters[0].null
+    assert effect.equation
+    assert effect.source
+    assert effect.told_apart_by
+
+
+def test_what_does_not_exist_is_refused(structure):
+    experiment = _experiment(structure, "table-pitch", WEAK)
+    with pytest.raises(InputError, match=r"effect: table-tilt: expected one of table-pitch, "):
+        with_effect(experiment, "table-tilt", {}, {})
+    with pytest.raises(InputError, match=r"table-pitch.size: expected one of coefficient, frequency"):
+        with_effect(experiment, "table-pitch", {"size": 1.0}, {})
+    with pytest.raises(InputError, match=r"weak-joint.place: expected one of "):
+        with_effect(experiment, "weak-joint", {}, {"joint": ["block-1", "block-9"]})

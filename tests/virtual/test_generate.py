@@ -1,0 +1,179 @@
+"""The virtual shake table: repeatable, resumable, honest about what is synthetic, and read like any campaign."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+import yaml
+
+from blockshake.effects.registry import EFFECTS
+from blockshake.errors import InputError
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaign import load_campaign, load_test
+from blockshake.measurement.campaign_check import campaign_lines
+from blockshake.virtual import generate
+from blockshake.virtual.settings import Hidden, VirtualCampaign, load_settings
+from blockshake.virtual.truth import hidden_effect
+
+SETTINGS = {
+    "name": "small",
+    "seed": 7,
+    "model": "nscd-rigid",
+    "time_step": 1e-3,
+    "duration": 3.0,
+    "motions": ["motion.csv"],
+    "intensities": {"first": 1.0, "increment": 1.0, "highest": 3.0},
+    "hidden": {"effect": "weak-joint", "values": {"factor": 0.2}},
+}
+PLACED = 3e-4  # m, default misplacement
+
+
+@pytest.fixture(scope="module")
+def stiffness():
+    """The true stiffness does not matter to NSCD: no wave is simulated here."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("blockshake.virtual.truth.calibrate_stiffness", lambda *_: dict.fromkeys(
+            ("normal_stiffness", "shear_stiffness"), 2e10
+        ))  # fmt: skip
+        yield
+
+
+@pytest.fixture
+def make(tmp_path, monkeypatch, stiffness):
+    """Campaign and truth of settings; the folders and the lines of progress are returned."""
+    time = np.arange(0.0, 1.5001, 0.01)
+    rows = [f"{t:.2f},{1.2 * np.sin(4.0 * np.pi * t):.6f}" for t in time]
+    (tmp_path / "motion.csv").write_text("time_s,acceleration_x\n" + "\n".join(rows) + "\n")
+    monkeypatch.chdir(tmp_path)
+
+    def made(name="c", source="one", **changed):
+        settings = VirtualCampaign(**{**SETTINGS, **changed})
+        said = []
+        generate.generate_campaign(settings, "configuration-1", name, f"{name}-truth", source, said.append)
+        return tmp_path / name, tmp_path / f"{name}-truth", said
+
+    return made
+
+
+def test_it_is_read_like_any_campaign_and_says_synthetic(make):
+    folder, truth, _ = make()
+    campaign = load_campaign(folder)
+    assert [test.role for test in campaign.tests.values()] == ["fit", "select", "sealed"]
+    for name in campaign.tests:
+        test = load_test(campaign, name)
+        assert np.isfinite(test["marker_displacement"]).all()
+        assert "accelerometer" in test
+        with xr.open_dataset(folder / f"{name}.nc") as file:
+            assert file.attrs["synthetic"] == 1
+    assert "SYNTHETIC" in (folder / "campaign.yaml").read_text()
+    assert len(campaign_lines(folder)) >= 4
+    known = json.loads((truth / "truth.json").read_text())
+    assert known["effect"]["name"] == "weak-joint"
+    assert known["effect"]["values"]["factor"] == 0.2
+    # nothing of it where a diagnosis looks
+    for file in folder.iterdir():
+        assert b"weak-joint" not in file.read_bytes()
+
+
+def test_same_settings_same_bytes_and_another_seed_other_readings(make):
+    first, second, other = make("a")[0], make("b")[0], make("c", seed=8)[0]
+    for name in load_campaign(first).tests:
+        same = xr.load_dataset(first / f"{name}.nc")
+        xr.testing.assert_identical(same, xr.load_dataset(second / f"{name}.nc"))
+        assert not same.equals(xr.load_dataset(other / f"{name}.nc"))
+
+
+def test_what_an_earlier_call_finished_is_kept(make, monkeypatch):
+    folder, _, _ = make()
+    shaken = []
+    shake = generate.shake
+    monkeypatch.setattr(generate, "shake", lambda *values: shaken.append(1) or shake(*values))
+    make()
+    assert not shaken
+    (folder / "motion-200.nc").unlink()
+    make()
+    assert len(shaken) == 1
+    make(source="two")
+    assert len(shaken) == 4
+
+
+def _survey(campaign, name):
+    return load_test(campaign, name)["initial_offset"].transpose("body", "axis").to_numpy()
+
+
+def test_a_restored_stack_is_surveyed_where_it_was_put(make):
+    folder, _, _ = make()
+    campaign = load_campaign(folder)
+    offsets = np.array([_survey(campaign, name) for name in campaign.tests])
+    free = offsets[:, 1:, :2]
+    assert np.abs(offsets[:, 0]).max() == 0.0
+    # 18 draws of PLACED and of a survey noise of a third of it, between a half and twice
+    assert 0.5 * PLACED < free.std() < 2.0 * PLACED
+    assert np.ptp(free, axis=0).min() > 0.0
+
+
+def test_a_stack_that_is_not_put_back_starts_where_it_came_to_rest(make):
+    folder, truth, _ = make(restored=False)
+    campaign = load_campaign(folder)
+    names = list(campaign.tests)
+    left = np.array(json.loads((truth / f"{names[1]}.json").read_text())["places_left"])
+    assert np.abs(left[1:, 0]).max() > 5e-3
+    surveyed = _survey(campaign, names[2])
+    # 4 standard deviations of the survey
+    np.testing.assert_allclose(surveyed[:, :2], left[:, :2], atol=4e-4)
+
+
+def test_low_amplitude_tests_come_before_and_between(make):
+    folder, _, said = make(sine={"frequency": 5.0, "acceleration": 0.3, "duration": 1.0})
+    order = [line.split(":")[0] for line in said]
+    assert order == ["sine-00", "motion-100", "sine-01", "motion-200", "sine-02", "motion-300"]
+    sine = load_test(load_campaign(folder), "sine-00")
+    slab = sine["marker_displacement"].sel(marker="slab-face", axis="x")
+    # amplitude of a displacement a / omega^2, and noise
+    assert float(np.abs(slab).max()) == pytest.approx(0.3 / (10.0 * np.pi) ** 2, abs=6e-4)
+
+
+def test_a_ladder_ends_where_a_block_drifts_too_far(make):
+    folder, _, said = make(
+        intensities={"first": 1.0, "increment": 1.0, "highest": 3.0, "largest_drift": 0.01}
+    )
+    drifts = [float(line.split()[-2]) for line in said]
+    assert len(drifts) < 3
+    assert drifts[-1] > 10.0
+    assert len(load_campaign(folder).tests) == len(drifts)
+
+
+def test_every_effect_is_drawn_by_some_seed_with_a_size_that_shows(stiffness):
+    names = set()
+    for seed in range(100):
+        effect = hidden_effect(Hidden(), "configuration-2", seed)
+        assert effect == hidden_effect(Hidden(), "configuration-2", seed)
+        assert effect["place"] in EFFECTS[effect["name"]].places(load_structure("configuration-2"))
+        size = EFFECTS[effect["name"]].parameters[0]
+        share = abs((effect["values"][size.name] - size.null) / (size.visible - size.null))
+        assert 0.49 < share < 1.51
+        names.add(effect["name"])
+    # a seed misses an effect by (11/12)^100, 2e-4
+    assert names == set(EFFECTS)
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"hidden": {"effect": "ghost"}}, "hidden.effect: expected drawn, none or one of table-pitch"),
+        (
+            {"hidden": {"effect": "none", "values": {"a": 1.0}}},
+            "hidden: expected values and place of a named",
+        ),
+        ({"sead": 3}, "sead: unknown key"),
+        ({"time_step": 0.0}, "time_step: "),
+    ],
+)
+def test_wrong_settings_are_one_line(changed, message, tmp_path):
+    path = tmp_path / "settings.yaml"
+    path.write_text(yaml.safe_dump({**SETTINGS, **changed}))
+    with pytest.raises(InputError) as error:
+        load_settings(path)
+    assert str(error.value).startswith(f"{path}: {message}")
+    assert "\n" not in str(error.value)
