@@ -101,6 +101,7 @@ VIRTUAL_CAMPAIGN = (
     "effects",
     "virtual",
     "study/ensemble.py",
+    "study/placement.py",
 )
 
 

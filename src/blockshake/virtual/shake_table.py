@@ -8,6 +8,7 @@ from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.instruments import observe
+from blockshake.study.placement import placed
 from blockshake.study.simulation import is_numerical, simulate
 
 RATE = 200.0  # Hz, of the optical system
@@ -44,7 +45,7 @@ def shake(structure, parameters, effect, motion, settings, places, duration, see
     numerics = {name: value for name, value in parameters.items() if is_numerical(name)} | settings.numerics
     physical = {name: value for name, value in parameters.items() if not is_numerical(name)}
     experiment = Experiment(
-        str(structure), physical | _poses(structure, places), motion, settings.instruments
+        str(structure), physical | placed(structure, places), motion, settings.instruments
     )
     if effect is not None:
         experiment = with_effect(experiment, **effect)
@@ -89,21 +90,6 @@ def final_places(run, structure, places):
     left[:, 2] += (last * first.inv()).as_rotvec()[:, 2]
     left[driven] = 0.0
     return left
-
-
-def _poses(structure, places):
-    """Start poses of the free bodies as parameters of the structure."""
-    poses = {}
-    for body, place in zip(load_structure(structure).file.bodies, places, strict=True):
-        if body.driven:
-            continue
-        x, y, z = body.position
-        turned = Rotation.from_rotvec([0.0, 0.0, place[2]]) * Rotation.from_quat(
-            body.orientation, scalar_first=True
-        )
-        poses[f"bodies.{body.name}.position"] = [x + float(place[0]), y + float(place[1]), z]
-        poses[f"bodies.{body.name}.orientation"] = turned.as_quat(scalar_first=True).tolist()
-    return poses
 
 
 def _add_survey(test, run, places, noise, seed):
