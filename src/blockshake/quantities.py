@@ -44,7 +44,10 @@ PHYSICAL = (
     Quantity("nscd_restitution", "e", "1", "Newton's restitution of NSCD", f"{_PAPER}, section LMGC90"),
     Quantity("gravity", "g", "m/s2", "gravity vector", "structure file"),
     Quantity("bodies.BODY.density", "rho", "kg/m3", "density of one body instead of its material's", "structure file"),
-    Quantity("bodies.BODY.position", "x", "m", "mass centre at the start", "structure file"),
+    Quantity(
+        "bodies.BODY.mass_offset", "e", "m", "mass centre seen from the shape's centroid, body frame", "docs/method.md"
+    ),
+    Quantity("bodies.BODY.position", "x", "m", "shape's centroid at the start", "structure file"),
     Quantity("bodies.BODY.orientation", "q", "1", "unit quaternion w, x, y, z at the start", "structure file"),
     Quantity("bodies.BODY.velocity", "v", "m/s", "velocity at the start", "structure file"),
     Quantity("bodies.BODY.angular_velocity", "omega", "rad/s", "angular velocity at the start", "structure file"),

@@ -54,7 +54,7 @@ class State(NamedTuple):
 class Stoppers(NamedTuple):
     """Elastic stops fixed to the first driven body.
 
-    ``body`` int64 (n,); ``point`` (n, 3) body frame [m]; ``axis`` (n, 3) signed unit vectors,
+    ``body`` int64 (n,); ``point`` (n, 3) from the mass centre, body frame [m]; ``axis`` (n, 3) signed unit vectors,
     world frame at the start; ``gap`` (n,) [m]; ``stiffness`` (n,) [N/m].
     """
 
@@ -136,8 +136,8 @@ def _assemble_stoppers(structure):
     unit = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
     sign = {"+": 1.0, "-": -1.0}
     return Stoppers(
-        body=np.array([structure.body_names.index(stop.body) for stop in file.stoppers], dtype=np.int64),
-        point=np.array([stop.position for stop in file.stoppers], dtype=float).reshape(-1, 3),
+        body=structure.carriers(file.stoppers),
+        point=structure.arms(file.stoppers),
         axis=np.array(
             [np.multiply(sign[stop.axis[0]], unit[stop.axis[1]]) for stop in file.stoppers]
         ).reshape(-1, 3),

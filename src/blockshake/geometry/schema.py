@@ -53,14 +53,17 @@ class Body(Strict):
     name: Name
     shape: str
     material: str
-    position: Vector = Field(description="mass centre, world frame [m]")
+    position: Vector = Field(description="centroid of the shape, world frame [m]")
     orientation: Quaternion = Field(
         (1.0, 0.0, 0.0, 0.0), description="unit quaternion w, x, y, z, body to world"
     )
-    velocity: Vector = Field((0.0, 0.0, 0.0), description="of the mass centre, world frame [m/s]")
+    velocity: Vector = Field((0.0, 0.0, 0.0), description="of the centroid, world frame [m/s]")
     angular_velocity: Vector = Field((0.0, 0.0, 0.0), description="world frame [rad/s]")
     driven: bool = Field(False, strict=True, description="the body follows the ground motion")
     density: Positive | None = Field(None, description="of this body instead of its material's [kg/m3]")
+    mass_offset: Vector = Field(
+        (0.0, 0.0, 0.0), description="mass centre seen from the centroid of the shape, body frame [m]"
+    )
 
 
 class Friction(Strict):
@@ -89,10 +92,12 @@ class Stopper(Strict):
     """A one-sided elastic stop fixed to the driven body."""
 
     body: str
-    position: Vector = Field(description="point of the body, body frame [m]")
+    position: Vector = Field(description="point of the body, body frame, from the centroid [m]")
     axis: Literal["+x", "-x", "+y", "-y", "+z", "-z"] = Field(description="side on which the stop stands")
     gap: NotNegative = Field(description="clearance at the start [m]")
-    stiffness: Positive = Field(description="force per closure beyond the gap [N/m]")
+    stiffness: NotNegative = Field(
+        description="force per closure beyond the gap, 0 for a stop that is not there [N/m]"
+    )
 
 
 class Marker(Strict):
@@ -100,7 +105,7 @@ class Marker(Strict):
 
     name: Name
     body: str
-    position: Vector = Field(description="body frame [m]")
+    position: Vector = Field(description="body frame, from the centroid [m]")
 
 
 class Accelerometer(Strict):
@@ -108,7 +113,7 @@ class Accelerometer(Strict):
 
     name: Name
     body: str
-    position: Vector = Field(description="body frame [m]")
+    position: Vector = Field(description="body frame, from the centroid [m]")
     axes: tuple[Literal["x", "y", "z"], ...] = Field(min_length=1)
 
 

@@ -9,6 +9,7 @@ import trimesh
 
 from blockshake.errors import InputError
 from blockshake.files import load_yaml, shipped, shipped_names
+from blockshake.geometry.mass_offset import check_offset, offset_inertia, offset_solid
 from blockshake.geometry.overlap import near_pairs, penetration_depths
 from blockshake.geometry.polyhedron import (
     MassProperties,
@@ -18,6 +19,7 @@ from blockshake.geometry.polyhedron import (
     mass_properties,
     triangles,
 )
+from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import StructureFile
 from blockshake.geometry.structure_file import check_names, friction_matrix, replace_into, unit_quaternions
 from blockshake.validation import validated
@@ -28,7 +30,7 @@ _TOUCHING = 1e-4  # m, contract: an equilibrium within this of the given poses i
 
 @dataclass(frozen=True)
 class Solid:
-    """A shape about its mass centre.
+    """A shape about the mass centre: its centroid, but for a body whose mass is offset.
 
     Attributes
     ----------
@@ -37,7 +39,7 @@ class Solid:
     polyhedron : Polyhedron or None
         The same as a convex body; None where the shape is not convex.
     properties : MassProperties
-        Of unit density, centroid at the origin.
+        Of unit density, about the centroid.
     """
 
     vertices: np.ndarray
@@ -53,11 +55,12 @@ class Structure:
     Attributes
     ----------
     file : StructureFile
-        The file's content, parameters applied.
+        The file's content, parameters applied. Its positions count from the centroids of the shapes; those of the
+        structure, which differ where mass is offset, from the mass centres.
     source : str
         Name or path it came from.
     solids : dict of str to Solid
-        By shape name.
+        By shape name, about the centroid.
     mass : float64 array, shape (n_bodies,)
         Of the true chamfered shape [kg].
     inertia : float64 array, shape (n_bodies, 3, 3)
@@ -65,7 +68,7 @@ class Structure:
     driven : bool array, shape (n_bodies,)
         Bodies that follow the motion.
     position, velocity, angular_velocity : float64 arrays, shape (n_bodies, 3)
-        At the start, world frame [m, m/s, rad/s].
+        Of the mass centres at the start, world frame [m, m/s, rad/s].
     orientation : float64 array, shape (n_bodies, 4)
         At the start, unit quaternions (w, x, y, z), body to world.
     friction : float64 array, shape (n_bodies, n_bodies)
@@ -92,9 +95,30 @@ class Structure:
         """Names of the bodies, in file order."""
         return [body.name for body in self.file.bodies]
 
+    @property
+    def mass_offset(self):
+        """Mass centres seen from the centroids of the shapes: float64 array, shape (n_bodies, 3), body frames [m]."""
+        return np.array([body.mass_offset for body in self.file.bodies])
+
+    @property
+    def centroid(self):
+        """Centroids of the shapes at the start: float64 array, shape (n_bodies, 3), world frame [m]."""
+        return np.array([body.position for body in self.file.bodies])
+
     def solid(self, body):
-        """Solid of the body with this index."""
-        return self.solids[self.file.bodies[body].shape]
+        """Solid of the body with this index, about its mass centre."""
+        one = self.file.bodies[body]
+        return offset_solid(self.solids[one.shape], np.array(one.mass_offset))
+
+    def carriers(self, points):
+        """Bodies of markers, accelerometers or stoppers: int64 array, shape (n_points,)."""
+        names = self.body_names
+        return np.array([names.index(point.body) for point in points], dtype=np.int64)
+
+    def arms(self, points):
+        """Where they are from their bodies' mass centres: float64 array, shape (n_points, 3), body frames [m]."""
+        places = np.array([point.position for point in points], dtype=float).reshape(-1, 3)
+        return places - self.mass_offset[self.carriers(points)]
 
 
 def load_structure(source, parameters=None):
@@ -131,9 +155,14 @@ def build_structure(mapping, source, folder):
     file = validated(StructureFile, mapping, source)
     check_names(file, source)
     solids = {name: _solid(name, shape, source, folder) for name, shape in file.shapes.items()}
+    for body in file.bodies:
+        check_offset(body, solids[body.shape], source)
     mass, inertia = _masses(file, solids)
-    position = np.array([body.position for body in file.bodies])
+    centroid = np.array([body.position for body in file.bodies])
     orientation = unit_quaternions(file, source)
+    offset = np.array([body.mass_offset for body in file.bodies])
+    lever = np.einsum("bij,bj->bi", rotation_matrices(orientation), offset)
+    angular_velocity = np.array([body.angular_velocity for body in file.bodies])
     return Structure(
         file=file,
         source=source,
@@ -141,12 +170,12 @@ def build_structure(mapping, source, folder):
         mass=mass,
         inertia=inertia,
         driven=np.array([body.driven for body in file.bodies]),
-        position=position,
+        position=centroid + lever,
         orientation=orientation,
-        velocity=np.array([body.velocity for body in file.bodies]),
-        angular_velocity=np.array([body.angular_velocity for body in file.bodies]),
+        velocity=np.array([body.velocity for body in file.bodies]) + np.cross(angular_velocity, lever),
+        angular_velocity=angular_velocity,
         friction=friction_matrix(file, source),
-        touching=_touching(file, source, solids, position, orientation),
+        touching=_touching(file, source, solids, centroid, orientation),
     )
 
 
@@ -174,8 +203,11 @@ def _masses(file, solids):
     density = np.array([body.density or file.materials[body.material].density for body in file.bodies])
     properties = [solids[body.shape].properties for body in file.bodies]
     mass = density * np.array([item.volume for item in properties])
-    inertia = density[:, None, None] * np.array([item.inertia for item in properties])
-    return mass, inertia
+    inertia = [
+        offset_inertia(one, unit * item.inertia, np.array(body.mass_offset))
+        for one, unit, item, body in zip(mass, density, properties, file.bodies, strict=True)
+    ]
+    return mass, np.array(inertia)
 
 
 def _touching(file, source, solids, position, orientation):

@@ -65,12 +65,12 @@ def accelerometer_readings(structure, time, orientation, velocity, angular_veloc
     readings = np.full((len(time_acc), len(channels)), np.nan)
     if not channels:
         return time_acc, readings, channels
-    bodies = np.array([structure.body_names.index(sensor.body) for sensor in sensors])
+    bodies = structure.carriers(sensors)
     whole = _whole_states(orientation[:, bodies], velocity[:, bodies], angular_velocity[:, bodies])
     if whole < 2:
         return time_acc, readings, channels
     force = _specific_force(
-        np.array([sensor.position for sensor in sensors], dtype=float),
+        structure.arms(sensors),
         np.array(structure.file.gravity),
         orientation[:whole, bodies],
         velocity[:whole, bodies],

@@ -14,7 +14,7 @@ def find_joints(structure):
     Returns
     -------
     pairs : int64 array, shape (n_joints, 2)
-        Lower body, upper body, by height of their mass centres.
+        Lower body, upper body, by height of their centroids.
     centres : float64 array, shape (n_joints, 3)
         Middle of what the bounding boxes of the two have in common, world frame [m].
     """
@@ -26,7 +26,7 @@ def find_joints(structure):
         high.append(corners.max(axis=0))
     low, high = np.array(low), np.array(high)
     pairs = np.argwhere(np.triu(structure.touching))
-    height = structure.position[:, 2]
+    height = structure.centroid[:, 2]
     swapped = height[pairs[:, 0]] > height[pairs[:, 1]]
     pairs[swapped] = pairs[swapped][:, ::-1]
     first, second = pairs.T

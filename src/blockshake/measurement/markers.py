@@ -23,10 +23,9 @@ def marker_position(structure, position, orientation):
         Inertial frame [m], markers in file order; NaN where the body's pose is.
     """
     markers = structure.file.markers
-    bodies = np.array([structure.body_names.index(marker.body) for marker in markers], dtype=np.int64)
-    arms = np.array([marker.position for marker in markers], dtype=float).reshape(-1, 3)
+    bodies = structure.carriers(markers)
     turn = rotation_matrices(orientation[..., bodies, :])
-    return position[..., bodies, :] + np.einsum("...mij,mj->...mi", turn, arms)
+    return position[..., bodies, :] + np.einsum("...mij,mj->...mi", turn, structure.arms(markers))
 
 
 def marker_displacement(structure, position, orientation):

@@ -142,12 +142,9 @@ def _draw_sensors(axes, structure, across):
         ),
     )
     for sensors, label, style in kinds:
-        points = []
-        for sensor in sensors:
-            body = structure.body_names.index(sensor.body)
-            points.append(structure.position[body] + turns[body] @ np.array(sensor.position))
-        if points:
-            points = np.array(points)
+        bodies = structure.carriers(sensors)
+        points = structure.position[bodies] + np.einsum("sij,sj->si", turns[bodies], structure.arms(sensors))
+        if len(points):
             axes.plot(
                 points[:, across], points[:, 2], linestyle="none", markeredgewidth=0.3, label=label, **style
             )

@@ -168,6 +168,9 @@ def effective_parameters(structure, model, numerical):
         acted |= {
             f"{pair}.{key}": value for key, value in entry.model_dump(exclude={"pair", "coefficient"}).items()
         }
+    acted |= {
+        f"bodies.{body.name}.mass_offset": list(body.mass_offset) for body in file.bodies if not body.driven
+    }
     for joint in file.joints:
         acted[f"joints.{'.'.join(joint.bodies)}.friction_factor"] = joint.friction_factor
     prefix = MODELS[model][2]

@@ -86,7 +86,7 @@ def lists_expired(candidates, surfaces, driven, position, orientation, skin):
         for part in range(4):
             dot += orientation[body, part] * candidates.orientation[body, part]
         # chord of the rotation at the circumscribed sphere: 2 R sin(angle / 2)
-        chord = 2.0 * surfaces.radius[surfaces.shape[body]] * np.sqrt(max(1.0 - dot * dot, 0.0))
+        chord = 2.0 * surfaces.radius[body] * np.sqrt(max(1.0 - dot * dot, 0.0))
         bound = np.sqrt(squared) + chord
         # not (x <= limit), here and below, so that NaN asks for new lists
         if not (bound <= most):
@@ -113,7 +113,8 @@ def find_pairs(surfaces, driven, position, orientation, skin):
         for axis in range(3):
             reach = abs(R[axis, 0]) * half[0] + abs(R[axis, 1]) * half[1] + abs(R[axis, 2]) * half[2]
             centre = position[body, axis]
-            centre += R[axis, 0] * middle[0] + R[axis, 1] * middle[1] + R[axis, 2] * middle[2]
+            for along in range(3):
+                centre += R[axis, along] * (middle[along] - surfaces.offset[body, along])
             low[body, axis] = centre - reach - 0.5 * skin
             high[body, axis] = centre + reach + 0.5 * skin
     widest, spread = 0, -1.0
@@ -157,10 +158,11 @@ def _near_nodes(surfaces, owner, other, R, d, side, skin, found, count):
         longer[:count] = found[:count]
         found = longer
     for node in range(surfaces.first_node[shape], surfaces.first_node[shape + 1]):
-        p = surfaces.points[node]
-        x = R[side, 0, 0] * p[0] + R[side, 0, 1] * p[1] + R[side, 0, 2] * p[2] + d[side, 0]
-        y = R[side, 1, 0] * p[0] + R[side, 1, 1] * p[1] + R[side, 1, 2] * p[2] + d[side, 1]
-        z = R[side, 2, 0] * p[0] + R[side, 2, 1] * p[1] + R[side, 2, 2] * p[2] + d[side, 2]
+        p, e = surfaces.points[node], surfaces.offset[owner]
+        px, py, pz = p[0] - e[0], p[1] - e[1], p[2] - e[2]
+        x = R[side, 0, 0] * px + R[side, 0, 1] * py + R[side, 0, 2] * pz + d[side, 0]
+        y = R[side, 1, 0] * px + R[side, 1, 1] * py + R[side, 1, 2] * pz + d[side, 1]
+        z = R[side, 2, 0] * px + R[side, 2, 1] * py + R[side, 2, 2] * pz + d[side, 2]
         if level_set(surfaces, other_shape, x, y, z) < surfaces.steepest[other_shape] * skin:
             found[count] = node
             count += 1
@@ -199,7 +201,7 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
     found, count = np.empty(1024, np.int64), np.zeros(n_sides + 1, np.int64)
     for side in range(n_sides):
         owner, other = pairs[side // 2, side % 2], pairs[side // 2, 1 - side % 2]
-        relative_pose_into(position, rotation, owner, other, 0, R, d)
+        relative_pose_into(position, rotation, surfaces.offset, owner, other, 0, R, d)
         found, count[side + 1] = _near_nodes(surfaces, owner, other, R, d, 0, skin, found, count[side])
     first = np.zeros(n_sides + 1, np.int64)
     for side in range(n_sides):
@@ -207,22 +209,24 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
     node = np.full(first[n_sides] * LANES, -1, np.int64)
     packets = np.zeros((first[n_sides], PACKET))
     for side in range(n_sides):
-        n_nodes = count[side + 1] - count[side]
+        owner, other = pairs[side // 2, side % 2], pairs[side // 2, 1 - side % 2]
+        e, n_nodes = surfaces.offset[owner], count[side + 1] - count[side]
         for rank in range((first[side + 1] - first[side]) * LANES):
             place = first[side] * LANES + rank
             packet, lane = place // LANES, place % LANES
             if rank < n_nodes:
                 node[place] = found[count[side] + rank]
-                packets[packet, lane + POINT_X] = surfaces.points[node[place], 0]
-                packets[packet, lane + POINT_Y] = surfaces.points[node[place], 1]
-                packets[packet, lane + POINT_Z] = surfaces.points[node[place], 2]
+                packets[packet, lane + POINT_X] = surfaces.points[node[place], 0] - e[0]
+                packets[packet, lane + POINT_Y] = surfaces.points[node[place], 1] - e[1]
+                packets[packet, lane + POINT_Z] = surfaces.points[node[place], 2] - e[2]
                 packets[packet, lane + AREA] = surfaces.areas[node[place]]
                 packets[packet, lane + DAMPING] = surfaces.damping[node[place]]
             else:
                 packets[packet, lane + POINT_X] = FAR_AWAY
             packets[packet, lane + SLOPE] = 1.0
-        owner, other = pairs[side // 2, side % 2], pairs[side // 2, 1 - side % 2]
-        relative_pose_into(poses.position_before, poses.rotation_before, owner, other, 0, R, d)
+        relative_pose_into(
+            poses.position_before, poses.rotation_before, surfaces.offset, owner, other, 0, R, d
+        )
         locate_nodes_into(
             packets, first[side], first[side + 1],
             surfaces.half, surfaces.chamfer, surfaces.lattice, surfaces.values, surfaces.shape[other],

@@ -77,7 +77,7 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
     lanes, sums = np.empty(N_SUMS * LANES), np.empty(N_SUMS)
     pairs, bounds, packets = candidates.pairs, candidates.first, candidates.packets
     shapes, half, chamfer = surfaces.shape, surfaces.half, surfaces.chamfer
-    lattice, values = surfaces.lattice, surfaces.values
+    lattice, values, offset = surfaces.lattice, surfaces.values, surfaces.offset
     position, rotation = poses.position, poses.rotation
     force, moment, joint_force = loads.force, loads.moment, loads.joints.force
     energy = loads.energy
@@ -89,7 +89,7 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
         area = 0.0
         for side in range(2):
             owner, other = pairs[pair, side], pairs[pair, 1 - side]
-            relative_pose_into(position, rotation, owner, other, side, R, d)
+            relative_pose_into(position, rotation, offset, owner, other, side, R, d)
             area += 0.5 * locate_nodes_into(
                 packets, bounds[2 * pair + side], bounds[2 * pair + side + 1],
                 half, chamfer, lattice, values, shapes[other], R, d, side, lanes,
@@ -117,6 +117,7 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
                 pairs[pair, 1 - side],
                 side,
                 rotation,
+                offset,
                 d,
                 sums,
                 force,
@@ -132,14 +133,16 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
 
 
 @kernel
-def _share_into(owner, other, side, rotation, d, sums, force, moment, joint, joint_force):
+def _share_into(owner, other, side, rotation, offset, d, sums, force, moment, joint, joint_force):
     """Add the summed force of a side to both bodies and to the joint, whose second body owns side 1."""
     sign = 1.0 if side == 1 else -1.0
-    # moment about the owner's mass centre, d away from the other's
+    # moments about both mass centres: the owner's is at d from the centroid of the other's shape, the other's at e
     d0, d1, d2 = d[side, 0], d[side, 1], d[side, 2]
     f0, f1, f2 = sums[0], sums[1], sums[2]
     m0, m1, m2 = sums[3], sums[4], sums[5]
     o0, o1, o2 = m0 - (d1 * f2 - d2 * f1), m1 - (d2 * f0 - d0 * f2), m2 - (d0 * f1 - d1 * f0)
+    c0, c1, c2 = offset[other, 0], offset[other, 1], offset[other, 2]
+    m0, m1, m2 = m0 - (c1 * f2 - c2 * f1), m1 - (c2 * f0 - c0 * f2), m2 - (c0 * f1 - c1 * f0)
     for i in range(3):
         e0, e1, e2 = rotation[other, i, 0], rotation[other, i, 1], rotation[other, i, 2]
         f = e0 * f0 + e1 * f1 + e2 * f2

@@ -189,7 +189,7 @@ def _joints(structure, joints, force, n_recorded):
     rows = np.flatnonzero(joints.touched)
     rows = rows[np.lexsort(joints.pair[rows].T[::-1])]
     pairs = joints.pair[rows]
-    height = structure.position[:, 2]
+    height = structure.centroid[:, 2]
     swapped = height[pairs[:, 0]] > height[pairs[:, 1]]
     force = force[:, rows] * np.where(swapped, -1.0, 1.0)[None, :, None]
     force[n_recorded:] = np.nan

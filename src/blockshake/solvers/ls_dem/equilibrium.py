@@ -62,7 +62,7 @@ def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near):
         surfaces, bodies.driven, poses, orientation, skin, empty_candidates(n_bodies), no_joints()
     )
     loads = no_loads(n_bodies, joints)
-    radius = surfaces.radius[surfaces.shape]
+    radius = surfaces.radius
     at_rest = _AT_REST * bodies.mass * np.linalg.norm(bodies.gravity) + 1e-300
     down = bodies.gravity / max(np.linalg.norm(bodies.gravity), 1e-300)
     moves = np.repeat([[True] * 3 + [False] * 3], n_bodies, axis=0)
@@ -74,7 +74,9 @@ def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near):
         poses.position_before[:] = position
         poses.rotation_before[:] = rotation
         reach = near if iteration == 0 else 0.0
-        stiffness, pull, touching, relaxation = _joint_stiffness(candidates, interfaces, poses, reach, down)
+        stiffness, pull, touching, relaxation = _joint_stiffness(
+            candidates, interfaces, surfaces.offset, poses, reach, down
+        )
         if iteration == 0:
             stable_step = _stable_step(candidates.pairs, stiffness, relaxation, bodies)
             at_rest = np.maximum(at_rest, _rounding(candidates.pairs, stiffness, position))
@@ -144,7 +146,7 @@ def _solve(pairs, stiffness, solved, load):
 
 
 @kernel
-def _joint_stiffness(candidates, interfaces, poses, reach, down):
+def _joint_stiffness(candidates, interfaces, offset, poses, reach, down):
     """Stiffness of each pair for the displacements and rotations of its two bodies, and the pull of open nodes.
 
     Parameters
@@ -152,6 +154,8 @@ def _joint_stiffness(candidates, interfaces, poses, reach, down):
     candidates : Candidates
         Located nodes.
     interfaces : Interfaces
+    offset : float64 array, shape (n_bodies, 3)
+        As in `Surfaces`.
     poses : Poses
     reach : float
         Nodes whose level-set value is below this are in touch [m].
@@ -191,7 +195,7 @@ def _joint_stiffness(candidates, interfaces, poses, reach, down):
                     for i in range(3):
                         for j in range(3):
                             n[i] += R[i, j] * node[NORMAL_X + j * LANES + lane]
-                            arm[i] += R[i, j] * node[PLACE_X + j * LANES + lane]
+                            arm[i] += R[i, j] * (node[PLACE_X + j * LANES + lane] - offset[other, j])
                     if phi >= 0.0 and abs(n[0] * down[0] + n[1] * down[1] + n[2] * down[2]) < 0.5:
                         continue
                     touching[pair] = True

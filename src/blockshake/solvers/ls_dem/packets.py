@@ -7,10 +7,10 @@ from blockshake.jit import inline_kernel
 # array becomes vector instructions; a slice would be counted, and a flat index checked for its sign, at every packet.
 LANES = 8
 (
-    POINT_X, POINT_Y, POINT_Z,  # place in the owner's frame [m]
+    POINT_X, POINT_Y, POINT_Z,  # place in the owner's frame, from its mass centre [m]
     AREA,  # [m2]
     DAMPING,  # what the dashpot goes with: the area [m2], or its root [m] in the literal Eq. (3)
-    PLACE_X, PLACE_Y, PLACE_Z,  # in the other body's frame [m]
+    PLACE_X, PLACE_Y, PLACE_Z,  # in the other body's frame, from the centroid of its shape [m]
     MOVED_X, MOVED_Y, MOVED_Z,  # change of the place in the last step [m]
     PHI,  # level-set value there [m]
     NORMAL_X, NORMAL_Y, NORMAL_Z,  # outward normal there, in the other body's frame
@@ -18,7 +18,7 @@ LANES = 8
     CLOSED,  # change of the place along the normal in the last step [m]
     STRETCH_X, STRETCH_Y, STRETCH_Z,  # of the shear spring, in the other body's frame [m]
     FORCE_X, FORCE_Y, FORCE_Z,  # of the last evaluation on the owner, other's frame [N]
-    MOMENT_X, MOMENT_Y, MOMENT_Z,  # about the other's mass centre, other's frame [N m]
+    MOMENT_X, MOMENT_Y, MOMENT_Z,  # about the same origin, other's frame [N m]
     SLID, DAMPED,  # friction heat and dashpot heat of the step [J]
     HELD,  # energy in the springs [J]; not zero where one is stretched
     PACKET,

@@ -21,9 +21,10 @@ class Poses(NamedTuple):
 
 
 @kernel
-def relative_pose_into(position, rotation, owner, other, side, R, d):
-    """Pose of ``owner`` in the body frame of ``other``: its axes ``R[side]`` (3, 3) and mass centre ``d[side]`` (3,).
+def relative_pose_into(position, rotation, offset, owner, other, side, R, d):
+    """Pose of ``owner`` in the frame of the shape of ``other``, whose origin is the shape's centroid.
 
+    Its axes ``R[side]`` (3, 3) and its mass centre ``d[side]`` (3,); ``offset`` as in `Surfaces`.
     Whole arrays and an index are passed, and no tuples of arrays, because their counting of references
     costs more than what is done with them here.
     """
@@ -38,4 +39,5 @@ def relative_pose_into(position, rotation, owner, other, side, R, d):
             rotation[other, 0, i] * (position[owner, 0] - position[other, 0])
             + rotation[other, 1, i] * (position[owner, 1] - position[other, 1])
             + rotation[other, 2, i] * (position[owner, 2] - position[other, 2])
+            + offset[other, i]
         )

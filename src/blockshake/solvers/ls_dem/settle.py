@@ -74,7 +74,7 @@ def settle(bodies, surfaces, interfaces, skin, dt, given, state, near, at_rest, 
         for body in range(n_bodies):
             if bodies.driven[body] or left[body]:
                 continue
-            radius = surfaces.radius[surfaces.shape[body]]
+            radius = surfaces.radius[body]
             for axis in range(3):
                 force, moment = loads.force[body, axis], loads.moment[body, axis]
                 if not (abs(force) < at_rest[body] and abs(moment) < at_rest[body] * radius):

@@ -53,7 +53,7 @@ def side_forces_into(packets, first, last, law, gamma_s, lanes, sums):
     lanes : float64 array, shape (N_SUMS * LANES,)
         Workspace.
     sums : float64 array, shape (N_SUMS,)
-        Overwritten: force and moment about the other body's mass centre, on the owner, other's
+        Overwritten: force and moment about the centroid of the other's shape, on the owner, other's
         frame [N, N m]; friction heat and dashpot heat of this step, and elastic energy held [J].
 
     Notes

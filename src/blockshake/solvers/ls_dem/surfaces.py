@@ -20,20 +20,22 @@ _MOST_POINTS = 5e7  # of a lattice: 400 MB
 class Surfaces(NamedTuple):
     """Level sets and nodes of the shapes.
 
-    ``shape`` int64 (n_bodies,): shape of each body. ``half``, ``middle`` (n_shapes, 3): half edges and
-    middle of the bounding box, body frame; ``chamfer`` and ``radius`` about the mass centre (n_shapes,) [m].
+    ``shape`` int64 (n_bodies,): shape of each body; ``offset`` (n_bodies, 3): its mass centre in the frame of the
+    shape, whose origin is the centroid; ``radius`` (n_bodies,) about the mass centre [m]. ``half``, ``middle``
+    (n_shapes, 3): half edges and middle of the bounding box; ``chamfer`` (n_shapes,) [m].
     ``lattice`` (n_shapes, N_LATTICE): that of a sampled level set, its spacing zero where the distance of
     the box is exact, first value, origin [m], counts and cells per metre; ``values`` (n_values,)
     [m]. ``steepest`` (n_shapes,): most that the level set changes per distance [1]. ``first_node`` int64
-    (n_shapes + 1,), ``points`` (n_nodes, 3), ``areas`` (n_nodes,): surface nodes in the body frame
+    (n_shapes + 1,), ``points`` (n_nodes, 3), ``areas`` (n_nodes,): surface nodes in the frame of the shape
     [m, m2]; ``damping`` (n_nodes,): what a node's dashpot goes with.
     """
 
     shape: np.ndarray
+    offset: np.ndarray
+    radius: np.ndarray
     half: np.ndarray
     middle: np.ndarray
     chamfer: np.ndarray
-    radius: np.ndarray
     lattice: np.ndarray
     values: np.ndarray
     steepest: np.ndarray
@@ -62,6 +64,10 @@ def assemble_surfaces(structure, parameters):
     areas = np.concatenate([areas for _, areas in nodes])
     return Surfaces(
         shape=np.array([names.index(body.shape) for body in structure.file.bodies]),
+        offset=structure.mass_offset,
+        radius=np.array(
+            [np.linalg.norm(structure.solid(body).vertices, axis=1).max() for body in range(len(structure.mass))]
+        ),
         half=np.array(
             [shapes[name].box or size for name, size in zip(names, high - low, strict=True)]
         ) / 2.0,
@@ -69,7 +75,6 @@ def assemble_surfaces(structure, parameters):
             [np.zeros(3) if shapes[name].box else place for name, place in zip(names, (low + high) / 2.0, strict=True)]
         ),
         chamfer=np.array([shapes[name].chamfer for name in names]),
-        radius=np.array([np.linalg.norm(solid.vertices, axis=1).max() for solid in solids]),
         lattice=np.column_stack(
             [table.first[:-1], table.origin, table.counts, np.where(sampled, 1.0 / table.spacing, 0.0)]
         ),

@@ -17,10 +17,11 @@ class Contacts(NamedTuple):
     rows are the unit normal from a to b and two tangents, world frame. ``arm_a``, ``arm_b``
     (n, 3): point minus mass centre, world frame [m]. ``home`` (n, 3): point in the frame of a [m].
     ``gap`` (n,) [m]; ``friction`` (n,) [1] and ``bias`` (n, 2) [1]: the coefficient is ``friction + bias . s`` for
-    slip of b along the unit vector s of the tangents. ``compliance`` (n,) velocity per normal impulse of a
-    stopper [1/kg], zero for a contact of bodies. ``bound`` (n, 3): velocity added to that of the contact before the
-    law is applied [m/s]. ``local`` (n, 5): ``w_n, w_1, w_2, a_1, a_2`` of `solve_contact`. ``impulse``
-    (n, 3) along the basis [N s]. ``slip`` (n,) of `solve_contact`. ``stopper`` int64 (n,): index of the stopper, or -1.
+    slip of b along the unit vector s of the tangents. ``bound`` (n, 3): velocity added to that of the contact before
+    the law is applied [m/s]. ``share`` (n,) [1] and ``compliance`` (n,) [1/kg] of the normal law ``share (u_n +
+    bound_n) + compliance p_n >= 0``: 1 and 0 where rigid bodies touch; only a contact without friction may have another
+    share. ``local`` (n, 5): ``w_n, w_1, w_2, a_1, a_2`` of `solve_contact`. ``impulse`` (n, 3) along the basis [N s].
+    ``slip`` (n,) of `solve_contact`. ``stopper`` int64 (n,): index of the stopper, or -1.
     """
 
     body_a: np.ndarray
@@ -32,8 +33,9 @@ class Contacts(NamedTuple):
     gap: np.ndarray
     friction: np.ndarray
     bias: np.ndarray
-    compliance: np.ndarray
     bound: np.ndarray
+    share: np.ndarray
+    compliance: np.ndarray
     local: np.ndarray
     impulse: np.ndarray
     slip: np.ndarray
@@ -53,8 +55,9 @@ def empty_contacts(capacity):
         np.empty(capacity),
         np.zeros(capacity),
         np.zeros((capacity, 2)),
-        np.zeros(capacity),
         np.zeros((capacity, 3)),
+        np.ones(capacity),
+        np.zeros(capacity),
         np.empty((capacity, 5)),
         np.zeros((capacity, 3)),
         np.zeros(capacity),
@@ -74,8 +77,9 @@ def _first_rows(contacts, count):
         contacts.gap[:count],
         contacts.friction[:count],
         contacts.bias[:count],
-        contacts.compliance[:count],
         contacts.bound[:count],
+        contacts.share[:count],
+        contacts.compliance[:count],
         contacts.local[:count],
         contacts.impulse[:count],
         contacts.slip[:count],
@@ -177,7 +181,7 @@ def prepare_operators_into(bodies, inertia, contacts):
             t_1, t_2 = basis[1, axis], basis[2, axis]
             basis[1, axis], basis[2, axis] = c * t_1 + s * t_2, c * t_2 - s * t_1
         local = contacts.local[contact]
-        local[0] = W[0, 0] + contacts.compliance[contact]
+        local[0] = contacts.share[contact] * W[0, 0] + contacts.compliance[contact]
         local[1] = c * c * W[1, 1] + 2.0 * c * s * W[1, 2] + s * s * W[2, 2]
         local[2] = s * s * W[1, 1] - 2.0 * c * s * W[1, 2] + c * c * W[2, 2]
         local[3] = c * W[0, 1] + s * W[0, 2]

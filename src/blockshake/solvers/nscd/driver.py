@@ -83,7 +83,8 @@ def simulate_nscd(
     Bodies are handled from the lowest upwards, whatever their order in the file.
     """
     times = np.ascontiguousarray(record_times, dtype=float)
-    order = np.lexsort((structure.position[:, 1], structure.position[:, 0], structure.position[:, 2]))
+    centroid = structure.centroid
+    order = np.lexsort((centroid[:, 1], centroid[:, 0], centroid[:, 2]))
     place = np.argsort(order)
     bodies, state, stoppers = assemble_bodies(structure)
     bodies = _reordered(bodies._replace(gravity=None), order)._replace(gravity=bodies.gravity)

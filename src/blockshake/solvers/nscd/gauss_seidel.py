@@ -88,7 +88,8 @@ def relative_residual(contacts, v, floor):
         p = contacts.impulse[contact]
         bound = contacts.bound[contact]
         local = contacts.local[contact]
-        u_n, u_1, u_2 = u_n + bound[0] + contacts.compliance[contact] * p[0], u_1 + bound[1], u_2 + bound[2]
+        u_n = contacts.share[contact] * (u_n + bound[0]) + contacts.compliance[contact] * p[0]
+        u_1, u_2 = u_1 + bound[1], u_2 + bound[2]
         rho = 1.0 / max(local[0], max(local[1], local[2]))
         mu = coefficient_along(contacts, contact, p[1] - rho * u_1, p[2] - rho * u_2)
         part = contact_residual(p[0], p[1], p[2], u_n, u_1, u_2, mu, rho)
@@ -117,7 +118,8 @@ def sweep_into(bodies, inertia, contacts, upwards, v):
         contact = rank if upwards else n_contacts - 1 - rank
         u_n, u_1, u_2 = relative_velocity(contacts, contact, v)
         p, bound, w = contacts.impulse[contact], contacts.bound[contact], contacts.local[contact]
-        q_n = u_n + bound[0] + contacts.compliance[contact] * p[0] - (w[0] * p[0] + w[3] * p[1] + w[4] * p[2])
+        q_n = contacts.share[contact] * (u_n + bound[0]) + contacts.compliance[contact] * p[0]
+        q_n -= w[0] * p[0] + w[3] * p[1] + w[4] * p[2]
         q_1 = u_1 + bound[1] - (w[3] * p[0] + w[1] * p[1])
         q_2 = u_2 + bound[2] - (w[4] * p[0] + w[2] * p[2])
         rho = 1.0 / max(w[0], max(w[1], w[2]))

@@ -67,20 +67,20 @@ def linear_law_into(contacts, contact, u, stiffness, D, c):
     Open: no impulse. Sticking: ``p = p_old - r (u + bound)`` with a large ``r``, the proximal form of ``u +
     bound = 0``, which stays regular however many contacts share a load. Slipping: the normal
     part of that; friction ``mu p_n`` along the slip, and across it the linear part of ``-mu p_n u_t /
-    |u_t|``, the coefficient taken for the direction at hand. A stopper's compliance adds to ``1 / r``.
+    |u_t|``, the coefficient taken for the direction at hand. A contact's compliance adds to ``1 / r``.
     """
     D[:] = 0.0
     c[:] = 0.0
     p, bound, local = contacts.impulse[contact], contacts.bound[contact], contacts.local[contact]
-    compliance = contacts.compliance[contact]
-    u_n, u_1, u_2 = u[0] + bound[0] + compliance * p[0], u[1] + bound[1], u[2] + bound[2]
+    share, compliance = contacts.share[contact], contacts.compliance[contact]
+    u_n, u_1, u_2 = share * (u[0] + bound[0]) + compliance * p[0], u[1] + bound[1], u[2] + bound[2]
     rho = 1.0 / max(local[0], max(local[1], local[2]))
     trial_n = p[0] - rho * u_n
     if trial_n <= 0.0:
         return
     stiff = stiffness * rho
-    D[0, 0] = stiff / (1.0 + stiff * compliance)
-    c[0] = (p[0] - stiff * bound[0]) / (1.0 + stiff * compliance)
+    D[0, 0] = stiff * share / (1.0 + stiff * compliance)
+    c[0] = (p[0] - stiff * share * bound[0]) / (1.0 + stiff * compliance)
     s_1, s_2 = p[1] - rho * u_1, p[2] - rho * u_2
     mu = coefficient_along(contacts, contact, s_1, s_2)
     if mu == 0.0:

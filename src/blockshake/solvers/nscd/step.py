@@ -137,7 +137,7 @@ def bounds_into(step, dt, theta, restitution, contacts):
     and no more, and leaves a penetration as it is. ``u`` must be measured with the levers halfway between these
     two poses; those at hand are ``dt / 2`` older, and the difference is the centripetal velocity added here.
     Newton's restitution replaces the anticipated gap where the velocity at the start would close the gap within the
-    step. A stopper's law is implicit: impulse ``dt k`` times the closure at the end.
+    step. A compliant contact's law is implicit: impulse ``dt k`` times the closure at the end.
     """
     for contact in range(contacts.gap.size):
         basis, bound = contacts.basis[contact], contacts.bound[contact]
@@ -147,7 +147,7 @@ def bounds_into(step, dt, theta, restitution, contacts):
         turn = (of_b[0] - of_a[0], of_b[1] - of_a[1], of_b[2] - of_a[2])
         for i in range(3):
             bound[i] = 0.5 * dt * dot(basis[i], turn)
-        if contacts.stopper[contact] >= 0:
+        if contacts.compliance[contact] > 0.0:
             bound[0] += gap / (theta * dt)
             continue
         closing, _, _ = relative_velocity(contacts, contact, step.v_start)

@@ -8,7 +8,11 @@ from blockshake.jit import kernel
 
 @kernel
 def place_stoppers_into(bodies, stoppers, base, step, dt, theta, contacts):
-    """Write the stoppers, as contacts of the driven body ``base``, into the last rows."""
+    """Write the stoppers, as contacts of the driven body ``base``, into the last rows.
+
+    The law of an implicit spring that only pushes, ``u_n + bound + p / s >= 0`` with ``s = theta dt^2 k``, times ``s
+    / (s + m)``, m the mass of the body: so a stop without stiffness has the law ``p / m >= 0``, and no impulse.
+    """
     first = contacts.gap.size - stoppers.body.size
     toward = np.empty(3)
     for stopper in range(stoppers.body.size):
@@ -17,7 +21,9 @@ def place_stoppers_into(bodies, stoppers, base, step, dt, theta, contacts):
         contacts.stopper[row] = stopper
         contacts.home[row] = stoppers.point[stopper]
         contacts.friction[row] = 0.0
-        contacts.compliance[row] = 1.0 / (theta * dt * dt * stoppers.stiffness[stopper])
+        admittance = theta * dt * dt * stoppers.stiffness[stopper]
+        contacts.share[row] = admittance / (admittance + bodies.mass[body])
+        contacts.compliance[row] = 1.0 / (admittance + bodies.mass[body])
         closed = closure_into(
             bodies, stoppers, stopper, base, step.detection, contacts.arm_a[row], contacts.arm_b[row], toward
         )
