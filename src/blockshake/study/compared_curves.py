@@ -30,14 +30,15 @@ def curves_along_x(measured, members):
     markers = [name for name in measured["marker"].values if name in members["marker"].values]
     if not markers:
         raise InputError("coverage", "marker", "expected a measured marker that the simulation has too")
-    n_times = _common_times(measured["time"].to_numpy(), members["time"].to_numpy())
+    n_times = common_times(measured["time"].to_numpy(), members["time"].to_numpy())
     return _along_x(measured, markers, n_times), _along_x(members, markers, n_times)
 
 
-def _common_times(measured, simulated):
+def common_times(measured, simulated):
+    """Number of leading times that both have; InputError where they differ by more than 1 microsecond."""
     n_times = min(len(measured), len(simulated))
     if n_times == 0 or np.abs(measured[:n_times] - simulated[:n_times]).max() > _SAME_TIME:
-        raise InputError("coverage", "time", "expected measured times that are the ensemble's output times")
+        raise InputError("curves", "time", "expected measured times that are the ensemble's output times")
     return n_times
 
 

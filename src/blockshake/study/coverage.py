@@ -59,8 +59,12 @@ def coverage(measured, ensemble, marker_noise, seed=0):
         )
     read, curves = curves_along_x(measured, members)
     markers = list(read["marker"].values)
-    lower, upper = _bounds(curves)
-    member_coverage = _members_inside(curves.to_numpy(), marker_noise, seed)
+    curves = curves.to_numpy()
+    lower, upper = band(curves)
+    generator = np.random.default_rng(seed)
+    member_coverage = members_inside(
+        curves, [noisy_reading(curve, marker_noise, generator) for curve in curves]
+    )
     by_marker = {"marker": markers}
     by_member = xr.DataArray(
         member_coverage, dims=("sample", "marker"), coords={"sample": members["sample"], **by_marker}
@@ -68,7 +72,7 @@ def coverage(measured, ensemble, marker_noise, seed=0):
     probabilities = xr.DataArray(
         list(REFERENCE_QUANTILES), dims="quantile", coords={"quantile": list(REFERENCE_QUANTILES)}
     )
-    inside = _fraction(read.to_numpy(), lower, upper)
+    inside = share_inside(read.to_numpy(), lower, upper)
     width = np.nanmean(upper - lower, axis=0)
     result = xr.Dataset(
         {
@@ -112,29 +116,49 @@ def _describe(result):
         result[name].attrs = {"long_name": long_name, "units": units}
 
 
-def _bounds(curves):
-    ends = xr.DataArray([0.0, 1.0], dims="bound", coords={"bound": ["lower", "upper"]})
-    return over_samples(curves, ends).to_numpy()
+def band(curves):
+    """Smallest and largest value at each time.
+
+    Parameters
+    ----------
+    curves : float64 array, shape (n_curves, n_times, ...)
+        NaN is no value.
+
+    Returns
+    -------
+    lower, upper : float64 arrays, shape (n_times, ...)
+        NaN where no curve has a value.
+    """
+    return np.fmin.reduce(curves, axis=0), np.fmax.reduce(curves, axis=0)
 
 
-def _fraction(curve, lower, upper):
-    """Share of the times at which curve and bounds exist that the curve is inside, by marker."""
+def share_inside(curve, lower, upper):
+    """Share of the times at which curve and band exist that the curve is inside, over the first axis."""
     known = np.isfinite(curve) & np.isfinite(lower)
     with np.errstate(invalid="ignore"):
         return (known & (curve >= lower) & (curve <= upper)).sum(axis=0) / known.sum(axis=0)
 
 
-def _members_inside(curves, marker_noise, seed):
-    """Leave-one-out coverage, float64 (n_samples, n_markers); ``curves`` (n_samples, n_times, n_markers)."""
-    generator = np.random.default_rng(seed)
+def members_inside(curves, readings):
+    """Share of the times that each curve, as read, is within the band of the others.
+
+    Parameters
+    ----------
+    curves, readings : float64 arrays, shape (n_curves, n_times, ...)
+        What spans the band, and the same as an instrument would read it.
+
+    Returns
+    -------
+    float64 array, shape (n_curves, ...)
+    """
     rising = np.sort(curves, axis=0)[:2]
     falling = -np.sort(-curves, axis=0)[:2]
     inside = []
-    for curve in curves:
+    for curve, reading in zip(curves, readings, strict=True):
         # the bound of the others is the second value where this member is the first
         lower = np.where(curve == rising[0], rising[1], rising[0])
         upper = np.where(curve == falling[0], falling[1], falling[0])
-        inside.append(_fraction(noisy_reading(curve, marker_noise, generator), lower, upper))
+        inside.append(share_inside(reading, lower, upper))
     return np.array(inside)
 
 

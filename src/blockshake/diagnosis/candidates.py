@@ -1,0 +1,61 @@
+"""The candidates of a diagnosis: every physical effect of the registry at every place of the structure."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from blockshake.effects.registry import EFFECTS
+
+_GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect at a place.
+
+    Attributes
+    ----------
+    effect : str
+        Name in the registry.
+    place : dict
+        One of its places.
+    """
+
+    effect: str
+    place: dict
+
+    @property
+    def key(self):
+        """Name for files and tables, such as ``weak-joint@block-1-block-2``."""
+        words = [
+            name for value in self.place.values() for name in ([value] if isinstance(value, str) else value)
+        ]
+        return "@".join([self.effect, *(["-".join(words)] if words else [])])
+
+    def values(self, number):
+        """Parameter values of a library draw, and the size in units of the visible one.
+
+        The sizes fill the prior evenly however many draws there are (multiples of the golden section, modulo 1); the
+        other parameters are drawn from their priors.
+        """
+        size, *others = EFFECTS[self.effect].parameters
+        generator = np.random.default_rng([number, *self.key.encode()])
+        value = size.lower + (size.upper - size.lower) * ((0.5 + number * _GOLDEN) % 1.0)
+        drawn = {item.name: float(generator.uniform(item.lower, item.upper)) for item in others}
+        return {size.name: float(value)} | drawn, float((value - size.null) / (size.visible - size.null))
+
+
+def candidates(structure, effects=EFFECTS):
+    """Candidates in a structure, in the registry's order; what only the sensors do is left to the parity checks.
+
+    Parameters
+    ----------
+    structure : Structure
+    effects : dict of str to Effect
+    """
+    return [
+        Candidate(name, place)
+        for name, effect in effects.items()
+        if effect.acts != "observation"
+        for place in effect.places(structure)
+    ]
