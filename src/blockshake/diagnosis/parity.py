@@ -1,0 +1,222 @@
+"""Checks of a campaign's sensors against each other, without a simulator: faults named, taken out, carried on."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from blockshake.diagnosis.acceleration_parity import channel_pairs
+from blockshake.diagnosis.channel_findings import channel_findings
+from blockshake.diagnosis.finding import Finding
+from blockshake.diagnosis.frame_drift import frame_drift
+from blockshake.diagnosis.marker_equations import MarkerFaults
+from blockshake.diagnosis.marker_faults import BodyMarkers, check_body
+from blockshake.diagnosis.marker_swaps import unswapped
+from blockshake.diagnosis.saturation import saturated
+from blockshake.errors import InputError
+from blockshake.geometry.rotations import rotation_matrices
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaign import load_test
+
+LEVEL = 0.01  # chance of any finding on a campaign of sound sensors
+_FEWEST_MARKERS = 3
+
+
+@dataclass(frozen=True)
+class Parity:
+    """What the sensors say of each other.
+
+    Attributes
+    ----------
+    findings : tuple of Finding
+    markers : xarray.Dataset
+        ``noise(marker)`` of the readings after the findings are taken out and ``misfit(marker)`` before [m]; NaN on
+        bodies with fewer than three markers.
+    clock : xarray.Dataset
+        ``lag(test)`` of the optical clock, with ``lag_error(test)`` [s].
+    channels : xarray.Dataset
+        ``gain(channel)``, reading over truth less 1, with ``gain_error(channel)`` [1].
+    looked_at : int
+        Number of hypotheses.
+    """
+
+    findings: tuple
+    markers: xr.Dataset
+    clock: xr.Dataset
+    channels: xr.Dataset
+    looked_at: int
+
+
+def campaign_parity(campaign, names):
+    """Parity of the named tests of a campaign; see `check_parity`.
+
+    Raises
+    ------
+    InputError
+        A name that is not in the campaign, or of a sealed test: its file is not opened.
+    """
+    for name in names:
+        if name not in campaign.tests or campaign.tests[name].role == "sealed":
+            usable = [test.name for test in campaign.tests.values() if test.role != "sealed"]
+            raise InputError(campaign.folder, f"tests.{name}", f"expected one of {', '.join(usable)}")
+    tests = {name: load_test(campaign, name) for name in names}
+    return check_parity(tests, load_structure(campaign.structure), campaign.sensors)
+
+
+def check_parity(tests, structure, sensors, level=LEVEL):
+    """Faults of the sensors, found from readings alone.
+
+    Parameters
+    ----------
+    tests : dict of str to xarray.Dataset
+        By name, as in a campaign.
+    structure : Structure
+    sensors : Sensors
+        Stated noise.
+    level : float
+        Chance of any finding where all sensors are within their tolerances; shared evenly by all hypotheses.
+
+    Returns
+    -------
+    Parity
+
+    Notes
+    -----
+    Markers are checked body by body against a rigid motion first; the accelerometers are then compared with the
+    markers as corrected.
+    """
+    tests, findings = dict(tests), []
+    for name, test in tests.items():
+        tests[name], found = _without_saturation(test, name, level, 2 * len(tests) * _channel_count(tests))
+        findings += found
+    bodies = _bodies(structure, tests)
+    looked_at = _looked_at(bodies, tests)
+    tests, found = unswapped(tests, bodies, sensors.marker_noise, level, looked_at)
+    findings += found
+    bodies = _bodies(structure, tests)
+    checks = {name: check_body(body, sensors.marker_noise, level, looked_at) for name, body in bodies.items()}
+    findings += [finding for check in checks.values() for finding in check.findings]
+    findings += frame_drift(structure, tests, sensors.marker_noise, level, looked_at)
+    pairs = {
+        name: _pairs(structure, name, test, bodies, checks, sensors)
+        for name, test in tests.items()
+        if "accelerometer" in test
+    }
+    lags, gains, found = channel_findings(pairs, sensors.accelerometer_noise, level, looked_at)
+    return Parity(
+        tuple(findings + found), _marker_table(bodies, checks, tests), *_tables(lags, gains), looked_at
+    )
+
+
+def _bodies(structure, tests):
+    """`BodyMarkers` of every body that has three markers in all tests."""
+    bodies = {}
+    shared = set.intersection(*({str(name) for name in test["marker"].values} for test in tests.values()))
+    for index, name in enumerate(structure.body_names):
+        own = [marker for marker in structure.file.markers if marker.body == name and marker.name in shared]
+        if len(own) < _FEWEST_MARKERS:
+            continue
+        names = [marker.name for marker in own]
+        bodies[name] = BodyMarkers(
+            name,
+            tuple(names),
+            np.array([marker.position for marker in own], dtype=float),
+            structure.position[index],
+            rotation_matrices(structure.orientation[index]),
+            tuple(tests),
+            [
+                (
+                    test["time"].to_numpy(),
+                    test["marker_displacement"]
+                    .sel(marker=names)
+                    .transpose("time", "marker", "axis")
+                    .to_numpy(),
+                )
+                for test in tests.values()
+            ],
+        )
+    return bodies
+
+
+def _pairs(structure, name, test, bodies, checks, sensors):
+    """Channel pairs of one test, with the markers' faults taken out."""
+    single, faults = {}, {}
+    for key, body in bodies.items():
+        place, found = body.tests.index(name), checks[key].faults
+        single[key] = replace(body, tests=(name,), readings=[body.readings[place]])
+        faults[key] = MarkerFaults(found.gain, found.place, found.drift[[place]])
+    return channel_pairs(structure, test, single, faults, sensors.accelerometer_noise)
+
+
+def _without_saturation(test, name, level, looked_at):
+    """Test with saturated readings as gaps, and what was found."""
+    findings = []
+    test = test.copy()
+    for variable, dimension in (("marker_displacement", "marker"), ("accelerometer", "channel")):
+        if variable not in test:
+            continue
+        time = "time" if dimension == "marker" else "time_acc"
+        values = test[variable].transpose(time, dimension, ...)
+        array = values.to_numpy().copy()
+        for index, where in enumerate(values[dimension].values):
+            columns = array[:, index] if array.ndim == 3 else array[:, [index]]
+            for column in range(columns.shape[1]):
+                at_end, p = saturated(columns[:, column])
+                if p * looked_at >= level:
+                    continue
+                largest = np.abs(columns[at_end, column]).max(keepdims=True)
+                findings.append(
+                    Finding(
+                        "sensor-saturation",
+                        (str(where),),
+                        "range",
+                        largest,
+                        np.zeros((1, 1)),
+                        p * looked_at,
+                        (name,),
+                    )
+                )
+                array[at_end, index] = np.nan
+        test[variable] = values.copy(data=array)
+    return test, findings
+
+
+def _channel_count(tests):
+    return sum(3 * test.sizes["marker"] + test.sizes.get("channel", 0) for test in tests.values())
+
+
+def _looked_at(bodies, tests):
+    """Hypotheses: of markers, of the optical frame, of the clock, and of channels and their pairs."""
+    channels = max(test.sizes.get("channel", 0) for test in tests.values())
+    of_markers = sum(len(body.hypotheses) for body in bodies.values())
+    return of_markers + 2 + 2 * len(tests) + channels * (1 + channels + len(tests))
+
+
+def _marker_table(bodies, checks, tests):
+    names = [str(name) for name in next(iter(tests.values()))["marker"].values]
+    table = {"noise": dict.fromkeys(names, np.nan), "misfit": dict.fromkeys(names, np.nan)}
+    for key, check in checks.items():
+        for index, marker in enumerate(bodies[key].markers):
+            table["noise"][marker] = check.equations.noise[index]
+            table["misfit"][marker] = check.equations.misfit[index]
+    return xr.Dataset(
+        {key: ("marker", [values[name] for name in names], {"units": "m"}) for key, values in table.items()},
+        {"marker": names},
+    )
+
+
+def _tables(lags, gains):
+    tables = []
+    for scores, key, dimension, unit in ((lags, "lag", "test", "s"), (gains, "gain", "channel", "1")):
+        values = [scored.estimate[0] for scored in scores.values()]
+        errors = [np.sqrt(scored.covariance[0, 0]) for scored in scores.values()]
+        tables.append(
+            xr.Dataset(
+                {
+                    key: (dimension, values, {"units": unit}),
+                    f"{key}_error": (dimension, errors, {"units": unit}),
+                },
+                {dimension: list(scores)},
+            )
+        )
+    return tables
