@@ -20,12 +20,10 @@ ROCKING = (0.0, 8e-3, 16e-3)
 
 
 def structure_of_three(face_markers_only=False):
-    """Configuration 1: markers of a block on one line as shipped, or with a fourth that is off it."""
+    """Configuration 1: four markers a body as shipped, or only those on one face, which lie on a line."""
     mapping = copy.deepcopy(load_yaml(shipped("structures", "configuration-1")))
-    if not face_markers_only:
-        for body in ("block-1", "block-2", "block-3"):
-            mapping["markers"].append({"name": f"{body}-side", "body": body, "position": [0.4, 0.0, 0.0]})
-        mapping["markers"].append({"name": "slab-side", "body": "slab", "position": [1.5, 0.0, 0.0]})
+    if face_markers_only:
+        mapping["markers"] = [marker for marker in mapping["markers"] if not marker["name"].endswith("-end")]
     return build_structure(mapping, "three.yaml", ".")
 
 
