@@ -14,10 +14,11 @@ import peers
 from measuring import seconds_between, spread
 from motions import harmonic
 from nscd_step import CONFIGURATIONS, TIME_STEP, nscd_run, step_cost
+from recorded_lmgc90 import recorded_comparison
 from residuals import law_residual
 from walls import wall_mapping
 
-from blockshake.files import write_json
+from blockshake.files import write_dataset, write_json
 from blockshake.geometry.structure import build_structure, load_structure
 
 FRICTION = 0.75  # of all pairs: the wheel knows one
@@ -34,6 +35,7 @@ def main():
     """Compare, print and write."""
     parser = argparse.ArgumentParser(prog="compare_lmgc90", description=__doc__.partition("\n")[0])
     parser.add_argument("--output", type=Path, default=Path("results/compare_lmgc90.json"))
+    parser.add_argument("--record", type=Path, help="netCDF for the report's annex, histories included")
     parser.add_argument("--only", choices=CASES, action="append", help="compare this case; may be repeated")
     parser.add_argument("--repeats", type=int, default=REPEATS)
     options = parser.parse_args()
@@ -48,6 +50,8 @@ def main():
     }
     write_json(options.output, result)
     sys.stdout.write(as_text(result))
+    if options.record:
+        write_dataset(options.record, recorded_comparison(result), decimals=7)
 
 
 def case(name):

@@ -11,6 +11,8 @@ from blockshake.report.convergence_figure import plot_convergence, value_scales
 from blockshake.report.displacement_figure import plot_displacements
 from blockshake.report.drawing import svg_of
 from blockshake.report.motion_figure import plot_spectra
+from blockshake.report.peer_figure import plot_peer
+from blockshake.report.peer_record import load_peer_record
 from blockshake.report.samples_figure import bin_count
 from blockshake.report.structure_figure import plot_structure
 
@@ -103,3 +105,17 @@ def test_svg_says_no_date_loads_nothing_and_leaves_the_style_alone():
 
 def test_histograms_have_about_the_root_of_the_samples_as_bins():
     assert [bin_count(size) for size in (10, 50)] == [5, 9]
+
+
+def test_lmgc90_is_drawn_from_the_record_to_each_history_s_end():
+    record = load_peer_record()
+    figure = plot_peer(record)
+    upper, lower = figure.axes[: len(record["history"])], figure.axes[len(record["history"]) :]
+    for axes, below, name in zip(upper, lower, record["history"].values, strict=True):
+        curves = record["displacement"].sel(history=name).dropna("time")
+        ours, theirs = (line.get_ydata() for line in axes.lines)
+        np.testing.assert_array_equal(ours, 1e3 * curves.sel(program="blockshake"))
+        np.testing.assert_array_equal(theirs, 1e3 * curves.sel(program="LMGC90"))
+        assert axes.lines[1].is_dashed()
+        np.testing.assert_allclose(below.lines[0].get_ydata(), theirs - ours)
+        assert below.get_xlim()[1] == float(curves["time"][-1])

@@ -11,6 +11,7 @@ from blockshake.errors import InputError
 from blockshake.report.content import load_content
 from blockshake.report.html import write_html
 from blockshake.report.pdf import write_pdf
+from blockshake.report.peer_record import load_peer_record
 from blockshake.report.report import compose, make_report
 from blockshake.report.result_sections import checks
 from blockshake.report.wording import number
@@ -102,7 +103,7 @@ def test_style_and_drawings_refer_to_nothing_outside(report, page):
     [
         "Summary", "Structures", "Ground motions", "Samples", "Contact stiffness", "Displacement of the blocks",
         "What makes the envelopes thick", "Completion, energy and convergence", "Timings", "Origin",
-        "What is not in this study", "Annex: numerical parameters of LS-DEM",
+        "What is not in this study", "Annex: numerical parameters of LS-DEM", "Annex: NSCD rigid beside LMGC90",
     ],
 )  # fmt: skip
 def test_sections_and_contents(text, title):
@@ -230,6 +231,26 @@ def test_study_without_convergence_has_no_annex_and_says_so(fake):
         for item in block.items
     ]
     assert sum("convergence of these cases" in item and "annex" not in item for item in said) == 1
+
+
+def test_annex_has_the_recorded_comparison_with_lmgc90_and_its_date(text):
+    record = load_peer_record()
+    annex = text[text.rindex("Annex: NSCD rigid beside LMGC90") :]
+    assert f"side by side on {record.attrs['date']}" in annex
+    for case in record["case"].values:
+        one = record.sel(case=case)
+        theirs, ours = (number(1e6 * one["step_time"].sel(program=name)) for name in ("LMGC90", "blockshake"))
+        assert f"{case} {theirs} {ours} {number(one['times_faster'], 2)}" in annex
+    nine = record.sel(history="nine blocks")
+    peak = 1e3 * float(abs(nine["displacement"].sel(program="LMGC90")).max())
+    assert f"{peak:.1f}" in annex
+    assert number(1e3 * nine["largest_difference"], 2) in annex
+
+
+def test_study_without_nscd_has_no_annex_on_lmgc90(fake):
+    study = {**fake.study, "models": {"ls-dem": MODELS["ls-dem"]}}
+    document = compose(load_content(study, fake.results, fake.benchmarks))
+    assert "peer" not in [section.key for section in document.sections]
 
 
 def test_missing_results_are_named(tmp_path):

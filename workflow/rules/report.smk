@@ -5,6 +5,7 @@ rule make_report:
             definition("structures", case["structure"]) for case in CASES.values()
         ],
         campaigns=[campaign_files(case) for case in CASES],
+        peer="data/peers/lmgc90.nc",
         templates=expand(
             "src/blockshake/report/templates/{name}",
             name=["report.html.j2", "report.typ"],

@@ -14,6 +14,7 @@ from blockshake.errors import InputError
 from blockshake.files import content_digest, file_digest, read_text, shipped
 from blockshake.geometry.structure import Structure, load_structure
 from blockshake.measurement.campaign import load_campaign, load_test
+from blockshake.report.peer_record import PEER_RECORD, load_peer_record
 from blockshake.report.timing import read_timings
 from blockshake.study.convergence_table import load_convergence
 from blockshake.study.distributions import load_distributions
@@ -94,6 +95,8 @@ class Content:
         Friction calibrations by case; empty where the study asks for none.
     convergence : pandas.DataFrame or None
         From `study_convergence`, where the study has one.
+    peer : xarray.Dataset
+        From `load_peer_record`.
     timings : tuple of Timing
     digests : dict of str to str
         Of input files and of tables that all samples come from, by path.
@@ -112,6 +115,7 @@ class Content:
     definitions: xr.Dataset
     friction: dict
     convergence: pd.DataFrame | None
+    peer: xr.Dataset
     timings: tuple
     digests: dict
     versions: dict
@@ -160,13 +164,14 @@ def load_content(study, results, benchmarks):
             for name in (study.get("friction_calibration") or {}).get("cases", ())
         },
         convergence=load_convergence(results / "convergence.csv") if study.get("convergence") else None,
+        peer=load_peer_record(),
         timings=read_timings(
             benchmarks,
             {(model, case.name): one.samples for case in loaded.values() for model, one in case.responses.items()},
         ),
         digests={
             "configuration of the study": content_digest(study),
-            **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, stiffness]},
+            **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, stiffness, PEER_RECORD]},
         },
         versions={
             "blockshake": version("blockshake"),

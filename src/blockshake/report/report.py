@@ -6,6 +6,7 @@ from blockshake.report.convergence_section import convergence
 from blockshake.report.friction_section import friction
 from blockshake.report.html import write_html
 from blockshake.report.pdf import write_pdf
+from blockshake.report.peer_section import peer
 from blockshake.report.result_sections import checks, limits, origin, responses, timings
 from blockshake.report.sections import motions, samples, stiffness, structures, summary
 from blockshake.report.sensitivity_section import sensitivities
@@ -24,6 +25,7 @@ _SECTIONS = (
     limits,
     origin,
     convergence,
+    peer,
 )
 
 
