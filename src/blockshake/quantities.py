@@ -33,6 +33,7 @@ PHYSICAL = (
         "share by which mu is larger for slip of a joint's second body along its first's +x", "docs/method.md",
     ),
     Quantity("joints.BODY.BODY.friction_factor", "f", "1", "factor on mu of one joint", "docs/method.md"),
+    Quantity("joints.BODY.BODY.compliance", "c", "m3/N", "normal compliance of a joint's soft layer", "docs/method.md"),
     Quantity("materials.MATERIAL.density", "rho", "kg/m3", "mass density", f"{_PAPER}, Table 2"),
     Quantity("materials.MATERIAL.youngs_modulus", "E", "Pa", "Young's modulus", f"{_PAPER}, Table 2"),
     Quantity("materials.MATERIAL.poisson_ratio", "nu", "1", "Poisson's ratio; G = E / (2 (1 + nu))", "structure file"),

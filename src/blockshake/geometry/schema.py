@@ -86,6 +86,7 @@ class Joint(Strict):
 
     bodies: tuple[str, str] = Field(description="the two bodies, in either order")
     friction_factor: NotNegative = Field(1.0, description="on the coefficient of friction [1]")
+    compliance: NotNegative = Field(0.0, description="of a soft layer along the normal, per area [m3/N]")
 
 
 class Stopper(Strict):

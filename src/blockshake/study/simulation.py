@@ -172,7 +172,8 @@ def effective_parameters(structure, model, numerical):
         f"bodies.{body.name}.mass_offset": list(body.mass_offset) for body in file.bodies if not body.driven
     }
     for joint in file.joints:
-        acted[f"joints.{'.'.join(joint.bodies)}.friction_factor"] = joint.friction_factor
+        own = joint.model_dump(exclude={"bodies"})
+        acted |= {f"joints.{'.'.join(joint.bodies)}.{key}": value for key, value in own.items()}
     prefix = MODELS[model][2]
     return acted | {f"{prefix}.{key}": value for key, value in numerical.model_dump().items()}
 

@@ -82,7 +82,10 @@ def step_problem(structure, v, margin=1e-4):
     inertia = np.ascontiguousarray(R @ bodies.inertia @ R.transpose(0, 2, 1))
     inverse = np.ascontiguousarray(R @ bodies.inverse_inertia @ R.transpose(0, 2, 1))
     faces = np.full((len(order), len(order)), -1, np.int64)
-    contacts = detect_contacts(bodies, polyhedra, placed, np.ascontiguousarray(R), margin, 0.0, faces, 0)
+    layers = np.zeros((len(order), len(order)))
+    contacts = detect_contacts(
+        bodies, polyhedra, placed, np.ascontiguousarray(R), margin, 0.0, layers, 1.0, faces, 0
+    )
     prepare_operators_into(bodies, inverse, contacts)
     friction_into(
         ordered_friction(structure, order), no_joints(len(order)), np.ascontiguousarray(R), contacts

@@ -15,8 +15,10 @@ def contacts_of(structure, margin=0.01, shrink=0.0, memory=None):
     placed = empty_placed(polyhedra)
     place_into(polyhedra, structure.position, structure.orientation, placed)
     memory = np.full((2, 2), -1, np.int64) if memory is None else memory
-    normal, points, gaps = np.empty(3), np.empty((4, 3)), np.empty(4)
-    count = detect_pair_into(polyhedra, placed, 0, 1, margin, shrink, memory, normal, points, gaps)
+    normal, points, gaps, areas = np.empty(3), np.empty((5, 3)), np.empty(5), np.empty(5)
+    count = detect_pair_into(
+        polyhedra, placed, 0, 1, margin, shrink, 0.0, memory, normal, points, gaps, areas
+    )
     return normal, points[:count], gaps[:count]
 
 
@@ -168,3 +170,28 @@ def test_shape_that_is_not_convex_is_refused_by_name(scene, tmp_path):
     )
     with pytest.raises(InputError, match=r"shapes\.ring.*convex"):
         pack_polyhedra(structure, np.arange(2))
+
+
+@pytest.mark.parametrize("offset", [[0.0, 0.0], [0.3, -0.2]])
+def test_a_joint_with_a_layer_has_its_middle_too_and_the_layers_moments(scene, offset):
+    """Points and areas integrate 1, x and x^2 over the overlap as the layer does: ``A``, centroid, ``A b^2 / 3``."""
+    bodies = [
+        {"name": "low", "shape": "cube", "position": [0, 0, 0.5]},
+        {"name": "high", "shape": "cube", "position": [*offset, 1.5]},
+    ]
+    structure = scene(CUBE, bodies, floor=False)
+    polyhedra = pack_polyhedra(structure, np.arange(2))
+    placed = empty_placed(polyhedra)
+    place_into(polyhedra, structure.position, structure.orientation, placed)
+    normal, points, gaps, areas = np.empty(3), np.empty((5, 3)), np.empty(5), np.empty(5)
+    memory = np.full((2, 2), -1, np.int64)
+    count = detect_pair_into(polyhedra, placed, 0, 1, 0.01, 0.0, 1e-9, memory, normal, points, gaps, areas)
+    assert count == 5
+    sides, middle = 1.0 - np.abs(offset), 0.5 * np.array(offset)
+    away = points[:, :2] - middle
+    assert areas.sum() == pytest.approx(sides.prod(), rel=1e-6)
+    np.testing.assert_allclose(areas @ away, 0.0, atol=1e-7)
+    # the clipped polygon is wider by the 1e-9 m within which corners count as flush
+    np.testing.assert_allclose(areas @ away**2, sides.prod() * sides**2 / 12.0, rtol=1e-6)
+    assert areas @ away.prod(axis=1) == pytest.approx(0.0, abs=1e-7)
+    np.testing.assert_allclose(gaps, 0.0, atol=ROUNDING)

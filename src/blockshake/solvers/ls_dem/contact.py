@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.dynamics.friction import friction_asymmetry, friction_coefficient
 from blockshake.jit import inline_kernel, kernel
 from blockshake.solvers.ls_dem.contact_law import Law
-from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series
+from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
 from blockshake.solvers.ls_dem.joints import Joints
 from blockshake.solvers.ls_dem.located_nodes import locate_nodes_into
 from blockshake.solvers.ls_dem.packets import LANES, N_SUMS
@@ -94,7 +94,7 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
                 packets, bounds[2 * pair + side], bounds[2 * pair + side + 1],
                 half, chamfer, lattice, values, shapes[other], R, d, side, lanes,
             )  # fmt: skip
-        k_n, k_s = in_series(interfaces.k_n, a, b), in_series(interfaces.k_s, a, b)
+        k_n, k_s = normal_stiffness(interfaces, a, b), in_series(interfaces.k_s, a, b)
         gamma_n = dashpot_coefficient(interfaces, a, b, interfaces.damping_ratio, k_n, area)
         gamma_s = dashpot_coefficient(interfaces, a, b, interfaces.shear_damping_ratio, k_s, area)
         slip_rate, slip = loads.joints.slip_rate[joint], loads.joints.slip[joint]

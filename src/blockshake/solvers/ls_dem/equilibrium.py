@@ -9,7 +9,7 @@ from blockshake.geometry.rotations import rotate_into, rotation_matrices
 from blockshake.jit import kernel
 from blockshake.solvers.ls_dem.candidates import empty_candidates, find_candidates
 from blockshake.solvers.ls_dem.contact import clear_loads, contact_forces_into, no_loads
-from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series
+from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
 from blockshake.solvers.ls_dem.joints import no_joints
 from blockshake.solvers.ls_dem.packets import AREA, DAMPING, LANES, NORMAL_X, PHI, PLACE_X
 from blockshake.solvers.ls_dem.relative_pose import Poses
@@ -180,7 +180,7 @@ def _joint_stiffness(candidates, interfaces, offset, poses, reach, down):
     B, DB = np.zeros((3, 12)), np.empty((3, 12))
     for pair in range(n_pairs):
         a, b = candidates.pairs[pair, 0], candidates.pairs[pair, 1]
-        k_n, k_s = in_series(interfaces.k_n, a, b), in_series(interfaces.k_s, a, b)
+        k_n, k_s = normal_stiffness(interfaces, a, b), in_series(interfaces.k_s, a, b)
         area, weight = 0.0, 0.0
         for side in range(2):
             owner, other = candidates.pairs[pair, side], candidates.pairs[pair, 1 - side]

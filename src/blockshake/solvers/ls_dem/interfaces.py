@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.friction import FrictionLaws, assemble_friction
+from blockshake.dynamics.joint_layers import joint_compliance
 from blockshake.jit import inline_kernel
 
 
@@ -12,6 +13,7 @@ class Interfaces(NamedTuple):
     """Contact parameters.
 
     ``k_n``, ``k_s`` (n_bodies,): stiffness per area that a body has against its like [N/m3];
+    ``layer`` (n_bodies, n_bodies): normal compliance of the soft layer in each joint [m3/N];
     ``inverse_mass`` (n_bodies,): zero for driven bodies [1/kg]; ``friction``: Coulomb's laws;
     ``damping_ratio`` of Eq. (3) and ``shear_damping_ratio`` [1]; ``per_node`` 1.0 where Eq. (3) is taken
     literally, node by node, else 0.0; ``least_force``: below which a damped force is cut,
@@ -20,6 +22,7 @@ class Interfaces(NamedTuple):
 
     k_n: np.ndarray
     k_s: np.ndarray
+    layer: np.ndarray
     inverse_mass: np.ndarray
     friction: FrictionLaws
     damping_ratio: float
@@ -59,6 +62,7 @@ def assemble_interfaces(structure, parameters):
     return Interfaces(
         k_n=parameters.normal_stiffness * young / young[reference],
         k_s=parameters.shear_stiffness * shear / shear[reference],
+        layer=joint_compliance(structure),
         inverse_mass=np.where(structure.driven, 0.0, 1.0 / structure.mass),
         friction=assemble_friction(structure),
         damping_ratio=float(damping_ratio(file.restitution)),
@@ -72,6 +76,12 @@ def assemble_interfaces(structure, parameters):
 def in_series(stiffness, a, b):
     """Stiffness between two bodies, each giving half of the compliance: per area [N/m3]."""
     return 2.0 / (1.0 / stiffness[a] + 1.0 / stiffness[b])
+
+
+@inline_kernel
+def normal_stiffness(interfaces, a, b):
+    """Stiffness of two bodies and the soft layer between them in series, along the normal: per area [N/m3]."""
+    return 2.0 / (1.0 / interfaces.k_n[a] + 1.0 / interfaces.k_n[b] + 2.0 * interfaces.layer[a, b])
 
 
 @inline_kernel

@@ -27,15 +27,19 @@ _BAD_RESIDUAL = 1e-4
 
 
 @kernel
-def start_audit(bodies, dt, progress):
+def start_audit(bodies, contacts, dt, theta, progress):
     """Energy at the start; what lifts everything by a millimetre is the least that is ever "in play".
 
-    ``dt``: of the step that the first step takes for the one before it [s].
+    ``contacts``: at the start. ``dt``: of the step that the first step takes for the one before it [s].
     """
     progress.audit[LAST_STEP] = dt
     state, energy = progress.state, progress.energy
     energy[0] = kinetic_energy(bodies, state.velocity, state.angular_velocity, state.orientation)
     energy[1] = potential_energy(bodies, state.position)
+    for contact in range(contacts.gap.size):
+        compliance, depth = contacts.compliance[contact], max(-contacts.gap[contact], 0.0)
+        if compliance > 0.0:
+            energy[2] += 0.5 * depth * depth / (theta * dt * dt * compliance)
     progress.energy_start[:] = energy
     weight = 0.0
     for body in range(bodies.mass.size):
@@ -68,7 +72,7 @@ def audit_into(contacts, n_contacts, progress):
 
 
 @kernel
-def account_into(bodies, stoppers, base, state, contacts, step, audit, energy):
+def account_into(bodies, stoppers, base, state, contacts, step, theta, audit, energy):
     """Bring the energy terms up to the end of the step.
 
     Parameters
@@ -81,7 +85,8 @@ def account_into(bodies, stoppers, base, state, contacts, step, audit, energy):
     Notes
     -----
     An impulse does the work ``p . u`` with the mean ``u`` of the velocities at the start and at the end
-    (`turn_into` for rotations), so that the terms add up to rounding at theta 0.5. A dissipated
+    (`turn_into` for rotations), so that the terms add up to rounding at theta 0.5. A layer that gave the impulse p over
+    the step holds ``theta compliance p^2 / 2`` at its end. A dissipated
     term is the largest net work so far: net work can fall for a moment by the error of the scheme, and the fall
     then shows as the energy residual.
     """
@@ -92,6 +97,8 @@ def account_into(bodies, stoppers, base, state, contacts, step, audit, energy):
         u_n, u_1, u_2 = relative_velocity(contacts, contact, step.v_mean)
         audit[FRICTION_WORK] -= p[1] * u_1 + p[2] * u_2
         audit[NORMAL_WORK] -= p[0] * u_n
+        if contacts.stopper[contact] < 0:
+            elastic += 0.5 * theta * contacts.compliance[contact] * p[0] * p[0]
         if bodies.driven[a]:
             world = turned_back(contacts.basis[contact], p)
             energy[6] += dot(world, velocity_at(step.v_mean[a], contacts.arm_a[contact]))

@@ -19,9 +19,10 @@ class Contacts(NamedTuple):
     ``gap`` (n,) [m]; ``friction`` (n,) [1] and ``bias`` (n, 2) [1]: the coefficient is ``friction + bias . s`` for
     slip of b along the unit vector s of the tangents. ``bound`` (n, 3): velocity added to that of the contact before
     the law is applied [m/s]. ``share`` (n,) [1] and ``compliance`` (n,) [1/kg] of the normal law ``share (u_n +
-    bound_n) + compliance p_n >= 0``: 1 and 0 where rigid bodies touch; only a contact without friction may have another
-    share. ``local`` (n, 5): ``w_n, w_1, w_2, a_1, a_2`` of `solve_contact`. ``impulse`` (n, 3) along the basis [N s].
-    ``slip`` (n,) of `solve_contact`. ``stopper`` int64 (n,): index of the stopper, or -1.
+    bound_n) + compliance p_n >= 0``: 1 and 0 where rigid bodies touch, a compliance where a layer is between them;
+    only a contact without friction may have another share. ``local`` (n, 5): ``w_n, w_1, w_2, a_1, a_2`` of
+    `solve_contact`. ``impulse`` (n, 3) along the basis [N s]. ``slip`` (n,) of `solve_contact`. ``stopper`` int64
+    (n,): index of the stopper, or -1.
     """
 
     body_a: np.ndarray
@@ -88,7 +89,9 @@ def _first_rows(contacts, count):
 
 
 @kernel
-def detect_contacts(bodies, polyhedra, placed, rotations, margin, shrink, memory, n_stoppers):
+def detect_contacts(
+    bodies, polyhedra, placed, rotations, margin, shrink, layers, admittance, memory, n_stoppers
+):
     """Contacts of all pairs of polyhedra, with room for the stoppers after them.
 
     Parameters
@@ -99,6 +102,10 @@ def detect_contacts(bodies, polyhedra, placed, rotations, margin, shrink, memory
         Body to world.
     margin, shrink : float
         As in `detect_pair_into`.
+    layers : float64 array, shape (n_bodies, n_bodies)
+        Compliance of the layers in the joints [m3/N].
+    admittance : float
+        Impulse over stiffness and velocity, ``theta h^2``, of an implicit spring [s2].
     memory : int64 array, shape (n_bodies, n_bodies)
         As in `detect_pair_into`.
     n_stoppers : int
@@ -106,20 +113,24 @@ def detect_contacts(bodies, polyhedra, placed, rotations, margin, shrink, memory
     Returns
     -------
     contacts : Contacts
-        Geometry and gap filled in; the rows of the stoppers are still empty.
+        Geometry, gap and compliance filled in; the rows of the stoppers are still empty.
     """
     pairs = find_pairs(placed, bodies.driven, margin)
-    contacts = empty_contacts(4 * pairs.shape[0] + n_stoppers)
-    normal, points, gaps = np.empty(3), np.empty((4, 3)), np.empty(4)
+    contacts = empty_contacts(5 * pairs.shape[0] + n_stoppers)
+    normal, points, gaps, areas = np.empty(3), np.empty((5, 3)), np.empty(5), np.empty(5)
     count = 0
     for pair in range(pairs.shape[0]):
         a, b = pairs[pair, 0], pairs[pair, 1]
-        found = detect_pair_into(polyhedra, placed, a, b, margin, shrink, memory, normal, points, gaps)
+        layer = layers[a, b]
+        found = detect_pair_into(
+            polyhedra, placed, a, b, margin, shrink, layer, memory, normal, points, gaps, areas
+        )
         if found == 0:
             memory[a, b] = -1
         for point in range(found):
             contacts.body_a[count], contacts.body_b[count] = a, b
             contacts.gap[count] = gaps[point]
+            contacts.compliance[count] = layer / (admittance * areas[point])
             put_into(normal, contacts.basis[count, 0])
             for axis in range(3):
                 contacts.arm_a[count, axis] = points[point, axis] - placed.center[a, axis]

@@ -3,7 +3,12 @@
 import numpy as np
 
 from blockshake.jit import kernel
-from blockshake.solvers.nscd.overlap_polygon import choose_four_into, clip_face, shrink_polygon_into
+from blockshake.solvers.nscd.overlap_polygon import (
+    area_and_centroid_into,
+    choose_four_into,
+    clip_face,
+    shrink_polygon_into,
+)
 from blockshake.solvers.nscd.vectors import put_into
 
 # Relative to the smaller radius of the pair: an axis must separate this much better than the one of
@@ -13,11 +18,15 @@ _BIAS = 1e-4
 _TOUCH = 1e-5
 # Two edges that cross at a smaller sine are parallel, and parallel edges meet in a face axis.
 _PARALLEL = 1e-6
+# Share of a joint's area that a corner stands for where its middle stands for the rest: exact for the axial and the
+# rotational stiffness of a parallelogram, and of a triangle.
+_CORNER = 1.0 / 12.0
+_LEAST_AREA = 1e-12  # m2, of a joint that has none
 
 
 @kernel
-def detect_pair_into(polyhedra, placed, a, b, margin, shrink, memory, normal, points, gaps):
-    """Contact points of bodies ``a`` and ``b``, at most four; their number is returned.
+def detect_pair_into(polyhedra, placed, a, b, margin, shrink, layer, memory, normal, points, gaps, areas):
+    """Contact points of bodies ``a`` and ``b``, at most four and the middle of a joint with a layer; their number.
 
     Parameters
     ----------
@@ -29,14 +38,18 @@ def detect_pair_into(polyhedra, placed, a, b, margin, shrink, memory, normal, po
         Points with a larger gap are left out [m].
     shrink : float
         As in `NscdParameters`.
+    layer : float
+        Compliance of the layer between them [m3/N]; without one the middle of a joint is no contact.
     memory : int64 array, shape (n_bodies, n_bodies)
         Row of the reference face of each pair at the step before, -1 for none; updated.
     normal : float64 array, shape (3,)
         Overwritten: unit normal from ``a`` to ``b``.
-    points : float64 array, shape (4, 3)
+    points : float64 array, shape (5, 3)
         Overwritten: midway between the two surfaces, world frame [m].
-    gaps : float64 array, shape (4,)
+    gaps : float64 array, shape (5,)
         Overwritten: clearance along the normal [m], negative in penetration.
+    areas : float64 array, shape (5,)
+        Overwritten: area of a layer that each stands for, infinite where edges meet and no layer is between [m2].
 
     Notes
     -----
@@ -54,7 +67,9 @@ def detect_pair_into(polyhedra, placed, a, b, margin, shrink, memory, normal, po
     owner, other = (
         (a, b) if face < polyhedra.first_face[a + 1] and face >= polyhedra.first_face[a] else (b, a)
     )
-    count = _face_points_into(polyhedra, placed, owner, other, face, margin, shrink, points, gaps)
+    count = _face_points_into(
+        polyhedra, placed, owner, other, face, margin, shrink, layer, points, gaps, areas
+    )
     if count == 0 or separation < -_TOUCH * size:
         edge_normal = np.empty(3)
         edge_separation = _best_edge_into(polyhedra, placed, a, b, edge_normal)
@@ -62,7 +77,7 @@ def detect_pair_into(polyhedra, placed, a, b, margin, shrink, memory, normal, po
             return 0
         better = edge_separation > separation + bias
         if better and _edge_point_into(polyhedra, placed, a, b, edge_normal, points):
-            gaps[0] = edge_separation
+            gaps[0], areas[0] = edge_separation, np.inf
             normal[:] = edge_normal
             return 1
     sign = 1.0 if owner == a else -1.0
@@ -128,12 +143,22 @@ def _incident_face(polyhedra, placed, face, other):
 
 
 @kernel
-def _face_points_into(polyhedra, placed, owner, other, face, margin, shrink, points, gaps):
+def _face_points_into(polyhedra, placed, owner, other, face, margin, shrink, layer, points, gaps, areas):
+    """Corners of the overlap, and its middle where there is a layer; those within ``margin``.
+
+    Every corner stands for a twelfth of the area and the middle for the rest, so that springs there have the axial
+    stiffness ``A / c`` and the rotational one ``I / c`` of a layer over a parallelogram; corners alone with the right
+    axial stiffness would have three times the rotational one. With a layer all points lie in the plane of the deepest:
+    points that all press and stick at different heights would hold a block that turns about an axis along the joint.
+    """
     incident = _incident_face(polyhedra, placed, face, other)
     polygon = clip_face(polyhedra, placed, face, incident)
     if shrink > 0.0:
         shrink_polygon_into(shrink, polygon)
     n, offset = placed.normals[face], placed.offsets[face]
+    middle = np.empty(3)
+    area = max(area_and_centroid_into(polygon, middle), _LEAST_AREA)
+    corners = min(polygon.shape[0], 4)
     distance = np.empty(polygon.shape[0])
     count = 0
     for index in range(polygon.shape[0]):
@@ -145,10 +170,20 @@ def _face_points_into(polyhedra, placed, owner, other, face, margin, shrink, poi
             count += 1
     chosen = np.empty(4, np.int64)
     count = choose_four_into(polygon, distance, count, n, chosen)
+    gap = n[0] * middle[0] + n[1] * middle[1] + n[2] * middle[2] - offset
+    lowest = gap
     for index in range(count):
-        gaps[index] = distance[chosen[index]]
+        lowest = min(lowest, distance[chosen[index]])
+    for index in range(count):
+        gaps[index], areas[index] = distance[chosen[index]], _CORNER * area
+        height = 0.5 * (lowest if layer > 0.0 else gaps[index])
         for axis in range(3):
-            points[index, axis] = polygon[chosen[index], axis] - 0.5 * gaps[index] * n[axis]
+            points[index, axis] = polygon[chosen[index], axis] - (gaps[index] - height) * n[axis]
+    if layer > 0.0 and corners > 2 and gap <= margin:
+        gaps[count], areas[count] = gap, (1.0 - corners * _CORNER) * area
+        for axis in range(3):
+            points[count, axis] = middle[axis] - (gap - 0.5 * lowest) * n[axis]
+        count += 1
     return count
 
 

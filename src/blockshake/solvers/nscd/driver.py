@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from blockshake.dynamics.collapse import collapse_limits
+from blockshake.dynamics.joint_layers import joint_compliance
 from blockshake.dynamics.motion import MotionTable, rest_table
 from blockshake.dynamics.system import Trajectory, assemble_bodies
 from blockshake.solvers.checkpoint import NEWS, Due, run_key
@@ -30,6 +31,7 @@ from blockshake.solvers.nscd.progress import (
     WORST_RESIDUAL,
     start_progress,
 )
+from blockshake.solvers.nscd.start import settled_state
 from blockshake.solvers.record import empty_record
 
 _log = logging.getLogger(__name__)
@@ -90,6 +92,7 @@ def simulate_nscd(
     bodies = _reordered(bodies._replace(gravity=None), order)._replace(gravity=bodies.gravity)
     stoppers = stoppers._replace(body=place[stoppers.body])
     polyhedra, friction = pack_polyhedra(structure, order), ordered_friction(structure, order)
+    layers = np.ascontiguousarray(joint_compliance(structure)[np.ix_(order, order)])
     ground = rest_table() if motion is None else motion.table
     ground = MotionTable(*(np.ascontiguousarray(part) for part in ground))
     driven = np.flatnonzero(structure.driven)
@@ -111,14 +114,18 @@ def simulate_nscd(
         progress, contacts, joints, record = saved
         _log.info("goes on from %.3f s", progress.clock[STEP] * time_step)
     else:
-        progress, contacts = start_progress(_reordered(state, order)), empty_contacts(0)
+        touching = structure.touching[np.ix_(order, order)]
+        state = settled_state(
+            bodies, friction, polyhedra, layers, touching, ground, parameters.shrink, _reordered(state, order)
+        )
+        progress, contacts = start_progress(state), empty_contacts(0)
         joints, record = no_joints(len(order)), empty_record(len(times), len(order))
     news, saving = Due(NEWS), Due(checkpoint_interval)
     code, steps = PAUSED, _PAUSE_STEPS
     while code == PAUSED:
         began = time.monotonic()
         code, culprit, contacts, joints, record = integrate(
-            bodies, friction, stoppers, polyhedra, ground, settings, watch, times,
+            bodies, friction, stoppers, layers, polyhedra, ground, settings, watch, times,
             int(progress.clock[STEP]) + steps, progress, contacts, joints, record,
         )  # fmt: skip
         if time.monotonic() - began < _PIECE:

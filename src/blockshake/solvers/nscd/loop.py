@@ -61,6 +61,7 @@ def integrate(
     bodies,
     friction,
     stoppers,
+    layers,
     polyhedra,
     ground,
     settings,
@@ -77,6 +78,8 @@ def integrate(
     Parameters
     ----------
     bodies, friction, stoppers, polyhedra : Bodies, Friction, Stoppers, Polyhedra
+    layers : float64 array, shape (n_bodies, n_bodies)
+        Compliance of the layers in the joints [m3/N].
     ground : MotionTable
         Motion of the driven bodies.
     settings, watch : Settings, Watch
@@ -108,12 +111,17 @@ def integrate(
     origin, segment = np.zeros(4), 0
     segment = ground_displacement_into(ground, origin, 0.0, segment, displacement, velocity)
     origin[:3] = displacement[:3]
+    step, placed = empty_step(state), empty_placed(polyhedra)
     if clock[STEP] == 0:
         displacement[:3] = 0.0
         place_driven_into(bodies, displacement, velocity, state)
-        start_audit(bodies, dt, progress)
-    step, before, energy_before = empty_step(state), copy_state(state), progress.energy.copy()
-    placed = empty_placed(polyhedra)
+        place_into(polyhedra, state.position, state.orientation, placed)
+        at_start = detect_contacts(
+            bodies, polyhedra, placed, step.rotations, 0.0, settings.shrink, layers, theta * dt * dt,
+            progress.face.copy(), 0,
+        )  # fmt: skip
+        start_audit(bodies, at_start, dt, theta, progress)
+    before, energy_before = copy_state(state), progress.energy.copy()
     gravity, lightest = np.linalg.norm(bodies.gravity), _lightest(bodies)
     n_steps = int(np.ceil(times[times.size - 1] / dt - _ROUNDING))
     if n_steps == 0:
@@ -144,6 +152,8 @@ def integrate(
                 step.rotations,
                 margin,
                 settings.shrink,
+                layers,
+                theta * h * h,
                 progress.face,
                 stoppers.body.size,
             )
@@ -175,7 +185,9 @@ def integrate(
             segment = ground_displacement_into(ground, origin, end, segment, displacement, velocity)
             move_into(bodies, displacement, velocity, h, theta, contacts, before, step, state)
             energy_before[:] = progress.energy
-            account_into(bodies, stoppers, watch.base, state, contacts, step, progress.audit, progress.energy)
+            account_into(
+                bodies, stoppers, watch.base, state, contacts, step, theta, progress.audit, progress.energy
+            )
             for contact in range(n_contacts):
                 a, b = contacts.body_a[contact], contacts.body_b[contact]
                 if joints.row[a, b] < 0 and contacts.impulse[contact, 0] > 0.0:

@@ -92,21 +92,40 @@ def _squared_distance(x, y):
 
 
 @kernel
+def area_and_centroid_into(polygon, center):
+    """Area of a convex polygon [m2]; ``center`` is overwritten with its centroid, the mean corner where it has none."""
+    count = polygon.shape[0]
+    weight = 0.0
+    center[:] = 0.0
+    for index in range(1, count - 1):
+        ux, uy, uz = (
+            polygon[index, 0] - polygon[0, 0], polygon[index, 1] - polygon[0, 1], polygon[index, 2] - polygon[0, 2]
+        )  # fmt: skip
+        vx, vy, vz = (
+            polygon[index + 1, 0] - polygon[0, 0], polygon[index + 1, 1] - polygon[0, 1],
+            polygon[index + 1, 2] - polygon[0, 2],
+        )  # fmt: skip
+        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        area = np.sqrt(x * x + y * y + z * z)
+        weight += area
+        for axis in range(3):
+            center[axis] += area * (polygon[0, axis] + polygon[index, axis] + polygon[index + 1, axis]) / 3.0
+    if weight > 0.0:
+        for axis in range(3):
+            center[axis] /= weight
+    else:
+        for index in range(count):
+            for axis in range(3):
+                center[axis] += polygon[index, axis] / count
+    return 0.5 * weight
+
+
+@kernel
 def shrink_polygon_into(shrink, polygon):
     """Scale a polygon by ``1 - shrink`` about its area centroid, in place."""
     count = polygon.shape[0]
-    weight = 0.0
-    center = np.zeros(3)
-    for index in range(1, count - 1):
-        u, v = polygon[index] - polygon[0], polygon[index + 1] - polygon[0]
-        area = np.linalg.norm(np.cross(u, v))
-        weight += area
-        center += area * (polygon[0] + polygon[index] + polygon[index + 1]) / 3.0
-    if weight > 0.0:
-        center /= weight
-    else:
-        for index in range(count):
-            center += polygon[index] / count
+    center = np.empty(3)
+    area_and_centroid_into(polygon, center)
     for index in range(count):
         for axis in range(3):
             polygon[index, axis] = center[axis] + (1.0 - shrink) * (polygon[index, axis] - center[axis])

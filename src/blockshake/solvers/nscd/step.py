@@ -137,16 +137,25 @@ def bounds_into(step, dt, theta, restitution, contacts):
     and no more, and leaves a penetration as it is. ``u`` must be measured with the levers halfway between these
     two poses; those at hand are ``dt / 2`` older, and the difference is the centripetal velocity added here.
     Newton's restitution replaces the anticipated gap where the velocity at the start would close the gap within the
-    step. A compliant contact's law is implicit: impulse ``dt k`` times the closure at the end.
+    step. The law of a stop and of a layer is implicit: impulse ``dt k`` times the closure at the end. All points of a
+    layer press at once, and what the levers add along it is that of its deepest point for all of them: else those that
+    stick would be stretched apart, and hold the block.
     """
+    a, b, deepest = -1, -1, 0
     for contact in range(contacts.gap.size):
         basis, bound = contacts.basis[contact], contacts.bound[contact]
         gap = contacts.gap[contact]
-        of_b = _centripetal(step.v_start[contacts.body_b[contact], 3:], contacts.arm_b[contact])
-        of_a = _centripetal(step.v_start[contacts.body_a[contact], 3:], contacts.arm_a[contact])
-        turn = (of_b[0] - of_a[0], of_b[1] - of_a[1], of_b[2] - of_a[2])
-        for i in range(3):
-            bound[i] = 0.5 * dt * dot(basis[i], turn)
+        if contacts.body_a[contact] != a or contacts.body_b[contact] != b:
+            a, b, deepest = (
+                contacts.body_a[contact],
+                contacts.body_b[contact],
+                _deepest_of_pair(contacts, contact),
+            )
+        layered = contacts.compliance[contact] > 0.0 and contacts.stopper[contact] < 0
+        turn = _turn_of_levers(step, contacts, contact)
+        along = _turn_of_levers(step, contacts, deepest if layered else contact)
+        bound[0] = 0.5 * dt * dot(basis[0], turn)
+        bound[1], bound[2] = 0.5 * dt * dot(basis[1], along), 0.5 * dt * dot(basis[2], along)
         if contacts.compliance[contact] > 0.0:
             bound[0] += gap / (theta * dt)
             continue
@@ -155,6 +164,29 @@ def bounds_into(step, dt, theta, restitution, contacts):
             bound[0] += restitution * closing
         else:
             bound[0] += max(gap, 0.0) / dt
+
+
+@kernel
+def _deepest_of_pair(contacts, first):
+    """The contact with the least gap among those of the pair of bodies that begin at ``first``."""
+    deepest, contact = first, first
+    while (
+        contact < contacts.gap.size
+        and contacts.body_a[contact] == contacts.body_a[first]
+        and contacts.body_b[contact] == contacts.body_b[first]
+    ):
+        if contacts.gap[contact] < contacts.gap[deepest]:
+            deepest = contact
+        contact += 1
+    return deepest
+
+
+@kernel
+def _turn_of_levers(step, contacts, contact):
+    """Centripetal acceleration of b's point less that of a's [m/s2]."""
+    of_b = _centripetal(step.v_start[contacts.body_b[contact], 3:], contacts.arm_b[contact])
+    of_a = _centripetal(step.v_start[contacts.body_a[contact], 3:], contacts.arm_a[contact])
+    return of_b[0] - of_a[0], of_b[1] - of_a[1], of_b[2] - of_a[2]
 
 
 @kernel
