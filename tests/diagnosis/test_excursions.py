@@ -73,3 +73,7 @@ def test_a_stopper_turns_faster_than_gravity():
     stopped = 0.015 - 0.1 * np.abs(np.mod(TIME, 0.6) - 0.3)
     assert turning_acceleration(TIME, stopped, 0.001) > 4.0
     assert turning_acceleration(TIME, np.zeros(len(TIME)), 0.001) is None
+
+
+def test_a_history_without_a_value_has_no_turn():
+    assert len(turning_points(np.empty(0), 1.0)) == 0

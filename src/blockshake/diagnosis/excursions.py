@@ -32,6 +32,8 @@ def turning_points(values, threshold):
     int64 array
         Maxima and minima alternate; neither the start nor the end is one.
     """
+    if not len(values):
+        return np.empty(0, dtype=np.int64)
     # only local extremes and the ends can be turning points
     change = np.sign(np.diff(values))
     moving = np.flatnonzero(change)
