@@ -16,6 +16,7 @@ from blockshake.errors import InputError
 
 PACKAGE = Path(__file__).parent
 _SHIPPED = PACKAGE.parents[1] / "config"
+_NO_NUMBER = -(2**31)  # stands for NaN in packed variables
 
 
 class _StrictLoader(yaml.SafeLoader):
@@ -153,8 +154,8 @@ def write_json(path, value):
 def write_dataset(path, dataset, decimals=None):
     """Write an xarray Dataset as netCDF-4, atomically, float variables compressed.
 
-    ``decimals``, where given, is the number of decimal digits kept in variables of a unit: ``{"m": 7}`` keeps
-    0.1 micrometre, far below any marker's noise, and halves the file twice.
+    ``decimals``, where given, is the number of decimal digits kept in variables of a unit, which are packed as whole
+    numbers (CF-1.11, section 8.1): ``{"m": 7}`` keeps 0.1 micrometre, far below any marker's noise.
     """
     encoding = {}
     for name, variable in dataset.variables.items():
@@ -162,7 +163,9 @@ def write_dataset(path, dataset, decimals=None):
             encoding[name] = {"zlib": True, "complevel": 2, "shuffle": True}
             unit = variable.attrs.get("units")
             if decimals is not None and unit in decimals:
-                encoding[name] |= {"dtype": "float32", "least_significant_digit": decimals[unit]}
+                encoding[name] |= {
+                    "dtype": "int32", "scale_factor": 10.0 ** -decimals[unit], "_FillValue": _NO_NUMBER,
+                }  # fmt: skip
     with replacing(path) as temporary:
         dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
 

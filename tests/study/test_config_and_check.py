@@ -77,6 +77,16 @@ def test_fewer_samples_of_one_model(mapping):
         (("convergence", "structure"), "no-such", "no-such: expected a structure file"),
         (("models", "nscd-elastic"), {"time_step": 1e-3}, "study.yaml: models.nscd-elastic"),
         (
+            ("models", "nscd-rigid", "parameters"),
+            {"friction.concrete.concrete": 0.5},
+            "study.yaml: models.nscd-rigid.parameters.friction.concrete.concrete: expected a parameter of the solver",
+        ),
+        (
+            ("models", "nscd-rigid", "parameters"),
+            {"nscd.parts": 5},
+            "nscd.parts: expected one of nscd.{theta, ",
+        ),
+        (
             ("ensemble", "distributions", "friction.concrete.concrete", "cov"),
             0.0,
             "friction.concrete.concrete",

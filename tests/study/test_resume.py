@@ -85,7 +85,9 @@ def test_a_killed_sample_goes_on_in_the_store(model, tmp_path, monkeypatch):
     step = 5e-5 if model == "ls-dem" else 1e-3
 
     def attempt(store):
-        return simulate_samples(case, model, step, 50.0, rows, {}, store, "source", lambda line: None)
+        return simulate_samples(
+            case, model, {"time_step": step}, 50.0, rows, {}, store, "source", lambda line: None
+        )
 
     solve, *settings = MODELS[model]
     driver = sys.modules[solve.__module__]

@@ -28,7 +28,7 @@ _log = logging.getLogger(__name__)
 def simulated(step, rows, linked, store):
     """Drift of the top block's marker at one time step [m], shape (sample, time)."""
     structure = load_structure(CASE["structure"])
-    files = simulate_samples(CASE, "ls-dem", step, 200.0, rows, linked, store, "", _log.info)
+    files = simulate_samples(CASE, "ls-dem", {"time_step": step}, 200.0, rows, linked, store, "", _log.info)
     ensemble = join_batches(files)
     assert np.isin(ensemble["status"], COUNTED).all()
     drift = relative_to_slab(ensemble["marker_displacement"], driven_marker(structure))

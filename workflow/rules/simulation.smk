@@ -40,7 +40,7 @@ rule simulate_batch:
         runtime=240,
     params:
         case=case_definition,
-        time_step=lookup(dpath="models/{model}/time_step", within=config),
+        settings=lookup(dpath="models/{model}", within=config),
         output_rate=lookup(dpath="output_rate", within=config),
         linked=lookup(dpath="ensemble/linked", within=config, default={}),
         store="results/store",

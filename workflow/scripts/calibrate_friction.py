@@ -15,7 +15,7 @@ with logging_to(snakemake.log[0]) as say:
         params.case,
         {
             "model": search["model"],
-            "time_step": params.models[search["model"]]["time_step"],
+            **params.models[search["model"]],
             "output_rate": params.output_rate,
             "tower": snakemake.input.tower,
         },

@@ -7,7 +7,7 @@ with logging_to(snakemake.log[0]) as say:
     finished = simulate_samples(
         snakemake.params.case,
         snakemake.wildcards.model,
-        snakemake.params.time_step,
+        snakemake.params.settings,
         snakemake.params.output_rate,
         batch_rows(snakemake.wildcards.batch, snakemake.input.design, snakemake.input.stiffness),
         snakemake.params.linked,

@@ -45,8 +45,14 @@ def cases_table(content):
         "Case", "Motion", "Scale", f"Peak acceleration [m/s{SQUARED}]", "Window [s]", "Model", "Time step [s]",
         "Samples", "completed / collapsed / failed",
     )  # fmt: skip
+    shared = [
+        f"{model_label(model)}: {', '.join(f'{name} {given(value)}' for name, value in settings['parameters'].items())}"
+        for model, settings in content.study["models"].items()
+        if settings.get("parameters")
+    ]
     return Table(
-        "Cases and models. The peak acceleration is the scaled motion's; the window is counted from its start.",
+        "Cases and models. The peak acceleration is the scaled motion's; the window is counted from its start."
+        + (f" In all samples of {'; '.join(shared)}." if shared else ""),
         header, tuple(rows), "llrrrlrrr",
     )  # fmt: skip
 

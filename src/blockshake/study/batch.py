@@ -18,7 +18,7 @@ from blockshake.study.simulation import simulate
 DECIMALS = {"m": 7}  # digits kept in histories: 0.1 um, a thousandth of a marker's noise
 
 
-def simulate_samples(case, model, time_step, output_rate, rows, linked, store, source, progress):
+def simulate_samples(case, model, settings, output_rate, rows, linked, store, source, progress):
     """Ensembles of one sample each, simulated where the store has not got them.
 
     Parameters
@@ -26,8 +26,11 @@ def simulate_samples(case, model, time_step, output_rate, rows, linked, store, s
     case : dict
         ``structure``, ``motion``, ``scale`` and ``duration`` [s] of a case of the configuration.
     model : str
-    time_step, output_rate : float
-        [s], [Hz]
+    settings : dict
+        The model's: ``time_step`` [s], and optionally ``parameters`` of the solver that all samples share, by
+        dotted name.
+    output_rate : float
+        [Hz]
     rows : pandas.DataFrame
         Sampled values, index the sample, contact stiffness included.
     linked : dict of str to str
@@ -49,10 +52,10 @@ def simulate_samples(case, model, time_step, output_rate, rows, linked, store, s
     structure = load_structure(case["structure"])
     finished = []
     for sample, row in rows.iterrows():
-        parameters = sample_parameters(row, case["structure"], linked)
+        parameters = settings.get("parameters", {}) | sample_parameters(row, case["structure"], linked)
         key = content_digest(
             source, model, structure.file.model_dump(), *(part.tobytes() for part in motion.table),
-            case["duration"], output_rate, time_step, parameters, int(sample), row.to_dict(),
+            case["duration"], output_rate, settings["time_step"], parameters, int(sample), row.to_dict(),
             *(solid.vertices.tobytes() for solid in structure.solids.values()),
         )  # fmt: skip
         path = Path(store) / f"{key}.nc"
@@ -60,8 +63,8 @@ def simulate_samples(case, model, time_step, output_rate, rows, linked, store, s
         if not path.exists():
             run = simulate(
                 case["structure"], motion, model, parameters,
-                time_step=time_step, duration=case["duration"], output_rate=output_rate, accelerometers=False,
-                checkpoint=path.with_suffix(".checkpoint"),
+                time_step=settings["time_step"], duration=case["duration"], output_rate=output_rate,
+                accelerometers=False, checkpoint=path.with_suffix(".checkpoint"),
             )  # fmt: skip
             write_dataset(path, gather_ensemble([run], [sample], rows, driven_marker(structure)), DECIMALS)
             how = "simulated"

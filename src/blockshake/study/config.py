@@ -15,7 +15,7 @@ from blockshake.study.correlation_target import load_correlation
 from blockshake.study.distributions import TABLE_2, Lognormal, load_distributions
 from blockshake.study.friction_settings import FrictionSearch
 from blockshake.study.sampling import SMALLEST_SIZE
-from blockshake.study.simulation import MODELS
+from blockshake.study.simulation import MODELS, split_parameters
 from blockshake.validation import Strict, validated
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -45,6 +45,9 @@ class Model(Strict):
     """One solver in the study."""
 
     time_step: Positive = Field(description="[s]")
+    parameters: dict[str, float | int | str | bool] = Field(
+        {}, description="of the solver, the same in all samples, by dotted name"
+    )
 
 
 class Measured(Strict):
@@ -120,6 +123,8 @@ def check_config(mapping, where):
     """Configuration from a mapping, checked with all that it names; ``where`` is its file."""
     config = validated(StudyConfig, mapping, where)
     names = [case.name for case in config.cases]
+    for model, settings in config.models.items():
+        _check_parameters(model, settings, f"models.{model}.parameters", where)
     for index, case in enumerate(config.cases):
         key = f"cases.{index}"
         if names.count(case.name) > 1:
@@ -147,6 +152,13 @@ def check_config(mapping, where):
     if config.convergence is not None:
         load_structure(config.convergence.structure)
     return config
+
+
+def _check_parameters(model, settings, key, where):
+    """What all samples share are parameters of the model's own solver."""
+    physical, _ = split_parameters(settings.parameters, model)
+    if physical:
+        raise InputError(where, f"{key}.{next(iter(physical))}", "expected a parameter of the solver")
 
 
 def _check_measured(case, where, key):

@@ -33,7 +33,7 @@ def estimate_hours(config):
             for duration in (0.01, _TRIAL_START, _TRIAL_START + _TRIAL):
                 started = time.process_time()
                 simulate(
-                    case.structure, motion, model,
+                    case.structure, motion, model, settings.parameters,
                     time_step=settings.time_step, duration=duration, accelerometers=False,
                 )  # fmt: skip
                 spent.append(time.process_time() - started)

@@ -21,8 +21,8 @@ def calibrate_friction(case, run_settings, ensemble, search, measured, marker_no
     case : dict
         As for `simulate_samples`.
     run_settings : dict
-        ``model``, ``time_step`` [s], ``output_rate`` [Hz], and ``tower``, the structure that gives the
-        stiffness of LS-DEM's samples.
+        ``model``, its ``time_step`` [s] and ``parameters``, ``output_rate`` [Hz], and ``tower``, the structure that
+        gives the stiffness of LS-DEM's samples.
     ensemble : dict
         ``distributions``, ``seed``, ``linked``.
     search : dict
@@ -59,7 +59,7 @@ def calibrate_friction(case, run_settings, ensemble, search, measured, marker_no
         for index, design in enumerate(designs):
             rows = with_mean(design, distributions, search["variables"], mean)
             finished = simulate_samples(
-                case, run_settings["model"], run_settings["time_step"], run_settings["output_rate"],
+                case, run_settings["model"], run_settings, run_settings["output_rate"],
                 rows, linked, store, source, lambda line: None,
             )  # fmt: skip
             members = join_batches(finished)

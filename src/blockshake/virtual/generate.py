@@ -15,7 +15,7 @@ from blockshake.study.ensemble import relative_to_slab
 from blockshake.virtual.shake_table import final_places, shake, swelling_sine
 from blockshake.virtual.truth import hidden_effect, true_parameters
 
-DECIMALS = {"m": 6, "m s-2": 3}  # digits kept of a reading: a hundredth and a twentieth of its usual noise
+DECIMALS = {"m": 5, "m s-2": 3}  # digits kept of a reading: a tenth and a twentieth of its usual noise
 _PLACES = 4  # stream of the seed
 _HEADER = "# SYNTHETIC: simulated runs seen through noisy sensors. Nothing here was measured.\n"
 
