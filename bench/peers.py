@@ -55,6 +55,8 @@ def block_task(structure, motion, time_step, steps, **options):
         or structure.angular_velocity.any()
     ):
         raise ValueError(f"{structure.source}: a peer starts from rest under {GRAVITY} m/s2")
+    if structure.mass_offset.any():
+        raise ValueError(f"{structure.source}: a peer has every mass centre in the middle")
     file = structure.file
     times = time_step * np.arange(steps + 2)
     velocity, acceleration = (

@@ -45,6 +45,9 @@ def make(tmp_path, monkeypatch, stiffness):
     time = np.arange(0.0, 1.5001, 0.01)
     rows = [f"{t:.2f},{1.2 * np.sin(4.0 * np.pi * t):.6f}" for t in time]
     (tmp_path / "motion.csv").write_text("time_s,acceleration_x\n" + "\n".join(rows) + "\n")
+    # the table goes 0.3 m to one side and stays, times the scale
+    rows = [f"{t:.2f},{0.15 * (1.0 - np.cos(np.pi * min(t, 1.0))):.6f}" for t in time]
+    (tmp_path / "push.csv").write_text("time_s,displacement_x\n" + "\n".join(rows) + "\n")
     monkeypatch.chdir(tmp_path)
 
     def made(name="c", source="one", **changed):
@@ -142,6 +145,18 @@ def test_a_ladder_ends_where_a_block_drifts_too_far(make):
     assert len(drifts) < 3
     assert drifts[-1] > 10.0
     assert len(load_campaign(folder).tests) == len(drifts)
+
+
+def test_a_test_in_which_a_block_falls_is_not_in_the_campaign(make):
+    # two blocks of a joint without friction slide apart
+    folder, truth, said = make(
+        hidden={"effect": "weak-joint", "values": {"factor": 0.0}, "place": {"joint": ["block-2", "block-3"]}},
+        motions=["push.csv"], restored=False, intensities={"first": 1.0, "increment": 1.0, "highest": 2.0},
+    )  # fmt: skip
+    assert said[-1].startswith("push-200: collapsed")
+    assert list(load_campaign(folder).tests) == ["push-100"]
+    assert json.loads((truth / "push-200.json").read_text())["status"] == "collapsed"
+    assert not (folder / "push-200.nc").exists()
 
 
 def test_every_effect_is_drawn_by_some_seed_with_a_size_that_shows(stiffness):

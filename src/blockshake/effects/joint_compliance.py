@@ -16,7 +16,7 @@ EFFECT = Effect(
     equation="closure of the joint = c pressure, beside what the blocks give",
     source="Winkler's bed, 1 to 5 GPa/m for dry joints of stone",
     parameters=(
-        EffectParameter("compliance", "m3/N", "closure of the joint by pressure", 0.0, 0.0, 2e-9, 6e-10),
+        EffectParameter("compliance", "m3/N", "closure of the joint by pressure", 0.0, 0.0, 6e-10, 3e-10),
     ),
     signature=Signature("quiet", "symmetric", "joint"),
     confused_with=("table-pitch", "clock-lag"),

@@ -38,7 +38,8 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
     Notes
     -----
     A motion's ladder ends with the first test in which a marker drifts too far, as read; one in which a block
-    fell, whose markers fell with it, is not part of the campaign. What an earlier call has finished is kept.
+    fell, whose markers fell with it, is not part of the campaign. Then the stack is put back in any case. What an
+    earlier call has finished is kept.
     """
     folder, truth = Path(folder), Path(truth)
     table = _Table(settings, structure, folder, truth, source, progress)
@@ -56,6 +57,7 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
             if drift is not None:
                 tests.append(entry)
             if drift is None or drift > settings.intensities.largest_drift:
+                table.put_back()
                 break
     entries = [*({**entry, "role": "fit"} for entry in gentle), *with_roles(tests)]
     named = structure
@@ -99,13 +101,13 @@ class _Table:
         self.parameters = true_parameters(structure, settings.seed)
         self.driven = load_structure(structure).driven
         self.count = 0
-        self.places = self._put_back()
+        self.put_back()
 
     def test(self, entry, motion, duration):
         """Largest drift read in a test [m], or None where a block fell or the run failed."""
         self.count += 1
         if self.settings.restored:
-            self.places = self._put_back()
+            self.put_back()
         made_by = content_digest(
             self.source, self.settings.model_dump(mode="json"), self.parameters, self.effect, self.count,
             self.places.tobytes(), *(part.tobytes() for part in motion.table), duration,
@@ -116,7 +118,8 @@ class _Table:
         if happened.get("made_by") != made_by or (happened["status"] == "completed" and not path.exists()):
             happened = {"made_by": made_by, **self._shake(path, entry, motion, duration)}
             write_json(record, happened)
-        self.places = np.array(happened["places_left"])
+        if happened["status"] == "completed":
+            self.places = np.array(happened["places_left"])
         self.progress(
             f"{entry['name']}: {happened['status']}, largest drift {1e3 * happened['drift']:.1f} mm"
         )
@@ -140,23 +143,24 @@ class _Table:
         if run.attrs["status"] == "completed":
             write_dataset(path, test, DECIMALS)
         slab = driven_marker(load_structure(self.structure))
+        left = final_places(run, self.structure, self.places) if run.attrs["status"] == "completed" else None
         drift = np.abs(relative_to_slab(test["marker_displacement"], slab).sel(axis="x")).max()
         return {
             "status": run.attrs["status"],
             "reason": run.attrs["reason"],
             "drift": float(drift),
             "places": self.places.tolist(),
-            "places_left": final_places(run, self.structure, self.places).tolist(),
+            "places_left": None if left is None else left.tolist(),
         }
 
-    def _put_back(self):
-        """Where the blocks stand once put back: off their places along x and y, not turned."""
+    def put_back(self):
+        """Put the blocks in their places, but for a little along x and y."""
         generator = np.random.default_rng([self.settings.seed, _PLACES, self.count])
         places = np.zeros((len(self.driven), 3))
         places[~self.driven, :2] = generator.normal(
             0.0, self.settings.misplacement, ((~self.driven).sum(), 2)
         )
-        return places
+        self.places = places
 
 
 def _in_folder(motion, folder):
