@@ -204,3 +204,19 @@ def test_an_edit_in_an_imported_module_changes_what_a_cached_kernel_computes(tmp
     rotations.write_text(edited)
     # now every rotation goes the other way
     assert _half_turn(root, cache) == (-1.0, 0)
+
+
+def test_packed_variables_keep_their_digits_and_their_gaps(tmp_path):
+    values = np.random.default_rng(0).normal(0.0, 0.1, (100, 3))
+    values[3, 1] = np.nan
+    dataset = xr.Dataset(
+        {"u": (("t", "a"), values, {"units": "m"}), "n": (("t", "a"), values, {"units": "1"})}
+    )
+    write_dataset(tmp_path / "a.nc", dataset, decimals={"m": 5})
+    read = xr.load_dataset(tmp_path / "a.nc")
+    # half of the last digit kept
+    np.testing.assert_allclose(read["u"], values, atol=0.5e-5 * (1.0 + 1e-9))
+    np.testing.assert_array_equal(read["n"], values)
+    # read and written again, nothing moves
+    write_dataset(tmp_path / "b.nc", read.drop_encoding(), decimals={"m": 5})
+    xr.testing.assert_identical(xr.load_dataset(tmp_path / "b.nc"), read)
