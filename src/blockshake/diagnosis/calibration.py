@@ -1,0 +1,128 @@
+"""What the scores are worth: every draw of the library taken in turn for a measurement whose truth is known."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+NONE = "none"
+
+
+@dataclass(frozen=True)
+class Case:
+    """What one set of readings came to.
+
+    Attributes
+    ----------
+    truth : str
+        Name of the effect that is in them, `NONE`, or ``""`` where nobody knows.
+    size : float
+        Of it, in units of the visible one.
+    strongest : float
+        Largest log ratio of any candidate [1].
+    shortfall : dict of str to float
+        By effect: by how much its best place falls short of the strongest candidate [1].
+    distance : dict of str to float
+        By effect: squared distance per feature at its best place, size and solver [1].
+    """
+
+    truth: str
+    size: float
+    strongest: float
+    shortfall: dict
+    distance: dict
+
+
+def effect_of(key):
+    """Effect of a candidate's key."""
+    return key.partition("@")[0]
+
+
+def best_place(scores, effect):
+    """Key of the candidate that stands for an effect: its place with the largest ratio."""
+    return max((key for key in scores.log_ratio if effect_of(key) == effect), key=scores.log_ratio.get)
+
+
+def as_case(scores, truth="", size=0.0):
+    """Case of a set of scores."""
+    strongest = max(scores.log_ratio.values())
+    effects = dict.fromkeys(effect_of(key) for key in scores.log_ratio)
+    places = {effect: best_place(scores, effect) for effect in effects}
+    return Case(
+        truth=truth,
+        size=size,
+        strongest=strongest,
+        shortfall={effect: strongest - scores.log_ratio[key] for effect, key in places.items()},
+        distance={effect: scores.distance[key] for effect, key in places.items()},
+    )
+
+
+def library_cases(library):
+    """Every draw of a library in turn as a measurement, itself left out of the library that judges it.
+
+    Parameters
+    ----------
+    library : ScoreLibrary
+
+    Returns
+    -------
+    list of Case
+    """
+    cases = []
+    for model in library.models:
+        by_test = [test[model] for test in library.tamed]
+        for draw in range(len(by_test[0]["nominal"])):
+            scores = library.score([runs["nominal"][draw] for runs in by_test], model, draw)
+            cases.append(as_case(scores, NONE))
+        for key in library.candidates:
+            for draw, size in enumerate(library.sizes[model][key]):
+                scores = library.score([runs[key][draw] for runs in by_test], model, draw)
+                cases.append(as_case(scores, effect_of(key), float(size)))
+    return cases
+
+
+def chance_of_none(case, cases):
+    """Conformal p value of no effect: how often readings without one look as much like one as these."""
+    return _rank(case.strongest, [other.strongest for other in cases if other.truth == NONE])
+
+
+def detected(cases, level):
+    """Those of the cases that are called an effect at a level."""
+    limit = [case.strongest for case in cases if case.truth == NONE]
+    return [case for case in cases if case.truth != NONE and _rank(case.strongest, limit) <= level]
+
+
+def chance_of(effect, case, cases):
+    """Conformal p value of an effect: how often it falls as far short of the strongest where it is the truth.
+
+    Parameters
+    ----------
+    effect : str
+    case : Case
+    cases : list of Case
+        Detected ones.
+    """
+    return _rank(
+        case.shortfall[effect], [other.shortfall[effect] for other in cases if other.truth == effect]
+    )
+
+
+def chance_of_distance(effect, case, cases):
+    """How often readings with an effect are as far from its best fit as these; as of `chance_of`."""
+    return _rank(case.distance[effect], [other.distance[effect] for other in cases if other.truth == effect])
+
+
+def shown_above(effect, cases, level, share=0.9):
+    """Size from which on a share of the library's cases is detected, in units of the visible one; NaN if none is."""
+    own = [case for case in cases if case.truth == effect]
+    found = {id(case) for case in detected(cases, level)}
+    order = sorted(own, key=lambda case: abs(case.size), reverse=True)
+    hits, smallest = 0, np.nan
+    for count, case in enumerate(order, start=1):
+        hits += id(case) in found
+        if hits >= share * count:
+            smallest = abs(case.size)
+    return smallest
+
+
+def _rank(value, reference):
+    return (1.0 + sum(other >= value for other in reference)) / (1.0 + len(reference))

@@ -1,0 +1,81 @@
+"""How well one model predicts a test's features, without and with each candidate at each size."""
+
+import numpy as np
+from scipy.special import gammaln
+from sklearn.covariance import LedoitWolf
+
+from blockshake.diagnosis.response import fit_response
+
+_FREEDOM = 5.0  # of Student's t: a single odd feature does not decide
+_UNKNOWN = (
+    0.1  # of a feature's spread over all nominal draws: what no draw of one model shows it knows nothing of
+)
+_SIZES = 21
+
+
+def size_grid(sizes):
+    """Sizes at which a candidate is tried: over what its library spans, the null size in it."""
+    return np.linspace(min(sizes.min(), 0.0), max(sizes.max(), 0.0), _SIZES)
+
+
+class ModelEvidence:
+    """Predictive densities of one test by one model.
+
+    Parameters
+    ----------
+    nominal : float64 array, shape (n_draws, n_features)
+        Tamed features.
+    with_effect : dict of str to float64 array, shape (n_own_draws, n_features)
+        By candidate; draw k is nominal draw k with the effect.
+    sizes : dict of str to float64 array, shape (n_own_draws,)
+    left_out : int, optional
+        A draw that is taken for a measurement and so is none of the library's.
+
+    Notes
+    -----
+    Mean and covariance are those of the nominal draws, shrunk after Ledoit and Wolf (2004), since features outnumber
+    draws; a candidate adds the mean and the scatter of its `Response`.
+    """
+
+    def __init__(self, nominal, with_effect, sizes, left_out=None):
+        kept = np.arange(len(nominal)) != left_out
+        fit = LedoitWolf().fit(nominal[kept])
+        n_features = nominal.shape[1]
+        self.mean = fit.location_
+        self.covariance = fit.covariance_ + _UNKNOWN**2 * np.eye(n_features)
+        self.responses = {}
+        for key, runs in with_effect.items():
+            own = np.flatnonzero(kept[: len(runs)])
+            self.responses[key] = fit_response(
+                sizes[key][own], runs[own] - nominal[own], size_grid(sizes[key])
+            )
+
+    def nominal(self, features):
+        """Log density of features by the model alone, and their squared distance."""
+        nothing = np.zeros((1, len(features)))
+        density, square = self._densities(features, nothing, nothing)
+        return float(density[0]), float(square[0])
+
+    def candidate(self, key, features):
+        """The same with a candidate, at each size of its grid: two float64 arrays, shape (n_sizes,)."""
+        response = self.responses[key]
+        return self._densities(features, response.mean, response.deviation)
+
+    def _densities(self, features, added, deviation):
+        n_features = len(features)
+        found, squares = np.empty(len(added)), np.empty(len(added))
+        constant = (
+            gammaln(0.5 * (_FREEDOM + n_features))
+            - gammaln(0.5 * _FREEDOM)
+            - 0.5 * n_features * np.log(_FREEDOM * np.pi)
+        )
+        for place in range(len(added)):
+            lower = np.linalg.cholesky(self.covariance + np.diag(deviation[place] ** 2))
+            left = np.linalg.solve(lower, features - self.mean - added[place])
+            squares[place] = left @ left
+            found[place] = (
+                constant
+                - np.log(np.diag(lower)).sum()
+                - 0.5 * (_FREEDOM + n_features) * np.log1p(squares[place] / _FREEDOM)
+            )
+        return found, squares
