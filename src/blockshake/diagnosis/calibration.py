@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 NONE = "none"
+_FEWEST = 10  # cases with which a chance below 10 % can be told
 
 
 @dataclass(frozen=True)
@@ -101,14 +102,14 @@ def chance_of(effect, case, cases):
     cases : list of Case
         Detected ones.
     """
-    return _rank(
-        case.shortfall[effect], [other.shortfall[effect] for other in cases if other.truth == effect]
-    )
+    alike = _alike(effect, cases)
+    return _rank(case.shortfall[effect], [other.shortfall[other.truth] for other in alike])
 
 
 def chance_of_distance(effect, case, cases):
     """How often readings with an effect are as far from its best fit as these; as of `chance_of`."""
-    return _rank(case.distance[effect], [other.distance[effect] for other in cases if other.truth == effect])
+    alike = _alike(effect, cases)
+    return _rank(case.distance[effect], [other.distance[other.truth] for other in alike])
 
 
 def shown_above(effect, cases, level, share=0.9):
@@ -118,10 +119,17 @@ def shown_above(effect, cases, level, share=0.9):
     order = sorted(own, key=lambda case: abs(case.size), reverse=True)
     hits, smallest = 0, np.nan
     for count, case in enumerate(order, start=1):
-        hits += id(case) in found
-        if hits >= share * count:
+        seen = id(case) in found
+        hits += seen
+        if seen and hits >= share * count:
             smallest = abs(case.size)
     return smallest
+
+
+def _alike(effect, cases):
+    """Cases in which an effect is the truth; where they are too few to exclude anything, those of all effects."""
+    own = [case for case in cases if case.truth == effect]
+    return own if len(own) >= _FEWEST else cases
 
 
 def _rank(value, reference):
