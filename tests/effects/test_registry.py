@@ -1,5 +1,6 @@
 """Every effect: null to the byte, its signature in both solvers, its names and places."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -180,3 +181,25 @@ def test_the_diagnosis_does_not_know_how_virtual_data_are_made():
     package = Path(effects.__file__).parents[1]
     for path in (package / "diagnosis").rglob("*.py"):
         assert "blockshake.virtual" not in path.read_text(), path
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_a_null_effect_keeps_what_the_structure_states_already(name, structure):
+    stated = {
+        "friction.stone.stone.rate_drop": 0.3,
+        "friction.stone.stone.rate_scale": 0.02,
+        "joints.block-1.block-2.friction_factor": 0.5,
+        "joints.block-1.block-2.compliance": 2e-10,
+        "bodies.block-2.mass_offset": [0.01, 0.02, 0.0],
+        "restitution": 0.4,
+        "shapes.block.chamfer": 0.03,
+    }
+    experiment = replace(_experiment(structure, name, WEAK), parameters=stated)
+    effect = EFFECTS[name]
+    size = effect.parameters[0]
+    file = (
+        with_effect(experiment, name, {size.name: size.null}, _place(effect, experiment.load())).load().file
+    )
+    plain = experiment.load().file
+    assert file.model_copy(update={"stoppers": ()}) == plain
+    assert all(stop.stiffness == 0.0 for stop in file.stoppers)

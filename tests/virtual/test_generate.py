@@ -74,9 +74,12 @@ def test_it_is_read_like_any_campaign_and_says_synthetic(make):
     known = json.loads((truth / "truth.json").read_text())
     assert known["effect"]["name"] == "weak-joint"
     assert known["effect"]["values"]["factor"] == 0.2
-    # nothing of it where a diagnosis looks
+    # nothing of it where a diagnosis looks: no name, and no seed from which noise and survey could be drawn again
     for file in folder.iterdir():
         assert b"weak-joint" not in file.read_bytes()
+    for name in campaign.tests:
+        with xr.open_dataset(folder / f"{name}.nc") as file:
+            assert not any("seed" in key for key in file.attrs)
 
 
 def test_same_settings_same_bytes_and_another_seed_other_readings(make):
@@ -125,6 +128,28 @@ def test_a_stack_that_is_not_put_back_starts_where_it_came_to_rest(make):
     surveyed = _survey(campaign, names[2])
     # 4 standard deviations of the survey
     np.testing.assert_allclose(surveyed[:, :2], left[:, :2], atol=4e-4)
+
+
+def test_what_is_carried_on_is_where_the_blocks_rest_and_not_where_a_record_was_cut(make):
+    # a joint that slides, the record cut in full motion or after it: the stack ends in the same place
+    left = []
+    for duration in (1.0, 3.0):
+        folder, truth, _ = make(f"d{duration:g}", duration=duration, restored=False)
+        left.append(np.array(json.loads((truth / "motion-200.json").read_text())["places_left"]))
+        test = load_test(load_campaign(folder), "motion-200")
+        assert float(test["time"][-1]) == pytest.approx(duration)
+    assert np.abs(left[0][1:, 0]).max() > 5e-3
+    np.testing.assert_allclose(left[0], left[1], atol=1e-9)
+
+
+def test_a_clock_that_is_ahead_reads_to_the_end(make):
+    folder, _, _ = make(
+        hidden={"effect": "clock-lag", "values": {"lag": -0.02}},
+        intensities={"first": 1.0, "increment": 1.0, "highest": 1.0},
+    )
+    test = load_test(load_campaign(folder), "motion-100")
+    assert np.isfinite(test["marker_displacement"]).all()
+    assert float(test["time"][-1]) == pytest.approx(SETTINGS["duration"])
 
 
 def test_low_amplitude_tests_come_before_and_between(make):

@@ -1,12 +1,13 @@
 """One joint has a soft layer: dust, mortar, rough faces that touch at few points."""
 
 from blockshake.effects.effect import Effect, EffectParameter, Signature
-from blockshake.effects.places import joints
+from blockshake.effects.places import joints, stated_joint
 
 
 def _act(experiment, values, place):
+    present = stated_joint(experiment, place).compliance
     key = f"joints.{'.'.join(place['joint'])}.compliance"
-    return experiment.with_parameters(**{key: values["compliance"]})
+    return experiment.with_parameters(**{key: present + values["compliance"]})
 
 
 EFFECT = Effect(

@@ -5,10 +5,14 @@ from blockshake.effects.places import nowhere
 
 
 def _act(experiment, values, place):
-    pairs = [".".join(entry.pair) for entry in experiment.load().file.friction]
-    drops = {f"friction.{pair}.rate_drop": values["drop"] for pair in pairs}
-    scales = {f"friction.{pair}.rate_scale": values["scale"] for pair in pairs}
-    return experiment.with_parameters(**drops, **scales)
+    changed = {}
+    for entry in experiment.load().file.friction:
+        pair, present, drop = ".".join(entry.pair), entry.rate_drop, values["drop"]
+        # what the structure states already stays in proportion
+        share = drop / (present + drop) if present + drop > 0.0 else 0.0
+        changed[f"friction.{pair}.rate_drop"] = present + drop - present * drop
+        changed[f"friction.{pair}.rate_scale"] = entry.rate_scale ** (1.0 - share) * values["scale"] ** share
+    return experiment.with_parameters(**changed)
 
 
 EFFECT = Effect(

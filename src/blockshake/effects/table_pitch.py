@@ -7,7 +7,9 @@ from scipy.signal import lsim
 from blockshake.dynamics.motion import CHANNELS
 from blockshake.effects.effect import Effect, EffectParameter, Signature
 from blockshake.effects.places import nowhere
+from blockshake.errors import InputError
 
+_FEWEST_ROWS = 0.31  # of a period; the pitch then errs by less than 1 %
 _DAMPING = 0.05  # of critical; tables are lightly damped
 _PITCH = CHANNELS.index("pitch_y")
 
@@ -15,6 +17,13 @@ _PITCH = CHANNELS.index("pitch_y")
 def _act(experiment, values, place):
     breaks = experiment.motion.table.breaks
     step = np.diff(breaks).min()
+    if values["frequency"] * np.diff(breaks).max() > _FEWEST_ROWS:
+        raise InputError(
+            experiment.motion.name,
+            "time_s",
+            f"expected rows closer than {_FEWEST_ROWS / values['frequency']:.3g} s for "
+            f"a table that pitches at {values['frequency']:.3g} Hz",
+        )
     times = step * np.arange(int(np.ceil((breaks[-1] - breaks[0]) / step)) + 1)
     acceleration = experiment.motion.evaluate(breaks[0] + times, derivative=2)[:, 0]
     omega = 2.0 * np.pi * values["frequency"]

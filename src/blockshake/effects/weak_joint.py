@@ -1,12 +1,13 @@
 """One joint slides at less friction than the others of its materials."""
 
 from blockshake.effects.effect import Effect, EffectParameter, Signature
-from blockshake.effects.places import joints
+from blockshake.effects.places import joints, stated_joint
 
 
 def _act(experiment, values, place):
+    present = stated_joint(experiment, place).friction_factor
     key = f"joints.{'.'.join(place['joint'])}.friction_factor"
-    return experiment.with_parameters(**{key: values["factor"]})
+    return experiment.with_parameters(**{key: present * values["factor"]})
 
 
 EFFECT = Effect(

@@ -71,7 +71,8 @@ def observe(run, structure, instruments, seed):
     behind by the lag shows at the time t what was at t - lag; before the start everything rests.
     """
     noise, offsets, losses = (np.random.default_rng([seed, stream]) for stream in range(3))
-    displacement = _displacements(run, structure, instruments)
+    places = _places(run, structure, instruments)
+    displacement = places - places[:1]
     names = [marker.name for marker in structure.file.markers]
     time = run["time"].to_numpy()
     _check_names(instruments, names, run)
@@ -79,16 +80,18 @@ def observe(run, structure, instruments, seed):
     displacement *= np.array([instruments.marker_gain.get(name, 1.0) for name in names])[:, None]
     displacement += (time - time[0])[:, None, None] * np.array(instruments.marker_drift)
     read = displacement + noise.normal(0.0, 1.0, displacement.shape) * instruments.marker_noise
+    first = places[0] + read[0]
     read -= read[:1]
     read[_lost(losses, len(time), len(names), instruments.marker_dropouts)] = np.nan
-    places = marker_position(structure, structure.position, structure.orientation)
     test = xr.Dataset(
         {
             "marker_displacement": (
                 ("time", "marker", "axis"), read,
                 {"units": "m", "long_name": "synthetic marker displacement since the first reading, inertial frame"},
             ),
-            "marker_initial_position": (("marker", "axis"), places, {"units": "m", "long_name": "as in the structure"}),
+            "marker_initial_position": (
+                ("marker", "axis"), first, {"units": "m", "long_name": "synthetic first reading, inertial frame"},
+            ),
         },
         {"time": ("time", time, {"units": "s"}), "marker": names, "axis": ["x", "y", "z"]},
         {
@@ -96,7 +99,6 @@ def observe(run, structure, instruments, seed):
             "title": "virtual test: synthetic, not measured",
             "synthetic": 1,
             "source": "one simulated run seen through its instruments",
-            "seed": int(seed),
         },
     )  # fmt: skip
     if "accelerometer" in run:
@@ -113,8 +115,8 @@ def observe(run, structure, instruments, seed):
     return test
 
 
-def _displacements(run, structure, instruments):
-    """Of where the markers really sit, (n_times, n_markers, 3) [m]."""
+def _places(run, structure, instruments):
+    """Where the markers really are, (n_times, n_markers, 3), inertial frame [m]."""
     position = run["position"].transpose("time", "body", "axis").to_numpy()
     orientation = run["orientation"].transpose("time", "body", "quaternion").to_numpy()
     places = marker_position(structure, position, orientation)
@@ -123,7 +125,7 @@ def _displacements(run, structure, instruments):
             body = structure.body_names.index(marker.body)
             turn = rotation_matrices(orientation[:, body])
             places[:, index] += turn @ np.array(instruments.marker_offset[marker.name])
-    return places - places[:1]
+    return places
 
 
 def _delayed(displacement, time, lag):

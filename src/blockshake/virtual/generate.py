@@ -5,6 +5,7 @@ import shutil
 from pathlib import Path
 
 import numpy as np
+import yaml
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.records.contract_csv import write_motion_csv
@@ -42,10 +43,11 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
     earlier call has finished is kept.
     """
     folder, truth = Path(folder), Path(truth)
+    structure_in_folder = _structure_in_folder(structure, folder)
     table = _Table(settings, structure, folder, truth, source, progress)
     tests, gentle = [], []
     for motion in settings.motions:
-        called = _in_folder(motion, folder)
+        called = _motion_in_folder(motion, folder)
         for scale in _scales(settings.intensities):
             gentle += table.sine(len(tests))
             entry = {
@@ -60,11 +62,7 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
                 table.put_back()
                 break
     entries = [*({**entry, "role": "fit"} for entry in gentle), *with_roles(tests)]
-    named = structure
-    if structure not in shipped_names("structures"):
-        named = "structure.yaml"
-        shutil.copyfile(structure, folder / named)
-    write_text(folder / "campaign.yaml", _campaign_yaml(settings, named, entries))
+    write_text(folder / "campaign.yaml", _campaign_yaml(settings, structure_in_folder, entries))
     write_json(
         truth / "truth.json",
         {
@@ -118,11 +116,16 @@ class _Table:
         if happened.get("made_by") != made_by or (happened["status"] == "completed" and not path.exists()):
             happened = {"made_by": made_by, **self._shake(path, entry, motion, duration)}
             write_json(record, happened)
-        if happened["status"] == "completed":
-            self.places = np.array(happened["places_left"])
         self.progress(
             f"{entry['name']}: {happened['status']}, largest drift {1e3 * happened['drift']:.1f} mm"
         )
+        if happened["places_left"] is not None:
+            self.places = np.array(happened["places_left"])
+        elif happened["status"] == "completed" and not self.settings.restored:
+            self.progress(
+                f"{entry['name']}: the blocks did not come to rest in their places and are put back"
+            )
+            self.put_back()
         return happened["drift"] if happened["status"] == "completed" else None
 
     def sine(self, after):
@@ -163,12 +166,29 @@ class _Table:
         self.places = places
 
 
-def _in_folder(motion, folder):
+def _motion_in_folder(motion, folder):
     """What the campaign calls a motion: a shipped name, or the file that it gets in the folder."""
     if motion in shipped_names("motions"):
         return motion
-    write_motion_csv(load_motion(motion), folder / f"{Path(motion).stem}.csv")
-    return f"{Path(motion).stem}.csv"
+    name = f"{Path(motion).stem}.csv"
+    if Path(motion).resolve() != (folder / name).resolve():
+        write_motion_csv(load_motion(motion), folder / name)
+    return name
+
+
+def _structure_in_folder(structure, folder):
+    """What the campaign calls its structure: a shipped name, or the file it gets in the folder, meshes beside it."""
+    if structure in shipped_names("structures"):
+        return structure
+    meshes = [shape.mesh for shape in load_structure(structure).file.shapes.values() if shape.mesh]
+    for name, source in [
+        ("structure.yaml", Path(structure)),
+        *((m, Path(structure).parent / m) for m in meshes),
+    ]:
+        if source.resolve() != (folder / name).resolve():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(source, folder / name)
+    return "structure.yaml"
 
 
 def _scales(intensities):
@@ -178,15 +198,12 @@ def _scales(intensities):
 
 def _campaign_yaml(settings, structure, entries):
     noise = settings.instruments
-    lines = [
-        f"name: {settings.name}",
-        f"structure: {structure}",
-        f"sensors: {{marker_noise: {noise.marker_noise}, accelerometer_noise: {noise.accelerometer_noise}}}",
-        "tests:",
-        *(
-            f"  - {{name: {entry['name']}, file: {entry['file']}, motion: {entry['motion']}, "
-            f"scale: {entry['scale']:g}, role: {entry['role']}}}"
-            for entry in entries
-        ),
-    ]
-    return _HEADER + "\n".join(lines) + "\n"
+    mapping = {
+        "name": settings.name,
+        "structure": structure,
+        "sensors": {
+            "marker_noise": noise.marker_noise, "accelerometer_noise": noise.accelerometer_noise
+        },
+        "tests": [{key: entry[key] for key in ("name", "file", "motion", "scale", "role")} for entry in entries],
+    }  # fmt: skip
+    return _HEADER + yaml.safe_dump(mapping, sort_keys=False, default_flow_style=None, width=200)

@@ -1,8 +1,9 @@
 """Settings of a virtual campaign (YAML): what is tested, on which table, read by what, with which effect hidden."""
 
+from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
@@ -18,11 +19,17 @@ class Intensities(Strict):
     """The ladder of strong tests of every motion; Zhou et al. (2023): 50 %, + 25 % until a potential collapse."""
 
     first: Positive = Field(0.5, description="scale of the first test [1]")
-    increment: Positive = Field(0.25, description="[1]")
+    increment: Annotated[float, Field(ge=0.01, allow_inf_nan=False)] = Field(0.25, description="[1]")
     highest: Positive = Field(4.0, description="[1]")
     largest_drift: Positive = Field(
         0.4, description="of a marker relative to the slab's, after which a motion's ladder ends [m]"
     )
+
+    @model_validator(mode="after")
+    def _rising(self):
+        if self.first > self.highest:
+            raise ValueError("expected first <= highest")
+        return self
 
 
 class Sine(Strict):
@@ -51,7 +58,7 @@ class VirtualCampaign(Strict):
     name: str
     seed: int = Field(ge=0, description="of all that is drawn")
     model: Literal["ls-dem", "nscd-rigid"] = "ls-dem"
-    time_step: Positive = Field(1e-5, description="[s]")
+    time_step: Positive | None = Field(None, description="the model's own by default [s]")
     numerics: dict[str, float | str] = Field(
         {}, description="numerical parameters of the solver, by dotted name"
     )
@@ -65,7 +72,9 @@ class VirtualCampaign(Strict):
     misplacement: NotNegative = Field(
         3e-4, description="standard deviation of where a block is put, along x and y [m]"
     )
-    survey_noise: NotNegative = Field(1e-4, description="of the survey of the blocks' places [m]")
+    survey_noise: NotNegative = Field(
+        1e-4, description="of the survey of the blocks' places, and in rad of their turns [m]"
+    )
     instruments: Instruments = Instruments()
     hidden: Hidden = Hidden()
 
@@ -84,4 +93,13 @@ def load_settings(path):
         raise InputError(path, "hidden.effect", f"expected drawn, none or one of {', '.join(EFFECTS)}")
     if hidden.effect in ("drawn", "none") and (hidden.values or hidden.place):
         raise InputError(path, "hidden", "expected values and place of a named effect only")
+    known = [item.name for item in EFFECTS[hidden.effect].parameters] if hidden.effect in EFFECTS else []
+    for name in hidden.values:
+        if name not in known:
+            raise InputError(path, f"hidden.values.{name}", f"expected one of {', '.join(known)}")
+    stems = [Path(motion).stem for motion in settings.motions]
+    if len(set(stems)) < len(stems) or (settings.sine and "sine" in stems):
+        raise InputError(
+            path, "motions", "expected motions of different names, none called sine beside `sine`"
+        )
     return settings

@@ -12,6 +12,8 @@ from blockshake.study.placement import placed
 from blockshake.study.simulation import is_numerical, simulate
 
 RATE = 200.0  # Hz, of the optical system
+_REST = 10.0  # s that a stack which is not put back is given after the motion's end
+_STILL = 1e-3  # m/s; a block slower than this against the slab is at rest
 _SINE_ROWS = 1000  # a second
 
 
@@ -49,12 +51,20 @@ def shake(structure, parameters, effect, motion, settings, places, duration, see
     )
     if effect is not None:
         experiment = with_effect(experiment, **effect)
+    # a clock that is ahead shows what comes after the end; what is not put back must come to rest first
+    longer = max(duration - experiment.instruments.marker_lag, duration)
+    if not settings.restored:
+        longer = max(longer, motion.duration) + _REST
     run = simulate(
         experiment.structure, experiment.motion, settings.model, experiment.parameters | numerics,
-        time_step=settings.time_step, duration=duration, output_rate=RATE,
+        time_step=settings.time_step, duration=longer, output_rate=RATE,
     )  # fmt: skip
     test = observe(run, experiment.load(), experiment.instruments, seed)
-    _add_survey(test, run, places, settings.survey_noise, seed)
+    _add_survey(test, structure, places, settings.survey_noise, seed)
+    end = duration + 0.5 / RATE
+    test = test.isel(time=test["time"].to_numpy() < end)
+    if "time_acc" in test.coords:
+        test = test.isel(time_acc=test["time_acc"].to_numpy() < end)
     return test, run
 
 
@@ -75,10 +85,13 @@ def swelling_sine(sine):
 def final_places(run, structure, places):
     """Where the blocks stand after a test, off the structure file in the slab's frame, as `shake` takes it.
 
-    A block at rest lies flat: what is left of height and tilt is not carried on.
+    A block at rest lies flat: what is left of height and tilt is not carried on. None where they do not rest.
     """
     driven = load_structure(structure).driven
     slab = int(np.argmax(driven))
+    velocity = run["velocity"].isel(time=-1).to_numpy()
+    if not np.abs(velocity - velocity[slab]).max() < _STILL:
+        return None
     moved = (run["position"].isel(time=-1) - run["position"].isel(time=0)).to_numpy()
     moved -= moved[slab]
     first, last = (
@@ -92,15 +105,14 @@ def final_places(run, structure, places):
     return left
 
 
-def _add_survey(test, run, places, noise, seed):
+def _add_survey(test, structure, places, noise, seed):
     """Places as a survey finds them, on the free bodies; it turns nothing about x or y."""
+    built = load_structure(structure)
     generator = np.random.default_rng([seed, 3])
-    free = np.abs(places).sum(axis=1) > 0.0
     read = places + generator.normal(0.0, noise, places.shape)
-    read = np.where(free[:, None], read, 0.0)
+    read = np.where(built.driven[:, None], 0.0, read)
     zero = np.zeros(len(places))
-    names = [str(name) for name in run["body"].values]
-    test.coords["body"] = names
+    test.coords["body"] = built.body_names
     test["initial_offset"] = (
         ("body", "axis"), np.column_stack([read[:, 0], read[:, 1], zero]),
         {"units": "m", "long_name": "surveyed place of the mass centre against the structure file"},
