@@ -28,7 +28,7 @@ paper: setup
 	@echo "The report: $(CURDIR)/reports/paper.html and paper.pdf"
 
 test: setup
-	$(BIN)/pytest -m "not slow"
+	$(BIN)/pytest -m "not slow" --numprocesses $(CORES) --dist loadfile
 
 test-slow: setup
 	$(BIN)/pytest -m slow

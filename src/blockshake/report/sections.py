@@ -33,8 +33,9 @@ def summary(content):
         blocks.append(
             Text(
                 "The measured curves are SYNTHETIC: virtual tests, each one simulated run with parameters drawn at "
-                "random, made by a solver of this program and seen through noisy markers. Nothing was measured; how "
-                "near a model comes to them says nothing about reality. "
+                "random, made by a solver of this program and seen through noisy markers; an effect that the models "
+                "here lack may be hidden in them. Nothing was measured; how near a model comes to them says nothing "
+                "about reality. "
                 f"This holds for {', '.join(synthetic_tests)}.",
                 strong=True,
             )
