@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
@@ -12,7 +12,15 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.measured_test import read_test
 from blockshake.validation import Strict, validated
 
+
+def _not_zero(value):
+    if value == 0.0:
+        raise ValueError("expected a number other than 0")
+    return value
+
+
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Scale = Annotated[float, Field(strict=True, allow_inf_nan=False), AfterValidator(_not_zero)]
 
 
 class Sensors(Strict):
@@ -28,7 +36,7 @@ class MeasuredTest(Strict):
     name: str
     file: str
     motion: str
-    scale: float
+    scale: Scale
     role: Literal["fit", "select", "sealed"]
 
 

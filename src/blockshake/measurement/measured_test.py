@@ -1,25 +1,25 @@
-"""The file of one measured test, netCDF or a pair of CSV tables, checked against the structure."""
+"""The file of one measured test, checked against the structure."""
 
-import csv
-import io
 from pathlib import Path
 
 import numpy as np
-import xarray as xr
 
 from blockshake.errors import InputError
-from blockshake.files import read_text
-from blockshake.measurement.markers import marker_position
+from blockshake.measurement.accelerometers import accelerometer_channels
+from blockshake.measurement.initial_places import check_initial_places
+from blockshake.measurement.measured_files import AXES, read_netcdf, read_tables
 
-AXES = ("x", "y", "z")
 _FARTHEST = 20.0  # m; no table moves so far, a file in millimetres does
-_OPTIONAL = {
-    "marker_initial_position": {"marker", "axis"},
-    "accelerometer": {"time_acc", "channel"},
-    "table_displacement": {"time"},
-    "initial_offset": {"body", "axis"},
-    "initial_rotation": {"body", "axis"},
-}
+# Readings a second. Shaking has 0.5 to 50 Hz, most of it below 10 Hz, which takes 20 readings a second. 10 kHz are
+# 200 readings in the shortest period; times in milliseconds (200 Hz become 0.2) and in minutes (12 000) lie outside.
+_RATES = (20.0, 1e4)
+_START = 0.1  # s
+_FIRST = (
+    5  # readings, whose median is the start; shaking with 10 m/s2 from the first has moved by 0.5 mm in 10 ms
+)
+_START_LIMIT = 0.01  # m; far beyond noise, far less than a marker's distance from the origin
+_START_NOISE = 5.0  # times the channel's own noise
+_OVERLAP = 0.5  # of the shorter record, that both clocks must share
 
 
 def read_test(path, structure):
@@ -31,7 +31,7 @@ def read_test(path, structure):
         A netCDF file, or ``NAME.csv`` with columns ``time_s`` and ``MARKER.AXIS`` [m]; beside it may lie
         ``NAME-acc.csv`` with ``time_s`` and one column a channel [m/s2]. An empty cell is a gap.
     structure : Structure
-        Whose markers are read.
+        Whose markers and accelerometers are read.
 
     Returns
     -------
@@ -41,84 +41,23 @@ def read_test(path, structure):
     Raises
     ------
     InputError
-        Not readable, times that do not increase, unknown markers, no marker on the driven body, a channel without
-        any reading, axes that are swapped, or another unit.
+        Not readable; times that do not increase or are not in seconds; unknown or doubled markers, channels or
+        bodies; no marker on the driven body; a channel without any reading; axes that are swapped; another unit;
+        readings that are infinite or not since the first.
     """
     path = Path(path)
-    test = _read_csv(path) if path.suffix == ".csv" else _read_netcdf(path)
+    test = read_tables(path) if path.suffix.lower() == ".csv" else read_netcdf(path)
     for name in ("time", "time_acc"):
         if name in test.coords:
             _check_times(test[name].to_numpy(), path, name)
     if tuple(test["axis"].values) != AXES:
         test = _ordered_axes(test, path)
     _check_markers(test, structure, path)
+    _check_channels(test, structure, path)
     _check_readings(test, path)
-    _check_places(test, structure, path)
+    _check_start(test, path)
+    check_initial_places(test, structure, path)
     return test
-
-
-def _read_netcdf(path):
-    try:
-        test = xr.load_dataset(path)
-    except (OSError, ValueError, RuntimeError) as error:
-        raise InputError(path, "", f"expected a netCDF file; {error}") from None
-    dimensions = {"marker_displacement": {"time", "marker", "axis"}, **_OPTIONAL}
-    for name, expected in dimensions.items():
-        if name in test and set(test[name].dims) != expected:
-            raise InputError(path, name, f"expected the dimensions {', '.join(sorted(expected))}")
-    if "marker_displacement" not in test:
-        raise InputError(path, "marker_displacement", "expected displacements over time, marker and axis")
-    for name in ("time", "marker", "axis"):
-        if name not in test.coords:
-            raise InputError(path, name, "expected this coordinate")
-    known = [name for name in dimensions if name in test]
-    return test[known].transpose("time", "marker", "axis", ...).astype(np.float64)
-
-
-def _read_csv(path):
-    time, columns = _table(path)
-    markers = list(dict.fromkeys(name.rpartition(".")[0] for name in columns))
-    values = np.full((len(time), len(markers), 3), np.nan)
-    for name, column in columns.items():
-        marker, _, axis = name.rpartition(".")
-        if axis not in AXES or not marker:
-            raise InputError(path, name, "expected columns MARKER.x, MARKER.y, MARKER.z")
-        values[:, markers.index(marker), AXES.index(axis)] = column
-    variables = {"marker_displacement": (("time", "marker", "axis"), values, {"units": "m"})}
-    coordinates = {"time": time, "marker": markers, "axis": list(AXES)}
-    beside = path.with_name(f"{path.stem}-acc.csv")
-    if beside.is_file():
-        time_acc, channels = _table(beside)
-        variables["accelerometer"] = (
-            ("time_acc", "channel"), np.column_stack(list(channels.values())), {"units": "m s-2"},
-        )  # fmt: skip
-        coordinates |= {"time_acc": time_acc, "channel": list(channels)}
-    return xr.Dataset(variables, coordinates)
-
-
-def _table(path):
-    """Times and columns of a CSV; empty cells are NaN."""
-    rows = [row for row in csv.reader(io.StringIO(read_text(path).removeprefix("\ufeff"))) if any(row)]
-    names = [name.strip() for name in rows[0]] if rows else []
-    if "time_s" not in names or len(rows) < 2 or len(set(names)) < len(names):
-        raise InputError(
-            path, "time_s", "expected a header with time_s and every name once, and rows below it"
-        )
-    values = np.empty((len(rows) - 1, len(names)))
-    for line, row in enumerate(rows[1:], start=2):
-        if len(row) != len(names):
-            raise InputError(path, f"line {line}", f"expected {len(names)} cells, not {len(row)}")
-        for column, cell in enumerate(row):
-            try:
-                values[line - 2, column] = float(cell) if cell.strip() else np.nan
-            except ValueError:
-                raise InputError(
-                    path,
-                    f"line {line}, {names[column]}",
-                    f"expected a number or nothing, not '{cell.strip()}'",
-                ) from None
-    time = values[:, names.index("time_s")]
-    return time, {name: values[:, place] for place, name in enumerate(names) if name != "time_s"}
 
 
 def _check_times(time, path, name):
@@ -129,6 +68,13 @@ def _check_times(time, path, name):
         place = int(np.argmin(steps > 0.0))
         raise InputError(
             path, name, f"expected times that increase; {time[place + 1]:g} s follows {time[place]:g} s"
+        )
+    rate = 1.0 / np.median(steps)
+    if not _RATES[0] <= rate <= _RATES[1]:
+        raise InputError(
+            path,
+            name,
+            f"expected seconds, with {_RATES[0]:g} to {_RATES[1]:g} readings in each, not {rate:.3g}",
         )
 
 
@@ -154,7 +100,34 @@ def _check_markers(test, structure, path):
         )
 
 
+def _check_channels(test, structure, path):
+    """Accelerometer channels are the structure's, once each, and on a clock that runs beside the markers'."""
+    if "accelerometer" not in test:
+        return
+    known = accelerometer_channels(structure)
+    read = [str(name) for name in test["channel"].values]
+    for name in read:
+        if name not in known:
+            raise InputError(
+                path, name, f"expected accelerometer channels of the structure: {', '.join(known) or 'none'}"
+            )
+        if read.count(name) > 1:
+            raise InputError(path, name, "expected every accelerometer channel once")
+    clocks = [(time[0], time[-1]) for time in (test["time"].to_numpy(), test["time_acc"].to_numpy())]
+    shared = min(end for _, end in clocks) - max(begin for begin, _ in clocks)
+    if shared < _OVERLAP * min(end - begin for begin, end in clocks):
+        (begin, end), (begin_acc, end_acc) = clocks
+        raise InputError(
+            path,
+            "time_acc",
+            f"expected the clock of time, {begin:g} to {end:g} s, not {begin_acc:g} to {end_acc:g} s",
+        )
+
+
 def _check_readings(test, path):
+    for name, variable in test.data_vars.items():
+        if np.isinf(variable.to_numpy()).any():
+            raise InputError(path, name, "expected finite readings, and nothing or NaN in a gap")
     displacement = test["marker_displacement"]
     silent = displacement.isnull().all("time").to_numpy()
     if silent.any():
@@ -180,29 +153,20 @@ def _check_readings(test, path):
         )
 
 
-def _check_places(test, structure, path):
-    """Where the file says where markers started, they must start where the structure has them."""
-    if "marker_initial_position" not in test:
-        return
-    places = marker_position(structure, structure.position, structure.orientation)
-    own = {marker.name: place for marker, place in zip(structure.file.markers, places, strict=True)}
-    nominal = np.array([own[str(name)] for name in test["marker"].values])
-    read = test["marker_initial_position"].transpose("marker", "axis").to_numpy()
-    known = np.isfinite(read).all(axis=1)
-    away = np.linalg.norm(read - nominal, axis=1)[known]
-    if not len(away) or away.max() < 0.1:
-        return
-    for order in ((1, 0, 2), (2, 1, 0), (0, 2, 1), (1, 2, 0), (2, 0, 1)):
-        if np.linalg.norm(read[:, order] - nominal, axis=1)[known].max() < 0.1:
-            swapped = ", ".join(AXES[place] for place in order)
-            raise InputError(
-                path,
-                "axis",
-                f"expected x, y, z; the markers start where the structure has them in the order {swapped}",
-            )
-    name = test["marker"].values[known][int(away.argmax())]
-    raise InputError(
-        path,
-        f"marker_initial_position.{name}",
-        f"expected it within 0.1 m of the structure's, not {away.max():.3g} m off",
-    )
+def _check_start(test, path):
+    """Displacements count from the first reading; channels whose first readings are lost are left out."""
+    time = test["time"].to_numpy()
+    readings = test["marker_displacement"].to_numpy()[time <= time[0] + _START]
+    for marker, name in enumerate(test["marker"].values):
+        for axis in range(3):
+            channel = readings[np.isfinite(readings[:, marker, axis]), marker, axis]
+            if len(channel) < 2:
+                continue
+            start = float(np.median(channel[:_FIRST]))
+            noise = np.sqrt(np.mean(np.diff(channel) ** 2) / 2.0)  # large where the unit is another
+            if abs(start) > max(_START_LIMIT, _START_NOISE * noise):
+                raise InputError(
+                    path,
+                    f"{name}.{AXES[axis]}",
+                    f"expected displacements since the first reading; it starts at {start:.3g} m",
+                )

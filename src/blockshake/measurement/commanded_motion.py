@@ -1,0 +1,110 @@
+"""The slab's markers, which are the input, held against what the table was told."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from blockshake.errors import InputError
+
+_FOLLOWED = (0.8, 1.25)  # of the command, by which a table may move without a word
+_RELATED = 0.7  # correlation of the slab with the command, beyond which one is the other's motion
+_SEEN = 2.0  # times the slab's noise, that the command's standard deviation must be to be judged
+_UNIT = 20.0  # times the command, by which no table moves; centimetres are a hundred times
+_ONE_AXIS = 3.0  # times the motion along another axis
+
+
+@dataclass(frozen=True)
+class Followed:
+    """Regression of the slab's displacement on the command.
+
+    Attributes
+    ----------
+    share, correlation : float64 arrays, shape (3,)
+        Slope and correlation of x, y and z against the command along x [1].
+    """
+
+    share: np.ndarray
+    correlation: np.ndarray
+
+
+def follow(slab, target, noise):
+    """How the slab follows the command, None where that is too small to be seen.
+
+    Parameters
+    ----------
+    slab : float64 array, shape (n_times, 3)
+        Mean displacement of the slab's markers [m]; gaps are NaN.
+    target : float64 array, shape (n_times,)
+        Commanded displacement along x [m].
+    noise : float
+        Standard deviation of the slab's mean [m].
+    """
+    known = np.isfinite(slab).all(axis=1)
+    spread = np.std(target[known]) if known.sum() > 2 else 0.0
+    if spread <= _SEEN * noise or spread == 0.0:
+        return None
+    centred = target[known] - target[known].mean()
+    moved = slab[known] - slab[known].mean(axis=0)
+    common = moved.T @ centred
+    size = np.sqrt((moved**2).sum(axis=0) * (centred @ centred))
+    correlation = np.divide(common, size, out=np.zeros(3), where=size > 0.0)
+    return Followed(common / (centred @ centred), correlation)
+
+
+def check_followed(followed, path):
+    """Refuse a slab that moves as commanded along another axis, backwards, or in another unit.
+
+    Raises
+    ------
+    InputError
+    """
+    share, correlation = followed.share, followed.correlation
+    other = 1 + int(np.abs(correlation[1:]).argmax())
+    if abs(correlation[0]) < _RELATED < abs(correlation[other]) and abs(share[other]) > _FOLLOWED[0] / 2.0:
+        raise InputError(
+            path, "axis",
+            f"expected the table to move along x; what was commanded is along {'xyz'[other]}, axes are swapped",
+        )  # fmt: skip
+    if abs(correlation[0]) > _RELATED and abs(share[0]) > _UNIT:
+        raise InputError(
+            path, "marker_displacement",
+            f"expected metres; the table moves by {abs(share[0]):.3g} times what was commanded",
+        )  # fmt: skip
+    if correlation[0] < -_RELATED:
+        raise InputError(
+            path, "axis",
+            f"expected the table to move along x as commanded; it moves by {share[0]:.2f} of it, x is reversed",
+        )  # fmt: skip
+
+
+def followed_remarks(followed, role):
+    """Remarks on a slab that moves otherwise, or by another size, than commanded; of a sealed test no size."""
+    if followed.correlation[0] < _RELATED:
+        return [
+            "the table does not follow the commanded motion: another motion, another start or another time scale"
+        ]
+    share = followed.share[0]
+    if role != "sealed" and not _FOLLOWED[0] < share < _FOLLOWED[1]:
+        return [f"the table moved by {share:.2f} of what was commanded"]
+    return []
+
+
+def length_remarks(time, commanded):
+    """A remark where the record ends before the strongest acceleration that was commanded."""
+    breaks = commanded.table.breaks
+    strongest = breaks[np.abs(commanded.evaluate(breaks, 2)[:, 0]).argmax()]
+    length = time[-1] - time[0]
+    if length < strongest:
+        return [
+            f"the record of {length:.4g} s ends before the strongest shaking, commanded at {strongest:.4g} s"
+        ]
+    return []
+
+
+def driven_axis_remarks(slab):
+    """A remark where the slab of a test whose command is not at hand moves most along another axis than x."""
+    spread = np.nanstd(slab, axis=0)
+    other = 1 + int(spread[1:].argmax())
+    if spread[other] > _ONE_AXIS * spread[0]:
+        return [f"the table moves along {'xyz'[other]}, not along x"]
+    return []

@@ -1,0 +1,106 @@
+"""The slab's accelerometer against its markers: the clocks, and the accelerometer's unit and sign."""
+
+import numpy as np
+from scipy.signal import butter, sosfiltfilt
+
+from blockshake.errors import InputError
+
+_BAND = (1.0, 8.0)  # Hz, where a table's motion is well above the noise of both instruments
+_END = 0.5  # s at both ends, where the filter is not yet itself
+_EVEN = 0.01  # of the step, by which times may be uneven
+_SHORTEST = 3.0  # s
+_GAPS = 0.05  # of the readings, which may be lost
+_SEEN = 5.0  # times its noise, that the acceleration of the markers must have
+_RELATED = 0.8  # correlation, that instruments of one slab have
+_LARGEST_LAG = 0.05  # s searched: less than half a period of 8 Hz, so that a sine's sign is never in doubt
+_LAG = 0.01  # s without a word; the campaigns of data/ are found within 0.0012 s
+_GAIN = (0.5, 2.0)  # accelerometer over marker, without a word; those of data/ are within 0.97 to 1.01
+_GRAVITY = 9.81  # m/s2
+
+
+def clock_remarks(time, marker, time_acc, acceleration, noise, path):
+    """Remarks on the slab's accelerometer along x against the slab's markers: clock, sign and size.
+
+    Parameters
+    ----------
+    time, marker : float64 arrays, shape (n_times,)
+        [s]; mean displacement of the slab's markers along x [m], gaps are NaN.
+    time_acc, acceleration : float64 arrays, shape (n_readings,)
+        [s]; mean of the slab's channels along x [m/s2], gaps are NaN.
+    noise : float
+        Standard deviation of ``marker`` [m].
+    path : path
+        File that is named in an error.
+
+    Raises
+    ------
+    InputError
+        The accelerometer reads in g.
+
+    Notes
+    -----
+    Both are seen in 1 to 8 Hz, where the second difference of 0.1 mm of noise is 0.03 m/s2; lags up to 50 ms are
+    tried by steps of a reading, and a parabola through the best gives the rest.
+    """
+    if _unfit(time, marker) or _unfit(time_acc, acceleration):
+        return []
+    begin = max(time[0], time_acc[0]) + _END + _LARGEST_LAG
+    end = min(time[-1], time_acc[-1]) - _END - _LARGEST_LAG
+    inside = (time >= begin) & (time <= end)
+    if end - begin < _SHORTEST:
+        return []
+    step = np.median(np.diff(time))
+    moved = np.gradient(np.gradient(_band(time, marker), time), time)[inside]
+    unseen = noise * (2.0 * np.pi) ** 2 * np.sqrt((_BAND[1] ** 5 - _BAND[0] ** 5) / 5.0 * 2.0 * step)
+    if np.sqrt(np.mean(moved**2)) < _SEEN * unseen or not moved.any():
+        return []
+    read = _band(time_acc, acceleration)
+    lags = step * np.arange(-int(_LARGEST_LAG / step), int(_LARGEST_LAG / step) + 1)
+    shifted = [np.interp(time[inside] - lag, time_acc, read) for lag in lags]
+    correlation = np.array([_correlation(moved, values) for values in shifted])
+    best = int(np.abs(correlation).argmax())
+    if abs(correlation[best]) < _RELATED:
+        return [
+            f"the slab's accelerometer along x does not read what its markers do (correlation {correlation[best]:.2f})"
+        ]
+    gain = float(moved @ shifted[best] / (moved @ moved))
+    if _GAIN[0] < abs(gain) * _GRAVITY < _GAIN[1]:
+        raise InputError(
+            path, "accelerometer",
+            f"expected m/s2; the slab's reads {gain:.3g} of what its markers do, which looks like g",
+        )  # fmt: skip
+    remarks = []
+    if not _GAIN[0] < gain < _GAIN[1]:
+        remarks.append(f"the slab's accelerometer along x reads {gain:.3g} of what its markers do")
+    lag = lags[best] + step * _parabola(np.abs(correlation), best)
+    if abs(lag) > _LAG:
+        late = "behind" if lag > 0.0 else "ahead of"
+        remarks.append(f"the markers' clock is {1e3 * abs(lag):.3g} ms {late} the accelerometers'")
+    return remarks
+
+
+def _unfit(time, values):
+    """Too short, too many gaps, or uneven."""
+    steps = np.diff(time)
+    lost = np.mean(~np.isfinite(values))
+    return time[-1] - time[0] < _SHORTEST or lost > _GAPS or np.ptp(steps) > _EVEN * np.median(steps)
+
+
+def _band(time, values):
+    known = np.isfinite(values)
+    whole = np.interp(time, time[known], values[known])
+    sections = butter(4, _BAND, btype="bandpass", fs=1.0 / np.median(np.diff(time)), output="sos")
+    return sosfiltfilt(sections, whole - whole.mean())
+
+
+def _correlation(first, second):
+    size = np.sqrt((first @ first) * (second @ second))
+    return first @ second / size if size > 0.0 else 0.0
+
+
+def _parabola(values, best):
+    """Place of the summit beside the best value, in steps; 0 at an end."""
+    if not 0 < best < len(values) - 1:
+        return 0.0
+    before, here, after = values[best - 1 : best + 2]
+    return 0.5 * (before - after) / (before - 2.0 * here + after)
