@@ -17,7 +17,7 @@ from blockshake.files import PACKAGE, load_yaml
 ROOT = PACKAGE.parents[1]
 COPIED = ("Snakefile", "config", "data", "profiles", "src", "workflow")
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")
-LIMIT = 300  # s, for one call of Snakemake; a small study takes a tenth of it
+LIMIT = 1200  # s; against a study that hangs, not a measure of speed: other jobs may share the machine
 
 
 class Checkout:
