@@ -54,7 +54,10 @@ def campaign_files(case):
     campaign = load_campaign(CASES[case]["measured"]["campaign"])
     test = campaign.tests[CASES[case]["measured"]["test"]]
     files = [campaign.folder / "campaign.yaml", campaign.folder / test.file]
-    beside = [campaign.folder / f"{Path(test.file).stem}-acc.csv", Path(campaign.structure)]
+    beside = [
+        campaign.folder / f"{Path(test.file).stem}-acc.csv",
+        Path(campaign.structure),
+    ]
     return [str(path) for path in (*files, *filter(Path.is_file, beside))]
 
 
