@@ -45,17 +45,11 @@ class Candidate:
         return {size.name: float(value)} | drawn, float((value - size.null) / (size.visible - size.null))
 
 
-def candidates(structure, effects=EFFECTS):
-    """Candidates in a structure, in the registry's order; what only the sensors do is left to the parity checks.
-
-    Parameters
-    ----------
-    structure : Structure
-    effects : dict of str to Effect
-    """
+def candidates(structure):
+    """Candidates in a structure, in the registry's order; what only the sensors do is left to the parity checks."""
     return [
         Candidate(name, place)
-        for name, effect in effects.items()
+        for name, effect in EFFECTS.items()
         if effect.acts != "observation"
         for place in effect.places(structure)
     ]

@@ -4,7 +4,7 @@ from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
 from blockshake.measurement.instruments import Instruments, observe
 from blockshake.study.placement import placed
-from blockshake.study.simulation import is_numerical, simulate
+from blockshake.study.simulation import part_parameters, simulate
 
 RATE = 200.0  # Hz
 
@@ -33,8 +33,7 @@ def predict_test(structure, motion, duration, draw, sensors, effect=None):
     status : str
         How the run ended.
     """
-    numerics = {name: value for name, value in draw.parameters.items() if is_numerical(name)}
-    physical = {name: value for name, value in draw.parameters.items() if not is_numerical(name)}
+    physical, numerics = part_parameters(draw.parameters)
     instruments = Instruments(
         marker_noise=sensors.marker_noise, accelerometer_noise=sensors.accelerometer_noise
     )

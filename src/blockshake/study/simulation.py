@@ -129,7 +129,7 @@ def simulate(
 def split_parameters(parameters, model):
     """Physical parameters, for the structure, and numerical ones, for the solver, of a flat mapping."""
     _, schema, prefix, _ = _solver(model)
-    physical = {key: value for key, value in parameters.items() if not is_numerical(key)}
+    physical, _ = part_parameters(parameters)
     own = {
         key.removeprefix(f"{prefix}."): value
         for key, value in parameters.items()
@@ -147,9 +147,10 @@ def split_parameters(parameters, model):
     return physical, validated(schema, own, "--set", prefix)
 
 
-def is_numerical(name):
-    """Whether a dotted name is a solver's own parameter and none of the structure."""
-    return name.startswith(_PREFIXES)
+def part_parameters(parameters):
+    """Parameters of the structure and those of any solver, as two mappings."""
+    numerical = {name: value for name, value in parameters.items() if name.startswith(_PREFIXES)}
+    return {name: value for name, value in parameters.items() if name not in numerical}, numerical
 
 
 def effective_parameters(structure, model, numerical):

@@ -9,7 +9,7 @@ from blockshake.effects.registry import with_effect
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.instruments import observe
 from blockshake.study.placement import placed
-from blockshake.study.simulation import is_numerical, simulate
+from blockshake.study.simulation import part_parameters, simulate
 
 RATE = 200.0  # Hz, of the optical system
 _REST = 10.0  # s that a stack which is not put back is given after the motion's end
@@ -44,8 +44,7 @@ def shake(structure, parameters, effect, motion, settings, places, duration, see
     run : xarray.Dataset
         What happened: the truth.
     """
-    numerics = {name: value for name, value in parameters.items() if is_numerical(name)} | settings.numerics
-    physical = {name: value for name, value in parameters.items() if not is_numerical(name)}
+    physical, numerics = part_parameters(parameters | settings.numerics)
     experiment = Experiment(
         str(structure), physical | placed(structure, places), motion, settings.instruments
     )
