@@ -19,7 +19,7 @@ _SHIPPED = PACKAGE.parents[1] / "config"
 _NO_NUMBER = -(2**31)  # stands for NaN in packed variables
 
 
-class _StrictLoader(yaml.SafeLoader):
+class _StrictLoader(yaml.CSafeLoader):
     """YAML 1.2 numbers (``1e-5`` is one) and no key twice."""
 
     def construct_mapping(self, node, deep=False):

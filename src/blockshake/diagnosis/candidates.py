@@ -32,6 +32,10 @@ class Candidate:
         ]
         return "@".join([self.effect, *(["-".join(words)] if words else [])])
 
+    def as_effect(self, values):
+        """The effect as an experiment is given it."""
+        return {"name": self.effect, "values": values, "place": self.place}
+
     def values(self, number):
         """Parameter values of a library draw, and the size in units of the visible one.
 

@@ -1,0 +1,44 @@
+"""What is kept of a test, measured or simulated, by the same way: its features, and how joints and blocks moved."""
+
+import numpy as np
+
+from blockshake.diagnosis.features import features
+from blockshake.diagnosis.joint_histories import joint_histories
+from blockshake.diagnosis.reconstructed_base import reconstruct_base
+
+HISTORIES = ("slip", "rotation", "opening", "drift")
+
+
+def read_off(test, structure, sensors):
+    """Features and histories of a test.
+
+    Parameters
+    ----------
+    test : xarray.Dataset
+        As in a campaign's test file; one that ended early is judged until then.
+    structure : Structure
+        The campaign's, for a simulated test too, whatever was varied in it.
+    sensors : Sensors
+        Of the campaign.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``value``, ``censored`` and ``error(feature)`` as from `features`; along the direction of shaking and in single
+        precision ``slip``, ``opening(time, joint)`` [m], ``rotation(time, joint)`` [rad] and ``drift(time, body)``
+        [m], the displacement against the table; ``acceleration(time)`` of the base [m/s2].
+    """
+    known = test["marker_displacement"].notnull().any(("marker", "axis")).to_numpy()
+    ended = len(known) - int(np.argmax(known[::-1])) if known.any() else 0
+    whole = test.isel(time=slice(ended))
+    if "time_acc" in whole.dims:
+        whole = whole.isel(time_acc=whole["time_acc"].to_numpy() <= whole["time"].to_numpy()[-1])
+    histories = joint_histories(whole, structure, sensors, reconstruct_base(whole, structure, sensors))
+    moved = {
+        "slip": histories["slip"].sel(tangent="x", drop=True),
+        "rotation": histories["rotation"].sel(axis="y", drop=True),
+        "opening": histories["opening"],
+        "drift": histories["body_displacement"].sel(axis="x", drop=True),
+        "acceleration": histories["acceleration"],
+    }
+    return features(histories).assign({name: values.astype(np.float32) for name, values in moved.items()})
