@@ -22,10 +22,18 @@ WATCHED = {
     "climb_ladder": sources.LADDER,
     "study_convergence": sources.CONVERGENCE,
     "make_virtual_campaign": sources.VIRTUAL_CAMPAIGN,
+    "simulate_library": sources.LIBRARY,
+    "calibrate_decision": sources.DIAGNOSIS,
+    "read_measured": sources.DIAGNOSIS,
+    "decide": sources.DIAGNOSIS,
+    "extend_model": sources.DIAGNOSIS,
+    "measure_gain": sources.DIAGNOSIS,
+    "conclude": sources.DIAGNOSIS,
 }
 # What names things or writes logs and computes nothing; and the dispatcher that imports every solver, where a run's
 # own rule watches the one that runs.
 IGNORED = {
+    "diagnosis/plan.py",  # what it decides is in the names of the files that are made
     "__init__.py",
     "log.py",
     "sources.py",

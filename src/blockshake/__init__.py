@@ -1,7 +1,7 @@
 """blockshake: how stacks of heavy blocks behave in an earthquake, and how sure we are.
 
 The same as the command line, as functions: `load_structure`, `load_motion`, `simulate`,
-`draw_samples` and `calibrate_stiffness`. They are loaded when first asked for, so that a rule that
+`draw_samples`, `calibrate_stiffness`, `load_campaign` and `diagnose`. They are loaded when first asked for, so that a rule that
 only draws a figure compiles no solver.
 """
 
@@ -16,6 +16,7 @@ _HOMES = {
     "draw_samples": "blockshake.study.sampling",
     "calibrate_stiffness": "blockshake.study.stiffness",
     "load_campaign": "blockshake.measurement.campaign",
+    "diagnose": "blockshake.diagnose",
     "InputError": "blockshake.errors",
 }
 __all__ = list(_HOMES)

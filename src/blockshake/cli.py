@@ -82,6 +82,15 @@ def _parser():
     )
     command.set_defaults(run=_generate_campaign)
 
+    command = commands.add_parser(
+        "diagnose", help="what simulations of measured tests get wrong, the cause, and what naming it gains"
+    )
+    command.add_argument("campaign", metavar="CAMPAIGN_DIR")
+    command.add_argument("--output", required=True, metavar="DIR", help="of the verdict and the report")
+    command.add_argument("--effort", default="standard", metavar="quick|standard|deep")
+    command.add_argument("--cores", type=int, metavar="N", help="default: all")
+    command.set_defaults(run=_diagnose)
+
     command = commands.add_parser("check", help="say what is wrong with structure, motion or study files")
     command.add_argument("files", nargs="+", metavar="FILE")
     command.set_defaults(run=_check)
@@ -185,6 +194,13 @@ def _generate_campaign(options):
         raise InputError("--truth", options.truth, "expected a folder outside the campaign's")
     source = source_digest(*sources.VIRTUAL_CAMPAIGN)
     generate_campaign(settings, options.structure, options.output, options.truth, source, print)
+
+
+def _diagnose(options):
+    from blockshake.diagnose import diagnose
+
+    verdict = diagnose(options.campaign, options.output, options.effort, options.cores)
+    print(f"{verdict.decision}: {', '.join(verdict.causes) or 'no cause'}; {options.output}/report.html")
 
 
 def _check(options):

@@ -117,3 +117,45 @@ def friction_sources(model):
         "study/friction_calibration.py",
         "study/scores.py",
     )
+
+
+_READ_OFF = (
+    *_COMMON,
+    "effects",
+    "measurement",
+    "study/distributions.py",
+    "study/placement.py",
+    "study/ensemble.py",
+    "study/compared_curves.py",
+    *(
+        f"diagnosis/{name}.py"
+        for name in (
+            "body_poses",
+            "candidates",
+            "coloured_regression",
+            "excursions",
+            "feature_table",
+            "features",
+            "joint_features",
+            "joint_histories",
+            "library",
+            "null_model",
+            "phases",
+            "planned_test",
+            "reading",
+            "reconstructed_base",
+            "top_motion",
+        )
+    ),
+)
+LIBRARY = (*_READ_OFF, *run_sources("ls-dem"), *run_sources("nscd-rigid"))
+"""What simulates tests for a diagnosis and reads them off."""
+
+DIAGNOSIS = (
+    *LIBRARY,
+    *_STATISTICS,
+    "study/coverage.py",
+    "study/scores.py",
+    "diagnosis",
+)
+"""What judges them: all that is above the solvers in a diagnosis."""

@@ -63,8 +63,8 @@ def cases(library):
 
 
 def _decide(world, library, cases, added, generator, model="ls-dem"):
-    scores = library.score(list(world.draw(model, generator) + added))
-    return scores, decide(scores, cases)
+    decision, scores = decide(library, list(world.draw(model, generator) + added), cases)
+    return scores, decision
 
 
 def test_clean_readings_are_called_an_effect_in_one_of_twenty(world, library, cases):
@@ -120,7 +120,7 @@ def test_two_effects_that_do_the_same_are_both_in_the_set(world):
 
 
 def test_without_a_finding_sizes_are_excluded(world, library, cases):
-    decision = decide(library.score(list(world.mean["ls-dem"])), cases)
+    decision, _ = decide(library, list(world.mean["ls-dem"]), cases)
     assert decision.decision == "none"
     # the library's largest sizes are seen, its smallest are not
     for size in decision.shown_above.values():

@@ -13,31 +13,28 @@ def _histories(generator, scale=1.0, quiet=0.0, strong=(0.0, 0.0, 0.0), sides=(1
     """One test: joints rock in the strong phase by 10 mrad more or less; extra rotation in units of 1 mrad."""
     wave = np.sin(2.0 * np.pi * 2.5 * TIME)
     sided = np.where(wave > 0.0, sides[0] * wave, sides[1] * wave)
-    rotation = np.zeros((len(TIME), N_JOINTS, 3))
+    rotation = np.zeros((len(TIME), N_JOINTS))
     size = 0.01 * (1.0 + 0.05 * generator.normal()) * scale
     for joint in range(N_JOINTS):
-        rotation[:, joint, 1] = (
+        rotation[:, joint] = (
             STRONG * (size * wave + 1e-3 * strong[joint] * sided) + QUIET * 1e-3 * quiet * wave
         )
     rotation += generator.normal(0.0, 1e-4, rotation.shape)
     small = generator.normal(0.0, 1e-4, (len(TIME), N_JOINTS, 3))
-    acceleration = scale * wave * (QUIET | STRONG)
     return xr.Dataset(
         {
-            "slip": (("time", "joint", "tangent"), small[..., :2]),
+            "slip": (("time", "joint"), small[..., 0]),
             "opening": (("time", "joint"), small[..., 2]),
-            "rotation": (("time", "joint", "axis"), rotation),
-            "slip_noise": (("joint", "tangent"), np.full((N_JOINTS, 2), 1e-4)),
-            "rotation_noise": (("joint", "axis"), np.full((N_JOINTS, 3), 1e-4)),
-            "acceleration": ("time", acceleration),
-            "velocity": ("time", acceleration),
+            "rotation": (("time", "joint"), rotation),
+            "acceleration": ("time", scale * wave * (QUIET | STRONG)),
+            "phase": ("time", np.select([TIME < 1.2, TIME < 2.5], [0, 1], 2)),
         },
-        {"time": TIME, "joint": ["slab-a", "a-b", "b-c"], "tangent": ["x", "y"], "axis": ["x", "y", "z"]},
+        {"time": TIME, "joint": ["slab-a", "a-b", "b-c"]},
     )
 
 
 def _ensemble(generator, scale=1.0):
-    return xr.concat([_histories(generator, scale) for _ in range(40)], "sample")
+    return xr.concat([_histories(generator, scale) for _ in range(40)], "draw")
 
 
 def _atlases(seed, scales, **extra):

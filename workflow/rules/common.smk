@@ -19,13 +19,17 @@ from blockshake.errors import InputError
 from blockshake.files import source_digest
 from blockshake.measurement.campaign import load_campaign
 
+# of a diagnosis, on the command line: they take the place of the study's own
+GIVEN = ("campaign", "campaigns", "effort", "without")
+
 
 def check_study():
     """Check the configuration and all it names; bad input ends in one line and exit 2."""
     from blockshake.study.config import check_config
 
     try:
-        check_config(dict(config), " + ".join(map(str, workflow.configfiles)))
+        study = {key: value for key, value in config.items() if key not in GIVEN}
+        check_config(study, " + ".join(map(str, workflow.configfiles)))
     except InputError as error:
         print(f"blockshake: {error}", file=sys.stderr, flush=True)
         os._exit(2)
@@ -122,6 +126,7 @@ if workflow.exec_mode == workflow.exec_mode.DEFAULT:
 
 STUDY = config["name"]
 MODELS = list(config["models"])
+SOLVERS = ["ls-dem", "nscd-rigid"]  # a diagnosis has both in its null hypothesis
 CASES = {Path(case["structure"]).stem: case for case in config["cases"]}
 FRICTION_SEARCH = config.get("friction_calibration") or {}
 LADDER_MOTIONS = config["ladder"]["motions"]
@@ -133,7 +138,7 @@ MOTIONS = {
 
 wildcard_constraints:
     study="|".join([STUDY]),
-    model="|".join(MODELS),
+    model="|".join(SOLVERS),
     case="|".join(CASES),
     motion="|".join(MOTIONS),
     batch=r"\d\d\d+-\d\d\d+",

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from blockshake.diagnosis.candidates import effect_of
+
 NONE = "none"
 _FEWEST = 10  # cases with which a chance below 10 % can be told
 
@@ -24,6 +26,8 @@ class Case:
         By effect: by how much its best place falls short of the strongest candidate [1].
     distance : dict of str to float
         By effect: squared distance per feature at its best place, size and solver [1].
+    level : float
+        Share of the size's posterior that lies below the true size; NaN where nobody knows that.
     """
 
     truth: str
@@ -31,11 +35,17 @@ class Case:
     strongest: float
     shortfall: dict
     distance: dict
+    level: float
 
 
-def effect_of(key):
-    """Effect of a candidate's key."""
-    return key.partition("@")[0]
+def cases_from_json(rows):
+    """Cases of rows that are `vars` of each; JSON has no NaN, so that null stands for it."""
+    return [Case(**row | {"level": np.nan if row["level"] is None else row["level"]}) for row in rows]
+
+
+def cases_as_json(cases):
+    """Rows of cases, for a file."""
+    return [vars(case) | {"level": None if np.isnan(case.level) else case.level} for case in cases]
 
 
 def best_place(scores, effect):
@@ -43,26 +53,31 @@ def best_place(scores, effect):
     return max((key for key in scores.log_ratio if effect_of(key) == effect), key=scores.log_ratio.get)
 
 
-def as_case(scores, truth="", size=0.0):
-    """Case of a set of scores."""
+def as_case(scores, key="", size=0.0):
+    """Case of a set of scores; ``key`` is the candidate that is true, `NONE`, or empty."""
     strongest = max(scores.log_ratio.values())
     effects = dict.fromkeys(effect_of(key) for key in scores.log_ratio)
     places = {effect: best_place(scores, effect) for effect in effects}
     return Case(
-        truth=truth,
+        truth=effect_of(key),
         size=size,
         strongest=strongest,
-        shortfall={effect: strongest - scores.log_ratio[key] for effect, key in places.items()},
-        distance={effect: scores.distance[key] for effect, key in places.items()},
+        shortfall={effect: strongest - scores.log_ratio[place] for effect, place in places.items()},
+        distance={effect: scores.distance[place] for effect, place in places.items()},
+        level=float(np.interp(size, scores.sizes[key], np.cumsum(scores.weights[key])))
+        if key in scores.sizes
+        else float("nan"),
     )
 
 
-def library_cases(library):
+def library_cases(library, progress=None):
     """Every draw of a library in turn as a measurement, itself left out of the library that judges it.
 
     Parameters
     ----------
     library : ScoreLibrary
+    progress : callable, optional
+        Called with a line of text after each draw.
 
     Returns
     -------
@@ -71,13 +86,17 @@ def library_cases(library):
     cases = []
     for model in library.models:
         by_test = [test[model] for test in library.tamed]
-        for draw in range(len(by_test[0]["nominal"])):
+        draws = len(by_test[0]["nominal"])
+        for draw in range(draws):
             scores = library.score([runs["nominal"][draw] for runs in by_test], model, draw)
             cases.append(as_case(scores, NONE))
-        for key in library.candidates:
-            for draw, size in enumerate(library.sizes[model][key]):
-                scores = library.score([runs[key][draw] for runs in by_test], model, draw)
-                cases.append(as_case(scores, effect_of(key), float(size)))
+            for key in library.candidates:
+                if draw < len(library.sizes[model][key]):
+                    scores = library.score([runs[key][draw] for runs in by_test], model, draw)
+                    cases.append(as_case(scores, key, float(library.sizes[model][key][draw])))
+            library.forget(model, draw)
+            if progress is not None:
+                progress(f"{model}: draw {draw + 1} of {draws} judged by the others")
     return cases
 
 
@@ -106,10 +125,9 @@ def chance_of(effect, case, cases):
     return _rank(case.shortfall[effect], [other.shortfall[other.truth] for other in alike])
 
 
-def chance_of_distance(effect, case, cases):
-    """How often readings with an effect are as far from its best fit as these; as of `chance_of`."""
-    alike = _alike(effect, cases)
-    return _rank(case.distance[effect], [other.distance[other.truth] for other in alike])
+def chance_of_distance(effect, distance, cases):
+    """How often readings with an effect are at this squared distance per feature from its best fit, or farther."""
+    return _rank(distance, [other.distance[other.truth] for other in _alike(effect, cases)])
 
 
 def shown_above(effect, cases, level, share=0.9):
@@ -124,6 +142,12 @@ def shown_above(effect, cases, level, share=0.9):
         if seen and hits >= share * count:
             smallest = abs(case.size)
     return smallest
+
+
+def interval_share(effect, cases, share=0.9):
+    """Share of the size's posterior, about its median, that holds the truth in ``share`` of the cases."""
+    missed = [abs(case.level - 0.5) for case in _alike(effect, cases)]
+    return float(min(2.0 * np.quantile(missed, share, method="higher"), 1.0)) if missed else 1.0
 
 
 def _alike(effect, cases):

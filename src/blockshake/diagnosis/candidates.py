@@ -42,11 +42,25 @@ class Candidate:
         The sizes fill the prior evenly however many draws there are (multiples of the golden section, modulo 1); the
         other parameters are drawn from their priors.
         """
-        size, *others = EFFECTS[self.effect].parameters
-        generator = np.random.default_rng([number, *self.key.encode()])
+        size = EFFECTS[self.effect].parameters[0]
         value = size.lower + (size.upper - size.lower) * ((0.5 + number * _GOLDEN) % 1.0)
+        return self._with_others(size, value, number), float((value - size.null) / (size.visible - size.null))
+
+    def values_at(self, visible, number):
+        """Parameter values of a size in units of the visible one; the others are those of a library draw."""
+        size = EFFECTS[self.effect].parameters[0]
+        return self._with_others(size, size.null + visible * (size.visible - size.null), number)
+
+    def _with_others(self, size, value, number):
+        generator = np.random.default_rng([number, *self.key.encode()])
+        others = EFFECTS[self.effect].parameters[1:]
         drawn = {item.name: float(generator.uniform(item.lower, item.upper)) for item in others}
-        return {size.name: float(value)} | drawn, float((value - size.null) / (size.visible - size.null))
+        return {size.name: float(value)} | drawn
+
+
+def effect_of(key):
+    """Effect of a candidate's key."""
+    return key.partition("@")[0]
 
 
 def candidates(structure):

@@ -13,24 +13,19 @@ def joint_curves(histories, test):
     Parameters
     ----------
     histories : xarray.Dataset
-        From `joint_histories`; with a dimension ``sample`` for an ensemble.
+        From `read_off`; with a dimension ``draw`` for an ensemble.
     test : str
         Name that goes first, so that the curves of several tests can be joined.
 
     Returns
     -------
-    dict of str to float64 array, shape (n_times,) or (n_samples, n_times)
+    dict of str to float64 array, shape (n_times,) or (n_draws, n_times)
         ``TEST.jointJ.slip`` and so on; joints that nobody can know are left out.
     """
-    read = {
-        "slip": histories["slip"].sel(tangent="x", drop=True),
-        "rotation": histories["rotation"].sel(axis="y", drop=True),
-        "opening": histories["opening"],
-    }
     found = {}
     for joint in range(histories.sizes["joint"]):
-        for name, values in read.items():
-            one = values.isel(joint=joint).transpose(..., "time").to_numpy()
+        for name in ("slip", "rotation", "opening"):
+            one = histories[name].isel(joint=joint).transpose(..., "time").to_numpy().astype(float)
             if np.isfinite(one).any():
                 found[f"{test}.joint{joint + 1}.{name}"] = one
     return found

@@ -46,6 +46,19 @@ class Finding:
         """Of each component, float64 array, shape (n,)."""
         return np.sqrt(np.diagonal(self.covariance))
 
+    def as_json(self):
+        """As JSON-like values."""
+        arrays = {name: np.asarray(getattr(self, name)).tolist() for name in ("estimate", "covariance")}
+        return vars(self) | arrays | {"p": float(self.p)}
+
+    @classmethod
+    def from_json(cls, values):
+        """The finding of such values."""
+        tuples = {name: tuple(values[name]) for name in ("where", "tests")}
+        rivals = tuple((effect, tuple(where), quantity) for effect, where, quantity in values["rivals"])
+        arrays = {name: np.array(values[name], dtype=float) for name in ("estimate", "covariance")}
+        return cls(**values | tuples | arrays | {"rivals": rivals})
+
 
 def chance_within(estimate, covariance, tolerance, freedom=np.inf):
     """Largest chance of an estimate as far out as this one while the truth is within the tolerance.

@@ -49,16 +49,13 @@ def library(planned, model, candidates, nominal_draws, own_draws, store, source,
         progress(
             f"{planned.motion.name} {model} {done}/{len(jobs)} {name} {number} {how}: {reading['status'].item()}"
         )
-        parts.append(
-            reading[["value"]]
-            .expand_dims("run")
-            .assign_coords(
-                candidate=("run", [name]), draw=("run", [number]), size=("run", [size]),
-                status=("run", [reading["status"].item()]),
-            )  # fmt: skip
-        )
+        labels = {"candidate": name, "draw": number, "size": size, "status": reading["status"].item()}
+        one = reading[["value"]].expand_dims("run")
+        parts.append(one.assign_coords({label: ("run", [value]) for label, value in labels.items()}))
         if candidate is None:
             moved.append(reading[["slip", "rotation", "opening", "drift"]].reset_coords(drop=True))
-    whole = xr.concat(parts, dim="run", coords="minimal", compat="override", join="exact", data_vars="minimal")
+    whole = xr.concat(
+        parts, dim="run", coords="minimal", compat="override", join="exact", data_vars="minimal"
+    )
     histories = xr.concat(moved, dim="draw", join="outer").assign_coords(draw=np.arange(nominal_draws))
-    return whole, histories
+    return whole.assign_attrs(model=model), histories.assign_attrs(model=model)

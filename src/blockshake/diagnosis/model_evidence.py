@@ -30,6 +30,8 @@ class ModelEvidence:
     sizes : dict of str to float64 array, shape (n_own_draws,)
     left_out : int, optional
         A draw that is taken for a measurement and so is none of the library's.
+    whole : ModelEvidence, optional
+        The same with no draw left out: what a draw has no part in is taken from there.
 
     Notes
     -----
@@ -37,7 +39,7 @@ class ModelEvidence:
     draws; a candidate adds the mean and the scatter of its `Response`.
     """
 
-    def __init__(self, nominal, with_effect, sizes, left_out=None):
+    def __init__(self, nominal, with_effect, sizes, left_out=None, whole=None):
         kept = np.arange(len(nominal)) != left_out
         fit = LedoitWolf().fit(nominal[kept])
         n_features = nominal.shape[1]
@@ -46,36 +48,50 @@ class ModelEvidence:
         self.responses = {}
         for key, runs in with_effect.items():
             own = np.flatnonzero(kept[: len(runs)])
+            if whole is not None and len(own) == len(runs):
+                self.responses[key] = whole.responses[key]
+                continue
             self.responses[key] = fit_response(
                 sizes[key][own], runs[own] - nominal[own], size_grid(sizes[key])
             )
+        self._whitened = {}
 
     def nominal(self, features):
         """Log density of features by the model alone, and their squared distance."""
         nothing = np.zeros((1, len(features)))
-        density, square = self._densities(features, nothing, nothing)
+        density, square = self._densities(features, nothing, self._whitening(None, nothing))
         return float(density[0]), float(square[0])
 
     def candidate(self, key, features):
         """The same with a candidate, at each size of its grid: two float64 arrays, shape (n_sizes,)."""
         response = self.responses[key]
-        return self._densities(features, response.mean, response.deviation)
+        return self._densities(features, response.mean, self._whitening(key, response.deviation))
 
-    def _densities(self, features, added, deviation):
+    def with_response(self, features, added, deviation):
+        """The same with anything that adds a mean and a scatter, float64 arrays, shape (n_sizes, n_features)."""
+        return self._densities(features, added, self._factors(deviation))
+
+    def _whitening(self, key, deviation):
+        if key not in self._whitened:
+            self._whitened[key] = self._factors(deviation)
+        return self._whitened[key]
+
+    def _factors(self, deviation):
+        """Inverses of the covariances' Cholesky factors, and the logarithms of these factors' determinants."""
+        n_features = len(self.mean)
+        lower = np.linalg.cholesky(self.covariance + deviation[:, :, None] ** 2 * np.eye(n_features))
+        logarithm = np.log(np.diagonal(lower, axis1=1, axis2=2)).sum(axis=1)
+        return np.linalg.inv(lower), logarithm
+
+    def _densities(self, features, added, whitening):
+        inverse, logarithm = whitening
         n_features = len(features)
-        found, squares = np.empty(len(added)), np.empty(len(added))
+        left = np.einsum("sij,sj->si", inverse, features - self.mean - added)
+        squares = (left**2).sum(axis=1)
         constant = (
             gammaln(0.5 * (_FREEDOM + n_features))
             - gammaln(0.5 * _FREEDOM)
             - 0.5 * n_features * np.log(_FREEDOM * np.pi)
         )
-        for place in range(len(added)):
-            lower = np.linalg.cholesky(self.covariance + np.diag(deviation[place] ** 2))
-            left = np.linalg.solve(lower, features - self.mean - added[place])
-            squares[place] = left @ left
-            found[place] = (
-                constant
-                - np.log(np.diag(lower)).sum()
-                - 0.5 * (_FREEDOM + n_features) * np.log1p(squares[place] / _FREEDOM)
-            )
-        return found, squares
+        densities = constant - logarithm - 0.5 * (_FREEDOM + n_features) * np.log1p(squares / _FREEDOM)
+        return densities, squares

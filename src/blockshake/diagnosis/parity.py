@@ -46,6 +46,29 @@ class Parity:
     channels: xr.Dataset
     looked_at: int
 
+    def as_json(self):
+        """As JSON-like values, NaN as null."""
+        return {
+            "findings": [finding.as_json() for finding in self.findings],
+            "markers": _columns(self.markers, "marker"),
+            "clock": _columns(self.clock, "test"),
+            "channels": _columns(self.channels, "channel"),
+            "looked_at": self.looked_at,
+        }
+
+
+def _columns(table, dim):
+    """Columns of a table by the names along its dimension."""
+    return {
+        str(name): {
+            column: float(table[column].sel({dim: name}))
+            if np.isfinite(table[column].sel({dim: name}))
+            else None
+            for column in table.data_vars
+        }
+        for name in table[dim].values
+    }
+
 
 def campaign_parity(campaign, names):
     """Parity of the named tests of a campaign; see `check_parity`.

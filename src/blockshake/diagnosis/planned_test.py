@@ -33,12 +33,16 @@ class PlannedTest:
         [s]
     sensors : Sensors
         Whose noise is read.
+    markers, channels : tuple of str
+        That were read.
     """
 
     structure: str
     motion: GroundMotion
     duration: float
     sensors: Sensors
+    markers: tuple[str, ...]
+    channels: tuple[str, ...]
 
     def digest(self):
         """Of the content: equal for equal tests, whatever their files are called."""
@@ -49,6 +53,8 @@ class PlannedTest:
             *(part.tobytes() for part in self.motion.table),
             self.duration,
             self.sensors.model_dump(),
+            self.markers,
+            self.channels,
         )
 
 
@@ -84,7 +90,12 @@ def simulated_test(planned, draw, effects=()):
         experiment.structure, experiment.motion, draw.model, experiment.parameters | numerics,
         time_step=draw.time_step, duration=planned.duration, output_rate=RATE,
     )  # fmt: skip
-    return observe(run, experiment.load(), experiment.instruments, draw.seed), run.attrs["status"]
+    test = observe(run, experiment.load(), experiment.instruments, draw.seed).sel(
+        marker=list(planned.markers)
+    )
+    if "accelerometer" in test:
+        test = test.sel(channel=list(planned.channels)) if planned.channels else test.drop_dims("channel")
+    return test, run.attrs["status"]
 
 
 def kept_reading(planned, draw, effects, store, source, histories=True):
@@ -120,6 +131,6 @@ def kept_reading(planned, draw, effects, store, source, histories=True):
     test, status = simulated_test(planned, draw, effects)
     reading = read_off(test, load_structure(planned.structure), planned.sensors).assign(status=status)
     if not histories:
-        reading = reading.drop_vars([*HISTORIES, "acceleration"]).drop_vars(["time", "body"])
+        reading = reading.drop_vars([*HISTORIES, "acceleration", "phase"]).drop_vars(["time", "body"])
     write_dataset(path, reading)
     return reading, "simulated"

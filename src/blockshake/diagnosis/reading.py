@@ -4,6 +4,7 @@ import numpy as np
 
 from blockshake.diagnosis.features import features
 from blockshake.diagnosis.joint_histories import joint_histories
+from blockshake.diagnosis.phases import PHASES, find_phases
 from blockshake.diagnosis.reconstructed_base import reconstruct_base
 
 HISTORIES = ("slip", "rotation", "opening", "drift")
@@ -26,7 +27,8 @@ def read_off(test, structure, sensors):
     xarray.Dataset
         ``value``, ``censored`` and ``error(feature)`` as from `features`; along the direction of shaking and in single
         precision ``slip``, ``opening(time, joint)`` [m], ``rotation(time, joint)`` [rad] and ``drift(time, body)``
-        [m], the displacement against the table; ``acceleration(time)`` of the base [m/s2].
+        [m], the displacement against the table; ``acceleration(time)`` of the base [m/s2]; ``phase(time)``, number in
+        `PHASES`.
     """
     known = test["marker_displacement"].notnull().any(("marker", "axis")).to_numpy()
     ended = len(known) - int(np.argmax(known[::-1])) if known.any() else 0
@@ -41,4 +43,12 @@ def read_off(test, structure, sensors):
         "drift": histories["body_displacement"].sel(axis="x", drop=True),
         "acceleration": histories["acceleration"],
     }
-    return features(histories).assign({name: values.astype(np.float32) for name, values in moved.items()})
+    phases = find_phases(histories)
+    number = sum(place * phases.mask(name) for place, name in enumerate(PHASES))
+    kept = {name: values.astype(np.float32) for name, values in moved.items()}
+    kept["phase"] = (
+        "time",
+        number.astype(np.int8),
+        {"flag_values": [0, 1, 2], "flag_meanings": " ".join(PHASES)},
+    )
+    return features(histories).assign(kept)

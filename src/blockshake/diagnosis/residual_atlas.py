@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy.stats import t as student
 
-from blockshake.diagnosis.phases import PHASES, find_phases, known_values
+from blockshake.diagnosis.phases import PHASES, known_values
 
 QUANTITIES = ("slip", "rotation", "opening")
 SIDES = ("+", "-")
@@ -48,9 +48,9 @@ def residual_atlas(measured, members):
     Parameters
     ----------
     measured : xarray.Dataset
-        From `joint_histories`.
+        From `read_off`.
     members : xarray.Dataset
-        Of simulated tests, along ``sample``, with the noise of the measurement and the same gaps.
+        Histories of simulated tests, along ``draw``, with the noise of the measurement.
 
     Returns
     -------
@@ -67,9 +67,8 @@ def residual_atlas(measured, members):
     with n - 1 degrees of freedom, Bonferroni's over the cells that are known: for Gaussian members; a heavy tail needs
     the rank test. Sizes are mean squares and not peaks, whose noise has a long tail.
     """
-    phases = find_phases(measured)
-    own = _sizes(measured.expand_dims("sample"), phases)[0]
-    others = _sizes(members, phases)
+    own = _sizes(measured.expand_dims("draw"), measured["phase"].to_numpy())[0]
+    others = _sizes(members.sel(time=measured["time"]), measured["phase"].to_numpy())
     count = len(others)
     mean, spread = others.mean(axis=0), others.std(axis=0, ddof=1)
     known = np.isfinite(own) & (spread > 0.0)
@@ -147,23 +146,19 @@ def _limit(cells, members):
 
 
 def _sizes(histories, phases):
-    """Root mean squares of the parts to each side, (n_samples, n_joints, n_phases, n_quantities, 2); NaN if unknown."""
-    read = [
-        histories["slip"].sel(tangent="x", drop=True),
-        histories["rotation"].sel(axis="y", drop=True),
-        histories["opening"],
-    ]
-    values = np.stack([part.transpose("sample", "joint", "time").to_numpy() for part in read])
+    """Root mean squares of the parts to each side, (n_draws, n_joints, n_phases, n_quantities, 2); NaN if unknown."""
+    read = [histories[name].transpose("draw", "joint", "time").to_numpy() for name in QUANTITIES]
+    values = np.stack(read).astype(float)
     found = np.full((*values.shape[1:3], len(PHASES), len(QUANTITIES), 2), np.nan)
-    for quantity, sample, joint in np.ndindex(values.shape[:3]):
-        history = values[quantity, sample, joint]
+    for quantity, draw, joint in np.ndindex(values.shape[:3]):
+        history = values[quantity, draw, joint]
         if not np.isfinite(history).any():
             continue
         history = known_values(history)
-        for place, phase in enumerate(PHASES):
-            part = history[phases.mask(phase)]
+        for place in range(len(PHASES)):
+            part = history[phases == place]
             if len(part):
-                found[sample, joint, place, quantity] = [
+                found[draw, joint, place, quantity] = [
                     np.sqrt((np.maximum(sign * part, 0.0) ** 2).mean()) for sign in (1.0, -1.0)
                 ]
     return found

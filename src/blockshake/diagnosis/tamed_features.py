@@ -1,54 +1,62 @@
 """Features of measured and simulated tests on one scale, ready for Gaussian comparison."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from blockshake.diagnosis.feature_scales import signed_log
+from blockshake.errors import InputError
 
 _SAME = 1e-6  # of a feature's largest magnitude over the draws: with less spread it tells nothing
 
 
-def tame(measured, libraries):
-    """Features of a test and of its libraries, centred and scaled by all nominal draws together.
+@dataclass(frozen=True)
+class FeatureScale:
+    """Centre and spread of the features of a test over all nominal draws.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Of the features that differ between nominal draws.
+    centre, spread : float64 array, shape (n_features,)
+        After `signed_log` of the feature table, which tames the heavy tails of peaks and residuals.
+    """
+
+    names: tuple
+    centre: np.ndarray
+    spread: np.ndarray
+
+    def tamed(self, reading):
+        """Features of a reading, or of many along a first dimension, float64 array, shape (..., n_features).
+
+        Raises
+        ------
+        InputError
+            A feature that the reading lacks: its sensors are not those of the library.
+        """
+        known = set(reading["feature"].values.tolist())
+        for name in self.names:
+            if name not in known:
+                raise InputError("features", name, "expected the features of the library")
+        values = signed_log(reading["value"].sel(feature=list(self.names))).transpose(..., "feature")
+        return (values.to_numpy() - self.centre) / self.spread
+
+
+def feature_scale(nominal):
+    """Scale of a test's features.
 
     Parameters
     ----------
-    measured : xarray.Dataset
-        From `features`.
-    libraries : dict of str to dict of str to xarray.Dataset
-        From `library`, by model and then by candidate; ``nominal`` is the one without.
-
-    Returns
-    -------
-    names : list of str, length n_features
-        Those that measurement and libraries have, and that differ between nominal draws.
-    measured : float64 array, shape (n_features,)
-    tamed : dict of str to dict of str to float64 array, shape (n_draws, n_features)
-        As ``libraries``.
-
-    Notes
-    -----
-    First `signed_log` of the feature table, which tames the heavy tails of peaks and residuals.
+    nominal : sequence of xarray.Dataset
+        Features of nominal draws, ``value(run, feature)``, one dataset a solver.
     """
-    names = [str(name) for name in measured["feature"].values]
-    for runs in libraries.values():
-        there = set(runs["nominal"]["feature"].values.tolist())
-        names = [name for name in names if name in there]
-    values = {
-        model: {key: _values(one, names) for key, one in runs.items()} for model, runs in libraries.items()
-    }
-    pool = np.concatenate([runs["nominal"] for runs in values.values()])
+    first = [str(name) for name in nominal[0]["feature"].values]
+    names = [name for name in first if all(name in one["feature"].values for one in nominal)]
+    pool = np.concatenate(
+        [signed_log(one["value"].sel(feature=names)).transpose(..., "feature").to_numpy() for one in nominal]
+    )
     centre, spread = pool.mean(axis=0), pool.std(axis=0, ddof=1)
     told = spread > _SAME * np.abs(pool).max(axis=0)
-
-    def scaled(array):
-        return (array[..., told] - centre[told]) / spread[told]
-
-    return (
-        [name for name, kept in zip(names, told, strict=True) if kept],
-        scaled(_values(measured, names)),
-        {model: {key: scaled(array) for key, array in runs.items()} for model, runs in values.items()},
+    return FeatureScale(
+        tuple(name for name, kept in zip(names, told, strict=True) if kept), centre[told], spread[told]
     )
-
-
-def _values(runs, names):
-    return signed_log(runs["value"].sel(feature=names)).transpose(..., "feature").to_numpy()

@@ -2,13 +2,12 @@
 
 import numpy as np
 
-from blockshake.dynamics.load_motion import load_motion
-from blockshake.files import shipped_names
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaign import load_campaign, load_test
 from blockshake.measurement.carried_blocks import carried_remarks
 from blockshake.measurement.commanded_motion import (
     check_followed,
+    commanded_motion,
     driven_axis_remarks,
     follow,
     followed_remarks,
@@ -78,7 +77,7 @@ class _Described:
         self.slab = _mean(self.readings[:, self.on_slab])
         self.slab_noise = self.sensors.marker_noise / np.sqrt(self.on_slab.sum())
         self.facts, self.remarks = [], []
-        commanded = _commanded(campaign, entry)
+        commanded = commanded_motion(campaign, entry)
         self._describe_shape()
         self._hold_input(commanded)
         self._hold_noise(self._quiet_end(commanded))
@@ -197,11 +196,3 @@ def _mean(readings):
     known = np.isfinite(readings)
     with np.errstate(invalid="ignore"):
         return np.where(known, readings, 0.0).sum(axis=1) / known.sum(axis=1)
-
-
-def _commanded(campaign, entry):
-    """The motion that was commanded, None where the campaign names one that is not at hand."""
-    own = campaign.folder / entry.motion
-    if own.is_file():
-        return load_motion(own, entry.scale)
-    return load_motion(entry.motion, entry.scale) if entry.motion in shipped_names("motions") else None

@@ -1,10 +1,13 @@
 """The slab's markers, which are the input, held against what the table was told."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
+from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
+from blockshake.files import shipped_names
 
 _FOLLOWED = (0.8, 1.25)  # of the command, by which a table may move without a word
 _RELATED = 0.7  # correlation of the slab with the command, beyond which one is the other's motion
@@ -108,3 +111,16 @@ def driven_axis_remarks(slab):
     if spread[other] > _ONE_AXIS * spread[0]:
         return [f"the table moves along {'xyz'[other]}, not along x"]
     return []
+
+
+def commanded_motion(campaign, entry):
+    """The motion that was commanded in a test, None where the campaign names one that is not at hand."""
+    own = campaign.folder / entry.motion
+    if own.is_file():
+        return load_motion(own, entry.scale)
+    return _shipped_motion(entry.motion, entry.scale) if entry.motion in shipped_names("motions") else None
+
+
+@lru_cache
+def _shipped_motion(name, scale):
+    return load_motion(name, scale)

@@ -85,6 +85,13 @@ class Ladder(Strict):
     )
 
 
+class Diagnosis(Strict):
+    """Which measured campaigns are diagnosed, and how thoroughly."""
+
+    campaigns: tuple[str, ...] = Field((), description="folders of the campaigns")
+    effort: Literal["quick", "standard", "deep"] = Field("standard", description="docs/diagnosis.md")
+
+
 class StudyConfig(Strict):
     """The whole file."""
 
@@ -98,6 +105,7 @@ class StudyConfig(Strict):
     ladder: Ladder
     friction_calibration: FrictionSearch | None = None
     convergence: Convergence | None = Field(None, description="none: no study of the numerical parameters")
+    diagnosis: Diagnosis = Field(Diagnosis(), description="none: no campaign is diagnosed")
 
     def case(self, name):
         """The case of this name."""

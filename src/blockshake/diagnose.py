@@ -1,0 +1,74 @@
+"""A campaign diagnosed by the checkout's workflow: what `blockshake diagnose` and `blockshake.diagnose` start."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from blockshake.errors import InputError
+from blockshake.files import PACKAGE, check_output
+
+_CHECKOUT = PACKAGE.parents[1]
+_KEPT = (
+    "verdict.json",
+    "decision.json",
+    "parity.json",
+    "misfit.nc",
+    "evidence.nc",
+    "gain.nc",
+    "consequences.nc",
+)
+
+
+def diagnose(campaign, output, effort="standard", cores=None):
+    """Show what simulations of measured tests get wrong, name the cause, extend the model and measure the gain.
+
+    Simulates by the workflow's rules, in the checkout's ``results``: a run that was stopped goes on where it was, and
+    a second campaign of the same structure and motions finds their libraries there.
+
+    Parameters
+    ----------
+    campaign : str or path
+        Folder.
+    output : str or path
+        Folder for the verdict, the report and the figures' data; made if need be, written when all is done.
+    effort : str
+        ``quick``, ``standard`` or ``deep``.
+    cores : int, optional
+        All by default.
+
+    Returns
+    -------
+    Verdict
+
+    Raises
+    ------
+    InputError
+        A campaign that cannot be diagnosed, or no checkout with its workflow around the package.
+    RuntimeError
+        The workflow stopped; its messages were printed.
+    """
+    from blockshake.diagnosis.plan import plan_diagnosis, result_name
+    from blockshake.diagnosis.verdict import load_verdict
+
+    plan_diagnosis(campaign, effort)
+    check_output(Path(output) / "verdict.json")
+    snakefile = _CHECKOUT / "Snakefile"
+    if not snakefile.is_file():
+        raise InputError(snakefile, "", "expected the workflow; install the package from its checkout")
+    folder = Path(campaign).resolve()
+    command = [
+        sys.executable, "-m", "snakemake", "diagnose", "--cores", str(cores or os.cpu_count()),
+        "--snakefile", str(snakefile), "--directory", str(_CHECKOUT),
+        "--config", f"campaign={folder}", f"effort={effort}",
+    ]  # fmt: skip
+    if subprocess.run(command, check=False).returncode:
+        raise RuntimeError("the workflow stopped: its messages are above")
+    name = result_name(folder)
+    found = [_CHECKOUT / "results" / "diagnosis" / name / file for file in _KEPT]
+    found += [_CHECKOUT / "reports" / f"diagnosis-{name}.{kind}" for kind in ("html", "pdf")]
+    Path(output).mkdir(parents=True, exist_ok=True)
+    for path in found:
+        shutil.copyfile(path, Path(output) / path.name.replace(f"diagnosis-{name}", "report"))
+    return load_verdict(Path(output) / "verdict.json")

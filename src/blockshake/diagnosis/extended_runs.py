@@ -1,0 +1,80 @@
+"""Ensembles by one solver before and after an extension: on sealed tests, and the recalibrated one on open tests."""
+
+import numpy as np
+import xarray as xr
+
+from blockshake.diagnosis.extension import (
+    extended_members,
+    open_features,
+    open_responses,
+    recalibrated_members,
+)
+from blockshake.diagnosis.null_model import draw_nominal
+from blockshake.diagnosis.plan import planned_sealed, sealed_tests
+from blockshake.diagnosis.planned_test import kept_reading
+
+NOMINAL, RECALIBRATED, EXTENDED = "nominal", "recalibrated", "extended"
+
+
+def extended_runs(plan, model, decision, scores, library, features, store, source, progress):
+    """Simulated tests of the nominal, the recalibrated and the extended model.
+
+    Parameters
+    ----------
+    plan : Plan
+    model : str
+        Solver.
+    decision : dict
+        As from `decision_as_json`: its first cause extends the model, of a combination both do.
+    scores : Scores
+        Of the open tests.
+    library : ScoreLibrary
+    features : list of float64 array, shape (n_features,)
+        Measured in the open tests, tamed.
+    store, source, progress
+        As of `library`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``run``: ``value(run, feature)`` and ``drift(run, time, body)`` as from `read_off`; coordinates ``kind``,
+        ``test``, ``draw``, ``status``. Of sealed tests all three kinds, of open ones the recalibrated. Without runs
+        where no cause was found.
+    """
+    if not decision["causes"]:
+        return xr.Dataset(attrs={"model": model})
+    by_key = {candidate.key: candidate for candidate in plan.candidates}
+    cause, *others = (by_key[decision["places"][effect]] for effect in decision["causes"])
+    draws = [draw_nominal(plan.campaign.structure, model, k) for k in range(plan.effort.nominal_draws)]
+    known, measured = open_features(library, model), np.concatenate(features)
+    count = plan.effort.members
+    members = {
+        NOMINAL: [(draw, []) for draw in draws[:count]],
+        RECALIBRATED: recalibrated_members(draws, known, measured, count),
+        EXTENDED: extended_members(
+            cause, scores, draws, known, measured, open_responses(library, model, cause.key), count
+        ),
+    }
+    if decision["decision"] == "combination":
+        (second,) = others
+        size = decision["sizes"][second.effect]
+        members[EXTENDED] = [
+            (draw, [*effects, second.as_effect(second.values_at(size, number))])
+            for number, (draw, effects) in enumerate(members[EXTENDED])
+        ]
+    like = next(iter(plan.tests.values()))
+    sealed = {name: planned_sealed(plan.campaign, name, like) for name in sealed_tests(plan.campaign)}
+    jobs = [(RECALIBRATED, name, planned) for name, planned in plan.tests.items()]
+    jobs += [(kind, name, planned) for kind in members for name, planned in sealed.items()]
+    parts, total = [], len(jobs) * count
+    for kind, name, planned in jobs:
+        for number, (draw, effects) in enumerate(members[kind]):
+            reading, how = kept_reading(planned, draw, effects, store, source)
+            status = reading["status"].item()
+            labels = {"kind": kind, "test": name, "draw": number, "status": status}
+            one = reading[["value", "drift"]].expand_dims("run")
+            parts.append(one.assign_coords({label: ("run", [value]) for label, value in labels.items()}))
+            progress(f"{name} {model} {kind} {len(parts)}/{total} {how}: {status}")
+    return xr.concat(
+        parts, dim="run", coords="minimal", compat="override", join="outer", data_vars="minimal"
+    ).assign_attrs(model=model)

@@ -1,0 +1,71 @@
+"""Libraries of several tests, on one scale and ready to score readings."""
+
+import numpy as np
+import xarray as xr
+
+from blockshake.diagnosis.candidate_scores import ScoreLibrary
+from blockshake.diagnosis.candidates import effect_of
+from blockshake.diagnosis.library import NOMINAL
+from blockshake.diagnosis.measured_readings import reading_of
+from blockshake.diagnosis.tamed_features import feature_scale
+
+
+def load_tables(paths):
+    """Datasets of `library` by test and solver, from files that are ordered by test and then by solver.
+
+    Parameters
+    ----------
+    paths : sequence of str
+
+    Returns
+    -------
+    list of dict of str to xarray.Dataset
+    """
+    tables = []
+    for path in paths:
+        table = xr.load_dataset(path)
+        if not tables or table.attrs["model"] in tables[-1]:
+            tables.append({})
+        tables[-1][table.attrs["model"]] = table
+    return tables
+
+
+def runs_of(table, key=NOMINAL):
+    """Runs of one candidate, or nominal ones, of a library's features."""
+    return table.isel(run=np.flatnonzero(table["candidate"].to_numpy() == key))
+
+
+def score_library(tables, effects):
+    """Libraries of several tests, ready to score readings.
+
+    Parameters
+    ----------
+    tables : list of dict of str to xarray.Dataset
+        By test and solver: features from `library`.
+    effects : sequence of str
+        Names of the effects that are considered.
+
+    Returns
+    -------
+    ScoreLibrary
+    scales : list of FeatureScale
+        By test.
+    """
+    keys = list(dict.fromkeys(tables[0][next(iter(tables[0]))]["candidate"].values.tolist()))
+    keys = [key for key in keys if key == NOMINAL or effect_of(key) in effects]
+    scales = [feature_scale([runs_of(one) for one in by_model.values()]) for by_model in tables]
+    tamed = [
+        {model: {key: scale.tamed(runs_of(table, key)) for key in keys} for model, table in by_model.items()}
+        for by_model, scale in zip(tables, scales, strict=True)
+    ]
+    sizes = {
+        model: {key: runs_of(table, key)["size"].to_numpy() for key in keys if key != NOMINAL}
+        for model, table in tables[0].items()
+    }
+    return ScoreLibrary(tamed, sizes), scales
+
+
+def tamed_readings(scales, readings):
+    """Measured features on the libraries' scales, list of float64 array, shape (n_features,), by test."""
+    names = readings["test"].values
+    return [scale.tamed(reading_of(readings, name)) for scale, name in zip(scales, names, strict=True)]

@@ -1,0 +1,43 @@
+"""The measured tests of a campaign, their sensors checked and corrected, read off like simulated ones."""
+
+import numpy as np
+import xarray as xr
+
+from blockshake.diagnosis.correction import corrected
+from blockshake.diagnosis.reading import read_off
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaign import load_test
+
+
+def measured_readings(campaign, names, findings):
+    """Features and histories of measured tests.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    names : sequence of str
+        Of tests; a sealed one is read only where the gain is measured.
+    findings : sequence of Finding
+        Sensor faults that are taken out first.
+
+    Returns
+    -------
+    xarray.Dataset
+        As from `read_off`, along ``test``; NaN after the end of a shorter test.
+    """
+    structure = load_structure(campaign.structure)
+    parts = []
+    for name in names:
+        test = corrected(load_test(campaign, name), name, structure, findings).test
+        test = test.assign_coords(time=np.round(test["time"] - test["time"][0], 6))
+        parts.append(read_off(test, structure, campaign.sensors))
+    return xr.concat(parts, dim="test", join="outer", coords="minimal", compat="override").assign_coords(
+        test=list(names)
+    )
+
+
+def reading_of(readings, name):
+    """Reading of one test of `measured_readings`."""
+    one = readings.sel(test=name, drop=True)
+    one = one.dropna("time", subset=["acceleration"]).dropna("feature", subset=["value"])
+    return one.assign(phase=one["phase"].astype(np.int8))

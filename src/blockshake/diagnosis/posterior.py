@@ -1,0 +1,65 @@
+"""Parameters of an effect with 90 % intervals, from the posterior of its size."""
+
+import numpy as np
+
+from blockshake.effects.registry import EFFECTS
+
+
+def size_interval(sizes, weights, share):
+    """Median of the posterior and the interval about it that holds a share of it.
+
+    Parameters
+    ----------
+    sizes, weights : float64 array, shape (n_sizes,)
+        As of `Scores`.
+    share : float
+        In (0, 1].
+
+    Returns
+    -------
+    estimate, lower, upper : float
+    """
+    below = np.cumsum(weights) / np.sum(weights)
+    levels = (0.5, 0.5 * (1.0 - share), 0.5 * (1.0 + share))
+    kept = np.concatenate([[True], np.diff(below) > 0.0])
+    return tuple(float(np.interp(level, below[kept], sizes[kept])) for level in levels)
+
+
+def parameter_estimates(effect, sizes, weights, share):
+    """Estimates of all parameters of an effect.
+
+    Parameters
+    ----------
+    effect : str
+    sizes, weights, share
+        As of `size_interval`; sizes in units of the visible one.
+
+    Returns
+    -------
+    dict of str to dict
+        By parameter: ``estimate``, ``lower``, ``upper``, ``unit`` and ``informed``: false where only the prior is
+        known of a parameter, whose middle nine tenths are given.
+    """
+    first, *others = EFFECTS[effect].parameters
+    values = [
+        first.null + size * (first.visible - first.null) for size in size_interval(sizes, weights, share)
+    ]
+    found = {
+        first.name: {
+            "estimate": values[0],
+            "lower": min(values),
+            "upper": max(values),
+            "unit": first.unit,
+            "informed": True,
+        }
+    }
+    for item in others:
+        width = item.upper - item.lower
+        found[item.name] = {
+            "estimate": item.lower + 0.5 * width,
+            "lower": item.lower + 0.05 * width,
+            "upper": item.upper - 0.05 * width,
+            "unit": item.unit,
+            "informed": False,
+        }
+    return found

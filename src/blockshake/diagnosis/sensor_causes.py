@@ -1,0 +1,49 @@
+"""Sensor faults that the parity checks found, as causes of the verdict."""
+
+from blockshake.effects.registry import EFFECTS
+
+_SIGMAS = 1.645  # of a Gaussian, within which nine tenths lie
+
+
+def sensor_causes(findings):
+    """Causes by name: parameters with 90 % intervals, place, and chance.
+
+    Parameters
+    ----------
+    findings : sequence of Finding
+
+    Returns
+    -------
+    dict of str to dict
+        By registry name: ``parameters`` as of `parameter_estimates`, ``location`` and ``p``. Of several findings of one
+        name the one with the smallest chance stands for all.
+    """
+    causes = {}
+    for finding in sorted(findings, key=lambda finding: (finding.p, finding.where, finding.tests)):
+        if finding.effect in causes:
+            continue
+        causes[finding.effect] = {
+            "parameters": _estimates(finding),
+            "location": {} if finding.where[0].startswith("optical") else {"marker": finding.where[0]},
+            "p": finding.p,
+        }
+    return causes
+
+
+def _estimates(finding):
+    effect = EFFECTS.get(finding.effect)
+    if effect is None or not len(finding.estimate):
+        return {}
+    size = effect.parameters[0]
+    # a wrong place is a vector in the body's frame, of which the registry's effect has the height
+    component = 2 if len(finding.estimate) == 3 else 0
+    estimate, error = float(finding.estimate[component]), float(finding.standard_error[component])
+    return {
+        size.name: {
+            "estimate": estimate,
+            "lower": estimate - _SIGMAS * error,
+            "upper": estimate + _SIGMAS * error,
+            "unit": size.unit,
+            "informed": True,
+        }
+    }

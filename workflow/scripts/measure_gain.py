@@ -1,0 +1,44 @@
+import xarray as xr
+
+from blockshake.diagnosis.campaign_gain import campaign_gain
+from blockshake.diagnosis.frozen import check_frozen
+from blockshake.diagnosis.gain import gain_of_verdict
+from blockshake.diagnosis.library_scores import load_tables
+from blockshake.diagnosis.measured_readings import measured_readings
+from blockshake.diagnosis.parity import check_parity
+from blockshake.diagnosis.plan import sealed_tests
+from blockshake.files import write_dataset, write_json
+from blockshake.geometry.structure import load_structure
+from blockshake.log import logging_to
+from blockshake.measurement.campaign import load_campaign, load_test
+
+with logging_to(snakemake.log[0]):
+    check_frozen(snakemake.input.frozen, snakemake.input.decision)
+    campaign = load_campaign(snakemake.params.folder)
+    names = sealed_tests(campaign)
+    runs = {one.attrs["model"]: one for one in map(xr.load_dataset, snakemake.input.extended)}
+    extended = sum(one.sizes.get("run", 0) for one in runs.values())
+    tables = load_tables(snakemake.input.libraries)
+    summary = {"runs": extended + sum(one.sizes["run"] for table in tables for one in table.values())}
+    gain = xr.Dataset()
+    if names and extended:
+        findings = check_parity(
+            {name: load_test(campaign, name) for name in names},
+            load_structure(campaign.structure),
+            campaign.sensors,
+        ).findings
+        gain, consequences = campaign_gain(
+            campaign,
+            xr.load_dataset(snakemake.input.readings),
+            tables,
+            measured_readings(campaign, names, findings),
+            runs,
+        )
+        of_verdict, caveats = gain_of_verdict(gain)
+        summary |= {"gain": of_verdict.model_dump(), "caveats": caveats}
+        write_dataset(snakemake.output.consequences, consequences)
+    else:
+        summary |= {"gain": None, "caveats": [] if names else ["no sealed test: no gain was measured"]}
+        write_dataset(snakemake.output.consequences, gain)
+    write_dataset(snakemake.output.gain, gain)
+    write_json(snakemake.output.summary, summary)
