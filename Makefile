@@ -9,7 +9,7 @@ READY := $(VENV)/ready
 PEERS := .venv-peers
 SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 
-.PHONY: study quick paper test test-slow bench peers setup lint lock clean
+.PHONY: study quick paper test test-slow test-hidden-few test-hidden bench peers setup lint lock clean
 
 study: setup
 	@$(BIN)/blockshake check config/study.yaml
@@ -28,10 +28,18 @@ paper: setup
 	@echo "The report: $(CURDIR)/reports/paper.html and paper.pdf"
 
 test: setup
-	$(BIN)/pytest -m "not slow" --numprocesses $(CORES) --dist loadfile
+	$(BIN)/pytest -m "not slow and not hidden_effects" --numprocesses $(CORES) --dist loadfile
 
 test-slow: setup
 	$(BIN)/pytest -m slow
+
+# five campaigns with and without a hidden effect, diagnosed by the ordinary rules: minutes
+test-hidden-few: setup
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest -m hidden_effects
+
+# all campaigns of tests/hidden_effects/seeds.yaml, and the licence that reports print: hours, resumable
+test-hidden: setup
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tests/hidden_effects/long_tier.py --cores $(CORES)
 
 # how fast the solvers are on this machine, for maintainers: minutes on a machine that does nothing else
 bench: setup

@@ -1,7 +1,7 @@
 """blockshake: how stacks of heavy blocks behave in an earthquake, and how sure we are.
 
-The same as the command line, as functions: `load_structure`, `load_motion`, `simulate`,
-`draw_samples`, `calibrate_stiffness`, `load_campaign` and `diagnose`. They are loaded when first asked for, so that a rule that
+The same as the command line, as functions: `load_structure`, `load_motion`, `simulate`, `draw_samples`,
+`calibrate_stiffness`, `load_campaign` and `diagnose`. They are loaded when first asked for, so that a rule that
 only draws a figure compiles no solver.
 """
 

@@ -68,7 +68,7 @@ def test_noise_of_the_base_is_not_taken_for_motion_of_the_blocks(stack):
     rest = np.zeros(len(TIME))
     states = smoothed_states(_histories(rest, rest, 3e-4, 7), stack)
     # 0.3 mrad under 1.6 m are 0.5 mm in each reading
-    assert states.moved[:, 2, 0].std() < 5e-5
+    assert states.moved[:, 2, 0].std() < 8e-5
 
 
 def test_a_body_whose_rotation_nobody_knows_leaves_no_state(stack):

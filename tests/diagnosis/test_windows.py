@@ -14,7 +14,7 @@ from blockshake.measurement.base_motion import BaseMotion
 from blockshake.measurement.joint_coordinates import joint_coordinates
 from blockshake.study.simulation import simulate
 
-DURATION, N_STEPS = 4.5, 40
+DURATION, N_STEPS = 5.5, 40
 RUNS = {
     "ls-dem": ({}, 5e-5),
     "nscd-rigid": ({"nscd.impact_parts": 20}, 5e-4),
@@ -102,34 +102,34 @@ def _errors(known, model, places):
 @pytest.mark.parametrize("solver", RUNS)
 def test_a_window_goes_on_as_the_run_did(two_blocks, solver):
     known, model = _known(two_blocks, solver)
-    places = np.arange(300, 860, 40)
+    places = np.arange(300, 1060, 40)
     moved = np.array([_true_ends(known, place)[2] for place in places])
     assert np.abs(moved).max() > 3e-3
     errors = _errors(known, model, places)
     # what a window gets wrong is small beside what moves: contacts start without their history
     assert np.sqrt(np.mean(errors[:, 2] ** 2)) < 0.03 * np.sqrt(np.mean(moved**2))
-    assert np.abs(errors[:, :2]).max() < 1e-4
+    assert np.abs(errors[:, :2]).max() < 3e-4
 
 
 @pytest.mark.parametrize("effect", [STOP, HEAVY])
 def test_effects_act_in_a_window_as_they_do_in_the_whole_test(two_blocks, effect):
     known, model = _known(two_blocks, "nscd-rigid", [effect])
     _, without = _known(two_blocks, "nscd-rigid")
-    places = np.arange(300, 860, 20)
+    places = np.arange(300, 1060, 20)
     errors = _errors(known, model, places)[:, 2]
     other = _errors(known, without, places)[:, 2]
     assert np.sqrt(np.mean(errors**2)) < 0.1 * np.sqrt(np.mean(other**2))
 
 
 def test_a_base_that_pitches_carries_its_blocks_along(two_blocks):
-    pitch = {"name": "table-pitch", "values": {"coefficient": 1e-3, "frequency": 15.0}, "place": {}}
+    pitch = {"name": "table-pitch", "values": {"coefficient": 1e-4, "frequency": 15.0}, "place": {}}
     known, model = _known(two_blocks, "nscd-rigid")
     _, pitching = _known(two_blocks, "nscd-rigid", [pitch])
     place = 200
     ends = simulate_window(pitching, known.structure, known.states, place, N_STEPS)
     rows = known.states.time[place + N_STEPS - N_END + 1 : place + N_STEPS + 1]
     expected = pitching.motion.evaluate(rows)[:, 3].mean()
-    assert abs(expected) > 1e-5
+    assert abs(expected) > 1e-6
     assert ends[4] == pytest.approx(expected, rel=1e-9)
     # blocks stood on it before and stand on it still
     np.testing.assert_allclose(ends[:4], 0.0, atol=2e-5)

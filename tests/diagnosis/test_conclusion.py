@@ -1,0 +1,85 @@
+import numpy as np
+import pytest
+
+from blockshake.diagnosis.conclusion import conclude
+from blockshake.diagnosis.finding import Finding
+from blockshake.effects.registry import EFFECTS
+
+WHERE = "rotation of slab-block-1, before the first onset, to both sides"
+
+
+def _decision(kind="none", causes=()):
+    parameters = {
+        "table-pitch": {
+            "coefficient": {"estimate": 4e-4, "lower": 3e-4, "upper": 5e-4, "unit": "rad s2/m", "informed": True},
+            "frequency": {"estimate": 17.5, "lower": 6.25, "upper": 28.75, "unit": "Hz", "informed": False},
+        }
+    }
+    return {
+        "decision": kind,
+        "causes": list(causes),
+        "p_none": 0.5 if kind == "none" else 0.01,
+        "probabilities": {"table-pitch": 0.6, "weak-joint": 0.02},
+        "parameters": {name: values for name, values in parameters.items() if name in causes},
+        "location": {"weak-joint": {"joint": ["slab", "block-1"]}} if "weak-joint" in causes else {},
+        "solver_dependent": [],
+        "shown_above": {"table-pitch": 0.5, "weak-joint": None},
+    }
+
+
+def _finding(effect="sensor-gain", where=("block-1-face",), quantity="gain", estimate=(0.03,), p=1e-4):
+    estimate = np.array(estimate)
+    return Finding(effect, where, quantity, estimate, np.eye(len(estimate)) * 1e-6, p, ("t1", "t2"))
+
+
+def _verdict(decision, findings=(), effort="standard"):
+    return conclude(decision, findings, WHERE, 100, [], effort)
+
+
+def test_nothing_found_says_what_would_have_been_seen():
+    verdict = _verdict(_decision())
+    assert verdict.decision == "none"
+    first = EFFECTS["table-pitch"].parameters[0]
+    assert verdict.excluded_above == {"table-pitch": pytest.approx(0.5 * first.visible)}
+    assert verdict.next_test is None
+
+
+def test_a_name_has_its_parameter_and_what_is_not_informed_is_said():
+    verdict = _verdict(_decision("named", ["table-pitch"]))
+    assert verdict.parameters["table-pitch"]["coefficient"].upper == 5e-4
+    assert any("frequency not informed" in caveat for caveat in verdict.caveats)
+    assert verdict.excluded_above == {}
+    assert verdict.next_test == EFFECTS["table-pitch"].told_apart_by
+
+
+def test_a_sensor_fault_alone_is_named_with_its_marker():
+    verdict = _verdict(_decision(), [_finding()])
+    assert (verdict.decision, verdict.causes) == ("named", ("sensor-gain",))
+    estimate = verdict.parameters["sensor-gain"]["error"]
+    assert (estimate.estimate, estimate.upper) == (0.03, pytest.approx(0.03 + 1.645e-3))
+    assert verdict.location["sensor-gain"] == {"marker": "block-1-face"}
+
+
+def test_a_sensor_fault_beside_a_physical_cause_is_a_combination():
+    verdict = _verdict(_decision("named", ["weak-joint"]), [_finding()])
+    assert verdict.decision == "combination"
+    assert verdict.causes == ("sensor-gain", "weak-joint")
+    assert verdict.location["weak-joint"] == {"joint": ("slab", "block-1")}
+
+
+def test_findings_of_one_name_are_one_cause():
+    findings = [_finding(p=1e-3), _finding(where=("block-2-face",), p=1e-6)]
+    verdict = _verdict(_decision(), findings)
+    assert verdict.causes == ("sensor-gain",)
+    assert verdict.location["sensor-gain"] == {"marker": "block-2-face"}
+
+
+def test_an_unknown_cause_stays_unknown_beside_a_sensor_fault():
+    verdict = _verdict(_decision("unknown"), [_finding()])
+    assert (verdict.decision, verdict.causes) == ("unknown", ())
+    assert any("sensor-gain" in caveat for caveat in verdict.caveats)
+
+
+def test_little_effort_allows_no_strong_word():
+    verdict = _verdict(_decision("named", ["table-pitch"]), effort="quick")
+    assert any("probable" in caveat for caveat in verdict.caveats)
