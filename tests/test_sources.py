@@ -23,7 +23,7 @@ WATCHED = {
     "study_convergence": sources.CONVERGENCE,
     "make_virtual_campaign": sources.VIRTUAL_CAMPAIGN,
     "simulate_library": sources.LIBRARY,
-    "calibrate_decision": sources.DIAGNOSIS,
+    "calibrate_decision": sources.CALIBRATION,
     "read_measured": sources.DIAGNOSIS,
     "decide": sources.DIAGNOSIS,
     "extend_model": sources.DIAGNOSIS,

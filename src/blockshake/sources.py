@@ -151,6 +151,23 @@ _READ_OFF = (
 LIBRARY = (*_READ_OFF, *run_sources("ls-dem"), *run_sources("nscd-rigid"))
 """What simulates tests for a diagnosis and reads them off."""
 
+CALIBRATION = (
+    *LIBRARY,
+    *(
+        f"diagnosis/{name}.py"
+        for name in (
+            "calibration",
+            "candidate_scores",
+            "feature_scales",
+            "library_scores",
+            "model_evidence",
+            "response",
+            "tamed_features",
+        )
+    ),
+)
+"""What scores the draws of libraries against each other."""
+
 DIAGNOSIS = (
     *LIBRARY,
     *_STATISTICS,

@@ -28,6 +28,7 @@ else:
         config.get("campaigns", DIAGNOSIS.get("campaigns", [])), WITHOUT
     )
 LIBRARY_SOURCE = source_digest(*sources.LIBRARY)
+CALIBRATION_SOURCE = source_digest(*sources.CALIBRATION)
 DIAGNOSIS_SOURCE = source_digest(*sources.DIAGNOSIS)
 
 
@@ -57,7 +58,7 @@ def library_files(campaign, kind="{solver}.nc"):
 def calibration_libraries(wildcards):
     """Libraries that a calibration is made of: those of the first campaign that has it."""
     for campaign in CAMPAIGNS:
-        if plan(campaign).calibration(DIAGNOSIS_SOURCE) == wildcards.calibration:
+        if plan(campaign).calibration(CALIBRATION_SOURCE) == wildcards.calibration:
             return library_files(campaign)
     raise ValueError(f"no campaign has the calibration {wildcards.calibration}")
 
@@ -170,7 +171,7 @@ rule decide:
             wildcards.campaign, "{solver}-histories.nc"
         ),
         calibration=lambda wildcards: "results/libraries/calibrations/"
-        + plan(wildcards.campaign).calibration(DIAGNOSIS_SOURCE)
+        + plan(wildcards.campaign).calibration(CALIBRATION_SOURCE)
         + ".json",
     output:
         decision="results/diagnosis/{campaign}/decision.json",

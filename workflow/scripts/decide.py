@@ -10,7 +10,7 @@ from blockshake.diagnosis.deciding_features import deciding_features
 from blockshake.diagnosis.decision import decide
 from blockshake.diagnosis.frozen import freeze
 from blockshake.diagnosis.library_scores import load_tables, score_library
-from blockshake.diagnosis.measured_readings import reading_of
+from blockshake.diagnosis.measured_readings import reading_of, tamed_readings
 from blockshake.diagnosis.misfit import misfit
 from blockshake.files import write_dataset, write_json
 from blockshake.geometry.structure import load_structure
@@ -23,7 +23,7 @@ with logging_to(snakemake.log[0]):
     names = [str(name) for name in measured["test"].values]
     readings = [reading_of(measured, name) for name in names]
     library, scales = score_library(load_tables(snakemake.input.libraries), snakemake.params.effects)
-    features = [scale.tamed(reading) for scale, reading in zip(scales, readings, strict=True)]
+    features = tamed_readings(scales, measured)
     cases = cases_from_json(json.loads(Path(snakemake.input.calibration).read_text()))
     decision, scores = decide(library, features, cases)
     best = decision.places[(decision.causes or list(decision.places))[0]]

@@ -4,7 +4,8 @@ from pathlib import Path
 import xarray as xr
 
 from blockshake.diagnosis.extended_runs import extended_runs
-from blockshake.diagnosis.library_scores import load_tables, score_library, tamed_readings
+from blockshake.diagnosis.library_scores import load_tables, score_library
+from blockshake.diagnosis.measured_readings import tamed_readings
 from blockshake.diagnosis.plan import plan_diagnosis
 from blockshake.files import write_dataset
 from blockshake.log import logging_to

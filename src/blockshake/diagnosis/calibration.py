@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from blockshake.diagnosis.candidates import effect_of
+from blockshake.diagnosis.constancy import constancy
 
 NONE = "none"
 _FEWEST = 10  # cases with which a chance below 10 % can be told
@@ -26,8 +27,10 @@ class Case:
         By effect: by how much its best place falls short of the strongest candidate [1].
     distance : dict of str to float
         By effect: squared distance per feature at its best place, size and solver [1].
-    level : float
-        Share of the size's posterior that lies below the true size; NaN where nobody knows that.
+    constancy : dict of str to float
+        By effect: chance of sizes that differ as much from test to test, at its best place [1]; see `constancy`.
+    missed : float
+        True size less the posterior's mean; NaN where there is no true size.
     """
 
     truth: str
@@ -35,17 +38,18 @@ class Case:
     strongest: float
     shortfall: dict
     distance: dict
-    level: float
+    constancy: dict
+    missed: float
 
 
 def cases_from_json(rows):
     """Cases of rows that are `vars` of each; JSON has no NaN, so that null stands for it."""
-    return [Case(**row | {"level": np.nan if row["level"] is None else row["level"]}) for row in rows]
+    return [Case(**row | {"missed": np.nan if row["missed"] is None else row["missed"]}) for row in rows]
 
 
 def cases_as_json(cases):
     """Rows of cases, for a file."""
-    return [vars(case) | {"level": None if np.isnan(case.level) else case.level} for case in cases]
+    return [vars(case) | {"missed": None if np.isnan(case.missed) else case.missed} for case in cases]
 
 
 def best_place(scores, effect):
@@ -64,9 +68,8 @@ def as_case(scores, key="", size=0.0):
         strongest=strongest,
         shortfall={effect: strongest - scores.log_ratio[place] for effect, place in places.items()},
         distance={effect: scores.distance[place] for effect, place in places.items()},
-        level=float(np.interp(size, scores.sizes[key], np.cumsum(scores.weights[key])))
-        if key in scores.sizes
-        else float("nan"),
+        constancy={effect: constancy(scores.by_test[place]) for effect, place in places.items()},
+        missed=size - float(scores.sizes[key] @ scores.weights[key]) if key in scores.sizes else np.nan,
     )
 
 
@@ -130,6 +133,13 @@ def chance_of_distance(effect, distance, cases):
     return _rank(distance, [other.distance[other.truth] for other in _alike(effect, cases)])
 
 
+def chance_of_constancy(effect, case, cases):
+    """How often sizes differ as much from test to test where an effect is the truth, at most that of `constancy`."""
+    alike = _alike(effect, cases)
+    rank = _rank(-case.constancy[effect], [-other.constancy[other.truth] for other in alike])
+    return max(rank, case.constancy[effect])
+
+
 def shown_above(effect, cases, level, share=0.9):
     """Size from which on a share of the library's cases is detected, in units of the visible one; NaN if none is."""
     own = [case for case in cases if case.truth == effect]
@@ -144,10 +154,10 @@ def shown_above(effect, cases, level, share=0.9):
     return smallest
 
 
-def interval_share(effect, cases, share=0.9):
-    """Share of the size's posterior, about its median, that holds the truth in ``share`` of the cases."""
-    missed = [abs(case.level - 0.5) for case in _alike(effect, cases)]
-    return float(min(2.0 * np.quantile(missed, share, method="higher"), 1.0)) if missed else 1.0
+def size_error(effect, cases):
+    """Root mean square of what the posterior's mean misses of the true size, in units of the visible one."""
+    missed = np.array([case.missed for case in _alike(effect, cases)])
+    return float(np.sqrt((missed**2).mean())) if len(missed) else np.inf
 
 
 def _alike(effect, cases):

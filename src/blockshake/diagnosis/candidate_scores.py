@@ -101,18 +101,21 @@ class ScoreLibrary:
         """
         parts = self._parts(len(features), None, None)
         place = int(np.argmin(np.abs(self.grid(first) - size)))
+        beside = {}
+        for part in (part for row in parts for part in row):
+            one = part.responses[first]
+            beside[id(part)] = one.mean[[place]], one.covariance()[[place]]
 
         def predicted(key):
             pairs = []
             for row in parts:
                 pairs.append([])
                 for part, own in zip(row, features, strict=True):
-                    one = part.responses[first]
-                    added, scatter = one.mean[place][None], one.deviation[place][None]
+                    added, covariance = beside[id(part)]
                     if key:
                         other = part.responses[key]
-                        added, scatter = added + other.mean, np.hypot(scatter, other.deviation)
-                    density, square = part.with_response(own, added, scatter)
+                        added, covariance = added + other.mean, covariance + other.covariance()
+                    density, square = part.with_response(own, added, covariance)
                     pairs[-1].append((density, square) if key else (density[0], square[0]))
             return np.moveaxis(np.array(pairs), 2, 0)
 
@@ -145,10 +148,8 @@ class ScoreLibrary:
                 for test, (part, own) in enumerate(zip(row, features, strict=True)):
                     # one exchange a test, the same for both solvers
                     order = np.random.default_rng([number, test]).permutation(len(own))
-                    response = part.responses[key]
-                    density, _ = part.with_response(
-                        own, response.mean[:, order], response.deviation[:, order]
-                    )
+                    response = part.responses[key].exchanged(order)
+                    density, _ = part.with_response(own, response.mean, response.covariance())
                     densities = densities + density
                 by_size.append(densities)
             found.append(_mean_density(by_size) - _mean_density(nominal))

@@ -4,13 +4,15 @@ import json
 
 import numpy as np
 
-from blockshake.diagnosis.calibration import detected, interval_share
+from blockshake.diagnosis.calibration import detected, size_error
 from blockshake.diagnosis.candidates import effect_of
 from blockshake.diagnosis.decision import FALSE_ALARM
-from blockshake.diagnosis.posterior import parameter_estimates
+from blockshake.diagnosis.posterior import calibrated_weights, parameter_estimates
 from blockshake.diagnosis.sensor_causes import sensor_causes
 from blockshake.diagnosis.verdict import Estimate, Misfit, Verdict
 from blockshake.effects.registry import EFFECTS
+
+SHARE = 0.9  # of the posterior, in an interval
 
 
 def conclude(decision, findings, where, runs, caveats, effort, gain=None):
@@ -103,21 +105,20 @@ def decision_as_json(decision, scores, candidates, cases):
     Returns
     -------
     dict
-        The decision's entries; ``parameters`` of the causes as of `parameter_estimates` and their ``location``;
+        The decision's entries; ``posteriors`` of the causes' sizes, as of `calibrated_weights`; ``parameters`` of the causes as of `parameter_estimates` and their ``location``;
         ``candidates``: for each
         ``key``, ``effect``, ``log_ratio``, ``by_model``, ``size``, ``sizes``, ``weights``, ``model``, ``distance`` and,
         by test, the size of the largest density and the ends of the sizes less likely by a factor e^2.
     """
     seen = detected(cases, FALSE_ALARM)
     place_of = {candidate.key: candidate.place for candidate in candidates}
-    parameters = {}
+    posteriors, parameters = {}, {}
     for effect in decision.causes:
         key = decision.places[effect]
         if decision.decision == "combination" and effect != decision.causes[0]:
             continue  # its size beside the first is a single estimate
-        parameters[effect] = parameter_estimates(
-            effect, scores.sizes[key], scores.weights[key], interval_share(effect, seen)
-        )
+        posteriors[effect] = calibrated_weights(scores.sizes[key], scores.weights[key], size_error(effect, seen))
+        parameters[effect] = parameter_estimates(effect, scores.sizes[key], posteriors[effect], SHARE)
     rows = [
         {
             "key": key,
@@ -138,6 +139,7 @@ def decision_as_json(decision, scores, candidates, cases):
             name: None if np.isnan(size) else size for name, size in decision.shown_above.items()
         },
         "nominal_distance": scores.distance["nominal"],
+        "posteriors": {effect: weights.tolist() for effect, weights in posteriors.items()},
         "parameters": parameters,
         "location": {effect: place_of[decision.places[effect]] for effect in decision.causes},
         "candidates": rows,

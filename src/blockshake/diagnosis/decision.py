@@ -6,18 +6,18 @@ from blockshake.diagnosis.calibration import (
     as_case,
     best_place,
     chance_of,
+    chance_of_constancy,
     chance_of_distance,
     chance_of_none,
     detected,
     shown_above,
 )
 from blockshake.diagnosis.candidates import effect_of
-from blockshake.diagnosis.constancy import constancy
 
 FALSE_ALARM = 0.05  # level at which readings are called an effect
 NOT_IN_SET = 0.10  # level below which an effect leaves the set
 INADEQUATE = 0.05  # level below which even the best fit of an effect leaves too much
-INCONSTANT = 0.01  # level below which an effect compensates for another, rather than being the cause
+INCONSTANT = 0.05  # level below which an effect compensates for another, rather than being the cause
 PLACEBOS = 19  # none of which may explain more than a cause does: a chance of 5 %
 SEPARABLE = 4.0  # log ratio that two models must differ by (Sivula et al. 2020), and a second effect add
 _FIRST = 3  # strongest effects that are tried with a second one beside them
@@ -108,7 +108,7 @@ def decide(library, features, cases):
         p_none=p_none,
         probabilities={effect: chance_of(effect, case, seen) for effect in effects},
         adequacy={effect: chance_of_distance(effect, case.distance[effect], seen) for effect in effects},
-        constancy={effect: constancy(scores.by_test[places[effect]]) for effect in effects},
+        constancy={effect: chance_of_constancy(effect, case, seen) for effect in effects},
         placebo=float(library.placebo_ratios(features, PLACEBOS).max()),
         struck_out={},
         solver_dependent=[],

@@ -1,5 +1,7 @@
 """Ensembles by one solver before and after an extension: on sealed tests, and the recalibrated one on open tests."""
 
+from dataclasses import replace
+
 import numpy as np
 import xarray as xr
 
@@ -48,6 +50,8 @@ def extended_runs(plan, model, decision, scores, library, features, store, sourc
     draws = [draw_nominal(plan.campaign.structure, model, k) for k in range(plan.effort.nominal_draws)]
     known, measured = open_features(library, model), np.concatenate(features)
     count = plan.effort.members
+    posterior = np.array(decision["posteriors"][cause.effect])
+    scores = replace(scores, weights={cause.key: posterior})
     members = {
         NOMINAL: [(draw, []) for draw in draws[:count]],
         RECALIBRATED: recalibrated_members(draws, known, measured, count),

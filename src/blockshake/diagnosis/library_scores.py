@@ -6,7 +6,6 @@ import xarray as xr
 from blockshake.diagnosis.candidate_scores import ScoreLibrary
 from blockshake.diagnosis.candidates import effect_of
 from blockshake.diagnosis.library import NOMINAL
-from blockshake.diagnosis.measured_readings import reading_of
 from blockshake.diagnosis.tamed_features import feature_scale
 
 
@@ -63,9 +62,3 @@ def score_library(tables, effects):
         for model, table in tables[0].items()
     }
     return ScoreLibrary(tamed, sizes), scales
-
-
-def tamed_readings(scales, readings):
-    """Measured features on the libraries' scales, list of float64 array, shape (n_features,), by test."""
-    names = readings["test"].values
-    return [scale.tamed(reading_of(readings, name)) for scale, name in zip(scales, names, strict=True)]

@@ -41,3 +41,9 @@ def reading_of(readings, name):
     one = readings.sel(test=name, drop=True)
     one = one.dropna("time", subset=["acceleration"]).dropna("feature", subset=["value"])
     return one.assign(phase=one["phase"].astype(np.int8))
+
+
+def tamed_readings(scales, readings):
+    """Measured features on the libraries' scales, list of float64 array, shape (n_features,), by test."""
+    names = readings["test"].values
+    return [scale.tamed(reading_of(readings, name)) for scale, name in zip(scales, names, strict=True)]

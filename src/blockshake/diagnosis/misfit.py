@@ -47,8 +47,7 @@ def misfit(readings, ensembles):
         bands.append(members.quantile(_KEPT, dim="draw", skipna=True).astype(np.float32))
     word = code_word(atlases)
     found = xr.concat(atlases, dim="test", join="outer", combine_attrs="drop_conflicts")
-    found = found.assign(
-        xr.concat(bands, dim="test", join="outer"),
+    found = found.merge(xr.concat(bands, dim="test", join="outer")).assign(
         p_curves=whole_curve_test(all_measured, all_simulated).p,
         intensity=("test", [atlas.attrs["intensity"] for atlas in atlases], {"units": "m/s2"}),
     )

@@ -58,28 +58,25 @@ class ModelEvidence:
 
     def nominal(self, features):
         """Log density of features by the model alone, and their squared distance."""
-        nothing = np.zeros((1, len(features)))
-        density, square = self._densities(features, nothing, self._whitening(None, nothing))
+        if None not in self._whitened:
+            self._whitened[None] = self._factors(np.zeros((1, 1, 1)))
+        density, square = self._densities(features, np.zeros((1, len(features))), self._whitened[None])
         return float(density[0]), float(square[0])
 
     def candidate(self, key, features):
         """The same with a candidate, at each size of its grid: two float64 arrays, shape (n_sizes,)."""
         response = self.responses[key]
-        return self._densities(features, response.mean, self._whitening(key, response.deviation))
-
-    def with_response(self, features, added, deviation):
-        """The same with anything that adds a mean and a scatter, float64 arrays, shape (n_sizes, n_features)."""
-        return self._densities(features, added, self._factors(deviation))
-
-    def _whitening(self, key, deviation):
         if key not in self._whitened:
-            self._whitened[key] = self._factors(deviation)
-        return self._whitened[key]
+            self._whitened[key] = self._factors(response.covariance())
+        return self._densities(features, response.mean, self._whitened[key])
 
-    def _factors(self, deviation):
+    def with_response(self, features, added, covariance):
+        """The same with anything that adds a mean, shape (n_sizes, n_features), and a covariance, one axis more."""
+        return self._densities(features, added, self._factors(covariance))
+
+    def _factors(self, added):
         """Inverses of the covariances' Cholesky factors, and the logarithms of these factors' determinants."""
-        n_features = len(self.mean)
-        lower = np.linalg.cholesky(self.covariance + deviation[:, :, None] ** 2 * np.eye(n_features))
+        lower = np.linalg.cholesky(self.covariance + added)
         logarithm = np.log(np.diagonal(lower, axis1=1, axis2=2)).sum(axis=1)
         return np.linalg.inv(lower), logarithm
 

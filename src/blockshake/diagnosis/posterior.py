@@ -5,6 +5,29 @@ import numpy as np
 from blockshake.effects.registry import EFFECTS
 
 
+def calibrated_weights(sizes, weights, error):
+    """Posterior of a size as wide as its errors are where the truth is known.
+
+    Parameters
+    ----------
+    sizes, weights : float64 array, shape (n_sizes,)
+        As of `Scores`.
+    error : float
+        Root mean square of the posterior mean's error over the library's own cases, as of `size_error`.
+
+    Returns
+    -------
+    float64 array, shape (n_sizes,)
+        Gaussian about the posterior's mean, with the larger of both standard deviations, cut off at the ends of the
+        library's sizes. The likelihood alone is too sure: what features miss together it takes for separate evidence.
+    """
+    mean = float(sizes @ weights)
+    own = float(np.sqrt((sizes - mean) ** 2 @ weights))
+    spread = max(own, error, 0.5 * float(np.diff(sizes).max()))
+    wide = np.exp(-0.5 * ((sizes - mean) / spread) ** 2)
+    return wide / wide.sum()
+
+
 def size_interval(sizes, weights, share):
     """Median of the posterior and the interval about it that holds a share of it.
 

@@ -1,12 +1,13 @@
-"""What a candidate adds to the features, as a function of its size: a Gaussian process fitted to paired runs."""
+"""What a candidate adds to the features, as a function of its size: Gaussian processes fitted to paired runs."""
 
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
-from sklearn.exceptions import ConvergenceWarning
-from sklearn.gaussian_process import GaussianProcessRegressor
-from sklearn.gaussian_process.kernels import RBF, ConstantKernel, DotProduct, WhiteKernel
+
+_LENGTHS = np.array([0.5, 1.0, 2.0, 4.0, 16.0])  # of the size, in units of the visible one, over which a response bends
+_NOISES = np.array([1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0])  # variance over that of the response at the visible size
+_TOGETHER = 0.5  # share of the scatter in which features go together
+_FEWEST_FREE = 0.5  # degrees of freedom, of two runs and fewer
 
 
 @dataclass(frozen=True)
@@ -20,11 +21,28 @@ class Response:
     mean, deviation : float64 arrays, shape (n_sizes, n_features)
         In units of the features' spread. The deviation holds what the fit does not know and by how much the effect
         adds more in one nominal model than in another.
+    scatter : float64 array, shape (n_draws, n_features)
+        By how much each run differs from what the others predict, in units of that difference's root mean square:
+        features of one run differ together.
     """
 
     sizes: np.ndarray
     mean: np.ndarray
     deviation: np.ndarray
+    scatter: np.ndarray
+
+    def exchanged(self, order):
+        """The response with its features in another order: of the same size, and meaningless."""
+        return Response(self.sizes, self.mean[:, order], self.deviation[:, order], self.scatter[:, order])
+
+    def covariance(self):
+        """Covariance of what is added at each size, float64 array, shape (n_sizes, n_features, n_features).
+
+        Correlations are those of the scatter, of which there are few runs: shrunk by half towards none.
+        """
+        n_draws, n_features = self.scatter.shape
+        correlation = (1.0 - _TOGETHER) * np.eye(n_features) + _TOGETHER * self.scatter.T @ self.scatter / n_draws
+        return self.deviation[:, :, None] * correlation * self.deviation[:, None, :]
 
 
 def fit_response(own_sizes, added, sizes):
@@ -45,21 +63,38 @@ def fit_response(own_sizes, added, sizes):
 
     Notes
     -----
-    Gaussian process (Rasmussen and Williams 2006) with the kernel ``u u' exp(-(u - u')^2 / 2 l^2)``, so that nothing
-    is added at the null size, and white noise; one length and one noise for all features, each in units of its own
-    root mean square, by the largest likelihood.
+    Each feature by itself: a Gaussian process (Rasmussen and Williams 2006, eqs. 2.25 and 2.26) with the kernel
+    ``s^2 u u' exp(-(u - u')^2 / 2 l^2)``, so that nothing is added at the null size, and white noise of variance
+    ``s^2 r``. Left-out residuals are of eq. 5.12. Runs are too few to tell ``l`` and ``r``: predictions are averaged over a grid of both with the weight of
+    their likelihood, ``s^2`` integrated out under the prior 1 / s^2, so that a few runs that happen to lie on a line do not pass
+    for a law without scatter. Their variance is that of the Student t, with as many degrees of freedom as runs.
     """
-    scale = np.sqrt((added**2).mean(axis=0))
-    scale = np.where(scale > 0.0, scale, 1.0)
-    kernel = ConstantKernel(1.0) * DotProduct(0.0, "fixed") * RBF(1.0, (0.1, 10.0)) + WhiteKernel(
-        0.1, (1e-6, 10.0)
-    )
-    process = GaussianProcessRegressor(kernel, normalize_y=False)
-    with warnings.catch_warnings():
-        # a bound of a kernel's parameter reached is an answer: a response that is straight, or without scatter
-        warnings.simplefilter("ignore", ConvergenceWarning)
-        process.fit(own_sizes[:, None], added / scale)
-    mean, deviation = process.predict(np.asarray(sizes)[:, None], return_std=True)
-    if deviation.ndim == 1:
-        deviation = np.repeat(deviation[:, None], added.shape[1], axis=1)
-    return Response(np.asarray(sizes), mean.reshape(len(sizes), -1) * scale, deviation * scale)
+    count = len(own_sizes)
+    freedom = count / max(count - 2.0, _FEWEST_FREE)
+    evidence, means, variances, residuals = [], [], [], []
+    for length in _LENGTHS:
+        known = _kernel(own_sizes, own_sizes, length)
+        across = _kernel(sizes, own_sizes, length)
+        for noise in _NOISES:
+            whole = known + noise * np.eye(count)
+            solved = np.linalg.solve(whole, added)
+            square = np.maximum((added * solved).sum(axis=0), np.finfo(float).tiny)
+            evidence.append(-0.5 * np.linalg.slogdet(whole)[1] - 0.5 * count * np.log(square))
+            means.append(across @ solved)
+            residuals.append(solved / np.diagonal(np.linalg.inv(whole))[:, None])
+            left = noise + sizes**2 - (across * np.linalg.solve(whole, across.T).T).sum(axis=1)
+            variances.append(freedom * left[:, None] * square / count)
+    evidence = np.array(evidence)
+    weights = np.exp(evidence - evidence.max(axis=0))
+    weights /= weights.sum(axis=0)
+    mean = np.einsum("hf,hsf->sf", weights, np.array(means))
+    second = np.einsum("hf,hsf->sf", weights, np.array(variances) + np.array(means) ** 2)
+    residual = np.einsum("hf,hnf->nf", weights, np.array(residuals))
+    rms = np.sqrt((residual**2).mean(axis=0))
+    scatter = residual / np.where(rms > 0.0, rms, 1.0)
+    return Response(np.asarray(sizes), mean, np.sqrt(np.maximum(second - mean**2, 0.0)), scatter)
+
+
+def _kernel(one, other, length):
+    distance = one[:, None] - other[None, :]
+    return one[:, None] * other[None, :] * np.exp(-0.5 * (distance / length) ** 2)

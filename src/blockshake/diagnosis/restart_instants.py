@@ -7,7 +7,7 @@ from blockshake.diagnosis.phases import TURN_NOISE, known_values
 
 _EVERY = 0.25  # s, where nothing turns
 _REST = 0.02  # of the base's peak acceleration
-_MOST = 24  # of a test: of more, as many spread evenly
+_MOST = 18  # of a test: of more, as many spread evenly
 
 
 def restart_instants(histories, length):

@@ -8,14 +8,18 @@ from blockshake.diagnosis.null_model import MODELS, draw_nominal
 from blockshake.diagnosis.restart_instants import restart_instants
 from blockshake.diagnosis.smoothed_state import smoothed_states
 from blockshake.diagnosis.window_scores import Innovations, score_windows
-from blockshake.diagnosis.windows import coordinate_names, measured_ends, simulate_window, window_model
+from blockshake.diagnosis.windows import measured_ends, simulate_window, window_model
 from blockshake.effects.registry import EFFECTS
+from blockshake.measurement.joint_coordinates import find_joints
 
 LONGEST = 0.4  # s
 _SHARE = 3.0  # windows in a horizon
 _SHORTEST = 0.1  # s: in less nothing shows
 _STARTS = 5  # draws of the start
-_MODELS = 5  # nominal draws of each solver
+_MODELS = {"ls-dem": 12, "nscd-rigid": 5}  # nominal draws: node layouts differ more than time steps
+# What the draws span is taken twice as wide, and what they span at a window once more as its own scatter, for what
+# is not linear in them; a start without its contacts' history adds a share of the rotation (tests/diagnosis).
+_WIDER, _OWN, _HISTORY = 2.0, 0.3, 0.02
 _TRIED = 0.5  # of the visible size, at which tangents are taken
 _SIZES = 21
 # the middle of what `draw_nominal` draws; time step [s]
@@ -60,8 +64,9 @@ def window_evidence(name, structure, source, histories, base, candidates, horizo
     Notes
     -----
     Errors of the start and of the readings are those of a window; the nominal draws of each solver, about its middle
-    one, are shared by all. The covariance by errors of the start is that of five draws, as much again of its
-    variances' medians over the windows.
+    one, are shared by all. The covariance by errors of the start is half that of five draws and half its
+    variances' medians over the windows. A tangent is the change by half the visible size: effects far
+    from linear, such as a stop, are found and their size is rough.
     """
     length = window_length(horizon)
     time = histories["time"].to_numpy()
@@ -69,7 +74,7 @@ def window_evidence(name, structure, source, histories, base, candidates, horizo
     states = smoothed_states(histories, structure)
     places = restart_instants(histories, length) if states else np.empty(0, dtype=np.int64)
     keys = [candidate.key for candidate in candidates]
-    names = coordinate_names(structure)
+    names = _coordinate_names(structure)
     if not len(places):
         return _without_windows(keys, names, length)
     measured, noise = measured_ends(histories, places, n_steps)
@@ -94,12 +99,15 @@ def window_evidence(name, structure, source, histories, base, candidates, horizo
     scores, innovations = {}, {}
     for solver in MODELS:
         drawn = []
-        for number in range(_MODELS):
+        for number in range(_MODELS[solver]):
             draw = draw_nominal(source, solver, number)
             drawn.append(ends(window_model(solver, source, base, draw.parameters, draw.time_step)))
-        shared = np.moveaxis(np.array(drawn) - middle[solver], 0, 2) / np.sqrt(_MODELS)
-        innovations[solver] = Innovations(measured - middle[solver], covariance, shared)
-        progress(f"{name}: {solver}, {_MODELS} nominal draws")
+        shared = _WIDER * np.moveaxis(np.array(drawn) - middle[solver], 0, 2) / np.sqrt(_MODELS[solver])
+        own = _OWN**2 * np.nan_to_num(shared**2).sum(axis=2) + np.nan_to_num(_HISTORY * middle[solver]) ** 2
+        innovations[solver] = Innovations(
+            measured - middle[solver], covariance + own[:, :, None] * np.eye(len(names)), shared
+        )
+        progress(f"{name}: {solver}, {_MODELS[solver]} nominal draws")
         for candidate in candidates:
             values, sizes = _tried(candidate)
             model = window_model(
@@ -111,6 +119,16 @@ def window_evidence(name, structure, source, histories, base, candidates, horizo
             )
             progress(f"{name}: {solver}, {candidate.key}")
     return _gathered(scores, innovations, keys, names, time[places], length)
+
+
+def _coordinate_names(structure):
+    """Names of what `simulate_window` gives."""
+    names = structure.body_names
+    joints = [f"{names[lower]}-{names[upper]}" for lower, upper in find_joints(structure)[0]]
+    return [f"{kind}.{joint}" for kind in ("slip", "rotation") for joint in joints] + [
+        "base.pitch",
+        "base.vertical",
+    ]
 
 
 def _tried(candidate):

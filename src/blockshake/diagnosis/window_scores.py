@@ -40,16 +40,20 @@ class Innovations:
         tangent : float64 array, shape (n_windows, n_coordinates)
         count : int64 array, shape (n_windows,)
             Known coordinates.
+        logarithm : float
+            Of the determinant of the factors by which all were divided.
         """
         known = np.isfinite(self.values) & np.isfinite(tangent) & np.isfinite(self.shared).all(axis=2)
         both = known[:, :, None] & known[:, None, :]
         # an unknown coordinate by itself with unit variance: it adds nothing
         covariance = np.where(both, self.covariance, np.eye(self.values.shape[1]))
-        inverse = np.linalg.inv(np.linalg.cholesky(covariance))
+        factors = np.linalg.cholesky(covariance)
+        inverse = np.linalg.inv(factors)
         parts = [np.where(known, part, 0.0)[..., None] for part in (self.values, tangent)]
         own, along = (np.matmul(inverse, part)[..., 0] for part in parts)
         shared = np.matmul(inverse, np.where(known[..., None], self.shared, 0.0))
-        return own, shared, along, known.sum(axis=1)
+        logarithm = float(np.log(np.diagonal(factors, axis1=1, axis2=2)).sum())
+        return own, shared, along, known.sum(axis=1), logarithm
 
 
 @dataclass(frozen=True)
@@ -99,10 +103,13 @@ def score_windows(innovations, tangent, sizes, seed):
     each window's distance, eta at its likeliest for the size. Windows of one test share its input and its
     model, so its standard error says nothing of other tests.
     """
-    values, shared, along, count = innovations.whitened(tangent)
+    values, shared, along, count, logarithm = innovations.whitened(tangent)
     n_shared = shared.shape[2]
     flat = shared.reshape(-1, n_shared)
-    gain = np.linalg.solve(np.eye(n_shared) + flat.T @ flat, flat.T)
+    spread = np.eye(n_shared) + flat.T @ flat
+    gain = np.linalg.solve(spread, flat.T)
+    # alike for all sizes, not for two solvers
+    constant = logarithm + 0.5 * np.linalg.slogdet(spread)[1]
 
     def without_shared(part):
         return part - (shared @ (gain @ part.ravel()))
@@ -118,7 +125,7 @@ def score_windows(innovations, tangent, sizes, seed):
         eta = gain @ left.ravel()
         squares = ((left - shared @ eta) ** 2).sum(axis=1)
         by_window[place] = _log_student(squares, count)
-        price[place] = 0.5 * eta @ eta
+        price[place] = 0.5 * eta @ eta + constant
     total = by_window.sum(axis=1) - price
     best = 1 + int(np.argmax(total[1:]))
     return WindowScore(

@@ -12,7 +12,7 @@ from blockshake.effects.registry import with_effect
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import Structure
 from blockshake.measurement.instruments import Instruments
-from blockshake.measurement.joint_coordinates import find_joints, joint_coordinates
+from blockshake.measurement.joint_coordinates import joint_coordinates
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.nscd.parameters import NscdParameters
 from blockshake.study.simulation import MODELS, part_parameters, split_parameters
@@ -175,16 +175,6 @@ def measured_ends(histories, places, n_steps):
     count = np.isfinite(read).sum(axis=1)
     values = np.where(count > 0, np.nansum(read, axis=1) / np.maximum(count, 1), np.nan)
     return values, one / np.sqrt(np.maximum(count, 1))
-
-
-def coordinate_names(structure):
-    """Names of what `simulate_window` gives."""
-    names = structure.body_names
-    joints = [f"{names[lower]}-{names[upper]}" for lower, upper in find_joints(structure)[0]]
-    return [f"{kind}.{joint}" for kind in ("slip", "rotation") for joint in joints] + [
-        "base.pitch",
-        "base.vertical",
-    ]
 
 
 def _started(model, campaign, states, place, begin, generator):

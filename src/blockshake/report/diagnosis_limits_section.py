@@ -1,0 +1,119 @@
+"""Last page of a diagnosis: what was not tested, what was assumed, and from what files all this comes."""
+
+from blockshake.diagnosis.parity import LEVEL
+from blockshake.effects.registry import EFFECTS
+from blockshake.report.blocks import Items, Listing, Section, Table, Text
+from blockshake.report.diagnosis_wording import title_of
+from blockshake.report.result_tables import pairs_table
+from blockshake.report.wording import given, number
+
+_ROLES = {True: "judged by", False: "left out: the effort allows fewer tests"}
+
+
+def limits_section(found):
+    """Tests, sensors, caveats, effects, assumptions, digests, versions."""
+    blocks = [
+        Items(_not_tested(found)),
+        _tests_table(found),
+        Text(_sensors(found)),
+        *_findings(found),
+    ]
+    if found.verdict.caveats:
+        blocks += [
+            Text("Caveats of the verdict:"),
+            Items(tuple(f"{one[0].upper()}{one[1:]}." for one in found.verdict.caveats)),
+        ]
+    blocks += [
+        Text("To run it again, in a checkout of the same version:"),
+        Listing("Command", f"snakemake -c2 diagnose --config campaign=FOLDER effort={found.effort}"),
+        pairs_table("Digests of files (first 12 digits of SHA-256).", ("File", "Digest"), found.digests),
+        pairs_table("Software that made this report.", ("Package", "Version"), found.versions),
+    ]
+    return Section("What was not tested, assumptions, origin", "limits", tuple(blocks))
+
+
+def _not_tested(found):
+    considered = found.decision["probabilities"]
+    sensors = [title_of(name) for name, effect in EFFECTS.items() if effect.acts == "observation"]
+    removed = [
+        title_of(name)
+        for name, effect in EFFECTS.items()
+        if effect.acts != "observation" and name not in considered
+    ]
+    items = [
+        f"{found.verdict.runs} simulated tests, effort {found.effort}; seeds follow from the names of draws, "
+        "candidates and tests, and the same files give the same report.",
+        f"Considered: {', '.join(map(title_of, considered))}; by the sensors' checks alone: {', '.join(sensors)}.",
+        "Not in the registry, and so never named: cracking and crushing of edges, deformation inside a block, motion "
+        "of the foundation beyond pitch and the vertical, wear of joints from test to test, misread time stamps within "
+        "a recorder, changes of the structure between tests. If one of these acts, the right answer is 'cause "
+        "unknown', and an effect that leaves the same in these data may be named instead.",
+        "Assumed: the scatter of the nominal parameters is that of Zhou et al. (2023), Table 2; the two solvers with "
+        "their numerics varied span the error of the numerical model; the library's simulated tests and these tests "
+        "are exchangeable where nothing is missing. Levels and intervals hold under these assumptions only.",
+        "Sizes and intervals are calibrated over the library's sizes together, not at each size.",
+    ]
+    if removed:
+        items.insert(2, f"Taken out of the candidates on purpose: {', '.join(removed)}.")
+    if not found.horizon:
+        items.append(
+            "How long each test can be predicted was not measured, and whole records were judged by their features: "
+            "where rocking is chaotic, late features are noise."
+        )
+    return tuple(items)
+
+
+def _tests_table(found):
+    rows = []
+    for test in found.campaign.tests.values():
+        use = "sealed: read for the gain alone" if test.role == "sealed" else _ROLES[test.name in found.tests]
+        if test.role == "sealed" and found.gain is None:
+            use = "sealed: not read"
+        rows.append((test.name, test.motion, given(test.scale), test.role, use))
+    header = ("Test", "Motion", "Scale", "Role", "Use")
+    return Table(f"Tests of the campaign {found.campaign.name}.", header, tuple(rows), "llrll")
+
+
+def _sensors(found):
+    parity = found.parity
+    noise = [one["noise"] for one in parity["markers"].values() if one["noise"] is not None]
+    unchecked = [name for name, one in parity["markers"].items() if one["noise"] is None]
+    text = (
+        f"Sensors' checks, without any simulation: {parity['looked_at']} hypotheses on "
+        f"{len(parity['markers'])} markers, {len(parity['channels'])} accelerometer channels, "
+        f"the clocks of {len(parity['clock'])} tests; chance of any false finding {LEVEL:g}. "
+    )
+    if noise:
+        text += f"Noise of the markers {number(1e3 * min(noise), 2)} to {number(1e3 * max(noise), 2)} mm. "
+    if unchecked:
+        text += f"Not checked against others, fewer than three on their body: {', '.join(unchecked)}. "
+    lags = [abs(one["lag"]) for one in parity["clock"].values() if one["lag"] is not None]
+    if lags:
+        text += f"Largest lag between markers and accelerometers {number(1e3 * max(lags), 2)} ms. "
+    if not parity["findings"]:
+        text += "No fault was found."
+    return text
+
+
+def _findings(found):
+    rows = [
+        (
+            title_of(one["effect"]),
+            ", ".join(one["where"]),
+            one["quantity"],
+            ", ".join(number(value) for value in one["estimate"]),
+            number(one["p"], 2),
+            ", ".join(one["tests"]),
+        )
+        for one in found.parity["findings"]
+    ]
+    if not rows:
+        return []
+    return [
+        Table(
+            "Faults of sensors, taken out before anything was simulated (SI units).",
+            ("Fault", "Where", "Quantity", "Estimate", "p", "Tests"),
+            tuple(rows),
+            "lllrrl",
+        )
+    ]

@@ -1,0 +1,185 @@
+"""A campaign with an effect hidden in it, or none, in one folder and its truth in another.
+
+Runs in a process of its own: ``python tests/hidden_effects/make_case.py --seed 7 --case table-pitch --size large
+--output CAMPAIGN --truth TRUTH``. The diagnosis is given the campaign alone and shares no code with this but the
+solvers and the registry's parameters and places.
+"""
+
+import argparse
+import hashlib
+import shutil
+import sys
+from pathlib import Path
+
+import yaml
+from other_forms import FORMS, distort
+from other_sensors import ACCELEROMETER_NOISE, MARKER_NOISE, add_noise, true_noise
+from other_truth import (
+    NONE,
+    SIZES,
+    follow,
+    true_effect,
+    true_numerics,
+    true_parameters,
+    true_places,
+    true_table,
+)
+
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.effects.effect import Experiment
+from blockshake.effects.registry import EFFECTS
+from blockshake.files import content_digest, source_digest, write_dataset, write_json, write_text
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.instruments import Instruments
+from blockshake.sources import VIRTUAL_CAMPAIGN
+from blockshake.virtual.generate import DECIMALS
+from blockshake.virtual.settings import VirtualCampaign
+from blockshake.virtual.shake_table import shake
+
+HERE = Path(__file__).parent
+STRUCTURE = HERE / "two-blocks.yaml"
+DURATION = 6.0  # s
+# the same in every case: libraries of simulated tests depend on structure and motions alone
+PLAN = (
+    ("alkion", 1.0, "fit"),
+    ("alkion", 2.5, "fit"),
+    ("basso-tirreno", 2.0, "select"),
+    ("alkion", 3.0, "sealed"),
+    ("basso-tirreno", 2.5, "sealed"),
+)
+
+
+def test_name(motion, scale):
+    """Of a planned test, such as ``alkion-250``."""
+    return f"{motion}-{round(100 * scale):03d}"
+
+
+def made_by():
+    """Digest of all that makes a case."""
+    own = [(HERE / name).read_bytes() for name in ("other_forms.py", "other_sensors.py", "other_truth.py")]
+    return content_digest(
+        *own, Path(__file__).read_bytes(), STRUCTURE.read_bytes(), source_digest(*VIRTUAL_CAMPAIGN)
+    )
+
+
+def make_case(seed, name, size, folder, truth_folder):
+    """Write the campaign, then its truth, then the README that commits to the truth.
+
+    Parameters
+    ----------
+    seed : int
+        Of everything that is drawn.
+    name : str
+        Effect of the registry, or ``none``.
+    size : str
+        ``small`` or ``large``; of no meaning without an effect.
+    folder, truth_folder : Path
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "README").unlink(missing_ok=True)
+    structure = load_structure(STRUCTURE)
+    shutil.copyfile(STRUCTURE, folder / "structure.yaml")
+    effect = true_effect(name, size, structure, seed)
+    parameters, wider = true_parameters(structure, seed)
+    model, time_step, numerics = true_numerics(seed)
+    table, noise = true_table(seed), true_noise(seed)
+    happened = {}
+    for number, (motion, scale, _) in enumerate(PLAN):
+        experiment = Experiment(
+            str(STRUCTURE), parameters | numerics, follow(load_motion(motion, scale), table),
+            Instruments(marker_noise=0.0, accelerometer_noise=0.0),
+        )  # fmt: skip
+        if effect is not None:
+            experiment = _hidden(experiment, effect)
+        settings = VirtualCampaign(
+            name="case", seed=seed, model=model, time_step=time_step, instruments=experiment.instruments
+        )
+        test, run = shake(
+            STRUCTURE, experiment.parameters, None, experiment.motion, settings,
+            true_places(structure, seed, number), DURATION, seed,
+        )  # fmt: skip
+        happened[test_name(motion, scale)] = _happened(test, run)
+        if effect is not None:
+            markers = [str(marker) for marker in test["marker"].values]
+            test["marker_displacement"].values[:] = distort(
+                test["time"].to_numpy(), test["marker_displacement"].to_numpy(), markers, effect
+            )
+        test = add_noise(test, noise, seed, number)
+        test.attrs |= {"motion": motion, "motion_scale": scale}
+        write_dataset(folder / f"{test_name(motion, scale)}.nc", test, DECIMALS)
+    write_text(folder / "campaign.yaml", _campaign_yaml())
+    truth = {
+        "truth": name, "size_class": None if effect is None else size, "effect": effect,
+        "form": None if effect is None else FORMS[name][0], "seed": seed, "model": model, "time_step": time_step,
+        "numerics": numerics, "parameters": parameters, "wider": wider, "table": table, "noise": noise,
+        "tests": happened, "made_by": made_by(),
+    }  # fmt: skip
+    write_json(truth_folder / "truth.json", truth)
+    committed = hashlib.sha256((truth_folder / "truth.json").read_bytes()).hexdigest()
+    write_text(
+        folder / "README",
+        "SYNTHETIC: simulated runs seen through noisy sensors. Nothing here was measured.\n"
+        f"What is hidden in it, if anything, is in a file with sha256 {committed}.\n",
+    )
+
+
+def _hidden(experiment, effect):
+    """The experiment with the effect, whose structure has the truth's parameters but not the solver's."""
+    solver = ("ls_dem.", "nscd.")
+    physical = {key: value for key, value in experiment.parameters.items() if not key.startswith(solver)}
+    numerical = {key: value for key, value in experiment.parameters.items() if key.startswith(solver)}
+    bare = Experiment(experiment.structure, physical, experiment.motion, experiment.instruments)
+    changed = FORMS[effect["name"]][1](bare, effect["values"], effect["place"])
+    return changed.with_parameters(
+        **{key: changed.parameters.get(key, value) for key, value in numerical.items()}
+    )
+
+
+def _happened(test, run):
+    """How a test ended, and how far the upper marker of each block went against the slab's to either side [m]."""
+    moved = test["marker_displacement"].sel(axis="x")
+    drift = moved - moved.sel(marker="slab-face", drop=True)
+    blocks = [body for body in map(str, run["body"].values) if body != "slab"]
+    return {
+        "status": run.attrs["status"],
+        "end_time": float(run.attrs["end_time"]),
+        "drift": {
+            body: [
+                float(drift.sel(marker=f"{body}-upper").min()),
+                float(drift.sel(marker=f"{body}-upper").max()),
+            ]
+            for body in blocks
+        },
+    }
+
+
+def _campaign_yaml():
+    mapping = {
+        "name": "two blocks on a virtual table",
+        "structure": "structure.yaml",
+        "sensors": {"marker_noise": MARKER_NOISE, "accelerometer_noise": ACCELEROMETER_NOISE},
+        "tests": [
+            {
+                "name": test_name(motion, scale), "file": f"{test_name(motion, scale)}.nc", "motion": motion,
+                "scale": scale, "role": role,
+            }
+            for motion, scale, role in PLAN
+        ],
+    }  # fmt: skip
+    return yaml.safe_dump(mapping, sort_keys=False, default_flow_style=None, width=200)
+
+
+def main(arguments):
+    """Make one case, as the command line says."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seed", type=int, required=True)
+    parser.add_argument("--case", choices=[NONE, *EFFECTS], required=True)
+    parser.add_argument("--size", choices=list(SIZES), default="large")
+    parser.add_argument("--output", type=Path, required=True)
+    parser.add_argument("--truth", type=Path, required=True)
+    asked = parser.parse_args(arguments)
+    make_case(asked.seed, asked.case, asked.size, asked.output, asked.truth)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,57 @@
+"""The mirror image of structures, readings, effects and features: x to -x, everything else as it is."""
+
+import copy
+
+from blockshake.files import load_yaml
+from blockshake.geometry.structure import build_structure
+
+# of the features, those that change sign; those named for a side change sides too, and displacements both
+_ODD = ("slip.residual", "rotation.residual", "slip.asymmetry", "rotation.asymmetry")
+_ODD_BASE = ("base.vertical.acceleration", "base.vertical.displacement", "base.lateral.displacement")
+_SIDED = ("slip.peak", "rotation.peak", "displacement.peak")
+
+
+def mirrored_structure(path):
+    """A structure with its markers and accelerometers on the other side; its bodies are their own mirror images."""
+    mapping = copy.deepcopy(load_yaml(path))
+    for kind in ("markers", "accelerometers"):
+        for item in mapping[kind]:
+            item["position"] = [-item["position"][0], *item["position"][1:]]
+    return build_structure(mapping, "mirrored.yaml", ".")
+
+
+def mirrored_test(test):
+    """Readings of the mirror image of a test."""
+    test = test.copy(deep=True)
+    for name in ("marker_displacement", "marker_initial_position", "initial_offset"):
+        if name in test:
+            test[name].loc[{"axis": "x"}] *= -1.0
+    if "initial_rotation" in test:
+        test["initial_rotation"].loc[{"axis": ["y", "z"]}] *= -1.0  # an axial vector
+    along_x = [name for name in test["channel"].values if str(name).endswith("-x")]
+    test["accelerometer"].loc[{"channel": along_x}] *= -1.0
+    return test
+
+
+def mirrored_features(values):
+    """Features of the mirror image of a test, by name, from those of the test."""
+    mirrored = {}
+    for name, value in values.items():
+        sign = -1.0 if name.endswith(_ODD) or name in _ODD_BASE else 1.0
+        other = name
+        if name[-1] in "+-":
+            other = name[:-1] + ("-" if name[-1] == "+" else "+")
+            sign = -1.0 if name[:-1].endswith(_SIDED) else 1.0
+        mirrored[other] = sign * value
+    return mirrored
+
+
+def mirrored_effect(effect):
+    """The mirror image of an effect: an offset or a share of vertical motion changes sign, a stop its side."""
+    changed = copy.deepcopy(effect)
+    for key in ("offset", "ratio"):
+        if key in changed["values"]:
+            changed["values"][key] *= -1.0
+    if "axis" in changed["place"]:
+        changed["place"]["axis"] = {"+x": "-x", "-x": "+x"}[changed["place"]["axis"]]
+    return changed

@@ -1,0 +1,225 @@
+"""The maker: the same bytes for the same seed, nothing of the diagnosis in it, other forms and other numerics."""
+
+import ast
+import hashlib
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import make_case
+import numpy as np
+import pytest
+import xarray as xr
+from case_files import load_plan
+from make_case import STRUCTURE
+from other_forms import FORMS, distort
+from other_sensors import ACCELEROMETER_NOISE, MARKER_NOISE, add_noise, true_noise
+from other_truth import SIZES, follow, true_effect, true_numerics, true_parameters, true_table
+
+from blockshake.diagnosis.null_model import MODELS, draw_nominal
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.motion import ground_motion
+from blockshake.effects.effect import Experiment
+from blockshake.effects.registry import EFFECTS, with_effect
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.instruments import Instruments
+from blockshake.study.check import check_file
+from blockshake.study.simulation import part_parameters
+
+HERE = Path(__file__).parent
+SRC = HERE.parents[1] / "src" / "blockshake"
+MAKER = ("make_case", "other_forms", "other_sensors", "other_truth")
+
+
+@pytest.fixture
+def short(monkeypatch):
+    """Two tests of 2 s instead of the plan."""
+    monkeypatch.setattr(make_case, "PLAN", (("alkion", 1.0, "fit"), ("alkion", 2.5, "sealed")))
+    monkeypatch.setattr(make_case, "DURATION", 2.0)
+
+
+def _make(folder, seed, name, size="large"):
+    make_case.make_case(seed, name, size, folder / "campaign", folder / "truth")
+    return folder
+
+
+def test_the_same_seed_gives_the_same_bytes(short, tmp_path):
+    folders = [_make(tmp_path / again, 11, "stopper-contact") for again in ("one", "two")]
+    files = [
+        {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+        for folder in folders
+    ]
+    assert files[0] == files[1]
+    assert sorted(files[0]) == [
+        "campaign/README", "campaign/alkion-100.nc", "campaign/alkion-250.nc", "campaign/campaign.yaml",
+        "campaign/structure.yaml", "truth/truth.json",
+    ]  # fmt: skip
+    committed = hashlib.sha256(files[0]["truth/truth.json"]).hexdigest()
+    assert committed in files[0]["campaign/README"].decode()
+
+
+@pytest.mark.parametrize("name", ["none", *EFFECTS])
+def test_a_campaign_of_every_class_is_in_order_and_says_nothing(name, short, tmp_path):
+    folder = _make(tmp_path, 30, name)
+    check_file(folder / "campaign")
+    truth = json.loads((folder / "truth" / "truth.json").read_text())
+    assert truth["truth"] == name
+    assert {test["status"] for test in truth["tests"].values()} == {"completed"}
+    known = b"".join(path.read_bytes() for path in (folder / "campaign").iterdir())
+    assert name == "none" or name.encode() not in known
+
+
+def _imported(path):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield "." * node.level + (node.module or "")
+
+
+def test_nothing_in_the_package_imports_the_tests():
+    names = {path.stem for path in HERE.glob("*.py")}
+    for source in SRC.rglob("*.py"):
+        for module in _imported(source):
+            first = module.split(".")[0]
+            assert first not in names | {"tests", "hidden_effects"}, f"{source} imports {module}"
+            assert not module.startswith("."), f"{source} imports {module}"
+
+
+def test_the_maker_loads_nothing_of_the_diagnosis():
+    code = "import make_case, sys; print(*(m for m in sys.modules if m.startswith('blockshake.diagnosis')))"
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], cwd=HERE, capture_output=True, text=True, check=True
+    )
+    assert loaded.stdout.strip() == ""
+    for name in MAKER:
+        assert not any(
+            module.startswith(("blockshake.diagnosis", "case_files", "score"))
+            for module in _imported(HERE / f"{name}.py")
+        )
+
+
+def test_sizes_are_as_planned_and_within_the_priors():
+    structure, plan = load_structure(STRUCTURE), load_plan()
+    for case in plan.cases:
+        effect = true_effect(case.truth, case.size, structure, case.seed)
+        if effect is None:
+            continue
+        low, high = SIZES[case.size]
+        assert low <= abs(effect["size"]) <= high
+        assert effect["place"] in EFFECTS[case.truth].places(structure)
+        for item in EFFECTS[case.truth].parameters:
+            assert item.lower <= effect["values"][item.name] <= item.upper
+
+
+def test_the_discretisation_is_outside_what_the_nominal_model_draws():
+    drawn = {model: [draw_nominal(STRUCTURE, model, number) for number in range(60)] for model in MODELS}
+    used = set()
+    for seed in range(60):
+        model, time_step, numerics = true_numerics(seed)
+        used.add(model)
+        assert time_step not in {draw.time_step for draw in drawn[model]}
+        for name, value in numerics.items():
+            usual = [draw.parameters[name] for draw in drawn[model]]
+            assert not min(usual) <= value <= max(usual)
+    assert used == set(MODELS)
+
+
+def test_a_fifth_of_the_cases_scatters_half_as_much_again():
+    structure = load_structure(STRUCTURE)
+    drawn = [true_parameters(structure, seed) for seed in range(2000)]
+    wider = np.array([wide for _, wide in drawn])
+    assert abs(wider.mean() - 0.2) < 4.0 * np.sqrt(0.2 * 0.8 / 2000)
+    friction = np.log([values["friction.concrete.concrete"] for values, _ in drawn])
+    # of a log-normal with 10 and 15 %, sqrt(ln(1 + cov^2)); error of a standard deviation 1 / sqrt(2 n)
+    for chosen, cov in ((~wider, 0.10), (wider, 0.15)):
+        expected = np.sqrt(np.log1p(cov**2))
+        assert abs(friction[chosen].std() / expected - 1.0) < 4.0 / np.sqrt(2.0 * chosen.sum())
+
+
+@pytest.mark.parametrize("frequency", [0.5, 2.0, 8.0])
+def test_the_table_follows_by_its_transfer_function(frequency):
+    time = np.arange(0.0, 20.0, 1.0 / 1000.0)
+    turn = 2.0 * np.pi * frequency * time
+    table = {"gain": 0.99, "high": 0.015, "corner": 2.5}
+    made = follow(ground_motion("sine", time, {"x": np.sin(turn)}, "displacement"), table).evaluate(time)[
+        :, 0
+    ]
+    late = time >= 10.0
+    found = 2.0 * (made[late] * np.exp(-1j * turn[late])).mean() * 1j
+    expected = 0.99 + 0.015 * 1j * frequency / (2.5 + 1j * frequency)
+    assert abs(found - expected) < 2e-5
+
+
+def test_the_table_follows_within_four_per_cent():
+    for seed in range(100):
+        table = true_table(seed)
+        assert abs(table["gain"] - 1.0) + abs(table["high"]) < 0.036
+
+
+def test_noise_is_coloured_with_gaps_and_outliers():
+    n_times, n_markers = 40000, 4
+    exact = xr.Dataset(
+        {
+            "marker_displacement": (("time", "marker", "axis"), np.zeros((n_times, n_markers, 3))),
+            "marker_initial_position": (("marker", "axis"), np.zeros((n_markers, 3))),
+            "accelerometer": (("time_acc", "channel"), np.zeros((n_times, 2))),
+        }
+    )
+    noise = true_noise(7)
+    read = add_noise(exact, noise, 7, 0)
+    markers = read["marker_displacement"].to_numpy() + read["marker_initial_position"].to_numpy()
+    lost = np.isnan(markers[..., 0])
+    assert lost[0].sum() == 0
+    assert (
+        abs(lost.mean() - 0.0095) < 0.002
+    )  # bursts of 10: 1 % less what two of them share; the error of 160 bursts
+    far = (np.abs(markers) > 6.0 * MARKER_NOISE * noise["marker"]).any(axis=2)
+    assert 0.005 < far.mean() < 0.011
+    # median absolute deviation, to which outliers are little: 0.6745 sigma
+    usual = np.nanmedian(np.abs(markers)) / 0.6745
+    assert abs(usual / (MARKER_NOISE * noise["marker"]) - 1.0) < 0.03
+    fast = read["accelerometer"].to_numpy()
+    fast = fast - fast.mean(axis=0)
+    assert abs(fast.std() / (ACCELEROMETER_NOISE * noise["accelerometer"]) - 1.0) < 0.03
+    assert abs((fast[1:] * fast[:-1]).mean() / fast.var() - noise["memory"]) < 0.02
+
+
+def _effect(name):
+    structure = load_structure(STRUCTURE)
+    values = {
+        item.name: item.visible if place == 0 else 0.5 * (item.lower + item.upper)
+        for place, item in enumerate(EFFECTS[name].parameters)
+    }
+    if name == "vertical-motion":
+        values["delay"] = 0.0
+    return {"name": name, "values": values, "place": EFFECTS[name].places(structure)[-1]}
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_every_effect_has_another_form_than_the_registrys(name):
+    """Not the registry's experiment, or other readings of it; and one that can be built."""
+    effect = _effect(name)
+    silent = Instruments(marker_noise=0.0, accelerometer_noise=0.0)
+    plain = Experiment(str(STRUCTURE), {}, load_motion("alkion"), silent)
+    theirs = with_effect(plain, **effect)
+    ours = FORMS[name][1](plain, effect["values"], effect["place"])
+    time = np.arange(200) / 200.0
+    names = [marker.name for marker in load_structure(STRUCTURE).file.markers]
+    moved = 0.05 * np.sin(time)[:, None, None] * np.ones((200, len(names), 3))
+    same_motion = np.array_equal(ours.motion.table.coefficients, theirs.motion.table.coefficients)
+    same = (ours.parameters, ours.instruments, same_motion) == (theirs.parameters, theirs.instruments, True)
+    assert not same or not np.array_equal(distort(time, moved, names, effect), moved)
+    physical, _ = part_parameters(ours.parameters)
+    replace(ours, parameters=physical).load()
+
+
+def test_the_pitching_table_follows_slow_acceleration_by_its_coefficient():
+    """Far below the frequency the pitch is c a, and 3 % more at the largest acceleration."""
+    time = np.arange(0.0, 12.0, 0.005)
+    motion = ground_motion("slow", time, {"x": np.sin(2.0 * np.pi * 0.2 * time)}, "acceleration")
+    plain = Experiment(str(STRUCTURE), {}, motion, Instruments())
+    pitched = FORMS["table-pitch"][1](plain, {"coefficient": 1e-3, "frequency": 15.0}, {})
+    assert np.abs(pitched.motion.evaluate(time)[:, 3]).max() == pytest.approx(1.03e-3, rel=2e-3)

@@ -1,0 +1,247 @@
+"""The scorer: perfect verdicts score 100 %, shuffled truths chance; its page holds what its file says."""
+
+import json
+
+import numpy as np
+import pytest
+import score
+from case_files import LICENCE, PAGE, SMALL_SEEDS, load_plan, truth_of
+from licence_text import BEGIN, END, as_markdown, tables_of, with_tables
+from make_case import STRUCTURE
+from other_truth import true_effect
+from score import make_licence
+from score_figures import Scored, figures
+
+from blockshake.diagnosis.licence import load_licence, write_licence
+from blockshake.diagnosis.verdict import Verdict, write_verdict
+from blockshake.effects.registry import EFFECTS
+from blockshake.errors import InputError
+from blockshake.files import write_json
+from blockshake.geometry.structure import load_structure
+
+PLAN = load_plan()
+TWO_BLOCKS = load_structure(STRUCTURE)
+GAIN = {"estimate": 0.7, "lower": 0.5, "upper": 0.9}
+
+
+def _truth(case):
+    effect = true_effect(case.truth, case.size, TWO_BLOCKS, case.seed)
+    return {"truth": case.truth, "size_class": case.size, "effect": effect, "seed": case.seed}
+
+
+def _verdict(decision, causes=(), **keys):
+    return Verdict(
+        decision=decision,
+        causes=tuple(causes),
+        probabilities={},
+        misfit={"p": 0.5, "where": ""},
+        runs=1,
+        **keys,
+    )
+
+
+def _perfect(truth):
+    if truth["effect"] is None:
+        nothing = dict.fromkeys(GAIN, 0.0)
+        return _verdict("none", gain=dict.fromkeys(("recalibrated", "nominal", "discrepancy"), nothing))
+    name, values, place = truth["truth"], truth["effect"]["values"], truth["effect"]["place"]
+    parameters = {
+        item.name: {
+            "estimate": values[item.name], "lower": values[item.name], "upper": values[item.name], "unit": item.unit,
+        }
+        for item in EFFECTS[name].parameters
+    }  # fmt: skip
+    return _verdict(
+        "named", [name], parameters={name: parameters}, location={name: place} if place else {},
+        gain=dict.fromkeys(("recalibrated", "nominal", "discrepancy"), GAIN),
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def perfect():
+    truths = {case.name: _truth(case) for case in PLAN.cases}
+    scored = [Scored(name, truth, _perfect(truth)) for name, truth in truths.items()]
+    return scored + [Scored(name, truths[name], _verdict("unknown"), removed=True) for name in PLAN.removed]
+
+
+def test_the_plan_is_what_the_docs_say():
+    wanted = {("none", None): 60} | {(name, size): 3 for name in EFFECTS for size in ("small", "large")}
+    counted = {}
+    for case in PLAN.cases:
+        counted[case.truth, case.size] = counted.get((case.truth, case.size), 0) + 1
+    assert counted == wanted
+    assert len({case.seed for case in PLAN.cases}) == len({case.name for case in PLAN.cases}) == 132
+    large = {case.name: case.truth for case in PLAN.cases if case.size == "large"}
+    assert [large[name] for name in PLAN.removed] == list(EFFECTS)
+
+
+def test_perfect_verdicts_score_full(perfect):
+    found = figures(perfect)
+    for name, share in found["shares"].items():
+        wrong = name in ("false_alarms", "confidently_wrong", "unknown_named")
+        assert share.hits == (0 if wrong else share.n), name
+        assert share.met in (True, None), name
+        assert share.n > 0 or name == "bound_holds"
+    assert found["medians"]["gain_named"].estimate == 0.7
+    assert found["medians"]["gain_clean"].estimate == 0.0
+    assert all(median.met in (True, None) for median in found["medians"].values())
+    assert sum(row.answers.right for row in found["confusion"]) == 72
+
+
+def test_shuffled_truths_score_chance(perfect):
+    """Twelve effects, six cases each: a name given to a truth drawn from all is right in one of twelve."""
+    known = [case for case in perfect if case.truth["effect"] is not None and not case.removed]
+    generator = np.random.default_rng(1)
+    shares = []
+    for _ in range(40):
+        order = generator.permutation(len(known))
+        shuffled = [
+            Scored(case.name, known[at].truth, case.verdict) for case, at in zip(known, order, strict=True)
+        ]
+        found = figures(shuffled)["shares"]
+        shares.append(found["truth_in_set"].hits / 72)
+        assert found["confidently_wrong"].hits == 72 - found["truth_in_set"].hits
+    # one share has a standard deviation of nearly sqrt(p (1 - p) / 72)
+    assert abs(np.mean(shares) - 1.0 / 12.0) < 4.0 * np.sqrt(11.0 / 144.0 / 72.0 / 40.0)
+
+
+def test_always_none_is_never_wrong_and_finds_nothing(perfect):
+    silent = [Scored(case.name, case.truth, _verdict("none"), case.removed) for case in perfect]
+    found = figures(silent)["shares"]
+    assert found["false_alarms"].hits == found["confidently_wrong"].hits == 0
+    # 0 of 60: 1 - 0.025^(1/60)
+    assert found["false_alarms"].upper == pytest.approx(1.0 - 0.025 ** (1.0 / 60.0))
+    assert found["truth_in_set"].met is False
+    assert found["unknown_recall"].met is False
+
+
+def _case(verdict, truth="eccentricity", place=None, size="large", removed=False):
+    place = place or {"body": "block-1"}
+    effect = {"name": truth, "values": {"offset": -0.08}, "place": place}
+    told = {"truth": truth, "size_class": size, "effect": effect, "seed": 1}
+    return Scored("case", told, verdict, removed)
+
+
+def test_every_answer_has_its_column():
+    answers = {
+        "right": _case(_verdict("named", ["eccentricity"])),
+        "wrong": _case(_verdict("named", ["weak-joint"])),
+        "set_with": _case(_verdict("ambiguous", ["weak-joint", "eccentricity"])),
+        "set_without": _case(_verdict("ambiguous", ["weak-joint", "table-pitch"])),
+        "unknown": _case(_verdict("unknown")),
+        "none": _case(_verdict("none")),
+        "combination": _case(_verdict("combination", ["weak-joint", "eccentricity"])),
+    }
+    assert {name: case.answer for name, case in answers.items()} == {name: name for name in answers}
+    # its own name is no right answer where the candidates lacked it, for then it cannot have been given
+    assert _case(_verdict("named", ["eccentricity"]), removed=True).answer == "wrong"
+
+
+def test_sets_within_the_truths_own_group_are_left_out_of_exact_names():
+    group = _case(_verdict("ambiguous", ["eccentricity", "stopper-contact"]))
+    wider = _case(_verdict("ambiguous", ["eccentricity", "weak-joint"]))
+    found = figures([group, wider])["shares"]
+    assert (found["exact_large"].n, found["exact_large_all"].n) == (1, 2)
+
+
+@pytest.mark.parametrize(
+    ("said", "right"),
+    [({"body": "block-1"}, 1), ({"body": "block-2"}, 0), ({}, 0), ({"body": "block-1", "axis": "-x"}, 0)],
+)
+def test_a_place_is_right_where_all_that_is_said_is(said, right):
+    verdict = _verdict("named", ["eccentricity"], location={"eccentricity": said})
+    place = {"body": "block-1", "axis": "+x"}
+    assert figures([_case(verdict, place=place)])["shares"]["location"].hits == right
+
+
+@pytest.mark.parametrize(("limit", "hits"), [(0.09, 1), (-0.09, 1), (0.07, 0)])
+def test_a_bound_holds_where_the_truth_is_smaller(limit, hits):
+    found = figures([_case(_verdict("none", excluded_above={"eccentricity": limit}))])["shares"]
+    assert (found["bound_holds"].hits, found["bound_holds"].n) == (hits, 1)
+
+
+def test_intervals_of_medians_are_order_statistics(perfect):
+    """Of 6 values the least and largest hold the median in 1 - 2 / 64 = 0.969; of 5 nothing does in 0.95."""
+    cases = [case for case in perfect if case.answer == "right"]
+    gained = []
+    for number, case in enumerate(cases[:6]):
+        gain = dict.fromkeys(("recalibrated", "nominal", "discrepancy"), dict.fromkeys(GAIN, number / 10))
+        gained.append(
+            Scored(case.name, case.truth, Verdict(**{**case.verdict.model_dump(), "gain": gain}), False)
+        )
+    six = figures(gained)["medians"]["gain_named"]
+    assert (six.lower, six.estimate, six.upper) == (0.0, 0.25, 0.5)
+    assert figures(gained[:5])["medians"]["gain_named"].lower is None
+
+
+def test_the_licence_comes_back_from_its_file(perfect, tmp_path):
+    licence = make_licence(perfect, "standard", PLAN.digest)
+    write_licence(tmp_path / "licence.json", licence)
+    assert load_licence(tmp_path / "licence.json") == licence
+    page = with_tables(f"before\n{BEGIN}\nold\n{END}\nafter\n", licence)
+    assert tables_of(page) == as_markdown(licence)
+    assert page.startswith("before")
+    assert page.endswith("after\n")
+    assert with_tables(page, licence) == page
+
+
+def test_scoring_goes_from_the_files_of_a_run_to_licence_and_page(tmp_path, monkeypatch, capsys):
+    plan = load_plan(SMALL_SEEDS)
+    verdicts = tmp_path / "verdicts"
+    monkeypatch.setattr(score, "load_plan", lambda: plan)
+    monkeypatch.setattr(
+        score, "verdict_of", lambda results, name, without: verdicts / f"{name}-{without}" / "verdict.json"
+    )
+    for case in plan.cases:
+        write_json(truth_of(tmp_path, case.name) / "truth.json", _truth(case))
+        write_verdict(verdicts / f"{case.name}-None" / "verdict.json", _perfect(_truth(case)))
+    write_verdict(verdicts / "small-4-eccentricity" / "verdict.json", _verdict("unknown"))
+    page = tmp_path / "page.md"
+    page.write_text(f"{BEGIN}\n{END}\n")
+    told = ["--results", str(tmp_path), "--licence", str(tmp_path / "licence.json"), "--page", str(page)]
+    score.main(told)
+    licence = load_licence(tmp_path / "licence.json")
+    assert [case.answer for case in licence.cases] == ["none", "right", "right", "right", "unknown"]
+    assert tables_of(page.read_text()) == as_markdown(licence) == capsys.readouterr().out.strip()
+    (verdicts / "small-2-None" / "verdict.json").unlink()
+    with pytest.raises(InputError):
+        score.main(told)
+
+
+@pytest.mark.parametrize(
+    ("change", "key"),
+    [
+        (lambda told: told["shares"]["false_alarms"].update(hits=99), "hits"),
+        (lambda told: told["cases"].pop(), "cases"),
+        (lambda told: told.update(extra=1), "extra"),
+        (lambda told: told.update(version=2), "version"),
+    ],
+)
+def test_a_licence_that_contradicts_itself_is_refused(perfect, tmp_path, change, key):
+    told = make_licence(perfect, "standard", PLAN.digest).model_dump(mode="json")
+    change(told)
+    (tmp_path / "licence.json").write_text(json.dumps(told))
+    with pytest.raises(InputError) as error:
+        load_licence(tmp_path / "licence.json")
+    assert key in str(error.value)
+
+
+def test_a_missing_licence_is_one_line(tmp_path):
+    with pytest.raises(InputError):
+        load_licence(tmp_path / "none.json")
+
+
+def test_the_page_shows_what_the_file_says():
+    page = PAGE.read_text(encoding="utf-8")
+    if LICENCE.is_file():
+        assert tables_of(page) == as_markdown(load_licence(LICENCE))
+        assert load_licence(LICENCE).seeds == PLAN.digest
+    else:
+        assert tables_of(page) == "Not run yet: no figures."
+
+
+def test_removed_and_known_cases_do_not_mix():
+    found = figures([_case(_verdict("unknown"), removed=True), _case(_verdict("named", ["eccentricity"]))])
+    assert found["shares"]["truth_in_set"].n == 1
+    assert found["shares"]["unknown_recall"].n == 1
+    assert [row.removed for row in found["confusion"]] == [False, True]

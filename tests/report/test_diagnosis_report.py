@@ -1,0 +1,297 @@
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from fake_diagnosis import (
+    CAUSES,
+    OPEN,
+    SEALED,
+    FakeDiagnosis,
+    gain_finding,
+    licence,
+    write_horizon,
+    write_made_up_licence,
+)
+from test_report import CLAIMS, Page
+
+from blockshake.diagnosis.verdict import load_verdict
+from blockshake.errors import InputError
+from blockshake.report.diagnosis_content import load_diagnosed
+from blockshake.report.diagnosis_report import compose_diagnosis, make_diagnosis_report
+from blockshake.report.diagnosis_verdict import (
+    ESTABLISHED,
+    NOTHING,
+    ONE_OF,
+    PROBABLE,
+    UNKNOWN,
+    rung,
+    statement,
+)
+from blockshake.report.html import write_html
+
+WORDS = {
+    "none": NOTHING,
+    "named": ESTABLISHED,
+    "ambiguous": ONE_OF,
+    "combination": PROBABLE,
+    "unknown": UNKNOWN,
+}
+SECTIONS = [
+    "Verdict", "Where the nominal model is wrong", "Candidates", "What decided", "The extension",
+    "Gain on sealed tests", "Licence of the procedure", "What was not tested, assumptions, origin",
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def fakes(tmp_path_factory):
+    """Results of each decision; the named one with a licence and horizons."""
+    made = {kind: FakeDiagnosis(tmp_path_factory.mktemp(kind), kind) for kind in CAUSES}
+    write_made_up_licence(made["named"].licence)
+    write_horizon(made["named"].results / "predictability.nc")
+    return made
+
+
+@pytest.fixture(scope="module")
+def found(fakes):
+    """What the report shows, by decision; sealed tests' files hold no test, so that opening one would fail."""
+    return {kind: load_diagnosed(*fake.arguments()) for kind, fake in fakes.items()}
+
+
+@pytest.fixture(scope="module")
+def documents(found):
+    return {kind: compose_diagnosis(one) for kind, one in found.items()}
+
+
+@pytest.fixture(scope="module")
+def pages(documents, tmp_path_factory):
+    """Text of each page, with its parser."""
+    folder, made = tmp_path_factory.mktemp("pages"), {}
+    for kind, document in documents.items():
+        write_html(folder / f"{kind}.html", document)
+        page = Page()
+        page.feed((folder / f"{kind}.html").read_text(encoding="utf-8"))
+        page.close()
+        made[kind] = page, " ".join(" ".join(page.words).split())
+    return made
+
+
+@pytest.mark.parametrize("kind", CAUSES)
+def test_every_decision_has_a_whole_page(pages, documents, kind):
+    page, text = pages[kind]
+    assert page.open == []
+    assert len(set(page.ids)) == len(page.ids)
+    assert set(page.references) <= {f"#{one}" for one in page.ids}
+    assert [section.title for section in documents[kind].sections] == SECTIONS
+    assert all(text.count(title) >= 2 for title in SECTIONS)  # in the contents and over the section
+    blocks = [block for section in documents[kind].sections for block in section.blocks]
+    for table in (block for block in blocks if block.kind == "table"):
+        assert {len(table.header), len(table.align)} == {len(row) for row in table.rows}, table.caption
+    for what in ("figure", "table"):
+        counted = [block.number for block in blocks if block.kind == what]
+        assert counted == list(range(1, len(counted) + 1))
+
+
+@pytest.mark.parametrize("kind", CAUSES)
+def test_wording_is_that_of_the_ladder_and_claims_no_more(pages, found, kind):
+    assert rung(found[kind])[0] == WORDS[kind]
+    text = pages[kind][1]
+    assert statement(found[kind]) in text
+    assert statement(found[kind]).startswith(WORDS[kind])
+    assert not [claim for claim in CLAIMS if claim in text.lower()]
+    for word in set(WORDS.values()) - {WORDS[kind], ONE_OF}:
+        assert f"{word}:" not in text
+
+
+@pytest.mark.parametrize("kind", CAUSES)
+def test_synthetic_is_said_where_it_shows(pages, kind):
+    text = pages[kind][1]
+    assert "The tests are SYNTHETIC" in text
+    assert "virtual test (synthetic)" in text
+
+
+def test_the_box_has_the_numbers_of_the_verdict(fakes, pages):
+    verdict, text = load_verdict(fakes["named"].results / "verdict.json"), pages["named"][1]
+    coefficient = verdict.parameters["table-pitch"]["coefficient"]
+    shown = [f"{1e3 * value:.3f}" for value in (coefficient.estimate, coefficient.lower, coefficient.upper)]
+    assert f"coefficient {shown[0]} ({shown[1]} to {shown[2]}) mrad per m/s²" in text
+    assert f"p = {verdict.misfit.p:.3f}" in text
+    own = verdict.gain.recalibrated
+    assert f"{100 * own.estimate:.0f} % ({100 * own.lower:.0f} to {100 * own.upper:.0f} %)" in text
+
+
+def test_what_was_drawn_from_the_prior_is_not_called_an_estimate_of_the_tests(documents):
+    section = next(one for one in documents["named"].sections if one.key == "extension")
+    rows = {row[0]: row for block in section.blocks if block.kind == "table" for row in block.rows}
+    assert rows["coefficient"][3] == "the tests"
+    assert rows["frequency"][3] == "the prior alone"
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"effort": "quick"}, "quick"),
+        ({"solver_dependent": ["ls-dem"]}, "LS-DEM alone"),
+        ({"constancy": 0.001}, "not the same in all tests"),
+        ({"lower": -0.1}, "nothing or a loss"),
+        ({"confirmed": False}, "not each solver"),
+        ({"to_gain": False}, "nothing to gain"),
+        ({"gain": None}, "no gain"),
+        ({"tests": 2}, "2 tests only"),
+    ],
+)
+def test_established_asks_for_all_of_the_ladder(found, change, reason):
+    named = found["named"]
+    assert rung(named) == (ESTABLISHED, [])
+    changed = named
+    if "effort" in change:
+        changed = replace(named, effort="quick")
+    if "solver_dependent" in change:
+        changed = replace(named, decision=named.decision | change)
+    if "constancy" in change:
+        changed = replace(named, decision=named.decision | {"constancy": {"table-pitch": 0.001}})
+    if "lower" in change:
+        contrast = named.verdict.gain.recalibrated.model_copy(update=change)
+        gain = named.verdict.gain.model_copy(update={"recalibrated": contrast})
+        changed = replace(named, verdict=named.verdict.model_copy(update={"gain": gain}))
+    if "confirmed" in change:
+        changed = replace(named, gain=named.gain.assign(confirmed=False))
+    if "to_gain" in change:
+        changed = replace(named, gain=named.gain.assign(gain=named.gain["gain"] * np.nan))
+    if "gain" in change:
+        changed = replace(named, verdict=named.verdict.model_copy(update=change))
+    if "tests" in change:
+        changed = replace(named, readings=named.readings.isel(test=slice(2)))
+    word, missing = rung(changed)
+    assert word == PROBABLE
+    assert len(missing) == 1
+    assert reason in missing[0]
+
+
+def test_a_sensor_fault_alone_is_probable_and_named_without_simulation(tmp_path):
+    fake = FakeDiagnosis(tmp_path, "none", findings=[gain_finding()])
+    one = load_diagnosed(*fake.arguments())
+    assert one.verdict.decision == "named"
+    assert statement(one).startswith(
+        "Probable: sensor fault: gain of a marker (marker block-2-face), error 0.0300"
+    )
+    shown = [block for section in compose_diagnosis(one).sections for block in section.blocks]
+    items = " ".join(item for block in shown if block.kind == "items" for item in block.items)
+    assert "without any simulation" in items
+    assert "Excluded (nine in ten would have been seen)" in items
+    assert any(block.kind == "table" and block.caption.startswith("Faults of sensors") for block in shown)
+
+
+def test_a_set_beside_a_sensor_fault_stays_a_set(tmp_path):
+    fake = FakeDiagnosis(tmp_path, "ambiguous", extended=False, findings=[gain_finding()])
+    one = load_diagnosed(*fake.arguments())
+    assert one.verdict.decision == "combination"
+    assert rung(one) == (ONE_OF, [])
+    words = statement(one)
+    assert (
+        words.index("joint of low friction")
+        < words.index("friction that falls")
+        < words.index("sensor fault")
+    )
+    assert "do not tell them apart" in words
+
+
+def test_none_says_which_sizes_are_excluded(pages):
+    text = pages["none"][1]
+    assert "pitch of the table beyond ±0.270 mrad per m/s²" in text
+    assert "joint of low friction below 0.662" in text
+    assert "soft joint beyond" not in text  # no size of it would have been seen
+    assert "8 of 9" in text
+
+
+def test_reasons_of_effects_that_are_struck_out_stand_in_words(pages):
+    assert "another effect explains more; its best fit leaves too much" in pages["named"][1]
+    assert "explains the tests together with the other" in pages["combination"][1]
+
+
+def test_gain_table_has_the_scores_of_the_file(found, documents):
+    gain = found["named"].gain
+    section = next(one for one in documents["named"].sections if one.key == "gain")
+    scores = next(block for block in section.blocks if block.kind == "table")
+    extended = dict(zip(scores.header, next(row for row in scores.rows if row[0] == "extended"), strict=True))
+    assert float(extended["Both"]) == pytest.approx(float(gain["score"].sel(kind="extended")), rel=5e-3)
+    for test in SEALED:
+        own = float(gain["score_of_test"].sel(kind="extended", test=test))
+        assert float(extended[test]) == pytest.approx(own, rel=5e-3)
+
+
+def test_drift_before_and_after_is_that_of_the_strongest_sealed_test(found, pages):
+    own = found["named"].consequences.sel(test=SEALED[-1])
+    assert float(own["measured"]) == float(found["named"].consequences["measured"].max())
+    before, after = (1e3 * float(own["drift"].sel(kind=kind)) for kind in ("recalibrated", "extended"))
+    assert (
+        f"On {SEALED[-1]}, which was sealed, the 95 % drift of the top block goes from {before:.0f} mm"
+        in pages["named"][1]
+    )
+    assert f"to {after:.0f} mm" in pages["named"][1]
+
+
+def test_without_a_cause_or_a_sealed_test_no_gain_is_shown(pages, tmp_path):
+    assert "No gain was measured" in pages["none"][1]
+    one = load_diagnosed(*FakeDiagnosis(tmp_path, "named", extended=False).arguments())
+    assert rung(one) == (PROBABLE, ["no gain was measured on a sealed test"])
+    section = next(section for section in compose_diagnosis(one).sections if section.key == "gain")
+    assert "no sealed test" in section.blocks[0].text
+
+
+def test_an_extension_that_loses_is_not_called_established(tmp_path):
+    one = load_diagnosed(*FakeDiagnosis(tmp_path, "named", gaining=False).arguments())
+    word, missing = rung(one)
+    assert word == PROBABLE
+    assert any("nothing or a loss" in reason for reason in missing)
+
+
+def test_licence_prints_its_figures_and_what_it_missed(pages):
+    text = pages["named"][1]
+    assert "Goals missed: truth named or in the set." in text
+    assert "1 of 60" in text
+    for one in licence().shares.values():
+        assert f"{one.meaning} {100 * one.hits / one.n:.1f} %" in text
+    assert "no licence yet" not in text
+    assert "This procedure has no licence yet" in pages["none"][1]
+
+
+def test_horizon_is_given_where_it_was_measured(pages):
+    assert "Shaded: from 2 s on" in pages["named"][1]  # the shorter of both solvers
+    assert "How long the test can be predicted was not measured" not in pages["named"][1]
+    assert "How long the test can be predicted was not measured" in pages["none"][1]
+
+
+def test_tests_sensors_and_files_are_accounted_for(pages, found):
+    text = pages["named"][1]
+    for name in OPEN:
+        assert f"{name} alkion 1 fit judged by" in text
+    for name in SEALED:
+        assert f"{name} alkion 1 sealed sealed: read for the gain alone" in text
+    assert "214 hypotheses on" in text
+    assert "Not checked against others" in text
+    assert found["named"].frozen["decision"] in text
+    assert f"decision.json {found['named'].frozen['decision']}" in text
+    assert not [path for path in found["named"].digests if any(name in path for name in SEALED)]
+
+
+def test_html_and_pdf_are_the_same_bytes_again(fakes, tmp_path):
+    fake = fakes["unknown"]
+    made = []
+    for name in "ab":
+        paths = tmp_path / f"{name}.html", tmp_path / f"{name}.pdf"
+        make_diagnosis_report(*fake.arguments(), *paths)
+        made.append([path.read_bytes() for path in paths])
+    assert made[0] == made[1]
+    pdf = made[0][1]
+    assert pdf.startswith(b"%PDF")
+    assert len(re.findall(rb"/Type\s*/Page\b", pdf)) >= 5
+    assert b"/Subtype/Image" not in pdf.replace(b" ", b"")
+
+
+def test_missing_results_are_named_and_nothing_is_written(fakes, tmp_path):
+    fake = FakeDiagnosis(tmp_path / "fake", "none")
+    (fake.results / "misfit.nc").unlink()
+    with pytest.raises(InputError, match=r"misfit\.nc"):
+        make_diagnosis_report(*fake.arguments(), tmp_path / "a.html", tmp_path / "a.pdf")
+    assert not (tmp_path / "a.html").exists()
