@@ -33,7 +33,9 @@ WATCHED = {
 # What names things or writes logs and computes nothing; and the dispatcher that imports every solver, where a run's
 # own rule watches the one that runs.
 IGNORED = {
-    "diagnosis/plan.py",  # what it decides is in the names of the files that are made
+    # what these decide is in the names of the files that are made
+    "diagnosis/plan.py",
+    "diagnosis/repeated_readings.py",
     "__init__.py",
     "log.py",
     "sources.py",

@@ -66,7 +66,9 @@ def diagnose(campaign, output, effort="standard", cores=None):
     if subprocess.run(command, check=False).returncode:
         raise RuntimeError("the workflow stopped: its messages are above")
     name = result_name(folder)
-    found = [_CHECKOUT / "results" / "diagnosis" / name / file for file in _KEPT]
+    results = _CHECKOUT / "results" / "diagnosis" / name
+    kept = _KEPT if load_verdict(results / "verdict.json").gain is None else (*_KEPT, *_OF_GAIN)
+    found = [results / file for file in kept]
     found += [_CHECKOUT / "reports" / f"diagnosis-{name}.{kind}" for kind in ("html", "pdf")]
     Path(output).mkdir(parents=True, exist_ok=True)
     for path in found:

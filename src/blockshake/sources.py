@@ -130,6 +130,7 @@ _READ_OFF = (
     *(
         f"diagnosis/{name}.py"
         for name in (
+            "body_frame",
             "body_poses",
             "candidates",
             "coloured_regression",
@@ -140,6 +141,7 @@ _READ_OFF = (
             "joint_histories",
             "library",
             "null_model",
+            "outliers",
             "phases",
             "planned_test",
             "reading",
@@ -158,6 +160,7 @@ CALIBRATION = (
         for name in (
             "calibration",
             "candidate_scores",
+            "constancy",
             "feature_scales",
             "library_scores",
             "model_evidence",

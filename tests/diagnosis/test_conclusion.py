@@ -11,7 +11,13 @@ WHERE = "rotation of slab-block-1, before the first onset, to both sides"
 def _decision(kind="none", causes=()):
     parameters = {
         "table-pitch": {
-            "coefficient": {"estimate": 4e-4, "lower": 3e-4, "upper": 5e-4, "unit": "rad s2/m", "informed": True},
+            "coefficient": {
+                "estimate": 4e-4,
+                "lower": 3e-4,
+                "upper": 5e-4,
+                "unit": "rad s2/m",
+                "informed": True,
+            },
             "frequency": {"estimate": 17.5, "lower": 6.25, "upper": 28.75, "unit": "Hz", "informed": False},
         }
     }

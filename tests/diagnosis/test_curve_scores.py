@@ -33,4 +33,6 @@ def test_curves_of_joints_have_names():
     assert sorted(curves) == sorted(
         f"t1.joint{j}.{name}" for j in (1, 2, 3) for name in ("slip", "rotation", "opening")
     )
-    assert curves["t1.joint2.rotation"].max() == pytest.approx(0.01, abs=3e-4)  # three standard deviations of its noise
+    assert curves["t1.joint2.rotation"].max() == pytest.approx(
+        0.01, abs=3e-4
+    )  # three standard deviations of its noise

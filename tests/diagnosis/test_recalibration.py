@@ -23,6 +23,8 @@ def draws_of(scores):
                 "ls_dem.normal_stiffness": 1e9,
             },
             amplitude=float(np.exp(0.01 * d)),
+            fast=0.0,
+            noise={},
             places=np.full((3, 3), 1e-4 * number),
             seed=number,
         )

@@ -26,6 +26,7 @@ class PlannedCase(Strict):
     seed: Seed
     truth: str
     size: Literal["small", "large"] | None = None
+    sealed: bool = Field(False, description="whether it has sealed tests, on which a gain is measured")
 
     @model_validator(mode="after")
     def _known(self):

@@ -63,8 +63,9 @@ def make_cases(plan, results, cores, log):
     def make(case):
         begin = time.monotonic()
         size = [] if case.size is None else ["--size", case.size]
+        sealed = [] if case.sealed else ["--no-sealed"]
         command = [
-            sys.executable, str(HERE / "make_case.py"), "--seed", str(case.seed), "--case", case.truth, *size,
+            sys.executable, str(HERE / "make_case.py"), "--seed", str(case.seed), "--case", case.truth, *size, *sealed,
             "--output", str(campaign_of(results, case.name)), "--truth", str(truth_of(results, case.name)),
         ]  # fmt: skip
         subprocess.run(command, env=ENVIRONMENT, check=True)

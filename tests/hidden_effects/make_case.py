@@ -62,7 +62,7 @@ def made_by():
     )
 
 
-def make_case(seed, name, size, folder, truth_folder):
+def make_case(seed, name, size, folder, truth_folder, sealed=True):
     """Write the campaign, then its truth, then the README that commits to the truth.
 
     Parameters
@@ -74,7 +74,10 @@ def make_case(seed, name, size, folder, truth_folder):
     size : str
         ``small`` or ``large``; of no meaning without an effect.
     folder, truth_folder : Path
+    sealed : bool
+        Whether there are sealed tests too, on which a gain can be measured.
     """
+    plan = [test for test in PLAN if sealed or test[2] != "sealed"]
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "README").unlink(missing_ok=True)
     structure = load_structure(STRUCTURE)
@@ -84,7 +87,7 @@ def make_case(seed, name, size, folder, truth_folder):
     model, time_step, numerics = true_numerics(seed)
     table, noise = true_table(seed), true_noise(seed)
     happened = {}
-    for number, (motion, scale, _) in enumerate(PLAN):
+    for number, (motion, scale, _) in enumerate(plan):
         experiment = Experiment(
             str(STRUCTURE), parameters | numerics, follow(load_motion(motion, scale), table),
             Instruments(marker_noise=0.0, accelerometer_noise=0.0),
@@ -107,7 +110,7 @@ def make_case(seed, name, size, folder, truth_folder):
         test = add_noise(test, noise, seed, number)
         test.attrs |= {"motion": motion, "motion_scale": scale}
         write_dataset(folder / f"{test_name(motion, scale)}.nc", test, DECIMALS)
-    write_text(folder / "campaign.yaml", _campaign_yaml())
+    write_text(folder / "campaign.yaml", _campaign_yaml(plan))
     truth = {
         "truth": name, "size_class": None if effect is None else size, "effect": effect,
         "form": None if effect is None else FORMS[name][0], "seed": seed, "model": model, "time_step": time_step,
@@ -153,7 +156,7 @@ def _happened(test, run):
     }
 
 
-def _campaign_yaml():
+def _campaign_yaml(plan):
     mapping = {
         "name": "two blocks on a virtual table",
         "structure": "structure.yaml",
@@ -163,7 +166,7 @@ def _campaign_yaml():
                 "name": test_name(motion, scale), "file": f"{test_name(motion, scale)}.nc", "motion": motion,
                 "scale": scale, "role": role,
             }
-            for motion, scale, role in PLAN
+            for motion, scale, role in plan
         ],
     }  # fmt: skip
     return yaml.safe_dump(mapping, sort_keys=False, default_flow_style=None, width=200)
@@ -177,8 +180,11 @@ def main(arguments):
     parser.add_argument("--size", choices=list(SIZES), default="large")
     parser.add_argument("--output", type=Path, required=True)
     parser.add_argument("--truth", type=Path, required=True)
+    parser.add_argument(
+        "--no-sealed", dest="sealed", action="store_false", help="no tests to measure a gain on"
+    )
     asked = parser.parse_args(arguments)
-    make_case(asked.seed, asked.case, asked.size, asked.output, asked.truth)
+    make_case(asked.seed, asked.case, asked.size, asked.output, asked.truth, asked.sealed)
 
 
 if __name__ == "__main__":

@@ -31,9 +31,9 @@ def _silent(step, **facts):
 def results():
     """Verdicts on all cases by one workflow, and on those whose effect is removed by another."""
     make_cases(PLAN, RESULTS, CORES, _silent)
-    diagnose(list(TRUTH), RESULTS, "quick", CORES, None, _silent)
+    diagnose(list(TRUTH), RESULTS, "standard", CORES, None, _silent)
     for name in PLAN.removed:
-        diagnose([name], RESULTS, "quick", CORES, TRUTH[name], _silent)
+        diagnose([name], RESULTS, "standard", CORES, TRUTH[name], _silent)
     return RESULTS
 
 
@@ -61,7 +61,7 @@ def test_an_effect_that_the_candidates_lack_gets_no_others_name(name, results):
 
 def test_what_is_finished_is_not_done_again(results):
     before = {name: verdict_of(results, name).stat().st_mtime_ns for name in TRUTH}
-    diagnose(list(TRUTH), results, "quick", CORES, None, _silent)
+    diagnose(list(TRUTH), results, "standard", CORES, None, _silent)
     assert {name: verdict_of(results, name).stat().st_mtime_ns for name in TRUTH} == before
 
 

@@ -4,41 +4,21 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from fake_findings import DRAWS, MODELS, OPEN, SEALED, evidence, made_up_decision, parity, sealed_tests
 
-from blockshake.diagnosis.candidates import candidates
 from blockshake.diagnosis.conclusion import conclude
 from blockshake.diagnosis.consequence import consequence
-from blockshake.diagnosis.finding import Finding
 from blockshake.diagnosis.frozen import freeze
 from blockshake.diagnosis.gain import gain_of_verdict, gain_on
-from blockshake.diagnosis.licence import Answers, Case, Licence, Median, Row, Share, write_licence
 from blockshake.diagnosis.misfit import misfit, where
 from blockshake.diagnosis.reading import HISTORIES
-from blockshake.diagnosis.sealed_test import SealedTest
 from blockshake.diagnosis.verdict import Verdict, write_verdict
-from blockshake.effects.registry import EFFECTS
 from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
 
 STRUCTURE = "configuration-1"
-OPEN = ("alkion-100", "alkion-250", "basso-200")
-SEALED = ("alkion-300", "basso-250")
-MODELS = ("ls-dem", "nscd-rigid")
-CAUSES = {
-    "none": [],
-    "named": ["table-pitch"],
-    "ambiguous": ["weak-joint", "rate-weakening-friction"],
-    "combination": ["table-pitch", "eccentricity"],
-    "unknown": [],
-}
 _TIME = np.arange(151) / 25.0
-_DRAWS = 10
 _PEAKS = ("top.displacement.peak+", "top.displacement.peak-")
-
-
-def gain_finding():
-    """A marker that reads 3 % too much."""
-    return Finding("sensor-gain", ("block-2-face",), "gain", np.array([0.03]), np.array([[1e-6]]), 2e-4, OPEN)
 
 
 class FakeDiagnosis:
@@ -143,11 +123,11 @@ class FakeDiagnosis:
 
     def members(self, strength, factor, model):
         """Readings of a solver's members, which scatter by 15 %."""
-        spread = 1.0 + 0.15 * np.random.default_rng(list(model.encode())).normal(size=_DRAWS)
+        spread = 1.0 + 0.15 * np.random.default_rng(list(model.encode())).normal(size=DRAWS)
         runs = [self.reading(strength * factor * one, seed=number) for number, one in enumerate(spread)]
         return xr.concat(
             [run.drop_vars(["phase", "acceleration"]) for run in runs], dim="draw", data_vars="all", coords="minimal"
-        ).assign_coords(draw=np.arange(_DRAWS))  # fmt: skip
+        ).assign_coords(draw=np.arange(DRAWS))  # fmt: skip
 
     def _consequences(self):
         parts = []
@@ -174,165 +154,3 @@ class FakeDiagnosis:
                 )
             )
         return xr.concat(parts, dim="test", join="outer").assign_coords(test=list(SEALED))
-
-
-def made_up_decision(kind, structure):
-    """A decision as `decision_as_json` writes it, with every physical effect among its candidates."""
-    keys = {}
-    for candidate in candidates(structure):
-        keys.setdefault(candidate.effect, []).append(candidate)
-    causes = CAUSES[kind]
-    order = [*causes, *(effect for effect in keys if effect not in causes)]
-    rows, sizes = [], np.linspace(-2.0, 2.0, 41)
-    for place, effect in enumerate(order):
-        for number, candidate in enumerate(keys[effect]):
-            ratio = (2.0 if kind == "none" else 60.0) - 7.0 * place - number
-            estimates = [0.8 + 0.1 * test for test in range(len(OPEN))]
-            rows.append({
-                "key": candidate.key, "effect": effect, "log_ratio": ratio,
-                "by_model": {MODELS[0]: ratio + 1.0, MODELS[1]: ratio - 2.0}, "size": 0.9, "sizes": sizes.tolist(),
-                "weights": np.exp(-0.5 * ((sizes - 0.9) / 0.2) ** 2).tolist(), "model": MODELS[0], "distance": 1.1,
-                "by_test": [{"estimate": one, "lower": one - 0.3, "upper": one + 0.4} for one in estimates],
-            })  # fmt: skip
-    rows.sort(key=lambda row: -row["log_ratio"])
-    by_key = {candidate.key: candidate for group in keys.values() for candidate in group}
-    best = {effect: group[0].key for effect, group in keys.items()}
-    others = [] if kind == "none" else [effect for effect in order if effect not in causes]
-    return {
-        "decision": kind,
-        "causes": causes,
-        "places": {effect: best[effect] for effect in order},
-        "sizes": dict.fromkeys(causes, 0.9),
-        "p_none": 0.43 if kind == "none" else 0.012,
-        "probabilities": {effect: 0.6 if effect in causes else 0.04 for effect in order},
-        "adequacy": dict.fromkeys(order, 0.31),
-        "constancy": dict.fromkeys(order, 0.41),
-        "placebo": 6.5,
-        "struck_out": {
-            effect: ["another effect explains more", "its best fit leaves too much"] for effect in others
-        },
-        "solver_dependent": [],
-        "shown_above": {effect: None if effect == "joint-compliance" else 0.45 for effect in order},
-        "nominal_distance": 2.3,
-        "parameters": {effect: _estimates(effect) for effect in causes[: 1 if kind == "combination" else 2]},
-        "location": {effect: by_key[best[effect]].place for effect in causes},
-        "candidates": rows,
-    }
-
-
-def _estimates(effect):
-    first, *others = EFFECTS[effect].parameters
-    step = first.visible - first.null
-    values = sorted(first.null + size * step for size in (0.7, 0.9, 1.1))
-    found = {
-        first.name: {
-            "lower": values[0],
-            "estimate": values[1],
-            "upper": values[2],
-            "unit": first.unit,
-            "informed": True,
-        }
-    }
-    for item in others:
-        found[item.name] = {
-            "lower": item.lower, "estimate": 0.5 * (item.lower + item.upper), "upper": item.upper, "unit": item.unit,
-            "informed": False,
-        }  # fmt: skip
-    return found
-
-
-def evidence(best, readings):
-    """Twelve features, the first explained best."""
-    names = [
-        f"joint{1 + place % 3}.rotation.{what}"
-        for place in range(4)
-        for what in ("onset+", "peak+", "residual")
-    ]
-    nominal = np.linspace(9.0, 1.0, len(names)) * np.where(np.arange(len(names)) % 2, 1.0, -1.0)
-    rows = {
-        "weight": nominal**2 - 0.04 * nominal**2,
-        "nominal": nominal,
-        "extended": 0.2 * nominal,
-        "value": 0.01 * nominal,
-    }
-    return xr.Dataset(
-        {name: ("row", values) for name, values in rows.items()},
-        {
-            "unit": ("row", ["rad"] * len(names)), "test": ("row", [OPEN[place % 3] for place in range(len(names))]),
-            "feature": ("row", names),
-        },
-        {"candidate": best["key"], "size": best["size"], "model": best["model"]},
-    )  # fmt: skip
-
-
-def sealed_tests(nearer):
-    """Sealed tests that the extended ensemble predicts better by a share of what the nominal one misses."""
-    names = [f"{family}.{what}" for family in ("joint1", "joint2", "base", "top") for what in "abc"]
-    tests = []
-    for place, name in enumerate(SEALED):
-        generator = np.random.default_rng(place)
-        truth = 6.0 * generator.normal(size=len(names))
-        centre = {"nominal": 0.0, "recalibrated": 0.1, "extended": nearer, "discrepancy": 0.3}
-        members = {
-            kind: {model: share * truth + generator.normal(size=(_DRAWS, len(names))) for model in MODELS}
-            for kind, share in centre.items()
-        }
-        tests.append(SealedTest(name, names, truth, members))
-    return tests
-
-
-def parity(structure, findings):
-    """Sensors' checks of one body's markers, the other's too few."""
-    markers = {marker.name: {"noise": 1e-4, "misfit": 1e-4} for marker in structure.file.markers}
-    markers[structure.file.markers[-1].name] = {"noise": None, "misfit": None}
-    return {
-        "findings": [finding.as_json() for finding in findings],
-        "markers": markers,
-        "clock": {name: {"lag": 3e-5, "lag_error": 1e-4} for name in OPEN},
-        "channels": {},
-        "looked_at": 214,
-    }
-
-
-def licence():
-    """A licence whose answers are many enough for an interval, with a goal missed."""
-    cases, seed = [], 0
-    rows = []
-    for truth, size, answers in (
-        ("none", None, {"none": 59, "wrong": 1}),
-        ("table-pitch", "large", {"right": 2, "set_with": 1}),
-        ("weak-joint", "small", {"none": 1, "set_with": 1, "unknown": 1}),
-    ):
-        rows.append(Row(truth=truth, size=size, answers=Answers(**answers)))
-        for answer, count in answers.items():
-            for _ in range(count):
-                seed += 1
-                cases.append(Case(name=f"case-{seed}", seed=seed, truth=truth, size=size, answer=answer))
-    return Licence(
-        date="2026-11-20", commit="0123456789ab", machine="two cores", effort="standard", seeds="fedcba987654",
-        shares={
-            "false-alarm": Share(
-                meaning="clean campaigns called an effect", hits=1, n=60, lower=0.0004, upper=0.0894, goal=0.05,
-                side="at most",
-            ),
-            "covered": Share(
-                meaning="truth named or in the set", hits=4, n=6, lower=0.2228, upper=0.9567, goal=0.88
-            ),
-        },
-        medians={"gain": Median(meaning="sealed gain when named right", n=2, estimate=0.7, goal=0.6)},
-        confusion=tuple(rows), cases=tuple(cases),
-    )  # fmt: skip
-
-
-def write_made_up_licence(path):
-    """Write `licence` to a file."""
-    write_licence(path, licence())
-
-
-def write_horizon(path):
-    """How long each open test can be predicted, by both solvers."""
-    horizon = [[3.0, 3.5], [2.0, 2.5], [5.0, 6.0]]
-    write_dataset(
-        path,
-        xr.Dataset({"horizon": (("test", "model"), horizon)}, {"test": list(OPEN), "model": list(MODELS)}),
-    )

@@ -1,7 +1,8 @@
 import matplotlib.colors
 import numpy as np
 import pytest
-from fake_diagnosis import OPEN, FakeDiagnosis
+from fake_diagnosis import FakeDiagnosis
+from fake_findings import OPEN
 
 from blockshake.diagnosis.verdict import Estimate
 from blockshake.report.diagnosis_atlas_figure import plot_atlas

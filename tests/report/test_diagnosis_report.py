@@ -1,18 +1,8 @@
 import re
-from dataclasses import replace
 
-import numpy as np
 import pytest
-from fake_diagnosis import (
-    CAUSES,
-    OPEN,
-    SEALED,
-    FakeDiagnosis,
-    gain_finding,
-    licence,
-    write_horizon,
-    write_made_up_licence,
-)
+from fake_diagnosis import FakeDiagnosis
+from fake_findings import CAUSES, OPEN, SEALED, licence, write_horizon, write_made_up_licence
 from test_report import CLAIMS, Page
 
 from blockshake.diagnosis.verdict import load_verdict
@@ -108,6 +98,7 @@ def test_synthetic_is_said_where_it_shows(pages, kind):
     text = pages[kind][1]
     assert "The tests are SYNTHETIC" in text
     assert "virtual test (synthetic)" in text
+    assert "alkion (SYNTHETIC): stochastic method" in text
 
 
 def test_the_box_has_the_numbers_of_the_verdict(fakes, pages):
@@ -125,75 +116,6 @@ def test_what_was_drawn_from_the_prior_is_not_called_an_estimate_of_the_tests(do
     rows = {row[0]: row for block in section.blocks if block.kind == "table" for row in block.rows}
     assert rows["coefficient"][3] == "the tests"
     assert rows["frequency"][3] == "the prior alone"
-
-
-@pytest.mark.parametrize(
-    ("change", "reason"),
-    [
-        ({"effort": "quick"}, "quick"),
-        ({"solver_dependent": ["ls-dem"]}, "LS-DEM alone"),
-        ({"constancy": 0.001}, "not the same in all tests"),
-        ({"lower": -0.1}, "nothing or a loss"),
-        ({"confirmed": False}, "not each solver"),
-        ({"to_gain": False}, "nothing to gain"),
-        ({"gain": None}, "no gain"),
-        ({"tests": 2}, "2 tests only"),
-    ],
-)
-def test_established_asks_for_all_of_the_ladder(found, change, reason):
-    named = found["named"]
-    assert rung(named) == (ESTABLISHED, [])
-    changed = named
-    if "effort" in change:
-        changed = replace(named, effort="quick")
-    if "solver_dependent" in change:
-        changed = replace(named, decision=named.decision | change)
-    if "constancy" in change:
-        changed = replace(named, decision=named.decision | {"constancy": {"table-pitch": 0.001}})
-    if "lower" in change:
-        contrast = named.verdict.gain.recalibrated.model_copy(update=change)
-        gain = named.verdict.gain.model_copy(update={"recalibrated": contrast})
-        changed = replace(named, verdict=named.verdict.model_copy(update={"gain": gain}))
-    if "confirmed" in change:
-        changed = replace(named, gain=named.gain.assign(confirmed=False))
-    if "to_gain" in change:
-        changed = replace(named, gain=named.gain.assign(gain=named.gain["gain"] * np.nan))
-    if "gain" in change:
-        changed = replace(named, verdict=named.verdict.model_copy(update=change))
-    if "tests" in change:
-        changed = replace(named, readings=named.readings.isel(test=slice(2)))
-    word, missing = rung(changed)
-    assert word == PROBABLE
-    assert len(missing) == 1
-    assert reason in missing[0]
-
-
-def test_a_sensor_fault_alone_is_probable_and_named_without_simulation(tmp_path):
-    fake = FakeDiagnosis(tmp_path, "none", findings=[gain_finding()])
-    one = load_diagnosed(*fake.arguments())
-    assert one.verdict.decision == "named"
-    assert statement(one).startswith(
-        "Probable: sensor fault: gain of a marker (marker block-2-face), error 0.0300"
-    )
-    shown = [block for section in compose_diagnosis(one).sections for block in section.blocks]
-    items = " ".join(item for block in shown if block.kind == "items" for item in block.items)
-    assert "without any simulation" in items
-    assert "Excluded (nine in ten would have been seen)" in items
-    assert any(block.kind == "table" and block.caption.startswith("Faults of sensors") for block in shown)
-
-
-def test_a_set_beside_a_sensor_fault_stays_a_set(tmp_path):
-    fake = FakeDiagnosis(tmp_path, "ambiguous", extended=False, findings=[gain_finding()])
-    one = load_diagnosed(*fake.arguments())
-    assert one.verdict.decision == "combination"
-    assert rung(one) == (ONE_OF, [])
-    words = statement(one)
-    assert (
-        words.index("joint of low friction")
-        < words.index("friction that falls")
-        < words.index("sensor fault")
-    )
-    assert "do not tell them apart" in words
 
 
 def test_none_says_which_sizes_are_excluded(pages):
@@ -231,19 +153,8 @@ def test_drift_before_and_after_is_that_of_the_strongest_sealed_test(found, page
     assert f"to {after:.0f} mm" in pages["named"][1]
 
 
-def test_without_a_cause_or_a_sealed_test_no_gain_is_shown(pages, tmp_path):
+def test_without_a_cause_no_gain_is_shown(pages):
     assert "No gain was measured" in pages["none"][1]
-    one = load_diagnosed(*FakeDiagnosis(tmp_path, "named", extended=False).arguments())
-    assert rung(one) == (PROBABLE, ["no gain was measured on a sealed test"])
-    section = next(section for section in compose_diagnosis(one).sections if section.key == "gain")
-    assert "no sealed test" in section.blocks[0].text
-
-
-def test_an_extension_that_loses_is_not_called_established(tmp_path):
-    one = load_diagnosed(*FakeDiagnosis(tmp_path, "named", gaining=False).arguments())
-    word, missing = rung(one)
-    assert word == PROBABLE
-    assert any("nothing or a loss" in reason for reason in missing)
 
 
 def test_licence_prints_its_figures_and_what_it_missed(pages):

@@ -22,7 +22,8 @@ def _inputs(text):
 def test_no_rule_but_the_gains_has_a_sealed_file_as_input():
     run = subprocess.run(
         [
-            sys.executable, "-m", "snakemake", "-n", "--forceall", "--workflow-profile", "none", "diagnose",
+            sys.executable, "-m", "snakemake", "-n", "--forceall", "--workflow-profile", "none",
+            "results/diagnosis/configuration-2/verdict.json", "results/diagnosis/configuration-2/gain.json",
             "--config", f"campaign={CAMPAIGN}", "--directory", str(ROOT), "--nolock", "--cores", "1",
         ],
         cwd=ROOT, capture_output=True, text=True, check=True,

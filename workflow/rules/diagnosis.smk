@@ -4,6 +4,7 @@ Libraries and calibrations are named by their content: equal structures, motions
 campaign they are of, so that a second campaign simulates nothing but its own extension.
 """
 
+import json
 import re
 from functools import cache
 
@@ -162,7 +163,7 @@ rule read_measured:
         "../scripts/read_measured.py"
 
 
-rule decide:
+checkpoint decide:
     """Which effects the open tests speak for; frozen with its hash before a sealed test is opened."""
     input:
         readings=rules.read_measured.output.readings,
@@ -194,8 +195,8 @@ rule decide:
 rule extend_model:
     """Ensembles by one solver: recalibrated on the open tests, and extended by the cause, for sealed tests too."""
     input:
-        frozen=rules.decide.output.frozen,
-        decision=rules.decide.output.decision,
+        frozen="results/diagnosis/{campaign}/frozen.json",
+        decision="results/diagnosis/{campaign}/decision.json",
         readings=rules.read_measured.output.readings,
         libraries=lambda wildcards: library_files(wildcards.campaign),
         kernels=lambda wildcards: kernels(wildcards.solver),
@@ -221,8 +222,8 @@ rule extend_model:
 rule measure_gain:
     """What the extension gains on the sealed tests, against three rivals: the one rule that reads them."""
     input:
-        frozen=rules.decide.output.frozen,
-        decision=rules.decide.output.decision,
+        frozen="results/diagnosis/{campaign}/frozen.json",
+        decision="results/diagnosis/{campaign}/decision.json",
         readings=rules.read_measured.output.readings,
         libraries=lambda wildcards: library_files(wildcards.campaign),
         extended=expand(
@@ -245,13 +246,25 @@ rule measure_gain:
         "../scripts/measure_gain.py"
 
 
+def gain_file(wildcards):
+    """The gain, where a cause was found, there are sealed tests and the effort has members to predict them with."""
+    from blockshake.diagnosis.plan import sealed_tests
+
+    decided = checkpoints.decide.get(**wildcards).output.decision
+    found = json.loads(Path(decided).read_text())["causes"]
+    asked = plan(wildcards.campaign)
+    if found and asked.effort.members and sealed_tests(asked.campaign):
+        return f"results/diagnosis/{wildcards.campaign}/gain.json"
+    return []
+
+
 rule conclude:
     """The verdict: sensors, decision and gain put together."""
     input:
         parity=rules.read_measured.output.parity,
-        decision=rules.decide.output.decision,
-        misfit=rules.decide.output.misfit,
-        gain=rules.measure_gain.output.summary,
+        decision="results/diagnosis/{campaign}/decision.json",
+        misfit="results/diagnosis/{campaign}/misfit.nc",
+        gain=gain_file,
     output:
         "results/diagnosis/{campaign}/verdict.json",
     log:

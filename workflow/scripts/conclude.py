@@ -6,20 +6,23 @@ import xarray as xr
 from blockshake.diagnosis.conclusion import conclude
 from blockshake.diagnosis.finding import Finding
 from blockshake.diagnosis.misfit import where
+from blockshake.diagnosis.plan import plan_diagnosis
 from blockshake.diagnosis.verdict import Gain, write_verdict
 from blockshake.log import logging_to
 
 with logging_to(snakemake.log[0]):
-    parity, decision, gain = (
-        json.loads(Path(snakemake.input[name]).read_text()) for name in ("parity", "decision", "gain")
+    parity, decision = (
+        json.loads(Path(snakemake.input[name]).read_text()) for name in ("parity", "decision")
     )
+    measured = json.loads(Path(snakemake.input.gain).read_text()) if snakemake.input.get("gain") else None
+    plan = plan_diagnosis(snakemake.params.folder, snakemake.params.effort)
     verdict = conclude(
         decision,
         [Finding.from_json(values) for values in parity["findings"]],
         where(xr.load_dataset(snakemake.input.misfit)),
-        gain["runs"],
-        gain["caveats"],
+        plan.runs + (measured["runs"] if measured else 0),
+        measured["caveats"] if measured else plan.caveats(decision["causes"]),
         snakemake.params.effort,
-        Gain(**gain["gain"]) if gain["gain"] else None,
+        Gain(**measured["gain"]) if measured else None,
     )
     write_verdict(snakemake.output[0], verdict)

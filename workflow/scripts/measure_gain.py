@@ -16,29 +16,24 @@ with logging_to(snakemake.log[0]):
     check_frozen(snakemake.input.frozen, snakemake.input.decision)
     campaign = load_campaign(snakemake.params.folder)
     names = sealed_tests(campaign)
+    sealed = {name: load_test(campaign, name) for name in names}
+    findings = check_parity(sealed, load_structure(campaign.structure), campaign.sensors).findings
     runs = {one.attrs["model"]: one for one in map(xr.load_dataset, snakemake.input.extended)}
-    extended = sum(one.sizes.get("run", 0) for one in runs.values())
-    tables = load_tables(snakemake.input.libraries)
-    summary = {"runs": extended + sum(one.sizes["run"] for table in tables for one in table.values())}
-    gain = xr.Dataset()
-    if names and extended:
-        findings = check_parity(
-            {name: load_test(campaign, name) for name in names},
-            load_structure(campaign.structure),
-            campaign.sensors,
-        ).findings
-        gain, consequences = campaign_gain(
-            campaign,
-            xr.load_dataset(snakemake.input.readings),
-            tables,
-            measured_readings(campaign, names, findings),
-            runs,
-        )
-        of_verdict, caveats = gain_of_verdict(gain)
-        summary |= {"gain": of_verdict.model_dump(), "caveats": caveats}
-        write_dataset(snakemake.output.consequences, consequences)
-    else:
-        summary |= {"gain": None, "caveats": [] if names else ["no sealed test: no gain was measured"]}
-        write_dataset(snakemake.output.consequences, gain)
+    gain, consequences = campaign_gain(
+        campaign,
+        xr.load_dataset(snakemake.input.readings),
+        load_tables(snakemake.input.libraries),
+        measured_readings(campaign, names, findings),
+        runs,
+    )
+    of_verdict, caveats = gain_of_verdict(gain)
+    write_dataset(snakemake.output.consequences, consequences)
     write_dataset(snakemake.output.gain, gain)
-    write_json(snakemake.output.summary, summary)
+    write_json(
+        snakemake.output.summary,
+        {
+            "gain": of_verdict.model_dump(),
+            "caveats": caveats,
+            "runs": sum(one.sizes["run"] for one in runs.values()),
+        },
+    )

@@ -23,6 +23,8 @@ class Case:
         Of it, in units of the visible one.
     strongest : float
         Largest log ratio of any candidate [1].
+    nominal : float
+        Squared distance per feature of the readings from the nominal model [1].
     shortfall : dict of str to float
         By effect: by how much its best place falls short of the strongest candidate [1].
     distance : dict of str to float
@@ -36,6 +38,7 @@ class Case:
     truth: str
     size: float
     strongest: float
+    nominal: float
     shortfall: dict
     distance: dict
     constancy: dict
@@ -66,6 +69,7 @@ def as_case(scores, key="", size=0.0):
         truth=effect_of(key),
         size=size,
         strongest=strongest,
+        nominal=scores.distance["nominal"],
         shortfall={effect: strongest - scores.log_ratio[place] for effect, place in places.items()},
         distance={effect: scores.distance[place] for effect, place in places.items()},
         constancy={effect: constancy(scores.by_test[place]) for effect, place in places.items()},
@@ -104,14 +108,33 @@ def library_cases(library, progress=None):
 
 
 def chance_of_none(case, cases):
-    """Conformal p value of no effect: how often readings without one look as much like one as these."""
-    return _rank(case.strongest, [other.strongest for other in cases if other.truth == NONE])
+    """Chance of readings as odd as these without an effect.
+
+    They are odd if a candidate explains them better than the nominal model, or if they are far from it whatever
+    explains them, as an effect is that nobody has thought of. The smaller of both conformal p values is ranked among
+    those of the readings without an effect, so that two looks cost what they cost and no more.
+    """
+    return _rank(-_oddness(case, nominal := _nominal(cases)), [-_oddness(one, nominal) for one in nominal])
 
 
 def detected(cases, level):
     """Those of the cases that are called an effect at a level."""
-    limit = [case.strongest for case in cases if case.truth == NONE]
-    return [case for case in cases if case.truth != NONE and _rank(case.strongest, limit) <= level]
+    nominal = _nominal(cases)
+    reference = [-_oddness(one, nominal) for one in nominal]
+    effects = [case for case in cases if case.truth != NONE]
+    return [case for case in effects if _rank(-_oddness(case, nominal), reference) <= level]
+
+
+def _nominal(cases):
+    return [case for case in cases if case.truth == NONE]
+
+
+def _oddness(case, nominal):
+    """The smaller conformal p value of the strongest candidate and of the distance, among the others' readings."""
+    others = [one for one in nominal if one is not case]
+    return min(
+        _rank(getattr(case, name), [getattr(one, name) for one in others]) for name in ("strongest", "nominal")
+    )
 
 
 def chance_of(effect, case, cases):

@@ -39,15 +39,12 @@ def campaign_gain(campaign, readings, tables, sealed, runs):
     """
     conditions, names, measured, members = [], [], [], []
     for table, name in zip(tables, map(str, readings["test"].values), strict=True):
-        own = {
-            NOMINAL: {model: runs_of(one) for model, one in table.items()},
-            RECALIBRATED: {model: _runs(one, RECALIBRATED, name) for model, one in runs.items()},
-        }
-        test = tamed_test(name, reading_of(readings, name), own)
+        nominal = {NOMINAL: {model: runs_of(one) for model, one in table.items()}}
+        test = tamed_test(name, reading_of(readings, name), nominal)
         conditions.append(_condition(campaign, name))
         names.append(test.features)
         measured.append(test.measured)
-        members.append(np.concatenate(list(test.members[RECALIBRATED].values())))
+        members.append(np.concatenate(list(test.members[NOMINAL].values())))
     discrepancy = fit_discrepancy(conditions, names, measured, members)
     tests, consequences = [], []
     for name in map(str, sealed["test"].values):
@@ -56,7 +53,7 @@ def campaign_gain(campaign, readings, tables, sealed, runs):
         test = tamed_test(name, reading, ensembles)
         test.members[DISCREPANCY] = {
             model: members_with_discrepancy(discrepancy, _condition(campaign, name), test.features, one)
-            for model, one in test.members[RECALIBRATED].items()
+            for model, one in test.members[NOMINAL].items()
         }
         tests.append(test)
         consequences.append(consequence(reading, ensembles).merge(_histories(reading, ensembles)))

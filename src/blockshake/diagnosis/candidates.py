@@ -7,6 +7,7 @@ import numpy as np
 from blockshake.effects.registry import EFFECTS
 
 _GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
+_FIRST = 0.2  # of the prior: the middle would be the null of an effect with a sign
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ class Candidate:
         other parameters are drawn from their priors.
         """
         size = EFFECTS[self.effect].parameters[0]
-        value = size.lower + (size.upper - size.lower) * ((0.5 + number * _GOLDEN) % 1.0)
+        value = size.lower + (size.upper - size.lower) * ((_FIRST + number * _GOLDEN) % 1.0)
         return self._with_others(size, value, number), float((value - size.null) / (size.visible - size.null))
 
     def values_at(self, visible, number):

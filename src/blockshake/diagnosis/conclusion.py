@@ -105,10 +105,10 @@ def decision_as_json(decision, scores, candidates, cases):
     Returns
     -------
     dict
-        The decision's entries; ``posteriors`` of the causes' sizes, as of `calibrated_weights`; ``parameters`` of the causes as of `parameter_estimates` and their ``location``;
-        ``candidates``: for each
-        ``key``, ``effect``, ``log_ratio``, ``by_model``, ``size``, ``sizes``, ``weights``, ``model``, ``distance`` and,
-        by test, the size of the largest density and the ends of the sizes less likely by a factor e^2.
+        The decision's entries; of the causes the ``posteriors`` of their sizes, as of `calibrated_weights`, their
+        ``parameters`` as of `parameter_estimates` and their ``location``; ``candidates``: for each ``key``, ``effect``,
+        ``log_ratio``, ``by_model``, ``size``, ``sizes``, ``weights``, ``model``, ``distance`` and, by test, the size of
+        the largest density and the ends of the sizes less likely by a factor e^2.
     """
     seen = detected(cases, FALSE_ALARM)
     place_of = {candidate.key: candidate.place for candidate in candidates}
@@ -117,7 +117,9 @@ def decision_as_json(decision, scores, candidates, cases):
         key = decision.places[effect]
         if decision.decision == "combination" and effect != decision.causes[0]:
             continue  # its size beside the first is a single estimate
-        posteriors[effect] = calibrated_weights(scores.sizes[key], scores.weights[key], size_error(effect, seen))
+        posteriors[effect] = calibrated_weights(
+            scores.sizes[key], scores.weights[key], size_error(effect, seen)
+        )
         parameters[effect] = parameter_estimates(effect, scores.sizes[key], posteriors[effect], SHARE)
     rows = [
         {

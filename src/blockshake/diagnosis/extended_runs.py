@@ -1,4 +1,4 @@
-"""Ensembles by one solver before and after an extension: on sealed tests, and the recalibrated one on open tests."""
+"""Ensembles by one solver before and after an extension, on sealed tests."""
 
 from dataclasses import replace
 
@@ -40,11 +40,8 @@ def extended_runs(plan, model, decision, scores, library, features, store, sourc
     -------
     xarray.Dataset
         Along ``run``: ``value(run, feature)`` and ``drift(run, time, body)`` as from `read_off`; coordinates ``kind``,
-        ``test``, ``draw``, ``status``. Of sealed tests all three kinds, of open ones the recalibrated. Without runs
-        where no cause was found.
+        ``test``, ``draw``, ``status``.
     """
-    if not decision["causes"]:
-        return xr.Dataset(attrs={"model": model})
     by_key = {candidate.key: candidate for candidate in plan.candidates}
     cause, *others = (by_key[decision["places"][effect]] for effect in decision["causes"])
     draws = [draw_nominal(plan.campaign.structure, model, k) for k in range(plan.effort.nominal_draws)]
@@ -68,8 +65,7 @@ def extended_runs(plan, model, decision, scores, library, features, store, sourc
         ]
     like = next(iter(plan.tests.values()))
     sealed = {name: planned_sealed(plan.campaign, name, like) for name in sealed_tests(plan.campaign)}
-    jobs = [(RECALIBRATED, name, planned) for name, planned in plan.tests.items()]
-    jobs += [(kind, name, planned) for kind in members for name, planned in sealed.items()]
+    jobs = [(kind, name, planned) for kind in members for name, planned in sealed.items()]
     parts, total = [], len(jobs) * count
     for kind, name, planned in jobs:
         for number, (draw, effects) in enumerate(members[kind]):

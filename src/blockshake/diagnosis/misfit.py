@@ -9,6 +9,7 @@ from blockshake.diagnosis.residual_atlas import code_word, residual_atlas
 from blockshake.diagnosis.whole_curve import whole_curve_test
 
 _KEPT = (0.05, 0.5, 0.95)  # quantiles of the ensemble
+_DROPOUT = 40  # readings at an end that a dropout may lose; more is a run cut short
 _EVERY = 4  # readings, of which one enters the test of whole curves: 50 a second
 
 
@@ -39,6 +40,7 @@ def misfit(readings, ensembles):
             time=reading["time"], method="nearest", tolerance=1e-3
         )
         members = members.assign_coords(time=reading["time"], draw=np.arange(members.sizes["draw"]))
+        members = members.map(_without_dropouts)
         atlases.append(residual_atlas(reading, members))
         measured, simulated = joint_curves(reading, name), joint_curves(members, name)
         curves.append(curve_scores(measured, simulated))
@@ -69,3 +71,16 @@ def where(found):
         f"{found.attrs['quantity']} of {found.attrs['joint']}, {phase[found.attrs['phase']]}, "
         f"{sides[found.attrs['symmetry']]}"
     )
+
+
+def _without_dropouts(histories):
+    """Histories, time second, with what a dropout lost filled; what a run that was cut short lacks stays NaN."""
+    values = histories.to_numpy().copy()
+    times = np.arange(values.shape[1])
+    for draw in np.ndindex(values.shape[0], *values.shape[2:]):
+        one = values[(draw[0], slice(None), *draw[1:])]
+        known = np.flatnonzero(np.isfinite(one))
+        if len(known) and len(known) < len(one):
+            end = len(one) if len(one) - 1 - known[-1] <= _DROPOUT else known[-1] + 1
+            one[:end] = np.interp(times[:end], known, one[known])
+    return histories.copy(data=values)

@@ -6,11 +6,14 @@ from sklearn.covariance import LedoitWolf
 
 from blockshake.diagnosis.response import fit_response
 
-_FREEDOM = 5.0  # of Student's t: a single odd feature does not decide
+_FREEDOM = 5.0  # of Student's t, of unit variance: a single odd feature does not decide
 _UNKNOWN = (
     0.1  # of a feature's spread over all nominal draws: what no draw of one model shows it knows nothing of
 )
 _SIZES = 21
+_CONSTANT = (
+    gammaln(0.5 * (_FREEDOM + 1.0)) - gammaln(0.5 * _FREEDOM) - 0.5 * np.log((_FREEDOM - 2.0) * np.pi)
+)
 
 
 def size_grid(sizes):
@@ -36,7 +39,9 @@ class ModelEvidence:
     Notes
     -----
     Mean and covariance are those of the nominal draws, shrunk after Ledoit and Wolf (2004), since features outnumber
-    draws; a candidate adds the mean and the scatter of its `Response`.
+    draws; a candidate adds the mean and the scatter of its `Response`. The whitened features are taken for independent
+    draws of Student's t: one t for all of them together would forgive a model that is wrong in every feature as
+    easily as one that is wrong in its scale.
     """
 
     def __init__(self, nominal, with_effect, sizes, left_out=None, whole=None):
@@ -82,13 +87,6 @@ class ModelEvidence:
 
     def _densities(self, features, added, whitening):
         inverse, logarithm = whitening
-        n_features = len(features)
         left = np.einsum("sij,sj->si", inverse, features - self.mean - added)
-        squares = (left**2).sum(axis=1)
-        constant = (
-            gammaln(0.5 * (_FREEDOM + n_features))
-            - gammaln(0.5 * _FREEDOM)
-            - 0.5 * n_features * np.log(_FREEDOM * np.pi)
-        )
-        densities = constant - logarithm - 0.5 * (_FREEDOM + n_features) * np.log1p(squares / _FREEDOM)
-        return densities, squares
+        each = _CONSTANT - 0.5 * (_FREEDOM + 1.0) * np.log1p(left**2 / (_FREEDOM - 2.0))
+        return each.sum(axis=1) - logarithm, (left**2).sum(axis=1)

@@ -14,6 +14,9 @@ _FRICTION, _DENSITY, _MODULUS = 0.10, 0.04, 0.15
 _PLACED = 3e-4  # m, standard deviation of where a block stands, along x and y
 _TURNED = 2e-4  # rad, of how it is turned about z
 _TABLE = 0.01  # of the motion's amplitude: how well a table follows
+_FAST = 0.01  # of what is faster than its mean over some 0.1 s, beside that
+# readings: noise over the stated one (standard deviation of its logarithm), its memory, shares lost and wrong, at most
+_LOUDER, _MEMORY, _LOST, _WRONG = 0.1, 0.7, 0.03, 0.02
 
 
 @dataclass(frozen=True)
@@ -30,6 +33,11 @@ class Draw:
         Of the structure and of the solver, by dotted name.
     amplitude : float
         Of the motion over the commanded one [1].
+    fast : float
+        Of what is faster in it than some 0.1 s, over the commanded one, less 1 [1].
+    noise : dict of str to float
+        ``louder``, over the stated noise [1], and the entries ``noise_memory``, ``marker_dropouts`` and
+        ``marker_outliers`` of `Instruments`.
     places : float64 array, shape (n_bodies, 3)
         Off the structure file: along x and y [m], turned about z [rad].
     seed : int
@@ -40,6 +48,8 @@ class Draw:
     time_step: float
     parameters: dict
     amplitude: float
+    fast: float
+    noise: dict
     places: np.ndarray
     seed: int
 
@@ -63,7 +73,8 @@ def draw_nominal(structure, model, number):
     states; contact stiffness goes with Young's modulus, as wave-speed matching has it. The discretisation is
     uncertain like they are, since nothing measured says which is right: in LS-DEM the layout of nodes and
     the restitution that stands for damping, in NSCD the time step and the shrink of contact areas. A diagnosis with one
-    fixed discretisation calls every other one an effect.
+    fixed discretisation calls every other one an effect; so does one with white noise alone, once readings have a
+    memory, gaps and outliers.
     """
     generator = np.random.default_rng([number, MODELS.index(model)])
     file = load_structure(structure).file
@@ -90,6 +101,13 @@ def draw_nominal(structure, model, number):
         time_step=time_step,
         parameters=drawn | numerics,
         amplitude=float(generator.normal(1.0, _TABLE)),
+        fast=float(generator.normal(0.0, _FAST)),
+        noise={
+            "louder": float(np.exp(generator.normal(0.0, _LOUDER))),
+            "noise_memory": float(generator.uniform(0.0, _MEMORY)),
+            "marker_dropouts": float(generator.uniform(0.0, _LOST)),
+            "marker_outliers": float(generator.uniform(0.0, _WRONG)),
+        },
         places=places,
         seed=int(generator.integers(2**31)),
     )

@@ -9,6 +9,7 @@ import numpy as np
 from blockshake.diagnosis.candidates import candidates
 from blockshake.diagnosis.null_model import MODELS
 from blockshake.diagnosis.planned_test import PlannedTest
+from blockshake.diagnosis.repeated_readings import without_repeats
 from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, content_digest
@@ -45,16 +46,15 @@ class Effort:
 
 
 EFFORTS = {
-    "quick": Effort(runs=400, tests=2, nominal_draws=20, own_draws=3, members=5),
-    "standard": Effort(runs=2000, tests=4, nominal_draws=40, own_draws=6, members=20),
+    "quick": Effort(runs=400, tests=2, nominal_draws=20, own_draws=4, members=0),
+    "standard": Effort(runs=2000, tests=3, nominal_draws=40, own_draws=6, members=12),
     "deep": Effort(runs=12000, tests=12, nominal_draws=80, own_draws=12, members=40),
 }
-# ensembles that a sealed test is predicted with (nominal, recalibrated, extended), and an open one (recalibrated)
-_OF_SEALED, _OF_OPEN = 3, 1
+_ENSEMBLES = 3  # that a sealed test is predicted with: nominal, recalibrated, extended
 
 
 def open_tests(campaign, effort):
-    """Names of the tests that a diagnosis judges by, in the campaign's order; none of them is sealed.
+    """Names of the tests that a diagnosis judges by, in the campaign's order; none is sealed, none a copy of another.
 
     The strongest of each motion, then the weakest of all, where the blocks may not move yet, then the others by
     falling scale: as many as the effort has.
@@ -64,12 +64,13 @@ def open_tests(campaign, effort):
     InputError
         Fewer than two tests that are not sealed.
     """
-    free = [test for test in campaign.tests.values() if test.role != "sealed"]
+    free = [test.name for test in campaign.tests.values() if test.role != "sealed"]
+    free = [campaign.tests[name] for name in without_repeats(campaign, free)]
     if len(free) < _FEWEST_TESTS:
         raise InputError(
             campaign.folder / "campaign.yaml",
             "tests",
-            f"expected at least {_FEWEST_TESTS} tests with the role fit or select, found {len(free)}: "
+            f"expected at least {_FEWEST_TESTS} different tests with the role fit or select, found {len(free)}: "
             "an effect is told from chance by its being the same in several tests",
         )
     falling = sorted(free, key=lambda test: (-abs(test.scale), test.name))
@@ -101,8 +102,7 @@ def own_draws(effort, candidates, tests, sealed):
         Not even two.
     """
     solvers = len(MODELS)
-    ensembles = sealed * _OF_SEALED + tests * _OF_OPEN
-    spent = solvers * (tests * effort.nominal_draws + ensembles * effort.members)
+    spent = solvers * (tests * effort.nominal_draws + sealed * _ENSEMBLES * effort.members)
     count = min(effort.own_draws, (effort.runs - spent) // (solvers * tests * candidates))
     if count < _FEWEST_OWN:
         raise InputError(
@@ -179,6 +179,23 @@ class Plan:
     candidates: list
     own_draws: int
     effects: list
+
+    @property
+    def runs(self):
+        """Simulated tests in all libraries."""
+        return (
+            len(MODELS)
+            * len(self.tests)
+            * (self.effort.nominal_draws + self.own_draws * len(self.candidates))
+        )
+
+    def caveats(self, causes):
+        """Why no gain was measured, where there are causes."""
+        if not causes:
+            return []
+        if not sealed_tests(self.campaign):
+            return ["no sealed test: no gain was measured"]
+        return ["quick effort: no gain was measured"]
 
     def library(self, test, source):
         """Name of the library of a test: equal content, equal name."""

@@ -3,7 +3,10 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
+from scipy.interpolate import CubicSpline
+from scipy.ndimage import gaussian_filter1d
 
 from blockshake.diagnosis.reading import HISTORIES, read_off
 from blockshake.dynamics.motion import GroundMotion
@@ -17,6 +20,7 @@ from blockshake.study.placement import placed
 from blockshake.study.simulation import part_parameters, simulate
 
 RATE = 200.0  # Hz
+_SLOW = 0.04  # s, standard deviation of a Gaussian that is some 0.1 s wide at half its height
 
 
 @dataclass(frozen=True)
@@ -77,13 +81,17 @@ def simulated_test(planned, draw, effects=()):
         How the run ended.
     """
     physical, numerics = part_parameters(draw.parameters)
+    readings = {name: value for name, value in draw.noise.items() if name != "louder"}
     instruments = Instruments(
-        marker_noise=planned.sensors.marker_noise, accelerometer_noise=planned.sensors.accelerometer_noise
+        marker_noise=draw.noise["louder"] * planned.sensors.marker_noise,
+        accelerometer_noise=draw.noise["louder"] * planned.sensors.accelerometer_noise,
+        **readings,
     )
     experiment = Experiment(
         str(planned.structure), physical | placed(planned.structure, draw.places),
         planned.motion.scaled(draw.amplitude), instruments,
     )  # fmt: skip
+    experiment = experiment.with_motion(0, draw.fast * faster_part(experiment.motion))
     for effect in effects:
         experiment = with_effect(experiment, **effect)
     run = simulate(
@@ -96,6 +104,16 @@ def simulated_test(planned, draw, effects=()):
     if "accelerometer" in test:
         test = test.sel(channel=list(planned.channels)) if planned.channels else test.drop_dims("channel")
     return test, run.attrs["status"]
+
+
+def faster_part(motion):
+    """What of a motion's displacement along x is faster than its mean over some 0.1 s, as polynomials of its table."""
+    breaks = motion.table.breaks
+    step = float(np.median(np.diff(breaks)))
+    times = np.arange(breaks[0], breaks[-1] + 0.5 * step, step)
+    displacement = motion.evaluate(times)[:, 0]
+    fast = displacement - gaussian_filter1d(displacement, _SLOW / step, mode="nearest")
+    return CubicSpline(breaks, np.interp(breaks, times, fast)).c[::-1].T
 
 
 def kept_reading(planned, draw, effects, store, source, histories=True):
@@ -122,8 +140,8 @@ def kept_reading(planned, draw, effects, store, source, histories=True):
         ``kept`` or ``simulated``.
     """
     key = content_digest(
-        source, planned.digest(), draw.model, draw.time_step, draw.parameters, draw.amplitude,
-        draw.places.tobytes(), draw.seed, list(effects), histories,
+        source, planned.digest(), draw.model, draw.time_step, draw.parameters, draw.amplitude, draw.fast,
+        draw.noise, draw.places.tobytes(), draw.seed, list(effects), histories,
     )  # fmt: skip
     path = Path(store) / f"{key}.nc"
     if path.exists():

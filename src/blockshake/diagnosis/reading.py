@@ -4,6 +4,7 @@ import numpy as np
 
 from blockshake.diagnosis.features import features
 from blockshake.diagnosis.joint_histories import joint_histories
+from blockshake.diagnosis.outliers import without_outliers
 from blockshake.diagnosis.phases import PHASES, find_phases
 from blockshake.diagnosis.reconstructed_base import reconstruct_base
 
@@ -35,6 +36,7 @@ def read_off(test, structure, sensors):
     whole = test.isel(time=slice(ended))
     if "time_acc" in whole.dims:
         whole = whole.isel(time_acc=whole["time_acc"].to_numpy() <= whole["time"].to_numpy()[-1])
+    whole = without_outliers(whole, structure)
     histories = joint_histories(whole, structure, sensors, reconstruct_base(whole, structure, sensors))
     moved = {
         "slip": histories["slip"].sel(tangent="x", drop=True),

@@ -1,12 +1,19 @@
 """What a candidate adds to the features, as a function of its size: Gaussian processes fitted to paired runs."""
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
-_LENGTHS = np.array([0.5, 1.0, 2.0, 4.0, 16.0])  # of the size, in units of the visible one, over which a response bends
-_NOISES = np.array([1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0])  # variance over that of the response at the visible size
+_LENGTHS = np.array(
+    [0.5, 1.0, 2.0, 4.0, 16.0]
+)  # of the size, in units of the visible one, over which a response bends
+_NOISES = np.array(
+    [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0]
+)  # variance over that of the response at the visible size
+_ONSETS = (0.3, np.inf)  # sizes from which on the scatter stays as it is; infinite: in proportion to the size
 _TOGETHER = 0.5  # share of the scatter in which features go together
+_NOTHING = 1e-3  # a size at which nothing is added, of the visible one
 _FEWEST_FREE = 0.5  # degrees of freedom, of two runs and fewer
 
 
@@ -41,7 +48,9 @@ class Response:
         Correlations are those of the scatter, of which there are few runs: shrunk by half towards none.
         """
         n_draws, n_features = self.scatter.shape
-        correlation = (1.0 - _TOGETHER) * np.eye(n_features) + _TOGETHER * self.scatter.T @ self.scatter / n_draws
+        correlation = (1.0 - _TOGETHER) * np.eye(
+            n_features
+        ) + _TOGETHER * self.scatter.T @ self.scatter / n_draws
         return self.deviation[:, :, None] * correlation * self.deviation[:, None, :]
 
 
@@ -64,26 +73,29 @@ def fit_response(own_sizes, added, sizes):
     Notes
     -----
     Each feature by itself: a Gaussian process (Rasmussen and Williams 2006, eqs. 2.25 and 2.26) with the kernel
-    ``s^2 u u' exp(-(u - u')^2 / 2 l^2)``, so that nothing is added at the null size, and white noise of variance
-    ``s^2 r``. Left-out residuals are of eq. 5.12. Runs are too few to tell ``l`` and ``r``: predictions are averaged over a grid of both with the weight of
-    their likelihood, ``s^2`` integrated out under the prior 1 / s^2, so that a few runs that happen to lie on a line do not pass
-    for a law without scatter. Their variance is that of the Student t, with as many degrees of freedom as runs.
+    ``s^2 u u' exp(-(u - u')^2 / 2 l^2)`` and independent scatter of variance ``s^2 r u^2``, or ``s^2 r u^2 / (u^2 +
+    0.3^2)`` where chaos makes all of it from a small size on: at the null size nothing is added, in none of the draws.
+    Left-out residuals are of their eq. 5.12. Runs are too few to tell ``l``, ``r`` and which scatter: predictions are averaged
+    over a grid of them with the weight of their likelihood, ``s^2`` integrated out under the prior 1 / s^2, so that a few
+    runs that happen to lie on a line do not pass for a law without scatter. Their variance is that of the Student t,
+    with as many degrees of freedom as runs.
     """
+    own = np.abs(own_sizes) > _NOTHING
+    own_sizes, added = own_sizes[own], added[own]
     count = len(own_sizes)
     freedom = count / max(count - 2.0, _FEWEST_FREE)
     evidence, means, variances, residuals = [], [], [], []
-    for length in _LENGTHS:
-        known = _kernel(own_sizes, own_sizes, length)
+    for length, noise, onset in product(_LENGTHS, _NOISES, _ONSETS):
         across = _kernel(sizes, own_sizes, length)
-        for noise in _NOISES:
-            whole = known + noise * np.eye(count)
-            solved = np.linalg.solve(whole, added)
-            square = np.maximum((added * solved).sum(axis=0), np.finfo(float).tiny)
-            evidence.append(-0.5 * np.linalg.slogdet(whole)[1] - 0.5 * count * np.log(square))
-            means.append(across @ solved)
-            residuals.append(solved / np.diagonal(np.linalg.inv(whole))[:, None])
-            left = noise + sizes**2 - (across * np.linalg.solve(whole, across.T).T).sum(axis=1)
-            variances.append(freedom * left[:, None] * square / count)
+        whole = _kernel(own_sizes, own_sizes, length) + noise * np.diag(_scatter(own_sizes, onset))
+        solved = np.linalg.solve(whole, added)
+        square = np.maximum((added * solved).sum(axis=0), np.finfo(float).tiny)
+        evidence.append(-0.5 * np.linalg.slogdet(whole)[1] - 0.5 * count * np.log(square))
+        means.append(across @ solved)
+        residuals.append(solved / np.diagonal(np.linalg.inv(whole))[:, None])
+        left = noise * _scatter(sizes, onset) + sizes**2
+        left = left - (across * np.linalg.solve(whole, across.T).T).sum(axis=1)
+        variances.append(freedom * np.maximum(left, 0.0)[:, None] * square / count)
     evidence = np.array(evidence)
     weights = np.exp(evidence - evidence.max(axis=0))
     weights /= weights.sum(axis=0)
@@ -98,3 +110,10 @@ def fit_response(own_sizes, added, sizes):
 def _kernel(one, other, length):
     distance = one[:, None] - other[None, :]
     return one[:, None] * other[None, :] * np.exp(-0.5 * (distance / length) ** 2)
+
+
+def _scatter(sizes, onset):
+    """Variance of the scatter, 1 at the visible size."""
+    if np.isinf(onset):
+        return sizes**2
+    return sizes**2 * (1.0 + onset**2) / (sizes**2 + onset**2)

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from pydantic import Field
 from scipy.interpolate import CubicSpline
+from scipy.signal import lfilter
 
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
@@ -17,6 +18,7 @@ NotNegative = Annotated[Finite, Field(ge=0)]
 Share = Annotated[Finite, Field(ge=0, lt=1)]
 Vector = tuple[Finite, Finite, Finite]
 _BURST = 10  # readings that a dropout loses in the mean
+_OUTLIER = 10.0  # standard deviations of the noise
 
 
 class Instruments(Strict):
@@ -24,6 +26,10 @@ class Instruments(Strict):
 
     marker_noise: NotNegative = Field(1e-4, description="standard deviation of a marker's position [m]")
     accelerometer_noise: NotNegative = Field(0.02, description="standard deviation of a reading [m/s2]")
+    noise_memory: Share = Field(0.0, description="correlation of the noise of one reading with the next [1]")
+    marker_outliers: Share = Field(
+        0.0, description="share of the marker readings that are wrong by ten times the noise [1]"
+    )
     accelerometer_offset: NotNegative = Field(
         0.0, description="standard deviation of the channels' constant offsets [m/s2]"
     )
@@ -70,7 +76,7 @@ def observe(run, structure, instruments, seed):
     A marker that sits elsewhere than the structure says reads the displacement of where it sits. A clock that is
     behind by the lag shows at the time t what was at t - lag; before the start everything rests.
     """
-    noise, offsets, losses = (np.random.default_rng([seed, stream]) for stream in range(3))
+    noise, offsets, losses, wrong = (np.random.default_rng([seed, stream]) for stream in range(4))
     places = _places(run, structure, instruments)
     displacement = places - places[:1]
     names = [marker.name for marker in structure.file.markers]
@@ -79,7 +85,11 @@ def observe(run, structure, instruments, seed):
     displacement = _delayed(displacement, time, instruments.marker_lag)
     displacement *= np.array([instruments.marker_gain.get(name, 1.0) for name in names])[:, None]
     displacement += (time - time[0])[:, None, None] * np.array(instruments.marker_drift)
-    read = displacement + noise.normal(0.0, 1.0, displacement.shape) * instruments.marker_noise
+    memory = instruments.noise_memory
+    read = displacement + _noise(noise, displacement.shape, memory) * instruments.marker_noise
+    far = wrong.random(read.shape[:2]) < instruments.marker_outliers
+    far[0] = False
+    read[far] += wrong.normal(0.0, _OUTLIER * instruments.marker_noise, (far.sum(), 3))
     first = places[0] + read[0]
     read -= read[:1]
     read[_lost(losses, len(time), len(names), instruments.marker_dropouts)] = np.nan
@@ -107,12 +117,21 @@ def observe(run, structure, instruments, seed):
             instruments.channel_gain.get(name, 1.0) for name in channels
         ]
         values = values + offsets.normal(0.0, 1.0, len(channels)) * instruments.accelerometer_offset
-        values = values + noise.normal(0.0, 1.0, values.shape) * instruments.accelerometer_noise
+        values = values + _noise(noise, values.shape, memory) * instruments.accelerometer_noise
         test["accelerometer"] = (("time_acc", "channel"), values, dict(run["accelerometer"].attrs))
         test = test.assign_coords(
             time_acc=("time_acc", run["time_acc"].to_numpy(), {"units": "s"}), channel=channels
         )
     return test
+
+
+def _noise(generator, shape, memory):
+    """Gaussian noise of unit variance, first-order autoregressive along the first axis."""
+    white = generator.normal(0.0, 1.0, shape)
+    if memory == 0.0:
+        return white
+    white[0] /= np.sqrt(1.0 - memory**2)
+    return lfilter([np.sqrt(1.0 - memory**2)], [1.0, -memory], white, axis=0)
 
 
 def _places(run, structure, instruments):

@@ -16,6 +16,7 @@ from blockshake.errors import InputError
 from blockshake.files import file_digest, read_text
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaign import Campaign, load_campaign, load_test
+from blockshake.measurement.commanded_motion import commanded_motion
 
 _PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "xarray", "snakemake", "matplotlib", "typst")
 _RESULTS = (
@@ -52,6 +53,8 @@ class Diagnosed:
         By test: time for which it can be predicted [s]; empty where that was not measured.
     structure : str
         Its name.
+    motions : dict of str to dict
+        By name of a commanded motion: its provenance.
     places : dict of str to dict
         By key of a candidate: where in the structure it is.
     licence : Licence or None
@@ -75,6 +78,7 @@ class Diagnosed:
     consequences: xr.Dataset | None
     horizon: dict
     structure: str
+    motions: dict
     places: dict
     licence: Licence | None
     digests: dict
@@ -145,7 +149,7 @@ def load_diagnosed(campaign, results, effort, licence):
     return Diagnosed(
         campaign=campaign,
         effort=effort,
-        synthetic=any(load_test(campaign, name).attrs.get("synthetic", 0) for name in names),
+        synthetic=any(_synthetic(load_test(campaign, name).attrs) for name in names),
         verdict=load_verdict(results / "verdict.json"),
         decision=_json(results / "decision.json"),
         parity=_json(results / "parity.json"),
@@ -158,6 +162,7 @@ def load_diagnosed(campaign, results, effort, licence):
         consequences=_filled(results / "consequences.nc"),
         horizon=_horizon(results / "predictability.nc"),
         structure=structure.file.name,
+        motions=_motions(campaign),
         places={one.key: one.place for one in candidates(structure)},
         licence=load_licence(licence) if licence.exists() else None,
         digests={"/".join(path.parts[-2:]): file_digest(path) for path in files},
@@ -167,6 +172,19 @@ def load_diagnosed(campaign, results, effort, licence):
             **{name: version(name) for name in _PACKAGES},
         },
     )
+
+
+def _synthetic(attributes):
+    """Whether a test file says of itself that it is synthetic: by this program's mark, its title or its source."""
+    words = f"{attributes.get('title', '')} {attributes.get('source', '')}".lower()
+    return bool(attributes.get("synthetic", 0)) or "synthetic" in words
+
+
+def _motions(campaign):
+    """Provenance of the motions that were commanded; nothing of one that is not at hand."""
+    tests = {test.motion: test for test in campaign.tests.values()}
+    found = {name: commanded_motion(campaign, test) for name, test in tests.items()}
+    return {name: motion.attributes for name, motion in found.items() if motion is not None}
 
 
 def _horizon(path):

@@ -31,7 +31,7 @@ def plot_joints(misfit, readings, test, joints, horizon, measured_word):
         Band of 5 to 95 % with median, the measured curve, in red where it is outside the band, and grey after the
         horizon.
     """
-    figure = new_figure(0.018 + 0.024 * len(joints))
+    figure = new_figure(0.018 + (0.024 if len(joints) < 4 else 0.021) * len(joints))
     panels = figure.subplots(len(joints), len(_COLUMNS), sharex=True, squeeze=False)
     end = float(readings["acceleration"].sel(test=test).dropna("time")["time"][-1])
     for row, joint in zip(panels, reversed(joints), strict=True):

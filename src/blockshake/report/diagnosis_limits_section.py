@@ -40,6 +40,10 @@ def _not_tested(found):
         for name, effect in EFFECTS.items()
         if effect.acts != "observation" and name not in considered
     ]
+    motions = [
+        f"{name}{' (SYNTHETIC)' if one.get('synthetic') else ''}: {one['source']}"
+        for name, one in found.motions.items()
+    ]
     items = [
         f"{found.verdict.runs} simulated tests, effort {found.effort}; seeds follow from the names of draws, "
         "candidates and tests, and the same files give the same report.",
@@ -53,6 +57,8 @@ def _not_tested(found):
         "are exchangeable where nothing is missing. Levels and intervals hold under these assumptions only.",
         "Sizes and intervals are calibrated over the library's sizes together, not at each size.",
     ]
+    if motions:
+        items.append(f"Commanded motions: {'; '.join(motions)}.")
     if removed:
         items.insert(2, f"Taken out of the candidates on purpose: {', '.join(removed)}.")
     if not found.horizon:

@@ -74,6 +74,8 @@ def _missing_gain(found):
     if not _to_gain(found):
         return ["the sealed tests leave nothing to gain"]
     missing = [] if gain.recalibrated.lower > 0.0 else ["the gain on sealed tests may be nothing or a loss"]
+    if gain.discrepancy.estimate < 0.0:
+        missing.append("a discrepancy without a name predicts the sealed tests better")
     if not bool(found.gain["confirmed"]):
         missing.append("not each solver by itself shows the gain")
     return missing

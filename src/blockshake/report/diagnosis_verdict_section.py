@@ -15,8 +15,8 @@ def verdict_section(found):
     if found.synthetic:
         blocks.append(
             Text(
-                "The tests are SYNTHETIC: virtual tests, each one simulated run seen through noisy sensors, in which "
-                "an effect that the nominal model lacks may be hidden. Nothing was measured; 'measured' below "
+                "The tests are SYNTHETIC: virtual tests, computed and seen through made-up sensors, in which an "
+                "effect that the nominal model lacks may be hidden. Nothing was measured; 'measured' below "
                 "means read off the virtual test.",
                 strong=True,
             )

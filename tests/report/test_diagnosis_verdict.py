@@ -1,0 +1,131 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from fake_diagnosis import FakeDiagnosis
+from fake_findings import OPEN, gain_finding
+
+from blockshake.report.diagnosis_content import load_diagnosed
+from blockshake.report.diagnosis_report import compose_diagnosis
+from blockshake.report.diagnosis_verdict import ESTABLISHED, ONE_OF, PROBABLE, rung, statement
+from blockshake.report.diagnosis_verdict_section import verdict_section
+
+
+@pytest.fixture(scope="module")
+def named(tmp_path_factory):
+    return load_diagnosed(*FakeDiagnosis(tmp_path_factory.mktemp("named"), "named").arguments())
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"effort": "quick"}, "quick"),
+        ({"solver_dependent": ["ls-dem"]}, "LS-DEM alone"),
+        ({"constancy": 0.001}, "not the same in all tests"),
+        ({"lower": -0.1}, "nothing or a loss"),
+        ({"beaten": -0.2}, "without a name"),
+        ({"confirmed": False}, "not each solver"),
+        ({"to_gain": False}, "nothing to gain"),
+        ({"gain": None}, "no gain"),
+        ({"tests": 2}, "2 tests only"),
+    ],
+)
+def test_established_asks_for_all_of_the_ladder(named, change, reason):
+    assert rung(named) == (ESTABLISHED, [])
+    changed = named
+    if "effort" in change:
+        changed = replace(named, effort="quick")
+    if "solver_dependent" in change:
+        changed = replace(named, decision=named.decision | change)
+    if "constancy" in change:
+        changed = replace(named, decision=named.decision | {"constancy": {"table-pitch": 0.001}})
+    if "lower" in change:
+        contrast = named.verdict.gain.recalibrated.model_copy(update=change)
+        gain = named.verdict.gain.model_copy(update={"recalibrated": contrast})
+        changed = replace(named, verdict=named.verdict.model_copy(update={"gain": gain}))
+    if "beaten" in change:
+        rival = named.verdict.gain.discrepancy.model_copy(update={"estimate": change["beaten"]})
+        gain = named.verdict.gain.model_copy(update={"discrepancy": rival})
+        changed = replace(named, verdict=named.verdict.model_copy(update={"gain": gain}))
+    if "confirmed" in change:
+        changed = replace(named, gain=named.gain.assign(confirmed=False))
+    if "to_gain" in change:
+        changed = replace(named, gain=named.gain.assign(gain=named.gain["gain"] * np.nan))
+    if "gain" in change:
+        changed = replace(named, verdict=named.verdict.model_copy(update=change))
+    if "tests" in change:
+        changed = replace(named, readings=named.readings.isel(test=slice(2)))
+    word, missing = rung(changed)
+    assert word == PROBABLE
+    assert len(missing) == 1
+    assert reason in missing[0]
+
+
+def test_a_sensor_fault_alone_is_probable_and_named_without_simulation(tmp_path):
+    fake = FakeDiagnosis(tmp_path, "none", findings=[gain_finding()])
+    one = load_diagnosed(*fake.arguments())
+    assert one.verdict.decision == "named"
+    assert statement(one).startswith(
+        "Probable: sensor fault: gain of a marker (marker block-2-face), error 0.0300"
+    )
+    shown = [block for section in compose_diagnosis(one).sections for block in section.blocks]
+    items = " ".join(item for block in shown if block.kind == "items" for item in block.items)
+    assert "without any simulation" in items
+    assert "Excluded (nine in ten would have been seen)" in items
+    assert any(block.kind == "table" and block.caption.startswith("Faults of sensors") for block in shown)
+
+
+def test_a_set_beside_a_sensor_fault_stays_a_set(tmp_path):
+    fake = FakeDiagnosis(tmp_path, "ambiguous", extended=False, findings=[gain_finding()])
+    one = load_diagnosed(*fake.arguments())
+    assert one.verdict.decision == "combination"
+    assert rung(one) == (ONE_OF, [])
+    words = statement(one)
+    assert (
+        words.index("joint of low friction")
+        < words.index("friction that falls")
+        < words.index("sensor fault")
+    )
+    assert "do not tell them apart" in words
+
+
+def test_without_a_sealed_test_no_cause_is_established(tmp_path):
+    one = load_diagnosed(*FakeDiagnosis(tmp_path, "named", extended=False).arguments())
+    assert rung(one) == (PROBABLE, ["no gain was measured on a sealed test"])
+    section = next(section for section in compose_diagnosis(one).sections if section.key == "gain")
+    assert "no sealed test" in section.blocks[0].text
+
+
+def test_an_extension_that_loses_is_not_called_established(tmp_path):
+    one = load_diagnosed(*FakeDiagnosis(tmp_path, "named", gaining=False).arguments())
+    word, missing = rung(one)
+    assert word == PROBABLE
+    assert any("nothing or a loss" in reason for reason in missing)
+
+
+@pytest.mark.parametrize(
+    ("attributes", "synthetic"),
+    [
+        ({"synthetic": 1}, True),
+        ({"source": "synthetic: computed, not measured"}, True),
+        ({"title": "Synthetic shake-table test"}, True),
+        ({"synthetic": 0, "title": "test of 3 May", "source": "optical system"}, False),
+    ],
+)
+def test_a_test_is_synthetic_if_its_file_says_so(tmp_path, attributes, synthetic):
+    fake = FakeDiagnosis(tmp_path, "none")
+    for name in OPEN:
+        path = fake.campaign / f"{name}.nc"
+        test = xr.load_dataset(path)
+        test.attrs = attributes
+        test.to_netcdf(path)
+    assert load_diagnosed(*fake.arguments()).synthetic is synthetic
+
+
+def test_what_was_measured_is_not_called_synthetic(named):
+    section = verdict_section(replace(named, synthetic=False))
+    words = " ".join(block.caption if block.kind == "figure" else "" for block in section.blocks)
+    assert not [block for block in section.blocks if block.kind == "text" and "SYNTHETIC" in block.text]
+    assert "virtual" not in words
+    assert "measured curve" in words
