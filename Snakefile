@@ -33,6 +33,11 @@ rule all:
     input:
         f"reports/{STUDY}.html",
         f"reports/{STUDY}.pdf",
+        expand(
+            "reports/diagnosis-{campaign}.{kind}",
+            campaign=CAMPAIGNS,
+            kind=["html", "pdf"],
+        ),
 
 
 for case in CASES:

@@ -29,6 +29,8 @@ WATCHED = {
     "extend_model": sources.DIAGNOSIS,
     "measure_gain": sources.DIAGNOSIS,
     "conclude": sources.DIAGNOSIS,
+    "predict_twins": sources.DIAGNOSIS,
+    "make_diagnosis_report": (*sources.REPORT, *sources.DIAGNOSIS),
 }
 # What names things or writes logs and computes nothing; and the dispatcher that imports every solver, where a run's
 # own rule watches the one that runs.

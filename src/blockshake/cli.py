@@ -199,8 +199,13 @@ def _generate_campaign(options):
 def _diagnose(options):
     from blockshake.diagnose import diagnose
 
-    verdict = diagnose(options.campaign, options.output, options.effort, options.cores)
+    try:
+        verdict = diagnose(options.campaign, options.output, options.effort, options.cores)
+    except RuntimeError as error:
+        print(f"blockshake: {error}", file=sys.stderr)
+        return 1
     print(f"{verdict.decision}: {', '.join(verdict.causes) or 'no cause'}; {options.output}/report.html")
+    return 0
 
 
 def _check(options):

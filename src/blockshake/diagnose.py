@@ -10,15 +10,8 @@ from blockshake.errors import InputError
 from blockshake.files import PACKAGE, check_output
 
 _CHECKOUT = PACKAGE.parents[1]
-_KEPT = (
-    "verdict.json",
-    "decision.json",
-    "parity.json",
-    "misfit.nc",
-    "evidence.nc",
-    "gain.nc",
-    "consequences.nc",
-)
+_KEPT = ("verdict.json", "decision.json", "parity.json", "misfit.nc", "evidence.nc")
+_OF_GAIN = ("gain.nc", "consequences.nc")  # where a cause was found and there are sealed tests
 
 
 def diagnose(campaign, output, effort="standard", cores=None):
@@ -63,7 +56,9 @@ def diagnose(campaign, output, effort="standard", cores=None):
         "--snakefile", str(snakefile), "--directory", str(_CHECKOUT),
         "--config", f"campaign={folder}", f"effort={effort}",
     ]  # fmt: skip
-    if subprocess.run(command, check=False).returncode:
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+    # its output is the progress
+    if subprocess.run(command, env={**os.environ, "PATH": path}, check=False).returncode:
         raise RuntimeError("the workflow stopped: its messages are above")
     name = result_name(folder)
     results = _CHECKOUT / "results" / "diagnosis" / name

@@ -37,7 +37,8 @@ def test_runs_stay_within_the_effort():
                 tests = effort.tests
                 own = own_draws(effort, candidates, tests, sealed)
                 of_ensembles = 3 * sealed * effort.members
-                runs = 2 * (tests * (effort.nominal_draws + own * candidates) + of_ensembles)
+                of_test = effort.nominal_draws + own * candidates + 1 + effort.twins
+                runs = 2 * (tests * of_test + of_ensembles)
                 assert runs <= effort.runs, name
 
 

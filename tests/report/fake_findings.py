@@ -181,10 +181,9 @@ def write_made_up_licence(path):
     write_licence(path, licence())
 
 
-def write_horizon(path):
-    """How long each open test can be predicted, by both solvers."""
-    horizon = [[3.0, 3.5], [2.0, 2.5], [5.0, 6.0]]
-    write_dataset(
-        path,
-        xr.Dataset({"horizon": (("test", "model"), horizon)}, {"test": list(OPEN), "model": list(MODELS)}),
-    )
+def write_horizons(folder):
+    """How long each open test can be predicted, by both solvers, a file each."""
+    paths = [folder / f"{name}-predictability.nc" for name in OPEN]
+    for path, horizon in zip(paths, ([3.0, 3.5], [2.0, 2.5], [5.0, 6.0]), strict=True):
+        write_dataset(path, xr.Dataset({"horizon": ("model", horizon)}, {"model": list(MODELS)}))
+    return paths

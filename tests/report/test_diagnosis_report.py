@@ -2,7 +2,7 @@ import re
 
 import pytest
 from fake_diagnosis import FakeDiagnosis
-from fake_findings import CAUSES, OPEN, SEALED, licence, write_horizon, write_made_up_licence
+from fake_findings import CAUSES, OPEN, SEALED, licence, write_horizons, write_made_up_licence
 from test_report import CLAIMS, Page
 
 from blockshake.diagnosis.verdict import load_verdict
@@ -38,14 +38,14 @@ def fakes(tmp_path_factory):
     """Results of each decision; the named one with a licence and horizons."""
     made = {kind: FakeDiagnosis(tmp_path_factory.mktemp(kind), kind) for kind in CAUSES}
     write_made_up_licence(made["named"].licence)
-    write_horizon(made["named"].results / "predictability.nc")
     return made
 
 
 @pytest.fixture(scope="module")
 def found(fakes):
     """What the report shows, by decision; sealed tests' files hold no test, so that opening one would fail."""
-    return {kind: load_diagnosed(*fake.arguments()) for kind, fake in fakes.items()}
+    horizons = {"named": write_horizons(fakes["named"].results)}
+    return {kind: load_diagnosed(*fake.arguments(), horizons.get(kind, ())) for kind, fake in fakes.items()}
 
 
 @pytest.fixture(scope="module")

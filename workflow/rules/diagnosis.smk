@@ -28,6 +28,7 @@ else:
     CAMPAIGNS = by_name(
         config.get("campaigns", DIAGNOSIS.get("campaigns", [])), WITHOUT
     )
+LICENCE = "data/licence/hidden-effects.json"  # how often the procedure was right
 LIBRARY_SOURCE = source_digest(*sources.LIBRARY)
 CALIBRATION_SOURCE = source_digest(*sources.CALIBRATION)
 DIAGNOSIS_SOURCE = source_digest(*sources.DIAGNOSIS)
@@ -48,12 +49,20 @@ def plan(campaign):
         os._exit(2)
 
 
-def library_files(campaign, kind="{solver}.nc"):
-    """Libraries of a campaign's tests by both solvers, test by test."""
-    names = [
+def library_names(campaign):
+    """Libraries of a campaign's open tests, test by test."""
+    return [
         plan(campaign).library(test, LIBRARY_SOURCE) for test in plan(campaign).tests
     ]
-    return expand("results/libraries/{library}/" + kind, library=names, solver=SOLVERS)
+
+
+def library_files(campaign, kind="{solver}.nc"):
+    """Files of these libraries by both solvers, test by test."""
+    return expand(
+        "results/libraries/{library}/" + kind,
+        library=library_names(campaign),
+        solver=SOLVERS,
+    )
 
 
 def calibration_libraries(wildcards):
@@ -98,6 +107,16 @@ wildcard_constraints:
 
 rule diagnose:
     """The verdict and the report of every campaign to diagnose."""
+    input:
+        expand(
+            "reports/diagnosis-{campaign}.{kind}",
+            campaign=CAMPAIGNS,
+            kind=["html", "pdf"],
+        ),
+
+
+rule verdicts:
+    """The verdict on every campaign to diagnose, without a report."""
     input:
         expand("results/diagnosis/{campaign}/verdict.json", campaign=CAMPAIGNS),
 
@@ -277,3 +296,66 @@ rule conclude:
         source=DIAGNOSIS_SOURCE,
     script:
         "../scripts/conclude.py"
+
+
+rule predict_twins:
+    """How long a test can be predicted: twins that differ by no more than what is measured can tell."""
+    input:
+        histories=expand(
+            "results/libraries/{{library}}/{solver}-histories.nc", solver=SOLVERS
+        ),
+        kernels=[kernels(solver) for solver in SOLVERS],
+    output:
+        "results/libraries/{library}/predictability.nc",
+    log:
+        "logs/predict_twins/{library}.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        library=LIBRARY_SOURCE,
+        source=DIAGNOSIS_SOURCE,
+    script:
+        "../scripts/predict_twins.py"
+
+
+rule make_diagnosis_report:
+    """The diagnosis as one self-contained page and as a PDF, from the same content."""
+    input:
+        tests=lambda wildcards: test_files(wildcards.campaign, "open"),
+        results=expand(
+            "results/diagnosis/{{campaign}}/{name}",
+            name=[
+                "parity.json",
+                "measured.nc",
+                "decision.json",
+                "misfit.nc",
+                "evidence.nc",
+                "frozen.json",
+                "verdict.json",
+            ],
+        ),
+        gain=gain_file,
+        horizons=lambda wildcards: [
+            f"results/libraries/{name}/predictability.nc"
+            for name in library_names(wildcards.campaign)
+        ],
+        templates=expand(
+            "src/blockshake/report/templates/{name}",
+            name=["report.html.j2", "report.typ"],
+        ),
+        licence=[LICENCE] if Path(LICENCE).exists() else [],
+    output:
+        html=report("reports/diagnosis-{campaign}.html", category="Diagnosis"),
+        pdf=report("reports/diagnosis-{campaign}.pdf", category="Diagnosis"),
+    log:
+        "logs/diagnosis/{campaign}/make_diagnosis_report.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
+        results="results/diagnosis/{campaign}",
+        effort=EFFORT,
+        licence=LICENCE,
+        source=source_digest(*sources.REPORT, *sources.DIAGNOSIS),
+    script:
+        "../scripts/make_diagnosis_report.py"

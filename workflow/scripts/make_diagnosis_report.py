@@ -9,4 +9,5 @@ with logging_to(snakemake.log[0]):
         snakemake.params.licence,
         snakemake.output.html,
         snakemake.output.pdf,
+        snakemake.input.horizons,
     )

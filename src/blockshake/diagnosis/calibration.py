@@ -133,7 +133,8 @@ def _oddness(case, nominal):
     """The smaller conformal p value of the strongest candidate and of the distance, among the others' readings."""
     others = [one for one in nominal if one is not case]
     return min(
-        _rank(getattr(case, name), [getattr(one, name) for one in others]) for name in ("strongest", "nominal")
+        _rank(getattr(case, name), [getattr(one, name) for one in others])
+        for name in ("strongest", "nominal")
     )
 
 

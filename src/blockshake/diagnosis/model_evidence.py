@@ -11,9 +11,7 @@ _UNKNOWN = (
     0.1  # of a feature's spread over all nominal draws: what no draw of one model shows it knows nothing of
 )
 _SIZES = 21
-_CONSTANT = (
-    gammaln(0.5 * (_FREEDOM + 1.0)) - gammaln(0.5 * _FREEDOM) - 0.5 * np.log((_FREEDOM - 2.0) * np.pi)
-)
+_CONSTANT = gammaln(0.5 * (_FREEDOM + 1.0)) - gammaln(0.5 * _FREEDOM) - 0.5 * np.log((_FREEDOM - 2.0) * np.pi)
 
 
 def size_grid(sizes):

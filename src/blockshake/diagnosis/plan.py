@@ -36,6 +36,8 @@ class Effort:
         Draws of the nominal model and, at most, with each candidate, by each solver and test.
     members : int
         Of every ensemble that a sealed test is predicted with, by each solver.
+    twins : int
+        By which the predictability of an open test is measured, by each solver.
     """
 
     runs: int
@@ -43,12 +45,13 @@ class Effort:
     nominal_draws: int
     own_draws: int
     members: int
+    twins: int
 
 
 EFFORTS = {
-    "quick": Effort(runs=400, tests=2, nominal_draws=20, own_draws=4, members=0),
-    "standard": Effort(runs=2000, tests=3, nominal_draws=40, own_draws=6, members=12),
-    "deep": Effort(runs=12000, tests=12, nominal_draws=80, own_draws=12, members=40),
+    "quick": Effort(runs=400, tests=2, nominal_draws=20, own_draws=4, members=0, twins=3),
+    "standard": Effort(runs=2000, tests=3, nominal_draws=40, own_draws=6, members=12, twins=8),
+    "deep": Effort(runs=12000, tests=12, nominal_draws=80, own_draws=12, members=40, twins=12),
 }
 _ENSEMBLES = 3  # that a sealed test is predicted with: nominal, recalibrated, extended
 
@@ -102,7 +105,9 @@ def own_draws(effort, candidates, tests, sealed):
         Not even two.
     """
     solvers = len(MODELS)
-    spent = solvers * (tests * effort.nominal_draws + sealed * _ENSEMBLES * effort.members)
+    spent = solvers * (
+        tests * effort.nominal_draws + sealed * _ENSEMBLES * effort.members + tests * (1 + effort.twins)
+    )
     count = min(effort.own_draws, (effort.runs - spent) // (solvers * tests * candidates))
     if count < _FEWEST_OWN:
         raise InputError(
@@ -182,11 +187,11 @@ class Plan:
 
     @property
     def runs(self):
-        """Simulated tests in all libraries."""
+        """Simulated tests in all libraries, twins with them."""
         return (
             len(MODELS)
             * len(self.tests)
-            * (self.effort.nominal_draws + self.own_draws * len(self.candidates))
+            * (self.effort.nominal_draws + self.own_draws * len(self.candidates) + 1 + self.effort.twins)
         )
 
     def caveats(self, causes):

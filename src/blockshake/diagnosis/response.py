@@ -12,7 +12,7 @@ _NOISES = np.array(
     [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0]
 )  # variance over that of the response at the visible size
 _ONSETS = (0.3, np.inf)  # sizes from which on the scatter stays as it is; infinite: in proportion to the size
-_TOGETHER = 0.5  # share of the scatter in which features go together
+_TOGETHER = 0.8  # share of the scatter in which features go together
 _NOTHING = 1e-3  # a size at which nothing is added, of the visible one
 _FEWEST_FREE = 0.5  # degrees of freedom, of two runs and fewer
 
@@ -45,7 +45,7 @@ class Response:
     def covariance(self):
         """Covariance of what is added at each size, float64 array, shape (n_sizes, n_features, n_features).
 
-        Correlations are those of the scatter, of which there are few runs: shrunk by half towards none.
+        Correlations are those of the scatter, of which there are few runs: shrunk by a fifth towards none.
         """
         n_draws, n_features = self.scatter.shape
         correlation = (1.0 - _TOGETHER) * np.eye(
@@ -75,10 +75,10 @@ def fit_response(own_sizes, added, sizes):
     Each feature by itself: a Gaussian process (Rasmussen and Williams 2006, eqs. 2.25 and 2.26) with the kernel
     ``s^2 u u' exp(-(u - u')^2 / 2 l^2)`` and independent scatter of variance ``s^2 r u^2``, or ``s^2 r u^2 / (u^2 +
     0.3^2)`` where chaos makes all of it from a small size on: at the null size nothing is added, in none of the draws.
-    Left-out residuals are of their eq. 5.12. Runs are too few to tell ``l``, ``r`` and which scatter: predictions are averaged
-    over a grid of them with the weight of their likelihood, ``s^2`` integrated out under the prior 1 / s^2, so that a few
-    runs that happen to lie on a line do not pass for a law without scatter. Their variance is that of the Student t,
-    with as many degrees of freedom as runs.
+    Left-out residuals are of their eq. 5.12. Runs are too few to tell ``l``, ``r`` and which scatter: predictions are
+    averaged over a grid of them with the weight of their likelihood, ``s^2`` integrated out under the prior 1 / s^2, so
+    that a few runs that happen to lie on a line do not pass for a law without scatter. Their variance is that of the
+    Student t, with as many degrees of freedom as runs.
     """
     own = np.abs(own_sizes) > _NOTHING
     own_sizes, added = own_sizes[own], added[own]

@@ -25,10 +25,9 @@ _RESULTS = (
     "decision.json",
     "misfit.nc",
     "evidence.nc",
-    "gain.nc",
-    "consequences.nc",
     "verdict.json",
 )
+_OF_GAIN = ("gain.json", "gain.nc", "consequences.nc")
 
 
 @dataclass(frozen=True)
@@ -43,8 +42,9 @@ class Diagnosed:
     synthetic : bool
         Any test that was judged by is a virtual one.
     verdict : Verdict
-    decision, parity, frozen, gain_summary : dict
-        From `decision_as_json`, `Parity.as_json`, `freeze` and the rule that measures the gain.
+    decision, parity, frozen : dict
+        From `decision_as_json`, `Parity.as_json`, `freeze`.
+    gain_caveats : list of str
     readings, misfit, evidence : xarray.Dataset
         From `measured_readings`, `misfit` and `deciding_features`.
     gain, consequences : xarray.Dataset or None
@@ -70,7 +70,7 @@ class Diagnosed:
     decision: dict
     parity: dict
     frozen: dict
-    gain_summary: dict
+    gain_caveats: list
     readings: xr.Dataset
     misfit: xr.Dataset
     evidence: xr.Dataset
@@ -117,7 +117,7 @@ class Diagnosed:
         return next(row for row in self.decision["candidates"] if row["key"] == key)
 
 
-def load_diagnosed(campaign, results, effort, licence):
+def load_diagnosed(campaign, results, effort, licence, horizons=()):
     """Read the results of a diagnosis; no sealed test's file is opened.
 
     Parameters
@@ -125,10 +125,12 @@ def load_diagnosed(campaign, results, effort, licence):
     campaign : str or path
         Its folder.
     results : str or path
-        Folder with ``verdict.json`` and what it rests on; ``predictability.nc`` may lie there too.
+        Folder with ``verdict.json`` and what it rests on.
     effort : str
     licence : str or path
         The procedure's licence, or where it will be.
+    horizons : sequence of str or path, optional
+        Files of the tests' predictability, in the order of the readings.
 
     Returns
     -------
@@ -145,22 +147,26 @@ def load_diagnosed(campaign, results, effort, licence):
     names = [str(name) for name in readings["test"].values]
     files = [campaign.folder / "campaign.yaml"]
     files += [campaign.folder / campaign.tests[name].file for name in names]
-    files += [results / name for name in _RESULTS]
+    verdict = load_verdict(results / "verdict.json")
+    measured = verdict.gain is not None  # files of an earlier gain may still lie there
+    files += [results / name for name in (*_RESULTS, *(_OF_GAIN if measured else ()))]
     return Diagnosed(
         campaign=campaign,
         effort=effort,
         synthetic=any(_synthetic(load_test(campaign, name).attrs) for name in names),
-        verdict=load_verdict(results / "verdict.json"),
+        verdict=verdict,
         decision=_json(results / "decision.json"),
         parity=_json(results / "parity.json"),
         frozen=_json(results / "frozen.json"),
-        gain_summary=_json(results / "gain.json"),
+        gain_caveats=_json(results / "gain.json")["caveats"] if measured else [],
         readings=readings,
         misfit=_dataset(results / "misfit.nc"),
         evidence=_dataset(results / "evidence.nc"),
-        gain=_filled(results / "gain.nc"),
-        consequences=_filled(results / "consequences.nc"),
-        horizon=_horizon(results / "predictability.nc"),
+        gain=_dataset(results / "gain.nc") if measured else None,
+        consequences=_dataset(results / "consequences.nc") if measured else None,
+        horizon={
+            name: float(_dataset(path)["horizon"].min()) for name, path in zip(names, horizons, strict=False)
+        },
         structure=structure.file.name,
         motions=_motions(campaign),
         places={one.key: one.place for one in candidates(structure)},
@@ -187,26 +193,11 @@ def _motions(campaign):
     return {name: motion.attributes for name, motion in found.items() if motion is not None}
 
 
-def _horizon(path):
-    """Shortest horizon of each test over the solvers; nothing without the file."""
-    if not path.exists():
-        return {}
-    horizon = _dataset(path)["horizon"]
-    shortest = horizon.min([dim for dim in horizon.dims if dim != "test"])
-    return {str(one["test"].item()): float(one) for one in shortest}
-
-
 def _json(path):
     try:
         return json.loads(read_text(path))
     except json.JSONDecodeError as error:
         raise InputError(path, "", f"expected JSON; {error}") from None
-
-
-def _filled(path):
-    """Dataset of a file, None where it is empty."""
-    found = _dataset(path)
-    return found if found.data_vars else None
 
 
 def _dataset(path):

@@ -19,9 +19,7 @@ _MOST_FIGURES = 3  # rows of before and after
 def gain_section(found):
     """Scores against three rivals, what got worse, consequence, curves before and after."""
     if found.gain is None:
-        reasons = found.gain_summary["caveats"] or [
-            "the model was not extended, and there is nothing to measure"
-        ]
+        reasons = found.gain_caveats or ["the model was not extended, and there is nothing to measure"]
         text = f"No gain was measured: {'; '.join(reasons)}."
         return Section("Gain on sealed tests", "gain", (Text(text),))
     gain = found.gain
@@ -49,7 +47,7 @@ def gain_section(found):
             PAGE_WIDTH,
         )
     )
-    caveats = found.gain_summary["caveats"]
+    caveats = found.gain_caveats
     if caveats:
         blocks.append(Items(tuple(f"{one[0].upper()}{one[1:]}." for one in caveats)))
     return Section("Gain on sealed tests", "gain", tuple(blocks))

@@ -25,7 +25,7 @@ _SECTIONS = (
 )
 
 
-def make_diagnosis_report(campaign, results, effort, licence, html, pdf):
+def make_diagnosis_report(campaign, results, effort, licence, html, pdf, horizons=()):
     """Write the report of a diagnosis that has ended.
 
     Parameters
@@ -40,13 +40,15 @@ def make_diagnosis_report(campaign, results, effort, licence, html, pdf):
         The procedure's licence; without one the report says so.
     html, pdf : str or path
         To write, each whole or not at all. Same results, same bytes.
+    horizons : sequence of str or path, optional
+        Files of the tests' predictability, in the order of the readings.
 
     Raises
     ------
     InputError
         A file is missing or holds something else.
     """
-    document = compose_diagnosis(load_diagnosed(campaign, results, effort, licence))
+    document = compose_diagnosis(load_diagnosed(campaign, results, effort, licence, horizons))
     write_html(html, document)
     write_pdf(pdf, document)
 

@@ -186,7 +186,7 @@ def _gain_fact(found):
     label = "Gain on sealed tests, of all that could be gained"
     gain = found.verdict.gain
     if gain is None:
-        why = found.gain_summary["caveats"] or ["the model was not extended: no physical cause was named"]
+        why = found.gain_caveats or ["the model was not extended: no physical cause was named"]
         return label, "not measured", why[0]
     if not _to_gain(found):
         return label, "nothing to gain", "the recalibrated model errs no more than chance lets it"

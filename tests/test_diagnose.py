@@ -1,0 +1,79 @@
+"""The command's bad input: one clear line, exit 2, nothing half-written."""
+
+import shutil
+
+import pytest
+
+from blockshake.cli import main
+from blockshake.files import PACKAGE
+
+CAMPAIGN = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-1"
+
+
+def _changed(folder, change):
+    copy = folder / "campaign"
+    shutil.copytree(CAMPAIGN, copy)
+    path = copy / "campaign.yaml"
+    path.write_text(change(path.read_text()))
+    return copy
+
+
+def _only_one_open(text):
+    first, *others = text.split("role: fit")
+    return first + "role: fit" + "role: sealed".join(others).replace("role: select", "role: sealed")
+
+
+BAD = {
+    "one test only": (_only_one_open, "expected at least 2 different tests"),
+    "sealed tests only": (
+        lambda text: text.replace("role: fit", "role: sealed").replace("role: select", "role: sealed"),
+        "expected at least 2 different tests",
+    ),
+    "a structure without these bodies": (
+        lambda text: text.replace("structure: configuration-1", "structure: configuration-3"),
+        "expected markers of the structure",
+    ),
+    "a motion nobody has": (
+        lambda text: text.replace("motion: alkion,", "motion: nothing,"),
+        "expected a shipped motion",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_a_campaign_that_cannot_be_diagnosed(tmp_path, capsys, case):
+    change, message = BAD[case]
+    output = tmp_path / "output"
+    assert main(["diagnose", str(_changed(tmp_path, change)), "--output", str(output)]) == 2
+    error = capsys.readouterr().err
+    assert message in error
+    assert error.count("\n") == 1
+    assert not output.exists()
+
+
+def test_no_marker_on_the_slab(tmp_path, capsys):
+    import xarray as xr
+
+    folder = _changed(tmp_path, lambda text: text)
+    for path in folder.glob("*.nc"):
+        test = xr.load_dataset(path)
+        kept = [name for name in test["marker"].values if not str(name).startswith("slab")]
+        path.unlink()
+        test.sel(marker=kept).to_netcdf(path)
+    assert main(["diagnose", str(folder), "--output", str(tmp_path / "output")]) == 2
+    assert "expected a marker of the driven body" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["nowhere", "--output", "x"], "nowhere"),
+        ([str(CAMPAIGN), "--output", "x", "--effort", "most"], "expected one of quick, standard, deep"),
+        ([str(CAMPAIGN), "--output", "/dev/null/x"], "/dev/null"),
+    ],
+)
+def test_bad_arguments(capsys, arguments, message):
+    assert main(["diagnose", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert message in error
+    assert error.count("\n") == 1
