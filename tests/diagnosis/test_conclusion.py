@@ -64,6 +64,10 @@ def test_a_sensor_fault_alone_is_named_with_its_marker():
     estimate = verdict.parameters["sensor-gain"]["error"]
     assert (estimate.estimate, estimate.upper) == (0.03, pytest.approx(0.03 + 1.645e-3))
     assert verdict.location["sensor-gain"] == {"marker": "block-1-face"}
+    assert (verdict.misfit.p, verdict.misfit.where) == (
+        1e-4,
+        "readings of block-1-face, against the other sensors",
+    )
 
 
 def test_a_sensor_fault_beside_a_physical_cause_is_a_combination():

@@ -86,7 +86,7 @@ def _is_made(case, results, maker):
     )  # fmt: skip
 
 
-def diagnose(names, results, effort, cores, without, log):
+def diagnose(names, results, effort, cores, without, log, target="verdicts"):
     """Verdicts on campaigns by the ordinary rules, in one workflow; what an earlier one finished is kept.
 
     Parameters
@@ -99,6 +99,8 @@ def diagnose(names, results, effort, cores, without, log):
     without : str or None
         Effect that is not among the candidates.
     log : Log
+    target : str
+        Of the workflow: ``verdicts``, or ``diagnose`` for the reports too.
 
     Raises
     ------
@@ -109,7 +111,7 @@ def diagnose(names, results, effort, cores, without, log):
     left_out = [] if without is None else [f"without=['{without}']"]
     begin = time.monotonic()
     command = [
-        "snakemake", "--cores", str(cores), "--keep-going", "--rerun-incomplete", "diagnose",
+        "snakemake", "--cores", str(cores), "--keep-going", "--rerun-incomplete", target,
         "--config", f"campaigns=[{campaigns}]", f"effort={effort}", *left_out,
     ]  # fmt: skip
     log("diagnosing", cases=len(names), without=without, effort=effort)

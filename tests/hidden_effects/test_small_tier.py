@@ -31,7 +31,7 @@ def _silent(step, **facts):
 def results():
     """Verdicts on all cases by one workflow, and on those whose effect is removed by another."""
     make_cases(PLAN, RESULTS, CORES, _silent)
-    diagnose(list(TRUTH), RESULTS, "standard", CORES, None, _silent)
+    diagnose(list(TRUTH), RESULTS, "standard", CORES, None, _silent, "diagnose")
     for name in PLAN.removed:
         diagnose([name], RESULTS, "standard", CORES, TRUTH[name], _silent)
     return RESULTS

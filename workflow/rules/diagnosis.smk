@@ -238,16 +238,44 @@ rule extend_model:
         "../scripts/extend_model.py"
 
 
+def decided(wildcards):
+    """Physical causes of a campaign and whether its sensors have a fault; asks for the decision first."""
+    files = checkpoints.decide.get(**wildcards).output
+    parity = f"results/diagnosis/{wildcards.campaign}/parity.json"
+    causes = json.loads(Path(files.decision).read_text())["causes"]
+    return causes, bool(json.loads(Path(parity).read_text())["findings"])
+
+
+def extended_files(wildcards):
+    """Extended ensembles by both solvers, where a physical cause was found."""
+    causes, _ = decided(wildcards)
+    return expand(
+        f"results/diagnosis/{wildcards.campaign}/extended/{{solver}}.nc",
+        solver=SOLVERS if causes else [],
+    )
+
+
+def gain_file(wildcards):
+    """The gain, where a cause was found, there are sealed tests and the effort has members to predict them with."""
+    from blockshake.diagnosis.plan import sealed_tests
+
+    causes, faulty = decided(wildcards)
+    asked = plan(wildcards.campaign)
+    measurable = (causes and asked.effort.members) or (faulty and not causes)
+    if measurable and sealed_tests(asked.campaign):
+        return f"results/diagnosis/{wildcards.campaign}/gain.json"
+    return []
+
+
 rule measure_gain:
-    """What the extension gains on the sealed tests, against three rivals: the one rule that reads them."""
+    """What naming the cause gains on the sealed tests, against three rivals: the one rule that reads them."""
     input:
         frozen="results/diagnosis/{campaign}/frozen.json",
         decision="results/diagnosis/{campaign}/decision.json",
         readings=rules.read_measured.output.readings,
         libraries=lambda wildcards: library_files(wildcards.campaign),
-        extended=expand(
-            "results/diagnosis/{{campaign}}/extended/{solver}.nc", solver=SOLVERS
-        ),
+        extended=extended_files,
+        parity=rules.read_measured.output.parity,
         sealed=lambda wildcards: test_files(wildcards.campaign, "sealed"),
     output:
         gain="results/diagnosis/{campaign}/gain.nc",
@@ -263,18 +291,6 @@ rule measure_gain:
         source=DIAGNOSIS_SOURCE,
     script:
         "../scripts/measure_gain.py"
-
-
-def gain_file(wildcards):
-    """The gain, where a cause was found, there are sealed tests and the effort has members to predict them with."""
-    from blockshake.diagnosis.plan import sealed_tests
-
-    decided = checkpoints.decide.get(**wildcards).output.decision
-    found = json.loads(Path(decided).read_text())["causes"]
-    asked = plan(wildcards.campaign)
-    if found and asked.effort.members and sealed_tests(asked.campaign):
-        return f"results/diagnosis/{wildcards.campaign}/gain.json"
-    return []
 
 
 rule conclude:

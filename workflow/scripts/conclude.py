@@ -21,8 +21,8 @@ with logging_to(snakemake.log[0]):
         [Finding.from_json(values) for values in parity["findings"]],
         where(xr.load_dataset(snakemake.input.misfit)),
         plan.runs + (measured["runs"] if measured else 0),
-        measured["caveats"] if measured else plan.caveats(decision["causes"]),
+        measured["caveats"] if measured else plan.caveats([*decision["causes"], *parity["findings"]]),
         snakemake.params.effort,
-        Gain(**measured["gain"]) if measured else None,
+        Gain(**measured["gain"]) if measured and measured["gain"] else None,
     )
     write_verdict(snakemake.output[0], verdict)

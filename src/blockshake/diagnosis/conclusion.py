@@ -82,7 +82,7 @@ def conclude(decision, findings, where, runs, caveats, effort, gain=None):
             if name in parameters
         },
         location={name: location[name] for name in causes if location.get(name)},
-        misfit=Misfit(p=decision["p_none"], where=where),
+        misfit=_misfit(decision, sensors, where),
         excluded_above=_excluded(decision, causes),
         next_test=_next_test(kind, causes),
         gain=gain,
@@ -153,6 +153,16 @@ def _own_size(sizes, densities):
     """Size that one test by itself finds likeliest, with the ends of all less likely by a factor e^2 at most."""
     likely = sizes[densities >= densities.max() - 2.0]
     return {"estimate": sizes[densities.argmax()], "lower": likely.min(), "upper": likely.max()}
+
+
+def _misfit(decision, sensors, where):
+    """The smaller chance of readings like these: with sound sensors, or by the nominal model."""
+    first = min(sensors, key=lambda name: sensors[name]["p"], default=None)
+    if first is None or sensors[first]["p"] >= decision["p_none"]:
+        return Misfit(p=decision["p_none"], where=where)
+    marker = sensors[first]["location"].get("marker")
+    place = f"readings of {marker}" if marker else "readings of the optical system"
+    return Misfit(p=sensors[first]["p"], where=f"{place}, against the other sensors")
 
 
 def _excluded(decision, causes):

@@ -200,7 +200,7 @@ class Plan:
             return []
         if not sealed_tests(self.campaign):
             return ["no sealed test: no gain was measured"]
-        return ["quick effort: no gain was measured"]
+        return ["quick effort: no extension was simulated, and no gain measured"]
 
     def library(self, test, source):
         """Name of the library of a test: equal content, equal name."""

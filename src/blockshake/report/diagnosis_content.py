@@ -48,7 +48,9 @@ class Diagnosed:
     readings, misfit, evidence : xarray.Dataset
         From `measured_readings`, `misfit` and `deciding_features`.
     gain, consequences : xarray.Dataset or None
-        From `campaign_gain`; None where no gain was measured.
+        From `campaign_gain`; None where no physical cause's gain was measured.
+    sensor_gain : xarray.Dataset or None
+        From `sensor_gain`; None where a sensor's fault is not the only cause.
     horizon : dict of str to float
         By test: time for which it can be predicted [s]; empty where that was not measured.
     structure : str
@@ -76,6 +78,7 @@ class Diagnosed:
     evidence: xr.Dataset
     gain: xr.Dataset | None
     consequences: xr.Dataset | None
+    sensor_gain: xr.Dataset | None
     horizon: dict
     structure: str
     motions: dict
@@ -148,6 +151,8 @@ def load_diagnosed(campaign, results, effort, licence, horizons=()):
     files = [campaign.folder / "campaign.yaml"]
     files += [campaign.folder / campaign.tests[name].file for name in names]
     verdict = load_verdict(results / "verdict.json")
+    decision = _json(results / "decision.json")
+    physical = bool(decision["causes"])
     measured = verdict.gain is not None  # files of an earlier gain may still lie there
     files += [results / name for name in (*_RESULTS, *(_OF_GAIN if measured else ()))]
     return Diagnosed(
@@ -155,15 +160,16 @@ def load_diagnosed(campaign, results, effort, licence, horizons=()):
         effort=effort,
         synthetic=any(_synthetic(load_test(campaign, name).attrs) for name in names),
         verdict=verdict,
-        decision=_json(results / "decision.json"),
+        decision=decision,
         parity=_json(results / "parity.json"),
         frozen=_json(results / "frozen.json"),
         gain_caveats=_json(results / "gain.json")["caveats"] if measured else [],
         readings=readings,
         misfit=_dataset(results / "misfit.nc"),
         evidence=_dataset(results / "evidence.nc"),
-        gain=_dataset(results / "gain.nc") if measured else None,
-        consequences=_dataset(results / "consequences.nc") if measured else None,
+        gain=_dataset(results / "gain.nc") if measured and physical else None,
+        consequences=_dataset(results / "consequences.nc") if measured and physical else None,
+        sensor_gain=_dataset(results / "gain.nc") if measured and not physical else None,
         horizon={
             name: float(_dataset(path)["horizon"].min()) for name, path in zip(names, horizons, strict=False)
         },

@@ -10,7 +10,7 @@ from blockshake.report.wording import MISSING, model_label, number
 _KINDS = {
     "nominal": "nominal",
     "recalibrated": "recalibrated",
-    "discrepancy": "recalibrated with a discrepancy",
+    "discrepancy": "nominal with a discrepancy",
     "extended": "extended",
 }
 _MOST_FIGURES = 3  # rows of before and after
@@ -18,6 +18,8 @@ _MOST_FIGURES = 3  # rows of before and after
 
 def gain_section(found):
     """Scores against three rivals, what got worse, consequence, curves before and after."""
+    if found.sensor_gain is not None:
+        return _of_sensor(found)
     if found.gain is None:
         reasons = found.gain_caveats or ["the model was not extended, and there is nothing to measure"]
         text = f"No gain was measured: {'; '.join(reasons)}."
@@ -28,7 +30,7 @@ def gain_section(found):
         Text(
             f"Sealed tests: {', '.join(tests)}. They were opened after the decision had been frozen (digest "
             f"{found.frozen['decision']}). Rivals of the extended model: the nominal one; the nominal "
-            "one recalibrated on the open tests; the recalibrated one with a statistical "
+            "one recalibrated on the open tests; the nominal one with a statistical "
             "discrepancy (Kennedy and O'Hagan 2001), which has no name. Score: continuous ranked probability score "
             "of the features, each in units of its spread; lower is better."
         ),
@@ -51,6 +53,46 @@ def gain_section(found):
     if caveats:
         blocks.append(Items(tuple(f"{one[0].upper()}{one[1:]}." for one in caveats)))
     return Section("Gain on sealed tests", "gain", tuple(blocks))
+
+
+def _of_sensor(found):
+    """What taking a sensor's fault out gains: its readings against those of the other sensors."""
+    scores = found.sensor_gain
+    unit = scores["score"].attrs["units"]
+    shown, factor = ("mm", 1e3) if unit == "m" else ("ms", 1e3)
+    words = {
+        "nominal": "as read",
+        "extended": "fault taken out",
+        "discrepancy": "mean of the open tests taken off",
+    }
+    rows = tuple(
+        (
+            str(name),
+            *(number(factor * float(scores["score"].sel(test=name, kind=kind)), 3) for kind in words),
+            number(factor * float(scores["floor"].sel(test=name)), 3),
+        )
+        for name in scores["test"].values
+    )
+    own = found.verdict.gain.nominal
+    return Section(
+        "Gain on sealed tests",
+        "gain",
+        (
+            Text(
+                f"The fault is one of the observation, so the extension acts there: the estimate from the open tests "
+                f"was taken out of the sealed ones, which were opened after the decision had been frozen (digest "
+                f"{found.frozen['decision']}). Of what could be gained it gains {100.0 * own.estimate:.0f} % "
+                f"({100.0 * own.lower:.0f} to {100.0 * own.upper:.0f} % in the single tests). No simulation enters this."
+            ),
+            Table(
+                f"Root mean square distance of the readings of {scores.attrs['where']} from where the other sensors "
+                f"put them [{shown}]; the floor is that while nothing moves.",
+                ("Test", *words.values(), "floor"),
+                rows,
+                "lrrrr",
+            ),
+        ),
+    )
 
 
 def _scores(gain):

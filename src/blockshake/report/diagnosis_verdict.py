@@ -56,7 +56,9 @@ def _missing(found):
     if len(found.tests) < _FEWEST_TESTS:
         missing.append(f"it was judged by {len(found.tests)} tests only")
     if not physical:
-        missing.append("the sensors' checks alone found it, and no gain was measured")
+        missing.append("the sensors' checks alone found it")
+        if found.sensor_gain is None:
+            missing.append("no gain was measured on a sealed test")
         return missing
     if found.decision["solver_dependent"]:
         solvers = ", ".join(map(model_label, found.decision["solver_dependent"]))
@@ -188,13 +190,15 @@ def _gain_fact(found):
     if gain is None:
         why = found.gain_caveats or ["the model was not extended: no physical cause was named"]
         return label, "not measured", why[0]
-    if not _to_gain(found):
+    if found.gain is not None and not _to_gain(found):
         return label, "nothing to gain", "the recalibrated model errs no more than chance lets it"
     own = gain.recalibrated
     return (
         label,
         f"{100.0 * own.estimate:.0f} % ({100.0 * own.lower:.0f} to {100.0 * own.upper:.0f} %)",
-        "against the recalibrated model; 90 % interval",
+        "against the recalibrated model; 90 % interval"
+        if found.gain is not None
+        else "of the readings against the other sensors'; span of the sealed tests",
     )
 
 
