@@ -18,6 +18,7 @@ from blockshake.report.wording import model_label, number
 ESTABLISHED, PROBABLE, ONE_OF = "Established", "Probable", "One of"
 UNKNOWN, NOTHING = "Something acts, cause unknown", "No misfit larger than chance"
 _FEWEST_TESTS = 3
+_SMALLEST_CHANCE = 1e-6  # that is told as a number
 
 
 def rung(found):
@@ -149,12 +150,16 @@ def facts(found):
     return (
         (
             "Chance of such scores without a missing effect",
-            f"p = {number(found.verdict.misfit.p, 2)}",
+            _chance_words(found.verdict.misfit.p),
             f"called a misfit at {FALSE_ALARM:g} or less",
         ),
         _size_fact(found),
         _gain_fact(found),
     )
+
+
+def _chance_words(p):
+    return f"p = {number(p, 2)}" if p > _SMALLEST_CHANCE else f"p below {_SMALLEST_CHANCE:g}"
 
 
 def _size_fact(found):
