@@ -19,6 +19,7 @@ include: "workflow/rules/simulation.smk"
 include: "workflow/rules/envelope.smk"
 include: "workflow/rules/friction.smk"
 include: "workflow/rules/campaign.smk"
+include: "workflow/rules/diagnosed.smk"
 include: "workflow/rules/diagnosis.smk"
 include: "workflow/rules/report.smk"
 

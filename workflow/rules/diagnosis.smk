@@ -4,99 +4,6 @@ Libraries and calibrations are named by their content: equal structures, motions
 campaign they are of, so that a second campaign simulates nothing but its own extension.
 """
 
-import json
-import re
-from functools import cache
-
-
-def by_name(folders, without):
-    """Folders of campaigns by the names of their results."""
-    from blockshake.diagnosis.plan import result_name
-
-    named = {result_name(folder, without): str(folder) for folder in folders}
-    if len(named) < len(folders):
-        sys.exit("blockshake: expected campaigns in folders of different names")
-    return named
-
-
-DIAGNOSIS = config.get("diagnosis") or {}
-EFFORT = config.get("effort", DIAGNOSIS.get("effort", "standard"))
-WITHOUT = config.get("without", [])
-if "campaign" in config:
-    CAMPAIGNS = by_name([config["campaign"]], WITHOUT)
-else:
-    CAMPAIGNS = by_name(
-        config.get("campaigns", DIAGNOSIS.get("campaigns", [])), WITHOUT
-    )
-LICENCE = "data/licence/hidden-effects.json"  # how often the procedure was right
-LIBRARY_SOURCE = source_digest(*sources.LIBRARY)
-CALIBRATION_SOURCE = source_digest(*sources.CALIBRATION)
-DIAGNOSIS_SOURCE = source_digest(*sources.DIAGNOSIS)
-
-
-config["diagnosed"], config["diagnosis_effort"] = list(CAMPAIGNS.values()), EFFORT
-
-
-@cache
-def plan(campaign):
-    """Plan of a campaign by its name; made when a rule first asks, since it reads the open tests."""
-    from blockshake.diagnosis.plan import plan_diagnosis
-
-    try:
-        return plan_diagnosis(CAMPAIGNS[campaign], EFFORT, WITHOUT)
-    except InputError as error:
-        print(f"blockshake: {error}", file=sys.stderr, flush=True)
-        os._exit(2)
-
-
-def library_names(campaign):
-    """Libraries of a campaign's open tests, test by test."""
-    return [
-        plan(campaign).library(test, LIBRARY_SOURCE) for test in plan(campaign).tests
-    ]
-
-
-def library_files(campaign, kind="{solver}.nc"):
-    """Files of these libraries by both solvers, test by test."""
-    return expand(
-        "results/libraries/{library}/" + kind,
-        library=library_names(campaign),
-        solver=SOLVERS,
-    )
-
-
-def calibration_libraries(wildcards):
-    """Libraries that a calibration is made of: those of the first campaign that has it."""
-    for campaign in CAMPAIGNS:
-        if plan(campaign).calibration(CALIBRATION_SOURCE) == wildcards.calibration:
-            return library_files(campaign)
-    raise ValueError(f"no campaign has the calibration {wildcards.calibration}")
-
-
-def considered_effects():
-    """Names of the effects that are considered."""
-    from blockshake.diagnosis.plan import considered
-
-    return considered(WITHOUT)
-
-
-def test_files(campaign, role):
-    """What describes a campaign, and the files of its tests that are sealed or that are judged by."""
-    given = load_campaign(CAMPAIGNS[campaign])
-    if role == "sealed":
-        tests = [test for test in given.tests.values() if test.role == "sealed"]
-    else:
-        tests = [given.tests[name] for name in plan(campaign).tests]
-    files = [given.folder / "campaign.yaml", Path(given.structure)]
-    for test in tests:
-        path = given.folder / test.file
-        files += [
-            path,
-            path.with_name(f"{path.stem}-acc.csv"),
-            given.folder / test.motion,
-        ]
-    return [str(path) for path in files if path.is_file()]
-
 
 wildcard_constraints:
     campaign="|".join(map(re.escape, CAMPAIGNS)) or "none",
@@ -190,9 +97,7 @@ checkpoint decide:
         histories=lambda wildcards: library_files(
             wildcards.campaign, "{solver}-histories.nc"
         ),
-        calibration=lambda wildcards: "results/libraries/calibrations/"
-        + plan(wildcards.campaign).calibration(CALIBRATION_SOURCE)
-        + ".json",
+        calibration=calibration_file,
     output:
         decision="results/diagnosis/{campaign}/decision.json",
         misfit="results/diagnosis/{campaign}/misfit.nc",
@@ -236,35 +141,6 @@ rule extend_model:
         judged_by=DIAGNOSIS_SOURCE,
     script:
         "../scripts/extend_model.py"
-
-
-def decided(wildcards):
-    """Physical causes of a campaign and whether its sensors have a fault; asks for the decision first."""
-    files = checkpoints.decide.get(**wildcards).output
-    parity = f"results/diagnosis/{wildcards.campaign}/parity.json"
-    causes = json.loads(Path(files.decision).read_text())["causes"]
-    return causes, bool(json.loads(Path(parity).read_text())["findings"])
-
-
-def extended_files(wildcards):
-    """Extended ensembles by both solvers, where a physical cause was found."""
-    causes, _ = decided(wildcards)
-    return expand(
-        f"results/diagnosis/{wildcards.campaign}/extended/{{solver}}.nc",
-        solver=SOLVERS if causes else [],
-    )
-
-
-def gain_file(wildcards):
-    """The gain, where a cause was found, there are sealed tests and the effort has members to predict them with."""
-    from blockshake.diagnosis.plan import sealed_tests
-
-    causes, faulty = decided(wildcards)
-    asked = plan(wildcards.campaign)
-    measurable = (causes and asked.effort.members) or (faulty and not causes)
-    if measurable and sealed_tests(asked.campaign):
-        return f"results/diagnosis/{wildcards.campaign}/gain.json"
-    return []
 
 
 rule measure_gain:
@@ -369,7 +245,7 @@ rule make_diagnosis_report:
         "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
-        results="results/diagnosis/{campaign}",
+        results=lambda wildcards, input: str(Path(input.results[0]).parent),
         effort=EFFORT,
         licence=LICENCE,
         source=source_digest(*sources.REPORT, *sources.DIAGNOSIS),

@@ -163,7 +163,9 @@ def load_diagnosed(campaign, results, effort, licence, horizons=()):
         decision=decision,
         parity=_json(results / "parity.json"),
         frozen=_json(results / "frozen.json"),
-        gain_caveats=_json(results / "gain.json")["caveats"] if measured else [],
+        gain_caveats=_json(results / "gain.json")["caveats"]
+        if measured
+        else [caveat for caveat in verdict.caveats if "gain" in caveat],
         readings=readings,
         misfit=_dataset(results / "misfit.nc"),
         evidence=_dataset(results / "evidence.nc"),

@@ -82,7 +82,7 @@ def _of_sensor(found):
                 f"The fault is one of the observation, so the extension acts there: the estimate from the open tests "
                 f"was taken out of the sealed ones, which were opened after the decision had been frozen (digest "
                 f"{found.frozen['decision']}). Of what could be gained it gains {100.0 * own.estimate:.0f} % "
-                f"({100.0 * own.lower:.0f} to {100.0 * own.upper:.0f} % in the single tests). No simulation enters this."
+                f"({100.0 * own.lower:.0f} to {100.0 * own.upper:.0f} % in the single tests). No simulation enters it."
             ),
             Table(
                 f"Root mean square distance of the readings of {scores.attrs['where']} from where the other sensors "

@@ -1,0 +1,129 @@
+"""What the rules of a diagnosis share: campaigns by name, their plans, and which files follow from a decision."""
+
+import json
+import re
+from functools import cache
+
+
+def by_name(folders, without):
+    """Folders of campaigns by the names of their results."""
+    from blockshake.diagnosis.plan import result_name
+
+    named = {result_name(folder, without): str(folder) for folder in folders}
+    if len(named) < len(folders):
+        sys.exit("blockshake: expected campaigns in folders of different names")
+    return named
+
+
+DIAGNOSIS = config.get("diagnosis") or {}
+EFFORT = config.get("effort", DIAGNOSIS.get("effort", "standard"))
+WITHOUT = config.get("without", [])
+if "campaign" in config:
+    CAMPAIGNS = by_name([config["campaign"]], WITHOUT)
+else:
+    CAMPAIGNS = by_name(
+        config.get("campaigns", DIAGNOSIS.get("campaigns", [])), WITHOUT
+    )
+LICENCE = "data/licence/hidden-effects.json"  # how often the procedure was right
+LIBRARY_SOURCE = source_digest(*sources.LIBRARY)
+CALIBRATION_SOURCE = source_digest(*sources.CALIBRATION)
+DIAGNOSIS_SOURCE = source_digest(*sources.DIAGNOSIS)
+
+
+config["diagnosed"], config["diagnosis_effort"] = list(CAMPAIGNS.values()), EFFORT
+
+
+@cache
+def plan(campaign):
+    """Plan of a campaign by its name; made when a rule first asks, since it reads the open tests."""
+    from blockshake.diagnosis.plan import plan_diagnosis
+
+    try:
+        return plan_diagnosis(CAMPAIGNS[campaign], EFFORT, WITHOUT)
+    except InputError as error:
+        print(f"blockshake: {error}", file=sys.stderr, flush=True)
+        os._exit(2)
+
+
+def library_names(campaign):
+    """Libraries of a campaign's open tests, test by test."""
+    return [
+        plan(campaign).library(test, LIBRARY_SOURCE) for test in plan(campaign).tests
+    ]
+
+
+def library_files(campaign, kind="{solver}.nc"):
+    """Files of these libraries by both solvers, test by test."""
+    return expand(
+        f"results/libraries/{{library}}/{kind}",
+        library=library_names(campaign),
+        solver=SOLVERS,
+    )
+
+
+def calibration_file(wildcards):
+    """Calibration of a campaign's libraries together."""
+    name = plan(wildcards.campaign).calibration(CALIBRATION_SOURCE)
+    return f"results/libraries/calibrations/{name}.json"
+
+
+def calibration_libraries(wildcards):
+    """Libraries that a calibration is made of: those of the first campaign that has it."""
+    for campaign in CAMPAIGNS:
+        if plan(campaign).calibration(CALIBRATION_SOURCE) == wildcards.calibration:
+            return library_files(campaign)
+    raise ValueError(f"no campaign has the calibration {wildcards.calibration}")
+
+
+def considered_effects():
+    """Names of the effects that are considered."""
+    from blockshake.diagnosis.plan import considered
+
+    return considered(WITHOUT)
+
+
+def test_files(campaign, role):
+    """What describes a campaign, and the files of its tests that are sealed or that are judged by."""
+    given = load_campaign(CAMPAIGNS[campaign])
+    if role == "sealed":
+        tests = [test for test in given.tests.values() if test.role == "sealed"]
+    else:
+        tests = [given.tests[name] for name in plan(campaign).tests]
+    files = [given.folder / "campaign.yaml", Path(given.structure)]
+    for test in tests:
+        path = given.folder / test.file
+        files += [
+            path,
+            path.with_name(f"{path.stem}-acc.csv"),
+            given.folder / test.motion,
+        ]
+    return [str(path) for path in files if path.is_file()]
+
+
+def decided(wildcards):
+    """Physical causes of a campaign and whether its sensors have a fault; asks for the decision first."""
+    files = checkpoints.decide.get(**wildcards).output
+    parity = f"results/diagnosis/{wildcards.campaign}/parity.json"
+    causes = json.loads(Path(files.decision).read_text())["causes"]
+    return causes, bool(json.loads(Path(parity).read_text())["findings"])
+
+
+def extended_files(wildcards):
+    """Extended ensembles by both solvers, where a physical cause was found."""
+    causes, _ = decided(wildcards)
+    return expand(
+        f"results/diagnosis/{wildcards.campaign}/extended/{{solver}}.nc",
+        solver=SOLVERS if causes else [],
+    )
+
+
+def gain_file(wildcards):
+    """The gain, where a cause was found, there are sealed tests and the effort has members to predict them with."""
+    from blockshake.diagnosis.plan import sealed_tests
+
+    causes, faulty = decided(wildcards)
+    asked = plan(wildcards.campaign)
+    measurable = (causes and asked.effort.members) or (faulty and not causes)
+    if measurable and sealed_tests(asked.campaign):
+        return f"results/diagnosis/{wildcards.campaign}/gain.json"
+    return []
