@@ -39,7 +39,7 @@ def _finding(effect="sensor-gain", where=("block-1-face",), quantity="gain", est
 
 
 def _verdict(decision, findings=(), effort="standard"):
-    return conclude(decision, findings, WHERE, 100, [], effort)
+    return conclude(decision, findings, ["block-1-acc-x"], WHERE, 100, [], effort)
 
 
 def test_nothing_found_says_what_would_have_been_seen():
@@ -68,6 +68,19 @@ def test_a_sensor_fault_alone_is_named_with_its_marker():
         1e-4,
         "readings of block-1-face, against the other sensors",
     )
+
+
+def test_a_channel_is_not_called_a_marker():
+    verdict = _verdict(_decision(), [_finding(where=("block-1-acc-x",))])
+    assert verdict.location["sensor-gain"] == {"channel": "block-1-acc-x"}
+    assert verdict.misfit.where == "readings of block-1-acc-x, against the other sensors"
+
+
+def test_the_size_from_all_draws_with_the_cause_takes_the_place_of_the_decision_s():
+    refined = {"estimate": 4.2e-4, "lower": 4e-4, "upper": 4.4e-4, "unit": "rad s2/m", "informed": True}
+    size = {"key": "table-pitch", "parameters": {"coefficient": refined}}
+    verdict = conclude(_decision("named", ["table-pitch"]), (), (), WHERE, 100, [], "standard", size)
+    assert verdict.parameters["table-pitch"]["coefficient"].lower == 4e-4
 
 
 def test_a_sensor_fault_beside_a_physical_cause_is_a_combination():

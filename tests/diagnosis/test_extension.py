@@ -38,7 +38,8 @@ class Known:
             {"ls-dem": {PITCH.key: sizes}},
         )
         self.measured = self.world.features(np.atleast_2d(truth), generator)[0] + size * self.direction
-        self.scores = self.library.score([self.measured[own] for own in halves])
+        scores = self.library.score([self.measured[own] for own in halves])
+        self.posterior = scores.sizes[PITCH.key], scores.weights[PITCH.key]
         self.features = open_features(self.library, "ls-dem")
         self.responses = open_responses(self.library, "ls-dem", PITCH.key)
 
@@ -73,7 +74,7 @@ def test_at_the_null_size_members_are_the_recalibrated_ones(known):
 
 def test_members_have_the_size_and_the_nominal_parameters_of_the_truth(known):
     members = extended_members(
-        PITCH, known.scores, known.draws, known.features, known.measured, known.responses, COUNT
+        PITCH, known.posterior, known.draws, known.features, known.measured, known.responses, COUNT
     )
     size = EFFECTS["table-pitch"].parameters[0]
     sizes = np.array([effects[0]["values"][size.name] for _, effects in members])
@@ -95,7 +96,7 @@ def test_members_have_the_size_and_the_nominal_parameters_of_the_truth(known):
 def test_members_are_the_same_every_time_and_other_parameters_are_the_library_s(known):
     one, two = (
         extended_members(
-            PITCH, known.scores, known.draws, known.features, known.measured, known.responses, 12
+            PITCH, known.posterior, known.draws, known.features, known.measured, known.responses, 12
         )
         for _ in range(2)
     )

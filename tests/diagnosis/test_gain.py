@@ -32,7 +32,7 @@ class World:
         plain = np.einsum("cf,tfn->tcn", factors, self.mixing) + noise
         return self.bias[model][:, None] + spread * plain + np.reshape(added, (self.n_tests, 1, -1))
 
-    def tests(self, truth, extended, model="ls-dem"):
+    def sealed(self, truth, extended, model="ls-dem"):
         nothing = np.zeros_like(self.right)
         measured = self.draws(1, model, truth)[:, 0]
         ensembles = {
@@ -67,7 +67,7 @@ def fewer_replicates(monkeypatch):
 
 
 def test_score_is_the_ranked_probability_score_and_the_floor_its_leave_one_out_mean():
-    tests = World(1, 2).tests(truth=np.ones((2, 48)), extended=np.ones((2, 48)))
+    tests = World(1, 2).sealed(truth=np.ones((2, 48)), extended=np.ones((2, 48)))
     result = gain_on(tests)
     for kind in result["kind"].values:
         expected = [crps(pooled(test, kind), test.measured / unit(test)).mean() for test in tests]
@@ -85,7 +85,7 @@ def test_score_is_the_ranked_probability_score_and_the_floor_its_leave_one_out_m
 
 def test_members_drawn_twice_are_no_pair():
     """A bootstrap's score is on average the ensemble's own, not less for the distance 0 of a member to itself."""
-    tests = World(2, 1).tests(truth=np.ones((1, 48)), extended=np.ones((1, 48)))
+    tests = World(2, 1).sealed(truth=np.ones((1, 48)), extended=np.ones((1, 48)))
     own = distances(tests, cells_of(tests), "extended")
     drawn = np.array([own.scores(own.drawn_weights(MODELS, seed))[1] for seed in range(400)])
     error = 4.0 * drawn.std(axis=0) / np.sqrt(400)
@@ -98,14 +98,14 @@ def test_the_right_effect_gains_nearly_all(n_tests):
     for seed in range(8):
         model = MODELS[seed % 2]
         world = World([seed, 7], n_tests)
-        result = gain_on(world.tests(truth=2.0 * world.right, extended=2.0 * world.right, model=model))
+        result = gain_on(world.sealed(truth=2.0 * world.right, extended=2.0 * world.right, model=model))
         gains.append(float(result["gain"].sel(rival="recalibrated")))
         contrast = gain_of_verdict(result)[0].recalibrated
         inside.append(contrast.upper == 1.0)
         assert float(result["fall_lower"].sel(rival="recalibrated")) > 0.0
         assert bool(result["confirmed"])
         world = World([seed, 7], n_tests)
-        other = gain_on(world.tests(truth=2.0 * world.right, extended=2.0 * world.wrong, model=model))
+        other = gain_on(world.sealed(truth=2.0 * world.right, extended=2.0 * world.wrong, model=model))
         of_wrong.append(float(other["gain"].sel(rival="recalibrated")))
     # a record's own chance moves the score; the mean of eight gains is within 4 standard errors of 1
     assert np.mean(gains) == pytest.approx(1.0, abs=4.0 * np.std(gains) / np.sqrt(8))
@@ -121,7 +121,7 @@ def test_without_an_effect_nothing_is_there_to_gain():
     for seed in range(24):
         world = World([seed, 8], 2)
         nothing = np.zeros_like(world.right)
-        result = gain_on(world.tests(truth=nothing, extended=0.3 * world.wrong, model=MODELS[seed % 2]))
+        result = gain_on(world.sealed(truth=nothing, extended=0.3 * world.wrong, model=MODELS[seed % 2]))
         gains.append(float(result["gain"].sel(rival="recalibrated")))
         verdicts.append(gain_of_verdict(result)[0].recalibrated.estimate)
     defined = np.isfinite(gains)
@@ -133,7 +133,7 @@ def test_without_an_effect_nothing_is_there_to_gain():
 
 def test_equal_ensembles_have_equal_scores_and_no_fall():
     world = World(5, 2)
-    tests = world.tests(truth=world.right, extended=world.right)
+    tests = world.sealed(truth=world.right, extended=world.right)
     same = [
         SealedTest(
             test.name, FEATURES, test.measured, {**test.members, "extended": test.members["recalibrated"]}
@@ -152,14 +152,14 @@ def test_a_family_that_the_extension_spoils_is_told():
     world = World(6, 3)
     spoilt = 2.0 * world.right
     spoilt[:, 24:36] += 3.0  # the base
-    result = gain_on(world.tests(truth=2.0 * world.right, extended=spoilt))
+    result = gain_on(world.sealed(truth=2.0 * world.right, extended=spoilt))
     assert result["family"].values[result["worse"].values].tolist() == ["base"]
     assert float(result["fall_of_family"].sel(family="joint1")) > 0.0
 
 
 def test_an_effect_that_helps_one_solver_alone_is_not_confirmed():
     world = World(7, 2)
-    tests = world.tests(truth=world.right, extended=world.right)
+    tests = world.sealed(truth=world.right, extended=world.right)
     for test in tests:
         test.members["extended"]["nscd-rigid"] = test.members["recalibrated"]["nscd-rigid"]
     result = gain_on(tests)
@@ -170,10 +170,10 @@ def test_an_effect_that_helps_one_solver_alone_is_not_confirmed():
 
 def test_the_verdict_gets_bounded_gains_and_says_what_they_lack():
     world = World(9, 1)
-    found, caveats = gain_of_verdict(gain_on(world.tests(truth=world.right, extended=world.right)))
+    found, caveats = gain_of_verdict(gain_on(world.sealed(truth=world.right, extended=world.right)))
     for contrast in (found.recalibrated, found.nominal, found.discrepancy):
         assert -1.0 <= contrast.lower <= contrast.estimate <= contrast.upper <= 1.0
     assert any("one sealed test" in caveat for caveat in caveats)
-    found, caveats = gain_of_verdict(gain_on(World(10, 2).tests(np.zeros((2, 48)), np.zeros((2, 48)))))
+    found, caveats = gain_of_verdict(gain_on(World(10, 2).sealed(np.zeros((2, 48)), np.zeros((2, 48)))))
     assert (found.nominal.estimate, found.nominal.lower, found.nominal.upper) == (0.0, -1.0, 1.0)
     assert sum("nothing to gain" in caveat for caveat in caveats) == 3

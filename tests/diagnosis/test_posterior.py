@@ -21,7 +21,7 @@ def test_all_of_the_posterior_is_its_whole_width():
 
 
 def test_the_size_is_in_the_parameters_unit_and_others_keep_their_prior():
-    found = parameter_estimates("stopper-contact", SIZES, WEIGHTS, 0.9)
+    found = parameter_estimates("stopper-contact", SIZES, WEIGHTS)
     size, *others = EFFECTS["stopper-contact"].parameters
     assert found[size.name]["estimate"] == pytest.approx(0.5 * size.visible, rel=0.03)
     assert found[size.name]["unit"] == size.unit

@@ -61,7 +61,9 @@ class FakeDiagnosis:
         write_dataset(self.results / "consequences.nc", consequences)
         summary = {"gain": of_verdict and of_verdict.model_dump(), "caveats": caveats, "runs": 1260}
         write_json(self.results / "gain.json", summary)
-        self.verdict = conclude(self.decision, findings, where(found), 1260, caveats, effort, of_verdict)
+        self.verdict = conclude(
+            self.decision, findings, (), where(found), 1260, caveats, effort, gain=of_verdict
+        )
         assert isinstance(self.verdict, Verdict)
         write_verdict(self.results / "verdict.json", self.verdict)
 

@@ -91,6 +91,7 @@ def test_fewer_samples_of_one_model(mapping):
             0.0,
             "friction.concrete.concrete",
         ),
+        (("diagnosis",), {"campaigns": ["no/such/folder"]}, "no/such/folder"),
     ],
 )
 def test_what_is_wrong_is_named(mapping, path, value, line):

@@ -23,16 +23,21 @@ from blockshake.measurement.campaign import load_campaign
 GIVEN = ("campaign", "campaigns", "effort", "without")
 
 
+def refuse(error):
+    """End with one line on bad input and exit 2."""
+    print(f"blockshake: {error}", file=sys.stderr, flush=True)
+    os._exit(2)
+
+
 def check_study():
-    """Check the configuration and all it names; bad input ends in one line and exit 2."""
+    """Check the configuration and all it names."""
     from blockshake.study.config import check_config
 
     try:
         study = {key: value for key, value in config.items() if key not in GIVEN}
         check_config(study, " + ".join(map(str, workflow.configfiles)))
     except InputError as error:
-        print(f"blockshake: {error}", file=sys.stderr, flush=True)
-        os._exit(2)
+        refuse(error)
 
 
 def with_numbers(value):

@@ -11,7 +11,13 @@ def by_name(folders, without):
 
     named = {result_name(folder, without): str(folder) for folder in folders}
     if len(named) < len(folders):
-        sys.exit("blockshake: expected campaigns in folders of different names")
+        refuse(
+            InputError(
+                "campaigns",
+                ", ".join(map(str, folders)),
+                "expected folders of different names",
+            )
+        )
     return named
 
 
@@ -41,8 +47,7 @@ def plan(campaign):
     try:
         return plan_diagnosis(CAMPAIGNS[campaign], EFFORT, WITHOUT)
     except InputError as error:
-        print(f"blockshake: {error}", file=sys.stderr, flush=True)
-        os._exit(2)
+        refuse(error)
 
 
 def library_names(campaign):
@@ -106,6 +111,23 @@ def decided(wildcards):
     parity = f"results/diagnosis/{wildcards.campaign}/parity.json"
     causes = json.loads(Path(files.decision).read_text())["causes"]
     return causes, bool(json.loads(Path(parity).read_text())["findings"])
+
+
+def further_files(wildcards):
+    """More draws with the first cause by both solvers, test by test."""
+    decision = json.loads(
+        Path(checkpoints.decide.get(**wildcards).output.decision).read_text()
+    )
+    key = decision["places"][decision["causes"][0]]
+    return library_files(wildcards.campaign, f"{{solver}}/{key}.nc")
+
+
+def size_files(wildcards):
+    """The size of the first cause and its hash, where there is one and the effort has further draws for it."""
+    causes, _ = decided(wildcards)
+    further = causes and plan(wildcards.campaign).effort.further_draws
+    names = ["size.json", "frozen-size.json"] if further else []
+    return expand(f"results/diagnosis/{wildcards.campaign}/{{name}}", name=names)
 
 
 def extended_files(wildcards):

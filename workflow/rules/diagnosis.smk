@@ -10,6 +10,7 @@ wildcard_constraints:
     solver="|".join(SOLVERS),
     library="[0-9a-f]{12}",
     calibration="[0-9a-f]{12}",
+    candidate="[A-Za-z0-9@._-]+",
 
 
 rule diagnose:
@@ -116,13 +117,56 @@ checkpoint decide:
         "../scripts/decide.py"
 
 
-rule extend_model:
-    """Ensembles by one solver: recalibrated on the open tests, and extended by the cause, for sealed tests too."""
+rule simulate_cause:
+    """More draws with one candidate than the library has, of one structure under one motion."""
+    input:
+        kernels=lambda wildcards: kernels(wildcards.solver),
+        library="results/libraries/{library}/{solver}.nc",
+    output:
+        "results/libraries/{library}/{solver}/{candidate}.nc",
+    log:
+        "logs/simulate_cause/{library}-{solver}-{candidate}.log",
+    benchmark:
+        "benchmarks/simulate_cause/{library}-{solver}-{candidate}.jsonl"
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        source=LIBRARY_SOURCE,
+        store="results/store/diagnosis",
+    script:
+        "../scripts/simulate_cause.py"
+
+
+rule size_cause:
+    """The size of the first cause, from all draws with it; frozen before a sealed test is opened."""
     input:
         frozen="results/diagnosis/{campaign}/frozen.json",
         decision="results/diagnosis/{campaign}/decision.json",
         readings=rules.read_measured.output.readings,
         libraries=lambda wildcards: library_files(wildcards.campaign),
+        further=further_files,
+    output:
+        posterior="results/diagnosis/{campaign}/size.json",
+        frozen="results/diagnosis/{campaign}/frozen-size.json",
+    log:
+        "logs/diagnosis/{campaign}/size_cause.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        source=DIAGNOSIS_SOURCE,
+    script:
+        "../scripts/size_cause.py"
+
+
+rule extend_model:
+    """Ensembles by one solver: recalibrated on the open tests, and extended by the cause, for sealed tests too."""
+    input:
+        frozen="results/diagnosis/{campaign}/frozen.json",
+        decision="results/diagnosis/{campaign}/decision.json",
+        posterior=rules.size_cause.output.posterior,
+        readings=rules.read_measured.output.readings,
+        libraries=lambda wildcards: library_files(wildcards.campaign),
+        further=further_files,
         kernels=lambda wildcards: kernels(wildcards.solver),
     output:
         "results/diagnosis/{campaign}/extended/{solver}.nc",
@@ -135,7 +179,6 @@ rule extend_model:
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
-        effects=lambda wildcards: considered_effects(),
         store="results/store/diagnosis",
         source=LIBRARY_SOURCE,
         judged_by=DIAGNOSIS_SOURCE,
@@ -150,6 +193,7 @@ rule measure_gain:
         decision="results/diagnosis/{campaign}/decision.json",
         readings=rules.read_measured.output.readings,
         libraries=lambda wildcards: library_files(wildcards.campaign),
+        posterior=size_files,
         extended=extended_files,
         parity=rules.read_measured.output.parity,
         sealed=lambda wildcards: test_files(wildcards.campaign, "sealed"),
@@ -175,6 +219,7 @@ rule conclude:
         parity=rules.read_measured.output.parity,
         decision="results/diagnosis/{campaign}/decision.json",
         misfit="results/diagnosis/{campaign}/misfit.nc",
+        posterior=size_files,
         gain=gain_file,
     output:
         "results/diagnosis/{campaign}/verdict.json",

@@ -4,21 +4,27 @@ from pathlib import Path
 import xarray as xr
 
 from blockshake.diagnosis.extended_runs import extended_runs
-from blockshake.diagnosis.library_scores import load_tables, score_library
+from blockshake.diagnosis.library_scores import load_tables
 from blockshake.diagnosis.measured_readings import tamed_readings
 from blockshake.diagnosis.plan import plan_diagnosis
+from blockshake.diagnosis.size_of_cause import library_of_cause
 from blockshake.files import write_dataset
 from blockshake.log import logging_to
 
 with logging_to(snakemake.log[0]) as say:
     plan = plan_diagnosis(snakemake.params.folder, snakemake.params.effort)
-    library, scales = score_library(load_tables(snakemake.input.libraries), snakemake.params.effects)
+    decision, size = (
+        json.loads(Path(snakemake.input[name]).read_text()) for name in ("decision", "posterior")
+    )
+    library, scales = library_of_cause(
+        load_tables(snakemake.input.libraries), load_tables(snakemake.input.further), size["key"]
+    )
     features = tamed_readings(scales, xr.load_dataset(snakemake.input.readings))
     runs = extended_runs(
         plan,
         snakemake.wildcards.solver,
-        json.loads(Path(snakemake.input.decision).read_text()),
-        library.score(features),
+        decision,
+        size,
         library,
         features,
         snakemake.params.store,

@@ -19,6 +19,9 @@ from blockshake.measurement.campaign import load_campaign, load_test
 
 with logging_to(snakemake.log[0]):
     check_frozen(snakemake.input.frozen, snakemake.input.decision)
+    if snakemake.input.posterior:
+        size, frozen_size = snakemake.input.posterior
+        check_frozen(frozen_size, size)
     campaign = load_campaign(snakemake.params.folder)
     structure, names = load_structure(campaign.structure), sealed_tests(campaign)
     sealed = {name: load_test(campaign, name) for name in names}

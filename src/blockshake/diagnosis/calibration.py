@@ -9,6 +9,7 @@ from blockshake.diagnosis.constancy import constancy
 
 NONE = "none"
 _FEWEST = 10  # cases with which a chance below 10 % can be told
+_SHOWN = 0.9  # share of the cases of a size and larger ones that must be detected
 
 
 @dataclass(frozen=True)
@@ -114,7 +115,8 @@ def chance_of_none(case, cases):
     explains them, as an effect is that nobody has thought of. The smaller of both conformal p values is ranked among
     those of the readings without an effect, so that two looks cost what they cost and no more.
     """
-    return _rank(-_oddness(case, nominal := _nominal(cases)), [-_oddness(one, nominal) for one in nominal])
+    nominal = _nominal(cases)
+    return _rank(-_oddness(case, nominal), [-_oddness(one, nominal) for one in nominal])
 
 
 def detected(cases, level):
@@ -164,16 +166,24 @@ def chance_of_constancy(effect, case, cases):
     return max(rank, case.constancy[effect])
 
 
-def shown_above(effect, cases, level, share=0.9):
-    """Size from which on a share of the library's cases is detected, in units of the visible one; NaN if none is."""
+def shown_above(effect, cases, seen):
+    """Size from which on nine in ten cases are detected, in units of the visible one; NaN if none is.
+
+    Parameters
+    ----------
+    effect : str
+    cases : list of Case
+    seen : list of Case
+        Those of them that are detected.
+    """
     own = [case for case in cases if case.truth == effect]
-    found = {id(case) for case in detected(cases, level)}
+    found = {id(case) for case in seen}
     order = sorted(own, key=lambda case: abs(case.size), reverse=True)
     hits, smallest = 0, np.nan
     for count, case in enumerate(order, start=1):
-        seen = id(case) in found
-        hits += seen
-        if seen and hits >= share * count:
+        is_seen = id(case) in found
+        hits += is_seen
+        if is_seen and hits >= _SHOWN * count:
             smallest = abs(case.size)
     return smallest
 

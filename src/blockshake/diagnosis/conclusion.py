@@ -12,10 +12,8 @@ from blockshake.diagnosis.sensor_causes import sensor_causes
 from blockshake.diagnosis.verdict import Estimate, Misfit, Verdict
 from blockshake.effects.registry import EFFECTS
 
-SHARE = 0.9  # of the posterior, in an interval
 
-
-def conclude(decision, findings, where, runs, caveats, effort, gain=None):
+def conclude(decision, findings, channels, where, runs, caveats, effort, size=None, gain=None):
     """Verdict of a campaign.
 
     Parameters
@@ -24,6 +22,8 @@ def conclude(decision, findings, where, runs, caveats, effort, gain=None):
         As written by `decision_as_json`.
     findings : sequence of Finding
         Sensor faults, which were taken out before anything was simulated.
+    channels : sequence of str
+        Names of the accelerometer channels; what else has a fault is a marker.
     where : str
         The largest misfit in words.
     runs : int
@@ -31,6 +31,8 @@ def conclude(decision, findings, where, runs, caveats, effort, gain=None):
     caveats : sequence of str
     effort : str
         One of `plan.EFFORTS`.
+    size : dict, optional
+        Of the first cause, from `size_of_cause`: better known than in the decision.
     gain : Gain, optional
 
     Returns
@@ -40,9 +42,13 @@ def conclude(decision, findings, where, runs, caveats, effort, gain=None):
     Notes
     -----
     A sensor fault beside a physical cause is a combination: it was corrected first, and the tests judged again. Where
-    the physical cause is unknown, so is the whole, and the sensor fault stands among the caveats.
+    the physical cause is unknown, so is the whole, and the sensor fault stands among the caveats. Its entry in
+    ``probabilities`` is the chance that the sensor is not sound, 1 less the parity check's p: no conformal p value.
     """
-    sensors = sensor_causes(findings)
+    if size is not None:
+        known = decision["parameters"] | {effect_of(size["key"]): size["parameters"]}
+        decision = decision | {"parameters": known}
+    sensors = sensor_causes(findings, channels)
     physical = decision["decision"]
     causes = [*sensors, *decision["causes"]]
     if not sensors:
@@ -105,22 +111,20 @@ def decision_as_json(decision, scores, candidates, cases):
     Returns
     -------
     dict
-        The decision's entries; of the causes the ``posteriors`` of their sizes, as of `calibrated_weights`, their
-        ``parameters`` as of `parameter_estimates` and their ``location``; ``candidates``: for each ``key``, ``effect``,
-        ``log_ratio``, ``by_model``, ``size``, ``sizes``, ``weights``, ``model``, ``distance`` and, by test, the size of
-        the largest density and the ends of the sizes less likely by a factor e^2.
+        The decision's entries; of the causes ``parameters`` as of `parameter_estimates` and ``location``;
+        ``candidates``: for each ``key``, ``effect``, ``log_ratio``, ``by_model``, ``size``, ``sizes``, ``weights``,
+        ``model``, ``distance`` and, by test, the size of the largest density and the ends of the sizes less likely by a
+        factor e^2.
     """
     seen = detected(cases, FALSE_ALARM)
     place_of = {candidate.key: candidate.place for candidate in candidates}
-    posteriors, parameters = {}, {}
+    parameters = {}
     for effect in decision.causes:
         key = decision.places[effect]
         if decision.decision == "combination" and effect != decision.causes[0]:
             continue  # its size beside the first is a single estimate
-        posteriors[effect] = calibrated_weights(
-            scores.sizes[key], scores.weights[key], size_error(effect, seen)
-        )
-        parameters[effect] = parameter_estimates(effect, scores.sizes[key], posteriors[effect], SHARE)
+        posterior = calibrated_weights(scores.sizes[key], scores.weights[key], size_error(effect, seen))
+        parameters[effect] = parameter_estimates(effect, scores.sizes[key], posterior)
     rows = [
         {
             "key": key,
@@ -141,7 +145,6 @@ def decision_as_json(decision, scores, candidates, cases):
             name: None if np.isnan(size) else size for name, size in decision.shown_above.items()
         },
         "nominal_distance": scores.distance["nominal"],
-        "posteriors": {effect: weights.tolist() for effect, weights in posteriors.items()},
         "parameters": parameters,
         "location": {effect: place_of[decision.places[effect]] for effect in decision.causes},
         "candidates": rows,
@@ -160,9 +163,8 @@ def _misfit(decision, sensors, where):
     first = min(sensors, key=lambda name: sensors[name]["p"], default=None)
     if first is None or sensors[first]["p"] >= decision["p_none"]:
         return Misfit(p=decision["p_none"], where=where)
-    marker = sensors[first]["location"].get("marker")
-    place = f"readings of {marker}" if marker else "readings of the optical system"
-    return Misfit(p=sensors[first]["p"], where=f"{place}, against the other sensors")
+    (where,) = sensors[first]["location"].values() or ["the optical system"]
+    return Misfit(p=sensors[first]["p"], where=f"readings of {where}, against the other sensors")
 
 
 def _excluded(decision, causes):

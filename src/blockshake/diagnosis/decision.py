@@ -112,7 +112,7 @@ def decide(library, features, cases):
         placebo=float(library.placebo_ratios(features, PLACEBOS).max()),
         struck_out={},
         solver_dependent=[],
-        shown_above={effect: shown_above(effect, cases, FALSE_ALARM) for effect in effects},
+        shown_above={effect: shown_above(effect, cases, seen) for effect in effects},
     )
     if p_none > FALSE_ALARM:
         return found, scores

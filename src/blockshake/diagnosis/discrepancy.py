@@ -1,4 +1,4 @@
-"""The rival without a name: what the recalibrated model misses, carried from test to test by a Gaussian process."""
+"""The rival without a name: what the nominal model misses, carried from test to test by a Gaussian process."""
 
 from dataclasses import dataclass
 
@@ -31,7 +31,7 @@ class Condition:
 
 @dataclass(frozen=True)
 class Discrepancy:
-    """What the recalibrated model misses, as a random function of the test.
+    """What the nominal model misses, as a random function of the test.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Discrepancy:
 
 
 def fit_discrepancy(conditions, names, measured, members):
-    """Discrepancy of the recalibrated model over the open tests.
+    """Discrepancy of the nominal model over the open tests.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def fit_discrepancy(conditions, names, measured, members):
     measured : list of float64 array, shape (n_own_features,)
         By test, tamed.
     members : list of float64 array, shape (n_members, n_own_features)
-        By test: the recalibrated members of both solvers in it.
+        By test: the nominal members of both solvers in it.
 
     Returns
     -------

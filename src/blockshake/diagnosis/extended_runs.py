@@ -1,7 +1,5 @@
 """Ensembles by one solver before and after an extension, on sealed tests."""
 
-from dataclasses import replace
-
 import numpy as np
 import xarray as xr
 
@@ -18,7 +16,7 @@ from blockshake.diagnosis.planned_test import kept_reading
 NOMINAL, RECALIBRATED, EXTENDED = "nominal", "recalibrated", "extended"
 
 
-def extended_runs(plan, model, decision, scores, library, features, store, source, progress):
+def extended_runs(plan, model, decision, size, library, features, store, source, progress):
     """Simulated tests of the nominal, the recalibrated and the extended model.
 
     Parameters
@@ -28,9 +26,10 @@ def extended_runs(plan, model, decision, scores, library, features, store, sourc
         Solver.
     decision : dict
         As from `decision_as_json`: its first cause extends the model, of a combination both do.
-    scores : Scores
-        Of the open tests.
+    size : dict
+        Of the first cause, from `size_of_cause`.
     library : ScoreLibrary
+        Of the first cause, from `library_of_cause`.
     features : list of float64 array, shape (n_features,)
         Measured in the open tests, tamed.
     store, source, progress
@@ -47,20 +46,24 @@ def extended_runs(plan, model, decision, scores, library, features, store, sourc
     draws = [draw_nominal(plan.campaign.structure, model, k) for k in range(plan.effort.nominal_draws)]
     known, measured = open_features(library, model), np.concatenate(features)
     count = plan.effort.members
-    posterior = np.array(decision["posteriors"][cause.effect])
-    scores = replace(scores, weights={cause.key: posterior})
     members = {
         NOMINAL: [(draw, []) for draw in draws[:count]],
         RECALIBRATED: recalibrated_members(draws, known, measured, count),
         EXTENDED: extended_members(
-            cause, scores, draws, known, measured, open_responses(library, model, cause.key), count
+            cause,
+            (np.array(size["sizes"]), np.array(size["posterior"])),
+            draws,
+            known,
+            measured,
+            open_responses(library, model, cause.key),
+            count,
         ),
     }
     if decision["decision"] == "combination":
         (second,) = others
-        size = decision["sizes"][second.effect]
+        beside = decision["sizes"][second.effect]
         members[EXTENDED] = [
-            (draw, [*effects, second.as_effect(second.values_at(size, number))])
+            (draw, [*effects, second.as_effect(second.values_at(beside, number))])
             for number, (draw, effects) in enumerate(members[EXTENDED])
         ]
     like = next(iter(plan.tests.values()))

@@ -56,14 +56,14 @@ def recalibrated_members(draws, features, measured, count):
     return [(draw, []) for draw in posterior_draws(draws, features, measured, nothing).draws]
 
 
-def extended_members(candidate, scores, draws, features, measured, responses, count):
+def extended_members(candidate, posterior, draws, features, measured, responses, count):
     """Members of the extended model: sizes from their posterior, nominal parameters that fit beside them.
 
     Parameters
     ----------
     candidate : Candidate
-    scores : Scores
-        Of the open tests.
+    posterior : (float64 array, float64 array), shape (n_sizes,)
+        Sizes, in units of the visible one, and their weights.
     draws : list of Draw
         Of one solver, those of the library by their numbers.
     features : float64 array, shape (n_draws, n_features)
@@ -80,7 +80,7 @@ def extended_members(candidate, scores, draws, features, measured, responses, co
     list of (Draw, list of dict)
         With the effect as `simulated_test` is given it.
     """
-    sizes = posterior_sizes(scores.sizes[candidate.key], scores.weights[candidate.key], count)
+    sizes = posterior_sizes(*posterior, count)
     order = np.random.default_rng([count, *candidate.key.encode()]).permutation(count)
     return members_at(candidate, sizes[order], draws, features, measured, responses)
 

@@ -7,9 +7,8 @@ from sklearn.covariance import LedoitWolf
 from blockshake.diagnosis.response import fit_response
 
 _FREEDOM = 5.0  # of Student's t, of unit variance: a single odd feature does not decide
-_UNKNOWN = (
-    0.1  # of a feature's spread over all nominal draws: what no draw of one model shows it knows nothing of
-)
+# of a feature's spread over all nominal draws: what no draw of one model shows it knows nothing of
+_UNKNOWN = 0.1
 _SIZES = 21
 _CONSTANT = gammaln(0.5 * (_FREEDOM + 1.0)) - gammaln(0.5 * _FREEDOM) - 0.5 * np.log((_FREEDOM - 2.0) * np.pi)
 

@@ -34,6 +34,8 @@ class Effort:
         Tests at most that libraries are made of.
     nominal_draws, own_draws : int
         Draws of the nominal model and, at most, with each candidate, by each solver and test.
+    further_draws : int
+        With the cause, once one is found: its size is known badly from those of a candidate.
     members : int
         Of every ensemble that a sealed test is predicted with, by each solver.
     twins : int
@@ -44,14 +46,19 @@ class Effort:
     tests: int
     nominal_draws: int
     own_draws: int
+    further_draws: int
     members: int
     twins: int
 
 
 EFFORTS = {
-    "quick": Effort(runs=400, tests=2, nominal_draws=20, own_draws=4, members=0, twins=3),
-    "standard": Effort(runs=2000, tests=3, nominal_draws=40, own_draws=6, members=12, twins=8),
-    "deep": Effort(runs=12000, tests=12, nominal_draws=80, own_draws=12, members=40, twins=12),
+    "quick": Effort(runs=400, tests=2, nominal_draws=20, own_draws=4, further_draws=0, members=0, twins=3),
+    "standard": Effort(
+        runs=2000, tests=3, nominal_draws=40, own_draws=6, further_draws=12, members=12, twins=8
+    ),
+    "deep": Effort(
+        runs=12000, tests=12, nominal_draws=80, own_draws=12, further_draws=12, members=40, twins=12
+    ),
 }
 _ENSEMBLES = 3  # that a sealed test is predicted with: nominal, recalibrated, extended
 
@@ -106,7 +113,8 @@ def own_draws(effort, candidates, tests, sealed):
     """
     solvers = len(MODELS)
     spent = solvers * (
-        tests * effort.nominal_draws + sealed * _ENSEMBLES * effort.members + tests * (1 + effort.twins)
+        tests * (effort.nominal_draws + effort.further_draws + 1 + effort.twins)
+        + sealed * _ENSEMBLES * effort.members
     )
     count = min(effort.own_draws, (effort.runs - spent) // (solvers * tests * candidates))
     if count < _FEWEST_OWN:
@@ -193,6 +201,11 @@ class Plan:
             * len(self.tests)
             * (self.effort.nominal_draws + self.own_draws * len(self.candidates) + 1 + self.effort.twins)
         )
+
+    @property
+    def further_runs(self):
+        """Simulated tests with a cause that was found, beyond those of the libraries."""
+        return len(MODELS) * len(self.tests) * self.effort.further_draws
 
     def caveats(self, causes):
         """Why no gain was measured, where there are causes."""

@@ -4,6 +4,8 @@ import numpy as np
 
 from blockshake.effects.registry import EFFECTS
 
+_SHARE = 0.9  # of the posterior, in an interval
+
 
 def calibrated_weights(sizes, weights, error):
     """Posterior of a size as wide as its errors are where the truth is known.
@@ -48,13 +50,13 @@ def size_interval(sizes, weights, share):
     return tuple(float(np.interp(level, below[kept], sizes[kept])) for level in levels)
 
 
-def parameter_estimates(effect, sizes, weights, share):
-    """Estimates of all parameters of an effect.
+def parameter_estimates(effect, sizes, weights):
+    """Estimates of all parameters of an effect, with 90 % intervals.
 
     Parameters
     ----------
     effect : str
-    sizes, weights, share
+    sizes, weights : float64 array, shape (n_sizes,)
         As of `size_interval`; sizes in units of the visible one.
 
     Returns
@@ -65,7 +67,7 @@ def parameter_estimates(effect, sizes, weights, share):
     """
     first, *others = EFFECTS[effect].parameters
     values = [
-        first.null + size * (first.visible - first.null) for size in size_interval(sizes, weights, share)
+        first.null + size * (first.visible - first.null) for size in size_interval(sizes, weights, _SHARE)
     ]
     found = {
         first.name: {

@@ -5,12 +5,10 @@ from itertools import product
 
 import numpy as np
 
-_LENGTHS = np.array(
-    [0.5, 1.0, 2.0, 4.0, 16.0]
-)  # of the size, in units of the visible one, over which a response bends
-_NOISES = np.array(
-    [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0]
-)  # variance over that of the response at the visible size
+# of the size, in units of the visible one, over which a response bends
+_LENGTHS = (0.5, 1.0, 2.0, 4.0, 16.0)
+# variance over that of the response at the visible size
+_NOISES = (1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0)
 _ONSETS = (0.3, np.inf)  # sizes from which on the scatter stays as it is; infinite: in proportion to the size
 _TOGETHER = 0.8  # share of the scatter in which features go together
 _NOTHING = 1e-3  # a size at which nothing is added, of the visible one
@@ -48,9 +46,8 @@ class Response:
         Correlations are those of the scatter, of which there are few runs: shrunk by a fifth towards none.
         """
         n_draws, n_features = self.scatter.shape
-        correlation = (1.0 - _TOGETHER) * np.eye(
-            n_features
-        ) + _TOGETHER * self.scatter.T @ self.scatter / n_draws
+        together = self.scatter.T @ self.scatter / n_draws
+        correlation = (1.0 - _TOGETHER) * np.eye(n_features) + _TOGETHER * together
         return self.deviation[:, :, None] * correlation * self.deviation[:, None, :]
 
 
@@ -73,12 +70,12 @@ def fit_response(own_sizes, added, sizes):
     Notes
     -----
     Each feature by itself: a Gaussian process (Rasmussen and Williams 2006, eqs. 2.25 and 2.26) with the kernel
-    ``s^2 u u' exp(-(u - u')^2 / 2 l^2)`` and independent scatter of variance ``s^2 r u^2``, or ``s^2 r u^2 / (u^2 +
-    0.3^2)`` where chaos makes all of it from a small size on: at the null size nothing is added, in none of the draws.
-    Left-out residuals are of their eq. 5.12. Runs are too few to tell ``l``, ``r`` and which scatter: predictions are
-    averaged over a grid of them with the weight of their likelihood, ``s^2`` integrated out under the prior 1 / s^2, so
-    that a few runs that happen to lie on a line do not pass for a law without scatter. Their variance is that of the
-    Student t, with as many degrees of freedom as runs.
+    ``s^2 u u' exp(-(u - u')^2 / 2 l^2)`` and independent scatter of variance ``s^2 r u^2``, or ``s^2 r u^2 (1 +
+    0.3^2) / (u^2 + 0.3^2)`` where chaos makes all of it from a small size on: at the null size nothing is added, in
+    none of the draws. Left-out residuals are of their eq. 5.12. Runs are too few to tell ``l``, ``r`` and which
+    scatter: predictions are averaged over a grid of them with the weight of their likelihood, ``s^2`` integrated out
+    under the prior 1 / s^2, so that a few runs that happen to lie on a line do not pass for a law without scatter.
+    Their variance is that of the Student t, with as many degrees of freedom as runs.
     """
     own = np.abs(own_sizes) > _NOTHING
     own_sizes, added = own_sizes[own], added[own]

@@ -5,12 +5,14 @@ from blockshake.effects.registry import EFFECTS
 _SIGMAS = 1.645  # of a Gaussian, within which nine tenths lie
 
 
-def sensor_causes(findings):
+def sensor_causes(findings, channels):
     """Causes by name: parameters with 90 % intervals, place, and chance.
 
     Parameters
     ----------
     findings : sequence of Finding
+    channels : sequence of str
+        Names of the accelerometer channels.
 
     Returns
     -------
@@ -24,10 +26,16 @@ def sensor_causes(findings):
             continue
         causes[finding.effect] = {
             "parameters": _estimates(finding),
-            "location": {} if finding.where[0].startswith("optical") else {"marker": finding.where[0]},
+            "location": _location(finding.where[0], channels),
             "p": finding.p,
         }
     return causes
+
+
+def _location(sensor, channels):
+    if sensor.startswith("optical "):
+        return {}
+    return {"channel" if sensor in channels else "marker": sensor}
 
 
 def _estimates(finding):

@@ -62,7 +62,8 @@ class Verdict(Strict):
     probabilities: dict[str, Chance] = Field(description="by name, conformal p value of each candidate")
     parameters: dict[str, dict[str, Estimate]] = Field({}, description="by cause and parameter")
     location: dict[str, dict[str, str | tuple[str, str]]] = Field(
-        {}, description="by cause, {joint: [lower body, upper body]}, {body: name} or {marker: name}"
+        {},
+        description="by cause, {joint: [lower body, upper body]}, {body: name}, {marker: name} or {channel: name}",
     )
     misfit: Misfit
     excluded_above: dict[str, Finite] = Field(

@@ -159,6 +159,8 @@ def check_config(mapping, where):
         load_motion(motion)
     if config.convergence is not None:
         load_structure(config.convergence.structure)
+    for folder in config.diagnosis.campaigns:
+        load_campaign(folder)
     return config
 
 

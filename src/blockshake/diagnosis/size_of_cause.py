@@ -1,0 +1,77 @@
+"""The size of the cause that was found, from more draws of it than a library has of every candidate."""
+
+import xarray as xr
+
+from blockshake.diagnosis.calibration import as_case, size_error
+from blockshake.diagnosis.candidates import effect_of
+from blockshake.diagnosis.library_scores import runs_of, score_library
+from blockshake.diagnosis.posterior import calibrated_weights, parameter_estimates
+
+
+def library_of_cause(tables, further, key):
+    """Libraries with one candidate alone: their own nominal runs, and all runs with the candidate.
+
+    Parameters
+    ----------
+    tables, further : list of dict of str to xarray.Dataset
+        By test and solver, features from `library`: of all candidates, and of more draws of this one.
+    key : str
+        Of the candidate.
+
+    Returns
+    -------
+    library : ScoreLibrary
+    scales : list of FeatureScale
+        By test: those of the libraries of all candidates.
+    """
+    narrow = [
+        {
+            model: xr.concat([runs_of(table), runs_of(more[model], key)], dim="run").assign_attrs(model=model)
+            for model, table in by_model.items()
+        }
+        for by_model, more in zip(tables, further, strict=True)
+    ]
+    return score_library(narrow, [effect_of(key)])
+
+
+def size_of_cause(library, features):
+    """Posterior of the size, and the parameters with it.
+
+    Parameters
+    ----------
+    library : ScoreLibrary
+        From `library_of_cause`.
+    features : list of float64 array, shape (n_features,)
+        Measured, by test, tamed.
+
+    Returns
+    -------
+    dict
+        JSON-like: ``key`` of the candidate, ``sizes`` in units of the visible one with the weights ``posterior`` [1];
+        ``error``, root mean square by which the posterior's mean misses the true size of draws that are left out, in
+        the same unit; ``draws`` by each solver and test; ``parameters`` as of `parameter_estimates`.
+    """
+    (key,) = library.candidates
+    scores = library.score(features)
+    error = size_error(effect_of(key), _left_out(library, key))
+    posterior = calibrated_weights(scores.sizes[key], scores.weights[key], error)
+    return {
+        "key": key,
+        "sizes": scores.sizes[key].tolist(),
+        "posterior": posterior.tolist(),
+        "error": error,
+        "draws": len(library.sizes[library.models[0]][key]),
+        "parameters": parameter_estimates(effect_of(key), scores.sizes[key], posterior),
+    }
+
+
+def _left_out(library, key):
+    """Cases of every draw with the candidate, judged by the others."""
+    cases = []
+    for model in library.models:
+        by_test = [test[model][key] for test in library.tamed]
+        for draw, size in enumerate(library.sizes[model][key]):
+            scores = library.score([runs[draw] for runs in by_test], model, draw)
+            cases.append(as_case(scores, key, float(size)))
+            library.forget(model, draw)
+    return cases
