@@ -4,7 +4,17 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from fake_findings import DRAWS, MODELS, OPEN, SEALED, evidence, made_up_decision, parity, sealed_tests
+from fake_findings import (
+    DRAWS,
+    MODELS,
+    OPEN,
+    SEALED,
+    evidence,
+    informed,
+    made_up_decision,
+    parity,
+    sealed_tests,
+)
 
 from blockshake.diagnosis.conclusion import conclude
 from blockshake.diagnosis.consequence import consequence
@@ -49,6 +59,9 @@ class FakeDiagnosis:
         write_json(self.results / "decision.json", self.decision)
         freeze(self.results / "frozen.json", self.results / "decision.json", OPEN)
         best = self.decision["candidates"][0]
+        if self.decision["causes"]:
+            key = self.decision["places"][self.decision["causes"][0]]
+            write_json(self.results / "size.json", {"key": key, "error": 0.3, "draws": 18})
         write_dataset(self.results / "evidence.nc", evidence(best, readings))
         gained = bool(self.decision["causes"]) and extended
         of_verdict, caveats = None, [] if extended else ["no sealed test: no gain was measured"]
@@ -56,6 +69,7 @@ class FakeDiagnosis:
         if gained:
             gain = gain_on(sealed_tests(0.9 if gaining else 0.0))
             of_verdict, caveats = gain_of_verdict(gain)
+            gain = gain.merge(informed())
             consequences = self._consequences()
         write_dataset(self.results / "gain.nc", gain)
         write_dataset(self.results / "consequences.nc", consequences)

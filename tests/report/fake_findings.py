@@ -133,6 +133,23 @@ def sealed_tests(nearer):
     return tests
 
 
+def informed():
+    """What the open tests tell of three nominal parameters, one of them a parameter of one solver alone."""
+    names = ["friction.concrete.concrete", "materials.concrete.youngs_modulus", "ls_dem.node_spacing"]
+    prior = np.array([[0.6, 40e9, 0.15], [0.75, 45e9, 0.2], [0.9, 50e9, 0.3]])
+    only = np.array([[True, True, True], [True, True, False]])
+    return xr.Dataset(
+        {
+            "prior": (("model", "quantile", "parameter"), np.where(only[:, None], prior, np.nan)),
+            "posterior": (("model", "quantile", "parameter"), np.where(only[:, None], 0.9 * prior, np.nan)),
+            "narrowing": (("model", "parameter"), np.where(only, 0.5, np.nan)),
+            "skill": (("model", "parameter"), np.where(only, 0.4, np.nan)),
+            "informed": (("model", "parameter"), only & [True, False, True]),
+        },
+        {"model": list(MODELS), "parameter": names, "quantile": [0.05, 0.5, 0.95]},
+    )
+
+
 def parity(structure, findings):
     """Sensors' checks of one body's markers, the other's too few."""
     markers = {marker.name: {"noise": 1e-4, "misfit": 1e-4} for marker in structure.file.markers}

@@ -142,6 +142,24 @@ def test_gain_table_has_the_scores_of_the_file(found, documents):
         assert float(extended[test]) == pytest.approx(own, rel=5e-3)
 
 
+def test_what_the_tests_tell_of_nominal_parameters_is_told_from_what_they_do_not(found, documents):
+    (table,) = (
+        block for section in documents["named"].sections for block in section.blocks
+        if getattr(block, "caption", "").startswith("Parameters of the nominal model")
+    )  # fmt: skip
+    assert [row[:3] for row in table.rows] == [
+        ("friction.concrete.concrete", "LS-DEM", "1"), ("ls_dem.node_spacing", "LS-DEM", "m"),
+        ("friction.concrete.concrete", "NSCD rigid", "1"),
+    ]  # fmt: skip
+    assert table.rows[0][3:] == ("0.750 (0.600 to 0.900)", "0.675 (0.540 to 0.810)", "0.50")
+    assert "materials.concrete.youngs_modulus (NSCD rigid)" in table.caption
+
+
+def test_the_error_of_a_size_is_that_of_left_out_draws(pages):
+    assert "18 draws with it were simulated by each solver" in pages["named"][1]
+    assert "draws with it were simulated" not in pages["none"][1]
+
+
 def test_drift_before_and_after_is_that_of_the_strongest_sealed_test(found, pages):
     own = found["named"].consequences.sel(test=SEALED[-1])
     assert float(own["measured"]) == float(found["named"].consequences["measured"].max())

@@ -271,6 +271,7 @@ rule make_diagnosis_report:
                 "verdict.json",
             ],
         ),
+        posterior=size_files,
         gain=gain_file,
         horizons=lambda wildcards: [
             f"results/libraries/{name}/predictability.nc"

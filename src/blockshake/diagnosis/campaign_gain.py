@@ -14,6 +14,7 @@ from blockshake.measurement.commanded_motion import commanded_motion
 
 DISCREPANCY = "discrepancy"
 _KINDS = (NOMINAL, RECALIBRATED, EXTENDED)
+_OF_PARAMETERS = ("prior", "posterior", "narrowing", "skill", "chance", "informed", "held")
 
 
 def campaign_gain(campaign, readings, tables, sealed, runs):
@@ -32,7 +33,8 @@ def campaign_gain(campaign, readings, tables, sealed, runs):
     Returns
     -------
     gain : xarray.Dataset
-        From `gain_on`.
+        From `gain_on`; and along ``model`` and ``parameter`` what the open tests tell of the nominal parameters, as of
+        `Recalibration.informed`, NaN and false of a parameter that a solver has not.
     consequences : xarray.Dataset
         From `consequence`, along ``test``; and ``drift_history(kind, quantile, time, body)`` of the ensembles with
         ``drift_measured(time, body)`` [m].
@@ -57,9 +59,17 @@ def campaign_gain(campaign, readings, tables, sealed, runs):
         }
         tests.append(test)
         consequences.append(consequence(reading, ensembles).merge(_histories(reading, ensembles)))
-    return gain_on(tests), xr.concat(consequences, dim="test", join="outer").assign_coords(
-        test=[test.name for test in tests]
-    )
+    return gain_on(tests).merge(_parameters(runs)), xr.concat(
+        consequences, dim="test", join="outer"
+    ).assign_coords(test=[test.name for test in tests])
+
+
+def _parameters(runs):
+    """What the open tests tell of the nominal parameters, by solver."""
+    parts = [one[list(_OF_PARAMETERS)] for one in runs.values()]
+    return xr.concat(
+        parts, dim="model", join="outer", coords="minimal", compat="override", fill_value={"informed": False}
+    ).assign_coords(model=list(runs))
 
 
 def _runs(runs, kind, test):

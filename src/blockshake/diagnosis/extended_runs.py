@@ -7,11 +7,11 @@ from blockshake.diagnosis.extension import (
     extended_members,
     open_features,
     open_responses,
-    recalibrated_members,
 )
 from blockshake.diagnosis.null_model import draw_nominal
 from blockshake.diagnosis.plan import planned_sealed, sealed_tests
 from blockshake.diagnosis.planned_test import kept_reading
+from blockshake.diagnosis.recalibration import posterior_draws
 
 NOMINAL, RECALIBRATED, EXTENDED = "nominal", "recalibrated", "extended"
 
@@ -39,16 +39,18 @@ def extended_runs(plan, model, decision, size, library, features, store, source,
     -------
     xarray.Dataset
         Along ``run``: ``value(run, feature)`` and ``drift(run, time, body)`` as from `read_off`; coordinates ``kind``,
-        ``test``, ``draw``, ``status``.
+        ``test``, ``draw``, ``status``. Along ``parameter``: what the tests tell of the nominal parameters without the
+        cause, as of `Recalibration.informed`.
     """
     by_key = {candidate.key: candidate for candidate in plan.candidates}
     cause, *others = (by_key[decision["places"][effect]] for effect in decision["causes"])
     draws = [draw_nominal(plan.campaign.structure, model, k) for k in range(plan.effort.nominal_draws)]
     known, measured = open_features(library, model), np.concatenate(features)
     count = plan.effort.members
+    recalibration = posterior_draws(draws, known, measured)
     members = {
         NOMINAL: [(draw, []) for draw in draws[:count]],
-        RECALIBRATED: recalibrated_members(draws, known, measured, count),
+        RECALIBRATED: [(draw, []) for draw in recalibration.draws[:count]],
         EXTENDED: extended_members(
             cause,
             (np.array(size["sizes"]), np.array(size["posterior"])),
@@ -78,6 +80,5 @@ def extended_runs(plan, model, decision, size, library, features, store, source,
             one = reading[["value", "drift"]].expand_dims("run")
             parts.append(one.assign_coords({label: ("run", [value]) for label, value in labels.items()}))
             progress(f"{name} {model} {kind} {len(parts)}/{total} {how}: {status}")
-    return xr.concat(
-        parts, dim="run", coords="minimal", compat="override", join="outer", data_vars="minimal"
-    ).assign_attrs(model=model)
+    runs = xr.concat(parts, dim="run", coords="minimal", compat="override", join="outer", data_vars="minimal")
+    return runs.merge(recalibration.informed).assign_attrs(model=model)

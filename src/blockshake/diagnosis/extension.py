@@ -44,18 +44,6 @@ def open_responses(library, model, key):
     ]
 
 
-def recalibrated_members(draws, features, measured, count):
-    """The first ``count`` draws after the open tests, without any effect; arguments as of `posterior_draws`.
-
-    Returns
-    -------
-    list of (Draw, list)
-        The list of effects is empty.
-    """
-    nothing = np.zeros((count, features.shape[1]))
-    return [(draw, []) for draw in posterior_draws(draws, features, measured, nothing).draws]
-
-
 def extended_members(candidate, posterior, draws, features, measured, responses, count):
     """Members of the extended model: sizes from their posterior, nominal parameters that fit beside them.
 

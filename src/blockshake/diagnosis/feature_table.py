@@ -32,7 +32,7 @@ _F1 = "F1; Andrews and Monahan 1992 for its error"
 _FEW = "0, with fewer than 40 quiet readings"
 _NO_ROCKING = "0, without rocking beyond 5 sigma to that side at 10 readings"
 
-# of a joint; the name goes behind ``jointJ.``, J counts from 1 at the lowest
+# of a joint; the name goes behind ``jointJ.``, J counts from 1 as the structure file lists upper bodies
 JOINT_FEATURES = {
     "slip.quiet.acceleration": Feature("s2", 1e-4, f"slope of the slip {_QUIET}", _F1, _FEW),
     "slip.quiet.displacement": Feature("1", 0.01, f"slope of the slip {_QUIET}", _F1, _FEW),

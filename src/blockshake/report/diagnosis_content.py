@@ -11,6 +11,7 @@ import xarray as xr
 
 from blockshake.diagnosis.candidates import candidates
 from blockshake.diagnosis.licence import Licence, load_licence
+from blockshake.diagnosis.plan import EFFORTS
 from blockshake.diagnosis.verdict import Verdict, load_verdict
 from blockshake.errors import InputError
 from blockshake.files import file_digest, read_text
@@ -28,6 +29,7 @@ _RESULTS = (
     "verdict.json",
 )
 _OF_GAIN = ("gain.json", "gain.nc", "consequences.nc")
+_OF_SIZE = "size.json"
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,8 @@ class Diagnosed:
         From `measured_readings`, `misfit` and `deciding_features`.
     gain, consequences : xarray.Dataset or None
         From `campaign_gain`; None where no physical cause's gain was measured.
+    size : dict or None
+        From `size_of_cause`; None where the effort has no further draws, or there is no physical cause.
     sensor_gain : xarray.Dataset or None
         From `sensor_gain`; None where a sensor's fault is not the only cause.
     horizon : dict of str to float
@@ -78,6 +82,7 @@ class Diagnosed:
     evidence: xr.Dataset
     gain: xr.Dataset | None
     consequences: xr.Dataset | None
+    size: dict | None
     sensor_gain: xr.Dataset | None
     horizon: dict
     structure: str
@@ -153,8 +158,10 @@ def load_diagnosed(campaign, results, effort, licence, horizons=()):
     verdict = load_verdict(results / "verdict.json")
     decision = _json(results / "decision.json")
     physical = bool(decision["causes"])
+    sized = physical and bool(EFFORTS[effort].further_draws)
     measured = verdict.gain is not None  # files of an earlier gain may still lie there
     files += [results / name for name in (*_RESULTS, *(_OF_GAIN if measured else ()))]
+    files += [results / _OF_SIZE] if sized else []
     return Diagnosed(
         campaign=campaign,
         effort=effort,
@@ -171,6 +178,7 @@ def load_diagnosed(campaign, results, effort, licence, horizons=()):
         evidence=_dataset(results / "evidence.nc"),
         gain=_dataset(results / "gain.nc") if measured and physical else None,
         consequences=_dataset(results / "consequences.nc") if measured and physical else None,
+        size=_json(results / _OF_SIZE) if sized else None,
         sensor_gain=_dataset(results / "gain.nc") if measured and not physical else None,
         horizon={
             name: float(_dataset(path)["horizon"].min()) for name, path in zip(names, horizons, strict=False)

@@ -1,5 +1,6 @@
 """Fifth page of a diagnosis: what the extension adds to the model, from the registry."""
 
+from blockshake.diagnosis.candidates import effect_of
 from blockshake.effects.registry import EFFECTS
 from blockshake.report.blocks import Heading, Items, Section, Table, Text
 from blockshake.report.diagnosis_verdict import single_size
@@ -40,6 +41,8 @@ def extension_section(found):
             ),
             _parameters(found, name),
         ]
+    if found.size is not None:
+        blocks.append(Text(_sized(found)))
     if verdict.causes:
         blocks.append(
             Text(
@@ -66,6 +69,16 @@ def _opening(found):
     if found.decision["decision"] == "combination":
         return "The model was extended by both effects together."
     return f"The model was extended by one effect: {title_of(physical[0])}."
+
+
+def _sized(found):
+    name, first = effect_of(found.size["key"]), EFFECTS[effect_of(found.size["key"])].parameters[0]
+    error = found.size["error"] * abs(first.visible - first.null)
+    return (
+        f"How sure the size of {title_of(name)} is: {found.size['draws']} draws with it were simulated by each solver "
+        f"and test, and each was judged by the others. The estimates missed the sizes that were simulated by "
+        f"{quantity(error, first.unit)} (root mean square)."
+    )
 
 
 def _parameters(found, name):

@@ -4,6 +4,7 @@ import numpy as np
 
 from blockshake.report.blocks import Figure, Items, Section, Table, Text
 from blockshake.report.diagnosis_drift_figure import plot_extended_drift
+from blockshake.report.diagnosis_parameters_table import nominal_parameters
 from blockshake.report.drawing import PAGE_WIDTH, svg_of
 from blockshake.report.wording import MISSING, model_label, number
 
@@ -39,6 +40,7 @@ def gain_section(found):
         _families(gain),
         Text(_worse(gain), strong=bool(gain["worse"].any())),
         _consequences(found),
+        nominal_parameters(gain, found.campaign.structure),
     ]
     shown = [str(name) for name in found.consequences["test"].values][:_MOST_FIGURES]
     blocks.append(
