@@ -10,7 +10,7 @@ wildcard_constraints:
     solver="|".join(SOLVERS),
     library="[0-9a-f]{12}",
     calibration="[0-9a-f]{12}",
-    candidate="[A-Za-z0-9@._-]+",
+    candidate="[^/]+",
 
 
 rule diagnose:
