@@ -40,7 +40,6 @@ def gain_section(found):
         _families(gain),
         Text(_worse(gain), strong=bool(gain["worse"].any())),
         _consequences(found),
-        nominal_parameters(gain, found.campaign.structure),
     ]
     shown = [str(name) for name in found.consequences["test"].values][:_MOST_FIGURES]
     blocks.append(
@@ -51,6 +50,7 @@ def gain_section(found):
             PAGE_WIDTH,
         )
     )
+    blocks.append(nominal_parameters(gain, found.campaign.structure))
     caveats = found.gain_caveats
     if caveats:
         blocks.append(Items(tuple(f"{one[0].upper()}{one[1:]}." for one in caveats)))
