@@ -66,6 +66,8 @@ def diagnose(campaign, output, effort="standard", cores=None):
     found = [results / file for file in kept]
     found += [_CHECKOUT / "reports" / f"diagnosis-{name}.{kind}" for kind in ("html", "pdf")]
     Path(output).mkdir(parents=True, exist_ok=True)
+    for file in _OF_GAIN:  # of an earlier diagnosis, where this one has none
+        (Path(output) / file).unlink(missing_ok=True)
     for path in found:
         shutil.copyfile(path, Path(output) / path.name.replace(f"diagnosis-{name}", "report"))
     return load_verdict(Path(output) / "verdict.json")

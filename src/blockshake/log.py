@@ -7,6 +7,8 @@ import traceback
 from importlib.metadata import version
 from pathlib import Path
 
+from blockshake.errors import InputError
+
 _VERSIONS = ("numpy", "numba", "scipy", "xarray")
 
 
@@ -15,7 +17,8 @@ def logging_to(path):
     """Write the block's log to a file.
 
     Yields a function that says one line of progress, in the log and on the terminal. Python
-    warnings and logging go to the log; so does the traceback of an error, which is raised on.
+    warnings and logging go to the log; so does the traceback of an error, which is raised on, but for bad input: that
+    ends the job with one line.
     """
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     with open(path, "w", encoding="utf-8", buffering=1) as log:
@@ -35,6 +38,9 @@ def logging_to(path):
 
         try:
             yield say
+        except InputError as error:
+            log.write(traceback.format_exc())
+            sys.exit(f"blockshake: {error}")
         except BaseException:
             log.write(traceback.format_exc())
             raise

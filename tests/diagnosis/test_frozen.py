@@ -10,5 +10,5 @@ def test_a_decision_that_was_changed_after_it_was_frozen_is_refused(tmp_path):
     freeze(frozen, decision, ["t1"])
     check_frozen(frozen, decision)
     decision.write_text('{"causes": ["weak-joint"]}')
-    with pytest.raises(InputError, match="expected the decision that was frozen"):
+    with pytest.raises(InputError, match="expected the file that was frozen"):
         check_frozen(frozen, decision)

@@ -29,3 +29,13 @@ def test_the_size_is_in_the_parameters_unit_and_others_keep_their_prior():
     for item in others:
         assert not found[item.name]["informed"]
         assert item.lower < found[item.name]["lower"] < found[item.name]["upper"] < item.upper
+
+
+@pytest.mark.parametrize("centre", [-0.4, 0.0, 0.07])
+def test_a_coarse_grid_shifts_no_estimate(centre):
+    sizes = np.linspace(-2.0, 2.0, 21)
+    weights = np.exp(-0.5 * ((sizes - centre) / 0.5) ** 2)
+    estimate, lower, upper = size_interval(sizes, weights / weights.sum(), 0.9)
+    assert estimate == pytest.approx(centre, abs=0.01)
+    assert 0.5 * (lower + upper) == pytest.approx(centre, abs=0.01)
+    assert upper - lower == pytest.approx(2.0 * 1.645 * 0.5, rel=0.05)

@@ -6,7 +6,7 @@ import xarray as xr
 
 from blockshake.diagnosis.candidate_scores import ScoreLibrary
 from blockshake.diagnosis.candidates import Candidate
-from blockshake.diagnosis.size_of_cause import library_of_cause, size_of_cause
+from blockshake.diagnosis.size_of_cause import library_of_cause, size_of_cause, without_second
 from blockshake.effects.registry import EFFECTS
 
 MODELS, N_NOMINAL, N_FEATURES = ("ls-dem", "nscd-rigid"), 40, 12
@@ -79,3 +79,19 @@ def test_the_library_of_a_cause_has_all_nominal_runs_and_the_cause_s_further_one
     for model in MODELS:
         assert library.tamed[0][model]["nominal"].shape == (10, 3)
         np.testing.assert_allclose(library.sizes[model][PITCH.key], further[0][model]["size"][4:])
+
+
+def test_the_second_effect_of_a_combination_is_taken_off():
+    world = World(3)
+    library = world.library(18)
+    measured = world.measured()
+    both = {
+        "decision": "combination", "causes": ["weak-joint", "table-pitch"], "places": {"table-pitch": PITCH.key},
+        "sizes": {"table-pitch": library.grid(PITCH.key)[15]},
+    }  # fmt: skip
+    left = without_second(library, measured, both)
+    for own, rest, direction in zip(measured, left, world.direction, strict=True):
+        added = library.grid(PITCH.key)[15] * direction
+        assert np.corrcoef(own - rest, added)[0, 1] > 0.95
+        assert np.linalg.norm(own - rest) == pytest.approx(np.linalg.norm(added), rel=0.3)
+    assert without_second(library, measured, both | {"decision": "ambiguous"}) is measured

@@ -64,7 +64,7 @@ class FakeDiagnosis:
             write_json(self.results / "size.json", {"key": key, "error": 0.3, "draws": 18})
         write_dataset(self.results / "evidence.nc", evidence(best, readings))
         gained = bool(self.decision["causes"]) and extended
-        of_verdict, caveats = None, [] if extended else ["no sealed test: no gain was measured"]
+        of_verdict, caveats = None, [] if extended else ["no gain was measured: there is no sealed test"]
         gain = consequences = xr.Dataset()
         if gained:
             gain = gain_on(sealed_tests(0.9 if gaining else 0.0))

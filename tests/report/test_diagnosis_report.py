@@ -199,8 +199,8 @@ def test_tests_sensors_and_files_are_accounted_for(pages, found):
         assert f"{name} alkion 1 sealed sealed: read for the gain alone" in text
     assert "214 hypotheses on" in text
     assert "Not checked against others" in text
-    assert found["named"].frozen["decision"] in text
-    assert f"decision.json {found['named'].frozen['decision']}" in text
+    assert found["named"].frozen["digest"] in text
+    assert f"decision.json {found['named'].frozen['digest']}" in text
     assert not [path for path in found["named"].digests if any(name in path for name in SEALED)]
 
 

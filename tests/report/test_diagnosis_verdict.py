@@ -1,11 +1,13 @@
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
 from fake_diagnosis import FakeDiagnosis
-from fake_findings import OPEN, gain_finding
+from fake_findings import OPEN, SEALED, gain_finding
 
+from blockshake.files import write_dataset, write_json
 from blockshake.report.diagnosis_content import load_diagnosed
 from blockshake.report.diagnosis_report import compose_diagnosis
 from blockshake.report.diagnosis_verdict import ESTABLISHED, ONE_OF, PROBABLE, rung, statement
@@ -74,6 +76,35 @@ def test_a_sensor_fault_alone_is_probable_and_named_without_simulation(tmp_path)
     assert "without any simulation" in items
     assert "Excluded (nine in ten would have been seen)" in items
     assert any(block.kind == "table" and block.caption.startswith("Faults of sensors") for block in shown)
+
+
+def test_sealed_tests_that_a_sensor_s_gain_was_measured_on_are_not_called_unread(tmp_path):
+    fake = FakeDiagnosis(tmp_path, "none", findings=[gain_finding()])
+    verdict = json.loads((fake.results / "verdict.json").read_text())
+    contrast = {"estimate": 1.0, "lower": 0.9, "upper": 1.0}
+    verdict["gain"] = dict.fromkeys(("recalibrated", "nominal", "discrepancy"), contrast)
+    write_json(fake.results / "verdict.json", verdict)
+    kinds = ["nominal", "extended", "discrepancy"]
+    scores = xr.Dataset(
+        {"score": (("test", "kind"), np.full((2, 3), 1e-4), {"units": "m"}), "floor": ("test", [1e-5, 1e-5])},
+        {"test": list(SEALED), "kind": kinds},
+        {"where": "block-2-face"},
+    )
+    write_dataset(fake.results / "gain.nc", scores)
+    document = compose_diagnosis(load_diagnosed(*fake.arguments()))
+    (table,) = (
+        block for section in document.sections for block in section.blocks
+        if getattr(block, "header", ())[-1:] == ("Use",)
+    )  # fmt: skip
+    uses = {row[0]: row[-1] for row in table.rows}
+    assert {uses[name] for name in SEALED} == {"sealed: read for the gain alone"}
+
+
+def test_a_cause_that_was_not_simulated_is_not_called_an_extended_model(tmp_path):
+    fake = FakeDiagnosis(tmp_path, "named", extended=False)
+    document = compose_diagnosis(load_diagnosed(*fake.arguments()))
+    section = next(one for one in document.sections if one.key == "extension")
+    assert section.blocks[0].text.startswith("No extended model was simulated.")
 
 
 def test_a_set_beside_a_sensor_fault_stays_a_set(tmp_path):

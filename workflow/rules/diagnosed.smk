@@ -77,7 +77,13 @@ def calibration_libraries(wildcards):
     for campaign in CAMPAIGNS:
         if plan(campaign).calibration(CALIBRATION_SOURCE) == wildcards.calibration:
             return library_files(campaign)
-    raise ValueError(f"no campaign has the calibration {wildcards.calibration}")
+    refuse(
+        InputError(
+            "calibration",
+            wildcards.calibration,
+            f"expected that of one of {', '.join(CAMPAIGNS.values())}",
+        )
+    )
 
 
 def considered_effects():
@@ -85,6 +91,13 @@ def considered_effects():
     from blockshake.diagnosis.plan import considered
 
     return considered(WITHOUT)
+
+
+def further_draws():
+    """Draws with a cause beyond those of a library."""
+    from blockshake.diagnosis.plan import EFFORTS
+
+    return EFFORTS[EFFORT].further_draws
 
 
 def test_files(campaign, role):
@@ -105,6 +118,15 @@ def test_files(campaign, role):
     return [str(path) for path in files if path.is_file()]
 
 
+def sealed_motions(campaign):
+    """Files of the motions that were commanded in the sealed tests, which are no readings."""
+    given = load_campaign(CAMPAIGNS[campaign])
+    motions = [test.motion for test in given.tests.values() if test.role == "sealed"]
+    paths = [given.folder / motion for motion in motions]
+    paths += [Path(definition("motions", motion)) for motion in motions]
+    return sorted({str(path) for path in paths if path.is_file()})
+
+
 def decided(wildcards):
     """Physical causes of a campaign and whether its sensors have a fault; asks for the decision first."""
     files = checkpoints.decide.get(**wildcards).output
@@ -115,9 +137,10 @@ def decided(wildcards):
 
 def further_files(wildcards):
     """More draws with the first cause by both solvers, test by test."""
-    decision = json.loads(
-        Path(checkpoints.decide.get(**wildcards).output.decision).read_text()
-    )
+    path = checkpoints.decide.get(campaign=wildcards.campaign).output.decision
+    decision = json.loads(Path(path).read_text())
+    if not decision["causes"]:
+        refuse(InputError(path, "causes", "expected a cause to simulate"))
     key = decision["places"][decision["causes"][0]]
     return library_files(wildcards.campaign, f"{{solver}}/{key}.nc")
 

@@ -110,7 +110,6 @@ checkpoint decide:
         "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
-        effort=EFFORT,
         effects=lambda wildcards: considered_effects(),
         source=DIAGNOSIS_SOURCE,
     script:
@@ -130,9 +129,14 @@ rule simulate_cause:
         "benchmarks/simulate_cause/{library}-{solver}-{candidate}.jsonl"
     conda:
         "../envs/blockshake.yaml"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=480,
     params:
         source=LIBRARY_SOURCE,
         store="results/store/diagnosis",
+        further_draws=lambda wildcards: further_draws(),
     script:
         "../scripts/simulate_cause.py"
 
@@ -153,6 +157,7 @@ rule size_cause:
     conda:
         "../envs/blockshake.yaml"
     params:
+        effects=lambda wildcards: considered_effects(),
         source=DIAGNOSIS_SOURCE,
     script:
         "../scripts/size_cause.py"
@@ -164,6 +169,8 @@ rule extend_model:
         frozen="results/diagnosis/{campaign}/frozen.json",
         decision="results/diagnosis/{campaign}/decision.json",
         posterior=rules.size_cause.output.posterior,
+        frozen_size=rules.size_cause.output.frozen,
+        motions=lambda wildcards: sealed_motions(wildcards.campaign),
         readings=rules.read_measured.output.readings,
         libraries=lambda wildcards: library_files(wildcards.campaign),
         further=further_files,
@@ -176,9 +183,14 @@ rule extend_model:
         "benchmarks/diagnosis/{campaign}/extend_model/{solver}.jsonl"
     conda:
         "../envs/blockshake.yaml"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=480,
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
+        effects=lambda wildcards: considered_effects(),
         store="results/store/diagnosis",
         source=LIBRARY_SOURCE,
         judged_by=DIAGNOSIS_SOURCE,
@@ -207,7 +219,6 @@ rule measure_gain:
         "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
-        effort=EFFORT,
         source=DIAGNOSIS_SOURCE,
     script:
         "../scripts/measure_gain.py"

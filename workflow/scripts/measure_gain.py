@@ -33,7 +33,7 @@ with logging_to(snakemake.log[0]):
             campaign,
             readings,
             load_tables(snakemake.input.libraries),
-            measured_readings(campaign, names, findings),
+            measured_readings(campaign, names, findings, float(next(iter(runs.values()))["time"][-1])),
             runs,
         )
         of_verdict, caveats = gain_of_verdict(gain)

@@ -11,7 +11,7 @@ with logging_to(snakemake.log[0]) as say:
         snakemake.params.source,
     )
     (candidate,) = (one for one in plan.candidates if one.key == snakemake.wildcards.candidate)
-    draws = plan.own_draws + plan.effort.further_draws
+    draws = plan.own_draws + snakemake.params.further_draws
     # nominal draws and the first with the candidate are in the store
     features, _ = library(
         plan.tests[test],

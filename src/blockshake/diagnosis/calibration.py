@@ -9,6 +9,7 @@ from blockshake.diagnosis.constancy import constancy
 
 NONE = "none"
 _FEWEST = 10  # cases with which a chance below 10 % can be told
+_SHOWN_BY = 5  # cases that must say so: fewer are seen by chance
 _SHOWN = 0.9  # share of the cases of a size and larger ones that must be detected
 
 
@@ -167,7 +168,7 @@ def chance_of_constancy(effect, case, cases):
 
 
 def shown_above(effect, cases, seen):
-    """Size from which on nine in ten cases are detected, in units of the visible one; NaN if none is.
+    """Size from which on nine in ten cases, at least five, are detected; in units of the visible one, NaN if none is.
 
     Parameters
     ----------
@@ -183,7 +184,7 @@ def shown_above(effect, cases, seen):
     for count, case in enumerate(order, start=1):
         is_seen = id(case) in found
         hits += is_seen
-        if is_seen and hits >= _SHOWN * count:
+        if is_seen and count >= _SHOWN_BY and hits >= _SHOWN * count:
             smallest = abs(case.size)
     return smallest
 

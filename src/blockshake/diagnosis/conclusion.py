@@ -43,7 +43,7 @@ def conclude(decision, findings, channels, where, runs, caveats, effort, size=No
     -----
     A sensor fault beside a physical cause is a combination: it was corrected first, and the tests judged again. Where
     the physical cause is unknown, so is the whole, and the sensor fault stands among the caveats. Its entry in
-    ``probabilities`` is the chance that the sensor is not sound, 1 less the parity check's p: no conformal p value.
+    ``probabilities`` is 1 less the parity check's p: a score, neither a conformal p value nor a probability.
     """
     if size is not None:
         known = decision["parameters"] | {effect_of(size["key"]): size["parameters"]}
@@ -54,12 +54,16 @@ def conclude(decision, findings, channels, where, runs, caveats, effort, size=No
     if not sensors:
         kind = physical
     elif physical == "unknown":
-        kind, causes = "unknown", []
+        kind, causes, gain = "unknown", [], None
         caveats = [*caveats, f"sensor faults were found and taken out: {', '.join(sensors)}"]
     else:
         kind = "named" if len(causes) == 1 else "combination"
         if physical == "ambiguous":
-            caveats = [*caveats, f"of {', '.join(decision['causes'])} one is not excluded by the others"]
+            names = " and ".join(decision["causes"])
+            caveats = [
+                *caveats,
+                f"{names} cannot be told apart: one of them acts beside the sensor fault, not all",
+            ]
     if effort == "quick" and kind not in ("none", "unknown"):
         caveats = [*caveats, "quick effort: no stronger word than probable"]
     for solver in decision["solver_dependent"]:

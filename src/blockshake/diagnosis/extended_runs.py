@@ -31,7 +31,7 @@ def extended_runs(plan, model, decision, size, library, features, store, source,
     library : ScoreLibrary
         Of the first cause, from `library_of_cause`.
     features : list of float64 array, shape (n_features,)
-        Measured in the open tests, tamed.
+        Measured in the open tests, tamed; of a combination as from `without_second`.
     store, source, progress
         As of `library`.
 

@@ -1,4 +1,4 @@
-"""A decision frozen by its hash before sealed tests are opened, so that nothing in them can have moved it."""
+"""A file frozen by its hash before sealed tests are opened: one that was changed since is refused."""
 
 import json
 from pathlib import Path
@@ -7,19 +7,19 @@ from blockshake.errors import InputError
 from blockshake.files import file_digest, write_json
 
 
-def freeze(path, decision, tests):
-    """Write the digest of a decision's file and the tests that it rests on."""
-    write_json(path, {"decision": file_digest(decision), "tests": list(tests)})
+def freeze(path, decided, tests):
+    """Write the digest of a file that was decided, a decision or a size, and the tests that it rests on."""
+    write_json(path, {"digest": file_digest(decided), "tests": list(tests)})
 
 
-def check_frozen(path, decision):
-    """Refuse a decision that is another than the frozen one.
+def check_frozen(path, decided):
+    """Refuse a file that is another than the frozen one.
 
     Raises
     ------
     InputError
     """
-    frozen = json.loads(Path(path).read_text())["decision"]
-    found = file_digest(decision)
+    frozen = json.loads(Path(path).read_text())["digest"]
+    found = file_digest(decided)
     if found != frozen:
-        raise InputError(decision, "", f"expected the decision that was frozen as {frozen}, found {found}")
+        raise InputError(decided, "", f"expected the file that was frozen as {frozen}, found {found}")

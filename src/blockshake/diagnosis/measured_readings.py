@@ -9,7 +9,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaign import load_test
 
 
-def measured_readings(campaign, names, findings):
+def measured_readings(campaign, names, findings, longest=np.inf):
     """Features and histories of measured tests.
 
     Parameters
@@ -19,6 +19,8 @@ def measured_readings(campaign, names, findings):
         Of tests; a sealed one is read only where the gain is measured.
     findings : sequence of Finding
         Sensor faults that are taken out first.
+    longest : float, optional
+        What is read later than this after a test's first reading is left out [s].
 
     Returns
     -------
@@ -30,6 +32,7 @@ def measured_readings(campaign, names, findings):
     for name in names:
         test = corrected(load_test(campaign, name), name, structure, findings).test
         test = test.assign_coords(time=np.round(test["time"] - test["time"][0], 6))
+        test = test.isel(time=test["time"].to_numpy() <= longest)
         parts.append(read_off(test, structure, campaign.sensors))
     return xr.concat(parts, dim="test", join="outer", coords="minimal", compat="override").assign_coords(
         test=list(names)

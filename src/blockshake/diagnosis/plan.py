@@ -212,8 +212,8 @@ class Plan:
         if not causes:
             return []
         if not sealed_tests(self.campaign):
-            return ["no sealed test: no gain was measured"]
-        return ["quick effort: no extension was simulated, and no gain measured"]
+            return ["no gain was measured: there is no sealed test"]
+        return ["no gain was measured: an extension is not simulated at quick effort"]
 
     def library(self, test, source):
         """Name of the library of a test: equal content, equal name."""

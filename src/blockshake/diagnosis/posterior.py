@@ -44,7 +44,8 @@ def size_interval(sizes, weights, share):
     -------
     estimate, lower, upper : float
     """
-    below = np.cumsum(weights) / np.sum(weights)
+    # up to the middle of each size's own share
+    below = (np.cumsum(weights) - 0.5 * weights) / np.sum(weights)
     levels = (0.5, 0.5 * (1.0 - share), 0.5 * (1.0 + share))
     kept = np.concatenate([[True], np.diff(below) > 0.0])
     return tuple(float(np.interp(level, below[kept], sizes[kept])) for level in levels)

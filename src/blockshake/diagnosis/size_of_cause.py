@@ -1,5 +1,6 @@
 """The size of the cause that was found, from more draws of it than a library has of every candidate."""
 
+import numpy as np
 import xarray as xr
 
 from blockshake.diagnosis.calibration import as_case, size_error
@@ -34,6 +35,35 @@ def library_of_cause(tables, further, key):
     return score_library(narrow, [effect_of(key)])
 
 
+def without_second(library, features, decision):
+    """Features of measured tests less what the second effect of a combination adds; any other decision leaves them.
+
+    Parameters
+    ----------
+    library : ScoreLibrary
+        Of all candidates.
+    features : list of float64 array, shape (n_features,)
+        Measured, by test, tamed.
+    decision : dict
+        As from `decision_as_json`.
+
+    Returns
+    -------
+    list of float64 array, shape (n_features,)
+        Less the mean over the solvers of the second effect's response at the size that the decision gives it.
+    """
+    if decision["decision"] != "combination":
+        return features
+    second = decision["causes"][1]
+    key, size = decision["places"][second], decision["sizes"][second]
+    place = int(np.argmin(np.abs(library.grid(key) - size)))
+    added = [
+        [library.evidence(test, model).responses[key].mean[place] for model in library.models]
+        for test in range(len(features))
+    ]
+    return [own - np.mean(more, axis=0) for own, more in zip(features, added, strict=True)]
+
+
 def size_of_cause(library, features):
     """Posterior of the size, and the parameters with it.
 
@@ -42,7 +72,7 @@ def size_of_cause(library, features):
     library : ScoreLibrary
         From `library_of_cause`.
     features : list of float64 array, shape (n_features,)
-        Measured, by test, tamed.
+        Measured, by test, tamed; of a combination as from `without_second`.
 
     Returns
     -------

@@ -172,7 +172,7 @@ def load_diagnosed(campaign, results, effort, licence, horizons=()):
         frozen=_json(results / "frozen.json"),
         gain_caveats=_json(results / "gain.json")["caveats"]
         if measured
-        else [caveat for caveat in verdict.caveats if "gain" in caveat],
+        else [caveat for caveat in verdict.caveats if "no gain was measured" in caveat],
         readings=readings,
         misfit=_dataset(results / "misfit.nc"),
         evidence=_dataset(results / "evidence.nc"),

@@ -61,14 +61,14 @@ def _opening(found):
         return "The model was not extended: the cause is unknown, and an extension by a wrong cause misleads."
     if not physical:
         return "The model was not extended: the fault is in the sensors and was taken out of the readings."
+    by = f"one effect: {title_of(physical[0])}."
     if kind == "ambiguous":
-        return (
-            f"The model was extended by the likeliest of the set ({title_of(physical[0])}); the others stand below "
-            "because they are not excluded."
-        )
+        by = f"the likeliest of the set ({title_of(physical[0])}); the others are not excluded and stand below."
     if found.decision["decision"] == "combination":
-        return "The model was extended by both effects together."
-    return f"The model was extended by one effect: {title_of(physical[0])}."
+        by = "both effects together."
+    if found.gain is None:
+        return f"No extended model was simulated. It would be the nominal one extended by {by}"
+    return f"The model was extended by {by}"
 
 
 def _sized(found):

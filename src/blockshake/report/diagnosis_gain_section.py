@@ -22,15 +22,16 @@ def gain_section(found):
     if found.sensor_gain is not None:
         return _of_sensor(found)
     if found.gain is None:
-        reasons = found.gain_caveats or ["the model was not extended, and there is nothing to measure"]
-        text = f"No gain was measured: {'; '.join(reasons)}."
+        reasons = found.gain_caveats or ["no gain was measured: the model was not extended"]
+        text = "; ".join(reasons)
+        text = f"{text[0].upper()}{text[1:]}."
         return Section("Gain on sealed tests", "gain", (Text(text),))
     gain = found.gain
     tests = [str(name) for name in gain["test"].values]
     blocks = [
         Text(
             f"Sealed tests: {', '.join(tests)}. They were opened after the decision had been frozen (digest "
-            f"{found.frozen['decision']}). Rivals of the extended model: the nominal one; the nominal "
+            f"{found.frozen['digest']}). Rivals of the extended model: the nominal one; the nominal "
             "one recalibrated on the open tests; the nominal one with a statistical "
             "discrepancy (Kennedy and O'Hagan 2001), which has no name. Score: continuous ranked probability score "
             "of the features, each in units of its spread; lower is better."
@@ -50,7 +51,7 @@ def gain_section(found):
             PAGE_WIDTH,
         )
     )
-    blocks.append(nominal_parameters(gain, found.campaign.structure))
+    blocks.append(nominal_parameters(gain))
     caveats = found.gain_caveats
     if caveats:
         blocks.append(Items(tuple(f"{one[0].upper()}{one[1:]}." for one in caveats)))
@@ -83,7 +84,7 @@ def _of_sensor(found):
             Text(
                 f"The fault is one of the observation, so the extension acts there: the estimate from the open tests "
                 f"was taken out of the sealed ones, which were opened after the decision had been frozen (digest "
-                f"{found.frozen['decision']}). Of what could be gained it gains {100.0 * own.estimate:.0f} % "
+                f"{found.frozen['digest']}). Of what could be gained it gains {100.0 * own.estimate:.0f} % "
                 f"({100.0 * own.lower:.0f} to {100.0 * own.upper:.0f} % in the single tests). No simulation enters it."
             ),
             Table(
@@ -162,7 +163,7 @@ def _families(gain):
     return Table(
         "Scores by family of features, and the fall against the recalibrated model with its interval of 90 %; worse: "
         "the whole interval is below 0.",
-        ("Family", *(words.replace("recalibrated with a ", "") for words in _KINDS.values()), "Fall", ""),
+        ("Family", *_KINDS.values(), "Fall", ""),
         tuple(rows),
         "lrrrrrl",
     )

@@ -73,7 +73,7 @@ def _tests_table(found):
     rows = []
     for test in found.campaign.tests.values():
         use = "sealed: read for the gain alone" if test.role == "sealed" else _ROLES[test.name in found.tests]
-        if test.role == "sealed" and found.gain is None:
+        if test.role == "sealed" and found.verdict.gain is None:
             use = "sealed: not read"
         rows.append((test.name, test.motion, given(test.scale), test.role, use))
     header = ("Test", "Motion", "Scale", "Role", "Use")

@@ -4,24 +4,30 @@ import numpy as np
 
 from blockshake.report.blocks import Table
 from blockshake.report.wording import model_label, number, printed_unit
-from blockshake.study.parameters import parameter_table
+from blockshake.study.distributions import parameter_unit
+
+# unit of what is no parameter of a design
+_OTHERS = {
+    "amplitude": "1",
+    "restitution": "1",
+    "ls_dem.node_spacing": "m",
+    "ls_dem.perimeter_inset": "m",
+    "nscd.shrink": "1",
+}
 
 
-def nominal_parameters(gain, structure):
+def nominal_parameters(gain):
     """Parameters of the recalibrated rival before and after the open tests, by solver.
 
     Parameters
     ----------
     gain : xarray.Dataset
         From `campaign_gain`.
-    structure : str or path
-        Whose parameters they are.
 
     Returns
     -------
     Table
     """
-    units = {name: unit for name, unit, *_ in parameter_table(structure)}
     rows, unmoved = [], []
     for model in gain["model"].values:
         own = gain.sel(model=model)
@@ -30,7 +36,7 @@ def nominal_parameters(gain, structure):
             if not one["informed"]:
                 unmoved.append(f"{name} ({model_label(model)})")
                 continue
-            divisor, unit = printed_unit(units.get(name, "1"))
+            divisor, unit = printed_unit(_OTHERS.get(name) or parameter_unit(name))
             rows.append(
                 (
                     str(name),
