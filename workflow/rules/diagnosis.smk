@@ -85,6 +85,7 @@ rule read_measured:
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
+        without=WITHOUT,
         source=DIAGNOSIS_SOURCE,
     script:
         "../scripts/read_measured.py"

@@ -8,6 +8,6 @@ from blockshake.measurement.campaign import load_campaign
 with logging_to(snakemake.log[0]):
     campaign = load_campaign(snakemake.params.folder)
     names = open_tests(campaign, EFFORTS[snakemake.params.effort])
-    parity = campaign_parity(campaign, names)
+    parity = campaign_parity(campaign, names, snakemake.params.without)
     write_dataset(snakemake.output.readings, measured_readings(campaign, names, parity.findings))
     write_json(snakemake.output.parity, parity.as_json())

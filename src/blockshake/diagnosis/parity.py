@@ -70,8 +70,10 @@ def _columns(table, dim):
     }
 
 
-def campaign_parity(campaign, names):
+def campaign_parity(campaign, names, without=()):
     """Parity of the named tests of a campaign; see `check_parity`.
+
+    Findings of the effects ``without`` are left out, as if nobody had thought of them: the readings keep the fault.
 
     Raises
     ------
@@ -83,7 +85,8 @@ def campaign_parity(campaign, names):
             usable = [test.name for test in campaign.tests.values() if test.role != "sealed"]
             raise InputError(campaign.folder, f"tests.{name}", f"expected one of {', '.join(usable)}")
     tests = {name: load_test(campaign, name) for name in names}
-    return check_parity(tests, load_structure(campaign.structure), campaign.sensors)
+    parity = check_parity(tests, load_structure(campaign.structure), campaign.sensors)
+    return replace(parity, findings=tuple(one for one in parity.findings if one.effect not in without))
 
 
 def check_parity(tests, structure, sensors, level=LEVEL):
