@@ -2,11 +2,14 @@ import os
 import shutil
 import subprocess
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from numba.core.caching import IndexDataCacheFile
 
 from blockshake import files
 from blockshake.errors import InputError
@@ -220,3 +223,19 @@ def test_packed_variables_keep_their_digits_and_their_gaps(tmp_path):
     # read and written again, nothing moves
     write_dataset(tmp_path / "b.nc", read.drop_encoding(), decimals={"m": 5})
     xr.testing.assert_identical(xr.load_dataset(tmp_path / "b.nc"), read)
+
+
+def test_kernels_that_are_saved_at_the_same_time_do_not_take_each_other_s_place(tmp_path, monkeypatch):
+    """Two signatures of a kernel, whose index is read by both before either writes it."""
+    reads = IndexDataCacheFile._load_index
+
+    def slow(self):
+        index = reads(self)
+        time.sleep(0.2)
+        return index
+
+    monkeypatch.setattr(IndexDataCacheFile, "_load_index", slow)
+    caches = [IndexDataCacheFile(str(tmp_path), "kernel", "stamp") for _ in range(2)]
+    with ThreadPoolExecutor(2) as pool:
+        list(pool.map(lambda number: caches[number].save(f"signature {number}", f"code {number}"), range(2)))
+    assert [caches[0].load(f"signature {number}") for number in range(2)] == ["code 0", "code 1"]

@@ -3,12 +3,18 @@
 Numba's own cache misses edits in imported modules and freezes globals at compile time. Every
 digest of the sources that hold kernels therefore gets a cache folder of its own: an edit in any
 of them compiles anew, and an unchanged package never does.
+
+Nor is that cache safe where several processes compile at once, as Snakemake's jobs and the tests' workers do: two that
+save different signatures of a kernel take the same file name, and the index of one then leads to the machine code
+of the other. Saving is therefore done one at a time.
 """
 
+import fcntl
 import os
 from pathlib import Path
 
 import numba
+from numba.core.caching import IndexDataCacheFile
 
 from blockshake.files import source_digest
 from blockshake.sources import KERNELS
@@ -16,6 +22,19 @@ from blockshake.sources import KERNELS
 SOURCE_DIGEST = source_digest(*KERNELS)
 CACHE_FOLDER = Path(os.environ.get("BLOCKSHAKE_CACHE", Path.home() / ".cache" / "blockshake")) / SOURCE_DIGEST
 numba.config.CACHE_DIR = str(CACHE_FOLDER)
+
+_save_unguarded = IndexDataCacheFile.save
+
+
+def _save_alone(self, key, data):
+    """Save a compiled kernel while no other process saves one."""
+    CACHE_FOLDER.mkdir(parents=True, exist_ok=True)
+    with open(CACHE_FOLDER / "lock", "a", encoding="utf-8") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        _save_unguarded(self, key, data)
+
+
+IndexDataCacheFile.save = _save_alone
 
 kernel = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=False)
 inline_kernel = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=False, inline="always")
