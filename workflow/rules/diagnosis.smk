@@ -305,7 +305,7 @@ rule make_diagnosis_report:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         results=lambda wildcards, input: str(Path(input.results[0]).parent),
         effort=EFFORT,
-        licence=LICENCE,
+        licence=lambda wildcards: LICENCE,
         source=source_digest(*sources.REPORT, *sources.DIAGNOSIS),
     script:
         "../scripts/make_diagnosis_report.py"
