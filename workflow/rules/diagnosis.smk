@@ -1,7 +1,8 @@
 """What the simulation of measured tests gets wrong, the cause, the extended model and its gain.
 
 Libraries and calibrations are named by their content: equal structures, motions and sensors have equal ones, whatever
-campaign they are of, so that a second campaign simulates nothing but its own extension.
+campaign they are of, so that a second campaign simulates nothing but its own extension and further draws of a cause
+that no campaign had before.
 """
 
 

@@ -21,8 +21,7 @@ with logging_to(snakemake.log[0]) as say:
     )
     tables = load_tables(snakemake.input.libraries)
     whole, scales = score_library(tables, snakemake.params.effects)
-    measured = tamed_readings(scales, xr.load_dataset(snakemake.input.readings))
-    features = without_second(whole, measured, decision)
+    features = tamed_readings(scales, xr.load_dataset(snakemake.input.readings))
     library, _ = library_of_cause(tables, load_tables(snakemake.input.further), size["key"])
     runs = extended_runs(
         plan,
@@ -31,6 +30,7 @@ with logging_to(snakemake.log[0]) as say:
         size,
         library,
         features,
+        without_second(whole, features, decision),
         snakemake.params.store,
         snakemake.params.source,
         say,

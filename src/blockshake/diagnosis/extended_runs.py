@@ -16,7 +16,7 @@ from blockshake.diagnosis.recalibration import posterior_draws
 NOMINAL, RECALIBRATED, EXTENDED = "nominal", "recalibrated", "extended"
 
 
-def extended_runs(plan, model, decision, size, library, features, store, source, progress):
+def extended_runs(plan, model, decision, size, library, features, left, store, source, progress):
     """Simulated tests of the nominal, the recalibrated and the extended model.
 
     Parameters
@@ -31,7 +31,9 @@ def extended_runs(plan, model, decision, size, library, features, store, source,
     library : ScoreLibrary
         Of the first cause, from `library_of_cause`.
     features : list of float64 array, shape (n_features,)
-        Measured in the open tests, tamed; of a combination as from `without_second`.
+        Measured in the open tests, tamed.
+    left : list of float64 array, shape (n_features,)
+        What is left of them for the first cause to explain: from `without_second`.
     store, source, progress
         As of `library`.
 
@@ -45,9 +47,9 @@ def extended_runs(plan, model, decision, size, library, features, store, source,
     by_key = {candidate.key: candidate for candidate in plan.candidates}
     cause, *others = (by_key[decision["places"][effect]] for effect in decision["causes"])
     draws = [draw_nominal(plan.campaign.structure, model, k) for k in range(plan.effort.nominal_draws)]
-    known, measured = open_features(library, model), np.concatenate(features)
+    known = open_features(library, model)
     count = plan.effort.members
-    recalibration = posterior_draws(draws, known, measured)
+    recalibration = posterior_draws(draws, known, np.concatenate(features))
     members = {
         NOMINAL: [(draw, []) for draw in draws[:count]],
         RECALIBRATED: [(draw, []) for draw in recalibration.draws[:count]],
@@ -56,7 +58,7 @@ def extended_runs(plan, model, decision, size, library, features, store, source,
             (np.array(size["sizes"]), np.array(size["posterior"])),
             draws,
             known,
-            measured,
+            np.concatenate(left),
             open_responses(library, model, cause.key),
             count,
         ),
