@@ -37,9 +37,9 @@ test-slow: setup
 test-hidden-few: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest -m hidden_effects
 
-# all campaigns of tests/hidden_effects/seeds.yaml, and the licence that reports print: hours, resumable
+# all cases of hidden_effects/seeds.yaml, and the track record that reports print: hours, resumable
 test-hidden: setup
-	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tests/hidden_effects/long_tier.py --cores $(CORES)
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python hidden_effects/measure_track_record.py --cores $(CORES)
 
 # how fast the solvers are on this machine, for maintainers: minutes on a machine that does nothing else
 bench: setup

@@ -1,4 +1,4 @@
-# The study: what is built, in which order. What each key of the configuration means: docs/configuration.md.
+# The study: its targets and the order of its rules. The keys of the configuration are in docs/configuration.md.
 from snakemake.utils import min_version
 
 min_version("9.27")

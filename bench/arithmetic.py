@@ -14,8 +14,8 @@ import numpy as np
 from force_evaluation import assembled_stack
 from measuring import process_seconds, spread
 
-from blockshake.solvers.ls_dem.contact import contact_forces_into
-from blockshake.solvers.ls_dem.packets import LANES
+from blockshake.solvers.ls_dem.contact.contact_forces import contact_forces_into
+from blockshake.solvers.ls_dem.contact.packets import LANES
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 
 _LABEL = re.compile(r"^([.\w$@]+):")

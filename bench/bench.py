@@ -63,7 +63,7 @@ def measure(parts, blocks, quick):
         result["walls"] = walls.summary([_wall(walls, n_blocks, repeats, *steps) for n_blocks in sizes])
     if "nscd_step" in parts:
         result["nscd_step"] = (
-            nscd_step.measure_nscd_step(repeats, 0.02, ("configuration-1",))
+            nscd_step.measure_nscd_step(repeats, 0.02, ("configuration-1",), ())
             if quick
             else nscd_step.measure_nscd_step(repeats)
         )

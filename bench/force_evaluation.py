@@ -6,13 +6,13 @@ from measuring import process_seconds, spread
 
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import load_structure
-from blockshake.solvers.ls_dem.candidates import empty_candidates, find_candidates
-from blockshake.solvers.ls_dem.contact import contact_forces_into, no_loads
+from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates
+from blockshake.solvers.ls_dem.contact.contact_forces import contact_forces_into, no_loads
+from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.driver import simulate_ls_dem
 from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
 from blockshake.solvers.ls_dem.joints import no_joints
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
-from blockshake.solvers.ls_dem.relative_pose import Poses
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces
 
 STRUCTURE = "configuration-1"

@@ -1,4 +1,4 @@
-"""What was measured on: the processor and its clock, and the versions of the software."""
+"""Machine of a measurement: the processor and its clock, and the versions of the software."""
 
 import os
 import platform

@@ -17,7 +17,7 @@ def process_seconds(function, *arguments):
 def seconds_between(run, first, last, repeats):
     """CPU time of ``run(last)`` less that of ``run(first)``, each repeat with both [s].
 
-    What both have in common, the set-up, goes out; both must have run once before.
+    The set-up, which both have in common, goes out; both must have run once before.
     """
     seconds = []
     for _ in range(repeats):

@@ -31,7 +31,7 @@ def peer_version(peer):
 
 
 def block_task(structure, motion, time_step, steps, **options):
-    """What a peer needs to know of a structure under a motion.
+    """Description of a structure under a motion, as a peer needs it.
 
     Parameters
     ----------

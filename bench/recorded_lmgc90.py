@@ -1,4 +1,4 @@
-"""What the report's annex shows of LMGC90, kept in a file because a study does not have the program."""
+"""Record of LMGC90 for the report's annex, kept in a file because a study does not have the program."""
 
 import datetime
 import json

@@ -80,9 +80,9 @@ def _walls(result):
 
 def _nscd_step(result):
     yield "Nonsmooth contact dynamics: CPU us of a step of 1 ms, 1 Hz, 1.5 m/s2"
-    yield f"  {'':<18}{'median (quartiles)':<28}{'iterations':<12}{'capped':<9}worst residual"
+    yield f"  {'':<35}{'median (quartiles)':<28}{'iterations':<12}{'capped':<9}worst residual"
     for name, cost in result.items():
-        yield f"  {name:<18}{_solved(cost, 1)}"
+        yield f"  {name:<35}{_solved(cost, 1)}"
 
 
 def _nscd_walls(result):

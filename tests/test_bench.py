@@ -68,7 +68,7 @@ def test_set_up_goes_out_of_the_difference_of_two_runs(monkeypatch):
 def test_operations_are_counted_as_the_processor_does_them():
     from arithmetic import operations
 
-    from blockshake.solvers.ls_dem.packets import LANES
+    from blockshake.solvers.ls_dem.contact.packets import LANES
 
     counted = operations(
         [

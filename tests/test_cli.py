@@ -1,6 +1,8 @@
-"""The command line of the contract: what it writes, says and returns."""
+"""The command line of docs/contracts.md: files, messages and exit codes."""
 
 import json
+import subprocess
+import sys
 
 import pandas as pd
 import pytest
@@ -8,6 +10,7 @@ import xarray as xr
 
 import blockshake
 from blockshake.cli import main
+from blockshake.simulation.models import MODELS
 
 
 def test_simulate_writes_a_run_file(tmp_path, capsys):
@@ -96,6 +99,21 @@ def test_functions_of_the_package():
         assert callable(getattr(blockshake, name))
     with pytest.raises(AttributeError):
         blockshake.no_such_name  # noqa: B018
+
+
+def test_help_lists_the_models_and_loads_no_compiler():
+    command = "import sys; from blockshake.cli import main\ntry: main(['simulate', '--help'])\nfinally: "
+    command += "assert not {'numba', 'numpy'} & set(sys.modules)"
+    said = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, check=True).stdout
+    for name, model in MODELS.items():
+        assert f"{model.time_step:g} for {name}" in " ".join(said.split())
+
+
+def test_python_m_runs_the_command_line():
+    command = [sys.executable, "-m", "blockshake", "sample", "--size", "5", "--output", "x.csv"]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert ended.returncode == 2
+    assert ended.stderr.startswith("blockshake: ")
 
 
 @pytest.mark.parametrize("output", ["", ".", "file/run.nc"])

@@ -43,7 +43,7 @@ def test_an_input_error_is_one_line_that_names_file_key_and_expectation():
     ],
 )
 def test_every_spelling_of_a_number_is_a_number(text, value):
-    """design.md 9; plain PyYAML reads 1e-5 as text."""
+    """YAML 1.1, and so plain PyYAML, reads 1e-5 as text; YAML 1.2 (section 10.3.2) reads a number."""
     read = parse_yaml(f"key: {text}", "t")["key"]
     assert isinstance(read, float)
     assert read == value

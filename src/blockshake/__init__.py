@@ -12,10 +12,10 @@ __version__ = "0.1.0"
 _HOMES = {
     "load_structure": "blockshake.geometry.structure",
     "load_motion": "blockshake.dynamics.load_motion",
-    "simulate": "blockshake.study.simulation",
-    "draw_samples": "blockshake.study.sampling",
-    "calibrate_stiffness": "blockshake.study.stiffness",
-    "load_campaign": "blockshake.measurement.campaign",
+    "simulate": "blockshake.simulation.simulate",
+    "draw_samples": "blockshake.study.sampling.latin_hypercube",
+    "calibrate_stiffness": "blockshake.study.stiffness.wave_speed",
+    "load_campaign": "blockshake.measurement.campaigns.campaign",
     "diagnose": "blockshake.diagnose",
     "InputError": "blockshake.errors",
 }

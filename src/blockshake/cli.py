@@ -1,4 +1,4 @@
-"""The command line: exit 0 done, 2 bad input (one line), 3 numerical failure, 1 a bug."""
+"""The command line: exit 0 done, 2 bad input (one line), 3 numerical failure, 130 interrupted, 1 a bug."""
 
 import argparse
 import logging
@@ -8,9 +8,9 @@ from pathlib import Path
 from blockshake import __version__
 from blockshake.errors import InputError
 from blockshake.files import check_output, parse_yaml, write_dataset, write_json
+from blockshake.simulation.models import MODELS
 
-BAD_INPUT, NUMERICAL_FAILURE = 2, 3
-_FINISHED = ("completed", "collapsed")
+BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 2, 3, 130
 
 
 class _Parser(argparse.ArgumentParser):
@@ -28,6 +28,9 @@ def main(arguments=None):
     except InputError as error:
         print(f"blockshake: {error}", file=sys.stderr)
         return BAD_INPUT
+    except KeyboardInterrupt as interrupt:
+        print(f"blockshake: {interrupt or 'interrupted'}", file=sys.stderr)
+        return INTERRUPTED
 
 
 def _parser():
@@ -42,12 +45,10 @@ def _parser():
     command.add_argument(
         "--duration", type=float, metavar="S", help="cuts or extends (default: the motion's)"
     )
-    command.add_argument("--model", required=True, help="ls-dem or nscd-rigid")
+    command.add_argument("--model", required=True, help=" or ".join(MODELS))
     _add_settings(command)
-    command.add_argument(
-        "--time-step", type=float, metavar="S", help="default 1e-5 for ls-dem, 1e-3 for nscd-rigid"
-    )
-    command.add_argument("--output-rate", type=float, default=200.0, metavar="HZ")
+    command.add_argument("--time-step", type=float, metavar="S", help=f"default {_default_steps()}")
+    command.add_argument("--output-rate", type=float, metavar="HZ", help="default: the optical system's")
     command.add_argument("--output", required=True, metavar="RUN.nc")
     command.set_defaults(run=_simulate)
 
@@ -91,6 +92,17 @@ def _parser():
     command.add_argument("--cores", type=int, metavar="N", help="default: all")
     command.set_defaults(run=_diagnose)
 
+    command = commands.add_parser(
+        "modes", help="natural frequencies and damping from low-amplitude tests, measured or simulated"
+    )
+    command.add_argument("sources", nargs="+", metavar="TEST.nc|CAMPAIGN_DIR")
+    command.add_argument("--structure", metavar="NAME|FILE", help="of test files; a run file holds its own")
+    command.add_argument(
+        "--axis", default="x", metavar="x|y|z", help="along which the base moves (default x)"
+    )
+    command.add_argument("--output", metavar="MODES.json")
+    command.set_defaults(run=_modes)
+
     command = commands.add_parser("check", help="say what is wrong with structure, motion or study files")
     command.add_argument("files", nargs="+", metavar="FILE")
     command.set_defaults(run=_check)
@@ -108,6 +120,10 @@ def _parser():
     )
     command.set_defaults(run=_parameters)
     return parser
+
+
+def _default_steps():
+    return ", ".join(f"{model.time_step:g} for {name}" for name, model in MODELS.items())
 
 
 def _add_settings(command):
@@ -130,7 +146,8 @@ def _settings(options):
 def _simulate(options):
     check_output(options.output)
     from blockshake.dynamics.load_motion import load_motion
-    from blockshake.study.simulation import simulate
+    from blockshake.dynamics.system import FINISHED
+    from blockshake.simulation.simulate import simulate
 
     logging.basicConfig(format="blockshake: %(message)s")
     logging.getLogger("blockshake").setLevel(logging.INFO)
@@ -146,7 +163,7 @@ def _simulate(options):
         checkpoint=f"{options.output}.checkpoint",
     )
     write_dataset(options.output, run)
-    if run.attrs["status"] in _FINISHED:
+    if run.attrs["status"] in FINISHED:
         return 0
     print(f"blockshake: {run.attrs['status']}: {run.attrs['reason']}", file=sys.stderr)
     return NUMERICAL_FAILURE
@@ -154,8 +171,8 @@ def _simulate(options):
 
 def _sample(options):
     check_output(options.output)
-    from blockshake.study.correlation_target import load_correlation
-    from blockshake.study.sampling import draw_samples, write_design
+    from blockshake.study.sampling.correlation_target import load_correlation
+    from blockshake.study.sampling.latin_hypercube import draw_samples, write_design
 
     correlation = load_correlation(options.correlation) if options.correlation else None
     design = draw_samples(size=options.size, seed=options.seed, correlation=correlation)
@@ -165,7 +182,7 @@ def _sample(options):
 
 def _calibrate_stiffness(options):
     check_output(options.output)
-    from blockshake.study.stiffness import calibrate_stiffness
+    from blockshake.study.stiffness.wave_speed import calibrate_stiffness
 
     write_json(options.output, calibrate_stiffness(options.structure, _settings(options)))
 
@@ -179,8 +196,8 @@ def _convert_motion(options):
 
 
 def _generate_campaign(options):
-    from blockshake import sources
     from blockshake.files import source_digest
+    from blockshake.sources import module_sources
     from blockshake.virtual.generate import generate_campaign
     from blockshake.virtual.settings import load_settings
 
@@ -192,7 +209,7 @@ def _generate_campaign(options):
         *Path(options.truth).resolve().parents,
     ):
         raise InputError("--truth", options.truth, "expected a folder outside the campaign's")
-    source = source_digest(*sources.VIRTUAL_CAMPAIGN)
+    source = source_digest(*module_sources("virtual/generate.py", *MODELS))
     generate_campaign(settings, options.structure, options.output, options.truth, source, print)
 
 
@@ -206,6 +223,21 @@ def _diagnose(options):
         return 1
     print(f"{verdict.decision}: {', '.join(verdict.causes) or 'no cause'}; {options.output}/report.html")
     return 0
+
+
+def _modes(options):
+    if options.output:
+        check_output(options.output)
+    from blockshake.measurement.modes.modal_summary import HEADER, summarise_modes, summary_rows
+
+    found = [
+        test
+        for source in options.sources
+        for test in summarise_modes(source, options.structure, options.axis)
+    ]
+    _print_table([HEADER, *summary_rows(found)])
+    if options.output:
+        write_json(options.output, {"tests": found})
 
 
 def _check(options):
@@ -222,8 +254,8 @@ def _check(options):
 
 
 def _estimate(options):
+    from blockshake.simulation.cost import estimate_hours
     from blockshake.study.config import load_config
-    from blockshake.study.cost import estimate_hours
 
     hours = estimate_hours(load_config(options.config))
     spread = f"{hours / options.cores:.1f} h on {options.cores} cores"
@@ -231,9 +263,14 @@ def _estimate(options):
 
 
 def _parameters(options):
-    from blockshake.study.parameters import parameter_table
+    from blockshake.simulation.parameter_table import parameter_table
 
     rows = [("name", "unit", "default", "meaning", "source"), *parameter_table(options.structure)]
-    widths = [max(len(row[column]) for row in rows) for column in range(4)]
+    _print_table(rows)
+
+
+def _print_table(rows):
+    """Print rows of text in columns."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
-        print("  ".join([*(cell.ljust(width) for cell, width in zip(row, widths, strict=False)), row[4]]))
+        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())

@@ -10,7 +10,7 @@ from blockshake.errors import InputError
 from blockshake.files import PACKAGE, check_output
 
 _CHECKOUT = PACKAGE.parents[1]
-_KEPT = ("verdict.json", "decision.json", "parity.json", "misfit.nc", "evidence.nc")
+_KEPT = ("verdict.json", "decision.json", "parity.json", "misfit.nc", "evidence.nc", "forces.nc")
 _OF_GAIN = ("gain.nc", "consequences.nc")  # where a cause was found and there are sealed tests
 
 
@@ -42,8 +42,8 @@ def diagnose(campaign, output, effort="standard", cores=None):
     RuntimeError
         The workflow stopped; its messages were printed.
     """
-    from blockshake.diagnosis.plan import plan_diagnosis, result_name
-    from blockshake.diagnosis.verdict import load_verdict
+    from blockshake.diagnosis.libraries.plan import plan_diagnosis, result_name
+    from blockshake.diagnosis.verdict.verdict import load_verdict
 
     plan_diagnosis(campaign, effort)
     check_output(Path(output) / "verdict.json")

@@ -11,7 +11,7 @@ class InputError(ValueError):
     key : str
         Dotted key inside it; empty when the whole file is at fault.
     expected : str
-        What a correct input looks like, and what was found where that helps.
+        A correct input in words, and the value found where that helps.
     """
 
     def __init__(self, where, key, expected):

@@ -191,8 +191,8 @@ def source_digest(*packages):
     Parameters
     ----------
     *packages : str
-        Folders or modules of blockshake, such as ``"geometry"``, ``"solvers/ls_dem"`` or
-        ``"files.py"``; none means the whole package.
+        Folders, modules or functions of blockshake, such as ``"geometry"``, ``"files.py"`` or
+        ``"diagnosis/steps.py:decide"``; none means the whole package.
 
     Notes
     -----
@@ -201,12 +201,14 @@ def source_digest(*packages):
     """
     digest = hashlib.sha256()
     for package in packages or (".",):
-        path = PACKAGE / package
+        path, _, function = package.partition(":")
+        path = PACKAGE / path
         for source in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
             digest.update(str(source.relative_to(PACKAGE)).encode())
-            digest.update(
-                ast.dump(_without_docstrings(ast.parse(source.read_text(encoding="utf-8")))).encode()
-            )
+            tree = _without_docstrings(ast.parse(source.read_text(encoding="utf-8")))
+            if function:
+                tree.body = [node for node in tree.body if getattr(node, "name", function) == function]
+            digest.update(ast.dump(tree).encode())
     return digest.hexdigest()[:12]
 
 

@@ -15,11 +15,12 @@ from pathlib import Path
 
 import numba
 from numba.core.caching import IndexDataCacheFile
+from numba.core.compiler_lock import global_compiler_lock
 
 from blockshake.files import source_digest
-from blockshake.sources import KERNELS
+from blockshake.sources import compiled_sources
 
-SOURCE_DIGEST = source_digest(*KERNELS)
+SOURCE_DIGEST = source_digest(*compiled_sources())
 CACHE_FOLDER = Path(os.environ.get("BLOCKSHAKE_CACHE", Path.home() / ".cache" / "blockshake")) / SOURCE_DIGEST
 numba.config.CACHE_DIR = str(CACHE_FOLDER)
 
@@ -38,3 +39,8 @@ IndexDataCacheFile.save = _save_alone
 
 kernel = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=False)
 inline_kernel = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=False, inline="always")
+
+
+def compiling():
+    """Whether this thread is compiling a kernel."""
+    return global_compiler_lock.is_locked()

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 
 class Quantity(NamedTuple):
-    """What a parameter is.
+    """Definition of a parameter.
 
     ``name`` may hold capitals for the part that a structure names (MATERIAL, BODY); ``symbol`` is
     the source's; ``unit`` SI; ``source`` where the default or the definition comes from.

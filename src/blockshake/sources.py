@@ -1,181 +1,108 @@
-"""Which sources make which result: what a workflow rule watches so that an edit reruns what it touches."""
+"""Which sources make which result: what a workflow rule watches, so that an edit reruns just what it touches.
 
-_ROOT = ("errors.py", "files.py", "validation.py")
-_COMMON = (*_ROOT, "geometry", "dynamics")
-_SOLVERS = {"ls-dem": "solvers/ls_dem", "nscd-rigid": "solvers/nscd"}
-_BOTH_SOLVERS = ("solvers/__init__.py", "solvers/record.py", "solvers/checkpoint.py")
-_STATISTICS = (
-    *_ROOT,
-    "study/ensemble.py",
-    "study/envelope.py",
-    "study/intervals.py",
-    "study/distributions.py",
+Nothing is listed by hand: a script's sources are the files that it imports, directly or not.
+"""
+
+import ast
+import functools
+from pathlib import Path
+
+PACKAGE = Path(__file__).parent
+_SCRIPTS = PACKAGE.parents[1] / "workflow" / "scripts"
+# These name things, write logs, or decide what is in the names of the files made: they compute nothing.
+_COMPUTE_NOTHING = (
+    "jit.py",
+    "log.py",
+    "quantities.py",
+    "sources.py",
+    "diagnosis/libraries/efforts.py",
+    "diagnosis/libraries/plan.py",
+    "diagnosis/libraries/repeated_readings.py",
 )
-
-KERNELS = (*_COMMON, "solvers", "measurement/kalman.py", "study/correlation_control.py")
-"""All that holds kernels: the rest may change without compiling anew."""
-
-MOTION = _COMMON
-DESIGN = (
-    *_ROOT,
-    "study/distributions.py",
-    "study/sampling.py",
-    "study/correlation_control.py",
-    "study/correlation_target.py",
-)
-STIFFNESS = (
-    *_COMMON,
-    *DESIGN,
-    *_BOTH_SOLVERS,
-    _SOLVERS["ls-dem"],
-    "study/stiffness.py",
-    "study/wave_step.py",
-    "study/sample_parameters.py",
-)
-ENVELOPE = _STATISTICS
-COMPARISON = (
-    "geometry",
-    "dynamics",
-    "measurement",
-    *_STATISTICS,
-    "study/coverage.py",
-    "study/compared_curves.py",
-)
-SENSITIVITY = (
-    *_STATISTICS,
-    *_COMMON,
-    "study/sensitivity.py",
-    "study/sensitivity_histories.py",
-    "study/sensitivity_measures.py",
-    "study/sample_parameters.py",
-    *DESIGN,
-)
-REPORT = (
-    *_STATISTICS,
-    *DESIGN,
-    "geometry",
-    "dynamics",
-    "measurement",
-    "study/convergence_table.py",
-    "report",
-)
+# Of these only the functions that are taken count, each with its own imports.
+_BY_FUNCTION = ("diagnosis/steps.py",)
 
 
-def kernel_sources(model):
-    """Sources of the kernels of one model."""
-    return (*_COMMON, *_BOTH_SOLVERS, _SOLVERS[model])
+def script_sources(script, *models):
+    """Sources of a rule.
+
+    Parameters
+    ----------
+    script : str
+        Name of the file in ``workflow/scripts``, without its suffix.
+    *models : str
+        Models that it runs by their names, of the table `blockshake.simulation.models.MODELS`.
+
+    Returns
+    -------
+    tuple of str
+        Files of the package, and functions of files as ``FILE:FUNCTION``, for `blockshake.files.source_digest`.
+    """
+    return _closure([_SCRIPTS / f"{script}.py", *_modules_of(models)])
 
 
-def run_sources(model):
-    """Sources that make a run of one model."""
-    return (*kernel_sources(model), "measurement", "study/simulation.py")
+def kernel_sources(*models):
+    """Sources of what a model's driver runs."""
+    return _closure(_modules_of(models))
 
 
-def batch_sources(model):
-    """Sources that make a batch of samples of one model."""
-    return (*run_sources(model), *DESIGN, "study/batch.py", "study/ensemble.py", "study/sample_parameters.py")
+def module_sources(module, *models):
+    """Sources of what a module computes, given as its path in the package, with the models that it runs."""
+    return _closure([PACKAGE / module, *_modules_of(models)])
 
 
-LADDER = (
-    *run_sources("ls-dem"),
-    *DESIGN,
-    "solvers/nscd",
-    "study/ladder.py",
-    "study/config.py",
-    "study/friction_settings.py",
-    "study/convergence_settings.py",
-)
-CONVERGENCE = (
-    *run_sources("ls-dem"),
-    "solvers/nscd",
-    "study/convergence.py",
-    "study/convergence_runs.py",
-    "study/convergence_settings.py",
-    "study/convergence_table.py",
-)
-DEFINITIONS = (*run_sources("ls-dem"), *STIFFNESS, "solvers/nscd", "study/stiffness_definitions.py")
-VIRTUAL_CAMPAIGN = (
-    *run_sources("ls-dem"),
-    *run_sources("nscd-rigid"),
-    *STIFFNESS,
-    "effects",
-    "virtual",
-    "study/ensemble.py",
-    "study/placement.py",
-)
-
-
-def friction_sources(model):
-    """Sources of the friction calibration by one model; LS-DEM's stiffness is imported in any case."""
-    return (
-        *batch_sources(model),
-        *COMPARISON,
-        *STIFFNESS,
-        "study/friction_search.py",
-        "study/friction_settings.py",
-        "study/replicates.py",
-        "study/friction_calibration.py",
-        "study/scores.py",
+@functools.cache
+def compiled_sources():
+    """All files that hold kernels, and what these import: the rest may change without compiling anew."""
+    return _closure(
+        path
+        for path in PACKAGE.rglob("*.py")
+        if "\nfrom blockshake.jit import" in path.read_text(encoding="utf-8")
     )
 
 
-_READ_OFF = (
-    *_COMMON,
-    "effects",
-    "measurement",
-    "study/distributions.py",
-    "study/placement.py",
-    "study/ensemble.py",
-    "study/compared_curves.py",
-    *(
-        f"diagnosis/{name}.py"
-        for name in (
-            "body_frame",
-            "body_poses",
-            "candidates",
-            "coloured_regression",
-            "excursions",
-            "feature_table",
-            "features",
-            "joint_features",
-            "joint_histories",
-            "library",
-            "null_model",
-            "outliers",
-            "phases",
-            "planned_test",
-            "reading",
-            "reconstructed_base",
-            "top_motion",
-        )
-    ),
-)
-LIBRARY = (*_READ_OFF, *run_sources("ls-dem"), *run_sources("nscd-rigid"))
-"""What simulates tests for a diagnosis and reads them off."""
+def _modules_of(models):
+    from blockshake.simulation.models import model_of
 
-CALIBRATION = (
-    *LIBRARY,
-    *(
-        f"diagnosis/{name}.py"
-        for name in (
-            "calibration",
-            "candidate_scores",
-            "constancy",
-            "feature_scales",
-            "library_scores",
-            "model_evidence",
-            "response",
-            "tamed_features",
-        )
-    ),
-)
-"""What scores the draws of libraries against each other."""
+    return [_file(module) for model in models for module in model_of(model).modules]
 
-DIAGNOSIS = (
-    *LIBRARY,
-    *_STATISTICS,
-    "study/coverage.py",
-    "study/scores.py",
-    "diagnosis",
-)
-"""What judges them: all that is above the solvers in a diagnosis."""
+
+def _closure(paths):
+    """Names of the files that these import, directly or not, and of these themselves, sorted."""
+    found, left = set(), [(path, None) for path in paths]
+    while left:
+        path, function = left.pop()
+        name = path.relative_to(PACKAGE).as_posix() if path.is_relative_to(PACKAGE) else None
+        mark = f"{name}:{function}" if name in _BY_FUNCTION else name
+        if mark in found or name in _COMPUTE_NOTHING:
+            continue
+        if name is not None and path.name != "__init__.py":
+            found.add(mark)
+        left += _imported(path, function if name in _BY_FUNCTION else None)
+    return tuple(sorted(found))
+
+
+@functools.cache
+def _imported(path, function):
+    """Files that a file imports, or its top and one of its functions, with the name that is taken of each."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    if function is None:
+        nodes = list(ast.walk(tree))
+    else:
+        defined = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
+        nodes = [node for node in tree.body if node not in defined]
+        nodes += [node for one in defined if one.name == function for node in ast.walk(one)]
+    found = []
+    for node in nodes:
+        if not isinstance(node, ast.ImportFrom) or not (node.module or "").startswith("blockshake"):
+            continue
+        for alias in node.names:
+            inside = _file(f"{node.module}.{alias.name}")
+            found.append((inside, None) if inside.is_file() else (_file(node.module), alias.name))
+    return found
+
+
+def _file(module):
+    """File of a module or of a package."""
+    path = PACKAGE.joinpath(*module.split(".")[1:])
+    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")

@@ -1,8 +1,18 @@
 """Checking a mapping against its schema, with pydantic's first complaint worded as one line."""
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from blockshake.errors import InputError
+
+# Numbers of the schemas. A whole number is a number too; a text, true and false are not.
+Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Positive = Annotated[Finite, Field(gt=0)]
+NotNegative = Annotated[Finite, Field(ge=0)]
+Fraction = Annotated[Finite, Field(ge=0, le=1)]
+ProperFraction = Annotated[Finite, Field(ge=0, lt=1)]
+Count = Annotated[int, Field(strict=True, ge=0)]
 
 
 class Strict(BaseModel):

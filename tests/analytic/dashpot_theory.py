@@ -56,7 +56,7 @@ def rebound_of_nodes(k, gamma, pulling=False):
 
 
 def rebound_error(zeta, omega_dt):
-    """What a step may miss of a rebound ratio.
+    """Error of a rebound ratio that a step may make.
 
     The dashpot's force jumps in at contact, somewhere within a step: 2 zeta omega dt; the spring's part and
     the scheme are of second order.

@@ -49,7 +49,7 @@ class Rocker:
     def kept(self, run, lean):
         """Angular momentum about the far pivot over that before the impact, read at lean -``lean`` [1].
 
-        What gravity took from it since the block stood upright is added again. No force at the far pivot
+        The part that gravity took since the block stood upright is added again. No force at the far pivot
         changes it, so that bounces there do not: it does not matter when it is read.
         """
         angle = leans(run)

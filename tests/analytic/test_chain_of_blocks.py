@@ -5,7 +5,7 @@ import pytest
 
 from blockshake.dynamics.motion import ground_motion
 
-# m/s; facts.md 3.16: no joint opens, its wave pulls by SPEED sqrt(m / k) = 4e-8 m at the most where the
+# m/s; small enough that no joint opens: the wave pulls by SPEED sqrt(m / k) = 4e-8 m at the most where the
 # weight of the top block presses by 5e-7 m
 SPEED = 1e-4
 # A quarter of the Earth's: a tower of 16 then sinks by 0.07 mm, and starts in equilibrium (0.1 mm at most)

@@ -1,4 +1,4 @@
-"""What an impact of rocking keeps: Housner's (1963) ratio on two edges, more on a whole face, and why."""
+"""Angular velocity kept by an impact of rocking: Housner's (1963) ratio on two edges, more on a whole face, and why."""
 
 import numpy as np
 import pytest

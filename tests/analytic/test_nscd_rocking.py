@@ -63,7 +63,7 @@ def test_angular_velocities_at_impacts_have_housners_ratio(rocking):
 
 
 def test_impacts_take_the_energy_that_housner_says_and_nothing_else_does(rocking):
-    """What is left after each impact is r^2; the contact term has it, friction and the audit's residual nothing."""
+    """Each impact leaves r^2 of the energy; the contact term has it, friction and the audit's residual nothing."""
     structure, run = rocking
     in_play = structure.mass[1] * G * (run.position[0, 1, 2] - H)
     lean = leans(run)

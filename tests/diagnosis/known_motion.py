@@ -6,10 +6,10 @@ from scipy.spatial.transform import Rotation
 
 from blockshake.files import load_yaml, shipped
 from blockshake.geometry.structure import build_structure
-from blockshake.measurement.base_motion import BaseMotion
-from blockshake.measurement.campaign import Sensors
-from blockshake.measurement.instruments import Instruments, observe
-from blockshake.measurement.joint_coordinates import find_joints
+from blockshake.measurement.campaigns.campaign import Sensors
+from blockshake.measurement.motion.base_motion import BaseMotion
+from blockshake.measurement.motion.joint_coordinates import find_joints
+from blockshake.measurement.sensors.instruments import Instruments, observe
 
 
 def _structure():

@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from blockshake.files import load_yaml, shipped
 from blockshake.geometry.structure import build_structure
-from blockshake.measurement.accelerometers import FINE_RATE, accelerometer_readings
-from blockshake.measurement.instruments import Instruments, observe
+from blockshake.measurement.sensors.accelerometers import FINE_RATE, accelerometer_readings
+from blockshake.measurement.sensors.instruments import Instruments, observe
 
 DURATION = 10.0  # s
 HALF_WIDTH = 0.4  # m

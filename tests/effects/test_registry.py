@@ -1,6 +1,5 @@
 """Every effect: null to the byte, its signature in both solvers, its names and places."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +11,9 @@ from blockshake.dynamics.motion import ground_motion
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import EFFECTS, with_effect
 from blockshake.errors import InputError
-from blockshake.measurement.instruments import Instruments, observe
-from blockshake.study.simulation import simulate
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.sensors.instruments import Instruments, observe
+from blockshake.simulation.simulate import simulate
 
 STEPS = {"nscd-rigid": 1e-3, "ls-dem": 5e-5}
 WEAK, STRONG = (
@@ -69,16 +69,16 @@ def _place(effect, structure):
 
 def _experiment(structure, name, amplitude):
     friction = 0.2 if name in SLIDES else 0.75
-    return Experiment(structure(friction), {}, _motion(amplitude), SILENT)
+    return Experiment(load_structure(structure(friction)), _motion(amplitude), SILENT)
 
 
 def _readings(experiment, model):
     run = simulate(
-        experiment.structure, experiment.motion, model, experiment.parameters, time_step=STEPS[model],
+        experiment.structure, experiment.motion, model, time_step=STEPS[model],
         duration=DURATION, accelerometers=False,
     )  # fmt: skip
     assert run.attrs["status"] == "completed"
-    return run, observe(run, experiment.load(), experiment.instruments, seed=1)
+    return run, observe(run, experiment.structure, experiment.instruments, seed=1)
 
 
 @pytest.fixture(scope="module")
@@ -100,7 +100,7 @@ def _with(structure, name, amplitude, share):
     experiment = _experiment(structure, name, amplitude)
     size = effect.parameters[0]
     values = {size.name: size.null + share * (size.visible - size.null)} | SHOWN.get(name, {})
-    return with_effect(experiment, name, values, _place(effect, experiment.load()))
+    return with_effect(experiment, name, values, _place(effect, experiment.structure))
 
 
 SHOWN = {"stopper-contact": {"gap": 0.02}}
@@ -194,12 +194,12 @@ def test_a_null_effect_keeps_what_the_structure_states_already(name, structure):
         "restitution": 0.4,
         "shapes.block.chamfer": 0.03,
     }
-    experiment = replace(_experiment(structure, name, WEAK), parameters=stated)
+    experiment = _experiment(structure, name, WEAK).with_parameters(**stated)
     effect = EFFECTS[name]
     size = effect.parameters[0]
-    file = (
-        with_effect(experiment, name, {size.name: size.null}, _place(effect, experiment.load())).load().file
-    )
-    plain = experiment.load().file
+    file = with_effect(
+        experiment, name, {size.name: size.null}, _place(effect, experiment.structure)
+    ).structure.file
+    plain = experiment.structure.file
     assert file.model_copy(update={"stoppers": ()}) == plain
     assert all(stop.stiffness == 0.0 for stop in file.stoppers)

@@ -76,6 +76,6 @@ def test_the_normal_is_a_unit_vector_and_mirrors(point, chamfer):
 @given(st.tuples(*[st.floats(-2.0, 2.0)] * 3), st.tuples(*[st.floats(-0.1, 0.1)] * 3))
 @settings(max_examples=200, deadline=None)
 def test_it_changes_by_at_most_the_distance_moved(point, step):
-    """What the skin of the node lists relies on."""
+    """The skin of the node lists relies on this."""
     phi, _ = _evaluate([point, np.add(point, step)], SIZE, 0.02)
     assert abs(phi[1] - phi[0]) <= np.linalg.norm(step) + 1e-15

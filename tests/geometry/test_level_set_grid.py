@@ -117,7 +117,7 @@ def test_at_the_chamfers_the_error_is_bounded_by_and_falls_with_the_spacing():
 
 @pytest.mark.parametrize("inset", [0.0025, 0.005, 0.01])
 def test_a_grid_as_coarse_as_the_chamfer_depends_on_where_it_lies(inset):
-    """facts.md 3.3, on a node ``inset`` from the ridge, as LS-DEM's outermost ones; spacing = chamfer = h.
+    """Level set at a node ``inset`` from the ridge, as LS-DEM's outermost nodes; spacing = chamfer = h.
 
     Aligned, the cell's inner corner below the ridge sees the chamfer at h sqrt(1/2) before the flat at h, so that
     the level set falls by 1 - (1 - inset/h)(1 - sqrt(1/2)) a metre of depth. Shifted by half a cell,

@@ -5,7 +5,7 @@ import pytest
 
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.measurement.markers import marker_position
+from blockshake.measurement.sensors.markers import marker_position
 
 HALF = np.array([0.4, 1.2, 0.8])
 TURNED = {"position": [0.3, -0.2, 5.0], "orientation": [0.8, 0.0, 0.6, 0.0]}

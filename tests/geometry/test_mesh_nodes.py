@@ -24,7 +24,7 @@ def _depth(points, mesh):
 
 @pytest.mark.parametrize("spacing", [0.1, 0.2, 0.4])
 def test_over_every_flat_of_a_box_area_and_second_moments_are_exact(spacing):
-    """What an interface's stiffness in compression and in rocking follows from (facts.md 3.5)."""
+    """An interface's stiffness in compression and in rocking follows from both (docs/decisions/0001)."""
     points, areas = mesh_nodes(*_box(), spacing, INSET)
     assert (areas > 0.0).all()
     for axis in range(3):

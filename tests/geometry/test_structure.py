@@ -12,7 +12,7 @@ from blockshake.geometry.structure import build_structure, load_structure
 # kg; a box less its chamfers, by inclusion and exclusion: L W H - 2 c^2 (L + W + H) + 6 c^3
 BLOCK_MASS = 2400.0 * (0.8 * 2.4 * 1.6 - 2.0 * 0.02**2 * (0.8 + 2.4 + 1.6) + 6.0 * 0.02**3)
 BEAM_MASS = 2.4 * 0.2 * 0.2 * 7700.0
-HEIGHTS = {1: 4.8, 2: 6.4, 3: 7.2, 4: 7.4}  # m, facts.md 1
+HEIGHTS = {1: 4.8, 2: 6.4, 3: 7.2, 4: 7.4}  # m; Zhou et al. (2023), the four configurations
 N_BLOCKS = {1: 3, 2: 4, 3: 9, 4: 9}
 
 
@@ -160,7 +160,7 @@ def _set(mapping, path, value):
     ],
 )
 def test_bad_input_is_one_line_that_names_the_key(mapping, path, value, message):
-    """design.md 2; each fault alone in a structure that loads without it."""
+    """Each fault alone, in a structure that loads without it (docs/contracts.md, structure file)."""
     build_structure(copy.deepcopy(mapping), "s.yaml", ".")
     _set(mapping, path, value)
     with pytest.raises(InputError) as error:
@@ -181,7 +181,7 @@ def test_a_whole_number_is_a_number(mapping):
 
 
 def test_two_driven_bodies_must_not_overlap_either(mapping):
-    """design.md 2: two bodies that overlap deeper than 1 mm. They do not count as touching: nothing acts there."""
+    """Driven bodies do not count as touching, for no force acts between them; an overlap beyond 1 mm is refused."""
     slab = {"name": "second", "shape": "slab", "material": "stone", "driven": True}
     mapping["bodies"].append({**slab, "position": [3.0, 0.0, -0.1]})
     structure = build_structure(mapping, "s.yaml", ".")
@@ -207,7 +207,7 @@ def test_friction_is_that_of_each_pairs_materials(mapping):
 
 
 def test_a_wall_of_two_thousand_blocks_loads_in_seconds(make_mapping):
-    """The issue asks for walls of that size; every block stands on two, and has its neighbours in the row."""
+    """Every block stands on two, and has its neighbours in the row."""
     columns, rows = 50, 40
     blocks = [
         {
@@ -233,7 +233,7 @@ def test_an_overlap_below_a_millimetre_is_an_initial_penetration(mapping):
 
 @pytest.mark.parametrize(("gap", "touching"), [(0.9e-4, True), (1.1e-4, False)])
 def test_bodies_touch_within_a_tenth_of_a_millimetre(mapping, gap, touching):
-    """design.md 9, Start."""
+    """Bodies within 0.1 mm are a touching pair (docs/contracts.md, start of a run)."""
     mapping["bodies"][2]["position"] = [0.0, 0.0, 2.4 + gap]
     assert build_structure(mapping, "s.yaml", ".").touching[1, 2] == touching
 
@@ -325,3 +325,37 @@ def test_an_unknown_name_lists_the_shipped_ones():
         InputError, match="configuration-9: expected a structure file or one of configuration-1, "
     ):
         load_structure("configuration-9")
+
+
+CHANGES = {
+    "friction.foundation.concrete": 0.6,
+    "materials.concrete.density": 2350,
+    "bodies.block-2.position": [0.01, 0.0, 2.4],
+    "bodies.block-2.mass_offset": [0.02, 0.0, 0.0],
+    "joints.block-1.block-2.friction_factor": 0.5,
+    "shapes.block.chamfer": 0.03,
+    "stoppers": [
+        {"body": "block-4", "position": [0.4, 0.0, 0.8], "axis": "+x", "gap": 0.01, "stiffness": 1e6}
+    ],
+}
+
+
+def test_a_loaded_structure_with_parameters_is_the_one_loaded_with_them(monkeypatch):
+    """One change after the other, from memory, to the bit; the first structure stays as it was."""
+    plain = load_structure("configuration-2")
+    expected = load_structure("configuration-2", CHANGES)
+    content = plain.file.model_dump_json()
+    monkeypatch.setattr("blockshake.geometry.structure.load_yaml", None)
+    changed = plain
+    for key, value in CHANGES.items():
+        changed = load_structure(changed, {key: value})
+    assert changed.file == expected.file
+    assert plain.file.model_dump_json() == content
+    assert load_structure(plain) is plain
+    for name in ("mass", "inertia", "position", "orientation", "friction", "touching"):
+        np.testing.assert_array_equal(getattr(changed, name), getattr(expected, name))
+    for name, solid in expected.solids.items():
+        np.testing.assert_array_equal(changed.solids[name].vertices, solid.vertices)
+    assert changed.solids["slab"] is plain.solids["slab"]
+    with pytest.raises(InputError, match=r"configuration-2: friction\.wood\.wood: expected"):
+        plain.with_parameters({"friction.wood.wood": 0.5})

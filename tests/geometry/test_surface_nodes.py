@@ -42,7 +42,7 @@ def test_the_papers_layout_has_positive_areas():
 @given(st.floats(0.05, 1.0), st.floats(0.0005, 0.03))
 @settings(max_examples=30, deadline=None)
 def test_areas_and_second_moments_of_every_flat_are_exact(spacing, inset):
-    """So that spacing and inset change no stiffness, in compression or rocking (facts.md 3.5)."""
+    """Spacing and inset then change no stiffness, in compression or rocking (docs/decisions/0001)."""
     assume(spacing > 2.0 * inset)
     points, areas = box_nodes(SIZE, CHAMFER, spacing, inset)
     for axis in range(3):

@@ -2,7 +2,7 @@ import make_case
 import pytest
 
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaign import load_campaign, load_test
+from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 
 SEED = 5  # of a clean case
 

@@ -1,4 +1,4 @@
-"""What a known change of the readings must do to what is found in them: mirrored, late, copied, in another order.
+"""Known changes of the readings (mirrored, late, copied, in another order) change the findings as they must.
 
 On the functions that every diagnosis goes through, with the readings of a clean case of the maker.
 """
@@ -12,18 +12,19 @@ import yaml
 from make_case import DURATION, STRUCTURE
 from mirror import mirrored_effect, mirrored_features, mirrored_structure, mirrored_test
 
-from blockshake.diagnosis.null_model import draw_nominal
-from blockshake.diagnosis.parity import check_parity
-from blockshake.diagnosis.reading import read_off
-from blockshake.diagnosis.repeated_readings import without_repeats
+from blockshake.diagnosis.features.reading import read_off
+from blockshake.diagnosis.libraries.null_model import draw_nominal
+from blockshake.diagnosis.libraries.repeated_readings import without_repeats
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
 from blockshake.files import load_yaml
 from blockshake.geometry.structure import build_structure, load_structure
-from blockshake.measurement.campaign import Sensors, load_campaign
-from blockshake.measurement.instruments import Instruments, observe
-from blockshake.study.simulation import part_parameters, simulate
+from blockshake.measurement.campaigns.campaign import Sensors, load_campaign
+from blockshake.measurement.sensors.instruments import Instruments, observe
+from blockshake.parity.parity import check_parity
+from blockshake.simulation.models import part_parameters
+from blockshake.simulation.simulate import simulate
 
 LAG, NEAR = 5e-3, 1e-3  # s; of a clock that is put behind, and how near it must be found
 
@@ -97,16 +98,17 @@ EFFECTS_WITH_A_SIDE = {
 
 def _simulated(effect, scale):
     """Exact readings of a rocking stack, blocks as stated."""
-    physical, numerics = part_parameters(draw_nominal(STRUCTURE, "nscd-rigid", 3).parameters)
+    structure = load_structure(STRUCTURE)
+    physical, numerics = part_parameters(draw_nominal(structure, "nscd-rigid", 3).parameters)
     silent = Instruments(marker_noise=0.0, accelerometer_noise=0.0)
-    experiment = Experiment(str(STRUCTURE), physical, load_motion("alkion", scale), silent)
+    experiment = Experiment(structure.with_parameters(physical), load_motion("alkion", scale), silent)
     if effect is not None:
         experiment = with_effect(experiment, **effect)
     run = simulate(
-        experiment.structure, experiment.motion, "nscd-rigid", experiment.parameters | numerics,
+        experiment.structure, experiment.motion, "nscd-rigid", numerics,
         time_step=5e-4, duration=DURATION, accelerometers=False,
     )  # fmt: skip
-    return observe(run, experiment.load(), experiment.instruments, 1)["marker_displacement"]
+    return observe(run, experiment.structure, experiment.instruments, 1)["marker_displacement"]
 
 
 @pytest.mark.parametrize("name", EFFECTS_WITH_A_SIDE)

@@ -5,15 +5,15 @@ import json
 import numpy as np
 import pytest
 import score
-from case_files import LICENCE, PAGE, SMALL_SEEDS, load_plan, truth_of
-from licence_text import BEGIN, END, as_markdown, tables_of, with_tables
+from case_files import PAGE, SMALL_SEEDS, TRACK_RECORD, load_plan, truth_of
+from case_truth import true_effect
 from make_case import STRUCTURE
-from other_truth import true_effect
-from score import make_licence
+from score import make_track_record
 from score_figures import Scored, figures
+from track_record_text import BEGIN, END, as_markdown, tables_of, with_tables
 
-from blockshake.diagnosis.licence import load_licence, write_licence
-from blockshake.diagnosis.verdict import Verdict, write_verdict
+from blockshake.diagnosis.verdict.track_record import load_track_record, write_track_record
+from blockshake.diagnosis.verdict.verdict import Verdict, write_verdict
 from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
 from blockshake.files import write_json
@@ -36,6 +36,7 @@ def _verdict(decision, causes=(), **keys):
         probabilities={},
         misfit={"p": 0.5, "where": ""},
         runs=1,
+        word="one of",
         **keys,
     )
 
@@ -174,18 +175,18 @@ def test_intervals_of_medians_are_order_statistics(perfect):
     assert figures(gained[:5])["medians"]["gain_named"].lower is None
 
 
-def test_the_licence_comes_back_from_its_file(perfect, tmp_path):
-    licence = make_licence(perfect, "standard", PLAN.digest)
-    write_licence(tmp_path / "licence.json", licence)
-    assert load_licence(tmp_path / "licence.json") == licence
-    page = with_tables(f"before\n{BEGIN}\nold\n{END}\nafter\n", licence)
-    assert tables_of(page) == as_markdown(licence)
+def test_the_track_record_comes_back_from_its_file(perfect, tmp_path):
+    track_record = make_track_record(perfect, "standard", PLAN.digest)
+    write_track_record(tmp_path / "track-record.json", track_record)
+    assert load_track_record(tmp_path / "track-record.json") == track_record
+    page = with_tables(f"before\n{BEGIN}\nold\n{END}\nafter\n", track_record)
+    assert tables_of(page) == as_markdown(track_record)
     assert page.startswith("before")
     assert page.endswith("after\n")
-    assert with_tables(page, licence) == page
+    assert with_tables(page, track_record) == page
 
 
-def test_scoring_goes_from_the_files_of_a_run_to_licence_and_page(tmp_path, monkeypatch, capsys):
+def test_scoring_goes_from_the_files_of_a_run_to_track_record_and_page(tmp_path, monkeypatch, capsys):
     plan = load_plan(SMALL_SEEDS)
     verdicts = tmp_path / "verdicts"
     monkeypatch.setattr(score, "load_plan", lambda: plan)
@@ -198,11 +199,18 @@ def test_scoring_goes_from_the_files_of_a_run_to_licence_and_page(tmp_path, monk
     write_verdict(verdicts / "small-4-eccentricity" / "verdict.json", _verdict("unknown"))
     page = tmp_path / "page.md"
     page.write_text(f"{BEGIN}\n{END}\n")
-    told = ["--results", str(tmp_path), "--licence", str(tmp_path / "licence.json"), "--page", str(page)]
+    told = [
+        "--results",
+        str(tmp_path),
+        "--track-record",
+        str(tmp_path / "track-record.json"),
+        "--page",
+        str(page),
+    ]
     score.main(told)
-    licence = load_licence(tmp_path / "licence.json")
-    assert [case.answer for case in licence.cases] == ["none", "right", "right", "right", "unknown"]
-    assert tables_of(page.read_text()) == as_markdown(licence) == capsys.readouterr().out.strip()
+    track_record = load_track_record(tmp_path / "track-record.json")
+    assert [case.answer for case in track_record.cases] == ["none", "right", "right", "right", "unknown"]
+    assert tables_of(page.read_text()) == as_markdown(track_record) == capsys.readouterr().out.strip()
     (verdicts / "small-2-None" / "verdict.json").unlink()
     with pytest.raises(InputError):
         score.main(told)
@@ -217,25 +225,25 @@ def test_scoring_goes_from_the_files_of_a_run_to_licence_and_page(tmp_path, monk
         (lambda told: told.update(version=2), "version"),
     ],
 )
-def test_a_licence_that_contradicts_itself_is_refused(perfect, tmp_path, change, key):
-    told = make_licence(perfect, "standard", PLAN.digest).model_dump(mode="json")
+def test_a_track_record_that_contradicts_itself_is_refused(perfect, tmp_path, change, key):
+    told = make_track_record(perfect, "standard", PLAN.digest).model_dump(mode="json")
     change(told)
-    (tmp_path / "licence.json").write_text(json.dumps(told))
+    (tmp_path / "track-record.json").write_text(json.dumps(told))
     with pytest.raises(InputError) as error:
-        load_licence(tmp_path / "licence.json")
+        load_track_record(tmp_path / "track-record.json")
     assert key in str(error.value)
 
 
-def test_a_missing_licence_is_one_line(tmp_path):
+def test_a_missing_track_record_is_one_line(tmp_path):
     with pytest.raises(InputError):
-        load_licence(tmp_path / "none.json")
+        load_track_record(tmp_path / "none.json")
 
 
 def test_the_page_shows_what_the_file_says():
     page = PAGE.read_text(encoding="utf-8")
-    if LICENCE.is_file():
-        assert tables_of(page) == as_markdown(load_licence(LICENCE))
-        assert load_licence(LICENCE).seeds == PLAN.digest
+    if TRACK_RECORD.is_file():
+        assert tables_of(page) == as_markdown(load_track_record(TRACK_RECORD))
+        assert load_track_record(TRACK_RECORD).seeds == PLAN.digest
     else:
         assert tables_of(page) == "Not run yet: no figures."
 

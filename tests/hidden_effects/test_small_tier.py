@@ -7,9 +7,9 @@ import json
 
 import pytest
 from case_files import ROOT, SMALL_SEEDS, load_plan, truth_of, verdict_of
-from long_tier import diagnose, make_cases
+from measure_track_record import diagnose, make_cases
 
-from blockshake.diagnosis.verdict import load_verdict
+from blockshake.diagnosis.verdict.verdict import load_verdict
 from blockshake.effects.registry import EFFECTS
 
 pytestmark = pytest.mark.hidden_effects

@@ -5,7 +5,7 @@ import xarray as xr
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.markers import marker_position
+from blockshake.measurement.sensors.markers import marker_position
 
 NOISE = 1e-4  # m
 ACCELEROMETER_NOISE = 0.02  # m/s2

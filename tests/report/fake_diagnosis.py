@@ -12,17 +12,19 @@ from fake_findings import (
     evidence,
     informed,
     made_up_decision,
+    made_up_forces,
     parity,
     sealed_tests,
 )
 
-from blockshake.diagnosis.conclusion import conclude
-from blockshake.diagnosis.consequence import consequence
-from blockshake.diagnosis.frozen import freeze
-from blockshake.diagnosis.gain import gain_of_verdict, gain_on
-from blockshake.diagnosis.misfit import misfit, where
-from blockshake.diagnosis.reading import HISTORIES
-from blockshake.diagnosis.verdict import Verdict, write_verdict
+from blockshake.diagnosis.features.reading import HISTORIES
+from blockshake.diagnosis.gain.consequence import consequence
+from blockshake.diagnosis.gain.gain import gain_of_verdict, gain_on
+from blockshake.diagnosis.inference.decision import CauseSize, write_result
+from blockshake.diagnosis.misfit.misfit import misfit, where
+from blockshake.diagnosis.verdict.conclusion import Judged, conclude
+from blockshake.diagnosis.verdict.frozen import freeze
+from blockshake.diagnosis.verdict.verdict import MeasuredGain, Verdict, write_verdict
 from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
 
@@ -41,7 +43,7 @@ class FakeDiagnosis:
     def __init__(self, folder, decision, extended=True, findings=(), effort="standard", gaining=True):
         self.folder, self.effort = Path(folder), effort
         self.campaign, self.results = self.folder / "campaign", self.folder / "results"
-        self.licence = self.folder / "hidden-effects.json"
+        self.track_record = self.folder / "hidden-effects.json"
         self.structure = load_structure(STRUCTURE)
         self.tests = {name: 0.5 + 0.5 * place for place, name in enumerate(OPEN + SEALED)}
         self._write_campaign()
@@ -49,41 +51,46 @@ class FakeDiagnosis:
             [self.reading(strength, shift=0.35) for name, strength in self.tests.items() if name in OPEN], dim="test"
         ).assign_coords(test=list(OPEN))  # fmt: skip
         write_dataset(self.results / "measured.nc", readings)
+        blocks = [body.name for body in self.structure.file.bodies if not body.driven]
+        write_dataset(self.results / "forces.nc", made_up_forces(OPEN, blocks))
         ensembles = {
             name: [self.members(self.tests[name], 1.0, model)[list(HISTORIES)] for model in MODELS] for name in OPEN
         }  # fmt: skip
         found = misfit(readings, ensembles)
         write_dataset(self.results / "misfit.nc", found)
-        write_json(self.results / "parity.json", parity(self.structure, findings))
+        write_json(self.results / "parity.json", parity(self.structure, findings).as_json())
         self.decision = made_up_decision(decision, self.structure)
-        write_json(self.results / "decision.json", self.decision)
+        write_result(self.results / "decision.json", self.decision)
         freeze(self.results / "frozen.json", self.results / "decision.json", OPEN)
-        best = self.decision["candidates"][0]
-        if self.decision["causes"]:
-            key = self.decision["places"][self.decision["causes"][0]]
-            write_json(self.results / "size.json", {"key": key, "error": 0.3, "draws": 18})
+        best = self.decision.candidates[0]
+        if self.decision.causes:
+            size = CauseSize(
+                key=self.decision.first_key, sizes=(), posterior=(), error=0.3, draws=18, parameters={}
+            )
+            write_result(self.results / "size.json", size)
         write_dataset(self.results / "evidence.nc", evidence(best, readings))
-        gained = bool(self.decision["causes"]) and extended
-        of_verdict, caveats = None, [] if extended else ["no gain was measured: there is no sealed test"]
+        gained = bool(self.decision.causes) and extended
+        caveats = [] if extended else ["no gain was measured: there is no sealed test"]
+        summary = MeasuredGain(gain=None, caveats=caveats, runs=1260)
         gain = consequences = xr.Dataset()
         if gained:
             gain = gain_on(sealed_tests(0.9 if gaining else 0.0))
-            of_verdict, caveats = gain_of_verdict(gain)
+            summary = gain_of_verdict(gain, 1260)
             gain = gain.merge(informed())
             consequences = self._consequences()
         write_dataset(self.results / "gain.nc", gain)
         write_dataset(self.results / "consequences.nc", consequences)
-        summary = {"gain": of_verdict and of_verdict.model_dump(), "caveats": caveats, "runs": 1260}
-        write_json(self.results / "gain.json", summary)
+        write_result(self.results / "gain.json", summary)
         self.verdict = conclude(
-            self.decision, findings, (), where(found), 1260, caveats, effort, gain=of_verdict
-        )
+            self.decision, findings, (), Judged(where(found), len(OPEN)), 1260, summary.caveats, effort,
+            gain=summary.gain, scores=gain,
+        )  # fmt: skip
         assert isinstance(self.verdict, Verdict)
         write_verdict(self.results / "verdict.json", self.verdict)
 
     def arguments(self):
-        """What the report is made from."""
-        return self.campaign, self.results, self.effort, self.licence
+        """Content that the report is made from."""
+        return self.campaign, self.results, self.effort, self.track_record
 
     def _write_campaign(self):
         lines = [f"name: made-up\nstructure: {STRUCTURE}\ntests:"]
@@ -102,7 +109,7 @@ class FakeDiagnosis:
         write_text(self.campaign / "campaign.yaml", "\n".join(lines) + "\n")
 
     def reading(self, strength, shift=0.0, seed=0):
-        """What is read off a test: joints and blocks that sway, the more the higher; ``shift`` adds to one side."""
+        """Readings of a test: joints and blocks that sway, the more the higher; ``shift`` adds to one side."""
         generator = np.random.default_rng([seed, round(1e6 * strength)])
         joints = [f"{lower}-{upper}" for lower, upper in self.pairs]
         envelope = np.minimum(_TIME / 2.0, 1.0) * np.exp(-np.maximum(_TIME - 4.0, 0.0))

@@ -1,14 +1,24 @@
-"""What a diagnosis finds, made up: decision, features, sealed tests, sensors, licence."""
+"""Made-up findings of a diagnosis: decision, features, sealed tests, sensors, track record."""
 
 import numpy as np
 import xarray as xr
 
-from blockshake.diagnosis.candidates import candidates
-from blockshake.diagnosis.finding import Finding
-from blockshake.diagnosis.licence import Answers, Case, Licence, Median, Row, Share, write_licence
-from blockshake.diagnosis.sealed_test import SealedTest
+from blockshake.diagnosis.gain.sealed_prediction import SealedTest
+from blockshake.diagnosis.inference.decision import Decision
+from blockshake.diagnosis.libraries.candidates import candidates
+from blockshake.diagnosis.verdict.track_record import (
+    Answers,
+    JudgedCase,
+    Median,
+    Row,
+    Share,
+    TrackRecord,
+    write_track_record,
+)
 from blockshake.effects.registry import EFFECTS
 from blockshake.files import write_dataset
+from blockshake.parity.finding import Finding
+from blockshake.parity.parity import Parity
 
 OPEN = ("alkion-100", "alkion-250", "basso-200")
 SEALED = ("alkion-300", "basso-250")
@@ -29,7 +39,7 @@ def gain_finding():
 
 
 def made_up_decision(kind, structure):
-    """A decision as `decision_as_json` writes it, with every physical effect among its candidates."""
+    """A decision with every physical effect among its candidates."""
     keys = {}
     for candidate in candidates(structure):
         keys.setdefault(candidate.effect, []).append(candidate)
@@ -50,7 +60,7 @@ def made_up_decision(kind, structure):
     by_key = {candidate.key: candidate for group in keys.values() for candidate in group}
     best = {effect: group[0].key for effect, group in keys.items()}
     others = [] if kind == "none" else [effect for effect in order if effect not in causes]
-    return {
+    return Decision.model_validate({
         "decision": kind,
         "causes": causes,
         "places": {effect: best[effect] for effect in order},
@@ -69,7 +79,7 @@ def made_up_decision(kind, structure):
         "parameters": {effect: _estimates(effect) for effect in causes[: 1 if kind == "combination" else 2]},
         "location": {effect: by_key[best[effect]].place for effect in causes},
         "candidates": rows,
-    }
+    })  # fmt: skip
 
 
 def _estimates(effect):
@@ -113,7 +123,7 @@ def evidence(best, readings):
             "unit": ("row", ["rad"] * len(names)), "test": ("row", [OPEN[place % 3] for place in range(len(names))]),
             "feature": ("row", names),
         },
-        {"candidate": best["key"], "size": best["size"], "model": best["model"]},
+        {"candidate": best.key, "size": best.size, "model": best.model},
     )  # fmt: skip
 
 
@@ -134,7 +144,7 @@ def sealed_tests(nearer):
 
 
 def informed():
-    """What the open tests tell of three nominal parameters, one of them a parameter of one solver alone."""
+    """Information of the open tests on three nominal parameters, one of them a parameter of one solver alone."""
     names = ["friction.concrete.concrete", "materials.concrete.youngs_modulus", "ls_dem.node_spacing"]
     prior = np.array([[0.6, 40e9, 0.15], [0.75, 45e9, 0.2], [0.9, 50e9, 0.3]])
     only = np.array([[True, True, True], [True, True, False]])
@@ -154,17 +164,17 @@ def parity(structure, findings):
     """Sensors' checks of one body's markers, the other's too few."""
     markers = {marker.name: {"noise": 1e-4, "misfit": 1e-4} for marker in structure.file.markers}
     markers[structure.file.markers[-1].name] = {"noise": None, "misfit": None}
-    return {
+    return Parity.from_json({
         "findings": [finding.as_json() for finding in findings],
         "markers": markers,
         "clock": {name: {"lag": 3e-5, "lag_error": 1e-4} for name in OPEN},
         "channels": {},
         "looked_at": 214,
-    }
+    })  # fmt: skip
 
 
-def licence():
-    """A licence whose answers are many enough for an interval, with a goal missed."""
+def track_record():
+    """A track record whose answers are many enough for an interval, with a goal missed."""
     cases, seed = [], 0
     rows = []
     for truth, size, answers in (
@@ -176,8 +186,10 @@ def licence():
         for answer, count in answers.items():
             for _ in range(count):
                 seed += 1
-                cases.append(Case(name=f"case-{seed}", seed=seed, truth=truth, size=size, answer=answer))
-    return Licence(
+                cases.append(
+                    JudgedCase(name=f"case-{seed}", seed=seed, truth=truth, size=size, answer=answer)
+                )
+    return TrackRecord(
         date="2026-11-20", commit="0123456789ab", machine="two cores", effort="standard", seeds="fedcba987654",
         shares={
             "false-alarm": Share(
@@ -193,9 +205,9 @@ def licence():
     )  # fmt: skip
 
 
-def write_made_up_licence(path):
-    """Write `licence` to a file."""
-    write_licence(path, licence())
+def write_made_up_track_record(path):
+    """Write `track_record` to a file."""
+    write_track_record(path, track_record())
 
 
 def write_horizons(folder):
@@ -204,3 +216,30 @@ def write_horizons(folder):
     for path, horizon in zip(paths, ([3.0, 3.5], [2.0, 2.5], [5.0, 6.0]), strict=True):
         write_dataset(path, xr.Dataset({"horizon": ("model", horizon)}, {"model": list(MODELS)}))
     return paths
+
+
+def made_up_forces(tests, bodies):
+    """Joint forces of tests, as `measured_forces` has them."""
+    time = np.arange(0.0, 4.0, 0.01)
+    shape = len(tests), len(time)
+    swing = 0.39 * np.sign(np.sin(2.0 * np.pi * time))
+    joints = [f"{lower}-{upper}" for lower, upper in zip(["slab", *bodies], bodies, strict=False)]
+
+    def along(values, names):
+        return (("test", "time", "joint" if names is joints else "body"), np.broadcast_to(
+            np.asarray(values, dtype=np.float32)[None, :, None], (*shape, len(names))
+        ).copy())  # fmt: skip
+
+    columns = {
+        "lever": swing, "lever_error": np.full(len(time), 3e-3), "normal": np.full(len(time), 2e5),
+        "shear": 1e4 * swing, "side": np.sign(swing),
+    }  # fmt: skip
+    return xr.Dataset(
+        {
+            **{name: along(values, joints) for name, values in columns.items()},
+            "unexplained": along(-2e3 * (time > 2.0), bodies),
+            "half_width": ("joint", np.full(len(joints), 0.38)),
+        },
+        {"test": list(tests), "time": time, "joint": joints, "body": list(bodies)},
+        {"outside": "null"},
+    )

@@ -10,14 +10,14 @@ from fake_inputs import definitions, motion, waves
 
 from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.marker_noise import noisy_reading
-from blockshake.study.convergence_table import COLUMNS, EXACT, OBSERVABLES, write_convergence
-from blockshake.study.coverage import coverage
-from blockshake.study.distributions import TABLE_2
-from blockshake.study.ensemble import gather_ensemble, sample_figures
-from blockshake.study.envelope import envelope
-from blockshake.study.sampling import draw_samples
-from blockshake.study.sensitivity import sensitivity
+from blockshake.measurement.sensors.marker_noise import noisy_reading
+from blockshake.study.convergence.table import COLUMNS, EXACT, OBSERVABLES, write_convergence
+from blockshake.study.ensembles.coverage import coverage
+from blockshake.study.ensembles.ensemble import gather_ensemble, sample_figures
+from blockshake.study.ensembles.envelope import envelope
+from blockshake.study.sampling.distributions import TABLE_2
+from blockshake.study.sampling.latin_hypercube import draw_samples
+from blockshake.study.sensitivity.sensitivity import sensitivity
 
 MODELS = {"ls-dem": {"time_step": 5e-5}, "nscd-rigid": {"time_step": 1e-3}}
 COLLAPSE_REASON = "wall-b-4 tipped over or dropped at 1.000 s"

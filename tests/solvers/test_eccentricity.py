@@ -11,12 +11,12 @@ from blockshake.dynamics.motion import ground_motion
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import build_structure
 from blockshake.geometry.surface_nodes import line_nodes
-from blockshake.measurement.markers import marker_displacement
+from blockshake.measurement.sensors.markers import marker_displacement
+from blockshake.simulation.simulate import simulate
 from blockshake.solvers.ls_dem.driver import simulate_ls_dem
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.nscd.driver import simulate_nscd
 from blockshake.solvers.nscd.parameters import NscdParameters
-from blockshake.study.simulation import simulate
 
 G = 9.81
 K_N = 2.16e10  # N/m3, ls_dem.normal_stiffness by default

@@ -1,4 +1,4 @@
-"""Both solvers start a driven body where its motion starts (design: displacement from its start, pitch as given)."""
+"""Both solvers start a driven body where its motion starts: displacement from its start, pitch as given."""
 
 import numpy as np
 import pytest

@@ -10,7 +10,7 @@ from rail_nodes import rail_nodes
 
 from blockshake.dynamics.motion import ground_motion
 from blockshake.geometry.structure import build_structure, load_structure
-from blockshake.measurement.markers import marker_position
+from blockshake.measurement.sensors.markers import marker_position
 from blockshake.solvers.ls_dem import surfaces
 from blockshake.solvers.ls_dem.driver import simulate_ls_dem
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
@@ -124,7 +124,7 @@ def test_stacks_agree_until_their_horizon(on_rails):
 
 
 def test_configuration_1_agrees_for_seven_impacts(on_rails):
-    """Its twins do not part in 6 s, so that the issue asks for 2 % until then: that is missed, by the joints' impacts.
+    """Its twins do not part in 6 s, so that 2 % until then is aimed at. This is missed, by the joints' impacts.
 
     An impact opens the upper joints by some 0.1 mrad for an instant, which rigid contacts do not, and takes up to 3 %
     more or less energy. The stack swings on with another period, and drifts out of step: docs/nscd.md.

@@ -3,8 +3,8 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from blockshake.measurement.marker_noise import noisy_reading
-from blockshake.study.ensemble import gather_ensemble
+from blockshake.measurement.sensors.marker_noise import noisy_reading
+from blockshake.study.ensembles.ensemble import gather_ensemble
 
 TIME = np.arange(401) / 200.0
 MARKERS = ["slab-face", "block-1-face"]

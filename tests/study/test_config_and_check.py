@@ -1,4 +1,4 @@
-"""What a user's files may hold, and the one line that says what is wrong."""
+"""Files of a user: allowed content, and the one line that says what is wrong."""
 
 import copy
 
@@ -8,7 +8,7 @@ from blockshake.errors import InputError
 from blockshake.files import PACKAGE, load_yaml
 from blockshake.study.check import check_file
 from blockshake.study.config import check_config, load_config
-from blockshake.study.distributions import TABLE_2
+from blockshake.study.sampling.distributions import TABLE_2
 
 ROOT = PACKAGE.parents[1]
 
@@ -75,7 +75,7 @@ def test_fewer_samples_of_one_model(mapping):
             "study.yaml: convergence.time_steps: tuple should have at least 2",
         ),
         (("convergence", "structure"), "no-such", "no-such: expected a structure file"),
-        (("models", "nscd-elastic"), {"time_step": 1e-3}, "study.yaml: models.nscd-elastic"),
+        (("models", "no-such"), {"time_step": 1e-3}, "study.yaml: models.no-such"),
         (
             ("models", "nscd-rigid", "parameters"),
             {"friction.concrete.concrete": 0.5},

@@ -12,11 +12,16 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from blockshake.study.batch import simulate_samples
-from blockshake.study.simulation import MODELS, simulate
+from blockshake.simulation.models import MODELS
+from blockshake.simulation.simulate import simulate
+from blockshake.solvers import pieces
+from blockshake.solvers.checkpoint import Checkpoint
+from blockshake.study.ensembles.batch import simulate_samples
 
 # seconds of motion that take some seconds of wall time, whatever the model
-LONG = {"ls-dem": 25.0, "nscd-rigid": 100.0}
+LONG = {"ls-dem": 25.0, "nscd-rigid": 100.0, "nscd-elastic": 10.0, "nscd-viscoelastic": 10.0}
+# s from an interrupt to the end of the process: a piece of at most half a second, and as much again for a busy machine
+MOST_WAIT = 2.0
 ARRAYS = (
     "position", "orientation", "velocity", "angular_velocity", "marker_displacement", "energy", "joint_force",
 )  # fmt: skip
@@ -25,20 +30,24 @@ ARRAYS = (
 SIMULATE = """
 import sys
 from blockshake.cli import main
-from blockshake.solvers.checkpoint import Due
-from blockshake.solvers.{package} import driver
-driver.Due = lambda interval: Due(0.1)
+from blockshake.solvers import pieces
+Due = pieces.Due
+pieces.Due = lambda interval: Due(0.1)
 sys.exit(main(sys.argv[1:]))
 """
-PACKAGES = {"ls-dem": "ls_dem", "nscd-rigid": "nscd"}
 
 
 def _command(model, output):
     return [
-        sys.executable, "-c", SIMULATE.format(package=PACKAGES[model]),
+        sys.executable, "-c", SIMULATE,
         "simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", model, "--output-rate", "50",
         "--duration", str(LONG[model]), "--output", str(output), *(["--time-step", "5e-5"] * (model == "ls-dem")),
     ]  # fmt: skip
+
+
+def _heed_interrupts():
+    """A shell's background jobs ignore interrupts, and what they start does too."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def _assert_same(one, other):
@@ -50,15 +59,28 @@ def _assert_same(one, other):
 
 
 @pytest.mark.parametrize("model", sorted(MODELS))
-def test_a_killed_command_goes_on(model, tmp_path):
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGINT])
+def test_a_killed_or_interrupted_command_goes_on(model, end, tmp_path):
     output, checkpoint = tmp_path / "run.nc", tmp_path / "run.nc.checkpoint"
-    killed = subprocess.Popen(_command(model, output), stderr=subprocess.PIPE)
+    killed = subprocess.Popen(
+        _command(model, output), stderr=subprocess.PIPE, text=True, preexec_fn=_heed_interrupts
+    )
     deadline = time.monotonic() + 300.0
     while not checkpoint.exists() and killed.poll() is None and time.monotonic() < deadline:
         time.sleep(0.01)
-    os.kill(killed.pid, signal.SIGKILL)
-    killed.communicate()
-    assert killed.returncode == -signal.SIGKILL
+    os.kill(killed.pid, end)
+    sent = time.monotonic()
+    _, said = killed.communicate()
+    if end == signal.SIGINT:
+        assert time.monotonic() - sent < MOST_WAIT
+        assert killed.returncode == 130
+        assert re.fullmatch(
+            rf"blockshake: interrupted at [0-9.]+ s; the same command goes on from {checkpoint}",
+            said.splitlines()[-1],
+        )
+        assert "Traceback" not in said
+    else:
+        assert killed.returncode == -signal.SIGKILL
     assert checkpoint.exists()
     assert not output.exists()
     again = subprocess.run(_command(model, output), capture_output=True, text=True, check=True)
@@ -89,28 +111,21 @@ def test_a_killed_sample_goes_on_in_the_store(model, tmp_path, monkeypatch):
             case, model, {"time_step": step}, 50.0, rows, {}, store, "source", lambda line: None
         )
 
-    solve, *settings = MODELS[model]
-    driver = sys.modules[solve.__module__]
     (whole,) = attempt(tmp_path / "whole")
 
-    def often(*given, **keys):
-        return solve(*given, **keys, checkpoint_interval=0.0)
-
-    def save_and_die(*content):
-        original(*content)
+    def save_and_die(checkpoint, parts):
+        save(checkpoint, parts)
         raise CutShortError
 
-    original = driver.save_checkpoint
+    save, load = Checkpoint.save, Checkpoint.load
     with monkeypatch.context() as patch:
-        patch.setitem(MODELS, model, (often, *settings))
-        patch.setattr(driver, "_PAUSE_STEPS", 300)
-        patch.setattr(driver, "save_checkpoint", save_and_die)
+        patch.setattr(pieces, "Due", lambda interval: lambda: True)
+        patch.setattr(Checkpoint, "save", save_and_die)
         with pytest.raises(CutShortError):
             attempt(tmp_path / "cut")
     assert [path.suffix for path in (tmp_path / "cut").iterdir()] == [".checkpoint"]
     loaded = []
-    load = driver.load_checkpoint
-    monkeypatch.setattr(driver, "load_checkpoint", lambda *given: loaded.append(load(*given)) or loaded[-1])
+    monkeypatch.setattr(Checkpoint, "load", lambda self: loaded.append(load(self)) or loaded[-1])
     (resumed,) = attempt(tmp_path / "cut")
     assert loaded[0] is not None
     assert list((tmp_path / "cut").iterdir()) == [resumed]

@@ -6,14 +6,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from blockshake.files import PACKAGE, load_yaml
+from blockshake.dynamics.system import FINISHED
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.markers import driven_marker
-from blockshake.study.batch import simulate_samples
-from blockshake.study.ensemble import join_batches, relative_to_slab
-from blockshake.study.envelope import COUNTED
-from blockshake.study.sampling import draw_samples
-from blockshake.study.stiffness import calibrate_design
+from blockshake.measurement.sensors.markers import driven_marker
+from blockshake.study.ensembles.batch import simulate_samples
+from blockshake.study.ensembles.ensemble import join_batches, relative_to_slab
+from blockshake.study.sampling.distributions import LINKED
+from blockshake.study.sampling.latin_hypercube import draw_samples
+from blockshake.study.stiffness.wave_speed import calibrate_design
 
 SIZE, SEED = 50, 1  # of the study's design
 CASE = {"structure": "configuration-1", "motion": "basso-tirreno", "scale": 2.25, "duration": 12.0}
@@ -30,13 +30,13 @@ def simulated(step, rows, linked, store):
     structure = load_structure(CASE["structure"])
     files = simulate_samples(CASE, "ls-dem", {"time_step": step}, 200.0, rows, linked, store, "", _log.info)
     ensemble = join_batches(files)
-    assert np.isin(ensemble["status"], COUNTED).all()
+    assert np.isin(ensemble["status"], FINISHED).all()
     drift = relative_to_slab(ensemble["marker_displacement"], driven_marker(structure))
     return drift.sel(marker="block-3-face", axis="x").transpose("sample", "time").to_numpy()
 
 
 def figures(drift):
-    """What is compared: the drift's history and its peak, shape (sample, n)."""
+    """Compared figures: the drift's history and its peak, shape (sample, n)."""
     return {"history": drift, "peak": np.abs(drift).max(axis=1, keepdims=True)}
 
 
@@ -86,7 +86,7 @@ def rms(values):
 
 @pytest.fixture(scope="module")
 def drifts(tmp_path_factory):
-    linked = load_yaml(PACKAGE.parents[1] / "config" / "study.yaml")["ensemble"]["linked"]
+    linked = LINKED
     design = draw_samples(SIZE, SEED).values
     rows = pd.concat([design, calibrate_design("configuration-2", design, linked)], axis=1)
     return [simulated(step, rows, linked, tmp_path_factory.mktemp("store")) for step in STEPS]

@@ -41,7 +41,7 @@ def test_three_blocks_rock_alike_for_two_seconds(run_lmgc90, run_nscd, relative,
 
 
 def test_nine_blocks_with_a_bridging_top_move_alike_for_ten_seconds(run_lmgc90, run_nscd, relative):
-    # tolerances of the issue: 15 mm, and 1 % of each block's peak
+    # tolerances: 15 mm, and 1 % of each block's peak
     structure, motion = load_structure("configuration-3"), harmonic(10.1, 1.5)
     ours, theirs = (
         relative(run(structure, motion, 10.0), structure, motion) for run in (run_nscd, run_lmgc90)
@@ -96,7 +96,7 @@ def test_a_rocking_block_loses_what_housner_says(run_lmgc90, run_nscd, make_bloc
     exact = 1.0 - 1.5 / (1.0 + (height / breadth) ** 2)
     for run in (run_nscd, run_lmgc90):
         ratio = first_impact(run(structure, motion, 2.5, time_step=time_step), after=1.0)
-        # the issue's 1 %, at 0.2 ms
+        # 1 %, at 0.2 ms
         assert ratio == pytest.approx(exact, rel=0.01)
 
 

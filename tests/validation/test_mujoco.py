@@ -23,13 +23,13 @@ def test_three_blocks_rock_alike_for_three_seconds(run_mujoco, run_nscd, relativ
     exact = relative(run_nscd(sharp_stack, motion, 3.0, time_step=1e-4), sharp_stack, motion)
     peaks = np.abs(exact).max(axis=0)
     assert peaks[-1] > 0.3
-    # the issue's 1 % of the peak; histories to 1 % of it for 2 s, before the third impact spreads them
+    # 1 % of the peak; histories to 1 % of it for 2 s, before the third impact spreads them
     assert np.abs(soft).max(axis=0) == pytest.approx(peaks, rel=0.01)
     assert (np.abs(soft - exact)[theirs["time"] <= 2.0].max(axis=0) < 0.01 * peaks).all()
 
 
 def test_soft_contacts_sink(run_mujoco, run_nscd, sharp_stack):
-    """What the softness costs: weight rests on penetration, which rigid contacts do not have."""
+    """Price of softness: weight rests on penetration, which rigid contacts do not have."""
     soft = run_mujoco(sharp_stack, None, 1.0)["position"][-1, 1:, 2] - sharp_stack.position[1:, 2]
     rigid = run_nscd(sharp_stack, None, 1.0)["position"][-1, 1:, 2] - sharp_stack.position[1:, 2]
     joints = -np.diff(soft, prepend=0.0)

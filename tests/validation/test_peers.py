@@ -1,4 +1,4 @@
-"""What is handed to a peer, and that one that is missing is missed; needs no peer."""
+"""Scenes that are handed to a peer, and the message where a peer is missing; needs no peer."""
 
 import json
 

@@ -6,7 +6,7 @@ from motions import harmonic
 from recorded_lmgc90 import HISTORIES, over_slab
 
 from blockshake.geometry.structure import load_structure
-from blockshake.report.peer_record import load_peer_record
+from blockshake.study.peer_record import load_peer_record
 
 
 @pytest.fixture(scope="module")

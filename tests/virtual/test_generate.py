@@ -10,8 +10,8 @@ import yaml
 from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaign import load_campaign, load_test
-from blockshake.measurement.campaign_check import campaign_lines
+from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.virtual import generate
 from blockshake.virtual.settings import Hidden, VirtualCampaign, load_settings
 from blockshake.virtual.truth import hidden_effect
@@ -185,11 +185,11 @@ def test_a_test_in_which_a_block_falls_is_not_in_the_campaign(make):
 
 
 def test_every_effect_is_drawn_by_some_seed_with_a_size_that_shows(stiffness):
-    names = set()
+    structure, names = load_structure("configuration-2"), set()
     for seed in range(100):
-        effect = hidden_effect(Hidden(), "configuration-2", seed)
-        assert effect == hidden_effect(Hidden(), "configuration-2", seed)
-        assert effect["place"] in EFFECTS[effect["name"]].places(load_structure("configuration-2"))
+        effect = hidden_effect(Hidden(), structure, seed)
+        assert effect == hidden_effect(Hidden(), structure, seed)
+        assert effect["place"] in EFFECTS[effect["name"]].places(structure)
         size = EFFECTS[effect["name"]].parameters[0]
         share = abs((effect["values"][size.name] - size.null) / (size.visible - size.null))
         assert 0.49 < share < 1.51

@@ -4,8 +4,8 @@ import pytest
 import xarray as xr
 
 from blockshake.files import PACKAGE
-from blockshake.measurement.campaign import load_campaign
-from blockshake.measurement.campaign_check import campaign_lines
+from blockshake.measurement.campaigns.campaign import load_campaign
+from blockshake.measurement.checks.campaign_check import campaign_lines
 
 DATA = PACKAGE.parents[1] / "data" / "virtual-campaign"
 MOST_BYTES = 20e6

@@ -1,11 +1,11 @@
-"""What sealed tests measured is read by the gain's rule alone."""
+"""Readings of sealed tests are opened by the gain's rule alone."""
 
 import re
 import subprocess
 import sys
 
 from blockshake.files import PACKAGE
-from blockshake.measurement.campaign import load_campaign
+from blockshake.measurement.campaigns.campaign import load_campaign
 
 ROOT = PACKAGE.parents[1]
 CAMPAIGN = ROOT / "data" / "virtual-campaign" / "configuration-2"
@@ -39,7 +39,7 @@ def test_nothing_up_to_the_decision_has_a_sealed_file_as_input():
 
 
 def test_one_rule_asks_for_sealed_files():
-    """What follows the decision is known only when it is made, and so by no dry run."""
+    """Rules after the decision depend on it, and so show in no dry run."""
     text = (ROOT / "workflow" / "rules" / "diagnosis.smk").read_text()
     parts = re.split(r"^(?:rule|checkpoint) (\w+):", text, flags=re.MULTILINE)[1:]
     asking = [rule for rule, body in zip(parts[::2], parts[1::2], strict=True) if '"sealed"' in body]

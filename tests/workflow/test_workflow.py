@@ -127,10 +127,11 @@ def test_edit_of_a_solver_reruns_that_solver_only(finished, source, simulated):
 
 
 def test_edit_of_the_report_simulates_nothing(finished):
-    path = finished.folder / "src" / "blockshake" / "report" / "report.py"
+    source = "report/study/report.py"
+    path = finished.folder / "src" / "blockshake" / source
     before = path.read_text()
     try:
-        finished.append("report/report.py", "\nANSWER = 42\n")
+        finished.append(source, "\nANSWER = 42\n")
         assert set(finished.jobs()) == {"make_report", "all", "total"}
     finally:
         path.write_text(before)

@@ -6,7 +6,7 @@ rule make_virtual_campaign:
     input:
         settings="config/virtual-campaign.yaml",
         structure=lambda wildcards: definition("structures", wildcards.structure),
-        kernels=kernels("ls-dem"),
+        kernels=campaign_kernels,
     output:
         campaign="results/virtual-campaign/{structure}/campaign.yaml",
         truth="results/virtual-truth/{structure}/truth.json",
@@ -15,6 +15,6 @@ rule make_virtual_campaign:
     conda:
         "../envs/blockshake.yaml"
     params:
-        source=source_digest(*sources.VIRTUAL_CAMPAIGN),
+        source=source_of("make_virtual_campaign", *SOLVERS),
     script:
         "../scripts/make_virtual_campaign.py"

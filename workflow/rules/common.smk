@@ -1,4 +1,4 @@
-"""What the rules share: the checked configuration, ids for paths, digests of sources."""
+"""Shared by the rules: the checked configuration, ids for paths, digests of sources."""
 
 import os
 import sys
@@ -14,10 +14,13 @@ os.environ.update(
     NUMEXPR_NUM_THREADS="1",
 )
 
-from blockshake import sources
 from blockshake.errors import InputError
 from blockshake.files import source_digest
-from blockshake.measurement.campaign import load_campaign
+from blockshake.measurement.campaigns.campaign import load_campaign
+from blockshake.simulation.models import MODELS as SOLVERS
+from blockshake.sources import kernel_sources, script_sources
+from blockshake.study.config import StudyConfig, check_config
+from blockshake.validation import validated
 
 # of a diagnosis, on the command line: they take the place of the study's own
 GIVEN = ("campaign", "campaigns", "effort", "without")
@@ -29,13 +32,14 @@ def refuse(error):
     os._exit(2)
 
 
-def check_study():
-    """Check the configuration and all it names."""
-    from blockshake.study.config import check_config
-
+def study_config():
+    """The configuration checked, with the defaults of its schema; what it names is checked once, not in every job."""
+    study = {key: value for key, value in config.items() if key not in GIVEN}
+    where = " + ".join(map(str, workflow.configfiles))
     try:
-        study = {key: value for key, value in config.items() if key not in GIVEN}
-        check_config(study, " + ".join(map(str, workflow.configfiles)))
+        if workflow.exec_mode == workflow.exec_mode.DEFAULT:
+            return check_config(study, where)
+        return validated(StudyConfig, study, where)
     except InputError as error:
         refuse(error)
 
@@ -70,14 +74,9 @@ def campaign_files(case):
     return [str(path) for path in (*files, *filter(Path.is_file, beside))]
 
 
-def sample_count(model, case):
-    """Samples of a case by a model."""
-    return CASES[case].get("samples", {}).get(model, config["ensemble"]["size"])
-
-
 def batches(model, case):
     """Ids of the batches of a case: first and last sample."""
-    count, size = sample_count(model, case), config["samples_per_job"]
+    count, size = CHECKED.samples(model, case), config["samples_per_job"]
     return [
         f"{first:03d}-{min(first + size, count) - 1:03d}"
         for first in range(0, count, size)
@@ -95,28 +94,43 @@ def batch_files(wildcards):
     )
 
 
+def source_of(script, *models):
+    """Digest of all that a script imports, and of the solvers of the models that it runs."""
+    return source_digest(*script_sources(script, *models))
+
+
 def kernels(model):
     """Mark that a model's kernels are compiled.
 
     Its name holds their digest, so that it goes out of date just when the model's runs do. Snakemake's `ancient`
     would not do: with it a study whose compilation is due runs that and nothing else (issue 4166).
     """
-    return (
-        f"results/kernels/{model}-{source_digest(*sources.kernel_sources(model))}.json"
-    )
+    return f"results/kernels/{model}-{source_digest(*kernel_sources(model))}.json"
+
+
+def campaign_kernels(wildcards):
+    """Mark that the kernels of the virtual campaign's model are compiled."""
+    from blockshake.virtual.settings import load_settings
+
+    return kernels(load_settings("config/virtual-campaign.yaml").model)
 
 
 def stiffness_file(wildcards):
-    """Calibrated stiffness of the samples, for the model that has any: an edit of LS-DEM reruns no NSCD."""
+    """Calibrated stiffness of the samples, for the models that have any: an edit of LS-DEM reruns no NSCD."""
     return (
         f"results/{wildcards.study}/stiffness.csv"
-        if wildcards.model == "ls-dem"
+        if SOLVERS[wildcards.model].calibrated
         else []
     )
 
 
+def time_step_of(model):
+    """Time step of a model [s]: the study's, or the model's own where it is not in the study."""
+    return config["models"].get(model, {}).get("time_step", SOLVERS[model].time_step)
+
+
 def case_definition(wildcards):
-    """What a run of a case depends on, of its entry in the configuration."""
+    """Keys of a case in the configuration that its runs depend on."""
     return {
         key: CASES[wildcards.case][key]
         for key in ("structure", "motion", "scale", "duration")
@@ -124,14 +138,13 @@ def case_definition(wildcards):
 
 
 config.update(with_numbers(config))
-config.setdefault("samples_per_job", 10)
-config.setdefault("output_rate", 200.0)
-if workflow.exec_mode == workflow.exec_mode.DEFAULT:
-    check_study()
+CHECKED = study_config()
+config.update(CHECKED.model_dump(mode="json"))
 
+# models that the null hypothesis of a diagnosis holds
+NULL_MODELS = [name for name, model in SOLVERS.items() if model.perturbation]
 STUDY = config["name"]
 MODELS = list(config["models"])
-SOLVERS = ["ls-dem", "nscd-rigid"]  # a diagnosis has both in its null hypothesis
 CASES = {Path(case["structure"]).stem: case for case in config["cases"]}
 FRICTION_SEARCH = config.get("friction_calibration") or {}
 LADDER_MOTIONS = config["ladder"]["motions"]

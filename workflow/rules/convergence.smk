@@ -1,5 +1,5 @@
 rule study_convergence:
-    """What LS-DEM's time step, nodes, inset and grid change in two short runs, varied one at a time."""
+    """Two short runs of LS-DEM with time step, nodes, inset and grid varied one at a time."""
     input:
         structure=definition("structures", config["convergence"]["structure"]),
         kernels=kernels("ls-dem"),
@@ -15,6 +15,6 @@ rule study_convergence:
         mem_mb=2000,
     params:
         convergence=lookup(dpath="convergence", within=config),
-        source=source_digest(*sources.CONVERGENCE),
+        source=source_of("study_convergence", "ls-dem"),
     script:
         "../scripts/study_convergence.py"

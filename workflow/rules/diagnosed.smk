@@ -7,7 +7,7 @@ from functools import cache
 
 def by_name(folders, without):
     """Folders of campaigns by the names of their results."""
-    from blockshake.diagnosis.plan import result_name
+    from blockshake.diagnosis.libraries.plan import result_name
 
     named = {result_name(folder, without): str(folder) for folder in folders}
     if len(named) < len(folders):
@@ -21,19 +21,19 @@ def by_name(folders, without):
     return named
 
 
-DIAGNOSIS = config.get("diagnosis") or {}
-EFFORT = config.get("effort", DIAGNOSIS.get("effort", "standard"))
+EFFORT = config.get("effort", config["diagnosis"]["effort"])
 WITHOUT = config.get("without", [])
 if "campaign" in config:
     CAMPAIGNS = by_name([config["campaign"]], WITHOUT)
 else:
     CAMPAIGNS = by_name(
-        config.get("campaigns", DIAGNOSIS.get("campaigns", [])), WITHOUT
+        config.get("campaigns", config["diagnosis"]["campaigns"]), WITHOUT
     )
-LICENCE = "data/licence/hidden-effects.json"  # how often the procedure was right
-LIBRARY_SOURCE = source_digest(*sources.LIBRARY)
-CALIBRATION_SOURCE = source_digest(*sources.CALIBRATION)
-DIAGNOSIS_SOURCE = source_digest(*sources.DIAGNOSIS)
+TRACK_RECORD = (
+    "data/track-record/hidden-effects.json"  # how often the procedure was right
+)
+LIBRARY_SOURCE = source_of("simulate_library", *NULL_MODELS)
+CALIBRATION_SOURCE = source_of("calibrate_decision")
 
 
 config["diagnosed"], config["diagnosis_effort"] = list(CAMPAIGNS.values()), EFFORT
@@ -42,7 +42,7 @@ config["diagnosed"], config["diagnosis_effort"] = list(CAMPAIGNS.values()), EFFO
 @cache
 def plan(campaign):
     """Plan of a campaign by its name; made when a rule first asks, since it reads the open tests."""
-    from blockshake.diagnosis.plan import plan_diagnosis
+    from blockshake.diagnosis.libraries.plan import plan_diagnosis
 
     try:
         return plan_diagnosis(CAMPAIGNS[campaign], EFFORT, WITHOUT)
@@ -62,7 +62,7 @@ def library_files(campaign, kind="{solver}.nc"):
     return expand(
         f"results/libraries/{{library}}/{kind}",
         library=library_names(campaign),
-        solver=SOLVERS,
+        solver=NULL_MODELS,
     )
 
 
@@ -88,14 +88,14 @@ def calibration_libraries(wildcards):
 
 def considered_effects():
     """Names of the effects that are considered."""
-    from blockshake.diagnosis.plan import considered
+    from blockshake.diagnosis.libraries.plan import considered
 
     return considered(WITHOUT)
 
 
 def further_draws():
     """Draws with a cause beyond those of a library."""
-    from blockshake.diagnosis.plan import EFFORTS
+    from blockshake.diagnosis.libraries.efforts import EFFORTS
 
     return EFFORTS[EFFORT].further_draws
 
@@ -158,17 +158,20 @@ def extended_files(wildcards):
     causes, _ = decided(wildcards)
     return expand(
         f"results/diagnosis/{wildcards.campaign}/extended/{{solver}}.nc",
-        solver=SOLVERS if causes else [],
+        solver=NULL_MODELS if causes else [],
     )
 
 
-def gain_file(wildcards):
-    """The gain, where a cause was found, there are sealed tests and the effort has members to predict them with."""
-    from blockshake.diagnosis.plan import sealed_tests
+def gain_files(wildcards):
+    """The gain and its scores, where a cause was found, there are sealed tests and the effort has members to predict them with."""
+    from blockshake.diagnosis.libraries.plan import sealed_tests
 
     causes, faulty = decided(wildcards)
     asked = plan(wildcards.campaign)
     measurable = (causes and asked.effort.members) or (faulty and not causes)
     if measurable and sealed_tests(asked.campaign):
-        return f"results/diagnosis/{wildcards.campaign}/gain.json"
+        return expand(
+            f"results/diagnosis/{wildcards.campaign}/{{name}}",
+            name=["gain.json", "gain.nc"],
+        )
     return []

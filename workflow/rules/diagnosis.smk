@@ -8,7 +8,7 @@ that no campaign had before.
 
 wildcard_constraints:
     campaign="|".join(map(re.escape, CAMPAIGNS)) or "none",
-    solver="|".join(SOLVERS),
+    solver="|".join(NULL_MODELS),
     library="[0-9a-f]{12}",
     calibration="[0-9a-f]{12}",
     candidate="[^/]+",
@@ -79,6 +79,7 @@ rule read_measured:
     output:
         parity="results/diagnosis/{campaign}/parity.json",
         readings="results/diagnosis/{campaign}/measured.nc",
+        forces="results/diagnosis/{campaign}/forces.nc",
     log:
         "logs/diagnosis/{campaign}/read_measured.log",
     conda:
@@ -87,7 +88,7 @@ rule read_measured:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
         without=WITHOUT,
-        source=DIAGNOSIS_SOURCE,
+        source=source_of("read_measured"),
     script:
         "../scripts/read_measured.py"
 
@@ -96,6 +97,7 @@ checkpoint decide:
     """Which effects the open tests speak for; frozen with its hash before a sealed test is opened."""
     input:
         readings=rules.read_measured.output.readings,
+        forces=rules.read_measured.output.forces,
         libraries=lambda wildcards: library_files(wildcards.campaign),
         histories=lambda wildcards: library_files(
             wildcards.campaign, "{solver}-histories.nc"
@@ -113,7 +115,7 @@ checkpoint decide:
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effects=lambda wildcards: considered_effects(),
-        source=DIAGNOSIS_SOURCE,
+        source=source_of("decide"),
     script:
         "../scripts/decide.py"
 
@@ -160,7 +162,7 @@ rule size_cause:
         "../envs/blockshake.yaml"
     params:
         effects=lambda wildcards: considered_effects(),
-        source=DIAGNOSIS_SOURCE,
+        source=source_of("size_cause"),
     script:
         "../scripts/size_cause.py"
 
@@ -195,7 +197,7 @@ rule extend_model:
         effects=lambda wildcards: considered_effects(),
         store="results/store/diagnosis",
         source=LIBRARY_SOURCE,
-        judged_by=DIAGNOSIS_SOURCE,
+        judged_by=source_of("extend_model"),
     script:
         "../scripts/extend_model.py"
 
@@ -221,7 +223,7 @@ rule measure_gain:
         "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
-        source=DIAGNOSIS_SOURCE,
+        source=source_of("measure_gain"),
     script:
         "../scripts/measure_gain.py"
 
@@ -233,7 +235,7 @@ rule conclude:
         decision="results/diagnosis/{campaign}/decision.json",
         misfit="results/diagnosis/{campaign}/misfit.nc",
         posterior=size_files,
-        gain=gain_file,
+        gain=gain_files,
     output:
         "results/diagnosis/{campaign}/verdict.json",
     log:
@@ -243,7 +245,7 @@ rule conclude:
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
-        source=DIAGNOSIS_SOURCE,
+        source=source_of("conclude"),
     script:
         "../scripts/conclude.py"
 
@@ -252,9 +254,9 @@ rule predict_twins:
     """How long a test can be predicted: twins that differ by no more than what is measured can tell."""
     input:
         histories=expand(
-            "results/libraries/{{library}}/{solver}-histories.nc", solver=SOLVERS
+            "results/libraries/{{library}}/{solver}-histories.nc", solver=NULL_MODELS
         ),
-        kernels=[kernels(solver) for solver in SOLVERS],
+        kernels=[kernels(solver) for solver in NULL_MODELS],
     output:
         "results/libraries/{library}/predictability.nc",
     log:
@@ -263,7 +265,7 @@ rule predict_twins:
         "../envs/blockshake.yaml"
     params:
         library=LIBRARY_SOURCE,
-        source=DIAGNOSIS_SOURCE,
+        source=source_of("predict_twins", *NULL_MODELS),
     script:
         "../scripts/predict_twins.py"
 
@@ -277,6 +279,7 @@ rule make_diagnosis_report:
             name=[
                 "parity.json",
                 "measured.nc",
+                "forces.nc",
                 "decision.json",
                 "misfit.nc",
                 "evidence.nc",
@@ -285,16 +288,16 @@ rule make_diagnosis_report:
             ],
         ),
         posterior=size_files,
-        gain=gain_file,
+        gain=gain_files,
         horizons=lambda wildcards: [
             f"results/libraries/{name}/predictability.nc"
             for name in library_names(wildcards.campaign)
         ],
         templates=expand(
-            "src/blockshake/report/templates/{name}",
+            "src/blockshake/report/document/templates/{name}",
             name=["report.html.j2", "report.typ"],
         ),
-        licence=[LICENCE] if Path(LICENCE).exists() else [],
+        track_record=[TRACK_RECORD] if Path(TRACK_RECORD).exists() else [],
     output:
         html=report("reports/diagnosis-{campaign}.html", category="Diagnosis"),
         pdf=report("reports/diagnosis-{campaign}.pdf", category="Diagnosis"),
@@ -306,7 +309,7 @@ rule make_diagnosis_report:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         results=lambda wildcards, input: str(Path(input.results[0]).parent),
         effort=EFFORT,
-        licence=lambda wildcards: LICENCE,
-        source=source_digest(*sources.REPORT, *sources.DIAGNOSIS),
+        track_record=lambda wildcards: TRACK_RECORD,
+        source=source_of("make_diagnosis_report"),
     script:
         "../scripts/make_diagnosis_report.py"

@@ -11,7 +11,7 @@ rule make_envelope:
         "../envs/blockshake.yaml"
     params:
         largest_drift=lookup(dpath="ladder/largest_drift", within=config),
-        source=source_digest(*sources.ENVELOPE),
+        source=source_of("make_envelope"),
     script:
         "../scripts/make_envelope.py"
 
@@ -29,7 +29,7 @@ rule compare_with_measurement:
         "../envs/blockshake.yaml"
     params:
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
-        source=source_digest(*sources.COMPARISON),
+        source=source_of("compare_with_measurement"),
     script:
         "../scripts/compare_with_measurement.py"
 
@@ -50,7 +50,7 @@ rule measure_sensitivity:
         "../envs/blockshake.yaml"
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
-        linked=lookup(dpath="ensemble/linked", within=config, default={}),
-        source=source_digest(*sources.SENSITIVITY),
+        linked=lookup(dpath="ensemble/linked", within=config),
+        source=source_of("measure_sensitivity"),
     script:
         "../scripts/measure_sensitivity.py"

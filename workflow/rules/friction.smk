@@ -7,7 +7,7 @@ rule calibrate_friction:
         motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
         tower="config/structures/configuration-2.yaml",
         campaign=lambda wildcards: campaign_files(wildcards.case),
-        kernels=kernels(FRICTION_SEARCH.get("model", "nscd-rigid")),
+        kernels=lambda wildcards: kernels(FRICTION_SEARCH["model"]),
     output:
         "results/{study}/friction/{case}.json",
     log:
@@ -19,13 +19,13 @@ rule calibrate_friction:
     params:
         case=case_definition,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
-        search=FRICTION_SEARCH,
-        ensemble=lookup(dpath="ensemble", within=config),
-        models=lookup(dpath="models", within=config),
-        output_rate=lookup(dpath="output_rate", within=config),
+        given=lambda wildcards: {
+            "search": FRICTION_SEARCH,
+            **{key: config[key] for key in ("ensemble", "models", "output_rate")},
+        },
         store="results/store",
-        source=source_digest(
-            *sources.friction_sources(FRICTION_SEARCH.get("model", "nscd-rigid"))
+        source=lambda wildcards: source_of(
+            "calibrate_friction", FRICTION_SEARCH["model"]
         ),
     script:
         "../scripts/calibrate_friction.py"

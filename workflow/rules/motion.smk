@@ -9,6 +9,6 @@ rule describe_motion:
     conda:
         "../envs/blockshake.yaml"
     params:
-        source=source_digest(*sources.MOTION),
+        source=source_of("describe_motion"),
     script:
         "../scripts/describe_motion.py"

@@ -7,7 +7,7 @@ rule make_report:
         campaigns=[campaign_files(case) for case in CASES],
         peer="data/peers/lmgc90.nc",
         templates=expand(
-            "src/blockshake/report/templates/{name}",
+            "src/blockshake/report/document/templates/{name}",
             name=["report.html.j2", "report.typ"],
         ),
         motions=expand(
@@ -61,6 +61,6 @@ rule make_report:
         study=config,
         results="results/{study}",
         benchmarks="benchmarks/{study}",
-        source=source_digest(*sources.REPORT),
+        source=source_of("make_report"),
     script:
         "../scripts/make_report.py"

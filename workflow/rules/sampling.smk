@@ -9,6 +9,6 @@ rule draw_samples:
         "../envs/blockshake.yaml"
     params:
         ensemble=lookup(dpath="ensemble", within=config),
-        source=source_digest(*sources.DESIGN),
+        source=source_of("draw_samples"),
     script:
         "../scripts/draw_samples.py"

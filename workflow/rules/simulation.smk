@@ -42,9 +42,9 @@ rule simulate_batch:
         case=case_definition,
         settings=lookup(dpath="models/{model}", within=config),
         output_rate=lookup(dpath="output_rate", within=config),
-        linked=lookup(dpath="ensemble/linked", within=config, default={}),
+        linked=lookup(dpath="ensemble/linked", within=config),
         store="results/store",
-        source=lambda wildcards: source_digest(*sources.batch_sources(wildcards.model)),
+        source=lambda wildcards: source_of("simulate_batch", wildcards.model),
     script:
         "../scripts/simulate_batch.py"
 
@@ -66,7 +66,7 @@ rule climb_ladder:
     params:
         cases=[case for case in CASES.values()],
         ladder=lookup(dpath="ladder", within=config),
-        time_step=lookup(dpath="models/ls-dem/time_step", within=config, default=1e-5),
-        source=source_digest(*sources.LADDER),
+        time_step=time_step_of("ls-dem"),
+        source=source_of("climb_ladder", "ls-dem"),
     script:
         "../scripts/climb_ladder.py"

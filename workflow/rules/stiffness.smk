@@ -14,14 +14,14 @@ rule calibrate_stiffness:
     conda:
         "../envs/blockshake.yaml"
     params:
-        linked=lookup(dpath="ensemble/linked", within=config, default={}),
-        source=source_digest(*sources.STIFFNESS),
+        linked=lookup(dpath="ensemble/linked", within=config),
+        source=source_of("calibrate_stiffness"),
     script:
         "../scripts/calibrate_stiffness.py"
 
 
 rule compare_definitions:
-    """What the definition of a wave's arrival and the damping do to the stiffness, and that to a stack's peak."""
+    """Contact stiffness by the definition of a wave's arrival and by damping, and the peak of a stack with each."""
     input:
         tower="config/structures/configuration-2.yaml",
         structure=definition("structures", config["cases"][0]["structure"]),
@@ -37,7 +37,7 @@ rule compare_definitions:
         "../envs/blockshake.yaml"
     params:
         case=lookup(dpath="cases/0", within=config),
-        time_step=lookup(dpath="models/ls-dem/time_step", within=config, default=5e-5),
-        source=source_digest(*sources.DEFINITIONS),
+        time_step=time_step_of("ls-dem"),
+        source=source_of("compare_definitions", "ls-dem"),
     script:
         "../scripts/compare_definitions.py"

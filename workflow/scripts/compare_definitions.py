@@ -1,6 +1,6 @@
 from blockshake.files import write_dataset
 from blockshake.log import logging_to
-from blockshake.study.stiffness_definitions import compare_definitions
+from blockshake.study.stiffness.definitions import compare_definitions
 
 LONGEST = 6.0  # s; the first strong swings
 

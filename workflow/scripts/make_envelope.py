@@ -1,7 +1,7 @@
 from blockshake.files import write_dataset
 from blockshake.log import logging_to
-from blockshake.study.ensemble import join_batches, sample_figures
-from blockshake.study.envelope import envelope
+from blockshake.study.ensembles.ensemble import join_batches, sample_figures
+from blockshake.study.ensembles.envelope import envelope
 
 with logging_to(snakemake.log[0]):
     ensemble = join_batches(snakemake.input.batches)

@@ -1,11 +1,6 @@
 from blockshake.log import logging_to
-from blockshake.report.report import make_report
+from blockshake.report.study.report import make_report
 
 with logging_to(snakemake.log[0]):
-    make_report(
-        snakemake.params.study,
-        snakemake.params.results,
-        snakemake.params.benchmarks,
-        snakemake.output.html,
-        snakemake.output.pdf,
-    )
+    of, made = snakemake.params, snakemake.output
+    make_report(of.study, of.results, of.benchmarks, made.html, made.pdf)

@@ -5,11 +5,6 @@ from blockshake.virtual.generate import generate_campaign
 from blockshake.virtual.settings import load_settings
 
 with logging_to(snakemake.log[0]) as say:
-    generate_campaign(
-        load_settings(snakemake.input.settings),
-        snakemake.wildcards.structure,
-        Path(snakemake.output.campaign).parent,
-        Path(snakemake.output.truth).parent,
-        snakemake.params.source,
-        say,
-    )
+    settings, structure = load_settings(snakemake.input.settings), snakemake.wildcards.structure
+    folders = Path(snakemake.output.campaign).parent, Path(snakemake.output.truth).parent
+    generate_campaign(settings, structure, *folders, snakemake.params.source, say)

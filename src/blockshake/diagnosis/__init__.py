@@ -1,1 +1,1 @@
-"""What the simulation gets wrong, why, and what an extension gains."""
+"""Diagnosis of measured tests: errors of the simulation, their cause, and the gain of an extended model."""

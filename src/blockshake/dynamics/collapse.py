@@ -10,7 +10,7 @@ _COSINE_OF_TILT = np.sqrt(0.5)
 
 
 def collapse_limits(structure):
-    """Which bodies are watched for collapse, and how far each may drop.
+    """Bodies that are watched for collapse, and the drop that each may take.
 
     Parameters
     ----------

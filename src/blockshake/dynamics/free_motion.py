@@ -1,4 +1,4 @@
-"""Leapfrog of rigid bodies: momentum at half steps, pose at full steps, second order in the step."""
+"""Newton-Euler equations by leapfrog: momentum at half steps, pose at full steps, second order in the step."""
 
 import numpy as np
 

@@ -63,7 +63,7 @@ def friction_coefficient(laws, a, b, slip_rate, slip):
     -----
     ``mu (1 - D_v (1 - exp(-v / v_c))) (1 - D_S (1 - exp(-S / S_c)))``: the first bracket is the
     Stribeck form of rate weakening, the second a slip weakening of the same form; ``D = 0`` leaves
-    the coefficient as it is, to the bit. What the literature says of concrete is in docs/method.md.
+    the coefficient as it is, to the bit. docs/method.md has the literature on concrete.
     """
     first, second, law = laws.material[a], laws.material[b], laws.law
     mu = law[first, second, COEFFICIENT]

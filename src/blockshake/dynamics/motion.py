@@ -9,6 +9,7 @@ from scipy.interpolate import CubicSpline, PPoly
 from blockshake.jit import kernel
 
 CHANNELS = ("x", "y", "z", "pitch_y")
+PITCH = CHANNELS.index("pitch_y")
 
 
 class MotionTable(NamedTuple):

@@ -6,10 +6,9 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from blockshake.files import load_yaml
-from blockshake.validation import Strict, validated
+from blockshake.validation import Count, Positive, Strict, validated
 
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-Share = Annotated[float, Field(gt=0, lt=1)]
+InnerFraction = Annotated[Positive, Field(lt=1)]
 
 
 class Ordinate(Strict):
@@ -23,7 +22,7 @@ class Ordinate(Strict):
 class Source(Strict):
     """Point source that gives the Fourier spectrum its first shape."""
 
-    moment_magnitude: Annotated[float, Field(gt=0, lt=10)]
+    moment_magnitude: Annotated[Positive, Field(lt=10)]
     epicentral_distance: Positive = Field(description="[m]; stated for the record, the model does not use it")
     stress_drop: Positive = Field(description="[Pa]")
     shear_wave_velocity: Positive = Field(description="at the source [m/s]")
@@ -34,8 +33,8 @@ class Envelope(Strict):
     """Saragoni-Hart window of the noise."""
 
     significant_duration: Positive = Field(description="between 5 and 95 % of the window's energy [s]")
-    peak: Share = Field(description="time of the peak as a share of the window's length [1]")
-    level: Share = Field(description="height at the window's end as a share of the peak [1]")
+    peak: InnerFraction = Field(description="time of the peak as a share of the window's length [1]")
+    level: InnerFraction = Field(description="height at the window's end as a share of the peak [1]")
 
 
 class SyntheticMotion(Strict):
@@ -44,7 +43,7 @@ class SyntheticMotion(Strict):
     name: str
     synthetic: Literal[True]
     description: str
-    seed: Annotated[int, Field(ge=0)]
+    seed: Count
     time_step: Positive = Field(description="[s]")
     duration: Positive = Field(description="[s]")
     peak_acceleration: Positive = Field(description="of the finished record, exact [m/s2]")

@@ -1,10 +1,12 @@
-"""What both solvers integrate: bodies, forces on them, and the record of a run."""
+"""Bodies, their state, their energy and the record of a run, for both solvers."""
 
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.dynamics.motion import PITCH
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
 from blockshake.jit import kernel
 
@@ -17,6 +19,20 @@ ENERGY_TERMS = (
     "dissipated_viscous",
     "input",
 )
+# Entries of an energy audit by name, in the order of `ENERGY_TERMS`
+KINETIC, POTENTIAL, ELASTIC, FRICTION_LOSS, CONTACT_LOSS, VISCOUS_LOSS, INPUT = range(len(ENERGY_TERMS))
+
+
+class Status(StrEnum):
+    """How a run ended."""
+
+    COMPLETED = "completed"
+    COLLAPSED = "collapsed"
+    DIVERGED = "diverged"
+    NOT_CONVERGED = "not-converged"
+
+
+FINISHED = (Status.COMPLETED, Status.COLLAPSED)  # a run that the solver could not finish is no prediction
 
 
 class Bodies(NamedTuple):
@@ -83,8 +99,7 @@ class Trajectory:
         Pairs of bodies that touched, by index.
     joint_force : float64 array, shape (n_times, n_joints, 3)
         Resultant on the second body of each pair [N].
-    status : str
-        ``completed``, ``collapsed``, ``diverged`` or ``not-converged``.
+    status : Status
     reason : str
         Why the run ended early or is not to be trusted; empty when completed.
     end_time : float
@@ -101,7 +116,7 @@ class Trajectory:
     energy: np.ndarray
     joints: np.ndarray
     joint_force: np.ndarray
-    status: str
+    status: Status
     reason: str
     end_time: float
     numerics: dict
@@ -160,14 +175,14 @@ def place_driven_into(bodies, displacement, velocity, state):
         each about its moving mass centre, positive leaning the top to +x.
     """
     pitch = np.zeros(3)
-    pitch[1] = displacement[3]
+    pitch[1] = displacement[PITCH]
     for body in range(bodies.mass.size):
         if bodies.driven[body]:
             for axis in range(3):
                 state.position[body, axis] = bodies.home[body, axis] + displacement[axis]
                 state.velocity[body, axis] = velocity[axis]
                 state.angular_velocity[body, axis] = 0.0
-            state.angular_velocity[body, 1] = velocity[3]
+            state.angular_velocity[body, 1] = velocity[PITCH]
             rotate_into(bodies.home_orientation[body], pitch, state.orientation[body])
 
 

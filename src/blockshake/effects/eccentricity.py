@@ -5,7 +5,7 @@ from blockshake.effects.places import blocks
 
 
 def _act(experiment, values, place):
-    file = experiment.load().file
+    file = experiment.structure.file
     body = next(body for body in file.bodies if body.name == place["body"])
     x, y, z = body.mass_offset
     return experiment.with_parameters(**{f"bodies.{body.name}.mass_offset": [x + values["offset"], y, z]})

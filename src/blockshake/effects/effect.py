@@ -1,12 +1,12 @@
-"""What an effect is: equation, parameters, where it acts, what it leaves in the data, what it is taken for."""
+"""Definition of an effect: equation, parameters, place, signature in the data, and the effects it is mistaken for."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
 from blockshake.dynamics.motion import GroundMotion
-from blockshake.geometry.structure import load_structure
-from blockshake.measurement.instruments import Instruments
+from blockshake.geometry.structure import Structure
+from blockshake.measurement.sensors.instruments import Instruments
 
 
 @dataclass(frozen=True)
@@ -15,26 +15,18 @@ class Experiment:
 
     Attributes
     ----------
-    structure : str
-        Shipped name or file.
-    parameters : dict of str to value
-        Of the structure, by dotted name.
+    structure : Structure
     motion : GroundMotion
     instruments : Instruments
     """
 
-    structure: str
-    parameters: dict
+    structure: Structure
     motion: GroundMotion
     instruments: Instruments
 
-    def load(self):
-        """The structure with its parameters."""
-        return load_structure(self.structure, self.parameters)
-
     def with_parameters(self, **changed):
-        """The same test with these parameters too; keys with dots are given as ``**{...}``."""
-        return replace(self, parameters={**self.parameters, **changed})
+        """The same test of a structure with other parameters; keys with dots are given as ``**{...}``."""
+        return replace(self, structure=self.structure.with_parameters(changed))
 
     def with_instruments(self, **changed):
         """The same test read with these faults too."""
@@ -99,13 +91,13 @@ class Effect:
     Attributes
     ----------
     name : str
-        Of the contract, as in ``verdict.json``.
+        As in ``verdict.json``.
     title : str
         As in reports.
     acts : str
         Where: on the ``input``, the ``contact``, the ``geometry``, a ``force`` or the ``observation``.
     equation, source : str
-        What it does, and from where that is taken.
+        Law of the effect, and its literature.
     parameters : tuple of EffectParameter
         The first is the size: at its null value nothing is changed, whatever the others.
     signature : Signature

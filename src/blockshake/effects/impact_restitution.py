@@ -5,7 +5,7 @@ from blockshake.effects.places import nowhere
 
 
 def _act(experiment, values, place):
-    file = experiment.load().file
+    file = experiment.structure.file
     return experiment.with_parameters(
         restitution=file.restitution + values["increase"],
         nscd_restitution=file.nscd_restitution + values["increase"],

@@ -1,12 +1,12 @@
 """Where an effect may be in a structure: nowhere in particular, a joint, a block or a marker."""
 
 from blockshake.geometry.schema import Joint
-from blockshake.measurement.joint_coordinates import find_joints
+from blockshake.measurement.motion.joint_coordinates import find_joints
 
 
 def stated_joint(experiment, place):
-    """What the structure of an experiment says of a joint, defaults where it says nothing."""
-    for joint in experiment.load().file.joints:
+    """Entry of a joint in the structure of an experiment, defaults where the structure file says nothing."""
+    for joint in experiment.structure.file.joints:
         if sorted(joint.bodies) == sorted(place["joint"]):
             return joint
     return Joint(bodies=place["joint"])

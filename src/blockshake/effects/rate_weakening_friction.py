@@ -6,7 +6,7 @@ from blockshake.effects.places import nowhere
 
 def _act(experiment, values, place):
     changed = {}
-    for entry in experiment.load().file.friction:
+    for entry in experiment.structure.file.friction:
         pair, present, drop = ".".join(entry.pair), entry.rate_drop, values["drop"]
         # what the structure states already stays in proportion
         share = drop / (present + drop) if present + drop > 0.0 else 0.0

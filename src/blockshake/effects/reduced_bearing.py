@@ -5,7 +5,7 @@ from blockshake.effects.places import nowhere
 
 
 def _act(experiment, values, place):
-    structure = experiment.load()
+    structure = experiment.structure
     file = structure.file
     mass = {}
     for body, own, driven in zip(file.bodies, structure.mass, structure.driven, strict=True):

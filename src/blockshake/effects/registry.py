@@ -1,4 +1,4 @@
-"""The registry of effects: the contract's names, each with its entry."""
+"""The registry of effects: their names, each with its entry."""
 
 from blockshake.effects import (
     clock_lag,
@@ -33,6 +33,11 @@ _FILES = (
 EFFECTS = {file.EFFECT.name: file.EFFECT for file in _FILES}
 
 
+def title_of(name):
+    """Name of an effect in words; a sensor fault that is not in the registry goes by its own name."""
+    return EFFECTS[name].title if name in EFFECTS else name.replace("-", " ")
+
+
 def with_effect(experiment, name, values, place):
     """An experiment with an effect in it.
 
@@ -58,7 +63,7 @@ def with_effect(experiment, name, values, place):
     for key in values:
         if key not in known:
             raise InputError("effect", f"{name}.{key}", f"expected one of {', '.join(known)}")
-    places = effect.places(experiment.load())
+    places = effect.places(experiment.structure)
     if place not in places:
         raise InputError("effect", f"{name}.place", f"expected one of {places}, not {place}")
     return effect.act(experiment, {**known, **values}, place)

@@ -5,7 +5,7 @@ from blockshake.effects.places import stops
 
 
 def _act(experiment, values, place):
-    structure = experiment.load()
+    structure = experiment.structure
     body = structure.file.bodies[structure.body_names.index(place["body"])]
     corner = structure.solids[body.shape].vertices.max(axis=0)  # from the centroid, as the file counts
     side = 1.0 if place["axis"] == "+x" else -1.0

@@ -1,4 +1,4 @@
-"""How deep two solids overlap, by the separating-axis theorem on their convex hulls."""
+"""Depth by which two solids overlap, by the separating-axis theorem on their convex hulls."""
 
 import numpy as np
 

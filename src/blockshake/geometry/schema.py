@@ -4,13 +4,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from blockshake.validation import Strict
+from blockshake.validation import Finite, Fraction, NotNegative, Positive, Strict
 
-# a whole number is one too; a text or true and false are not
-Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Positive = Annotated[Finite, Field(gt=0)]
-NotNegative = Annotated[Finite, Field(ge=0)]
-Share = Annotated[Finite, Field(ge=0, le=1)]
+AXES = ("x", "y", "z")  # order of every vector
+QUATERNION = ("w", "x", "y", "z")  # order of every quaternion
 Vector = tuple[Finite, Finite, Finite]
 Quaternion = tuple[Finite, Finite, Finite, Finite]
 Name = Annotated[str, Field(min_length=1, pattern=r"^[^\s./]+$")]
@@ -71,9 +68,9 @@ class Friction(Strict):
 
     pair: tuple[str, str]
     coefficient: NotNegative = Field(description="at rest, before any slip [1]")
-    rate_drop: Share = Field(0.0, description="share of the coefficient lost at high slip rate [1]")
+    rate_drop: Fraction = Field(0.0, description="share of the coefficient lost at high slip rate [1]")
     rate_scale: Positive = Field(0.01, description="slip rate at which 63 % of it is lost [m/s]")
-    slip_drop: Share = Field(0.0, description="share of the coefficient lost after long slip [1]")
+    slip_drop: Fraction = Field(0.0, description="share of the coefficient lost after long slip [1]")
     slip_scale: Positive = Field(0.01, description="slip after which 63 % of it is lost [m]")
     asymmetry: Annotated[Finite, Field(gt=-1, lt=1)] = Field(
         0.0,
@@ -115,7 +112,7 @@ class Accelerometer(Strict):
     name: Name
     body: str
     position: Vector = Field(description="body frame, from the centroid [m]")
-    axes: tuple[Literal["x", "y", "z"], ...] = Field(min_length=1)
+    axes: tuple[Literal[AXES], ...] = Field(min_length=1)
 
 
 class StructureFile(Strict):
@@ -129,8 +126,8 @@ class StructureFile(Strict):
     bodies: tuple[Body, ...] = Field(min_length=1)
     friction: tuple[Friction, ...] = ()
     joints: tuple[Joint, ...] = ()
-    restitution: Share = Field(0.5, description="C_res of Eq. (3), LS-DEM; 0 means critical damping [1]")
-    nscd_restitution: Share = Field(0.0, description="Newton's restitution, NSCD [1]")
+    restitution: Fraction = Field(0.5, description="C_res of Eq. (3), LS-DEM; 0 means critical damping [1]")
+    nscd_restitution: Fraction = Field(0.0, description="Newton's restitution, NSCD [1]")
     stoppers: tuple[Stopper, ...] = ()
     markers: tuple[Marker, ...] = ()
     accelerometers: tuple[Accelerometer, ...] = ()

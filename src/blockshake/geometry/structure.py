@@ -24,8 +24,10 @@ from blockshake.geometry.schema import StructureFile
 from blockshake.geometry.structure_file import check_names, friction_matrix, replace_into, unit_quaternions
 from blockshake.validation import validated
 
-DEEPEST_OVERLAP = 1e-3  # m, contract; deeper is a wrong structure, not an initial penetration
-_TOUCHING = 1e-4  # m, contract: an equilibrium within this of the given poses is the start
+DEEPEST_OVERLAP = 1e-3  # m; deeper is a wrong structure, not an initial penetration
+# m; an equilibrium of elastic or shrunk contacts within this of the given poses is the start of a run, and bodies
+# nearer than this touch
+START_TOLERANCE = 1e-4
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,8 @@ class Structure:
         structure, which differ where mass is offset, from the mass centres.
     source : str
         Name or path it came from.
+    folder : Path
+        Where its meshes lie.
     solids : dict of str to Solid
         By shape name, about the centroid.
     mass : float64 array, shape (n_bodies,)
@@ -79,6 +83,7 @@ class Structure:
 
     file: StructureFile
     source: str
+    folder: Path
     solids: dict
     mass: np.ndarray
     inertia: np.ndarray
@@ -105,6 +110,22 @@ class Structure:
         """Centroids of the shapes at the start: float64 array, shape (n_bodies, 3), world frame [m]."""
         return np.array([body.position for body in self.file.bodies])
 
+    def with_parameters(self, parameters):
+        """The same structure with other values by dotted name, as of `load_structure`; its file is not read again.
+
+        Raises
+        ------
+        InputError
+            A parameter that the structure does not have, or a bad value.
+        """
+        if not parameters:
+            return self
+        mapping = self.file.model_dump(mode="json")
+        for key, value in parameters.items():
+            replace_into(mapping, key, value, self.source)
+        known = {name: (shape, self.solids[name]) for name, shape in self.file.shapes.items()}
+        return build_structure(mapping, self.source, self.folder, known)
+
     def solid(self, body):
         """Solid of the body with this index, about its mass centre."""
         one = self.file.bodies[body]
@@ -116,18 +137,18 @@ class Structure:
         return np.array([names.index(point.body) for point in points], dtype=np.int64)
 
     def arms(self, points):
-        """Where they are from their bodies' mass centres: float64 array, shape (n_points, 3), body frames [m]."""
+        """Places seen from the mass centres of their bodies: float64 array, shape (n_points, 3), body frames [m]."""
         places = np.array([point.position for point in points], dtype=float).reshape(-1, 3)
         return places - self.mass_offset[self.carriers(points)]
 
 
 def load_structure(source, parameters=None):
-    """Structure from a shipped name or a YAML file.
+    """Structure from a shipped name or a YAML file, or a loaded one with other parameters.
 
     Parameters
     ----------
-    source : str or path
-        ``configuration-1`` to ``configuration-4``, or a file.
+    source : str, path or Structure
+        ``configuration-1`` to ``configuration-4``, or a file; what is loaded is not read again.
     parameters : dict of str to value, optional
         Values by dotted name that replace the file's, such as
         ``{"friction.concrete.concrete": 0.6, "materials.concrete.density": 2350.0}``.
@@ -137,6 +158,8 @@ def load_structure(source, parameters=None):
     InputError
         Unknown key, missing friction pair, overlapping bodies, open mesh and the like.
     """
+    if isinstance(source, Structure):
+        return source.with_parameters(parameters)
     path = shipped("structures", source)
     if not path.exists():
         path = Path(source)
@@ -150,11 +173,25 @@ def load_structure(source, parameters=None):
     return build_structure(mapping, str(source), path.parent)
 
 
-def build_structure(mapping, source, folder):
-    """Structure from the mapping of a structure file; ``folder`` is where its meshes lie."""
+def build_structure(mapping, source, folder, known=None):
+    """Structure from the mapping of a structure file.
+
+    Parameters
+    ----------
+    mapping : dict
+    source : str
+        To name in an error.
+    folder : str or path
+        Where its meshes lie.
+    known : dict of str to (Shape, Solid), optional
+        Solids by the name of their shape: one that has not changed is taken over.
+    """
     file = validated(StructureFile, mapping, source)
     check_names(file, source)
-    solids = {name: _solid(name, shape, source, folder) for name, shape in file.shapes.items()}
+    solids = {}
+    for name, shape in file.shapes.items():
+        before, solid = (known or {}).get(name, (None, None))
+        solids[name] = solid if shape == before else _solid(name, shape, source, folder)
     for body in file.bodies:
         check_offset(body, solids[body.shape], source)
     mass, inertia = _masses(file, solids)
@@ -166,6 +203,7 @@ def build_structure(mapping, source, folder):
     return Structure(
         file=file,
         source=source,
+        folder=Path(folder),
         solids=solids,
         mass=mass,
         inertia=inertia,
@@ -215,7 +253,7 @@ def _touching(file, source, solids, position, orientation):
     bodies = file.bodies
     shape = [body.shape for body in bodies]
     driven = np.array([body.driven for body in bodies])
-    pairs = near_pairs([solids[name] for name in shape], position, orientation, _TOUCHING)
+    pairs = near_pairs([solids[name] for name in shape], position, orientation, START_TOLERANCE)
     depth = np.empty(len(pairs))
     by_shapes = {}
     for place, (a, b) in enumerate(pairs):
@@ -234,6 +272,6 @@ def _touching(file, source, solids, position, orientation):
             f"expected at most {1e3 * DEEPEST_OVERLAP:.0f} mm",
         )
     touching = np.zeros((len(bodies), len(bodies)), dtype=bool)
-    a, b = pairs[(depth > -_TOUCHING) & ~driven[pairs].all(axis=1)].T
+    a, b = pairs[(depth > -START_TOLERANCE) & ~driven[pairs].all(axis=1)].T
     touching[a, b] = touching[b, a] = True
     return touching

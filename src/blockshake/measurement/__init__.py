@@ -1,1 +1,1 @@
-"""What instruments see of a structure: markers, accelerometers, noise."""
+"""Readings: campaigns in files, sensors, checks, the motion of the blocks, modes."""

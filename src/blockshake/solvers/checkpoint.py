@@ -1,33 +1,58 @@
 """A run on disk between two steps: it goes on from there bit by bit as if it had not been cut."""
 
 import hashlib
-import time
 import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from blockshake.files import replacing
 from blockshake.jit import SOURCE_DIGEST
 
-NEWS = 10.0  # s of wall time between lines of progress
 
+@dataclass(frozen=True)
+class Checkpoint:
+    """Place of a run on disk, or none.
 
-class Due:
-    """Whether an interval of wall time has passed since it last had, or since the start.
-
-    ``interval`` [s]; zero is always due.
+    Attributes
+    ----------
+    path : path or None
+        None keeps nothing.
+    interval : float
+        Wall time between savings [s].
+    key : str
+        From `run_key`: a file of another run is not read.
+    layout : module
+        ``pack(*parts)`` of it gives tuples of arrays by name, and ``unpack`` of these the parts again.
     """
 
-    def __init__(self, interval):
-        self._interval, self._last = interval, time.monotonic()
+    path: Path | str | None
+    interval: float
+    key: str
+    layout: Any
 
-    def __call__(self):
-        """True once an interval."""
-        now = time.monotonic()
-        if now - self._last < self._interval:
-            return False
-        self._last = now
-        return True
+    def save(self, parts):
+        """Write the parts of a run, in place of an earlier file only when they are whole."""
+        if self.path is not None:
+            save_parts(self.path, self.key, self.layout.pack(*parts))
+
+    def load(self):
+        """Parts of this very run, or None where there is no file of it that can be read."""
+        parts = load_parts(self.path, self.key) if self.path is not None else None
+        return None if parts is None else self.layout.unpack(parts)
+
+    def remove(self):
+        """Take the file away."""
+        if self.path is not None:
+            Path(self.path).unlink(missing_ok=True)
+
+    def advice(self):
+        """Words that tell the user of an interrupted run how it goes on."""
+        if self.path is None or not Path(self.path).exists():
+            return "nothing of it is saved"
+        return f"the same command goes on from {self.path}"
 
 
 def run_key(structure, ground, parameters, record_times, time_step, *choices):

@@ -1,4 +1,4 @@
-"""What a run leaves at the times asked for: both solvers fill it in as they go."""
+"""Record of a run at the times asked for: both solvers fill it in as they go."""
 
 from typing import NamedTuple
 
@@ -7,9 +7,11 @@ import numpy as np
 from blockshake.dynamics.system import ENERGY_TERMS
 from blockshake.jit import kernel
 
+_SPARE_JOINTS = 16
+
 
 class Record(NamedTuple):
-    """What a run leaves, NaN where it did not come to; arrays as in `Trajectory`, ``joint_force`` of all joints."""
+    """Arrays as in `Trajectory`, ``joint_force`` for all joints; NaN at times that the run did not reach."""
 
     position: np.ndarray
     orientation: np.ndarray
@@ -32,12 +34,12 @@ def empty_record(n_times, n_bodies):
 
 
 @kernel
-def with_room(record, n_joints, spare):
-    """The record, its joints grown to hold these and ``spare`` more; a new joint has carried nothing so far."""
+def with_room(record, n_joints):
+    """The record, grown where it cannot hold so many joints; a new joint has carried nothing so far."""
     n_times, room, _ = record.joint_force.shape
     if n_joints <= room:
         return record
-    force = np.zeros((n_times, n_joints + n_joints // 4 + spare, 3))
+    force = np.zeros((n_times, n_joints + n_joints // 4 + _SPARE_JOINTS, 3))
     force[:, :room] = record.joint_force
     return Record(
         record.position, record.orientation, record.velocity, record.angular_velocity, record.energy, force

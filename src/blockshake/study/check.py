@@ -1,4 +1,4 @@
-"""Say what a user's file is and what is wrong with it, before anything runs."""
+"""Check of a user's file before anything runs: its kind, and its first fault."""
 
 from pathlib import Path
 
@@ -6,12 +6,12 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import load_yaml, shipped_names
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaign_check import campaign_lines
+from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.study.config import load_config
 
 
 def check_file(source):
-    """What a good file is, in one line; a campaign in one for every test, and its inconsistencies.
+    """Kind and size of a good file, in one line; of a campaign one line for every test, and its inconsistencies.
 
     Parameters
     ----------
@@ -21,7 +21,7 @@ def check_file(source):
     Raises
     ------
     InputError
-        Whatever is wrong with it.
+        The first fault of the file.
     """
     if (Path(source) / "campaign.yaml").is_file():
         return _campaign_line(Path(source))

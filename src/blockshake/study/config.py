@@ -1,7 +1,7 @@
 """The configuration of a study: every key, its type and its limits, checked before the first job."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Literal
 
 from pydantic import Field, field_validator
 
@@ -9,17 +9,22 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaign import load_campaign
-from blockshake.study.convergence_settings import Convergence
-from blockshake.study.correlation_target import load_correlation
-from blockshake.study.distributions import TABLE_2, Lognormal, load_distributions
-from blockshake.study.friction_settings import FrictionSearch
-from blockshake.study.sampling import SMALLEST_SIZE
-from blockshake.study.simulation import MODELS, split_parameters
-from blockshake.validation import Strict, validated
+from blockshake.measurement.campaigns.campaign import load_campaign
+from blockshake.measurement.sensors.markers import RATE
+from blockshake.simulation.models import ModelName, split_parameters
+from blockshake.study.convergence.settings import Convergence
+from blockshake.study.friction.settings import FrictionSearch
+from blockshake.study.sampling.correlation_target import load_correlation
+from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, load_distributions
+from blockshake.study.sampling.latin_hypercube import SMALLEST_SIZE
+from blockshake.validation import Positive, Strict, validated
 
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-ModelName = Literal[tuple(MODELS)]
+
+def _links(ensemble):
+    """Links of Table 2 to the variables that an ensemble samples."""
+    return {
+        name: source for name, source in LINKED.items() if source in ensemble.get("distributions", TABLE_2)
+    }
 
 
 class Ensemble(Strict):
@@ -32,7 +37,8 @@ class Ensemble(Strict):
         None, description="CSV of the target correlation; none means uncorrelated"
     )
     linked: dict[str, str] = Field(
-        {}, description="parameters that take another's sampled value, by dotted names"
+        default_factory=_links,
+        description="parameters that take another's sampled value, by dotted names; Table 2's by default",
     )
 
     @field_validator("distributions", mode="before")
@@ -41,7 +47,7 @@ class Ensemble(Strict):
         return load_distributions(mapping, "ensemble")
 
 
-class Model(Strict):
+class ModelSettings(Strict):
     """One solver in the study."""
 
     time_step: Positive = Field(description="[s]")
@@ -57,7 +63,7 @@ class Measured(Strict):
     test: str = Field(description="name of the test in it")
 
 
-class Case(Strict):
+class StudyCase(Strict):
     """One structure under one motion."""
 
     structure: str = Field(description="shipped name or file")
@@ -97,10 +103,10 @@ class StudyConfig(Strict):
 
     name: str = Field(pattern=r"^[a-z0-9-]+$", description="names the folder of results and the report")
     description: str
-    output_rate: Positive = Field(200.0, description="of the histories [Hz]")
+    output_rate: Positive = Field(RATE, description="of the histories [Hz]")
     samples_per_job: int = Field(10, ge=1, description="samples in one job [1]")
-    models: dict[ModelName, Model] = Field(min_length=1)
-    cases: tuple[Case, ...] = Field(min_length=1)
+    models: dict[ModelName, ModelSettings] = Field(min_length=1)
+    cases: tuple[StudyCase, ...] = Field(min_length=1)
     ensemble: Ensemble
     ladder: Ladder
     friction_calibration: FrictionSearch | None = None
@@ -165,7 +171,7 @@ def check_config(mapping, where):
 
 
 def _check_parameters(model, settings, key, where):
-    """What all samples share are parameters of the model's own solver."""
+    """Refuse parameters shared by all samples that are not the solver's."""
     physical, _ = split_parameters(settings.parameters, model)
     if physical:
         raise InputError(where, f"{key}.{next(iter(physical))}", "expected a parameter of the solver")

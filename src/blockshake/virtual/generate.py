@@ -9,10 +9,11 @@ import yaml
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.records.contract_csv import write_motion_csv
+from blockshake.dynamics.system import Status
 from blockshake.files import content_digest, shipped_names, write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.markers import driven_marker
-from blockshake.study.ensemble import relative_to_slab
+from blockshake.measurement.sensors.markers import driven_marker
+from blockshake.study.ensembles.ensemble import relative_to_slab
 from blockshake.virtual.shake_table import final_places, shake, swelling_sine
 from blockshake.virtual.truth import hidden_effect, true_parameters
 
@@ -39,12 +40,13 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
     Notes
     -----
     A motion's ladder ends with the first test in which a marker drifts too far, as read; one in which a block
-    fell, whose markers fell with it, is not part of the campaign. Then the stack is put back in any case. What an
-    earlier call has finished is kept.
+    fell, whose markers fell with it, is not part of the campaign. Then the stack is put back in any case. Tests that
+    an earlier call has finished are kept.
     """
     folder, truth = Path(folder), Path(truth)
-    structure_in_folder = _structure_in_folder(structure, folder)
-    table = _Table(settings, structure, folder, truth, source, progress)
+    loaded = load_structure(structure)
+    structure_in_folder = _structure_in_folder(structure, loaded, folder)
+    table = _Table(settings, loaded, folder, truth, source, progress)
     tests, gentle = [], []
     for motion in settings.motions:
         called = _motion_in_folder(motion, folder)
@@ -97,7 +99,6 @@ class _Table:
         self.source, self.progress = source, progress
         self.effect = hidden_effect(settings.hidden, structure, settings.seed)
         self.parameters = true_parameters(structure, settings.seed)
-        self.driven = load_structure(structure).driven
         self.count = 0
         self.put_back()
 
@@ -113,7 +114,9 @@ class _Table:
         entry["file"] = f"{entry['name']}.nc"
         path, record = self.folder / entry["file"], self.truth / f"{entry['name']}.json"
         happened = json.loads(record.read_text()) if record.exists() else {}
-        if happened.get("made_by") != made_by or (happened["status"] == "completed" and not path.exists()):
+        if happened.get("made_by") != made_by or (
+            happened["status"] == Status.COMPLETED and not path.exists()
+        ):
             happened = {"made_by": made_by, **self._shake(path, entry, motion, duration)}
             write_json(record, happened)
         self.progress(
@@ -121,12 +124,12 @@ class _Table:
         )
         if happened["places_left"] is not None:
             self.places = np.array(happened["places_left"])
-        elif happened["status"] == "completed" and not self.settings.restored:
+        elif happened["status"] == Status.COMPLETED and not self.settings.restored:
             self.progress(
                 f"{entry['name']}: the blocks did not come to rest in their places and are put back"
             )
             self.put_back()
-        return happened["drift"] if happened["status"] == "completed" else None
+        return happened["drift"] if happened["status"] == Status.COMPLETED else None
 
     def sine(self, after):
         """Entry of the low-amplitude test after so many strong ones, in a list, or an empty one."""
@@ -143,10 +146,14 @@ class _Table:
             int(content_digest(self.settings.seed, self.count), 16),
         )  # fmt: skip
         test.attrs |= {"motion": entry["motion"], "motion_scale": entry["scale"]}
-        if run.attrs["status"] == "completed":
+        if run.attrs["status"] == Status.COMPLETED:
             write_dataset(path, test, DECIMALS)
-        slab = driven_marker(load_structure(self.structure))
-        left = final_places(run, self.structure, self.places) if run.attrs["status"] == "completed" else None
+        slab = driven_marker(self.structure)
+        left = (
+            final_places(run, self.structure, self.places)
+            if run.attrs["status"] == Status.COMPLETED
+            else None
+        )
         drift = np.abs(relative_to_slab(test["marker_displacement"], slab).sel(axis="x")).max()
         return {
             "status": run.attrs["status"],
@@ -159,15 +166,15 @@ class _Table:
     def put_back(self):
         """Put the blocks in their places, but for a little along x and y."""
         generator = np.random.default_rng([self.settings.seed, _PLACES, self.count])
-        places = np.zeros((len(self.driven), 3))
-        places[~self.driven, :2] = generator.normal(
-            0.0, self.settings.misplacement, ((~self.driven).sum(), 2)
+        places = np.zeros((len(self.structure.driven), 3))
+        places[~self.structure.driven, :2] = generator.normal(
+            0.0, self.settings.misplacement, ((~self.structure.driven).sum(), 2)
         )
         self.places = places
 
 
 def _motion_in_folder(motion, folder):
-    """What the campaign calls a motion: a shipped name, or the file that it gets in the folder."""
+    """Name of a motion in the campaign: a shipped name, or the file that is written to the folder."""
     if motion in shipped_names("motions"):
         return motion
     name = f"{Path(motion).stem}.csv"
@@ -176,11 +183,11 @@ def _motion_in_folder(motion, folder):
     return name
 
 
-def _structure_in_folder(structure, folder):
-    """What the campaign calls its structure: a shipped name, or the file it gets in the folder, meshes beside it."""
+def _structure_in_folder(structure, loaded, folder):
+    """Name of the structure in the campaign: a shipped name, or the file copied to the folder, meshes beside it."""
     if structure in shipped_names("structures"):
         return structure
-    meshes = [shape.mesh for shape in load_structure(structure).file.shapes.values() if shape.mesh]
+    meshes = [shape.mesh for shape in loaded.file.shapes.values() if shape.mesh]
     for name, source in [
         ("structure.yaml", Path(structure)),
         *((m, Path(structure).parent / m) for m in meshes),

@@ -1,18 +1,16 @@
 """Settings of a virtual campaign (YAML): what is tested, on which table, read by what, with which effect hidden."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
 from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
-from blockshake.measurement.instruments import Instruments
-from blockshake.validation import Strict, validated
-
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+from blockshake.measurement.sensors.instruments import Instruments
+from blockshake.simulation.models import ModelName
+from blockshake.validation import Finite, NotNegative, Positive, Strict, validated
 
 
 class Intensities(Strict):
@@ -46,9 +44,7 @@ class Hidden(Strict):
     effect: str = Field(
         "drawn", description="name of an effect, `none`, or `drawn` by the seed from the registry"
     )
-    values: dict[str, Annotated[float, Field(allow_inf_nan=False)]] = Field(
-        {}, description="of its parameters"
-    )
+    values: dict[str, Finite] = Field({}, description="of its parameters")
     place: dict[str, str | tuple[str, str]] | None = Field(None, description="where, as in the verdict")
 
 
@@ -57,7 +53,7 @@ class VirtualCampaign(Strict):
 
     name: str
     seed: int = Field(ge=0, description="of all that is drawn")
-    model: Literal["ls-dem", "nscd-rigid"] = "ls-dem"
+    model: ModelName = "ls-dem"
     time_step: Positive | None = Field(None, description="the model's own by default [s]")
     numerics: dict[str, float | str] = Field(
         {}, description="numerical parameters of the solver, by dotted name"

@@ -6,12 +6,12 @@ from scipy.spatial.transform import Rotation
 from blockshake.dynamics.motion import ground_motion
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
-from blockshake.geometry.structure import load_structure
-from blockshake.measurement.instruments import observe
-from blockshake.study.placement import placed
-from blockshake.study.simulation import part_parameters, simulate
+from blockshake.measurement.sensors.instruments import observe
+from blockshake.measurement.sensors.markers import RATE
+from blockshake.simulation.models import part_parameters
+from blockshake.simulation.placement import placed
+from blockshake.simulation.simulate import simulate
 
-RATE = 200.0  # Hz, of the optical system
 _REST = 10.0  # s that a stack which is not put back is given after the motion's end
 _STILL = 1e-3  # m/s; a block slower than this against the slab is at rest
 _SINE_ROWS = 1000  # a second
@@ -22,7 +22,7 @@ def shake(structure, parameters, effect, motion, settings, places, duration, see
 
     Parameters
     ----------
-    structure : str or path
+    structure : Structure
     parameters : dict of str to float
         True ones.
     effect : dict or None
@@ -42,12 +42,11 @@ def shake(structure, parameters, effect, motion, settings, places, duration, see
     test : xarray.Dataset
         As in a campaign's test file, with ``initial_offset`` and ``initial_rotation`` as surveyed.
     run : xarray.Dataset
-        What happened: the truth.
+        The simulated run behind the readings: the truth.
     """
     physical, numerics = part_parameters(parameters | settings.numerics)
-    experiment = Experiment(
-        str(structure), physical | placed(structure, places), motion, settings.instruments
-    )
+    standing = structure.with_parameters(physical | placed(structure, places))
+    experiment = Experiment(standing, motion, settings.instruments)
     if effect is not None:
         experiment = with_effect(experiment, **effect)
     # a clock that is ahead shows what comes after the end; what is not put back must come to rest first
@@ -55,10 +54,10 @@ def shake(structure, parameters, effect, motion, settings, places, duration, see
     if not settings.restored:
         longer = max(longer, motion.duration) + _REST
     run = simulate(
-        experiment.structure, experiment.motion, settings.model, experiment.parameters | numerics,
+        experiment.structure, experiment.motion, settings.model, numerics,
         time_step=settings.time_step, duration=longer, output_rate=RATE,
     )  # fmt: skip
-    test = observe(run, experiment.load(), experiment.instruments, seed)
+    test = observe(run, experiment.structure, experiment.instruments, seed)
     _add_survey(test, structure, places, settings.survey_noise, seed)
     end = duration + 0.5 / RATE
     test = test.isel(time=test["time"].to_numpy() < end)
@@ -86,8 +85,7 @@ def final_places(run, structure, places):
 
     A block at rest lies flat: what is left of height and tilt is not carried on. None where they do not rest.
     """
-    driven = load_structure(structure).driven
-    slab = int(np.argmax(driven))
+    slab = int(np.argmax(structure.driven))
     velocity = run["velocity"].isel(time=-1).to_numpy()
     if not np.abs(velocity - velocity[slab]).max() < _STILL:
         return None
@@ -100,18 +98,17 @@ def final_places(run, structure, places):
     left = places.copy()
     left[:, :2] += moved[:, :2]
     left[:, 2] += (last * first.inv()).as_rotvec()[:, 2]
-    left[driven] = 0.0
+    left[structure.driven] = 0.0
     return left
 
 
 def _add_survey(test, structure, places, noise, seed):
     """Places as a survey finds them, on the free bodies; it turns nothing about x or y."""
-    built = load_structure(structure)
     generator = np.random.default_rng([seed, 3])
     read = places + generator.normal(0.0, noise, places.shape)
-    read = np.where(built.driven[:, None], 0.0, read)
+    read = np.where(structure.driven[:, None], 0.0, read)
     zero = np.zeros(len(places))
-    test.coords["body"] = built.body_names
+    test.coords["body"] = structure.body_names
     test["initial_offset"] = (
         ("body", "axis"), np.column_stack([read[:, 0], read[:, 1], zero]),
         {"units": "m", "long_name": "surveyed place of the mass centre against the structure file"},

@@ -1,4 +1,4 @@
-"""What is true on the virtual table: parameters and effect, drawn by seed, for no reader of the tests."""
+"""The truth of the virtual table: parameters and effect, drawn by seed, hidden from the readers of the tests."""
 
 import numpy as np
 import pandas as pd
@@ -6,22 +6,17 @@ import pandas as pd
 from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
-from blockshake.study.distributions import draw_true_parameters
-from blockshake.study.sample_parameters import sample_parameters
-from blockshake.study.stiffness import calibrate_stiffness
+from blockshake.study.sampling.distributions import LINKED, draw_true_parameters
+from blockshake.study.sampling.sample_parameters import sample_parameters
+from blockshake.study.stiffness.wave_speed import calibrate_stiffness, stiffness_parameters
 
 _TOWER = "configuration-2"  # of whose blocks the wave speed is matched
-_LINKED = {
-    "materials.foundation.youngs_modulus": "materials.concrete.youngs_modulus",
-    "friction.steel.foundation": "friction.concrete.steel",
-    "friction.steel.steel": "friction.concrete.steel",
-}
 _EFFECT, _PLACE, _VALUES = range(3)  # streams of the seed
 _SIZES = (0.5, 1.5)  # of the visible size
 
 
 def true_parameters(structure, seed):
-    """Parameters of the tested structure, drawn independently from Table 2, with their contact stiffness.
+    """Parameters of the tested `Structure`, drawn independently from Table 2, with their contact stiffness.
 
     Returns
     -------
@@ -29,9 +24,11 @@ def true_parameters(structure, seed):
         By dotted name; those the structure has not are left out.
     """
     drawn = draw_true_parameters(seed)
-    tower = calibrate_stiffness(_TOWER, sample_parameters(pd.Series(drawn), _TOWER, _LINKED))
-    drawn |= {f"ls_dem.{name}": tower[name] for name in ("normal_stiffness", "shear_stiffness")}
-    return sample_parameters(pd.Series(drawn), structure, _LINKED)
+    tower = load_structure(_TOWER)
+    drawn |= stiffness_parameters(
+        calibrate_stiffness(tower, sample_parameters(pd.Series(drawn), tower, LINKED))
+    )
+    return sample_parameters(pd.Series(drawn), structure, LINKED)
 
 
 def hidden_effect(hidden, structure, seed):
@@ -40,10 +37,10 @@ def hidden_effect(hidden, structure, seed):
     Parameters
     ----------
     hidden : Hidden
-        What is not said in it is drawn: any effect of the registry with the same chance, any place of it, a
+        Values that it leaves open are drawn: any effect of the registry with the same chance, any place of it, a
         size of 0.5 to 1.5 times the visible one with either sign where the prior has both, the other
         parameters from their priors.
-    structure : str or path
+    structure : Structure
     seed : int
 
     Returns
@@ -62,9 +59,9 @@ def hidden_effect(hidden, structure, seed):
     if name == "drawn":
         name = list(EFFECTS)[_stream(seed, _EFFECT).integers(len(EFFECTS))]
     effect = EFFECTS[name]
-    places = effect.places(load_structure(structure))
+    places = effect.places(structure)
     if not places:
-        raise InputError(structure, name, "expected a structure that has a place for this effect")
+        raise InputError(structure.source, name, "expected a structure that has a place for this effect")
     place = hidden.place
     if place is None:
         place = places[_stream(seed, _PLACE).integers(len(places))]

@@ -5,7 +5,9 @@ import pytest
 
 from blockshake.dynamics.motion import ground_motion
 from blockshake.geometry.structure import load_structure
-from blockshake.solvers.ls_dem import driver
+from blockshake.solvers import pieces
+from blockshake.solvers.checkpoint import Checkpoint
+from blockshake.solvers.ls_dem.driver import simulate_ls_dem
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 
 G = 9.81
@@ -23,7 +25,7 @@ def motion():
 
 
 def _run(motion, parameters=None, **keys):
-    return driver.simulate_ls_dem(
+    return simulate_ls_dem(
         load_structure("configuration-1"), motion, parameters or LsDemParameters(), TIMES, 5e-5, **keys
     )
 
@@ -32,15 +34,16 @@ def _cut_after(monkeypatch, n_savings):
     """Save at every pause of 500 steps, and fall over after so many savings."""
     made = []
 
-    def save(*content):
-        original(*content)
-        made.append(content[0])
+    def save(checkpoint, parts):
+        original(checkpoint, parts)
+        made.append(checkpoint)
         if len(made) == n_savings:
             raise CutShortError
 
-    original = driver.save_checkpoint
-    monkeypatch.setattr(driver, "_PAUSE_STEPS", 500)
-    monkeypatch.setattr(driver, "save_checkpoint", save)
+    original = Checkpoint.save
+    monkeypatch.setattr(pieces, "_FIRST_PIECE", 500)
+    monkeypatch.setattr(pieces, "_next_piece", lambda steps, spent: steps)
+    monkeypatch.setattr(Checkpoint, "save", save)
 
 
 def _assert_same(one, other):
@@ -70,8 +73,8 @@ def test_a_cut_run_goes_on_bit_by_bit(whole, motion, tmp_path, monkeypatch):
         with pytest.raises(CutShortError):
             _run(motion, checkpoint=path, checkpoint_interval=0.0)
     steps = []
-    original = driver.load_checkpoint
-    monkeypatch.setattr(driver, "load_checkpoint", lambda *a: steps.append(original(*a)) or steps[-1])
+    original = Checkpoint.load
+    monkeypatch.setattr(Checkpoint, "load", lambda self: steps.append(original(self)) or steps[-1])
     resumed = _run(motion, checkpoint=path)
     assert steps[0][0].clock[0] > 0  # it did read the checkpoint
     _assert_same(whole, resumed)
@@ -96,16 +99,15 @@ def test_a_checkpoint_that_cannot_be_read_starts_anew(content, whole, motion, tm
     _assert_same(whole, _run(motion, checkpoint=path))
 
 
-def test_bodies_that_meet_late_find_room_in_the_record(make_structure, run_ls_dem, monkeypatch):
-    """A row of cubes falls one after the other: every landing is a new joint, and the record grows in between."""
+def test_bodies_that_meet_late_find_room_in_the_record(make_structure, run_ls_dem):
+    """Cubes fall one after the other: with short lists every landing is a new joint, with long ones none is."""
     cubes = [
-        {"name": f"c{index}", "shape": "cube", "position": [3.0 * index, 0.0, 0.5 + 0.002 * (index + 1)]}
-        for index in range(6)
+        {"name": f"c{index}", "shape": "cube", "position": [3.0 * index, 0.0, 0.5 + 0.001 * (index + 1)]}
+        for index in range(24)
     ]
-    wide = {"slab": {"box": [40.0, 3.0, 0.2]}}
-    structure = make_structure(cubes, shapes=wide)
-    plenty = run_ls_dem(structure, 0.1, skin=0.0005)
-    monkeypatch.setattr(driver, "_SPARE_JOINTS", 0)
-    scarce = run_ls_dem(structure, 0.1, skin=0.0005)
-    assert len(plenty.joints) == 6
-    _assert_same(plenty, scarce)
+    structure = make_structure(cubes, shapes={"slab": {"box": [160.0, 3.0, 0.2]}})
+    late, early = (run_ls_dem(structure, 0.1, time_step=5e-5, skin=skin) for skin in (0.0005, 0.05))
+    assert len(early.joints) == 24
+    assert late.numerics["list_searches"] > early.numerics["list_searches"]
+    for field in ("position", "joints", "joint_force"):
+        assert getattr(late, field).tobytes() == getattr(early, field).tobytes(), field

@@ -14,7 +14,7 @@ AUDIT = 5e-4
 
 
 def _residual(run):
-    """Kinetic + potential + elastic - initial - input + dissipated; design.md 9."""
+    """Residual of the energy balance of docs/contracts.md: held - initial - input + dissipated."""
     e = run.energy
     held = e[:, :3].sum(axis=1)
     return held - held[0] - e[:, INPUT] + e[:, 3:6].sum(axis=1) - e[0, 3:6].sum()

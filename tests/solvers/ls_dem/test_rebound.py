@@ -48,7 +48,7 @@ def test_the_ends_of_the_damping_ratio():
 
 
 def test_the_theory_without_pulling_gives_0_5503():
-    """facts.md 3.1; the value that the runs below are held to."""
+    """Spring and dashpot of Eq. (3) that let go where the force vanishes: the theory of the runs below."""
     assert _rebound(damping_ratio(0.5), pulling=False) == pytest.approx(0.5503, abs=5e-5)
 
 

@@ -88,7 +88,7 @@ def test_a_block_on_a_lattice_sinks_as_the_exact_one_but_for_its_perimeter(
 
 
 def test_a_lattice_shifted_by_half_a_cell_sees_the_same_flats(make_structure, run_ls_dem, monkeypatch):
-    """facts.md 3.3: with a spacing below the chamfer only the rim notices where the lattice lies."""
+    """With a spacing below the chamfer only the nodes on the rim notice the lattice's place."""
     structure = make_structure([BODY], shapes=SMALL)
     runs = {"aligned": run_ls_dem(structure, 0.02, level_set="grid", grid_spacing=0.005)}
     monkeypatch.setattr(surfaces_module, "box_grid", partial(box_grid, shift=(0.5, 0.5, 0.5)))

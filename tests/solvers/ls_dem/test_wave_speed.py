@@ -5,7 +5,7 @@ from scipy.linalg import expm
 from blockshake.dynamics.motion import ground_motion
 from blockshake.solvers.ls_dem.interfaces import damping_ratio
 
-SPEED = 1e-3  # m/s; facts.md 3.16: no joint opens (static penetration 2e-6 m, wave 4e-7 m)
+SPEED = 1e-3  # m/s; small enough that no joint opens (static penetration 2e-6 m, wave 4e-7 m)
 K_N, AREA = 2.16e10, 0.76 * 2.36
 STEP = 1e-5
 RATE = 20_000

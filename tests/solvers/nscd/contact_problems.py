@@ -4,10 +4,10 @@ import numpy as np
 
 from blockshake.dynamics.system import Bodies, assemble_bodies
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.solvers.nscd.contacts import detect_contacts, empty_contacts, prepare_operators_into
-from blockshake.solvers.nscd.friction import friction_into, ordered_friction
+from blockshake.solvers.nscd.contact.contacts import delassus_into, detect_contacts, empty_contacts
+from blockshake.solvers.nscd.contact.friction import friction_into, ordered_friction
+from blockshake.solvers.nscd.contact.polyhedra import empty_placed, pack_polyhedra, place_into
 from blockshake.solvers.nscd.joints import no_joints
-from blockshake.solvers.nscd.polyhedra import empty_placed, pack_polyhedra, place_into
 
 
 def random_problem(rng, n_bodies, n_contacts, mu):
@@ -29,7 +29,7 @@ def random_problem(rng, n_bodies, n_contacts, mu):
         contacts.basis[contact, 0] = normal / np.linalg.norm(normal)
         contacts.arm_a[contact], contacts.arm_b[contact] = rng.normal(size=(2, 3))
         contacts.friction[contact] = mu
-    prepare_operators_into(bodies, inverse, contacts)
+    delassus_into(bodies, inverse, contacts)
     v = rng.normal(size=(n_bodies, 6))
     v[0] = 0.0
     return bodies, inertia, inverse, contacts, v
@@ -86,7 +86,7 @@ def step_problem(structure, v, margin=1e-4):
     contacts = detect_contacts(
         bodies, polyhedra, placed, np.ascontiguousarray(R), margin, 0.0, layers, 1.0, faces, 0
     )
-    prepare_operators_into(bodies, inverse, contacts)
+    delassus_into(bodies, inverse, contacts)
     friction_into(
         ordered_friction(structure, order), no_joints(len(order)), np.ascontiguousarray(R), contacts
     )
@@ -102,7 +102,7 @@ def assert_contact_law(bodies, inverse, contacts, free, v, tolerance):
     u, p = (J @ v.ravel()).reshape(-1, 3), p.reshape(-1, 3)
     # impulses and velocities are compared through the contacts' own masses
     size = np.abs(p).max()
-    speed = size * contacts.local[:, :3].max(axis=1)
+    speed = size * contacts.delassus[:, :3].max(axis=1)
     assert p[:, 0].min() >= 0.0
     assert (u[:, 0] > -tolerance * speed).all()
     assert (np.abs(p[:, 0] * u[:, 0]) < tolerance * size * speed).all()

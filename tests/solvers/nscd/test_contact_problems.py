@@ -6,9 +6,9 @@ from contact_problems import assert_contact_law, dense, random_problem, slow_ref
 from scipy.optimize import nnls
 
 from blockshake.geometry.structure import load_structure
-from blockshake.solvers.nscd.contacts import prepare_operators_into
-from blockshake.solvers.nscd.gauss_seidel import relative_residual
-from blockshake.solvers.nscd.solver import solve_contacts_into
+from blockshake.solvers.nscd.contact.contacts import delassus_into
+from blockshake.solvers.nscd.solve.gauss_seidel import relative_residual
+from blockshake.solvers.nscd.solve.solver import solve_contacts_into
 
 G, DT = 9.81, 1e-3
 TOLERANCE = 1e-10
@@ -179,8 +179,8 @@ def test_a_body_that_is_crushed_is_told_and_not_hidden():
     contacts.body_a[:], contacts.body_b[:] = 0, 1
     contacts.arm_a[:] = contacts.arm_b[:] = 0.0
     contacts.basis[:, 0] = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]
-    contacts.bound[:, 0] = -1.0
-    prepare_operators_into(bodies, inverse, contacts)
+    contacts.shift[:, 0] = -1.0
+    delassus_into(bodies, inverse, contacts)
     v[:] = 0.0
     iterations, residual = solve((bodies, inertia, inverse, contacts, v), iterations=300)
     assert iterations == 300
@@ -197,8 +197,8 @@ def test_the_cap_ends_the_search_with_the_best_answer_met(n_bodies, cap):
     contacts.body_a[:], contacts.body_b[:] = 0, 1
     contacts.arm_a[:] = contacts.arm_b[:] = 0.0
     contacts.basis[:, 0] = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]
-    contacts.bound[:, 0] = -1.0
-    prepare_operators_into(bodies, inverse, contacts)
+    contacts.shift[:, 0] = -1.0
+    delassus_into(bodies, inverse, contacts)
     v[:] = 0.0
     free = v.copy()
     iterations, residual = solve((bodies, inertia, inverse, contacts, v), iterations=cap)

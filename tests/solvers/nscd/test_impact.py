@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from blockshake.study.simulation import energy_residual
+from blockshake.simulation.energy_residual import energy_residual
 
 G = 9.81
 # a body lands as deep as the solver's tolerance leaves it: 1e-6 of the speed times the step

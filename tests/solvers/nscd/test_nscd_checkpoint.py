@@ -5,7 +5,9 @@ import pytest
 
 from blockshake.dynamics.motion import ground_motion
 from blockshake.geometry.structure import load_structure
-from blockshake.solvers.nscd import driver
+from blockshake.solvers import pieces
+from blockshake.solvers.checkpoint import Checkpoint
+from blockshake.solvers.nscd.driver import simulate_nscd
 from blockshake.solvers.nscd.parameters import NscdParameters
 
 TIMES = np.arange(0.0, 1.2001, 0.005)
@@ -35,7 +37,7 @@ def motion():
 
 
 def _run(structure, motion, parameters=None, **keys):
-    return driver.simulate_nscd(
+    return simulate_nscd(
         structure, motion, parameters or NscdParameters(theta=0.6, impact_parts=3), TIMES, 1e-3, **keys
     )
 
@@ -44,16 +46,16 @@ def _cut_after(monkeypatch, n_savings):
     """Save at every pause of 70 steps, and fall over after so many savings."""
     made = []
 
-    def save(*content):
-        original(*content)
-        made.append(content[0])
+    def save(checkpoint, parts):
+        original(checkpoint, parts)
+        made.append(checkpoint)
         if len(made) == n_savings:
             raise CutShortError
 
-    original = driver.save_checkpoint
-    monkeypatch.setattr(driver, "_PAUSE_STEPS", 70)
-    monkeypatch.setattr(driver, "_PIECE", 0.0)
-    monkeypatch.setattr(driver, "save_checkpoint", save)
+    original = Checkpoint.save
+    monkeypatch.setattr(pieces, "_FIRST_PIECE", 70)
+    monkeypatch.setattr(pieces, "_next_piece", lambda steps, spent: steps)
+    monkeypatch.setattr(Checkpoint, "save", save)
 
 
 def _assert_same(one, other):
@@ -80,8 +82,8 @@ def test_a_cut_run_goes_on_bit_by_bit(structure, whole, motion, tmp_path, monkey
                 _run(structure, motion, checkpoint=path, checkpoint_interval=0.0)
     assert path.exists()
     steps = []
-    original = driver.load_checkpoint
-    monkeypatch.setattr(driver, "load_checkpoint", lambda *a: steps.append(original(*a)) or steps[-1])
+    original = Checkpoint.load
+    monkeypatch.setattr(Checkpoint, "load", lambda self: steps.append(original(self)) or steps[-1])
     resumed = _run(structure, motion, checkpoint=str(path))
     # it did read the checkpoint, of 5 + 3 pieces
     assert steps[0][0].clock[0] >= 560
@@ -94,8 +96,8 @@ def test_a_cut_run_goes_on_bit_by_bit(structure, whole, motion, tmp_path, monkey
 
 
 def test_pauses_change_nothing(structure, whole, motion, monkeypatch):
-    monkeypatch.setattr(driver, "_PAUSE_STEPS", 1)
-    monkeypatch.setattr(driver, "_PIECE", 0.0)
+    monkeypatch.setattr(pieces, "_FIRST_PIECE", 1)
+    monkeypatch.setattr(pieces, "_next_piece", lambda steps, spent: steps)
     _assert_same(whole, _run(structure, motion))
 
 

@@ -1,4 +1,4 @@
-"""What the first impact of a toss says of restitution and friction, without any simulation."""
+"""Restitution and friction read off the first impact of a toss, without any simulation."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""What free flight says: the state at the start, gravity, the mass centre and the noise of the poses."""
+"""Figures of free flight: the state at the start, gravity, the mass centre and the noise of the poses."""
 
 from dataclasses import dataclass, replace
 
@@ -87,7 +87,7 @@ def flight_noise(tosses, mass_centre=(0.0, 0.0, 0.0)):
 
 
 def rest_bias(tosses):
-    """What poses at rest are off by, readings agreeing: of the height [m] and of the tilt about a level axis [rad].
+    """Shared error of poses at rest: of the height [m] and of the tilt about a level axis [rad].
 
     Standard deviation of the heights, and the rms component of the angle between the face's normal and the vertical.
     """

@@ -12,7 +12,7 @@ from tosses import GRAVITY
 
 from blockshake.dynamics.motion import GroundMotion, MotionTable
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.study import simulation
+from blockshake.simulation import simulate as simulation
 
 # LS-DEM: an acrylic cube is nearer 3e10 N/m3 (E over its side); a tenth of it moves no figure of docs/tosses.md and
 # allows a larger step. Nodes: three a side of each face, half a millimetre inside; none of the slab's within 1.5 m.
@@ -33,7 +33,7 @@ RESTITUTION = {"ls-dem": "restitution", "nscd-rigid": "nscd_restitution"}
 
 @dataclass(frozen=True)
 class Cube:
-    """What is tossed: ``side`` and ``chamfer`` [m], ``mass`` [kg], and what a uniform body cannot have.
+    """Tossed body: ``side`` and ``chamfer`` [m], ``mass`` [kg], and what a uniform body cannot have.
 
     ``mass_centre`` in the body frame, from the middle [m]; ``inertia`` about any axis through the mass
     centre [kg m2], None for that of the uniform box.

@@ -150,7 +150,7 @@ def main():
 
 
 def describe(data):
-    """What was measured."""
+    """Measured figures."""
     tosses = data.experiment.tosses
     heights, gravity = length_scale(read_tosses(tosses_folder()).sample([toss.name for toss in data.to_fit]))
     say(f"{len(tosses)} tosses; {FITTED} of {len(data.to_fit)} to fit, {len(data.to_predict)} to predict")

@@ -9,9 +9,9 @@ from blockshake.dynamics.motion import CHANNELS
 from blockshake.dynamics.records.record import finite_number
 from blockshake.errors import InputError
 from blockshake.files import write_text
+from blockshake.geometry.schema import AXES
 
 KINDS = ("acceleration", "velocity", "displacement")
-_AXES = ("x", "y", "z")
 
 
 def read_motion_csv(text, where):
@@ -69,7 +69,7 @@ def _rows(text):
 
 
 def _check_header(header, where):
-    allowed = ["time_s", *(f"{kind}_{axis}" for kind in KINDS for axis in _AXES), "pitch_y"]
+    allowed = ["time_s", *(f"{kind}_{axis}" for kind in KINDS for axis in AXES), "pitch_y"]
     if "time_s" not in header:
         raise InputError(where, "time_s", "expected this column in the header row")
     for name in header:

@@ -1,4 +1,4 @@
-"""What every record format gives: a uniform acceleration series in SI, and its metadata."""
+"""Common result of all record formats: a uniform acceleration series in SI, and its metadata."""
 
 from dataclasses import dataclass, field
 

@@ -1,17 +1,16 @@
-"""What an LS-DEM run leaves on disk to go on from."""
+"""The parts of an LS-DEM run as arrays, to be saved and read back."""
 
 from blockshake.dynamics.system import State
-from blockshake.solvers.checkpoint import load_parts, save_parts
-from blockshake.solvers.ls_dem.candidates import Candidates
+from blockshake.solvers.ls_dem.contact.candidates import Candidates
+from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.joints import Joints
 from blockshake.solvers.ls_dem.progress import Progress
-from blockshake.solvers.ls_dem.relative_pose import Poses
 from blockshake.solvers.record import Record
 
 
-def save_checkpoint(path, key, progress, candidates, joints, record, started):
-    """Write a run's state, in place of an earlier one only when it is whole."""
-    parts = {
+def pack(progress, candidates, joints, record, started):
+    """Tuples of arrays by name."""
+    return {
         "state": progress.state,
         "poses": progress.poses,
         "progress": progress[2:],
@@ -20,20 +19,16 @@ def save_checkpoint(path, key, progress, candidates, joints, record, started):
         "record": record,
         "started": (started,),
     }
-    save_parts(path, key, parts)
 
 
-def load_checkpoint(path, key):
-    """State of this very run, or None where there is none that can be read."""
-    parts = load_parts(path, key)
-    if parts is None:
-        return None
-    state = State(*parts["state"])
-    poses = Poses(state.position, *parts["poses"][1:])
+def unpack(arrays):
+    """Parts of a run; the positions of its poses are those of its state."""
+    state = State(*arrays["state"])
+    poses = Poses(state.position, *arrays["poses"][1:])
     return (
-        Progress(state, poses, *parts["progress"]),
-        Candidates(*parts["candidates"]),
-        Joints(*parts["joints"]),
-        Record(*parts["record"]),
-        parts["started"][0],
+        Progress(state, poses, *arrays["progress"]),
+        Candidates(*arrays["candidates"]),
+        Joints(*arrays["joints"]),
+        Record(*arrays["record"]),
+        arrays["started"][0],
     )

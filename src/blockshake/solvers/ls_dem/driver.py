@@ -1,33 +1,20 @@
 """LS-DEM from a structure and a motion to a trajectory."""
 
-import logging
-from pathlib import Path
-
 import numpy as np
-from scipy.sparse.csgraph import connected_components
 
 from blockshake.dynamics.collapse import collapse_limits
-from blockshake.dynamics.motion import rest_table
+from blockshake.dynamics.motion import PITCH, rest_table
 from blockshake.dynamics.system import Trajectory, assemble_bodies, place_driven_into
-from blockshake.errors import InputError
-from blockshake.geometry.structure import DEEPEST_OVERLAP
-from blockshake.solvers.checkpoint import NEWS, Due, run_key
-from blockshake.solvers.ls_dem.candidates import empty_candidates
-from blockshake.solvers.ls_dem.checkpoint import load_checkpoint, save_checkpoint
-from blockshake.solvers.ls_dem.equilibrium import approach_equilibrium
+from blockshake.solvers.checkpoint import Checkpoint, run_key
+from blockshake.solvers.ls_dem import checkpoint as layout
 from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
-from blockshake.solvers.ls_dem.joints import no_joints
-from blockshake.solvers.ls_dem.loop import COLLAPSED, DIVERGED, PAUSED, integrate
-from blockshake.solvers.ls_dem.packets import FORCE_X, NORMAL_X, PHI, STRETCH_X
-from blockshake.solvers.ls_dem.progress import NEXT_RECORD, SEARCHES, STEP, start_progress
-from blockshake.solvers.ls_dem.settle import settle
+from blockshake.solvers.ls_dem.loop import integrate
+from blockshake.solvers.ls_dem.progress import SEARCHES, start_progress
+from blockshake.solvers.ls_dem.start.settled_start import settled_start
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces
-from blockshake.solvers.record import empty_record, with_room
-
-_log = logging.getLogger(__name__)
-_PAUSE_STEPS = 20_000  # steps between looks at the clock
-_SPARE_JOINTS = 64
-_NEAR = 1e-4  # m, contract: an equilibrium farther than this from the given poses is not the start
+from blockshake.solvers.pieces import run_in_pieces
+from blockshake.solvers.record import empty_record
+from blockshake.solvers.status import COLLAPSED, DIVERGED, NEXT_RECORD, SPEED_LIMIT, STATUS, STEP
 
 
 def simulate_ls_dem(
@@ -55,8 +42,7 @@ def simulate_ls_dem(
     rotations_blocked : bool
         No body turns: what the shear stiffness is calibrated with.
     checkpoint : path, optional
-        Where the run is saved as it goes, and from where it goes on if it was cut short; bit-identical
-        to a run in one piece. The file is taken away at the end.
+        File that a run which was cut short goes on from, see `run_in_pieces`.
     checkpoint_interval : float
         Wall time between savings [s].
 
@@ -68,6 +54,8 @@ def simulate_ls_dem(
     ------
     InputError
         A shape that LS-DEM cannot read, or bodies that overlap.
+    KeyboardInterrupt
+        See `run_in_pieces`.
     """
     record_times = np.asarray(record_times, dtype=float)
     bodies, state, stoppers = assemble_bodies(structure)
@@ -77,37 +65,30 @@ def simulate_ls_dem(
     interfaces = assemble_interfaces(structure, parameters)
     ground = motion.table if motion is not None else rest_table()
     n_steps = int(np.ceil(record_times[-1] / time_step - 1e-9))
-    checkpoint = Path(checkpoint) if checkpoint is not None else None
-    key = run_key(structure, ground, parameters, record_times, time_step, rotations_blocked)
-    saved = load_checkpoint(checkpoint, key) if checkpoint is not None else None
-    if saved is not None:
-        progress, candidates, joints, record, started = saved
-        _log.info("goes on from %.3f s", progress.clock[STEP] * time_step)
-    else:
+    limits = collapse_limits(structure)
+
+    def start():
         # the stack settles on the slab as the motion starts, pitch included
-        at_start = np.array([0.0, 0.0, 0.0, ground.coefficients[0, 3, 0]])
+        at_start = np.zeros(4)
+        at_start[PITCH] = ground.coefficients[0, PITCH, 0]
         place_driven_into(bodies, at_start, np.zeros(4), state)
-        candidates, joints, started = _start(
+        candidates, joints, started = settled_start(
             structure, bodies, surfaces, interfaces, parameters.skin, time_step, state
         )
-        progress = start_progress(bodies, state)
         record = empty_record(len(record_times), len(structure.mass))
-    limits = collapse_limits(structure)
-    news, saving = Due(NEWS), Due(checkpoint_interval)
-    code = PAUSED
-    while code == PAUSED:
-        record = with_room(record, len(joints.slip), _SPARE_JOINTS)
-        pause = int(progress.clock[STEP]) + _PAUSE_STEPS
-        code, body, candidates, joints = integrate(
+        return start_progress(bodies, state), candidates, joints, record, started
+
+    def go_on(pause, progress, candidates, joints, record, started):
+        code, culprit, candidates, joints, record = integrate(
             bodies, surfaces, interfaces, stoppers, ground, *limits, parameters.skin, time_step,
             n_steps, pause, record_times, progress, candidates, joints, record,
         )  # fmt: skip
-        if news():
-            _log.info("%.3f of %.3f s", progress.clock[STEP] * time_step, record_times[-1])
-        if code == PAUSED and checkpoint is not None and saving():
-            save_checkpoint(checkpoint, key, progress, candidates, joints, record, started)
-    if checkpoint is not None:
-        checkpoint.unlink(missing_ok=True)
+        return code, culprit, (progress, candidates, joints, record, started)
+
+    key = run_key(structure, ground, parameters, record_times, time_step, rotations_blocked)
+    saving = Checkpoint(checkpoint, checkpoint_interval, key, layout)
+    code, body, parts = run_in_pieces(start, go_on, time_step, record_times[-1], saving)
+    progress, _, joints, record, started = parts
     end_time = min(min(int(progress.clock[STEP]), n_steps) * time_step, float(record_times[-1]))
     status, reason = _status(code, structure, body, end_time)
     pairs, joint_force = _joints(structure, joints, record.joint_force, int(progress.clock[NEXT_RECORD]))
@@ -133,55 +114,13 @@ def simulate_ls_dem(
     )
 
 
-def _start(structure, bodies, surfaces, interfaces, skin, time_step, state):
-    """Near nodes at the start, settling steps and stable step; the poses of stacks at rest become their equilibrium."""
-    position, orientation, at_rest, left, stable_step = approach_equilibrium(
-        bodies, surfaces, interfaces, skin, state, _NEAR
-    )
-    if time_step > stable_step:
-        _log.warning(
-            "a time step of %g s is above the joints' limit of stability, %.2g s", time_step, stable_step
-        )
-    relaxed = state._replace(position=position, orientation=orientation)
-    candidates, joints, steps = settle(
-        bodies, surfaces, interfaces, skin, time_step, state, relaxed, _NEAR, at_rest, left,
-        empty_candidates(len(bodies.mass)), no_joints(),
-    )  # fmt: skip
-    _check_overlap(structure, candidates)
-    free = ~structure.driven
-    _, group = connected_components(structure.touching & free[:, None] & free[None, :])
-    settled = free & ~np.isin(group, group[left])
-    state.position[settled] = relaxed.position[settled]
-    state.orientation[settled] = relaxed.orientation[settled]
-    # what was slipped on the way to the equilibrium is not the run's
-    joints.slip[:], joints.slip_rate[:], joints.touched[:] = 0.0, 0.0, False
-    for pair, (a, b) in enumerate(candidates.pairs):
-        if not (settled[a] or settled[b]):
-            first, last = candidates.first[2 * pair], candidates.first[2 * pair + 2]
-            candidates.packets[first:last, STRETCH_X:FORCE_X] = 0.0
-    return candidates, joints, np.array([steps, stable_step])
-
-
-def _check_overlap(structure, candidates):
-    """Refuse bodies that start inside one another: where one is not convex, the structure's own check is blind."""
-    depth = -candidates.packets[:, PHI:NORMAL_X]
-    if depth.max(initial=0.0) > DEEPEST_OVERLAP:
-        side = np.searchsorted(candidates.first, depth.max(axis=1).argmax(), side="right") - 1
-        a, b = candidates.pairs[side // 2]
-        raise InputError(
-            structure.source,
-            f"bodies.{structure.body_names[b]}.position",
-            f"overlaps {structure.body_names[a]} by {1e3 * depth.max():.3g} mm; "
-            f"expected at most {1e3 * DEEPEST_OVERLAP:.0f} mm",
-        )
-
-
 def _status(code, structure, body, time):
+    reason = ""
     if code == COLLAPSED:
-        return "collapsed", f"{structure.body_names[body]} fell or overturned by {time:.3f} s"
+        reason = f"{structure.body_names[body]} fell or overturned by {time:.3f} s"
     if code == DIVERGED:
-        return "diverged", f"a velocity grew beyond 1000 m/s or was no number at {time:.6f} s"
-    return "completed", ""
+        reason = f"a velocity grew beyond {SPEED_LIMIT:.0f} m/s or was no number at {time:.6f} s"
+    return STATUS[code], reason
 
 
 def _joints(structure, joints, force, n_recorded):

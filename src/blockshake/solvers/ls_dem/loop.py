@@ -4,32 +4,48 @@ import numpy as np
 
 from blockshake.dynamics.collapse import find_collapsed
 from blockshake.dynamics.free_motion import drift_into, spin_into
-from blockshake.dynamics.motion import find_segment, ground_state_into
-from blockshake.dynamics.system import kinetic_energy, place_driven_into, potential_energy
+from blockshake.dynamics.motion import PITCH, find_segment, ground_state_into
+from blockshake.dynamics.system import (
+    CONTACT_LOSS,
+    ELASTIC,
+    FRICTION_LOSS,
+    INPUT,
+    KINETIC,
+    POTENTIAL,
+    VISCOUS_LOSS,
+    kinetic_energy,
+    place_driven_into,
+    potential_energy,
+)
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
 from blockshake.jit import kernel
-from blockshake.solvers.ls_dem.candidates import find_candidates, lists_expired
-from blockshake.solvers.ls_dem.contact import (
-    DAMPING,
-    ELASTIC,
-    FRICTION,
+from blockshake.solvers.ls_dem.contact.candidates import find_candidates, lists_expired
+from blockshake.solvers.ls_dem.contact.contact_forces import (
+    SPRING_ENERGY,
+    STEP_DASHPOT_HEAT,
+    STEP_FRICTION_HEAT,
     clear_loads,
     contact_forces_into,
     no_loads,
 )
 from blockshake.solvers.ls_dem.progress import (
-    DAMPING_HEAT,
+    DASHPOT_HEAT,
     FRICTION_HEAT,
+    INPUT_WORK,
     MOST_FRICTION_HEAT,
-    NEXT_RECORD,
     SEARCHES,
-    STEP,
-    WORK,
 )
 from blockshake.solvers.ls_dem.stoppers import stopper_forces_into
-
-COMPLETED, COLLAPSED, DIVERGED, PAUSED = 0, 1, 2, 3
-_SPEED_LIMIT = 1e3  # m/s; nothing that falls or shakes here comes near it
+from blockshake.solvers.record import with_room
+from blockshake.solvers.status import (
+    COLLAPSED,
+    COMPLETED,
+    DIVERGED,
+    NEXT_RECORD,
+    PAUSED,
+    SPEED_LIMIT,
+    STEP,
+)
 
 
 @kernel
@@ -75,29 +91,29 @@ def integrate(
 
     Returns
     -------
-    status, body : int
-        `PAUSED` also where ``record`` has no room for a further joint; body that collapsed or -1.
-    candidates, joints : Candidates, Joints
+    code, culprit : int
+        Of `blockshake.solvers.status`; body that collapsed or -1.
+    candidates, joints, record : Candidates, Joints, Record
         To go on with.
 
     Notes
     -----
-    Leapfrog (velocity Verlet): momenta at half steps, poses at full steps, of second order with
-    damping too (see `node_force`). Heat, input work and elastic energy are summed so that their balance
+    Leapfrog (velocity Verlet) of the Newton-Euler equations: momenta at half steps, poses at full steps, of second
+    order with damping too (see `node_force`). Heat, input work and elastic energy are summed so that their balance
     closes but for the error of the scheme.
     """
     n_bodies = bodies.mass.size
     state, poses = progress.state, progress.poses
-    loads = no_loads(n_bodies, joints)
+    loads, record = no_loads(n_bodies, joints), with_room(record, joints.slip.size)
     now, velocity = np.zeros(4), np.zeros(4)
     workspace = np.zeros(3)
     start = ground.coefficients[0, :, 0].copy()
-    start[3] = 0.0
+    start[PITCH] = 0.0
     segment = 0
     while progress.clock[STEP] <= n_steps:
         step = progress.clock[STEP]
         if step == pause:
-            return PAUSED, -1, candidates, joints
+            return PAUSED, -1, candidates, joints, record
         t = step * dt
         segment = find_segment(ground.breaks, t, segment)
         ground_state_into(ground, segment, t, now, velocity)
@@ -118,46 +134,49 @@ def integrate(
             )
             loads = no_loads(n_bodies, joints)
             progress.clock[SEARCHES] += 1
-            if joints.slip.size > record.joint_force.shape[1]:
-                return PAUSED, -1, candidates, joints
+            record = with_room(record, joints.slip.size)
         clear_loads(bodies, loads)
         # the first force sees no motion before it: the springs of the start hold as they are
         contact_forces_into(candidates, surfaces, interfaces, poses, dt if step > 0 else 0.0, loads)
         poses.position_before[:] = state.position
         poses.rotation_before[:] = poses.rotation
-        loads.energy[ELASTIC] += stopper_forces_into(bodies, stoppers, state, loads)
-        _book(bodies, loads, now, progress)
+        loads.energy[SPRING_ENERGY] += stopper_forces_into(bodies, stoppers, state, loads)
+        _account_into(bodies, loads, now, progress)
 
         _kick(bodies, loads, dt, step > 0, progress)
         if _has_diverged(state.velocity):
-            return DIVERGED, -1, candidates, joints
+            return DIVERGED, -1, candidates, joints, record
         while progress.clock[NEXT_RECORD] < times.size and times[progress.clock[NEXT_RECORD]] < t + 0.5 * dt:
             row = progress.clock[NEXT_RECORD]
             _record_into(bodies, loads, times[row] - t, dt, progress, workspace, row, record)
             progress.clock[NEXT_RECORD] += 1
             collapsed = find_collapsed(bodies, state, supported, drop_limit)
             if collapsed >= 0:
-                return COLLAPSED, collapsed, candidates, joints
+                return COLLAPSED, collapsed, candidates, joints, record
         _drift(bodies, dt, workspace, progress)
         progress.clock[STEP] += 1
-    return COMPLETED, -1, candidates, joints
+    return COMPLETED, -1, candidates, joints, record
 
 
 @kernel
-def _book(bodies, loads, now, progress):
+def _account_into(bodies, loads, now, progress):
     """Heat of the step, and work of the driven bodies: their mean force since the step before times their motion."""
     audit, ground = progress.audit, progress.ground
-    audit[FRICTION_HEAT] += loads.energy[FRICTION]
+    audit[FRICTION_HEAT] += loads.energy[STEP_FRICTION_HEAT]
     # a node that lets go while its slip reverses gives back some microjoules of a step's error
     audit[MOST_FRICTION_HEAT] = max(audit[MOST_FRICTION_HEAT], audit[FRICTION_HEAT])
-    audit[DAMPING_HEAT] += loads.energy[DAMPING]
+    audit[DASHPOT_HEAT] += loads.energy[STEP_DASHPOT_HEAT]
     for body in range(bodies.mass.size):
         if bodies.driven[body]:
             for axis in range(3):
                 moved = now[axis] - ground[axis]
-                turned = now[3] - ground[3] if axis == 1 else 0.0
-                audit[WORK] -= 0.5 * (loads.force[body, axis] + progress.driven_force[body, axis]) * moved
-                audit[WORK] -= 0.5 * (loads.moment[body, axis] + progress.driven_moment[body, axis]) * turned
+                turned = now[PITCH] - ground[PITCH] if axis == 1 else 0.0
+                audit[INPUT_WORK] -= (
+                    0.5 * (loads.force[body, axis] + progress.driven_force[body, axis]) * moved
+                )
+                audit[INPUT_WORK] -= (
+                    0.5 * (loads.moment[body, axis] + progress.driven_moment[body, axis]) * turned
+                )
                 progress.driven_force[body, axis] = loads.force[body, axis]
                 progress.driven_moment[body, axis] = loads.moment[body, axis]
     ground[:] = now
@@ -165,7 +184,7 @@ def _book(bodies, loads, now, progress):
 
 @kernel
 def _kick(bodies, loads, dt, under_way, progress):
-    """Momenta from half a step before to half a step after; the first is half a kick."""
+    """Newton-Euler equations: momenta from half a step before to half a step after; the first is half a kick."""
     state, half_velocity, momentum = progress.state, progress.half_velocity, progress.half_momentum
     for body in range(bodies.mass.size):
         if bodies.driven[body]:
@@ -212,12 +231,13 @@ def _record_into(bodies, loads, offset, dt, progress, turn, row, record):
             turn[axis] = offset * state.angular_velocity[body, axis]
         rotate_into(state.orientation[body], turn, record.orientation[row, body])
     energy = record.energy[row]
-    energy[0] = kinetic_energy(bodies, state.velocity, state.angular_velocity, state.orientation)
-    energy[1] = potential_energy(bodies, state.position)
-    energy[2] = loads.energy[ELASTIC]
+    energy[KINETIC] = kinetic_energy(bodies, state.velocity, state.angular_velocity, state.orientation)
+    energy[POTENTIAL] = potential_energy(bodies, state.position)
+    energy[ELASTIC] = loads.energy[SPRING_ENERGY]
+    energy[FRICTION_LOSS] = audit[MOST_FRICTION_HEAT]
     # a step's dashpot heat lasts to half a step ahead
-    energy[3], energy[4] = audit[MOST_FRICTION_HEAT], audit[DAMPING_HEAT] - 0.5 * loads.energy[DAMPING]
-    energy[5], energy[6] = 0.0, audit[WORK]
+    energy[CONTACT_LOSS] = audit[DASHPOT_HEAT] - 0.5 * loads.energy[STEP_DASHPOT_HEAT]
+    energy[VISCOUS_LOSS], energy[INPUT] = 0.0, audit[INPUT_WORK]
     record.joint_force[row, : loads.joints.slip.size] = loads.joints.force
 
 
@@ -227,6 +247,6 @@ def _has_diverged(velocity):
     for body in range(velocity.shape[0]):
         for axis in range(3):
             # not (x <= limit), so that NaN counts
-            if not abs(velocity[body, axis]) <= _SPEED_LIMIT:
+            if not abs(velocity[body, axis]) <= SPEED_LIMIT:
                 return True
     return False

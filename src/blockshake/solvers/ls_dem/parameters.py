@@ -1,12 +1,10 @@
 """Numerical parameters of LS-DEM."""
 
-from typing import Annotated, Literal
+from typing import Literal
 
 from pydantic import Field
 
-from blockshake.validation import Strict
-
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+from blockshake.validation import NotNegative, Positive, Strict
 
 
 class LsDemParameters(Strict):
@@ -28,7 +26,7 @@ class LsDemParameters(Strict):
     perimeter_inset: Positive = Field(
         0.005, description="distance of the outermost nodes from the perimeter of a flat [m]; chosen"
     )
-    edge_spacing: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(
+    edge_spacing: NotNegative = Field(
         0.0,
         description="aimed distance of further nodes along the chamfers of boxes [m]; chosen: 0 for none, they "
         "matter only where edges meet edges",
@@ -55,6 +53,6 @@ class LsDemParameters(Strict):
         False,
         description="whether the damped force of Eq. (2) may pull [true or false]; printed so, chosen: it does not",
     )
-    shear_damping_ratio: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(
+    shear_damping_ratio: NotNegative = Field(
         0.0, description="dashpot beside the shear spring, as a fraction of critical [1]; the paper has none"
     )

@@ -1,4 +1,4 @@
-"""What a step of LS-DEM needs of the steps before it: enough to stop a run and to go on as if it had not."""
+"""State of an LS-DEM run between two steps: enough to stop it there and to go on as if it had not stopped."""
 
 from typing import NamedTuple
 
@@ -6,12 +6,12 @@ import numpy as np
 
 from blockshake.dynamics.system import State
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.solvers.ls_dem.relative_pose import Poses
+from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 
-# Entries of ``clock``
-STEP, NEXT_RECORD, SEARCHES = 0, 1, 2
+# Entry of ``clock`` after `STEP` and `NEXT_RECORD` of `blockshake.solvers.status`
+SEARCHES = 2
 # Entries of ``audit`` [J]
-FRICTION_HEAT, MOST_FRICTION_HEAT, DAMPING_HEAT, WORK = 0, 1, 2, 3
+FRICTION_HEAT, MOST_FRICTION_HEAT, DASHPOT_HEAT, INPUT_WORK = 0, 1, 2, 3
 
 
 class Progress(NamedTuple):

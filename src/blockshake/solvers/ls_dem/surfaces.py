@@ -27,7 +27,7 @@ class Surfaces(NamedTuple):
     the box is exact, first value, origin [m], counts and cells per metre; ``values`` (n_values,)
     [m]. ``steepest`` (n_shapes,): most that the level set changes per distance [1]. ``first_node`` int64
     (n_shapes + 1,), ``points`` (n_nodes, 3), ``areas`` (n_nodes,): surface nodes in the frame of the shape
-    [m, m2]; ``damping`` (n_nodes,): what a node's dashpot goes with.
+    [m, m2]; ``damping_weight`` (n_nodes,): what a node's dashpot goes with.
     """
 
     shape: np.ndarray
@@ -42,7 +42,7 @@ class Surfaces(NamedTuple):
     first_node: np.ndarray
     points: np.ndarray
     areas: np.ndarray
-    damping: np.ndarray
+    damping_weight: np.ndarray
 
 
 def assemble_surfaces(structure, parameters):
@@ -83,7 +83,7 @@ def assemble_surfaces(structure, parameters):
         first_node=np.concatenate([[0], np.cumsum([len(areas) for _, areas in nodes])]),
         points=np.vstack([points for points, _ in nodes]),
         areas=areas,
-        damping=np.sqrt(areas) if parameters.damping == "node" else areas.copy(),
+        damping_weight=np.sqrt(areas) if parameters.damping == "node" else areas.copy(),
     )  # fmt: skip
 
 

@@ -1,15 +1,25 @@
-"""Where a run's energy goes, and how well its steps were solved."""
+"""Energy balance of a run, and the quality of the solution of its steps."""
 
 import numpy as np
 
-from blockshake.dynamics.system import kinetic_energy, potential_energy
+from blockshake.dynamics.system import (
+    CONTACT_LOSS,
+    ELASTIC,
+    FRICTION_LOSS,
+    INPUT,
+    KINETIC,
+    POTENTIAL,
+    VISCOUS_LOSS,
+    kinetic_energy,
+    potential_energy,
+)
 from blockshake.jit import kernel
-from blockshake.solvers.nscd.gauss_seidel import relative_velocity
 from blockshake.solvers.nscd.progress import (
     BAD_STEPS,
     CAPPED_STEPS,
     DEEPEST,
     FRICTION_WORK,
+    HELD,
     IN_PLAY,
     ITERATIONS,
     LAST_STEP,
@@ -19,27 +29,30 @@ from blockshake.solvers.nscd.progress import (
     PARTED_STEPS,
     WORST_RESIDUAL,
 )
-from blockshake.solvers.nscd.stoppers import closure_into
-from blockshake.solvers.nscd.vectors import dot, turned_back, velocity_at
+from blockshake.solvers.nscd.vectors import dot, transposed_product, velocity_at
+from blockshake.solvers.stoppers import closure_into
 
 # Relative residual above which a step counts as badly solved; fixed by the project's contract.
 _BAD_RESIDUAL = 1e-4
 
 
 @kernel
-def start_audit(bodies, contacts, dt, theta, progress):
+def start_audit(bodies, contacts, dt, theta, strain, progress):
     """Energy at the start; what lifts everything by a millimetre is the least that is ever "in play".
 
-    ``contacts``: at the start. ``dt``: of the step that the first step takes for the one before it [s].
+    ``contacts``: at the start. ``strain``: elastic energy of the bodies then [J]. ``dt``: of the step that the first
+    step takes for the one before it [s].
     """
     progress.audit[LAST_STEP] = dt
     state, energy = progress.state, progress.energy
-    energy[0] = kinetic_energy(bodies, state.velocity, state.angular_velocity, state.orientation)
-    energy[1] = potential_energy(bodies, state.position)
+    energy[KINETIC] = kinetic_energy(bodies, state.velocity, state.angular_velocity, state.orientation)
+    energy[POTENTIAL] = potential_energy(bodies, state.position)
     for contact in range(contacts.gap.size):
         compliance, depth = contacts.compliance[contact], max(-contacts.gap[contact], 0.0)
         if compliance > 0.0:
-            energy[2] += 0.5 * depth * depth / (theta * dt * dt * compliance)
+            energy[ELASTIC] += 0.5 * depth * depth / (theta * dt * dt * compliance)
+    progress.audit[HELD] = energy[ELASTIC]
+    energy[ELASTIC] += strain
     progress.energy_start[:] = energy
     weight = 0.0
     for body in range(bodies.mass.size):
@@ -65,22 +78,48 @@ def audit_into(contacts, n_contacts, progress):
     audit, energy, start = progress.audit, progress.energy, progress.energy_start
     for contact in range(n_contacts):
         audit[DEEPEST] = max(audit[DEEPEST], -contacts.gap[contact])
-    in_play = energy[0] + abs(energy[1] - start[1]) + energy[2] + energy[3] + energy[4] + abs(energy[6])
+    in_play = (
+        energy[KINETIC]
+        + abs(energy[POTENTIAL] - start[POTENTIAL])
+        + energy[ELASTIC]
+        + energy[FRICTION_LOSS]
+        + energy[CONTACT_LOSS]
+        + energy[VISCOUS_LOSS]
+        + abs(energy[INPUT])
+    )
     audit[IN_PLAY] = max(audit[IN_PLAY], in_play)
-    balance = energy[0] + energy[1] + energy[2] + energy[3] + energy[4] - energy[6]
-    audit[MISFIT] = max(audit[MISFIT], abs(balance - start[0] - start[1] - start[2]))
+    balance = (
+        energy[KINETIC]
+        + energy[POTENTIAL]
+        + energy[ELASTIC]
+        + energy[FRICTION_LOSS]
+        + energy[CONTACT_LOSS]
+        + energy[VISCOUS_LOSS]
+        - energy[INPUT]
+    )
+    audit[MISFIT] = max(audit[MISFIT], abs(balance - start[KINETIC] - start[POTENTIAL] - start[ELASTIC]))
 
 
 @kernel
-def account_into(bodies, stoppers, base, state, contacts, step, theta, audit, energy):
+def account_into(bodies, stoppers, base, contacts, u_mean, step, theta, deformation, progress):
     """Bring the energy terms up to the end of the step.
 
     Parameters
     ----------
-    audit : float64 array, shape (7,)
-        Of `Progress`: the net work taken out so far is brought up to date [J].
-    energy : float64 array, shape (7,)
-        `ENERGY_TERMS` at the start of the step [J]; overwritten with those at its end.
+    bodies, stoppers : Bodies, Stoppers
+    base : int
+        Driven body of the stoppers.
+    contacts : Contacts
+        With the impulses of the step.
+    u_mean : float64 array, shape (n_contacts, 3)
+        Velocities of the contacts that their impulses do work on, along their bases [m/s].
+    step : Step
+    theta : float
+        Weight of the end of the step [1].
+    deformation : tuple of 3 float
+        Kinetic and elastic energy of the bodies' deformation at the end of the step, and what it lost in it [J].
+    progress : Progress
+        ``state`` is that at the end of the step; the energy and the net work taken out so far are brought up to it.
 
     Notes
     -----
@@ -91,28 +130,35 @@ def account_into(bodies, stoppers, base, state, contacts, step, theta, audit, en
     then shows as the energy residual. In an oblique impact with Newton's restitution the work on friction, by mean
     velocities, can truly be negative (Kane and Levinson 1985): it is taken off what the contact took out.
     """
-    elastic = 0.0
+    state, audit, energy = progress.state, progress.audit, progress.energy
+    held = 0.0
     for contact in range(contacts.gap.size):
         p = contacts.impulse[contact]
         a, b = contacts.body_a[contact], contacts.body_b[contact]
-        u_n, u_1, u_2 = relative_velocity(contacts, contact, step.v_mean)
-        audit[FRICTION_WORK] -= p[1] * u_1 + p[2] * u_2
-        audit[NORMAL_WORK] -= p[0] * u_n
+        audit[FRICTION_WORK] -= p[1] * u_mean[contact, 1] + p[2] * u_mean[contact, 2]
+        audit[NORMAL_WORK] -= p[0] * u_mean[contact, 0]
         if contacts.stopper[contact] < 0:
-            elastic += 0.5 * theta * contacts.compliance[contact] * p[0] * p[0]
+            held += 0.5 * theta * contacts.compliance[contact] * p[0] * p[0]
         if bodies.driven[a]:
-            world = turned_back(contacts.basis[contact], p)
-            energy[6] += dot(world, velocity_at(step.v_mean[a], contacts.arm_a[contact]))
+            world = transposed_product(contacts.basis[contact], p)
+            energy[INPUT] += dot(world, velocity_at(step.v_mean[a], contacts.arm_a[contact]))
         if bodies.driven[b]:
-            world = turned_back(contacts.basis[contact], p)
-            energy[6] -= dot(world, velocity_at(step.v_mean[b], contacts.arm_b[contact]))
+            world = transposed_product(contacts.basis[contact], p)
+            energy[INPUT] -= dot(world, velocity_at(step.v_mean[b], contacts.arm_b[contact]))
     reach, arm, toward = np.empty(3), np.empty(3), np.empty(3)
     for stopper in range(stoppers.body.size):
         squeezed = closure_into(bodies, stoppers, stopper, base, state, reach, arm, toward)
-        elastic += 0.5 * stoppers.stiffness[stopper] * max(squeezed, 0.0) ** 2
-    audit[NORMAL_WORK] -= elastic - energy[2]
-    energy[0] = kinetic_energy(bodies, state.velocity, state.angular_velocity, state.orientation)
-    energy[1] = potential_energy(bodies, state.position)
-    energy[2] = elastic
-    energy[3] = max(energy[3], audit[FRICTION_WORK])
-    energy[4] = max(energy[4], audit[NORMAL_WORK] + (audit[FRICTION_WORK] - energy[3]))
+        held += 0.5 * stoppers.stiffness[stopper] * max(squeezed, 0.0) ** 2
+    audit[NORMAL_WORK] -= held - audit[HELD]
+    audit[HELD] = held
+    kinetic, strain, lost = deformation
+    energy[KINETIC] = kinetic + kinetic_energy(
+        bodies, state.velocity, state.angular_velocity, state.orientation
+    )
+    energy[POTENTIAL] = potential_energy(bodies, state.position)
+    energy[ELASTIC] = held + strain
+    energy[VISCOUS_LOSS] += lost
+    energy[FRICTION_LOSS] = max(energy[FRICTION_LOSS], audit[FRICTION_WORK])
+    energy[CONTACT_LOSS] = max(
+        energy[CONTACT_LOSS], audit[NORMAL_WORK] + (audit[FRICTION_WORK] - energy[FRICTION_LOSS])
+    )

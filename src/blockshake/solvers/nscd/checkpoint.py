@@ -1,33 +1,28 @@
-"""What an NSCD run leaves on disk to go on from."""
+"""The parts of an NSCD run as arrays, to be saved and read back."""
 
 from blockshake.dynamics.system import State
-from blockshake.solvers.checkpoint import load_parts, save_parts
-from blockshake.solvers.nscd.contacts import Contacts
+from blockshake.solvers.nscd.contact.contacts import Contacts
 from blockshake.solvers.nscd.joints import Joints
 from blockshake.solvers.nscd.progress import Progress
 from blockshake.solvers.record import Record
 
 
-def save_checkpoint(path, key, progress, contacts, joints, record):
-    """Write a run's state, in place of an earlier one only when it is whole."""
-    parts = {
+def pack(progress, contacts, joints, record):
+    """Tuples of arrays by name."""
+    return {
         "state": progress.state,
         "progress": progress[1:],
         "contacts": contacts,
         "joints": joints,
         "record": record,
     }
-    save_parts(path, key, parts)
 
 
-def load_checkpoint(path, key):
-    """State of this very run, or None where there is none that can be read."""
-    parts = load_parts(path, key)
-    if parts is None:
-        return None
+def unpack(arrays):
+    """Parts of a run."""
     return (
-        Progress(State(*parts["state"]), *parts["progress"]),
-        Contacts(*parts["contacts"]),
-        Joints(*parts["joints"]),
-        Record(*parts["record"]),
+        Progress(State(*arrays["state"]), *arrays["progress"]),
+        Contacts(*arrays["contacts"]),
+        Joints(*arrays["joints"]),
+        Record(*arrays["record"]),
     )

@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.jit import kernel
-from blockshake.solvers.nscd.gauss_seidel import relative_velocity
 
 
 class Joints(NamedTuple):
@@ -30,7 +29,20 @@ def no_joints(n_bodies):
 
 
 @kernel
-def with_joint(joints, a, b):
+def with_pressed(joints, contacts, n_contacts):
+    """Joints, and after them those of pairs that press on each other for the first time; they have not slipped yet.
+
+    The first ``n_contacts`` of the contacts are of bodies. ``row`` is changed in place.
+    """
+    for contact in range(n_contacts):
+        a, b = contacts.body_a[contact], contacts.body_b[contact]
+        if joints.row[a, b] < 0 and contacts.impulse[contact, 0] > 0.0:
+            joints = _with_joint(joints, a, b)
+    return joints
+
+
+@kernel
+def _with_joint(joints, a, b):
     """Joints with one more, which has not slipped yet; ``row`` is changed in place."""
     n = joints.slip.size
     new = Joints(joints.row, np.empty((n + 1, 2), np.int64), np.zeros(n + 1), np.zeros(n + 1))
@@ -41,15 +53,15 @@ def with_joint(joints, a, b):
 
 
 @kernel
-def slip_into(contacts, n_contacts, v, dt, theta, joints):
+def slip_into(contacts, n_contacts, u, dt, theta, joints):
     """Bring slip and slip rate of the joints up to the end of a step.
 
     Parameters
     ----------
     contacts : Contacts
         With the impulses of the step; the first ``n_contacts`` are of bodies, not of stoppers.
-    v : float64 array, shape (n_bodies, 6)
-        Velocities at the end of the step.
+    u : float64 array, shape (n_contacts, 3)
+        Velocities of the contacts at the end of the step, along their bases [m/s].
     dt, theta : float
         [s], [1]
     joints : Joints
@@ -66,8 +78,7 @@ def slip_into(contacts, n_contacts, v, dt, theta, joints):
         joint = joints.row[contacts.body_a[contact], contacts.body_b[contact]]
         p_n = contacts.impulse[contact, 0]
         if joint >= 0 and p_n > 0.0:
-            _, u_1, u_2 = relative_velocity(contacts, contact, v)
-            u_1, u_2 = u_1 + contacts.bound[contact, 1], u_2 + contacts.bound[contact, 2]
+            u_1, u_2 = u[contact, 1] + contacts.shift[contact, 1], u[contact, 2] + contacts.shift[contact, 2]
             rate[joint] += p_n * np.sqrt(u_1 * u_1 + u_2 * u_2)
             load[joint] += p_n
     for joint in range(joints.slip.size):

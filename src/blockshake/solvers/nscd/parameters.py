@@ -4,15 +4,13 @@ from typing import Annotated
 
 from pydantic import Field
 
-from blockshake.validation import Strict
-
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+from blockshake.validation import Finite, Positive, ProperFraction, Strict
 
 
 class NscdParameters(Strict):
     """Numerical parameters of nonsmooth contact dynamics; each is set as ``nscd.NAME``."""
 
-    theta: Annotated[float, Field(ge=0.5, le=1.0)] = Field(
+    theta: Annotated[Finite, Field(ge=0.5, le=1.0)] = Field(
         0.5, description="weight of the velocity at the end of a step [1]; 0.5 conserves energy, Jean (1999)"
     )
     tolerance: Positive = Field(
@@ -26,7 +24,7 @@ class NscdParameters(Strict):
     impact_parts: Annotated[int, Field(ge=1)] = Field(
         1, description="parts into which a step is cut in which bodies meet [1]; 1 takes it whole"
     )
-    shrink: Annotated[float, Field(ge=0.0, lt=1.0)] = Field(
+    shrink: ProperFraction = Field(
         0.0,
         description="contact areas are scaled about their centroid by one minus this [1]; Zhou et al. (2023) "
         "shrink by an amount they do not state",

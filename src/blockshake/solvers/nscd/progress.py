@@ -1,4 +1,4 @@
-"""What a step needs of the steps before it: enough to stop a run and to go on as if it had not."""
+"""State of an NSCD run between two steps: enough to stop it there and to go on as if it had not stopped."""
 
 from typing import NamedTuple
 
@@ -6,12 +6,22 @@ import numpy as np
 
 from blockshake.dynamics.system import ENERGY_TERMS, State
 
-# Entries of ``clock``: steps made, next record, then sums and counts over the steps made
-STEP, NEXT_RECORD, ITERATIONS, MOST_ITERATIONS, BAD_STEPS, CAPPED_STEPS, PARTED_STEPS = 0, 1, 2, 3, 4, 5, 6
+# Entries of ``clock`` after `STEP` and `NEXT_RECORD` of `blockshake.solvers.status`: sums and counts over the steps
+ITERATIONS, MOST_ITERATIONS, BAD_STEPS, CAPPED_STEPS, PARTED_STEPS, N_CLOCK = 2, 3, 4, 5, 6, 7
 # Entries of ``audit``: net work taken out so far by friction and by normal impulses, largest misfit of the
 # energy terms and largest energy in play [J], largest relative residual [1], deepest penetration [m], length of
-# the last step or part of a step [s]
-FRICTION_WORK, NORMAL_WORK, MISFIT, IN_PLAY, WORST_RESIDUAL, DEEPEST, LAST_STEP = 0, 1, 2, 3, 4, 5, 6
+# the last step or part of a step [s], energy in soft layers and stops [J]
+FRICTION_WORK, NORMAL_WORK, MISFIT, IN_PLAY, WORST_RESIDUAL, DEEPEST, LAST_STEP, HELD, N_AUDIT = (
+    0,
+    1,
+    2,
+    3,
+    4,
+    5,
+    6,
+    7,
+    8,
+)
 
 
 class Progress(NamedTuple):
@@ -19,7 +29,7 @@ class Progress(NamedTuple):
 
     ``state``: at the last step. ``energy``, ``energy_start`` (7,): `ENERGY_TERMS` at the last step and
     at the first [J]. ``face`` int64 (n_bodies, n_bodies): of each pair, as in `detect_pair_into`.
-    ``clock`` int64 (7,). ``audit`` (7,).
+    ``clock`` int64 (N_CLOCK,). ``audit`` (N_AUDIT,).
     """
 
     state: State
@@ -38,6 +48,6 @@ def start_progress(state):
         energy=np.zeros(len(ENERGY_TERMS)),
         energy_start=np.zeros(len(ENERGY_TERMS)),
         face=np.full((n_bodies, n_bodies), -1, np.int64),
-        clock=np.zeros(7, np.int64),
-        audit=np.zeros(7),
+        clock=np.zeros(N_CLOCK, np.int64),
+        audit=np.zeros(N_AUDIT),
     )

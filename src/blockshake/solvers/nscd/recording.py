@@ -42,12 +42,12 @@ def _rotation_between_into(start, end, rotation):
 
 
 @kernel
-def record_driven_into(bodies, displacement, velocity, row, record):
-    """Overwrite the driven bodies with the ground motion itself at the record time."""
+def record_driven_into(bodies, ground, row, record):
+    """Overwrite the driven bodies with the ground motion itself, which is ``ground`` (Ground) at the record time."""
     kept = State(
         record.position[row], record.orientation[row], record.velocity[row], record.angular_velocity[row]
     )
-    place_driven_into(bodies, displacement, velocity, kept)
+    place_driven_into(bodies, ground.displacement, ground.velocity, kept)
 
 
 @kernel

@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
 from blockshake.jit import kernel
-from blockshake.solvers.nscd.vectors import put_into, turned, turned_back
+from blockshake.solvers.nscd.vectors import matrix_product, put_into, transposed_product
 
 _MAX_ITERATIONS = 50
 _ROUNDING = 1e-15
@@ -70,18 +70,18 @@ def turn_into(
     """
     R = np.empty((3, 3))
     rotation_matrix_into(orientation, R)
-    start, added = turned_back(R, spin), turned_back(R, torque)
-    kept = turned(inertia, start)
+    start, added = transposed_product(R, spin), transposed_product(R, torque)
+    kept = matrix_product(inertia, start)
     target = (kept[0] + added[0], kept[1] + added[1], kept[2] + added[2])
-    end = turned(inverse_inertia, target)
+    end = matrix_product(inverse_inertia, target)
     for _ in range(_MAX_ITERATIONS):
-        following = turned(inverse_inertia, _rotated(_weighted(start, end, theta, -dt), target))
+        following = matrix_product(inverse_inertia, _rotated(_weighted(start, end, theta, -dt), target))
         change = max(abs(following[0] - end[0]), max(abs(following[1] - end[1]), abs(following[2] - end[2])))
         size = max(abs(following[0]), max(abs(following[1]), abs(following[2])))
         end = following
         if change <= _ROUNDING * size:
             break
-    rotate_into(orientation, turned(R, _weighted(start, end, theta, dt)), new_orientation)
-    put_into(turned(R, _weighted(start, end, 0.5, 1.0)), mean_spin)
+    rotate_into(orientation, matrix_product(R, _weighted(start, end, theta, dt)), new_orientation)
+    put_into(matrix_product(R, _weighted(start, end, 0.5, 1.0)), mean_spin)
     rotation_matrix_into(new_orientation, R)
-    put_into(turned(R, end), new_spin)
+    put_into(matrix_product(R, end), new_spin)

@@ -5,15 +5,17 @@ from scipy.sparse.csgraph import connected_components
 
 from blockshake.dynamics.system import State
 from blockshake.geometry.rotations import rotate_into
+from blockshake.geometry.structure import START_TOLERANCE
 from blockshake.jit import kernel
-from blockshake.solvers.nscd.contacts import detect_contacts, prepare_operators_into
-from blockshake.solvers.nscd.friction import friction_into
+from blockshake.solvers.nscd.contact.contacts import delassus_into, detect_contacts
+from blockshake.solvers.nscd.contact.friction import friction_into
+from blockshake.solvers.nscd.contact.law_shift import law_shift_into
+from blockshake.solvers.nscd.contact.polyhedra import empty_placed, place_into
+from blockshake.solvers.nscd.ground import ground_at_start
 from blockshake.solvers.nscd.joints import no_joints
-from blockshake.solvers.nscd.polyhedra import empty_placed, place_into
-from blockshake.solvers.nscd.solver import solve_contacts_into
-from blockshake.solvers.nscd.step import bounds_into, empty_step, predict_into
+from blockshake.solvers.nscd.solve.solver import solve_contacts_into
+from blockshake.solvers.nscd.step import empty_step, predict_into
 
-_NEAR = 1e-4  # m, contract: an equilibrium farther than this from the given poses is not the start
 _LONG_STEP = 0.1  # s; what swings faster than 10 rad/s comes to rest by at least half in each
 _MOST_STEPS = 100
 _AT_REST = 1e-13  # m, of a step's motion: the rounding of a position
@@ -21,20 +23,15 @@ _TOLERANCE = 1e-12  # of the contact problem of a step, below that of a run: it 
 _MOST_ITERATIONS = 200
 
 
-def settled_state(bodies, friction, polyhedra, layers, touching, ground, shrink, state):
+def settled_state(scene, touching, state):
     """State whose stacks on soft joints rest under gravity; everything else as given.
 
     Parameters
     ----------
-    bodies, friction, polyhedra : Bodies, Friction, Polyhedra
-    layers : float64 array, shape (n_bodies, n_bodies)
-        Compliance of the layers in the joints [m3/N].
+    scene : Scene
+        The driven bodies have the pitch of the motion's start.
     touching : bool array, shape (n_bodies, n_bodies)
         As in `Structure`, in the solver's order.
-    ground : MotionTable
-        The driven bodies have the pitch of its start.
-    shrink : float
-        As in `NscdParameters`.
     state : State
         Given; velocities are kept.
 
@@ -48,11 +45,10 @@ def settled_state(bodies, friction, polyhedra, layers, touching, ground, shrink,
     Implicit Euler steps, each from rest and far longer than any period: with the mass next to nothing beside
     ``k h^2`` they are Newton's method for the equilibrium, with the contact law of the run.
     """
-    free = ~bodies.driven
+    free, radius = ~scene.bodies.driven, scene.polyhedra.radius
     _, group = connected_components(touching & free[:, None] & free[None, :])
-    soft = (touching & (layers > 0.0)).any(axis=1) & free
+    soft = (touching & (scene.layers > 0.0)).any(axis=1) & free
     moves = free & np.isin(group, group[soft])
-    placed_ground = np.array([0.0, 0.0, 0.0, ground.coefficients[0, 3, 0]])
     joints = no_joints(len(free))
     settled = State(*(part.copy() for part in state))
     settled.velocity[:], settled.angular_velocity[:] = 0.0, 0.0
@@ -60,20 +56,20 @@ def settled_state(bodies, friction, polyhedra, layers, touching, ground, shrink,
         if not moves.any():
             break
         before = State(*(part.copy() for part in settled))
-        _static_step(bodies, friction, polyhedra, layers, joints, placed_ground, shrink, settled)
-        away = _motion(settled, state, polyhedra.radius)
+        _static_step(scene, joints, settled)
+        away = largest_motion(settled, state, radius)
         # not (x <= limit), so that NaN counts
-        moves &= ~np.isin(group, group[moves & ~(away <= _NEAR)])
+        moves &= ~np.isin(group, group[moves & ~(away <= START_TOLERANCE)])
         settled.position[~moves], settled.orientation[~moves] = (
             state.position[~moves],
             state.orientation[~moves],
         )
-        if _motion(settled, before, polyhedra.radius).max() < _AT_REST:
+        if largest_motion(settled, before, radius).max() < _AT_REST:
             break
     return settled._replace(velocity=state.velocity, angular_velocity=state.angular_velocity)
 
 
-def _motion(state, other, radius):
+def largest_motion(state, other, radius):
     """Bound on how far a point of each body is from where it was [m]."""
     # the quaternions of a small turn differ by half of its angle
     turned = 2.0 * radius * np.linalg.norm(state.orientation - other.orientation, axis=1)
@@ -81,25 +77,35 @@ def _motion(state, other, radius):
 
 
 @kernel
-def _static_step(bodies, friction, polyhedra, layers, joints, ground, shrink, state):
+def _static_step(scene, joints, state):
     """Move the free bodies by one long implicit step from rest."""
-    dt, theta, n_bodies = _LONG_STEP, 1.0, bodies.mass.size
-    step, placed, rest = empty_step(state), empty_placed(polyhedra), np.zeros(4)
-    predict_into(bodies, state, ground, rest, dt, theta, step)
+    bodies, polyhedra, dt, theta = scene.bodies, scene.polyhedra, _LONG_STEP, 1.0
+    step, placed, ground = empty_step(state), empty_placed(polyhedra), ground_at_start(scene.table)
+    ground.velocity[:] = 0.0
+    predict_into(bodies, state, ground, dt, theta, step)
     place_into(polyhedra, step.detection.position, step.detection.orientation, placed)
-    memory = np.full((n_bodies, n_bodies), -1, np.int64)
+    memory = np.full(scene.layers.shape, -1, np.int64)
     contacts = detect_contacts(
-        bodies, polyhedra, placed, step.rotations, _NEAR, shrink, layers, theta * dt * dt, memory, 0
+        bodies,
+        polyhedra,
+        placed,
+        step.rotations,
+        START_TOLERANCE,
+        scene.settings.shrink,
+        scene.layers,
+        theta * dt * dt,
+        memory,
+        0,
     )
-    prepare_operators_into(bodies, step.inverse_inertia, contacts)
-    friction_into(friction, joints, step.rotations, contacts)
-    bounds_into(step, dt, theta, 0.0, contacts)
+    delassus_into(bodies, step.inverse_inertia, contacts)
+    friction_into(scene.friction, joints, step.rotations, contacts)
+    law_shift_into(step, dt, theta, 0.0, contacts)
     floor = 1e-12 * dt * bodies.mass.max() * np.sqrt((bodies.gravity * bodies.gravity).sum()) + 1e-300
     solve_contacts_into(
         bodies, step.inertia, step.inverse_inertia, contacts, floor, _TOLERANCE, _MOST_ITERATIONS, step.v
     )
     turn = np.empty(3)
-    for body in range(n_bodies):
+    for body in range(bodies.mass.size):
         if not bodies.driven[body]:
             for axis in range(3):
                 state.position[body, axis] += dt * step.v[body, axis]

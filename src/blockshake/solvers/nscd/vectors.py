@@ -4,7 +4,7 @@ from blockshake.jit import kernel
 
 
 @kernel
-def turned(A, x):
+def matrix_product(A, x):
     """``A x`` for a matrix of three rows and columns."""
     return (
         A[0, 0] * x[0] + A[0, 1] * x[1] + A[0, 2] * x[2],
@@ -14,8 +14,8 @@ def turned(A, x):
 
 
 @kernel
-def turned_back(A, x):
-    """``A^T x``: into the axes that the rows of a rotation or of a contact's basis are given in."""
+def transposed_product(A, x):
+    """``A^T x``: world to body for a rotation; to the world from a contact's basis, whose rows are its axes."""
     return (
         A[0, 0] * x[0] + A[1, 0] * x[1] + A[2, 0] * x[2],
         A[0, 1] * x[0] + A[1, 1] * x[1] + A[2, 1] * x[2],
@@ -42,10 +42,10 @@ def put_into(x, out):
 
 
 @kernel
-def turned_tensor_into(R, A, out):
+def tensor_in_world_into(R, A, out):
     """``R A R^T``: a symmetric body-frame tensor in the world frame, written into ``out``."""
     for i in range(3):
-        row = turned_back(A, R[i])
+        row = transposed_product(A, R[i])
         for j in range(3):
             out[i, j] = row[0] * R[j, 0] + row[1] * R[j, 1] + row[2] * R[j, 2]
 

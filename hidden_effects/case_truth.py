@@ -1,0 +1,131 @@
+"""Truth of a case, drawn by its seed: parameters, numerics, table, places, and the effect's size and place."""
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.signal import lfilter
+
+from blockshake.effects.effect import Experiment
+from blockshake.effects.registry import EFFECTS
+from blockshake.measurement.sensors.instruments import Instruments
+from blockshake.study.sampling.distributions import Lognormal
+
+NONE = "none"
+SIZES = {"small": (0.5, 0.8), "large": (1.0, 1.6)}  # of the visible one
+_WIDER = 1.5  # times the usual scatter
+_WIDER_SHARE = 0.2  # of the cases
+# coefficients of variation of Zhou et al. (2023), Table 2
+_FRICTION, _DENSITY, _MODULUS = 0.10, 0.04, 0.15
+_STIFFNESS = {"ls_dem.normal_stiffness": 2.16e10, "ls_dem.shear_stiffness": 9.0e9}  # N/m3, at Table 2's means
+_EFFECT, _PARAMETERS, _NUMERICS, _TABLE, _PLACES = range(5)  # streams of the seed
+
+
+def true_effect(name, size, structure, seed):
+    """Name, values, place and size in units of the visible one, of the effect in a case; None where there is none.
+
+    Parameters
+    ----------
+    name : str
+        Of the registry, or ``none``.
+    size : str
+        Key of `SIZES`; what the prior does not hold of it is not drawn.
+    structure : Structure
+    seed : int
+    """
+    if name == NONE:
+        return None
+    generator = np.random.default_rng([seed, _EFFECT])
+    first, *others = EFFECTS[name].parameters
+    step = first.visible - first.null
+    end = first.upper if step > 0.0 else first.lower
+    low, high = SIZES[size]
+    share = generator.uniform(low, min(high, (end - first.null) / step))
+    both = first.lower < first.null < first.upper
+    sign = -1.0 if both and generator.random() < 0.5 else 1.0
+    values = {first.name: float(first.null + sign * share * step)}
+    values |= {item.name: float(generator.uniform(item.lower, item.upper)) for item in others}
+    places = _places(name, structure)
+    place = places[generator.integers(len(places))]
+    return {"name": name, "values": values, "place": place, "size": float(sign * share)}
+
+
+def _places(name, structure):
+    """The registry's places; a marker is off on a block, since on a slab that does not turn it would be nothing."""
+    places = EFFECTS[name].places(structure)
+    if name != "marker-offset":
+        return places
+    driven = {body.name for body in structure.file.bodies if body.driven}
+    turning = {marker.name for marker in structure.file.markers if marker.body not in driven}
+    return [place for place in places if place["marker"] in turning]
+
+
+def true_parameters(structure, seed):
+    """Parameters by dotted name, contact stiffness with Young's modulus, and whether they scatter more than usual."""
+    generator = np.random.default_rng([seed, _PARAMETERS])
+    wider = bool(generator.random() < _WIDER_SHARE)
+    factor = _WIDER if wider else 1.0
+    file = structure.file
+
+    def scattered(mean, cov):
+        return float(Lognormal(mean=mean, cov=cov * factor).quantile(generator.random()))
+
+    drawn = {
+        f"friction.{'.'.join(item.pair)}": scattered(item.coefficient, _FRICTION) for item in file.friction
+    }
+    softer = scattered(1.0, _MODULUS)
+    for name, material in file.materials.items():
+        drawn[f"materials.{name}.density"] = scattered(material.density, _DENSITY)
+        drawn[f"materials.{name}.youngs_modulus"] = material.youngs_modulus * softer
+    drawn |= {name: usual * softer for name, usual in _STIFFNESS.items()}
+    drawn["restitution"] = file.restitution * float(generator.uniform(1.0 - 0.2 * factor, 1.0 + 0.2 * factor))
+    return drawn, wider
+
+
+def true_numerics(seed):
+    """Solver, time step and discretisation, none of which the nominal model's draws hold.
+
+    Those have LS-DEM's nodes 0.15 to 0.3 m apart and 2 to 10 mm from the perimeter at 5e-5 s, and NSCD shrunk by up to
+    2 % at 5e-4 or 1e-3 s, finer in impacts.
+    """
+    generator = np.random.default_rng([seed, _NUMERICS])
+    if generator.random() < 0.5:
+        spacing = generator.uniform(0.11, 0.14) if generator.random() < 0.5 else generator.uniform(0.32, 0.38)
+        inset = generator.uniform(0.011, 0.015)
+        return "ls-dem", 2e-5, {"ls_dem.node_spacing": float(spacing), "ls_dem.perimeter_inset": float(inset)}
+    return "nscd-rigid", 2.5e-4, {"nscd.shrink": float(generator.uniform(0.025, 0.035))}
+
+
+def true_table(seed):
+    """How the table follows: its gain, how far its gain differs at high frequency, and from which frequency on."""
+    generator = np.random.default_rng([seed, _TABLE])
+    return {
+        "gain": float(1.0 + np.clip(generator.normal(0.0, 0.01), -0.02, 0.02)),
+        "high": float(generator.uniform(-0.015, 0.015)),
+        "corner": float(generator.uniform(1.5, 4.0)),
+    }
+
+
+def follow(motion, table):
+    """The motion that the table makes of a commanded one.
+
+    Notes
+    -----
+    ``H(f) = gain + high i f / (f_c + i f)`` on the displacement: a gain that drifts within 1.5 % of itself around the
+    corner frequency, with the phase that goes with it.
+    """
+    breaks = motion.table.breaks
+    displacement = motion.evaluate(breaks)[:, 0]
+    warped = np.tan(np.pi * table["corner"] * np.diff(breaks).min())
+    slow = lfilter([warped, warped], [1.0 + warped, warped - 1.0], displacement)
+    change = (table["gain"] - 1.0) * displacement + table["high"] * (displacement - slow)
+    return (
+        Experiment(None, motion, Instruments()).with_motion(0, CubicSpline(breaks, change).c[::-1].T).motion
+    )
+
+
+def true_places(structure, seed, test):
+    """Where the blocks of a test stand, as `placed` takes it: within 0.3 mm, turned by 0.2 mrad."""
+    generator = np.random.default_rng([seed, _PLACES, test])
+    free = ~structure.driven
+    places = np.zeros((len(free), 3))
+    places[free] = generator.normal(0.0, [3e-4, 3e-4, 2e-4], (free.sum(), 3))
+    return places

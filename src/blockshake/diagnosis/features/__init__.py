@@ -1,0 +1,1 @@
+"""Features of a test, each with its error."""

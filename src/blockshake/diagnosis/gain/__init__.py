@@ -1,0 +1,1 @@
+"""The extended model on sealed tests, against its rivals."""

@@ -1,0 +1,69 @@
+"""Consequence of the extension for the user: largest drift of the top block, before and after."""
+
+import numpy as np
+import xarray as xr
+
+from blockshake.study.ensembles.scores import crps
+
+FRACTILE = 0.95
+_REPLICATES = 1000
+_INTERVAL = (0.05, 0.95)
+_PEAKS = ["top.displacement.peak+", "top.displacement.peak-"]
+
+
+def largest_drift(reading):
+    """Largest displacement of the top block against the base, to either side [m], shape (...) of the readings."""
+    return np.abs(reading["value"].sel(feature=_PEAKS)).max("feature").to_numpy()
+
+
+def consequence(measured, readings):
+    """Fractile of the top block's largest drift in a test, and score of the drift's history, by ensemble.
+
+    Parameters
+    ----------
+    measured : xarray.Dataset
+        From `read_off`.
+    readings : dict of str to dict of str to xarray.Dataset
+        By kind and solver: ``value(run, feature)``, and where there are histories ``drift(run, time, body)`` [m], NaN
+        after a run that ended early. As many runs of each solver.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``measured``, the largest drift [m]; ``drift(kind)``, its 95 % fractile over the members of both solvers [m],
+        with ``drift_lower`` and ``drift_upper``, 90 % by bootstrap of the members of each solver; ``crps(kind, body)``,
+        score of the drift, mean over time [m], NaN without histories.
+    """
+    rows, scores = [], []
+    own = measured["drift"].transpose("time", "body")
+    for runs in readings.values():
+        by_model = [largest_drift(one) for one in runs.values()]
+        generator = np.random.default_rng(_REPLICATES)  # the same draws in ensembles of one size
+        drawn = np.concatenate([generator.choice(one, (_REPLICATES, len(one))) for one in by_model], axis=1)
+        interval = np.quantile(np.quantile(drawn, FRACTILE, axis=1), _INTERVAL)
+        rows.append([np.quantile(np.concatenate(by_model), FRACTILE), *interval])
+        scores.append(_drift_score(own, list(runs.values())))
+    table = np.array(rows)
+    return xr.Dataset(
+        {
+            "measured": largest_drift(measured).item(),
+            "drift": ("kind", table[:, 0]),
+            "drift_lower": ("kind", table[:, 1]),
+            "drift_upper": ("kind", table[:, 2]),
+            "crps": (("kind", "body"), scores),
+        },
+        {"kind": list(readings), "body": own["body"].values},
+    )
+
+
+def _drift_score(measured, runs):
+    if not all("drift" in one for one in runs):
+        return np.full(measured.sizes["body"], np.nan)
+    members = [
+        one["drift"]
+        .reindex(time=measured["time"], method="nearest", tolerance=1e-6)
+        .transpose(..., "time", "body")
+        for one in runs
+    ]
+    score = crps(np.concatenate([one.to_numpy() for one in members]), measured.to_numpy())
+    return measured.copy(data=score).mean("time").to_numpy()

@@ -1,0 +1,87 @@
+"""Ensembles by one solver before and after an extension, on sealed tests."""
+
+import numpy as np
+import xarray as xr
+
+from blockshake.diagnosis.gain.extension import (
+    extended_members,
+    open_features,
+    open_responses,
+)
+from blockshake.diagnosis.gain.recalibration import posterior_draws
+from blockshake.diagnosis.libraries.candidates import NOMINAL
+from blockshake.diagnosis.libraries.designed_test import kept_reading
+from blockshake.diagnosis.libraries.null_model import draw_nominal
+from blockshake.diagnosis.libraries.plan import planned_sealed, sealed_tests
+
+RECALIBRATED, EXTENDED = "recalibrated", "extended"
+
+
+def extended_runs(plan, model, decision, size, library, features, left, store, source, progress):
+    """Simulated tests of the nominal, the recalibrated and the extended model.
+
+    Parameters
+    ----------
+    plan : Plan
+    model : str
+        Solver.
+    decision : Decision
+        Its first cause extends the model, of a combination both causes do.
+    size : CauseSize
+        Of the first cause.
+    library : ScoreLibrary
+        Of the first cause, from `library_of_cause`.
+    features : list of float64 array, shape (n_features,)
+        Measured in the open tests, tamed.
+    left : list of float64 array, shape (n_features,)
+        The part of them that the first cause has to explain: from `without_second`.
+    store, source, progress
+        As of `library`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``run``: ``value(run, feature)`` and ``drift(run, time, body)`` as from `read_off`; coordinates ``kind``,
+        ``test``, ``draw``, ``status``. Along ``parameter``: what the tests tell of the nominal parameters without the
+        cause, as of `Recalibration.informed`.
+    """
+    by_key = {candidate.key: candidate for candidate in plan.candidates}
+    cause, *others = (by_key[decision.places[effect]] for effect in decision.causes)
+    like = next(iter(plan.tests.values()))
+    draws = [draw_nominal(like.structure, model, k) for k in range(plan.effort.nominal_draws)]
+    known = open_features(library, model)
+    count = plan.effort.members
+    recalibration = posterior_draws(draws, known, np.concatenate(features))
+    members = {
+        NOMINAL: [(draw, []) for draw in draws[:count]],
+        RECALIBRATED: [(draw, []) for draw in recalibration.draws[:count]],
+        EXTENDED: extended_members(
+            cause,
+            (np.array(size.sizes), np.array(size.posterior)),
+            draws,
+            known,
+            np.concatenate(left),
+            open_responses(library, model, cause.key),
+            count,
+        ),
+    }
+    if decision.decision == "combination":
+        (second,) = others
+        beside = decision.sizes[second.effect]
+        members[EXTENDED] = [
+            (draw, [*effects, second.as_effect(second.values_at(beside, number))])
+            for number, (draw, effects) in enumerate(members[EXTENDED])
+        ]
+    sealed = {name: planned_sealed(plan.campaign, name, like) for name in sealed_tests(plan.campaign)}
+    jobs = [(kind, name, planned) for kind in members for name, planned in sealed.items()]
+    parts, total = [], len(jobs) * count
+    for kind, name, planned in jobs:
+        for number, (draw, effects) in enumerate(members[kind]):
+            reading, how = kept_reading(planned, draw, effects, store, source)
+            status = reading["status"].item()
+            labels = {"kind": kind, "test": name, "draw": number, "status": status}
+            one = reading[["value", "drift"]].expand_dims("run")
+            parts.append(one.assign_coords({label: ("run", [value]) for label, value in labels.items()}))
+            progress(f"{name} {model} {kind} {len(parts)}/{total} {how}: {status}")
+    runs = xr.concat(parts, dim="run", coords="minimal", compat="override", join="outer", data_vars="minimal")
+    return runs.merge(recalibration.informed).assign_attrs(model=model)

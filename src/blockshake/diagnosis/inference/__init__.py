@@ -1,0 +1,1 @@
+"""Inference: evidence of each candidate, decision, and size of the cause."""

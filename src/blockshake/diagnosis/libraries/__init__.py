@@ -1,0 +1,1 @@
+"""Simulated tests: nominal draws, and draws with each candidate effect."""

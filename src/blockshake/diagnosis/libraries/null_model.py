@@ -1,0 +1,131 @@
+"""The nominal model with its uncertainty: parameters, numerics, input, starting places, sensors."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from blockshake.simulation.models import MODELS as SOLVERS
+from blockshake.simulation.models import model_of
+from blockshake.study.sampling.distributions import TABLE_2, Lognormal
+
+MODELS = tuple(name for name, model in SOLVERS.items() if model.perturbation is not None)
+# coefficients of variation of Table 2's concrete, about the values of the structure file
+_FRICTION, _DENSITY, _MODULUS = (
+    TABLE_2[name].cov
+    for name in (
+        "friction.concrete.concrete",
+        "materials.concrete.density",
+        "materials.concrete.youngs_modulus",
+    )
+)
+_PLACE_SPREAD = 3e-4  # m, standard deviation of where a block stands, along x and y
+_YAW_SPREAD = 2e-4  # rad, of how it is turned about z
+_AMPLITUDE_SPREAD = 0.01  # of the motion's amplitude: how well a table follows
+_FAST_SPREAD = 0.01  # of what is faster than its mean over some 0.1 s, beside that
+# readings: noise over the stated one (standard deviation of its logarithm), its memory, shares lost and wrong, at most
+_LOUDER, _MEMORY, _LOST, _WRONG = 0.1, 0.7, 0.03, 0.02
+
+
+@dataclass(frozen=True)
+class Draw:
+    """One nominal model.
+
+    Attributes
+    ----------
+    model : str
+        One of `MODELS`.
+    time_step : float
+        [s]
+    parameters : dict of str to float
+        Of the structure and of the solver, by dotted name.
+    amplitude : float
+        Of the motion over the commanded one [1].
+    fast : float
+        Of what is faster in it than some 0.1 s, over the commanded one, less 1 [1].
+    noise : dict of str to float
+        ``louder``, over the stated noise [1], and the entries ``noise_memory``, ``marker_dropouts`` and
+        ``marker_outliers`` of `Instruments`.
+    places : float64 array, shape (n_bodies, 3)
+        Off the structure file: along x and y [m], turned about z [rad].
+    seed : int
+        Of the sensors' noise.
+    """
+
+    model: str
+    time_step: float
+    parameters: dict
+    amplitude: float
+    fast: float
+    noise: dict
+    places: np.ndarray
+    seed: int
+
+
+def draw_nominal(structure, model, number):
+    """A nominal model, the same for the same structure, model and number.
+
+    Parameters
+    ----------
+    structure : Structure
+    model : str
+    number : int
+
+    Returns
+    -------
+    Draw
+
+    Notes
+    -----
+    Parameters are drawn independently with the scatter of Table 2 of Zhou et al. (2023) about the values of the
+    structure file; contact stiffness goes with Young's modulus, as in a wave test. The discretisation is uncertain
+    too, since no measurement says which one is right: each model's `Perturbation` has its parameters. A diagnosis with
+    one fixed discretisation calls every other one an effect; so does one with white noise alone, once readings have a
+    memory, gaps and outliers.
+    """
+    generator = np.random.default_rng([number, model_of(model).perturbation.stream])
+    file = structure.file
+
+    def scattered(mean, cov):
+        return float(Lognormal(mean=mean, cov=cov).quantile(generator.random()))
+
+    drawn = {
+        f"friction.{'.'.join(entry.pair)}": scattered(entry.coefficient, _FRICTION)
+        for entry in file.friction
+        if entry.coefficient > 0.0
+    }
+    for name, material in file.materials.items():
+        drawn[f"materials.{name}.density"] = scattered(material.density, _DENSITY)
+    softer = scattered(1.0, _MODULUS)
+    for name, material in file.materials.items():
+        drawn[f"materials.{name}.youngs_modulus"] = material.youngs_modulus * softer
+    numerics, time_step = _perturbed(generator, model_of(model), softer, file)
+    places = np.zeros((len(file.bodies), 3))
+    free = np.array([not body.driven for body in file.bodies])
+    places[free] = generator.normal(0.0, [_PLACE_SPREAD, _PLACE_SPREAD, _YAW_SPREAD], (free.sum(), 3))
+    return Draw(
+        model=model,
+        time_step=time_step,
+        parameters=drawn | numerics,
+        amplitude=float(generator.normal(1.0, _AMPLITUDE_SPREAD)),
+        fast=float(generator.normal(0.0, _FAST_SPREAD)),
+        noise={
+            "louder": float(np.exp(generator.normal(0.0, _LOUDER))),
+            "noise_memory": float(generator.uniform(0.0, _MEMORY)),
+            "marker_dropouts": float(generator.uniform(0.0, _LOST)),
+            "marker_outliers": float(generator.uniform(0.0, _WRONG)),
+        },
+        places=places,
+        seed=int(generator.integers(2**31)),
+    )
+
+
+def _perturbed(generator, model, softer, file):
+    """Numerical parameters and time step [s] of a nominal model, drawn in the order of the table of models."""
+    usual = {name: default for name, (default, *_) in model.numerical_parameters().items()}
+    usual["restitution"] = file.restitution
+    numerics = {name: usual[name] * softer for name in model.stiffness} | model.perturbation.fixed
+    for one in model.perturbation.uncertain:
+        drawn = float(generator.uniform(one.lower, one.upper))
+        numerics[one.name] = usual[one.name] * drawn if one.relative else drawn
+    steps = model.perturbation.time_steps
+    return numerics, steps[0] if len(steps) == 1 else float(generator.choice(steps))

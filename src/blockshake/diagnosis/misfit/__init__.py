@@ -1,0 +1,1 @@
+"""Misfit of the nominal model to the readings."""

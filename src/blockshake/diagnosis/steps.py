@@ -1,0 +1,369 @@
+"""The way of a diagnosis from readings to verdict, a function a step, in the order of the workflow.
+
+Each function imports what it runs inside its own body. `blockshake.sources` watches this file function by function,
+so that a step is rerun by an edit of what that step runs, and by no other: an edit of the gain reruns no library.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+
+class Measured(NamedTuple):
+    """Outcome of the sensors' checks, the open tests read off, and their joint forces, see `measured_forces`."""
+
+    parity: object
+    readings: xr.Dataset
+    forces: xr.Dataset
+
+
+def read_measured(folder, effort, without):
+    """Check the sensors of a campaign's open tests against each other, take their faults out, read the tests off.
+
+    Parameters
+    ----------
+    folder : str
+        Of the campaign.
+    effort : str
+        One of `EFFORTS`.
+    without : sequence of str
+        Effects that are left out, as if nobody had thought of them.
+
+    Returns
+    -------
+    Measured
+    """
+    from blockshake.diagnosis.features.measured_readings import measured_readings
+    from blockshake.diagnosis.laws.measured_forces import measured_forces
+    from blockshake.diagnosis.libraries.efforts import EFFORTS, open_tests
+    from blockshake.measurement.campaigns.campaign import load_campaign
+    from blockshake.parity.parity import campaign_parity
+
+    campaign = load_campaign(folder)
+    names = open_tests(campaign, EFFORTS[effort])
+    parity = campaign_parity(campaign, names, without)
+    return Measured(
+        parity,
+        measured_readings(campaign, names, parity.findings),
+        measured_forces(campaign, names, parity.findings),
+    )
+
+
+def simulate_library(name, solver, config, store, source, progress):
+    """Simulate one open test by one solver: nominal draws, and draws with every candidate effect.
+
+    Parameters
+    ----------
+    name : str
+        Of the library, as of `Plan.library`.
+    solver : str
+    config : dict
+        Entries ``diagnosed``, folders of campaigns, and ``diagnosis_effort``.
+    store, source, progress
+        As of `library`.
+
+    Returns
+    -------
+    features, histories : xarray.Dataset
+        From `library`.
+    """
+    from blockshake.diagnosis.libraries.library import library
+    from blockshake.diagnosis.libraries.plan import plan_of_library
+
+    plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], source)
+    draws = plan.effort.nominal_draws, plan.own_draws
+    return library(plan.tests[test], solver, plan.candidates, *draws, store, source, progress)
+
+
+def calibrate_decision(libraries, effects, progress):
+    """Judge every draw of the libraries by all others.
+
+    Parameters
+    ----------
+    libraries : sequence of str
+        Files of features, by test and solver.
+    effects : sequence of str
+        Names of the effects that are considered.
+    progress : callable
+
+    Returns
+    -------
+    list of ScoredReadings
+    """
+    from blockshake.diagnosis.inference.calibration import library_cases
+    from blockshake.diagnosis.inference.library_scores import load_tables, score_library
+
+    return library_cases(score_library(load_tables(libraries), effects)[0], progress)
+
+
+class Decided(NamedTuple):
+    """A decision, the misfit of the nominal model, the features that decided, and the tests judged by."""
+
+    decision: object
+    misfit: xr.Dataset
+    evidence: xr.Dataset
+    tests: list
+
+
+def decide(folder, effects, files):
+    """Decide which effects the open tests speak for.
+
+    Parameters
+    ----------
+    folder : str
+        Of the campaign.
+    effects : sequence of str
+        Names of the effects that are considered.
+    files : object
+        Attributes ``readings``, ``forces``, ``libraries`` and ``histories`` (by test and solver), ``calibration``:
+        files of the earlier steps.
+
+    Returns
+    -------
+    Decided
+    """
+    from blockshake.diagnosis.features.measured_readings import reading_of, tamed_readings
+    from blockshake.diagnosis.inference.calibration import load_cases
+    from blockshake.diagnosis.inference.decide import decide
+    from blockshake.diagnosis.inference.deciding_features import deciding_features
+    from blockshake.diagnosis.inference.lawful_decision import with_laws
+    from blockshake.diagnosis.inference.library_scores import load_tables, score_library
+    from blockshake.diagnosis.laws.judged_laws import judge_laws
+    from blockshake.diagnosis.laws.measured_forces import outside_of
+    from blockshake.diagnosis.libraries.candidates import candidates
+    from blockshake.diagnosis.misfit.misfit import misfit
+    from blockshake.geometry.structure import load_structure
+    from blockshake.measurement.campaigns.campaign import load_campaign
+
+    measured = xr.load_dataset(files.readings)
+    names = [str(name) for name in measured["test"].values]
+    library, scales = score_library(load_tables(files.libraries), effects)
+    places = {one.key: one.place for one in candidates(load_structure(load_campaign(folder).structure))}
+    cases = load_cases(files.calibration)
+    decision = decide(library, tamed_readings(scales, measured), cases, places)
+    ensembles = [list(by_solver.values()) for by_solver in load_tables(files.histories)]
+    if measured.sizes["law"]:
+        draws = {
+            name: np.concatenate([one["law_value"].to_numpy() for one in own])
+            for name, own in zip(names, ensembles, strict=True)
+        }
+        own = {name: measured.sel(test=name) for name in names}
+        decision = with_laws(
+            decision, judge_laws(own, draws, outside_of(xr.load_dataset(files.forces))), places
+        )
+    return Decided(
+        decision,
+        misfit(measured, dict(zip(names, ensembles, strict=True))),
+        deciding_features(
+            library,
+            scales,
+            [reading_of(measured, name) for name in names],
+            names,
+            decision.candidate(decision.first_key),
+        ),
+        names,
+    )
+
+
+def simulate_cause(name, solver, key, further_draws, config, store, source, progress):
+    """Simulate more draws with one candidate than a library has.
+
+    Parameters
+    ----------
+    key : str
+        Of the candidate.
+    further_draws : int
+        Draws beyond the library's.
+    name, solver, config, store, source, progress
+        As of `simulate_library`.
+
+    Returns
+    -------
+    features : xarray.Dataset
+        From `library`; nominal draws and the first with the candidate come from the store.
+    """
+    from blockshake.diagnosis.libraries.library import library
+    from blockshake.diagnosis.libraries.plan import plan_of_library
+
+    plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], source)
+    (candidate,) = (one for one in plan.candidates if one.key == key)
+    draws = plan.own_draws + further_draws
+    return library(plan.tests[test], solver, [candidate], draws, draws, store, source, progress)[0]
+
+
+class Sized(NamedTuple):
+    """The size of the first cause, and the tests that it rests on."""
+
+    size: object
+    tests: list
+
+
+def size_cause(files, effects):
+    """Measure the size of the first cause, from all draws with it.
+
+    Parameters
+    ----------
+    files : object
+        Attributes ``frozen``, ``decision``, ``readings``, ``libraries`` and ``further`` (by test and solver): files
+        of the earlier steps.
+    effects : sequence of str
+        Names of the effects that are considered.
+
+    Returns
+    -------
+    Sized
+    """
+    from blockshake.diagnosis.features.measured_readings import tamed_readings
+    from blockshake.diagnosis.inference.decision import Decision, load_result
+    from blockshake.diagnosis.inference.library_scores import load_tables, score_library
+    from blockshake.diagnosis.inference.size_of_cause import library_of_cause, size_of_cause, without_second
+    from blockshake.diagnosis.verdict.frozen import check_frozen
+
+    check_frozen(files.frozen, files.decision)
+    decision, tables = load_result(Decision, files.decision), load_tables(files.libraries)
+    measured = xr.load_dataset(files.readings)
+    whole, scales = score_library(tables, effects)
+    left = without_second(whole, tamed_readings(scales, measured), decision)
+    library, _ = library_of_cause(tables, load_tables(files.further), decision.first_key)
+    return Sized(size_of_cause(library, left), measured["test"].values.tolist())
+
+
+def extend_model(folder, effort, solver, files, effects, store, source, progress):
+    """Simulate sealed tests by one solver: the nominal, the recalibrated and the extended model.
+
+    Parameters
+    ----------
+    folder, effort, solver : str
+    files : object
+        Attributes ``frozen``, ``decision``, ``frozen_size``, ``posterior``, ``readings``, ``libraries`` and
+        ``further``: files of the earlier steps.
+    effects : sequence of str
+    store, source, progress
+        As of `library`.
+
+    Returns
+    -------
+    xarray.Dataset
+        From `extended_runs`.
+    """
+    from blockshake.diagnosis.features.measured_readings import tamed_readings
+    from blockshake.diagnosis.gain.extended_runs import extended_runs
+    from blockshake.diagnosis.inference.decision import CauseSize, Decision, load_result
+    from blockshake.diagnosis.inference.library_scores import load_tables, score_library
+    from blockshake.diagnosis.inference.size_of_cause import library_of_cause, without_second
+    from blockshake.diagnosis.libraries.plan import plan_diagnosis
+    from blockshake.diagnosis.verdict.frozen import check_frozen
+
+    check_frozen(files.frozen, files.decision)
+    check_frozen(files.frozen_size, files.posterior)
+    decision, size = load_result(Decision, files.decision), load_result(CauseSize, files.posterior)
+    tables = load_tables(files.libraries)
+    whole, scales = score_library(tables, effects)
+    features = tamed_readings(scales, xr.load_dataset(files.readings))
+    library, _ = library_of_cause(tables, load_tables(files.further), size.key)
+    left = without_second(whole, features, decision)
+    plan = plan_diagnosis(folder, effort)
+    return extended_runs(plan, solver, decision, size, library, features, left, store, source, progress)
+
+
+def measure_gain(folder, files):
+    """Measure on the sealed tests what naming the cause gains: the one step that reads them.
+
+    Parameters
+    ----------
+    folder : str
+        Of the campaign.
+    files : object
+        Attributes ``frozen``, ``decision``, ``readings``, ``libraries``, ``parity``, and ``posterior`` (the size and
+        its hash, or empty) and ``extended`` (by solver, or empty): files of the earlier steps.
+
+    Returns
+    -------
+    CampaignGain
+    """
+    from blockshake.diagnosis.gain.campaign_gain import campaign_gain
+    from blockshake.diagnosis.gain.sensor_gain import sensors_gain
+    from blockshake.diagnosis.inference.library_scores import load_tables
+    from blockshake.diagnosis.verdict.frozen import check_frozen
+    from blockshake.measurement.campaigns.campaign import load_campaign
+    from blockshake.parity.parity import load_parity
+
+    check_frozen(files.frozen, files.decision)
+    if files.posterior:
+        size, frozen_size = files.posterior
+        check_frozen(frozen_size, size)
+    campaign, readings = load_campaign(folder), xr.load_dataset(files.readings)
+    if not files.extended:
+        return sensors_gain(campaign, readings, load_parity(files.parity).findings)
+    runs = {one.attrs["model"]: one for one in map(xr.load_dataset, files.extended)}
+    return campaign_gain(campaign, readings, load_tables(files.libraries), runs)
+
+
+def conclude(folder, effort, files):
+    """Put sensors, decision and gain together to the verdict.
+
+    Parameters
+    ----------
+    folder, effort : str
+    files : object
+        Attributes ``parity``, ``decision``, ``misfit``, and ``posterior`` (the size and its hash, or empty) and
+        ``gain`` (summary and scores, or empty): files of the earlier steps.
+
+    Returns
+    -------
+    Verdict
+    """
+    from blockshake.diagnosis.inference.decision import CauseSize, Decision, load_result
+    from blockshake.diagnosis.libraries.plan import plan_diagnosis
+    from blockshake.diagnosis.misfit.misfit import where
+    from blockshake.diagnosis.verdict.conclusion import Judged, conclude
+    from blockshake.diagnosis.verdict.verdict import MeasuredGain
+    from blockshake.parity.parity import load_parity
+
+    parity, decision = load_parity(files.parity), load_result(Decision, files.decision)
+    misfit, plan = xr.load_dataset(files.misfit), plan_diagnosis(folder, effort)
+    size = load_result(CauseSize, files.posterior[0]) if files.posterior else None
+    if files.gain:
+        measured, scores = load_result(MeasuredGain, files.gain[0]), xr.load_dataset(files.gain[1])
+    else:
+        caveats = plan.caveats([*decision.causes, *parity.findings])
+        measured, scores = MeasuredGain(gain=None, caveats=caveats, runs=0), None
+    runs = plan.runs + (plan.further_runs if size else 0) + measured.runs
+    channels = parity.channels["channel"].values.tolist()
+    judged = Judged(where(misfit), misfit.sizes["test"])
+    return conclude(
+        decision,
+        parity.findings,
+        channels,
+        judged,
+        runs,
+        measured.caveats,
+        effort,
+        size,
+        measured.gain,
+        scores,
+    )
+
+
+def predict_twins(name, histories, config, source, progress):
+    """Measure how long a test can be predicted, by all solvers.
+
+    Parameters
+    ----------
+    histories : sequence of str
+        Files from `simulate_library`, by solver.
+    name, config, source, progress
+        As of `simulate_library`; ``source`` is that of the library.
+
+    Returns
+    -------
+    xarray.Dataset
+        From `predictability_of`.
+    """
+    from blockshake.diagnosis.libraries.plan import plan_of_library
+    from blockshake.diagnosis.misfit.predictability import predictability_of
+
+    plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], source)
+    nominal = {one.attrs["model"]: one for one in map(xr.load_dataset, histories)}
+    return predictability_of(plan.tests[test], plan.effort.twins, nominal, progress)

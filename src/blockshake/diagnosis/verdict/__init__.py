@@ -1,0 +1,1 @@
+"""The verdict, its wording and its track record."""

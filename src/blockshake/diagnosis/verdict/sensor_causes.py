@@ -1,0 +1,65 @@
+"""Sensor faults that the parity checks found, as causes of the verdict."""
+
+from typing import NamedTuple
+
+from blockshake.diagnosis.inference.decision import ParameterEstimate
+from blockshake.effects.registry import EFFECTS
+
+_SIGMAS = 1.645  # of a Gaussian, within which nine tenths lie
+
+
+class SensorCause(NamedTuple):
+    """A sensor fault: its parameters with 90 % intervals, its sensor (empty for the optical system), its chance."""
+
+    parameters: dict
+    location: dict
+    p: float
+
+
+def sensor_causes(findings, channels):
+    """Sensor faults by name.
+
+    Parameters
+    ----------
+    findings : sequence of Finding
+    channels : sequence of str
+        Names of the accelerometer channels.
+
+    Returns
+    -------
+    dict of str to SensorCause
+        By registry name. Of several findings of one name the one with the smallest chance stands for all.
+    """
+    causes = {}
+    for finding in sorted(findings, key=lambda finding: (finding.p, finding.where, finding.tests)):
+        if finding.effect in causes:
+            continue
+        causes[finding.effect] = SensorCause(
+            _estimates(finding), _location(finding.where[0], channels), finding.p
+        )
+    return causes
+
+
+def _location(sensor, channels):
+    if sensor.startswith("optical "):
+        return {}
+    return {"channel" if sensor in channels else "marker": sensor}
+
+
+def _estimates(finding):
+    effect = EFFECTS.get(finding.effect)
+    if effect is None or not len(finding.estimate):
+        return {}
+    size = effect.parameters[0]
+    # a wrong place is a vector in the body's frame, of which the registry's effect has the height
+    component = 2 if len(finding.estimate) == 3 else 0
+    estimate, error = float(finding.estimate[component]), float(finding.standard_error[component])
+    return {
+        size.name: ParameterEstimate(
+            estimate=estimate,
+            lower=estimate - _SIGMAS * error,
+            upper=estimate + _SIGMAS * error,
+            unit=size.unit,
+            informed=True,
+        )
+    }

@@ -1,0 +1,98 @@
+"""Campaigns of measured tests: the list of tests and their marker readings."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, Field
+
+from blockshake.errors import InputError
+from blockshake.files import load_yaml
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.recorded_test import read_test
+from blockshake.measurement.sensors import accelerometers, markers
+from blockshake.validation import Finite, NotNegative, Strict, validated
+
+
+def _not_zero(value):
+    if value == 0.0:
+        raise ValueError("expected a number other than 0")
+    return value
+
+
+Scale = Annotated[Finite, AfterValidator(_not_zero)]
+
+
+class Sensors(Strict):
+    """Standard deviations of the readings."""
+
+    marker_noise: NotNegative = Field(markers.NOISE, description="[m]")
+    accelerometer_noise: NotNegative = Field(accelerometers.NOISE, description="[m/s2]")
+
+
+class MeasuredTest(Strict):
+    """One test of the list: what was commanded, where it was recorded, what it may be used for."""
+
+    name: str
+    file: str
+    motion: str
+    scale: Scale
+    role: Literal["fit", "select", "sealed"]
+
+
+class CampaignFile(Strict):
+    """The file ``campaign.yaml``."""
+
+    name: str
+    structure: str = Field(description="shipped name, or a file in the folder")
+    sensors: Sensors = Sensors()
+    tests: tuple[MeasuredTest, ...] = Field(min_length=1)
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """A checked campaign.
+
+    Attributes
+    ----------
+    folder : Path
+    name, structure : str
+        ``structure`` is a shipped name or the path of a file.
+    sensors : Sensors
+    tests : dict of str to MeasuredTest
+        By name.
+    """
+
+    folder: Path
+    name: str
+    structure: str
+    sensors: Sensors
+    tests: dict
+
+
+def load_campaign(folder):
+    """Campaign of a folder, its test files found but not yet read.
+
+    Raises
+    ------
+    InputError
+        Missing folder or file, unknown key, a test named twice.
+    """
+    folder = Path(folder)
+    path = folder / "campaign.yaml"
+    file = validated(CampaignFile, load_yaml(path), path)
+    tests = {test.name: test for test in file.tests}
+    if len(tests) < len(file.tests):
+        raise InputError(path, "tests", "expected every test's name once")
+    for test in file.tests:
+        if not (folder / test.file).is_file():
+            raise InputError(
+                path, f"tests.{test.name}.file", f"expected a file in {folder}; it has no {test.file}"
+            )
+    structure = str(folder / file.structure) if (folder / file.structure).is_file() else file.structure
+    return Campaign(folder, file.name, structure, file.sensors, tests)
+
+
+def load_test(campaign, name):
+    """Readings of one test, checked against the campaign's structure; see `read_test`."""
+    return read_test(campaign.folder / campaign.tests[name].file, load_structure(campaign.structure))

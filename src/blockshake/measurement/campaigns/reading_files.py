@@ -1,0 +1,138 @@
+"""Readings of a test as its file has them: netCDF, or a pair of CSV tables."""
+
+import csv
+import io
+
+import numpy as np
+import xarray as xr
+
+from blockshake.errors import InputError
+from blockshake.files import read_text
+from blockshake.geometry.schema import AXES
+
+_METRES = ("m", "metre", "metres", "meter", "meters")
+_ACCELERATION = ("m s-2", "m s^-2", "m s**-2", "m/s2", "m/s^2", "m/s**2", "m.s-2", "meters/second^2")
+_RADIANS = ("rad", "radian", "radians")
+_SECONDS = ("s", "sec", "second", "seconds")
+_VARIABLES = {
+    "marker_displacement": (("time", "marker", "axis"), _METRES),
+    "marker_initial_position": (("marker", "axis"), _METRES),
+    "accelerometer": (("time_acc", "channel"), _ACCELERATION),
+    "table_displacement": (("time",), _METRES),
+    "initial_offset": (("body", "axis"), _METRES),
+    "initial_rotation": (("body", "axis"), _RADIANS),
+}
+_CLASSIC = (b"CDF\x01", b"CDF\x02")  # whose missing end the netCDF library reads as zeros, and scipy refuses
+# what the reader of a damaged file may raise
+_DAMAGE = (OSError, ValueError, RuntimeError, KeyError, TypeError, IndexError, AttributeError)
+
+
+def read_netcdf(path):
+    """Variables of a test in a netCDF file, float64, in the order of dimensions of docs/campaigns.md.
+
+    Raises
+    ------
+    InputError
+        No netCDF, readings or coordinates missing, other dimensions, no numbers, another unit than SI stated.
+    """
+    try:
+        content = path.read_bytes()
+        if content[:4] in _CLASSIC:
+            test = xr.load_dataset(io.BytesIO(content), engine="scipy", decode_times=False)
+        else:
+            test = xr.load_dataset(path, decode_times=False)
+    except _DAMAGE:
+        raise InputError(path, "", "expected a netCDF file; this is cut, damaged or something else") from None
+    if "marker_displacement" not in test:
+        raise InputError(path, "marker_displacement", "expected displacements over time, marker and axis")
+    known = [name for name in _VARIABLES if name in test]
+    for name in known:
+        _check_variable(test, name, path)
+    test = test[known].transpose("time", "marker", "axis", ...).astype(np.float64)
+    return test.assign_coords(
+        {
+            name: (name, test[name].to_numpy().astype(np.float64), test[name].attrs)
+            for name in ("time", "time_acc")
+            if name in test.coords
+        }
+    )
+
+
+def _check_variable(test, name, path):
+    dimensions, units = _VARIABLES[name]
+    if set(test[name].dims) != set(dimensions):
+        raise InputError(path, name, f"expected the dimensions {', '.join(dimensions)}")
+    for dimension in dimensions:
+        if dimension not in test.coords:
+            raise InputError(path, dimension, f"expected this coordinate, which {name} needs")
+        if dimension in ("time", "time_acc"):
+            _check_numbers(test[dimension], path, _SECONDS)
+    _check_numbers(test[name], path, units)
+
+
+def _check_numbers(variable, path, units):
+    """Refuse what is no number, or says that its unit is another."""
+    if variable.dtype.kind not in "iuf":
+        raise InputError(path, variable.name, f"expected numbers, not {variable.dtype}")
+    stated = str(variable.attrs.get("units", "")).strip()
+    if stated and stated not in units:
+        raise InputError(path, f"{variable.name}.units", f"expected {units[0]}, not '{stated}'")
+
+
+def read_tables(path):
+    """The same from ``NAME.csv`` and, where it lies beside, ``NAME-acc.csv``.
+
+    Raises
+    ------
+    InputError
+        A table without times or readings, a cell that is no number, a column that names no marker and axis.
+    """
+    time, columns = _table(path)
+    markers = list(dict.fromkeys(name.rpartition(".")[0] for name in columns))
+    values = np.full((len(time), len(markers), 3), np.nan)
+    for name, column in columns.items():
+        marker, _, axis = name.rpartition(".")
+        if axis not in AXES or not marker:
+            raise InputError(path, name, "expected columns MARKER.x, MARKER.y, MARKER.z")
+        values[:, markers.index(marker), AXES.index(axis)] = column
+    variables = {"marker_displacement": (("time", "marker", "axis"), values, {"units": "m"})}
+    coordinates = {"time": time, "marker": markers, "axis": list(AXES)}
+    wanted = f"{path.stem}-acc.csv".lower()
+    for beside in sorted(item for item in path.parent.iterdir() if item.name.lower() == wanted)[:1]:
+        time_acc, channels = _table(beside)
+        variables["accelerometer"] = (
+            ("time_acc", "channel"), np.column_stack(list(channels.values())), {"units": "m s-2"},
+        )  # fmt: skip
+        coordinates |= {"time_acc": time_acc, "channel": list(channels)}
+    return xr.Dataset(variables, coordinates)
+
+
+def _table(path):
+    """Times and columns of a CSV; empty cells are NaN."""
+    reader = csv.reader(io.StringIO(read_text(path).removeprefix("\ufeff")), strict=True)
+    try:
+        rows = [(reader.line_num, row) for row in reader if any(row)]
+    except csv.Error as error:
+        raise InputError(path, f"line {reader.line_num}", f"expected cells between commas; {error}") from None
+    names = [name.strip() for name in rows[0][1]] if rows else []
+    if "time_s" not in names or len(names) < 2 or len(rows) < 2 or len(set(names)) < len(names):
+        raise InputError(
+            path,
+            "time_s",
+            "expected a header with time_s, other columns and every name once, and rows below it",
+        )
+    values = np.empty((len(rows) - 1, len(names)))
+    for place, (line, row) in enumerate(rows[1:]):
+        if len(row) != len(names):
+            raise InputError(path, f"line {line}", f"expected {len(names)} cells, not {len(row)}")
+        for column, cell in enumerate(row):
+            values[place, column] = _number(cell.strip(), path, f"line {line}, {names[column]}")
+    time = values[:, names.index("time_s")]
+    return time, {name: values[:, place] for place, name in enumerate(names) if name != "time_s"}
+
+
+def _number(cell, path, key):
+    try:
+        return float(cell) if cell else np.nan
+    except ValueError:
+        raise InputError(path, key, f"expected a number or nothing, not '{cell}'") from None

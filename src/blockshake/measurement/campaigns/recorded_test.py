@@ -1,0 +1,173 @@
+"""The file of one measured test, checked against the structure."""
+
+from pathlib import Path
+
+import numpy as np
+
+from blockshake.errors import InputError
+from blockshake.geometry.schema import AXES
+from blockshake.measurement.campaigns.initial_places import check_initial_places
+from blockshake.measurement.campaigns.reading_files import read_netcdf, read_tables
+from blockshake.measurement.sensors.accelerometers import accelerometer_channels
+
+_FARTHEST = 20.0  # m; no table moves so far, a file in millimetres does
+# Readings a second. Shaking has 0.5 to 50 Hz, most of it below 10 Hz, which takes 20 readings a second. 10 kHz are
+# 200 readings in the shortest period; times in milliseconds (200 Hz become 0.2) and in minutes (12 000) lie outside.
+_RATES = (20.0, 1e4)
+_START = 0.1  # s
+_FIRST = (
+    5  # readings, whose median is the start; shaking with 10 m/s2 from the first has moved by 0.5 mm in 10 ms
+)
+_START_LIMIT = 0.01  # m; far beyond noise, far less than a marker's distance from the origin
+_START_NOISE = 5.0  # times the channel's own noise
+_OVERLAP = 0.5  # of the shorter record, that both clocks must share
+
+
+def read_test(path, structure):
+    """Readings of one test.
+
+    Parameters
+    ----------
+    path : str or path
+        A netCDF file, or ``NAME.csv`` with columns ``time_s`` and ``MARKER.AXIS`` [m]; beside it may lie
+        ``NAME-acc.csv`` with ``time_s`` and one column a channel [m/s2]. An empty cell is a gap.
+    structure : Structure
+        Whose markers and accelerometers are read.
+
+    Returns
+    -------
+    xarray.Dataset
+        Variables of docs/campaigns.md, float64; the file is never changed.
+
+    Raises
+    ------
+    InputError
+        Not readable; times that do not increase or are not in seconds; unknown or doubled markers, channels or
+        bodies; no marker on the driven body; a channel without any reading; axes that are swapped; another unit;
+        readings that are infinite or not since the first.
+    """
+    path = Path(path)
+    test = read_tables(path) if path.suffix.lower() == ".csv" else read_netcdf(path)
+    for name in ("time", "time_acc"):
+        if name in test.coords:
+            _check_times(test[name].to_numpy(), path, name)
+    if tuple(test["axis"].values) != AXES:
+        test = _ordered_axes(test, path)
+    _check_markers(test, structure, path)
+    _check_channels(test, structure, path)
+    _check_readings(test, path)
+    _check_start(test, path)
+    check_initial_places(test, structure, path)
+    return test
+
+
+def _check_times(time, path, name):
+    if len(time) < 2 or not np.isfinite(time).all():
+        raise InputError(path, name, "expected at least two times, all finite")
+    steps = np.diff(time)
+    if not (steps > 0.0).all():
+        place = int(np.argmin(steps > 0.0))
+        raise InputError(
+            path, name, f"expected times that increase; {time[place + 1]:g} s follows {time[place]:g} s"
+        )
+    rate = 1.0 / np.median(steps)
+    if not _RATES[0] <= rate <= _RATES[1]:
+        raise InputError(
+            path,
+            name,
+            f"expected seconds, with {_RATES[0]:g} to {_RATES[1]:g} readings in each, not {rate:.3g}",
+        )
+
+
+def _ordered_axes(test, path):
+    if sorted(map(str, test["axis"].values)) != list(AXES):
+        raise InputError(path, "axis", f"expected x, y, z, not {', '.join(map(str, test['axis'].values))}")
+    return test.sel(axis=list(AXES))
+
+
+def _check_markers(test, structure, path):
+    bodies = {marker.name: marker.body for marker in structure.file.markers}
+    read = [str(name) for name in test["marker"].values]
+    for name in read:
+        if name not in bodies:
+            raise InputError(path, name, f"expected markers of the structure: {', '.join(bodies)}")
+        if read.count(name) > 1:
+            raise InputError(path, name, "expected every marker once")
+    driven = {body.name for body in structure.file.bodies if body.driven}
+    if not any(bodies[name] in driven for name in read):
+        wanted = [name for name, body in bodies.items() if body in driven]
+        raise InputError(
+            path, "marker", f"expected a marker of the driven body, which is the input: {' or '.join(wanted)}"
+        )
+
+
+def _check_channels(test, structure, path):
+    """Accelerometer channels are the structure's, once each, and on a clock that runs beside the markers'."""
+    if "accelerometer" not in test:
+        return
+    known = accelerometer_channels(structure)
+    read = [str(name) for name in test["channel"].values]
+    for name in read:
+        if name not in known:
+            raise InputError(
+                path, name, f"expected accelerometer channels of the structure: {', '.join(known) or 'none'}"
+            )
+        if read.count(name) > 1:
+            raise InputError(path, name, "expected every accelerometer channel once")
+    clocks = [(time[0], time[-1]) for time in (test["time"].to_numpy(), test["time_acc"].to_numpy())]
+    shared = min(end for _, end in clocks) - max(begin for begin, _ in clocks)
+    if shared < _OVERLAP * min(end - begin for begin, end in clocks):
+        (begin, end), (begin_acc, end_acc) = clocks
+        raise InputError(
+            path,
+            "time_acc",
+            f"expected the clock of time, {begin:g} to {end:g} s, not {begin_acc:g} to {end_acc:g} s",
+        )
+
+
+def _check_readings(test, path):
+    for name, variable in test.data_vars.items():
+        if np.isinf(variable.to_numpy()).any():
+            raise InputError(path, name, "expected finite readings, and nothing or NaN in a gap")
+    displacement = test["marker_displacement"]
+    silent = displacement.isnull().all("time").to_numpy()
+    if silent.any():
+        marker, axis = np.argwhere(silent)[0]
+        raise InputError(
+            path,
+            f"{displacement['marker'].values[marker]}.{AXES[axis]}",
+            "expected readings; all are missing",
+        )
+    if (
+        "accelerometer" in test
+        and (silent := test["accelerometer"].isnull().all("time_acc").to_numpy()).any()
+    ):
+        raise InputError(
+            path, str(test["channel"].values[np.argmax(silent)]), "expected readings; all are missing"
+        )
+    farthest = float(np.abs(displacement).max())
+    if farthest > _FARTHEST:
+        raise InputError(
+            path,
+            "marker_displacement",
+            f"expected metres; a displacement of {farthest:g} looks like millimetres",
+        )
+
+
+def _check_start(test, path):
+    """Displacements count from the first reading; channels whose first readings are lost are left out."""
+    time = test["time"].to_numpy()
+    readings = test["marker_displacement"].to_numpy()[time <= time[0] + _START]
+    for marker, name in enumerate(test["marker"].values):
+        for axis in range(3):
+            channel = readings[np.isfinite(readings[:, marker, axis]), marker, axis]
+            if len(channel) < 2:
+                continue
+            start = float(np.median(channel[:_FIRST]))
+            noise = np.sqrt(np.mean(np.diff(channel) ** 2) / 2.0)  # large where the unit is another
+            if abs(start) > max(_START_LIMIT, _START_NOISE * noise):
+                raise InputError(
+                    path,
+                    f"{name}.{AXES[axis]}",
+                    f"expected displacements since the first reading; it starts at {start:.3g} m",
+                )

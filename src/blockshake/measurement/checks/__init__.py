@@ -1,0 +1,1 @@
+"""Whether a campaign is what it says: units, rates, places, noise."""

@@ -1,0 +1,199 @@
+"""Content, gaps and contradictions of a campaign, in lines for a reader."""
+
+import numpy as np
+
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.campaigns.commanded_motion import (
+    check_followed,
+    commanded_motion,
+    driven_axis_remarks,
+    follow,
+    followed_remarks,
+    length_remarks,
+)
+from blockshake.measurement.checks.carried_blocks import carried_remarks
+from blockshake.measurement.checks.quiet_noise import (
+    accelerometer_noise,
+    accelerometer_remarks,
+    check_marker_unit,
+    marker_noise,
+    marker_remarks,
+)
+from blockshake.measurement.checks.slab_accelerometer import clock_remarks
+from blockshake.measurement.sensors.markers import marker_bodies
+
+_QUIET = 0.5  # s at most that are taken as the quiet start
+_QUIET_PART = 0.02  # of the commanded peak displacement: the record is quiet until the command reaches it
+_FIRST = 10  # readings whose mean is the start
+_START = 10.0  # times the noise, within which displacements start: the first reading's own is in all others
+
+
+def campaign_lines(folder):
+    """Lines that say what is there, and then every inconsistency.
+
+    Parameters
+    ----------
+    folder : str or path
+
+    Returns
+    -------
+    list of str
+
+    Raises
+    ------
+    InputError
+        A test that cannot be read; a slab that moves along another axis, backwards or in another unit than commanded;
+        an accelerometer that reads in g.
+    """
+    campaign = load_campaign(folder)
+    structure = load_structure(campaign.structure)
+    lines = [
+        f"campaign {campaign.name} on {campaign.structure}: {len(campaign.tests)} tests; stated noise of markers "
+        f"{campaign.sensors.marker_noise:g} m, of accelerometers {campaign.sensors.accelerometer_noise:g} m/s2"
+    ]
+    remarks, read = [], set()
+    for entry in campaign.tests.values():
+        test = load_test(campaign, entry.name)
+        read.update(str(name) for name in test["marker"].values)
+        described = _Described(campaign, structure, entry, test)
+        lines.append(f"  {entry.name} ({entry.role}): {', '.join(described.facts)}")
+        remarks += [f"  {entry.name}: {remark}" for remark in described.remarks]
+    for marker in structure.file.markers:
+        if marker.name not in read:
+            remarks.append(f"  marker {marker.name} of the structure is in no test")
+    return lines + (["remarks:", *remarks] if remarks else ["no inconsistency found"])
+
+
+class _Described:
+    """Facts and inconsistencies of one test; of a sealed one shape, noise and the input alone."""
+
+    def __init__(self, campaign, structure, entry, test):
+        self.sensors, self.structure, self.entry, self.test = campaign.sensors, structure, entry, test
+        self.path = campaign.folder / entry.file
+        self.time = test["time"].to_numpy()
+        self.readings = test["marker_displacement"].to_numpy()
+        driven = {body.name for body in structure.file.bodies if body.driven}
+        self.on_slab = np.array([body in driven for body in marker_bodies(structure, test["marker"].values)])
+        self.slab = _mean(self.readings[:, self.on_slab])
+        self.slab_noise = self.sensors.marker_noise / np.sqrt(self.on_slab.sum())
+        self.facts, self.remarks = [], []
+        commanded = commanded_motion(campaign, entry)
+        self._describe_shape()
+        self._hold_input(commanded)
+        self._hold_noise(self._quiet_end(commanded))
+        if entry.role != "sealed":
+            self._hold_answer()
+
+    def _describe_shape(self):
+        time, test = self.time, self.test
+        rate = 1.0 / np.median(np.diff(time))
+        bodies = set(marker_bodies(self.structure, test["marker"].values))
+        self.facts += [
+            f"{time[-1] - time[0]:.4g} s at {rate:.4g} Hz",
+            f"{test.sizes['marker']} markers on {len(bodies)} bodies",
+            f"{100.0 * np.isnan(self.readings).mean():.2g} % gaps",
+        ]
+        if "accelerometer" in test:
+            rate_acc = 1.0 / np.median(np.diff(test["time_acc"].to_numpy()))
+            self.facts.append(f"{test.sizes['channel']} accelerometer channels at {rate_acc:.4g} Hz")
+        else:
+            self.facts.append("no accelerometers")
+        if np.ptp(np.diff(time)) > 0.01 * np.median(np.diff(time)):
+            self.remarks.append("the marker times are not even")
+
+    def _quiet_end(self, commanded):
+        """Time before which nothing moves, by the command or, where that is not at hand, by habit [s]."""
+        latest = self.time[0] + _QUIET
+        if commanded is None:
+            return latest
+        target = np.abs(self._target(commanded))
+        moving = target > max(_QUIET_PART * target.max(), self.sensors.marker_noise)
+        return min(latest, self.time[np.argmax(moving)]) if moving.any() else latest
+
+    def _target(self, commanded):
+        target = commanded.evaluate(self.time - self.time[0])[:, 0]
+        return target - target[0]
+
+    def _hold_noise(self, quiet_end):
+        """Noise of every channel against what is stated, and where displacements start."""
+        names, stated = self.test["marker"].values, self.sensors.marker_noise
+        quiet = self.time < quiet_end
+        noise = marker_noise(self.readings[quiet])
+        if np.isfinite(noise).any():
+            check_marker_unit(names, noise, stated, self.path)
+            usual = np.sqrt(np.nanmean(noise**2))
+            self.facts.append(
+                f"marker noise {1e3 * usual:.3g} mm in the quiet {1e3 * (quiet_end - self.time[0]):.3g} ms"
+            )
+            self.remarks += marker_remarks(names, noise, stated)
+            self._hold_start(quiet)
+        else:
+            self.facts.append("no quiet start to find the noise in")
+        if "accelerometer" in self.test:
+            quiet = (self.test["time_acc"] >= self.time[0]) & (self.test["time_acc"] < quiet_end)
+            fast, whole = accelerometer_noise(self.test["accelerometer"].to_numpy()[quiet.to_numpy()])
+            if np.isfinite(fast).any():
+                self.facts.append(f"accelerometer noise {np.nanmedian(fast):.3g} m/s2")
+            self.remarks += accelerometer_remarks(
+                self.test["channel"].values, fast, whole, self.sensors.accelerometer_noise
+            )
+
+    def _hold_start(self, quiet):
+        start = np.abs(_mean(self.readings[quiet][:_FIRST].swapaxes(0, 1)))
+        start = np.where(np.isfinite(start), start, 0.0).max(axis=1)
+        far = int(start.argmax())
+        if start[far] > _START * self.sensors.marker_noise:
+            self.remarks.append(
+                f"{self.test['marker'].values[far]} starts {1e3 * start[far]:.3g} mm off: displacements count from "
+                "the first reading"
+            )
+
+    def _hold_input(self, commanded):
+        """The slab's markers against the command."""
+        if commanded is None:
+            self.remarks.append(f"the commanded motion {self.entry.motion} is not at hand")
+            self.remarks += driven_axis_remarks(self.slab)
+            return
+        self.remarks += length_remarks(self.time, commanded)
+        target = self._target(commanded)
+        followed = follow(self.slab, target, self.slab_noise)
+        if followed is None:
+            self.facts.append("a command along x too small to be seen")
+            return
+        check_followed(followed, self.path)
+        self.remarks += followed_remarks(followed, self.entry.role)
+        if self.entry.role != "sealed":
+            self.facts.append(
+                f"table moved by {100.0 * followed.share[0]:.3g} % of the command, whose peak is "
+                f"{1e3 * np.abs(target).max():.3g} mm"
+            )
+
+    def _hold_answer(self):
+        """Blocks and accelerometers against the slab's markers."""
+        names = [str(name) for name in self.test["marker"].values[~self.on_slab]]
+        self.remarks += carried_remarks(
+            self.time, self.readings[:, ~self.on_slab], names, self.slab, self.sensors.marker_noise
+        )
+        driven = {body.name for body in self.structure.file.bodies if body.driven}
+        along_x = {f"{item.name}-x" for item in self.structure.file.accelerometers if item.body in driven}
+        if "accelerometer" not in self.test:
+            return
+        own = [str(name) in along_x for name in self.test["channel"].values]
+        if any(own):
+            readings = self.test["accelerometer"].to_numpy()[:, own].mean(axis=1)
+            self.remarks += clock_remarks(
+                self.time,
+                self.slab[:, 0],
+                self.test["time_acc"].to_numpy(),
+                readings,
+                self.slab_noise,
+                self.path,
+            )
+
+
+def _mean(readings):
+    """Mean of what was read along the second axis; NaN where nothing was."""
+    known = np.isfinite(readings)
+    with np.errstate(invalid="ignore"):
+        return np.where(known, readings, 0.0).sum(axis=1) / known.sum(axis=1)

@@ -1,0 +1,101 @@
+"""The noise of a test's channels in its quiet start, held against what the campaign states."""
+
+import numpy as np
+
+from blockshake.errors import InputError
+
+_FACTOR = 2.0  # between the noise found and the noise stated
+_FEWEST = 10  # readings of a quiet start
+# Readings in millimetres are a thousand times as noisy; no optical system has 1 mm, and no stated noise is a
+# hundred times too small by mistake.
+_OTHER_UNIT = 100.0
+_WORST_MARKER = 1e-3  # m
+_MANY = 3  # names that a remark spells out
+_NORMAL = 0.6745  # of a standard deviation is the median size of a normal deviate
+
+
+def marker_noise(readings):
+    """Standard deviation of each marker's readings, from the differences of neighbours: no slow motion enters.
+
+    Parameters
+    ----------
+    readings : float64 array, shape (n_times, n_markers, 3)
+        Of the quiet start [m]; gaps are NaN.
+
+    Returns
+    -------
+    float64 array, shape (n_markers,)
+        [m]; NaN where there are too few readings.
+    """
+    steps = np.diff(readings, axis=0)
+    known = np.isfinite(steps)
+    count = known.sum(axis=(0, 2))
+    total = np.where(known, steps, 0.0) ** 2
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(count >= _FEWEST, np.sqrt(total.sum(axis=(0, 2)) / count / 2.0), np.nan)
+
+
+def check_marker_unit(names, noise, stated, path):
+    """Refuse markers with the noise of readings in millimetres, the only trace of them where nothing moves.
+
+    Raises
+    ------
+    InputError
+        A noise beyond 1 mm and beyond a hundred times the stated one.
+    """
+    for name, found in zip(names, noise, strict=True):
+        if found > max(_WORST_MARKER, _OTHER_UNIT * stated):
+            raise InputError(
+                path,
+                str(name),
+                f"expected metres; its noise at rest, {found:.3g}, is far beyond the stated {stated:g} m",
+            )
+
+
+def marker_remarks(names, noise, stated):
+    """Remarks on markers whose noise is beyond twice, or below half, the stated one."""
+    wrong = (noise > _FACTOR * stated) | (noise < stated / _FACTOR)
+    return _remark("marker", names, noise, wrong, 1e3, "mm", stated)
+
+
+def accelerometer_noise(readings):
+    """Lower and upper bound of each channel's noise.
+
+    Parameters
+    ----------
+    readings : float64 array, shape (n_times, n_channels)
+        Of the quiet start [m/s2]; gaps are NaN.
+
+    Returns
+    -------
+    fast, whole : float64 arrays, shape (n_channels,)
+        From the median size of neighbours' differences, which neither motion nor a thump enters but a filtered
+        noise enters in part; and the standard deviation, with all motion in it [m/s2]. NaN where readings are few.
+    """
+    fast, whole = np.full((2, readings.shape[1]), np.nan)
+    for channel, values in enumerate(readings.T):
+        steps = np.diff(values)
+        steps = steps[np.isfinite(steps)]
+        if len(steps) >= _FEWEST:
+            fast[channel] = np.median(np.abs(steps)) / _NORMAL / np.sqrt(2.0)
+            whole[channel] = np.nanstd(values)
+    return fast, whole
+
+
+def accelerometer_remarks(names, fast, whole, stated):
+    """Remarks on channels whose noise must be beyond twice, or below half, the stated one."""
+    noisy = _remark("accelerometer", names, fast, fast > _FACTOR * stated, 1.0, "m/s2", stated)
+    return noisy + _remark("accelerometer", names, whole, whole < stated / _FACTOR, 1.0, "m/s2", stated)
+
+
+def _remark(what, names, noise, wrong, factor, unit, stated):
+    """One remark that names the channels, unless all are meant; none where nothing is wrong."""
+    if not wrong.any():
+        return []
+    found = f"{factor * noise[wrong].min():.3g}"
+    if wrong.sum() > 1 and factor * noise[wrong].max() > factor * noise[wrong].min():
+        found += f" to {factor * noise[wrong].max():.3g}"
+    own = [str(name) for name in np.asarray(names)[wrong]]
+    of = "" if len(own) == len(noise) else f" of {', '.join(own[:_MANY])}"
+    of += f" and {len(own) - _MANY} more" if of and len(own) > _MANY else ""
+    return [f"{what} noise{of} found {found} {unit}, stated {factor * stated:.3g} {unit}"]

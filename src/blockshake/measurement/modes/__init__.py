@@ -1,0 +1,1 @@
+"""Frequencies and damping of a stack from noise and sine tests."""

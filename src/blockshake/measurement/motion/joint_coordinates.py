@@ -1,0 +1,114 @@
+"""Motion of a joint: slip, opening and rotation of the upper block in the frame of the lower one."""
+
+import numpy as np
+import xarray as xr
+from scipy.spatial.transform import Rotation
+
+from blockshake.errors import InputError
+from blockshake.geometry.rotations import rotation_matrices
+from blockshake.geometry.schema import AXES
+
+
+def find_joints(structure):
+    """Joints of a structure at its start.
+
+    Returns
+    -------
+    pairs : int64 array, shape (n_joints, 2)
+        Lower body, upper body, by height of their centroids.
+    centres : float64 array, shape (n_joints, 3)
+        Middle of what the bounding boxes of the two have in common, world frame [m].
+    """
+    low, high = [], []
+    for body in range(len(structure.mass)):
+        turn = rotation_matrices(structure.orientation[body])
+        corners = structure.position[body] + structure.solid(body).vertices @ turn.T
+        low.append(corners.min(axis=0))
+        high.append(corners.max(axis=0))
+    low, high = np.array(low), np.array(high)
+    pairs = np.argwhere(np.triu(structure.touching))
+    height = structure.centroid[:, 2]
+    swapped = height[pairs[:, 0]] > height[pairs[:, 1]]
+    pairs[swapped] = pairs[swapped][:, ::-1]
+    first, second = pairs.T
+    centres = 0.5 * (np.maximum(low[first], low[second]) + np.minimum(high[first], high[second]))
+    return pairs, centres
+
+
+def joint_coordinates(structure, position, rotation):
+    """Slip, opening and rotation of every joint since the first time.
+
+    Parameters
+    ----------
+    structure : Structure
+    position : float64 array, shape (n_times, n_bodies, 3)
+        Of the mass centres, inertial frame [m].
+    rotation : float64 array, shape (n_times, n_bodies, 3, 3)
+        Body to world.
+
+    Returns
+    -------
+    xarray.Dataset
+        In the lower body's frame, of the upper body at the joint's centre: ``slip(time, joint, tangent)`` along x and
+        y, ``opening(time, joint)`` along z [m], and ``rotation(time, joint, axis)``, the rotation vector of the
+        upper body [rad]. Coordinates ``joint`` (``lower-upper``), ``lower`` and ``upper``; time is not named.
+
+    Raises
+    ------
+    InputError
+        The structure has no joints.
+
+    Notes
+    -----
+    The centre is a point of the upper body; a block that rocks about its edge opens there by half its width times
+    the angle and slips by next to nothing.
+    """
+    pairs, centres = find_joints(structure)
+    if not len(pairs):
+        raise InputError(structure.source, "bodies", "expected bodies that touch")
+    lower, upper = pairs.T
+    arm_upper = np.einsum("jki,jk->ji", rotation[0, upper], centres - position[0, upper])
+    point = position[:, upper] + np.einsum("tjik,jk->tji", rotation[:, upper], arm_upper)
+    seen = np.einsum("tjki,tjk->tji", rotation[:, lower], point - position[:, lower])
+    moved = seen - seen[:1]
+    turned = np.einsum("tjki,tjkl->tjil", rotation[:, lower], rotation[:, upper])
+    turned = np.einsum("tjik,jlk->tjil", turned, turned[0])
+    names = structure.body_names
+    return xr.Dataset(
+        {
+            "slip": (
+                ("time", "joint", "tangent"),
+                moved[..., :2],
+                {
+                    "long_name": "slip of the upper body at the joint's centre, lower body's frame",
+                    "units": "m",
+                },
+            ),
+            "opening": (
+                ("time", "joint"),
+                moved[..., 2],
+                {"long_name": "opening at the joint's centre, lower body's frame", "units": "m"},
+            ),
+            "rotation": (
+                ("time", "joint", "axis"),
+                _rotation_vectors(turned),
+                {"long_name": "rotation of the upper body against the lower one, its frame", "units": "rad"},
+            ),
+        },
+        coords={
+            "joint": [f"{names[a]}-{names[b]}" for a, b in pairs],
+            "lower": ("joint", [names[a] for a in lower]),
+            "upper": ("joint", [names[b] for b in upper]),
+            "tangent": ["x", "y"],
+            "axis": list(AXES),
+        },
+    )
+
+
+def _rotation_vectors(matrices):
+    """Rotation vectors of matrices, (..., 3); NaN where a matrix is."""
+    vectors = np.full(matrices.shape[:-1], np.nan)
+    known = np.isfinite(matrices).all(axis=(-2, -1))
+    if known.any():
+        vectors[known] = Rotation.from_matrix(matrices[known]).as_rotvec()
+    return vectors

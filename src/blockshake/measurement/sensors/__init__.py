@@ -1,0 +1,1 @@
+"""Markers and accelerometers: what they read of a motion, and their noise."""

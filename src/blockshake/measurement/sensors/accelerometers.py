@@ -1,0 +1,120 @@
+"""Readings of an accelerometer on a block: specific force along the block's own axes."""
+
+import numpy as np
+from scipy.signal import butter, sosfiltfilt
+
+from blockshake.geometry.rotations import rotation_matrices
+
+RATE = 512.0  # Hz, of the readings
+NOISE = 0.02  # m/s2, standard deviation of the readings where nothing else is stated
+FINE_RATE = 4.0 * RATE  # Hz, of the states they are made from
+CUTOFF = 50.0  # Hz, where each of the two passes is 3 dB down
+ORDER = 4
+
+_SKIP = round(FINE_RATE / RATE)
+_PAD = round(0.25 * FINE_RATE)  # a quarter second: the filter has forgotten its start after 0.1 s
+
+
+def accelerometer_channels(structure):
+    """Channel names ``NAME-axis`` in file order."""
+    return [f"{sensor.name}-{axis}" for sensor in structure.file.accelerometers for axis in sensor.axes]
+
+
+def accelerometer_readings(structure, time, orientation, velocity, angular_velocity):
+    """Readings of every channel, from the motion of the bodies at `FINE_RATE`.
+
+    Parameters
+    ----------
+    structure : Structure
+    time : float64 array, shape (n_fine,)
+        Uniform at `FINE_RATE`, 2048 Hz [s].
+    orientation : float64 array, shape (n_fine, n_bodies, 4)
+        Unit quaternions (w, x, y, z), body to world, continuous in sign; NaN after an abort.
+    velocity, angular_velocity : float64 arrays, shape (n_fine, n_bodies, 3)
+        World frame [m/s, rad/s]; NaN after an abort.
+
+    Returns
+    -------
+    time_acc : float64 array, shape (n_readings,)
+        ``time[0] + k / 512`` up to the last state [s].
+    readings : float64 array, shape (n_readings, n_channels)
+        Specific force [m/s2]: a block at rest reads +9.81 along an upward axis, a falling one 0.
+        NaN after the last whole state.
+    channels : list of str, length n_channels
+        ``NAME-axis``.
+
+    Raises
+    ------
+    ValueError
+        The times are not uniform at `FINE_RATE`.
+
+    Notes
+    -----
+    The velocity of the sensor's point, differenced over a fine interval, is the mean acceleration in
+    it exactly, whatever impacts it holds: an impact enters with its whole change of velocity. That
+    mean belongs to the middle of the interval and is turned into the body's axes by the orientation
+    there; four neighbours give the value at the state between them (third order), the low-pass (a
+    4th-order Butterworth at 50 Hz, forwards and backwards, so without lag) runs at 2048 Hz, and
+    every fourth value is a reading. Beyond the ends the record continues as its point
+    reflection for a quarter second; a record cut by an abort ends where the states do.
+    """
+    if len(time) > 1 and not np.allclose(np.diff(time), 1.0 / FINE_RATE, rtol=1e-6, atol=0.0):
+        raise ValueError(f"accelerometers need states at a uniform {FINE_RATE:g} Hz")
+    sensors = structure.file.accelerometers
+    channels = accelerometer_channels(structure)
+    time_acc = time[0] + np.arange((len(time) - 1) // _SKIP + 1) / RATE
+    readings = np.full((len(time_acc), len(channels)), np.nan)
+    if not channels:
+        return time_acc, readings, channels
+    bodies = structure.carriers(sensors)
+    whole = _whole_states(orientation[:, bodies], velocity[:, bodies], angular_velocity[:, bodies])
+    if whole < 2:
+        return time_acc, readings, channels
+    force = _specific_force(
+        structure.arms(sensors),
+        np.array(structure.file.gravity),
+        orientation[:whole, bodies],
+        velocity[:whole, bodies],
+        angular_velocity[:whole, bodies],
+    )
+    columns = [
+        force[:, sensor, "xyz".index(axis)] for sensor, item in enumerate(sensors) for axis in item.axes
+    ]
+    smooth = low_pass(_at_states(np.column_stack(columns)))[::_SKIP]
+    readings[: len(smooth)] = smooth
+    return time_acc, readings, channels
+
+
+def low_pass(values):
+    """The 50 Hz low-pass of the readings, at `FINE_RATE`, along the first axis, without lag.
+
+    Parameters
+    ----------
+    values : float64 array, shape (n_fine, n_channels)
+        Finite.
+    """
+    sections = butter(ORDER, CUTOFF, fs=FINE_RATE, output="sos")
+    return sosfiltfilt(sections, values, axis=0, padlen=min(_PAD, len(values) - 1))
+
+
+def _whole_states(*arrays):
+    """Number of leading times at which everything is finite."""
+    finite = np.logical_and.reduce([np.isfinite(array).all(axis=(1, 2)) for array in arrays])
+    return len(finite) if finite.all() else int(np.argmin(finite))
+
+
+def _specific_force(arms, gravity, orientation, velocity, angular_velocity):
+    """Specific force in the body's axes in the middle of every interval, (n_fine - 1, n_sensors, 3)."""
+    arm = np.einsum("tsij,sj->tsi", rotation_matrices(orientation), arms)
+    point_velocity = velocity + np.cross(angular_velocity, arm)
+    acceleration = np.diff(point_velocity, axis=0) * FINE_RATE
+    # the normalised mean of two near quaternions is the rotation half-way between them
+    middle = orientation[1:] + orientation[:-1]
+    middle /= np.linalg.norm(middle, axis=-1, keepdims=True)
+    return np.einsum("tsji,tsj->tsi", rotation_matrices(middle), acceleration - gravity)
+
+
+def _at_states(middles):
+    """Values at the states from values in the middle of the intervals, one more row."""
+    padded = np.pad(middles, ((2, 2), (0, 0)), mode="edge")
+    return (9.0 * (padded[1:-2] + padded[2:-1]) - padded[:-3] - padded[3:]) / 16.0

@@ -1,0 +1,187 @@
+"""The observation operator: what the sensors of a test read of a run, with all their faults as parameters."""
+
+import numpy as np
+import xarray as xr
+from pydantic import Field
+from scipy.interpolate import CubicSpline
+from scipy.signal import lfilter
+
+from blockshake.errors import InputError
+from blockshake.geometry.rotations import rotation_matrices
+from blockshake.geometry.schema import AXES
+from blockshake.measurement.sensors import accelerometers, markers
+from blockshake.measurement.sensors.markers import marker_position
+from blockshake.validation import Finite, NotNegative, ProperFraction, Strict
+
+Vector = tuple[Finite, Finite, Finite]
+_BURST = 10  # readings that a dropout loses in the mean
+_OUTLIER = 10.0  # standard deviations of the noise
+
+
+class Instruments(Strict):
+    """Sensors of a test; the defaults have noise and no other fault."""
+
+    marker_noise: NotNegative = Field(
+        markers.NOISE, description="standard deviation of a marker's position [m]"
+    )
+    accelerometer_noise: NotNegative = Field(
+        accelerometers.NOISE, description="standard deviation of a reading [m/s2]"
+    )
+    noise_memory: ProperFraction = Field(
+        0.0, description="correlation of the noise of one reading with the next [1]"
+    )
+    marker_outliers: ProperFraction = Field(
+        0.0, description="share of the marker readings that are wrong by ten times the noise [1]"
+    )
+    accelerometer_offset: NotNegative = Field(
+        0.0, description="standard deviation of the channels' constant offsets [m/s2]"
+    )
+    marker_lag: Finite = Field(
+        0.0, description="by which the optical clock is behind the accelerometers' [s]"
+    )
+    marker_drift: Vector = Field((0.0, 0.0, 0.0), description="of the optical system's frame [m/s]")
+    marker_gain: dict[str, Finite] = Field({}, description="by marker: reading over displacement [1]")
+    marker_offset: dict[str, Vector] = Field(
+        {}, description="by marker: where it is less where it is said to be, body frame [m]"
+    )
+    channel_gain: dict[str, Finite] = Field({}, description="by accelerometer channel [1]")
+    marker_dropouts: ProperFraction = Field(
+        0.0, description="share of the marker readings that are lost, in bursts [1]"
+    )
+
+
+def observe(run, structure, instruments, seed):
+    """Synthetic readings of a run.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A run file's content; with ``accelerometer`` these are read too.
+    structure : Structure
+        Of the run.
+    instruments : Instruments
+    seed : int
+        Of noise, offsets and dropouts: each has a stream of its own, so that one fault more leaves the
+        others' numbers as they are.
+
+    Returns
+    -------
+    xarray.Dataset
+        As in a campaign's test file; attribute ``synthetic`` is 1.
+
+    Raises
+    ------
+    InputError
+        A fault of a marker or channel that the structure lacks.
+
+    Notes
+    -----
+    A marker that sits elsewhere than the structure says reads the displacement of where it sits. A clock that is
+    behind by the lag shows at the time t what was at t - lag; before the start everything rests.
+    """
+    noise, offsets, losses, wrong = (np.random.default_rng([seed, stream]) for stream in range(4))
+    places = _places(run, structure, instruments)
+    displacement = places - places[:1]
+    names = [marker.name for marker in structure.file.markers]
+    time = run["time"].to_numpy()
+    _check_names(instruments, names, run)
+    displacement = _delayed(displacement, time, instruments.marker_lag)
+    displacement *= np.array([instruments.marker_gain.get(name, 1.0) for name in names])[:, None]
+    displacement += (time - time[0])[:, None, None] * np.array(instruments.marker_drift)
+    memory = instruments.noise_memory
+    read = displacement + _noise(noise, displacement.shape, memory) * instruments.marker_noise
+    far = wrong.random(read.shape[:2]) < instruments.marker_outliers
+    far[0] = False
+    read[far] += wrong.normal(0.0, _OUTLIER * instruments.marker_noise, (far.sum(), 3))
+    first = places[0] + read[0]
+    read -= read[:1]
+    read[_lost(losses, len(time), len(names), instruments.marker_dropouts)] = np.nan
+    test = xr.Dataset(
+        {
+            "marker_displacement": (
+                ("time", "marker", "axis"), read,
+                {"units": "m", "long_name": "synthetic marker displacement since the first reading, inertial frame"},
+            ),
+            "marker_initial_position": (
+                ("marker", "axis"), first, {"units": "m", "long_name": "synthetic first reading, inertial frame"},
+            ),
+        },
+        {"time": ("time", time, {"units": "s"}), "marker": names, "axis": list(AXES)},
+        {
+            "Conventions": "CF-1.11",
+            "title": "virtual test: synthetic, not measured",
+            "synthetic": 1,
+            "source": "one simulated run seen through its instruments",
+        },
+    )  # fmt: skip
+    if "accelerometer" in run:
+        channels = [str(name) for name in run["channel"].values]
+        values = run["accelerometer"].to_numpy() * [
+            instruments.channel_gain.get(name, 1.0) for name in channels
+        ]
+        values = values + offsets.normal(0.0, 1.0, len(channels)) * instruments.accelerometer_offset
+        values = values + _noise(noise, values.shape, memory) * instruments.accelerometer_noise
+        test["accelerometer"] = (("time_acc", "channel"), values, dict(run["accelerometer"].attrs))
+        test = test.assign_coords(
+            time_acc=("time_acc", run["time_acc"].to_numpy(), {"units": "s"}), channel=channels
+        )
+    return test
+
+
+def _noise(generator, shape, memory):
+    """Gaussian noise of unit variance, first-order autoregressive along the first axis."""
+    white = generator.normal(0.0, 1.0, shape)
+    if memory == 0.0:
+        return white
+    white[0] /= np.sqrt(1.0 - memory**2)
+    return lfilter([np.sqrt(1.0 - memory**2)], [1.0, -memory], white, axis=0)
+
+
+def _places(run, structure, instruments):
+    """Where the markers really are, (n_times, n_markers, 3), inertial frame [m]."""
+    position = run["position"].transpose("time", "body", "axis").to_numpy()
+    orientation = run["orientation"].transpose("time", "body", "quaternion").to_numpy()
+    places = marker_position(structure, position, orientation)
+    for index, marker in enumerate(structure.file.markers):
+        if marker.name in instruments.marker_offset:
+            body = structure.body_names.index(marker.body)
+            turn = rotation_matrices(orientation[:, body])
+            places[:, index] += turn @ np.array(instruments.marker_offset[marker.name])
+    return places
+
+
+def _delayed(displacement, time, lag):
+    """Histories ``lag`` later; a cubic spline through the states, at rest before the first.
+
+    Without a lag it gives the states themselves, to the bit, for one more knot after the last.
+    """
+    whole = np.isfinite(displacement).all(axis=(1, 2))
+    known, states = time[whole], displacement[whole]
+    spline = CubicSpline(np.append(known, 2.0 * known[-1] - known[-2]), np.concatenate([states, states[-1:]]))
+    asked = np.maximum(time - lag, known[0])
+    shifted = np.full_like(displacement, np.nan)
+    reached = asked <= known[-1]
+    shifted[reached] = spline(asked[reached])
+    return shifted
+
+
+def _lost(generator, n_times, n_markers, share):
+    """Readings lost, bool (n_times, n_markers): bursts of geometric length, never the first reading."""
+    lost = np.zeros((n_times, n_markers), dtype=bool)
+    if share == 0.0:
+        return lost
+    end, begin = 1.0 / _BURST, share / (1.0 - share) / _BURST
+    chance = generator.random((n_times, n_markers))
+    for row in range(1, n_times):
+        lost[row] = np.where(lost[row - 1], chance[row] > end, chance[row] < begin)
+    return lost
+
+
+def _check_names(instruments, markers, run):
+    channels = [str(name) for name in run["channel"].values] if "channel" in run.coords else []
+    for key, known in (("marker_gain", markers), ("marker_offset", markers), ("channel_gain", channels)):
+        for name in getattr(instruments, key):
+            if name not in known:
+                raise InputError(
+                    "instruments", f"{key}.{name}", f"expected one of {', '.join(known) or 'no channel'}"
+                )

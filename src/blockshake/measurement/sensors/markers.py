@@ -1,0 +1,72 @@
+"""Readings of the optical system: points fixed to bodies, in the inertial frame."""
+
+import numpy as np
+
+from blockshake.errors import InputError
+from blockshake.geometry.rotations import rotation_matrices
+
+RATE = 200.0  # Hz, of the readings of the optical system
+NOISE = 1e-4  # m, standard deviation of its readings where nothing else is stated
+
+
+def marker_position(structure, position, orientation):
+    """Position of every marker.
+
+    Parameters
+    ----------
+    structure : Structure
+    position : float64 array, shape (..., n_bodies, 3)
+        Of the mass centres, inertial frame [m].
+    orientation : float64 array, shape (..., n_bodies, 4)
+        Unit quaternions (w, x, y, z), body to world.
+
+    Returns
+    -------
+    float64 array, shape (..., n_markers, 3)
+        Inertial frame [m], markers in file order; NaN where the body's pose is.
+    """
+    markers = structure.file.markers
+    bodies = structure.carriers(markers)
+    turn = rotation_matrices(orientation[..., bodies, :])
+    return position[..., bodies, :] + np.einsum("...mij,mj->...mi", turn, structure.arms(markers))
+
+
+def marker_displacement(structure, position, orientation):
+    """Displacement of every marker since the first time.
+
+    Parameters
+    ----------
+    structure : Structure
+    position : float64 array, shape (n_times, n_bodies, 3)
+        Of the mass centres, inertial frame [m].
+    orientation : float64 array, shape (n_times, n_bodies, 4)
+        Unit quaternions (w, x, y, z), body to world.
+
+    Returns
+    -------
+    float64 array, shape (n_times, n_markers, 3)
+        Inertial frame [m], zero at the first time; NaN where the body's pose is.
+    """
+    places = marker_position(structure, position, orientation)
+    return places - places[:1]
+
+
+def marker_bodies(structure, names):
+    """Names of the bodies that carry these markers, list of str."""
+    bodies = {marker.name: marker.body for marker in structure.file.markers}
+    return [bodies[str(name)] for name in names]
+
+
+def driven_marker(structure):
+    """Name of the first marker on a driven body: the paper's slab marker.
+
+    Raises
+    ------
+    InputError
+        No driven body carries a marker.
+    """
+    driven = {body.name for body in structure.file.bodies if body.driven}
+    for marker in structure.file.markers:
+        if marker.body in driven:
+            return marker.name
+    raise InputError(structure.source, "markers", "expected a marker on a driven body")

@@ -1,0 +1,1 @@
+"""Parity checks of sensors against each other: faults that show without a simulation."""

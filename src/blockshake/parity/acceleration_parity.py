@@ -1,0 +1,236 @@
+"""Accelerometers against the markers of the same body, in the band in which both are informative."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import make_interp_spline
+
+from blockshake.measurement.motion.body_frame import ON_LINE, outlying, rigid_jacobian, see_from_body
+from blockshake.parity.marker_equations import record_scale, take_out
+
+_SHORT_GAUSSIAN, _LONG_GAUSSIAN = (
+    0.02,
+    0.1,
+)  # s, standard deviations of the two Gaussians: a band of 1.5 to 10 Hz
+_FINE_GAUSSIAN = 0.012  # s, of the Gaussian within which a body's axes do not turn
+_SLOW_GAUSSIAN = 0.25  # s, of the Gaussian that shows drifts
+_KERNEL_SUPPORT = 5.0  # standard deviations
+_LARGEST_GAP = 2  # readings that interpolation bridges
+_LARGEST_ROTATION = 0.3  # rad
+_LARGEST_MAGNIFICATION = 3.0  # noise of the sensor's point over a marker's, above which nothing is compared
+_LARGEST_UNSEEN_ARM = 0.1  # m per rad
+
+
+@dataclass(frozen=True)
+class ChannelPair:
+    """One accelerometer channel and its expectation from the markers, both through the same band.
+
+    Attributes
+    ----------
+    name, sensor : str
+    time : float64 array, shape (n_times,)
+        Of the markers [s].
+    expected, expected_slow : float64 arrays, shape (n_times,)
+        From the markers [m/s2]; NaN near gaps and ends.
+    read, read_slow : callables of times
+        Band-passed and low-passed readings at the accelerometers' times [m/s2]; NaN near gaps and ends.
+    noise : float
+        Standard deviation of the accelerometer's own noise in the band [m/s2].
+    unseen : bool
+        The markers lie on a line, and a turn about it, which they do not show, moves the sensor along its axis.
+    """
+
+    name: str
+    sensor: str
+    time: np.ndarray
+    expected: np.ndarray
+    expected_slow: np.ndarray
+    read: object
+    read_slow: object
+    noise: float
+    unseen: bool
+
+
+def channel_pairs(structure, test, bodies, faults, accelerometer_noise):
+    """Pairs of a test, for every channel on a body with three markers.
+
+    Parameters
+    ----------
+    structure : Structure
+    test : xarray.Dataset
+        As in a campaign.
+    bodies : dict of str to BodyMarkers
+        Of this test alone.
+    faults : dict of str to MarkerFaults
+        Of these bodies, for this test alone; taken out of the readings.
+    accelerometer_noise : float
+        Standard deviation of a reading [m/s2].
+
+    Notes
+    -----
+    Along the sensor's axis the specific force is ``R' (a - g)``. The markers' point at the sensor is convolved with the
+    second derivative of a narrow Gaussian and then with the rest of the kernel with which the readings are
+    convolved: nothing is differentiated on its own and both lose the same frequencies. The kernel is a difference of
+    two Gaussians: no constant offset passes.
+    """
+    time_acc = test["time_acc"].to_numpy()
+    read = {str(name): test["accelerometer"].sel(channel=name).to_numpy() for name in test["channel"].values}
+    poses = {name: _pose(body, faults[name]) for name, body in bodies.items()}
+    pairs = []
+    for sensor in structure.file.accelerometers:
+        if sensor.body not in poses:
+            continue
+        time, position, rotation = poses[sensor.body]
+        for axis in sensor.axes:
+            name = f"{sensor.name}-{axis}"
+            if name not in read or len(time) < 2:
+                continue
+            magnified, unseen = _sight(bodies[sensor.body].points, sensor.position, "xyz".index(axis))
+            if magnified > _LARGEST_MAGNIFICATION:
+                continue
+            point = position + rotation @ np.array(sensor.position, dtype=float)
+            own = rotation[:, :, "xyz".index(axis)]
+            expected, slow = (
+                _expected(time, point, own, np.array(structure.file.gravity), kernel)
+                for kernel in (_band, _low)
+            )
+            rate = (len(time_acc) - 1) / (time_acc[-1] - time_acc[0])
+            weights = _band(_lags(_LONG_GAUSSIAN, rate), 0) / rate
+            noise = accelerometer_noise * np.sqrt(
+                (weights**2).sum() * 3.0
+            )  # colour: 3 at a coefficient of 0.5
+            pairs.append(
+                ChannelPair(
+                    name,
+                    sensor.name,
+                    time,
+                    expected,
+                    slow,
+                    _filtered(time_acc, read[name], _band, _LONG_GAUSSIAN),
+                    _filtered(time_acc, read[name], _low, _SLOW_GAUSSIAN),
+                    noise,
+                    unseen > _LARGEST_UNSEEN_ARM,
+                )
+            )
+    return pairs
+
+
+def _sight(points, place, axis):
+    """Noise and visibility of a point's motion, as the markers give it.
+
+    Returns
+    -------
+    magnified : float
+        Its noise over that of a marker [1].
+    unseen : float
+        Its motion along the axis in a unit turn that the markers do not show [m].
+    """
+    jacobian = rigid_jacobian(points - points.mean(axis=0))
+    row = rigid_jacobian((np.array(place, dtype=float) - points.mean(axis=0))[None])[axis]
+    inverse = np.linalg.pinv(jacobian, rcond=ON_LINE)
+    return np.linalg.norm(row @ inverse), np.linalg.norm(row - row @ inverse @ jacobian)
+
+
+def _pose(body, faults):
+    """Even times, position and rotation of a body; NaN where gaps are too long."""
+    time, displacement = body.readings[0]
+    points = body.points + faults.place
+    places = body.position + points @ body.rotation.T
+    readings = places + take_out(displacement, record_scale(time), faults, 0)
+    pose = see_from_body(points, readings, body.position, body.rotation)
+    readings[outlying(pose.residual)] = np.nan
+    # steps where a marker comes or goes would look like acceleration
+    readings = readings - np.einsum(
+        "tij,mj->tmi", np.nan_to_num(pose.rotation), np.nan_to_num(np.nanmean(pose.residual, axis=0))
+    )
+    pose = see_from_body(points, readings, body.position, body.rotation)
+    turned = np.einsum("tij,ij->t", pose.rotation, body.rotation)
+    known = np.isfinite(turned) & (turned > 1.0 + 2.0 * np.cos(_LARGEST_ROTATION))
+    even = np.linspace(time[0], time[-1], len(time))
+    flat = np.concatenate([pose.position, pose.rotation.reshape(-1, 9)], axis=1)
+    if known.sum() < 2:
+        return even[:0], flat[:0, :3], flat[:0, 3:].reshape(-1, 3, 3)
+    filled = np.stack([np.interp(even, time[known], column[known]) for column in flat.T], axis=1)
+    filled[_far_from(even, time[known], time[1] - time[0])] = np.nan
+    return even, filled[:, :3], filled[:, 3:].reshape(-1, 3, 3)
+
+
+def _far_from(even, known, step):
+    """Times at which interpolation between known readings is not to be trusted."""
+    after = np.clip(np.searchsorted(known, even - 1e-9), 0, len(known) - 1)
+    before = np.clip(np.searchsorted(known, even + 1e-9) - 1, 0, len(known) - 1)
+    return (known[after] - known[before] > (_LARGEST_GAP + 1.5) * step) | (even > known[-1] + 1e-9)
+
+
+def _band(lag, order, done=0.0):
+    """Band-pass kernel or its second derivative at these times [1/s, 1/s3], less a Gaussian already passed."""
+    return _gaussian(lag, np.sqrt(_SHORT_GAUSSIAN**2 - done**2), order) - _gaussian(
+        lag, np.sqrt(_LONG_GAUSSIAN**2 - done**2), order
+    )
+
+
+def _low(lag, order, done=0.0):
+    """Low-pass kernel or its second derivative."""
+    return _gaussian(lag, np.sqrt(_SLOW_GAUSSIAN**2 - done**2), order)
+
+
+def _gaussian(lag, spread, order):
+    value = np.exp(-0.5 * (lag / spread) ** 2) / (np.sqrt(2.0 * np.pi) * spread)
+    return value if order == 0 else value * ((lag / spread) ** 2 - 1.0) / spread**2
+
+
+def _lags(spread, rate):
+    count = int(np.ceil(_KERNEL_SUPPORT * spread * rate))
+    return np.arange(-count, count + 1) / rate
+
+
+def _expected(time, point, own, gravity, kernel):
+    """Specific force along the sensor's axis, through the kernel, shape (n_times,); NaN near gaps."""
+    rate = (len(time) - 1) / (time[-1] - time[0])
+    short = _lags(_FINE_GAUSSIAN, rate)
+    acceleration = np.stack(
+        [_convolved(point[:, i] - point[0, i], _gaussian(short, _FINE_GAUSSIAN, 2) / rate) for i in range(3)],
+        axis=1,
+    )
+    steady = np.stack(
+        [_convolved(own[:, i] - own[0, i], _gaussian(short, _FINE_GAUSSIAN, 0) / rate) for i in range(3)],
+        axis=1,
+    )
+    # the axis turns while the kernel lasts: the product comes before the long filter
+    force = ((steady + own[0]) * acceleration).sum(axis=1) - steady @ gravity
+    return _convolved(
+        force,
+        kernel(_lags(_LONG_GAUSSIAN if kernel is _band else _SLOW_GAUSSIAN, rate), 0, _FINE_GAUSSIAN) / rate,
+    )
+
+
+def _convolved(values, weights):
+    """Convolution over gaps bridged, NaN where a gap or an end is near the kernel's middle."""
+    known = np.isfinite(values)
+    if not known.any():
+        return np.full(len(values), np.nan)
+    filled = np.interp(np.arange(len(values)), np.flatnonzero(known), values[known])
+    half = len(weights) // 2
+    found = np.convolve(filled, weights, mode="same") if len(values) >= len(weights) else filled * np.nan
+    near = np.convolve(~known, np.ones(2 * max(half // 4, 1) + 1), mode="same") > 0.5
+    found[near] = np.nan
+    found[:half] = found[-half:] = np.nan
+    return found
+
+
+def _filtered(time, values, kernel, spread):
+    rate = (len(time) - 1) / (time[-1] - time[0])
+    level = np.nanmedian(values)
+    smooth = _convolved(values - level, kernel(_lags(spread, rate), 0) / rate)
+    known = np.isfinite(smooth)
+    if known.sum() < 4:
+        return lambda times: np.full(len(times), np.nan)
+    spline = make_interp_spline(time[known], smooth[known], k=3)
+
+    def at(times):
+        found = spline(np.clip(times, time[known][0], time[known][-1]))
+        place = np.clip(np.searchsorted(time, times), 1, len(time) - 1)
+        inside = known[place] & known[place - 1] & (times >= time[0]) & (times <= time[-1])
+        return np.where(inside, found, np.nan)
+
+    return at

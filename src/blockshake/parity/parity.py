@@ -1,0 +1,273 @@
+"""Parity checks of a campaign's sensors against each other, without a simulator."""
+
+import json
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from blockshake.errors import InputError
+from blockshake.files import read_text
+from blockshake.geometry.rotations import rotation_matrices
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign import load_test
+from blockshake.parity.acceleration_parity import channel_pairs
+from blockshake.parity.channel_findings import channel_findings
+from blockshake.parity.finding import Finding
+from blockshake.parity.frame_drift import frame_drift
+from blockshake.parity.marker_equations import MarkerFaults
+from blockshake.parity.marker_faults import BodyMarkers, check_body
+from blockshake.parity.marker_swaps import unswapped
+from blockshake.parity.saturation import saturated
+
+LEVEL = 0.01  # chance of any finding on a campaign of sound sensors
+_FEWEST_MARKERS = 3
+_MARKER_UNITS = {"noise": "m", "misfit": "m"}
+_CLOCK_UNITS = {"lag": "s", "lag_error": "s"}
+_CHANNEL_UNITS = {"gain": "1", "gain_error": "1"}
+
+
+@dataclass(frozen=True)
+class Parity:
+    """Outcome of the parity checks.
+
+    Attributes
+    ----------
+    findings : tuple of Finding
+    markers : xarray.Dataset
+        ``noise(marker)`` of the readings after the findings are taken out and ``misfit(marker)`` before [m]; NaN on
+        bodies with fewer than three markers.
+    clock : xarray.Dataset
+        ``lag(test)`` of the optical clock, with ``lag_error(test)`` [s].
+    channels : xarray.Dataset
+        ``gain(channel)``, reading over truth less 1, with ``gain_error(channel)`` [1].
+    looked_at : int
+        Number of hypotheses.
+    """
+
+    findings: tuple
+    markers: xr.Dataset
+    clock: xr.Dataset
+    channels: xr.Dataset
+    looked_at: int
+
+    def as_json(self):
+        """As JSON-like values, NaN as null."""
+        return {
+            "findings": [finding.as_json() for finding in self.findings],
+            "markers": _columns(self.markers, "marker"),
+            "clock": _columns(self.clock, "test"),
+            "channels": _columns(self.channels, "channel"),
+            "looked_at": self.looked_at,
+        }
+
+    @classmethod
+    def from_json(cls, values):
+        """The parity of such values."""
+        return cls(
+            findings=tuple(map(Finding.from_json, values["findings"])),
+            markers=_table(values["markers"], "marker", _MARKER_UNITS),
+            clock=_table(values["clock"], "test", _CLOCK_UNITS),
+            channels=_table(values["channels"], "channel", _CHANNEL_UNITS),
+            looked_at=values["looked_at"],
+        )
+
+
+def load_parity(path):
+    """Parity of the file ``parity.json``."""
+    return Parity.from_json(json.loads(read_text(path)))
+
+
+def _columns(table, dim):
+    """Columns of a table by the names along its dimension."""
+    return {
+        str(name): {
+            column: float(table[column].sel({dim: name}))
+            if np.isfinite(table[column].sel({dim: name}))
+            else None
+            for column in table.data_vars
+        }
+        for name in table[dim].values
+    }
+
+
+def _table(rows, dim, units):
+    """Table of such columns; null is NaN."""
+    return xr.Dataset(
+        {
+            column: (dim, np.array([row[column] for row in rows.values()], dtype=float), {"units": unit})
+            for column, unit in units.items()
+        },
+        {dim: list(rows)},
+    )
+
+
+def campaign_parity(campaign, names, without=()):
+    """Parity of the named tests of a campaign; see `check_parity`.
+
+    Findings of the effects ``without`` are left out, as if nobody had thought of them: the readings keep the fault.
+
+    Raises
+    ------
+    InputError
+        A name that is not in the campaign, or of a sealed test: its file is not opened.
+    """
+    for name in names:
+        if name not in campaign.tests or campaign.tests[name].role == "sealed":
+            usable = [test.name for test in campaign.tests.values() if test.role != "sealed"]
+            raise InputError(campaign.folder, f"tests.{name}", f"expected one of {', '.join(usable)}")
+    tests = {name: load_test(campaign, name) for name in names}
+    parity = check_parity(tests, load_structure(campaign.structure), campaign.sensors)
+    return replace(parity, findings=tuple(one for one in parity.findings if one.effect not in without))
+
+
+def check_parity(tests, structure, sensors, level=LEVEL):
+    """Faults of the sensors, found from readings alone.
+
+    Parameters
+    ----------
+    tests : dict of str to xarray.Dataset
+        By name, as in a campaign.
+    structure : Structure
+    sensors : Sensors
+        Stated noise.
+    level : float
+        Chance of any finding where all sensors are within their tolerances; shared evenly by all hypotheses.
+
+    Returns
+    -------
+    Parity
+
+    Notes
+    -----
+    Markers are checked body by body against a rigid motion first; the accelerometers are then compared with the
+    markers as corrected.
+    """
+    tests, findings = dict(tests), []
+    for name, test in tests.items():
+        tests[name], found = _without_saturation(test, name, level, 2 * len(tests) * _channel_count(tests))
+        findings += found
+    bodies = _bodies(structure, tests)
+    looked_at = _looked_at(bodies, tests)
+    tests, found = unswapped(tests, bodies, sensors.marker_noise, level, looked_at)
+    findings += found
+    bodies = _bodies(structure, tests)
+    checks = {name: check_body(body, sensors.marker_noise, level, looked_at) for name, body in bodies.items()}
+    findings += [finding for check in checks.values() for finding in check.findings]
+    findings += frame_drift(structure, tests, sensors.marker_noise, level, looked_at)
+    pairs = {
+        name: _pairs(structure, name, test, bodies, checks, sensors)
+        for name, test in tests.items()
+        if "accelerometer" in test
+    }
+    lags, gains, found = channel_findings(pairs, sensors.accelerometer_noise, level, looked_at)
+    return Parity(
+        findings=tuple(findings + found),
+        markers=_table(_marker_rows(bodies, checks, tests), "marker", _MARKER_UNITS),
+        clock=_table(_scored_rows(lags, "lag"), "test", _CLOCK_UNITS),
+        channels=_table(_scored_rows(gains, "gain"), "channel", _CHANNEL_UNITS),
+        looked_at=looked_at,
+    )
+
+
+def _bodies(structure, tests):
+    """`BodyMarkers` of every body that has three markers in all tests."""
+    bodies = {}
+    shared = set.intersection(*({str(name) for name in test["marker"].values} for test in tests.values()))
+    for index, name in enumerate(structure.body_names):
+        own = [marker for marker in structure.file.markers if marker.body == name and marker.name in shared]
+        if len(own) < _FEWEST_MARKERS:
+            continue
+        names = [marker.name for marker in own]
+        bodies[name] = BodyMarkers(
+            name,
+            tuple(names),
+            np.array([marker.position for marker in own], dtype=float),
+            structure.position[index],
+            rotation_matrices(structure.orientation[index]),
+            tuple(tests),
+            [
+                (
+                    test["time"].to_numpy(),
+                    test["marker_displacement"]
+                    .sel(marker=names)
+                    .transpose("time", "marker", "axis")
+                    .to_numpy(),
+                )
+                for test in tests.values()
+            ],
+        )
+    return bodies
+
+
+def _pairs(structure, name, test, bodies, checks, sensors):
+    """Channel pairs of one test, with the markers' faults taken out."""
+    single, faults = {}, {}
+    for key, body in bodies.items():
+        place, found = body.tests.index(name), checks[key].faults
+        single[key] = replace(body, tests=(name,), readings=[body.readings[place]])
+        faults[key] = MarkerFaults(found.gain, found.place, found.drift[[place]])
+    return channel_pairs(structure, test, single, faults, sensors.accelerometer_noise)
+
+
+def _without_saturation(test, name, level, looked_at):
+    """Test with saturated readings as gaps, and the findings."""
+    findings = []
+    test = test.copy()
+    for variable, dimension in (("marker_displacement", "marker"), ("accelerometer", "channel")):
+        if variable not in test:
+            continue
+        time = "time" if dimension == "marker" else "time_acc"
+        values = test[variable].transpose(time, dimension, ...)
+        array = values.to_numpy().copy()
+        for index, where in enumerate(values[dimension].values):
+            columns = array[:, index] if array.ndim == 3 else array[:, [index]]
+            for column in range(columns.shape[1]):
+                at_end, p = saturated(columns[:, column])
+                if p * looked_at >= level:
+                    continue
+                largest = np.abs(columns[at_end, column]).max(keepdims=True)
+                findings.append(
+                    Finding(
+                        "sensor-saturation",
+                        (str(where),),
+                        "range",
+                        largest,
+                        np.zeros((1, 1)),
+                        p * looked_at,
+                        (name,),
+                    )
+                )
+                array[at_end, index] = np.nan
+        test[variable] = values.copy(data=array)
+    return test, findings
+
+
+def _channel_count(tests):
+    return sum(3 * test.sizes["marker"] + test.sizes.get("channel", 0) for test in tests.values())
+
+
+def _looked_at(bodies, tests):
+    """Hypotheses: of markers, of the optical frame, of the clock, and of channels and their pairs."""
+    channels = max(test.sizes.get("channel", 0) for test in tests.values())
+    of_markers = sum(len(body.hypotheses) for body in bodies.values())
+    return of_markers + 2 + 2 * len(tests) + channels * (1 + channels + len(tests))
+
+
+def _marker_rows(bodies, checks, tests):
+    names = [str(name) for name in next(iter(tests.values()))["marker"].values]
+    rows = {name: {"noise": np.nan, "misfit": np.nan} for name in names}
+    for key, check in checks.items():
+        for index, marker in enumerate(bodies[key].markers):
+            rows[marker] = {
+                "noise": check.equations.noise[index], "misfit": check.equations.misfit[index],
+            }  # fmt: skip
+    return rows
+
+
+def _scored_rows(scores, name):
+    """Estimate and standard error of each score."""
+    return {
+        key: {name: one.estimate[0], f"{name}_error": np.sqrt(one.covariance[0, 0])}
+        for key, one in scores.items()
+    }

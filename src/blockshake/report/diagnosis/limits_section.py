@@ -1,0 +1,126 @@
+"""Last page of a diagnosis: what was not tested, what was assumed, and from what files all this comes."""
+
+import numpy as np
+
+from blockshake.effects.registry import EFFECTS
+from blockshake.parity.parity import LEVEL
+from blockshake.report.diagnosis.wording import title_of
+from blockshake.report.document.blocks import Items, Section, Table, Text
+from blockshake.report.document.origin import command_blocks, digests_table, versions_table
+from blockshake.report.document.wording import given, number, sentence_case
+
+_ROLES = {True: "judged by", False: "left out: the effort allows fewer tests"}
+
+
+def limits_section(found):
+    """Tests, sensors, caveats, effects, assumptions, digests, versions."""
+    blocks = [
+        Items(_not_tested(found)),
+        _tests_table(found),
+        Text(_sensors(found)),
+        *_findings(found),
+    ]
+    if found.verdict.caveats:
+        blocks += [
+            Text("Caveats of the verdict:"),
+            Items(tuple(map(sentence_case, found.verdict.caveats))),
+        ]
+    blocks += [
+        *command_blocks(f"snakemake -c2 diagnose --config campaign=FOLDER effort={found.effort}"),
+        digests_table(found.digests),
+        versions_table(found.versions),
+    ]
+    return Section("What was not tested, assumptions, origin", "limits", tuple(blocks))
+
+
+def _not_tested(found):
+    considered = found.decision.probabilities
+    sensors = [title_of(name) for name, effect in EFFECTS.items() if effect.acts == "observation"]
+    removed = [
+        title_of(name)
+        for name, effect in EFFECTS.items()
+        if effect.acts != "observation" and name not in considered
+    ]
+    motions = [
+        f"{name}{' (SYNTHETIC)' if one.get('synthetic') else ''}: {one['source']}"
+        for name, one in found.motions.items()
+    ]
+    items = [
+        f"{found.verdict.runs} simulated tests, effort {found.effort}; seeds follow from the names of draws, "
+        "candidates and tests, and the same files give the same report.",
+        f"Considered: {', '.join(map(title_of, considered))}; by the sensors' checks alone: {', '.join(sensors)}.",
+        "Not in the registry, and so never named: cracking and crushing of edges, deformation inside a block, motion "
+        "of the foundation beyond pitch and the vertical, wear of joints from test to test, misread time stamps within "
+        "a recorder, changes of the structure between tests. If one of these acts, the right answer is 'cause "
+        "unknown', and an effect that leaves the same in these data may be named instead.",
+        "Assumed: the scatter of the nominal parameters is that of Zhou et al. (2023), Table 2; the two solvers with "
+        "their numerics varied span the error of the numerical model; the library's simulated tests and these tests "
+        "are exchangeable where nothing is missing. Levels and intervals hold under these assumptions only.",
+        "Sizes and intervals are calibrated over the library's sizes together, not at each size.",
+    ]
+    if motions:
+        items.append(f"Commanded motions: {'; '.join(motions)}.")
+    if removed:
+        items.insert(2, f"Taken out of the candidates on purpose: {', '.join(removed)}.")
+    if not found.horizon:
+        items.append(
+            "How long each test can be predicted was not measured, and whole records were judged by their features: "
+            "where rocking is chaotic, late features are noise."
+        )
+    return tuple(items)
+
+
+def _tests_table(found):
+    rows = []
+    for test in found.campaign.tests.values():
+        use = "sealed: read for the gain alone" if test.role == "sealed" else _ROLES[test.name in found.tests]
+        if test.role == "sealed" and found.verdict.gain is None:
+            use = "sealed: not read"
+        rows.append((test.name, test.motion, given(test.scale), test.role, use))
+    header = ("Test", "Motion", "Scale", "Role", "Use")
+    return Table(f"Tests of the campaign {found.campaign.name}.", header, tuple(rows), "llrll")
+
+
+def _sensors(found):
+    parity = found.parity
+    noise = parity.markers["noise"]
+    unchecked = noise["marker"].values[np.isnan(noise)].tolist()
+    text = (
+        f"Sensors' checks, without any simulation: {parity.looked_at} hypotheses on "
+        f"{parity.markers.sizes['marker']} markers, {parity.channels.sizes['channel']} accelerometer channels, "
+        f"the clocks of {parity.clock.sizes['test']} tests; chance of any false finding {LEVEL:g}. "
+    )
+    if noise.notnull().any():
+        text += f"Noise of the markers {number(1e3 * noise.min(), 2)} to {number(1e3 * noise.max(), 2)} mm. "
+    if unchecked:
+        text += f"Not checked against others, fewer than three on their body: {', '.join(unchecked)}. "
+    lags = np.abs(parity.clock["lag"])
+    if lags.size:
+        text += f"Largest lag between markers and accelerometers {number(1e3 * lags.max(), 2)} ms. "
+    if not parity.findings:
+        text += "No fault was found."
+    return text
+
+
+def _findings(found):
+    rows = [
+        (
+            title_of(one.effect),
+            ", ".join(one.where),
+            one.quantity,
+            ", ".join(number(value) for value in one.estimate),
+            number(one.p, 2),
+            ", ".join(one.tests),
+        )
+        for one in found.parity.findings
+    ]
+    if not rows:
+        return []
+    return [
+        Table(
+            "Faults of sensors, taken out before anything was simulated (SI units).",
+            ("Fault", "Where", "Quantity", "Estimate", "p", "Tests"),
+            tuple(rows),
+            "lllrrl",
+        )
+    ]

@@ -1,0 +1,69 @@
+"""First page of a diagnosis: the verdict in its box, and one picture."""
+
+from blockshake.diagnosis.misfit.ranking import strongest_test
+from blockshake.report.diagnosis.box import Box
+from blockshake.report.diagnosis.figures.drift import plot_extended_drift, plot_nominal_drift
+from blockshake.report.diagnosis.verdict import drift_change, excluded, facts, statement
+from blockshake.report.document.blocks import Figure, Items, Section, Text
+from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+
+
+def verdict_section(found):
+    """Verdict, what holds it back, and the drift of the top block."""
+    blocks = [Box(statement(found), facts(found))]
+    if found.synthetic:
+        blocks.append(
+            Text(
+                "The tests are SYNTHETIC: virtual tests, computed and seen through made-up sensors, in which an "
+                "effect that the nominal model lacks may be hidden. Nothing was measured; 'measured' below "
+                "means read off the virtual test.",
+                strong=True,
+            )
+        )
+    items = []
+    if found.verdict.missing:
+        items.append(f"Not called established because {'; '.join(found.verdict.missing)}.")
+    if found.sensor_causes:
+        items.append(
+            "Faults of sensors were found by the sensors' checks, without any simulation, and taken out of the "
+            "readings."
+        )
+    if found.decision.decision == "none":
+        items.append(excluded(found))
+    if found.verdict.next_test:
+        apart = "it from what looks alike" if len(found.verdict.causes) == 1 else "them apart"
+        items.append(f"Measurement that would tell {apart}: {found.verdict.next_test}.")
+    if found.consequences is not None:
+        items.append(drift_change(found, _strongest(found)))
+    if items:
+        blocks.append(Items(tuple(items)))
+    blocks.append(_picture(found))
+    return Section("Verdict", "verdict", tuple(blocks))
+
+
+def _strongest(found):
+    """The sealed test with the largest drift."""
+    return str(found.consequences["test"].values[int(found.consequences["measured"].to_numpy().argmax())])
+
+
+def _picture(found):
+    if found.consequences is not None:
+        test = _strongest(found)
+        return Figure(
+            f"Displacement of {found.top} against the table on {test}, a sealed test that nothing was fitted to: "
+            f"before and after the extension, and the {found.measured_word} curve.",
+            svg_of(plot_extended_drift, found.consequences, [test], found.top, found.measured_word),
+            PAGE_WIDTH,
+        )
+    test = strongest_test(found.readings, found.top)
+    return Figure(
+        f"Displacement of {found.top} against the table on {test}: the nominal ensemble of both solvers and the "
+        f"{found.measured_word} curve. "
+        + (
+            "The extension was tried on no sealed test."
+            if found.decision.causes
+            else "The model was not extended."
+        ),
+        svg_of(plot_nominal_drift, found.misfit, found.readings, [test], found.top, found.measured_word),
+        PAGE_WIDTH,
+    )

@@ -1,0 +1,97 @@
+"""Parts of a report, however it is printed: text, tables, figures and listings in sections."""
+
+from dataclasses import dataclass, field, replace
+
+
+@dataclass(frozen=True)
+class Text:
+    """A paragraph; ``strong`` sets it off."""
+
+    text: str
+    strong: bool = False
+    kind: str = field(default="text", init=False)
+
+
+@dataclass(frozen=True)
+class Items:
+    """A list of short statements."""
+
+    items: tuple
+    kind: str = field(default="items", init=False)
+
+
+@dataclass(frozen=True)
+class Heading:
+    """Title of a part of a section; ``key`` is its anchor."""
+
+    text: str
+    key: str
+    kind: str = field(default="heading", init=False)
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of text under a header.
+
+    ``align`` has one letter a column, l or r; ``number`` counts the tables of the document.
+    """
+
+    caption: str
+    header: tuple
+    rows: tuple
+    align: str
+    number: int = 0
+    kind: str = field(default="table", init=False)
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A drawing as SVG text, ``width`` [m] in print; ``number`` counts the figures of the document."""
+
+    caption: str
+    svg: str
+    width: float
+    number: int = 0
+    kind: str = field(default="figure", init=False)
+
+
+@dataclass(frozen=True)
+class Listing:
+    """Text to be shown letter by letter, such as a file."""
+
+    title: str
+    text: str
+    kind: str = field(default="listing", init=False)
+
+
+@dataclass(frozen=True)
+class Section:
+    """Title, anchor and blocks."""
+
+    title: str
+    key: str
+    blocks: tuple
+
+
+@dataclass(frozen=True)
+class Document:
+    """The whole report."""
+
+    title: str
+    subtitle: str
+    sections: tuple
+
+
+def numbered(document):
+    """The document with its figures and its tables counted from 1 in the order of reading."""
+    counts = {"figure": 0, "table": 0}
+    sections = []
+    for section in document.sections:
+        blocks = []
+        for block in section.blocks:
+            if block.kind in counts:
+                counts[block.kind] += 1
+                block = replace(block, number=counts[block.kind])
+            blocks.append(block)
+        sections.append(replace(section, blocks=tuple(blocks)))
+    return replace(document, sections=tuple(sections))

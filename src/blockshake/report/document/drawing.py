@@ -1,0 +1,60 @@
+"""How figures look and become SVG: one style, one palette, the same bytes for the same content."""
+
+import io
+import re
+
+import matplotlib
+from matplotlib.figure import Figure
+
+PAGE_WIDTH = 0.17  # m, of the text on A4
+# Okabe and Ito's palette with Tol's red in place of vermilion, told apart by colour-blind readers
+BLACK, ORANGE, BLUE, GREEN, RED = "#000000", "#e69f00", "#0072b2", "#009e73", "#cc3311"
+SKY, PURPLE = "#56b4e9", "#cc79a7"
+LIGHT_GREY, GREY, DARK_GREY = "#e2e2e2", "#b8b8b8", "#555555"
+_INCH = 0.0254  # m
+_STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 7.5,
+    "axes.titlesize": 8.0,
+    "axes.labelsize": 7.5,
+    "axes.linewidth": 0.6,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#e4e4e4",
+    "grid.linewidth": 0.4,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "legend.fontsize": 7.0,
+    "legend.frameon": False,
+    "lines.linewidth": 0.8,
+    "path.simplify": True,
+    "path.simplify_threshold": 0.1,  # of a point in print
+    "svg.fonttype": "path",
+    "svg.hashsalt": "blockshake",
+}
+# none of matplotlib's own remarks: no date, no links
+_NO_METADATA = {"Date": None, "Creator": None, "Format": None, "Type": None}
+
+
+def new_figure(height, width=PAGE_WIDTH):
+    """Empty figure of this size [m] whose parts are laid out without overlap."""
+    return Figure(figsize=(width / _INCH, height / _INCH), layout="constrained")
+
+
+def svg_of(plot, *arguments, **named):
+    """SVG text, in the report's style, of the matplotlib figure that ``plot(...)`` returns."""
+    with matplotlib.rc_context(_STYLE):
+        figure = plot(*arguments, **named)
+        with io.StringIO() as text:
+            figure.savefig(text, format="svg", metadata=_NO_METADATA)
+            svg = text.getvalue()
+    svg = svg[svg.index("<svg") :]
+    return re.sub(r' d="([^"]*)"', lambda found: f' d="{_shorter(found[1])}"', svg)
+
+
+def _shorter(path):
+    """Path data to a hundredth of a point, which no printer shows, at half the bytes."""
+    rounded = re.sub(r"-?\d+\.\d{3,}", lambda found: f"{float(found[0]):.2f}", path)
+    return " ".join(rounded.split())

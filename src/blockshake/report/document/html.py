@@ -1,0 +1,40 @@
+"""The report as one page that needs nothing else."""
+
+import re
+
+import jinja2
+
+from blockshake.files import write_text
+from blockshake.report.document.drawing import PAGE_WIDTH
+
+
+def write_html(path, document):
+    """Write a document as one self-contained HTML file: no script, no link out of it.
+
+    Parameters
+    ----------
+    path : str or path
+    document : Document
+        Numbered.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("blockshake.report.document"),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    template = environment.get_template("report.html.j2")
+    write_text(path, template.render(document=document, picture=_picture))
+
+
+def _picture(block):
+    """SVG of a figure to stand in the page: ids of its own, its caption for readers who hear it."""
+    own = f"figure-{block.number}-"
+    svg = re.sub(r'\bid="', f'id="{own}', block.svg)
+    svg = re.sub(r'href="#', f'href="#{own}', svg)
+    svg = svg.replace("url(#", f"url(#{own}")
+    share = 100.0 * block.width / PAGE_WIDTH
+    label = jinja2.filters.escape(f"Figure {block.number}")
+    start = f'<svg role="img" aria-label="{label}" style="max-width: {share:.0f}%" '
+    return jinja2.filters.Markup(svg.replace("<svg ", start, 1))

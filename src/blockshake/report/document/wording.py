@@ -1,0 +1,83 @@
+"""Words and numbers as a report prints them: names of models and parameters, digits."""
+
+import numpy as np
+
+from blockshake.simulation.models import MODELS
+
+CUBED = "\N{SUPERSCRIPT THREE}"
+SQUARED = "\N{SUPERSCRIPT TWO}"
+MICRO = "\N{MICRO SIGN}"
+MISSING = "none"  # where a file holds no number
+SHOWN_QUANTILES = (0.05, 0.5, 0.95)
+_PROPERTIES = {
+    "density": "density",
+    "youngs_modulus": "Young's modulus",
+    "viscous_modulus": "viscous modulus",
+    "poisson_ratio": "Poisson's ratio",
+}
+_STIFFNESS = {
+    "ls_dem.normal_stiffness": "normal stiffness k_n",
+    "ls_dem.shear_stiffness": "shear stiffness k_s",
+}
+
+
+def model_label(model):
+    """Name of a solver in print."""
+    return MODELS[model].label if model in MODELS else model
+
+
+def parameter_label(name):
+    """A parameter's dotted name in words, such as ``friction, concrete on steel``."""
+    if name in _STIFFNESS:
+        return _STIFFNESS[name]
+    kind, *rest = name.split(".")
+    if kind == "friction":
+        return f"friction, {rest[0]} on {rest[1]}"
+    return f"{_PROPERTIES.get(rest[1], rest[1])} of {rest[0]}"
+
+
+def number(value, digits=3):
+    """A number with so many significant digits, a whole number below a million with all, or `MISSING`."""
+    value = float(value)
+    if not np.isfinite(value):
+        return MISSING
+    if value.is_integer() and abs(value) < 1e6:
+        return f"{value:.0f}"
+    magnitude = int(np.floor(np.log10(abs(value))))
+    if -3 <= magnitude < 6:
+        return f"{value:.{max(digits - 1 - magnitude, 0)}f}"
+    return f"{value:.{digits - 1}e}"
+
+
+def given(value):
+    """A number that somebody chose, with the digits it was given."""
+    return f"{float(value):g}"
+
+
+def millimetres(value):
+    """A length [m] in mm to 0.1 mm."""
+    return f"{1e3 * float(value):.1f}" if np.isfinite(value) else MISSING
+
+
+def percent(value):
+    """A share in percent to 0.1."""
+    return f"{100.0 * float(value):.1f}" if np.isfinite(value) else MISSING
+
+
+def quantile_range(values, show):
+    """Values along ``quantile`` at 5, 50 and 95 %, each printed by ``show``, parted by slashes."""
+    return " / ".join(show(values.sel(quantile=one)) for one in SHOWN_QUANTILES)
+
+
+def share_words(count, total):
+    """Some of a number: ``3 of 5``.
+
+    >>> share_words(3, 5), share_words(5, 5), share_words(0, 5)
+    ('3 of 5', 'all 5', 'none of 5')
+    """
+    return {0: f"none of {total}", total: f"all {total}"}.get(count, f"{count} of {total}")
+
+
+def sentence_case(text):
+    """Text as a sentence: first letter large, full stop at the end."""
+    return f"{text[0].upper()}{text[1:]}."

@@ -1,0 +1,52 @@
+"""Section on the friction calibration."""
+
+from blockshake.report.document.blocks import Figure, Section, Table, Text
+from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.wording import given, model_label, number, parameter_label
+from blockshake.report.study.figures.friction import plot_friction
+from blockshake.study.friction.calibration import LEVEL
+
+
+def friction(content):
+    """Mean friction that fits the measured tests, if they tell it; None where the study asks for none."""
+    if not content.friction:
+        return None
+    first = next(iter(content.friction.values()))
+    variables = " and ".join(parameter_label(name) for name in first["variables"])
+    text = (
+        f"The mean of {variables} is searched between {given(first['lowest'])} and {given(first['highest'])} (after "
+        "Zhou et al. 2023). The score is the continuous ranked probability score of the ensemble against the measured "
+        "curves, mean over times and markers; it is lowest for the distribution that the measurement comes from. A "
+        f"mean is refused when its score exceeds the best by more than {first['replicates']} independent designs "
+        f"scatter (one-sided t test of paired differences, {100 * LEVEL:.0f} %). The test does not tell the other "
+        f"means from the best. Ensembles of {first['size']} samples by {model_label(first['model'])}."
+    )
+    table = Table(
+        "Mean coefficient of friction by the tests. Coverage and its leave-one-out reference are those of the best "
+        "mean. The residual is the largest of the blocks' median residuals relative to the slab at the best mean; "
+        "small residuals carry little information on friction.",
+        ("Case", "Test", "Mean friction is", "Best", "Score [mm]", "Coverage", "Reference", "Residual [mm]"),
+        tuple(_row(case, found) for case, found in content.friction.items()),
+        "lllrrrrr",
+    )
+    figure = Figure(
+        "Score of the candidate means above that of the best, with the standard error over the designs.",
+        svg_of(plot_friction, content.friction),
+        PAGE_WIDTH,
+    )
+    return Section("Friction calibration", "friction", (Text(text), figure, table))
+
+
+def _row(case, found):
+    means = found["means"]
+    best = means["mean"].index(found["best"])
+    return (
+        case,
+        "synthetic" if found["synthetic"] else "measured",
+        found["answer"],
+        given(found["best"]),
+        number(1e3 * means["score"][best]),
+        number(means["coverage"][best]),
+        number(means["reference"][best]),
+        number(1e3 * means["residual"][best]),
+    )

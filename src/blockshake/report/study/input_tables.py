@@ -1,0 +1,150 @@
+"""Tables of the inputs: cases, bodies, motions, samples, wave speeds."""
+
+from blockshake.report.document.blocks import Table
+from blockshake.report.document.units import printed, quantity
+from blockshake.report.document.wording import (
+    CUBED,
+    SQUARED,
+    given,
+    model_label,
+    number,
+    parameter_label,
+    percent,
+)
+from blockshake.study.ensembles.outcomes import count_outcomes
+from blockshake.study.sampling.distributions import parameter_unit
+from blockshake.study.stiffness.wave_speed import speed_deviation
+
+
+def cases_table(content):
+    """Simulated cases: structure, motion, scale, peak acceleration, window, samples by model and their ends."""
+    rows = []
+    for case in content.cases.values():
+        for model, response in case.responses.items():
+            rows.append(
+                (
+                    case.name,
+                    case.motion,
+                    given(case.settings["scale"]),
+                    number(content.peak_acceleration(case)),
+                    given(case.settings["duration"]),
+                    model_label(model),
+                    given(content.study["models"][model]["time_step"]),
+                    str(response.samples.sizes["sample"]),
+                    " / ".join(map(str, count_outcomes(response.samples["status"]))),
+                )
+            )
+    header = (
+        "Case", "Motion", "Scale", f"Peak acceleration [m/s{SQUARED}]", "Window [s]", "Model", "Time step [s]",
+        "Samples", "completed / collapsed / failed",
+    )  # fmt: skip
+    shared = [
+        f"{model_label(model)}: {', '.join(f'{name} {given(value)}' for name, value in settings['parameters'].items())}"
+        for model, settings in content.study["models"].items()
+        if settings.get("parameters")
+    ]
+    return Table(
+        "Cases and models. The peak acceleration is the scaled motion's; the window is counted from its start."
+        + (f" In all samples of {'; '.join(shared)}." if shared else ""),
+        header, tuple(rows), "llrrrlrrr",
+    )  # fmt: skip
+
+
+def bodies_table(case):
+    """Bodies of a structure with size, material and mass."""
+    rows = []
+    for body, mass in zip(case.structure.file.bodies, case.structure.mass, strict=True):
+        shape = case.structure.file.shapes[body.shape]
+        size = " x ".join(f"{edge:g}" for edge in shape.box) if shape.box else f"mesh {shape.mesh}"
+        rows.append(
+            (
+                body.name + (" (driven)" if body.driven else ""),
+                size,
+                f"{shape.chamfer:g}",
+                body.material,
+                f"{body.density or case.structure.file.materials[body.material].density:g}",
+                f"{mass:.0f}",
+            )
+        )
+    return Table(
+        f"Bodies of {case.name}; sizes along x, y, z; masses of the chamfered shapes at nominal density.",
+        ("Body", "Size [m]", "Chamfer [m]", "Material", f"Density [kg/m{CUBED}]", "Mass [kg]"),
+        tuple(_merged(rows)), "lrrlrr",
+    )  # fmt: skip
+
+
+def _merged(rows):
+    """Rows that differ in the body's name only become one."""
+    merged = {}
+    for name, *rest in rows:
+        merged.setdefault(tuple(rest), []).append(name)
+    return [(", ".join(names), *rest) for rest, names in merged.items()]
+
+
+def motions_table(motions):
+    """Peaks, intensity and durations of the motions at 100 %."""
+    shown = (
+        (f"PGA [m/s{SQUARED}]", "peak_acceleration", 1.0),
+        ("PGV [m/s]", "peak_velocity", 1.0),
+        ("PGD [mm]", "peak_displacement", 1e3),
+        ("Arias intensity [m/s]", "arias_intensity", 1.0),
+        ("Significant duration, 5 to 95 % [s]", "significant_duration", 1.0),
+        ("Record [s]", "duration", 1.0),
+    )
+    rows = [
+        (
+            motion.attrs["name"],
+            "synthetic" if motion.attrs.get("synthetic") else motion.attrs.get("format", ""),
+            *(number(factor * motion.attrs[key]) for _, key, factor in shown),
+        )
+        for motion in motions.values()
+    ]
+    return Table(
+        "Motions at 100 %: peak ground acceleration, velocity and displacement along x, Arias intensity and "
+        "durations.",
+        ("Motion", "Kind", *(label for label, _, _ in shown)), tuple(rows), "ll" + "r" * len(shown),
+    )  # fmt: skip
+
+
+def samples_table(content):
+    """Mean and coefficient of variation asked for and reached."""
+    rows = []
+    for name, target in content.distributions.items():
+        factor, unit = printed(parameter_unit(name))
+        rows.append(
+            (
+                parameter_label(name),
+                unit,
+                number(factor * target.mean, 4),
+                number(factor * content.design_summary["mean"][name], 4),
+                percent(target.cov),
+                percent(content.design_summary["cov"][name]),
+                ", ".join(one.removeprefix("configuration-") for one in content.users(name)) or "no case",
+            )
+        )
+    return Table(
+        "Random variables, all log-normal: mean and coefficient of variation (COV) of the target and of the "
+        "samples, and the cases whose structure has the material or the pair.",
+        ("Variable", "Unit", "Mean, target", "Mean, samples", "COV, target [%]", "COV, samples [%]", "Cases"),
+        tuple(rows), "llrrrrl",
+    )  # fmt: skip
+
+
+def waves_table(waves):
+    """Wave speed reached against its target at nominal parameters."""
+    rows = []
+    for direction in waves["direction"].values:
+        one = waves.sel(direction=direction)
+        rows.append(
+            (
+                str(direction),
+                number(one["target_wave_speed"], 5),
+                number(one["wave_speed"], 5),
+                f"{1e6 * speed_deviation(waves, direction):.0f}",
+                quantity(float(one["stiffness"]), "N/m3", 4),
+            )
+        )
+    return Table(
+        "Effective wave speed at the calibrated stiffness, nominal parameters.",
+        ("Direction", "Target [m/s]", "Reached [m/s]", "Difference [ppm]", "Stiffness"), tuple(rows), "lrrrr",
+    )  # fmt: skip

@@ -1,0 +1,207 @@
+"""Sections on the inputs: summary, structures, motions, samples, stiffness."""
+
+from blockshake.report.document.blocks import Figure, Heading, Items, Section, Text
+from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.wording import given, model_label, number, parameter_label
+from blockshake.report.study.definition_tables import definition_blocks
+from blockshake.report.study.figures.motion import plot_motions, plot_spectra
+from blockshake.report.study.figures.samples import plot_correlation, plot_samples
+from blockshake.report.study.figures.stiffness import plot_stiffness, plot_waves
+from blockshake.report.study.figures.structure import plot_structure, structure_width
+from blockshake.report.study.input_tables import (
+    bodies_table,
+    cases_table,
+    motions_table,
+    samples_table,
+    waves_table,
+)
+from blockshake.report.study.result_tables import top_block_table
+from blockshake.study.ensembles.outcomes import add_outcomes, count_outcomes
+from blockshake.study.sensitivity.sensitivity import unused_variables
+
+
+def summary(content):
+    """Cases, data, outcomes and the peaks of the top blocks."""
+    cases = content.cases.values()
+    synthetic_tests = [case.name for case in cases if case.synthetic]
+    synthetic_motions = sorted(
+        {case.motion for case in cases if content.motions[case.motion].attrs.get("synthetic")}
+    )
+    blocks = []
+    if synthetic_tests:
+        blocks.append(
+            Text(
+                f"The measured curves of {', '.join(synthetic_tests)} are SYNTHETIC: virtual tests, each one run "
+                "simulated by a solver of this program with parameters drawn at random, seen through noisy markers; "
+                "an effect that the models here lack may be hidden in them. Nothing was measured there, and the "
+                "distance of a model from such a curve tells nothing about reality.",
+                strong=True,
+            )
+        )
+    if synthetic_motions:
+        blocks.append(
+            Text(
+                f"The ground motions are synthetic too ({', '.join(synthetic_motions)}): made by a stochastic method, "
+                "not recorded.",
+                strong=True,
+            )
+        )
+    responses = [one for case in cases for one in case.responses.values()]
+    ended = add_outcomes([count_outcomes(one.samples["status"]) for one in responses])
+    items = [
+        f"{len(content.cases)} structures, {len(content.study['models'])} models "
+        f"({', '.join(model_label(model) for model in content.study['models'])}), {sum(ended)} runs: "
+        f"{ended.completed} completed, {ended.collapsed} collapsed, {ended.failed} failed.",
+        f"{len(content.design)} samples of {len(content.distributions)} random variables in the design (seed "
+        f"{content.study['ensemble']['seed']}).",
+        *_fewer_samples(content),
+    ]
+    return Section(
+        "Summary", "summary", (*blocks, Items(tuple(items)), cases_table(content), top_block_table(content))
+    )
+
+
+def _fewer_samples(content):
+    """One sentence for every case that a model ran with fewer samples than the design has."""
+    size = len(content.design)
+    return [
+        f"{model_label(model)} ran {one.samples.sizes['sample']} of the {size} samples on {case.name}; bounds of "
+        "fewer samples are narrower in the mean."
+        for case in content.cases.values()
+        for model, one in case.responses.items()
+        if one.samples.sizes["sample"] < size
+    ]
+
+
+def structures(content):
+    """Drawing and bodies of each structure."""
+    blocks = [
+        Text(
+            "Configurations 1 to 4: block heights and the 2 cm chamfer are those of Zhou et al. (2023). The paper does "
+            "not state, and the structure files infer, the block's length of 2.4 m and its orientation, the size of "
+            "the slab, the gap between the walls, section, length and places of the steel beams, and the places of "
+            "markers and accelerometers."
+        )
+        if any(case.is_shipped for case in content.cases.values())
+        else Text("Sizes are those of the structure files.")
+    ]
+    for case in content.cases.values():
+        blocks += [
+            Heading(case.name, f"structure-{case.name}"),
+            Figure(
+                f"{case.name}: {case.structure.file.description}. Sizes in m"
+                + (", some of them inferred (see above)" if case.is_shipped else "")
+                + ". The faces towards the reader are those at the lowest y (front view) and the largest x (side "
+                "view); sensors on hidden faces are drawn too.",
+                svg_of(plot_structure, case.structure),
+                structure_width(case.structure),
+            ),
+            bodies_table(case),
+        ]
+    return Section("Structures", "structures", tuple(blocks))
+
+
+def motions(content):
+    """Histories, spectra and figures of the motions."""
+    used = {}
+    for case in content.cases.values():
+        used.setdefault(content.motions[case.motion].attrs["name"], set()).add(case.settings["duration"])
+    windows = {name: sorted(durations) for name, durations in used.items()}
+    unused = [
+        name for name in content.motions if name not in {case.motion for case in content.cases.values()}
+    ]
+    data = list(content.motions.values())
+    blocks = [
+        Text(
+            "Motions at 100 %; the cases multiply them by their scale."
+            + (
+                f" No case of this study uses {', '.join(unused)}: the ladder of intensities does."
+                if unused
+                else ""
+            )
+        ),
+        Items(tuple(f"{one.attrs['name']}: {one.attrs.get('source', '')}." for one in data)),
+        Figure(
+            "Ground acceleration, velocity and displacement along x (after the paper's Fig. 5); dashed: end of the "
+            "window that the cases simulate.",
+            svg_of(plot_motions, data, windows),
+            PAGE_WIDTH,
+        ),
+        Figure(
+            "Response spectra at 5 % damping, with the ordinates that a synthetic motion aims at.",
+            svg_of(plot_spectra, data),
+            PAGE_WIDTH,
+        ),
+        motions_table(content.motions),
+    ]
+    return Section("Ground motions", "motions", tuple(blocks))
+
+
+def samples(content):
+    """The design: histograms, moments, correlation."""
+    found = content.design_summary
+    target = (
+        "none" if content.study["ensemble"].get("correlation") is None else "as given in the configuration"
+    )
+    blocks = (
+        Text(
+            f"Latin hypercube of {found['size']} samples, seed {found['seed']}; each stratum is represented by its "
+            f"{found['stratum']}.{_without_use(content)}"
+        ),
+        Figure(
+            "Histograms of the samples and target densities (after the paper's Fig. 8).",
+            svg_of(plot_samples, content.design, content.distributions),
+            PAGE_WIDTH,
+        ),
+        samples_table(content),
+        Figure(
+            f"{found['correlation_kind'].capitalize()} correlation reached between the variables; asked for: {target}. "
+            f"Difference from the target over the pairs: {number(found['rms_correlation_error'])} rms, "
+            f"{number(found['largest_correlation_error'])} at most.",
+            svg_of(
+                plot_correlation,
+                found["correlation"],
+                [parameter_label(one) for one in content.distributions],
+            ),
+            0.15,
+        ),
+    )
+    return Section("Samples", "samples", blocks)
+
+
+def _without_use(content):
+    """Variables that a model of the study has no use for, in sentences."""
+    names, sentences = list(content.distributions), ""
+    for model in content.study["models"]:
+        unused = unused_variables(names, model, names)
+        if unused:
+            words = ", ".join(parameter_label(name) for name in unused)
+            sentences += f" {model_label(model)} has no use for {words}."
+    return sentences
+
+
+def stiffness(content):
+    """Waves, their speed, and the stiffness of every sample."""
+    definition = content.waves.attrs["definition"]
+    blocks = (
+        Text(
+            "The contact stiffness of LS-DEM follows for every sample from the speed of waves in a tower of "
+            f"{content.waves.sizes['block']} blocks, matched to that of the material of the sample (Zhou et al. 2023, "
+            f"Eqs. 7 and 8). Definition: {definition}."
+        ),
+        Figure(
+            "Displacement of the blocks of the tower after a step of velocity of "
+            f"{given(1e3 * content.waves.attrs['step_velocity'])} mm/s at its base, nominal parameters; "
+            "dots: arrivals (after the paper's Fig. 9).",
+            svg_of(plot_waves, content.waves),
+            PAGE_WIDTH,
+        ),
+        waves_table(content.waves),
+        Figure(
+            f"Stiffness per area of the {len(content.stiffness)} samples (after the paper's Fig. 10).",
+            svg_of(plot_stiffness, content.stiffness),
+            PAGE_WIDTH,
+        ),
+        *definition_blocks(content.definitions),
+    )
+    return Section("Contact stiffness", "stiffness", blocks)

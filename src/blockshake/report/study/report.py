@@ -1,0 +1,63 @@
+"""The report of a study: one page and one PDF from the same content."""
+
+from blockshake.report.document.blocks import Document, numbered
+from blockshake.report.document.html import write_html
+from blockshake.report.document.pdf import write_pdf
+from blockshake.report.study.closing_sections import checks, limits, origin, timings
+from blockshake.report.study.content import load_content
+from blockshake.report.study.convergence_section import convergence
+from blockshake.report.study.friction_section import friction
+from blockshake.report.study.opening_sections import motions, samples, stiffness, structures, summary
+from blockshake.report.study.peer_section import peer
+from blockshake.report.study.result_sections import responses
+from blockshake.report.study.sensitivity.section import sensitivities
+
+_SECTIONS = (
+    summary,
+    structures,
+    motions,
+    samples,
+    stiffness,
+    responses,
+    sensitivities,
+    friction,
+    checks,
+    timings,
+    limits,
+    origin,
+    convergence,
+    peer,
+)
+
+
+def make_report(study, results, benchmarks, html, pdf):
+    """Write the report of a finished study.
+
+    Parameters
+    ----------
+    study : dict
+        Its configuration, checked.
+    results, benchmarks : str or path
+        Folders of its results and of its jobs' benchmarks.
+    html, pdf : str or path
+        To write, each whole or not at all. Same results, same bytes.
+
+    Raises
+    ------
+    InputError
+        A results file is missing or holds something else.
+    """
+    document = compose(load_content(study, results, benchmarks))
+    write_html(html, document)
+    write_pdf(pdf, document)
+
+
+def compose(content):
+    """Document of the content of a study."""
+    return numbered(
+        Document(
+            title=f"blockshake: {content.study['name']}",
+            subtitle=" ".join(content.study["description"].split()),
+            sections=tuple(made for section in _SECTIONS if (made := section(content)) is not None),
+        )
+    )

@@ -1,0 +1,112 @@
+"""Section on the responses: displacement of the blocks by every model, case by case."""
+
+from blockshake.report.document.blocks import Figure, Heading, Section, Text
+from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.rows import face_markers, main_bodies
+from blockshake.report.document.wording import given, model_label, number, share_words
+from blockshake.report.study.figures.displacement import plot_displacements
+from blockshake.report.study.probability_table import probability_table
+from blockshake.report.study.result_tables import coverage_table, peaks_table
+from blockshake.study.ensembles.outcomes import shortfall
+from blockshake.study.sensitivity.findings import quiet_markers
+
+_PAPER_FIGURES = {f"configuration-{place}": 10 + place for place in (1, 2, 3, 4)}
+
+
+def responses(content):
+    """Displacement of the blocks by every model, case by case."""
+    blocks = [
+        Text(
+            "Displacement along x of a marker on the side face of each block, from the top block down. Grey: area of "
+            "the samples; red: the smallest and the largest value at each time. Two bounds of n samples hold one "
+            "further run of the same model at one instant with probability (n - 1) / (n + 1). For a whole record no "
+            "probability is known; therefore every coverage stands beside its leave-one-out reference."
+        ),
+        probability_table(content),
+    ]
+    for case in content.cases.values():
+        blocks += _response(case, content.motions[case.motion])
+    return Section("Displacement of the blocks", "responses", tuple(blocks))
+
+
+def _response(case, motion):
+    markers = face_markers(case.structure)
+    main = main_bodies(case.structure, markers)
+    envelopes = {model: one.envelope for model, one in case.responses.items()}
+    word = case.curve_word if case.synthetic else "measured curve"
+    paper = (
+        f" (after the paper's Fig. {_PAPER_FIGURES[case.name]})"
+        if case.name in _PAPER_FIGURES and case.settings["structure"] == case.name
+        else ""
+    )
+    some = "" if len(main) == len(markers) else "; all blocks are in the next figure"
+
+    def figure(bodies, frame, caption):
+        chosen = [markers[body] for body in bodies]
+        drawn = svg_of(plot_displacements, envelopes, case.measured, chosen, bodies, frame, case.synthetic)
+        return Figure(caption, drawn, PAGE_WIDTH)
+
+    return [
+        Heading(case.title, f"response-{case.name}"),
+        Text(
+            f"{case.motion}, scale {given(case.settings['scale'])}, first {given(case.settings['duration'])} s. "
+            f"Marker noise of the {word}: {given(1e3 * case.marker_noise)} mm (standard deviation)."
+        ),
+        *_early_end(case, motion),
+        *_gaps(case),
+        *_lines(case, markers.values()),
+        figure(main, "inertial", f"{case.name}: displacement in the inertial frame{paper}{some}."),
+        peaks_table(case),
+        coverage_table(case),
+        figure(
+            list(markers), "slab", f"{case.name}: displacement relative to the slab's marker, every block."
+        ),
+    ]
+
+
+def _early_end(case, motion):
+    """A remark where the window ends within the motion."""
+    if case.settings["duration"] >= motion.attrs["duration"]:
+        return []
+    return [
+        Text(
+            f"The window ends before the motion, which lasts {given(motion.attrs['duration'])} s (strong until "
+            f"{number(motion.attrs['significant_end'])} s): the residuals below are displacements at the end of the "
+            "window and need not be final."
+        )
+    ]
+
+
+def _gaps(case):
+    """Numbers of samples that contribute where some stopped early or failed."""
+    texts = []
+    for model, one in case.responses.items():
+        found = shortfall(one.envelope)
+        if found.since == found.since:
+            texts.append(
+                Text(
+                    f"{model_label(model)}: {found.counted} samples contribute until {number(found.since)} s, "
+                    f"{found.at_end} at the end; bounds and quantiles are of those that contribute, and peaks of "
+                    "collapsed samples are lower limits."
+                )
+            )
+        if found.failed:
+            texts.append(
+                Text(f"{model_label(model)}: the statistics leave out failed samples ({found.failed}).")
+            )
+    return texts
+
+
+def _lines(case, markers):
+    """A remark on each model whose samples are nearly one and the same run."""
+    texts = []
+    for model, one in case.responses.items():
+        quiet = quiet_markers(one.sensitivity, markers, case.marker_noise)
+        if quiet:
+            texts.append(
+                Text(
+                    f"{model_label(model)}: the samples of {share_words(quiet, len(markers))} blocks differ by less "
+                    "than the noise of a marker (standard deviation over samples and time): their bands close to lines."
+                )
+            )
+    return texts

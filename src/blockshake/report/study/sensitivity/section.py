@@ -1,0 +1,71 @@
+"""Section on the causes of the differences between samples: figures, words and the summary over cases."""
+
+from blockshake.report.document.blocks import Figure, Heading, Section, Text
+from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.wording import model_label, number
+from blockshake.report.study.sensitivity.figure import (
+    SHOWN,
+    is_shown,
+    plot_sensitivity,
+    plot_sensitivity_over_time,
+)
+from blockshake.report.study.sensitivity.summary import markers_by_height, paper_discussion, summary_table
+from blockshake.report.study.sensitivity.words import sentence
+
+
+def sensitivities(content):
+    """Influence of each random variable on the thickness of the envelopes, in one table and case by case."""
+    blocks = [
+        Text(
+            "Two measures tell where the differences between samples come from. The first-order Sobol index of the "
+            "history of a block is the share of the thickness of its envelope, as variance over all times, that one "
+            "variable explains by itself: a correlation ratio over classes of the ranks of the variable, corrected for "
+            "its bias; five classes see 0.90 of a linear effect. The partial rank correlation with the peak tells how "
+            "steadily, and in which direction, the peak follows a variable once the part of the others is taken out. "
+            "Intervals are bootstrap intervals of 95 %. The level of chance is the largest value over all blocks and "
+            "variables that 95 of 100 random pairings of results and samples stay below: only a value beyond it is "
+            "shown to matter. Variables that act together, and sensitivity of the motion to small differences, explain "
+            "the rest."
+        ),
+        *paper_discussion(content),
+        summary_table(content),
+    ]
+    for case in content.cases.values():
+        blocks += _case(case)
+    return Section("Causes of the thickness of the envelopes", "sensitivity", tuple(blocks))
+
+
+def _case(case):
+    chosen = markers_by_height(case)
+    results = {model: one.sensitivity for model, one in case.responses.items()}
+    top = list(chosen)[-1]
+    noise = number(1e3 * case.marker_noise)
+    blocks = [Heading(case.title, f"sensitivity-{case.name}")]
+    for model, result in results.items():
+        words = sentence(result, top, chosen[top], case.marker_noise)
+        blocks.append(Text(f"{model_label(model)}: {words}"))
+    if not any(
+        is_shown(one, chosen.values(), measure, case.marker_noise)
+        for one in results.values()
+        for measure in SHOWN
+    ):
+        return blocks
+    return [
+        *blocks,
+        Figure(
+            f"{case.name}: share and correlation of each random variable for the displacement of a block relative to "
+            "the slab, blocks from the lowest (left) up, of equal ones the first. Dots with 95 % intervals; grey: "
+            "level of chance; hollow dots and grey names: controls, variables that model or structure has no use for. "
+            "Models and measures with nothing to show are left out: samples that differ by less than the noise of a "
+            f"marker ({noise} mm, standard deviation), or too few of them.",
+            svg_of(plot_sensitivity, results, chosen, case.marker_noise),
+            PAGE_WIDTH,
+        ),
+        Figure(
+            f"{case.name}, {top}: standard deviation over the samples in every second (dashed: noise of a marker), and "
+            "the share of it that each variable of use explains by itself; grey: level of chance over all seconds, "
+            "blocks and variables.",
+            svg_of(plot_sensitivity_over_time, results, chosen[top], case.marker_noise),
+            PAGE_WIDTH,
+        ),
+    ]

@@ -1,0 +1,1 @@
+"""One simulation: structure, motion and parameters in, a run Dataset out."""

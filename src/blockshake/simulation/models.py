@@ -1,0 +1,232 @@
+"""The one table of solvers: a model is one row, and nothing else in the package lists them."""
+
+import importlib
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+from blockshake.errors import InputError
+
+
+@dataclass(frozen=True)
+class Uncertain:
+    """A parameter that stands for what is not known of a model's numerics, drawn evenly between two ends.
+
+    Attributes
+    ----------
+    name : str
+        Dotted.
+    lower, upper : float
+        Ends, in the parameter's unit or, where ``relative``, over its usual value [1].
+    relative : bool
+    """
+
+    name: str
+    lower: float
+    upper: float
+    relative: bool = False
+
+
+@dataclass(frozen=True)
+class Perturbation:
+    """How the numerics of a model differ between the nominal models of a diagnosis.
+
+    Attributes
+    ----------
+    stream : int
+        Of the seeds; no two models have the same, and none ever gets another.
+    uncertain : tuple of Uncertain
+        In the order in which they are drawn.
+    time_steps : tuple of float
+        One of them is taken [s].
+    fixed : dict of str to value
+        Parameters that differ from their defaults in all of them, by dotted name.
+    """
+
+    stream: int
+    uncertain: tuple[Uncertain, ...]
+    time_steps: tuple[float, ...]
+    fixed: dict
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model of the blocks' contact and motion.
+
+    Attributes
+    ----------
+    name : str
+        As in ``--model`` and in a study's configuration.
+    label : str
+        As reports print it.
+    prefix : str
+        Of the dotted names of its numerical parameters.
+    time_step : float
+        When nothing is said [s].
+    driver : str
+        ``module:function`` that runs it: ``(structure, motion, parameters, record_times, time_step, checkpoint=)``
+        to a `Trajectory`.
+    parameters : str
+        ``module:class`` of its numerical parameters.
+    calibrated : tuple of str
+        Those of them that a wave test gives from the material, as its contact stiffness.
+    without_effect : tuple of str
+        Properties of a material that the model has no use for.
+    perturbation : Perturbation or None
+        None leaves the model out of the null hypothesis of a diagnosis.
+
+    Notes
+    -----
+    The driver and the class are named, not imported: a job that runs one solver neither imports nor watches the
+    other.
+    """
+
+    name: str
+    label: str
+    prefix: str
+    time_step: float
+    driver: str
+    parameters: str
+    calibrated: tuple[str, ...] = ()
+    without_effect: tuple[str, ...] = ()
+    perturbation: Perturbation | None = None
+
+    def solve(self, *arguments, **options):
+        """Run the driver."""
+        return _named(self.driver)(*arguments, **options)
+
+    @property
+    def schema(self):
+        """Class of the numerical parameters."""
+        return _named(self.parameters)
+
+    @property
+    def stiffness(self):
+        """Dotted names of the contact stiffness that a wave test gives; empty where the model has none."""
+        return tuple(f"{self.prefix}.{name}" for name in self.calibrated)
+
+    @property
+    def modules(self):
+        """Names of the modules that the driver and the parameters are in."""
+        return tuple(name.partition(":")[0] for name in (self.driver, self.parameters))
+
+    def numerical_parameters(self):
+        """Default, unit, meaning and source of every numerical parameter, by dotted name."""
+        table = {}
+        for name, field in self.schema.model_fields.items():
+            meaning, source = field.description.rsplit("; ", 1)
+            unit = re.search(r"\[(.*?)\]", meaning)
+            words = " ".join(meaning.replace(unit.group(0), "").split()).replace(" ;", ";")
+            table[f"{self.prefix}.{name}"] = (field.default, unit.group(1), words, source)
+        return table
+
+
+MODELS = {
+    model.name: model
+    for model in (
+        Model(
+            name="ls-dem",
+            label="LS-DEM",
+            prefix="ls_dem",
+            time_step=1e-5,
+            driver="blockshake.solvers.ls_dem.driver:simulate_ls_dem",
+            parameters="blockshake.solvers.ls_dem.parameters:LsDemParameters",
+            calibrated=("normal_stiffness", "shear_stiffness"),
+            without_effect=("viscous_modulus",),  # rigid blocks
+            # the layout of the nodes, and the restitution that stands for damping
+            perturbation=Perturbation(
+                stream=0,
+                uncertain=(
+                    Uncertain("ls_dem.node_spacing", 0.75, 1.5, relative=True),
+                    Uncertain("ls_dem.perimeter_inset", 0.4, 2.0, relative=True),
+                    Uncertain("restitution", 0.8, 1.2, relative=True),
+                ),
+                time_steps=(5e-5,),
+                fixed={},
+            ),
+        ),
+        Model(
+            name="nscd-rigid",
+            label="NSCD rigid",
+            prefix="nscd",
+            time_step=1e-3,
+            driver="blockshake.solvers.nscd.driver:simulate_nscd",
+            parameters="blockshake.solvers.nscd.parameters:NscdParameters",
+            without_effect=("viscous_modulus", "youngs_modulus"),  # rigid blocks and joints
+            # a closer time step where bodies meet, as studies should: docs/nscd.md
+            perturbation=Perturbation(
+                stream=1,
+                uncertain=(Uncertain("nscd.shrink", 0.0, 0.02),),
+                time_steps=(5e-4, 1e-3),
+                fixed={"nscd.impact_parts": 20},
+            ),
+        ),
+        Model(
+            name="nscd-elastic",
+            label="NSCD elastic",
+            prefix="nscd_deformable",
+            time_step=1e-3,
+            driver="blockshake.solvers.nscd_deformable.driver:simulate_elastic",
+            parameters="blockshake.solvers.nscd_deformable.parameters:DeformableParameters",
+            without_effect=("viscous_modulus",),
+        ),
+        Model(
+            name="nscd-viscoelastic",
+            label="NSCD viscoelastic",
+            prefix="nscd_deformable",
+            time_step=1e-3,
+            driver="blockshake.solvers.nscd_deformable.driver:simulate_viscoelastic",
+            parameters="blockshake.solvers.nscd_deformable.parameters:DeformableParameters",
+        ),
+    )
+}
+ModelName = Literal[tuple(MODELS)]
+CALIBRATED = tuple(name for model in MODELS.values() for name in model.stiffness)
+_PREFIXES = tuple(f"{model.prefix}." for model in MODELS.values())
+
+
+def model_of(name):
+    """Row of a model.
+
+    Raises
+    ------
+    InputError
+        No such model.
+    """
+    if name not in MODELS:
+        raise InputError("--model", "", f"expected one of {', '.join(MODELS)}, not '{name}'")
+    return MODELS[name]
+
+
+def part_parameters(parameters):
+    """Parameters of the structure and those of any solver, as two mappings."""
+    numerical = {name: value for name, value in parameters.items() if name.startswith(_PREFIXES)}
+    return {name: value for name, value in parameters.items() if name not in numerical}, numerical
+
+
+def split_parameters(parameters, name):
+    """Physical parameters, for the structure, and numerical ones, for the solver, of a flat mapping.
+
+    Raises
+    ------
+    InputError
+        A numerical parameter that its solver does not have, or a bad value.
+    """
+    from blockshake.validation import validated  # here, so that the help of the command line stays quick
+
+    own = model_of(name)
+    physical, numerical = part_parameters(parameters)
+    for key in numerical:
+        prefix, _, parameter = key.partition(".")
+        for model in MODELS.values():
+            fields = model.schema.model_fields if model.prefix == prefix else [parameter]
+            if parameter not in fields:
+                raise InputError("--set", key, f"expected one of {prefix}.{{{', '.join(fields)}}}")
+    prefix = f"{own.prefix}."
+    values = {key.removeprefix(prefix): value for key, value in numerical.items() if key.startswith(prefix)}
+    return physical, validated(own.schema, values, "--set", own.prefix)
+
+
+def _named(path):
+    module, _, name = path.partition(":")
+    return getattr(importlib.import_module(module), name)

@@ -1,0 +1,67 @@
+"""The table of parameters that `blockshake parameters` prints."""
+
+from blockshake.files import shipped_names
+from blockshake.geometry.schema import Joint
+from blockshake.geometry.structure import load_structure
+from blockshake.quantities import PHYSICAL
+from blockshake.simulation.models import MODELS
+
+
+def parameter_table(structure=None):
+    """Rows of name, unit, default, meaning and source of every parameter.
+
+    Parameters
+    ----------
+    structure : str or path, optional
+        Whose materials, pairs and bodies are listed one by one; the first shipped one by default.
+
+    Returns
+    -------
+    list of tuple of 5 str
+    """
+    file = load_structure(structure or shipped_names("structures")[0]).file
+    rows = []
+    for quantity in PHYSICAL:
+        for name, value in _instances(quantity.name, file):
+            rows.append((name, quantity.unit, _shown(value), quantity.meaning, quantity.source))
+    numerical = {}
+    for model in MODELS.values():
+        # some models share their parameters
+        numerical |= model.numerical_parameters()
+    for name, (default, unit, meaning, source) in numerical.items():
+        rows.append((name, unit, _shown(default), meaning, source))
+    return rows
+
+
+def _instances(pattern, file):
+    """Dotted names of this structure that a pattern stands for, with the structure's values."""
+    parts = pattern.split(".")
+    if parts[0] == "friction":
+        suffix, key = (f".{parts[3]}", parts[3]) if len(parts) == 4 else ("", "coefficient")
+        return [(f"friction.{'.'.join(entry.pair)}{suffix}", getattr(entry, key)) for entry in file.friction]
+    if parts[0] == "joints":
+        named = [
+            (f"joints.{'.'.join(joint.bodies)}.{parts[3]}", getattr(joint, parts[3])) for joint in file.joints
+        ]
+        return named or [(pattern, Joint.model_fields[parts[3]].default)]
+    if len(parts) == 1:
+        return [(pattern, getattr(file, pattern))]
+    held = getattr(file, parts[0])
+    named = (
+        held.items()
+        if isinstance(held, dict)
+        else [(getattr(item, "name", n), item) for n, item in enumerate(held)]
+    )
+    return [(f"{parts[0]}.{name}.{parts[2]}", getattr(item, parts[2])) for name, item in named]
+
+
+def _shown(value):
+    if value is None:
+        return "-"
+    return (
+        f"{value:g}"
+        if isinstance(value, float)
+        else str(list(value))
+        if isinstance(value, tuple)
+        else str(value)
+    )

@@ -1,0 +1,134 @@
+"""The run file: trajectory, audit and readings of one simulation as a Dataset, with every parameter that acted."""
+
+import numpy as np
+import xarray as xr
+
+from blockshake.dynamics.system import ENERGY_TERMS
+from blockshake.geometry.schema import AXES, QUATERNION
+from blockshake.measurement.sensors.accelerometers import accelerometer_readings
+from blockshake.measurement.sensors.markers import marker_displacement
+from blockshake.simulation.models import model_of
+
+
+def run_dataset(structure, trajectory, rows):
+    """A trajectory as the run file's Dataset, at some of its times, without accelerometers and attributes.
+
+    Parameters
+    ----------
+    structure : Structure
+    trajectory : Trajectory
+    rows : int array, shape (n_times,)
+        Of the trajectory's times.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    names = structure.body_names
+    lower, upper = ([names[body] for body in trajectory.joints[:, side]] for side in (0, 1))
+    markers = np.array([marker.name for marker in structure.file.markers], dtype=str)
+    position, orientation = trajectory.position[rows], trajectory.orientation[rows]
+
+    def variable(dims, values, units, long_name):
+        return (dims, values, {"units": units, "long_name": long_name})
+
+    return xr.Dataset(
+        {
+            "position": variable(("time", "body", "axis"), position, "m", "mass centre, inertial frame"),
+            "orientation": variable(
+                ("time", "body", "quaternion"), orientation, "1", "unit quaternion, body to inertial frame"
+            ),
+            "velocity": variable(
+                ("time", "body", "axis"),
+                trajectory.velocity[rows],
+                "m s-1",
+                "velocity of the mass centre, inertial frame",
+            ),
+            "angular_velocity": variable(
+                ("time", "body", "axis"),
+                trajectory.angular_velocity[rows],
+                "rad s-1",
+                "angular velocity, inertial frame",
+            ),
+            "marker_displacement": variable(
+                ("time", "marker", "axis"),
+                marker_displacement(structure, position, orientation),
+                "m",
+                "displacement of the marker since the start, inertial frame",
+            ),
+            "energy": variable(
+                ("time", "term"), trajectory.energy[rows], "J", "energy audit of the free bodies"
+            ),
+            "joint_force": variable(
+                ("time", "joint", "axis"),
+                trajectory.joint_force[rows],
+                "N",
+                "resultant contact force on the upper body",
+            ),
+        },
+        coords={
+            "time": variable(("time",), trajectory.time[rows], "s", "time since the start of the motion"),
+            "body": names,
+            "axis": list(AXES),
+            "quaternion": list(QUATERNION),
+            "marker": markers,
+            "marker_body": (
+                "marker",
+                np.array([marker.body for marker in structure.file.markers], dtype=str),
+            ),
+            "term": list(ENERGY_TERMS),
+            "lower": ("joint", np.array(lower, dtype=str)),
+            "upper": ("joint", np.array(upper, dtype=str)),
+        },
+    )
+
+
+def add_accelerometers(run, structure, trajectory, rows):
+    """Add ``accelerometer(time_acc, channel)`` [m/s2] to a run, read at the fine times of its trajectory."""
+    times, values, channels = accelerometer_readings(
+        structure,
+        trajectory.time[rows],
+        trajectory.orientation[rows],
+        trajectory.velocity[rows],
+        trajectory.angular_velocity[rows],
+    )
+    run["accelerometer"] = (
+        ("time_acc", "channel"),
+        values,
+        {"units": "m s-2", "long_name": "specific force along the body's axis, 50 Hz low-pass"},
+    )
+    run["time_acc"] = ("time_acc", times, {"units": "s", "long_name": "time since the start of the motion"})
+    run["channel"] = channels
+
+
+def effective_parameters(structure, model, numerical):
+    """Every parameter that acted in a run, by dotted name."""
+    file = structure.file
+    acted = {
+        "gravity": list(file.gravity),
+        "restitution": file.restitution,
+        "nscd_restitution": file.nscd_restitution,
+    }
+    for name, material in file.materials.items():
+        acted |= {f"materials.{name}.{key}": value for key, value in material.model_dump().items()}
+    for entry in file.friction:
+        pair = f"friction.{'.'.join(entry.pair)}"
+        acted[pair] = entry.coefficient
+        acted |= {
+            f"{pair}.{key}": value for key, value in entry.model_dump(exclude={"pair", "coefficient"}).items()
+        }
+    acted |= {
+        f"bodies.{body.name}.mass_offset": list(body.mass_offset) for body in file.bodies if not body.driven
+    }
+    for joint in file.joints:
+        own = joint.model_dump(exclude={"bodies"})
+        acted |= {f"joints.{'.'.join(joint.bodies)}.{key}": value for key, value in own.items()}
+    prefix = model_of(model).prefix
+    return acted | {f"{prefix}.{key}": value for key, value in numerical.model_dump().items()}
+
+
+def plain_attribute(value):
+    """Attribute as netCDF can hold it."""
+    if isinstance(value, bool):
+        return int(value)
+    return value if isinstance(value, (str, float, int)) else str(value)

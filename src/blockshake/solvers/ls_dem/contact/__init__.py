@@ -1,0 +1,1 @@
+"""Contact of level sets: candidates, penetration, forces."""

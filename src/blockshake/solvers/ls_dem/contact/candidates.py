@@ -1,0 +1,282 @@
+"""Lists of the nodes that may soon touch a body: they make a step cheap and miss nothing."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.geometry.rotations import rotation_matrix_into
+from blockshake.jit import kernel
+from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
+from blockshake.solvers.ls_dem.contact.packets import (
+    AREA,
+    CLOSED,
+    DAMPING_WEIGHT,
+    FAR_AWAY,
+    HELD,
+    LANES,
+    PACKET,
+    POINT_X,
+    POINT_Y,
+    POINT_Z,
+    SLOPE,
+    STRETCH_X,
+    STRETCH_Y,
+    STRETCH_Z,
+)
+from blockshake.solvers.ls_dem.contact.relative_pose import relative_pose_into
+from blockshake.solvers.ls_dem.joints import add_joints, find_joint
+from blockshake.solvers.ls_dem.surfaces import level_set
+
+
+class Candidates(NamedTuple):
+    """Near nodes, by side of a pair of bodies.
+
+    ``pairs`` int64 (n_pairs, 2), lower index first; ``joint`` int64 (n_pairs,): their rows in `Joints`.
+    Side ``2 p`` of pair ``p`` holds nodes of its first body against the level set of its
+    second, side ``2 p + 1`` the reverse. ``first`` int64 (2 n_pairs + 1,): first packet of each
+    side. ``node`` int64 (n_packets * LANES,): index in `Surfaces`, -1 for filling. ``packets``
+    float64 (n_packets, PACKET): see `packets`. ``position`` and ``orientation``: poses for
+    which the list was made.
+    """
+
+    pairs: np.ndarray
+    joint: np.ndarray
+    first: np.ndarray
+    node: np.ndarray
+    packets: np.ndarray
+    position: np.ndarray
+    orientation: np.ndarray
+
+
+@kernel
+def empty_candidates(n_bodies):
+    """Lists before the first search."""
+    return Candidates(
+        np.empty((0, 2), np.int64),
+        np.empty(0, np.int64),
+        np.zeros(1, np.int64),
+        np.empty(0, np.int64),
+        np.empty((0, PACKET)),
+        np.full((n_bodies, 3), np.inf),
+        np.zeros((n_bodies, 4)),
+    )
+
+
+@kernel
+def lists_expired(candidates, surfaces, driven, position, orientation, skin):
+    """Whether a node outside the lists could touch by now.
+
+    A node is in a list when the level set there was below ``skin`` times its steepest slope, so that
+    nothing is missed while no two bodies together have moved, with respect to the first driven
+    body, by more than ``skin``.
+    """
+    shift = np.zeros(3)
+    for body in range(driven.size):
+        if driven[body]:
+            for axis in range(3):
+                shift[axis] = position[body, axis] - candidates.position[body, axis]
+            break
+    most, second = 0.0, 0.0
+    for body in range(driven.size):
+        squared = 0.0
+        for axis in range(3):
+            moved = position[body, axis] - candidates.position[body, axis] - shift[axis]
+            squared += moved * moved
+        dot = 0.0
+        for part in range(4):
+            dot += orientation[body, part] * candidates.orientation[body, part]
+        # chord of the rotation at the circumscribed sphere: 2 R sin(angle / 2)
+        chord = 2.0 * surfaces.radius[body] * np.sqrt(max(1.0 - dot * dot, 0.0))
+        bound = np.sqrt(squared) + chord
+        # not (x <= limit), here and below, so that NaN asks for new lists
+        if not (bound <= most):
+            second = most
+            most = bound
+        elif bound > second:
+            second = bound
+    return not (most + second <= skin)
+
+
+@kernel
+def find_pairs(surfaces, driven, position, orientation, skin):
+    """Pairs of bodies whose bounding boxes come within ``skin``: int64 (n_pairs, 2), sorted.
+
+    Sweep over the sorted lower ends along the axis on which the bodies are spread most, so that the
+    cost grows with the bodies and the neighbours of each.
+    """
+    n_bodies = driven.size
+    low, high = np.empty((n_bodies, 3)), np.empty((n_bodies, 3))
+    R = np.empty((3, 3))
+    for body in range(n_bodies):
+        rotation_matrix_into(orientation[body], R)
+        half, middle = surfaces.half[surfaces.shape[body]], surfaces.middle[surfaces.shape[body]]
+        for axis in range(3):
+            reach = abs(R[axis, 0]) * half[0] + abs(R[axis, 1]) * half[1] + abs(R[axis, 2]) * half[2]
+            centre = position[body, axis]
+            for along in range(3):
+                centre += R[axis, along] * (middle[along] - surfaces.offset[body, along])
+            low[body, axis] = centre - reach - 0.5 * skin
+            high[body, axis] = centre + reach + 0.5 * skin
+    widest, spread = 0, -1.0
+    for axis in range(3):
+        if np.ptp(position[:, axis]) > spread:
+            widest, spread = axis, np.ptp(position[:, axis])
+    order = np.argsort(low[:, widest], kind="mergesort")
+    codes = []
+    for rank in range(n_bodies):
+        a = order[rank]
+        for later in range(rank + 1, n_bodies):
+            b = order[later]
+            if low[b, widest] > high[a, widest]:
+                break
+            if driven[a] and driven[b]:
+                continue
+            if (
+                low[a, 0] <= high[b, 0]
+                and low[b, 0] <= high[a, 0]
+                and low[a, 1] <= high[b, 1]
+                and low[b, 1] <= high[a, 1]
+                and low[a, 2] <= high[b, 2]
+                and low[b, 2] <= high[a, 2]
+            ):
+                codes.append(min(a, b) * n_bodies + max(a, b))
+    sorted_codes = np.sort(np.array(codes, dtype=np.int64)) if len(codes) > 0 else np.empty(0, np.int64)
+    pairs = np.empty((sorted_codes.size, 2), np.int64)
+    for pair in range(sorted_codes.size):
+        pairs[pair, 0] = sorted_codes[pair] // n_bodies
+        pairs[pair, 1] = sorted_codes[pair] % n_bodies
+    return pairs
+
+
+@kernel
+def _near_nodes(surfaces, owner, other, R, d, side, skin, found, count):
+    """Append the nodes of ``owner`` within ``skin`` of ``other``; list and count are returned."""
+    shape, other_shape = surfaces.shape[owner], surfaces.shape[other]
+    most = surfaces.first_node[shape + 1] - surfaces.first_node[shape]
+    if count + most > found.size:
+        longer = np.empty(2 * (count + most), np.int64)
+        longer[:count] = found[:count]
+        found = longer
+    for node in range(surfaces.first_node[shape], surfaces.first_node[shape + 1]):
+        p, e = surfaces.points[node], surfaces.offset[owner]
+        px, py, pz = p[0] - e[0], p[1] - e[1], p[2] - e[2]
+        x = R[side, 0, 0] * px + R[side, 0, 1] * py + R[side, 0, 2] * pz + d[side, 0]
+        y = R[side, 1, 0] * px + R[side, 1, 1] * py + R[side, 1, 2] * pz + d[side, 1]
+        z = R[side, 2, 0] * px + R[side, 2, 1] * py + R[side, 2, 2] * pz + d[side, 2]
+        if level_set(surfaces, other_shape, x, y, z) < surfaces.steepest[other_shape] * skin:
+            found[count] = node
+            count += 1
+    return found, count
+
+
+@kernel
+def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
+    """New lists for these poses, the shear springs of nodes that stay listed carried over.
+
+    Parameters
+    ----------
+    surfaces : Surfaces
+    driven : bool array, shape (n_bodies,)
+    poses : Poses
+        Poses now and a step before, from where the nodes' next motion counts.
+    orientation : float64 array, shape (n_bodies, 4)
+    skin : float
+        [m]
+    old : Candidates
+        Lists so far.
+    joints : Joints
+        Joints so far.
+
+    Returns
+    -------
+    candidates : Candidates
+        Sorted by pair, side and node.
+    joints : Joints
+        With the pairs that have come near for the first time.
+    """
+    position, rotation = poses.position, poses.rotation
+    pairs = find_pairs(surfaces, driven, position, orientation, skin)
+    n_sides = 2 * pairs.shape[0]
+    R, d, lanes = np.empty((2, 3, 3)), np.empty((2, 3)), np.empty(LANES)
+    found, count = np.empty(1024, np.int64), np.zeros(n_sides + 1, np.int64)
+    for side in range(n_sides):
+        owner, other = pairs[side // 2, side % 2], pairs[side // 2, 1 - side % 2]
+        relative_pose_into(position, rotation, surfaces.offset, owner, other, 0, R, d)
+        found, count[side + 1] = _near_nodes(surfaces, owner, other, R, d, 0, skin, found, count[side])
+    first = np.zeros(n_sides + 1, np.int64)
+    for side in range(n_sides):
+        first[side + 1] = first[side] + (count[side + 1] - count[side] + LANES - 1) // LANES
+    node = np.full(first[n_sides] * LANES, -1, np.int64)
+    packets = np.zeros((first[n_sides], PACKET))
+    for side in range(n_sides):
+        owner, other = pairs[side // 2, side % 2], pairs[side // 2, 1 - side % 2]
+        e, n_nodes = surfaces.offset[owner], count[side + 1] - count[side]
+        for rank in range((first[side + 1] - first[side]) * LANES):
+            place = first[side] * LANES + rank
+            packet, lane = place // LANES, place % LANES
+            if rank < n_nodes:
+                node[place] = found[count[side] + rank]
+                packets[packet, lane + POINT_X] = surfaces.points[node[place], 0] - e[0]
+                packets[packet, lane + POINT_Y] = surfaces.points[node[place], 1] - e[1]
+                packets[packet, lane + POINT_Z] = surfaces.points[node[place], 2] - e[2]
+                packets[packet, lane + AREA] = surfaces.areas[node[place]]
+                packets[packet, lane + DAMPING_WEIGHT] = surfaces.damping_weight[node[place]]
+            else:
+                packets[packet, lane + POINT_X] = FAR_AWAY
+            packets[packet, lane + SLOPE] = 1.0
+        relative_pose_into(
+            poses.position_before, poses.rotation_before, surfaces.offset, owner, other, 0, R, d
+        )
+        locate_nodes_into(
+            packets, first[side], first[side + 1],
+            surfaces.half, surfaces.chamfer, surfaces.lattice, surfaces.values, surfaces.shape[other],
+            R, d, 0, lanes,
+        )  # fmt: skip
+    joint = np.full(pairs.shape[0], -1, np.int64)
+    new = Candidates(pairs, joint, first, node, packets, position.copy(), orientation.copy())
+    _carry_over_into(old, new)
+    return new, _name_joints(new, joints)
+
+
+@kernel
+def _carry_over_into(old, new):
+    """Joints and shear springs that both lists hold; both are sorted, so one pass finds them."""
+    old_pair = 0
+    for pair in range(new.pairs.shape[0]):
+        while old_pair < old.pairs.shape[0] and (
+            old.pairs[old_pair, 0] < new.pairs[pair, 0]
+            or (old.pairs[old_pair, 0] == new.pairs[pair, 0] and old.pairs[old_pair, 1] < new.pairs[pair, 1])
+        ):
+            old_pair += 1
+        if old_pair == old.pairs.shape[0]:
+            return
+        if old.pairs[old_pair, 0] != new.pairs[pair, 0] or old.pairs[old_pair, 1] != new.pairs[pair, 1]:
+            continue
+        new.joint[pair] = old.joint[old_pair]
+        for side in range(2):
+            place = old.first[2 * old_pair + side] * LANES
+            end = old.first[2 * old_pair + side + 1] * LANES
+            for here in range(new.first[2 * pair + side] * LANES, new.first[2 * pair + side + 1] * LANES):
+                while place < end and old.node[place] != -1 and old.node[place] < new.node[here]:
+                    place += 1
+                if place < end and new.node[here] != -1 and old.node[place] == new.node[here]:
+                    for row in (CLOSED, STRETCH_X, STRETCH_Y, STRETCH_Z, HELD):
+                        new.packets[here // LANES, here % LANES + row] = old.packets[
+                            place // LANES, place % LANES + row
+                        ]
+
+
+@kernel
+def _name_joints(candidates, joints):
+    """Give every pair its joint: that of an earlier approach, or a new one; all joints are returned."""
+    fresh = np.empty(candidates.pairs.shape[0], np.int64)
+    n_fresh = 0
+    for pair in range(candidates.pairs.shape[0]):
+        if candidates.joint[pair] < 0:
+            joint = find_joint(joints, candidates.pairs[pair, 0], candidates.pairs[pair, 1])
+            if joint < 0:
+                joint = joints.slip.size + n_fresh
+                fresh[n_fresh] = pair
+                n_fresh += 1
+            candidates.joint[pair] = joint
+    return add_joints(joints, candidates.pairs[fresh[:n_fresh]]) if n_fresh > 0 else joints

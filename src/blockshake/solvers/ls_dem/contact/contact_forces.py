@@ -1,0 +1,172 @@
+"""Contact of pairs of bodies: both checked against each other, forces gathered on bodies and joints."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.dynamics.friction import friction_asymmetry, friction_coefficient
+from blockshake.jit import inline_kernel, kernel
+from blockshake.solvers.ls_dem.contact.contact_law import Law
+from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
+from blockshake.solvers.ls_dem.contact.packets import LANES, N_SUMS, SUM_DAMPED, SUM_HELD, SUM_SLID
+from blockshake.solvers.ls_dem.contact.relative_pose import relative_pose_into
+from blockshake.solvers.ls_dem.contact.side_forces import side_forces_into
+from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
+from blockshake.solvers.ls_dem.joints import Joints
+
+# Entries of ``Loads.energy``: what springs hold, and what friction and dashpots turned into heat in the step [J]
+SPRING_ENERGY, STEP_FRICTION_HEAT, STEP_DASHPOT_HEAT, N_ENERGIES = 0, 1, 2, 3
+_RATE_TIME = (
+    1e-3  # s, of the slip rate's delay; the time step of the nonsmooth solver, which has one of its own
+)
+
+
+class Loads(NamedTuple):
+    """Result of a force evaluation, overwritten by it.
+
+    ``force``, ``moment`` (n_bodies, 3) on each body [N, N m], world frame, about its mass centre;
+    ``energy`` (N_ENERGIES,) [J]; ``joints``: forces and slips of the pairs.
+    """
+
+    force: np.ndarray
+    moment: np.ndarray
+    energy: np.ndarray
+    joints: Joints
+
+
+@kernel
+def no_loads(n_bodies, joints):
+    """Loads before the first evaluation."""
+    return Loads(np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)), np.zeros(N_ENERGIES), joints)
+
+
+@kernel
+def clear_loads(bodies, loads):
+    """Start a force evaluation: gravity on every free body, nothing else."""
+    loads.moment[:] = 0.0
+    loads.energy[:] = 0.0
+    loads.joints.force[:] = 0.0
+    for body in range(bodies.mass.size):
+        for axis in range(3):
+            loads.force[body, axis] = 0.0 if bodies.driven[body] else bodies.mass[body] * bodies.gravity[axis]
+
+
+@kernel
+def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
+    """Contact forces between all near pairs, added to ``loads``.
+
+    Parameters
+    ----------
+    candidates : Candidates
+        Near nodes; their places and shear springs are updated.
+    surfaces : Surfaces
+    interfaces : Interfaces
+    poses : Poses
+    dt : float
+        Time since the step before, zero at the first [s].
+    loads : Loads
+        Force, moment and energy are added to, and force and slip of the joints.
+
+    Notes
+    -----
+    Each body's nodes are checked against the other's level set; each side carries half of the
+    interface's stiffness, so that a face on a face has it once. The area in touch is the mean
+    of what the two sides find.
+    """
+    R, d = np.empty((2, 3, 3)), np.empty((2, 3))
+    lanes, sums = np.empty(N_SUMS * LANES), np.empty(N_SUMS)
+    pairs, bounds, packets = candidates.pairs, candidates.first, candidates.packets
+    shapes, half, chamfer = surfaces.shape, surfaces.half, surfaces.chamfer
+    lattice, values, offset = surfaces.lattice, surfaces.values, surfaces.offset
+    position, rotation = poses.position, poses.rotation
+    force, moment, joint_force = loads.force, loads.moment, loads.joints.force
+    energy = loads.energy
+    rate = 1.0 / dt if dt > 0.0 else 0.0
+    for pair in range(pairs.shape[0]):
+        if bounds[2 * pair] == bounds[2 * pair + 2]:
+            continue
+        a, b, joint = pairs[pair, 0], pairs[pair, 1], candidates.joint[pair]
+        area = 0.0
+        for side in range(2):
+            owner, other = pairs[pair, side], pairs[pair, 1 - side]
+            relative_pose_into(position, rotation, offset, owner, other, side, R, d)
+            area += 0.5 * locate_nodes_into(
+                packets, bounds[2 * pair + side], bounds[2 * pair + side + 1],
+                half, chamfer, lattice, values, shapes[other], R, d, side, lanes,
+            )  # fmt: skip
+        k_n, k_s = normal_stiffness(interfaces, a, b), in_series(interfaces.k_s, a, b)
+        gamma_n = dashpot_coefficient(interfaces, a, b, interfaces.damping_ratio, k_n, area)
+        gamma_s = dashpot_coefficient(interfaces, a, b, interfaces.shear_damping_ratio, k_s, area)
+        slip_rate, slip = loads.joints.slip_rate[joint], loads.joints.slip[joint]
+        mu = friction_coefficient(interfaces.friction, a, b, slip_rate, slip)
+        bias = mu * friction_asymmetry(interfaces.friction, a, b)
+        heat = 0.0
+        for side in range(2):
+            # along the first body's x in the other's frame; its own slip is the reverse of the second's
+            bx, by, bz = (
+                (bias, 0.0, 0.0)
+                if side == 1
+                else (-bias * R[0, 0, 0], -bias * R[0, 1, 0], -bias * R[0, 2, 0])
+            )
+            law = Law(0.5 * k_n, 0.5 * k_s, gamma_n, mu, bx, by, bz, interfaces.least_force, rate)
+            side_forces_into(
+                packets, bounds[2 * pair + side], bounds[2 * pair + side + 1], law, gamma_s, lanes, sums
+            )
+            _share_into(
+                pairs[pair, side],
+                pairs[pair, 1 - side],
+                side,
+                rotation,
+                offset,
+                d,
+                sums,
+                force,
+                moment,
+                joint,
+                joint_force,
+            )
+            heat += sums[SUM_SLID]
+            energy[STEP_DASHPOT_HEAT] += sums[SUM_DAMPED]
+            energy[SPRING_ENERGY] += sums[SUM_HELD]
+        energy[STEP_FRICTION_HEAT] += heat
+        _slip_into(loads.joints, joint, mu, heat, dt)
+
+
+@kernel
+def _share_into(owner, other, side, rotation, offset, d, sums, force, moment, joint, joint_force):
+    """Add the summed force of a side to both bodies and to the joint, whose second body owns side 1."""
+    sign = 1.0 if side == 1 else -1.0
+    # moments about both mass centres: the owner's is at d from the centroid of the other's shape, the other's at e
+    d0, d1, d2 = d[side, 0], d[side, 1], d[side, 2]
+    f0, f1, f2 = sums[0], sums[1], sums[2]
+    m0, m1, m2 = sums[3], sums[4], sums[5]
+    o0, o1, o2 = m0 - (d1 * f2 - d2 * f1), m1 - (d2 * f0 - d0 * f2), m2 - (d0 * f1 - d1 * f0)
+    c0, c1, c2 = offset[other, 0], offset[other, 1], offset[other, 2]
+    m0, m1, m2 = m0 - (c1 * f2 - c2 * f1), m1 - (c2 * f0 - c0 * f2), m2 - (c0 * f1 - c1 * f0)
+    for i in range(3):
+        e0, e1, e2 = rotation[other, i, 0], rotation[other, i, 1], rotation[other, i, 2]
+        f = e0 * f0 + e1 * f1 + e2 * f2
+        force[owner, i] += f
+        force[other, i] -= f
+        moment[owner, i] += e0 * o0 + e1 * o1 + e2 * o2
+        moment[other, i] -= e0 * m0 + e1 * m1 + e2 * m2
+        joint_force[joint, i] += sign * f
+
+
+@inline_kernel
+def _slip_into(joints, joint, mu, heat, dt):
+    """Slip of a joint in this step: its friction heat over Coulomb's limit, a mean weighted by the force.
+
+    Its rate follows with a delay of `_RATE_TIME`: taken step by step, it is that of springs without mass, and a
+    coefficient that falls with it would jump up and down the more, the smaller the step.
+    """
+    fx, fy, fz = joints.force[joint, 0], joints.force[joint, 1], joints.force[joint, 2]
+    squared = fx * fx + fy * fy + fz * fz
+    if squared > 0.0:
+        joints.touched[joint] = True
+    # of a contact that slides as a whole, the part of the force that is friction
+    limit = mu * np.sqrt(squared / (1.0 + mu * mu))
+    slip = max(heat, 0.0) / limit if limit > 0.0 else 0.0
+    joints.slip[joint] += slip
+    if dt > 0.0:
+        joints.slip_rate[joint] += (slip / dt - joints.slip_rate[joint]) * dt / (_RATE_TIME + dt)

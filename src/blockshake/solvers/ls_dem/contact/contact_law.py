@@ -1,0 +1,137 @@
+"""The contact law of a node: Eqs. (2), (4) and (5) of Zhou et al. (2023), and the energy it moves."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.jit import inline_kernel
+
+
+class Law(NamedTuple):
+    """Contact law of the nodes of one side.
+
+    ``k_n``, ``k_s``: stiffness per area of node [N/m3]; ``gamma_n``: dashpot, per unit of a node's
+    damping weight; ``mu``: Coulomb's coefficient, and ``bias_x, bias_y, bias_z`` its change by direction: it is
+    ``mu + bias . s`` for the unit vector s of the owner's slip, other's frame; ``least_force``: the cut of
+    Eq. (2) [N]; ``rate``: the inverse of the time since the step before, zero at the first step [1/s].
+    """
+
+    k_n: float
+    k_s: float
+    gamma_n: float
+    mu: float
+    bias_x: float
+    bias_y: float
+    bias_z: float
+    least_force: float
+    rate: float
+
+
+@inline_kernel
+def normal_force(phi, slope, closing, k_n, gamma_n, least):
+    """Magnitude of a node's normal force, Eq. (2) [N].
+
+    ``phi`` is the level-set value (negative inside) [m], ``slope`` the length of its gradient: the spring's force
+    is that of the energy ``k_n phi^2 / 2``, which a sampled level set keeps only so where it rounds an edge.
+    ``closing`` is the velocity of the node along the outward normal of the other body [m/s], negative when
+    approaching; ``k_n`` [N/m] and ``gamma_n`` [N s/m] are the node's. The damped force is cut at ``least``: at zero
+    because concrete does not stick to concrete, so that a ``gamma_n`` made for a restitution of 0.50
+    rebounds at 0.55; at -inf it may pull, as printed.
+    """
+    force = -k_n * phi * slope - gamma_n * closing
+    return force if (force > least and phi < 0.0) else 0.0
+
+
+@inline_kernel
+def trial_stretch(ox, oy, oz, ux, uy, uz, nx, ny, nz):
+    """Stretch of a node's shear spring after the motion of a step, before Coulomb's limit: Eq. (4).
+
+    Parameters
+    ----------
+    ox, oy, oz : float
+        Stretch before, other's frame [m].
+    ux, uy, uz : float
+        Change of the node's place in the step, other's frame [m]: Eq. (4)'s relative velocity times the step.
+    nx, ny, nz : float
+        Outward normal now.
+
+    Returns
+    -------
+    tx, ty, tz : float
+        Stretch now, across the normal [m]; the shear force would be ``-k_s`` times it.
+    dropped : float
+        Part of the stretch before along the normal now: of a normal that has changed [m].
+    closed : float
+        Change of place along the normal [m].
+    """
+    dropped = ox * nx + oy * ny + oz * nz
+    tx, ty, tz = ox + ux, oy + uy, oz + uz
+    along = tx * nx + ty * ny + tz * nz
+    return tx - along * nx, ty - along * ny, tz - along * nz, dropped, along - dropped
+
+
+@inline_kernel
+def kept_stretch(tx, ty, tz, f_n, k_s, law):
+    """Share of a trial stretch that Coulomb's limit lets a shear spring keep, Eq. (5), and the stretch squared.
+
+    ``tx, ty, tz`` [m]; ``f_n`` the normal force, not below zero [N]; ``k_s`` of the node [N/m]. A node out
+    of contact has no limit force and lets go.
+    """
+    squared = tx * tx + ty * ty + tz * tz
+    limit = f_n * (law.mu * np.sqrt(squared) + law.bias_x * tx + law.bias_y * ty + law.bias_z * tz)
+    reach = k_s * squared
+    return limit / reach if reach > limit else 1.0, squared
+
+
+@inline_kernel
+def node_force(phi, slope, nx, ny, nz, ux, uy, uz, ox, oy, oz, closed, area, weight, law):
+    """Force of one node, its springs afterwards, and the energy it moved.
+
+    Parameters
+    ----------
+    phi, slope, nx, ny, nz : float
+        Level-set value [m], length of its gradient [1] and outward normal of the other body there.
+    ux, uy, uz : float
+        Change of place since the step before, other's frame [m].
+    ox, oy, oz : float
+        Stretch of the shear spring so far, other's frame [m].
+    closed : float
+        Change of place along the normal in the step before [m].
+    area, weight : float
+        Of the node [m2]; what its dashpot goes with.
+    law : Law
+
+    Returns
+    -------
+    fx, fy, fz : float
+        On the owner, other's frame [N].
+    sx, sy, sz, closed : float
+        Stretch and change along the normal now [m].
+    held, slid, damped : float
+        Energy that the springs hold, friction heat and dashpot heat of the step [J].
+
+    Notes
+    -----
+    The stretch is kept in the frame of the body whose level set is read, so that it turns with
+    the interface; where the normal changes (from a flat to a chamfer) its part along the new
+    normal is dropped, and what the spring held of it counts as dashpot heat. The velocity of the
+    dashpot is that of the last two half steps carried on to the step, which is of second order.
+    Friction heat is the mean shear force of the step times the slip: exactly the work on the
+    spring less the energy it gained.
+    """
+    k_node, k_shear = law.k_n * area, law.k_s * area
+    tx, ty, tz, dropped, now_closed = trial_stretch(ox, oy, oz, ux, uy, uz, nx, ny, nz)
+    moved = 1.5 * now_closed - 0.5 * closed
+    f_n = normal_force(phi, slope, moved * law.rate, k_node, law.gamma_n * weight, law.least_force)
+    kept, squared = kept_stretch(tx, ty, tz, max(f_n, 0.0), k_shear, law)
+    sx, sy, sz = kept * tx, kept * ty, kept * tz
+
+    # slip is the trial stretch less what was kept of it
+    depth = -phi if phi < 0.0 else 0.0
+    spring, half = k_node * depth * slope, 0.5 * k_shear
+    after = kept * squared
+    held = half * kept * after + 0.5 * k_node * depth * depth
+    slid = half * (1.0 - kept) * (ox * tx + oy * ty + oz * tz + after)
+    damped = half * dropped * dropped - (f_n - spring) * moved
+    fx, fy, fz = f_n * nx - k_shear * sx, f_n * ny - k_shear * sy, f_n * nz - k_shear * sz
+    return fx, fy, fz, sx, sy, sz, now_closed, held, slid, damped

@@ -1,0 +1,40 @@
+"""Layout of the near nodes in memory: packets of eight, row by row, so that loops over lanes become vectors."""
+
+from blockshake.jit import inline_kernel
+
+# Packets are an array of shape (n_packets, PACKET). Each holds LANES nodes of one side of a pair of bodies, quantity
+# by quantity: entry ``[packet, row + lane]``, with these rows. Written so, a loop over the lanes that touches no other
+# array becomes vector instructions; a slice would be counted, and a flat index checked for its sign, at every packet.
+LANES = 8
+(
+    POINT_X, POINT_Y, POINT_Z,  # place in the owner's frame, from its mass centre [m]
+    AREA,  # [m2]
+    DAMPING_WEIGHT,  # what the dashpot goes with: the area [m2], or its root [m] in the literal Eq. (3)
+    PLACE_X, PLACE_Y, PLACE_Z,  # in the other body's frame, from the centroid of its shape [m]
+    MOVED_X, MOVED_Y, MOVED_Z,  # change of the place in the last step [m]
+    PHI,  # level-set value there [m]
+    NORMAL_X, NORMAL_Y, NORMAL_Z,  # outward normal there, in the other body's frame
+    SLOPE,  # length of the level set's gradient there: 1, but near the edges of a sampled one
+    CLOSED,  # change of the place along the normal in the last step [m]
+    STRETCH_X, STRETCH_Y, STRETCH_Z,  # of the shear spring, in the other body's frame [m]
+    FORCE_X, FORCE_Y, FORCE_Z,  # of the last evaluation on the owner, other's frame [N]
+    MOMENT_X, MOMENT_Y, MOMENT_Z,  # about the same origin, other's frame [N m]
+    SLID, DAMPED,  # friction heat and dashpot heat of the step [J]
+    HELD,  # energy in the springs [J]; not zero where one is stretched
+    PACKET,
+) = range(0, 30 * LANES, LANES)  # fmt: skip
+# Quantities that a side adds up are those from FORCE_X on: force, moment, then these.
+N_SUMS = (PACKET - FORCE_X) // LANES
+SUM_SLID, SUM_DAMPED, SUM_HELD = 6, 7, 8
+# Where a sampled level set puts the values at the eight corners of a cell meanwhile; the forces come after.
+CORNERS = FORCE_X
+# A packet is filled up with nodes that lie here [m] and so never touch.
+FAR_AWAY = 1e6
+
+
+@inline_kernel
+def sum_lanes(lanes, row):
+    """Sum of eight entries, in a fixed order."""
+    return ((lanes[row] + lanes[row + 1]) + (lanes[row + 2] + lanes[row + 3])) + (
+        (lanes[row + 4] + lanes[row + 5]) + (lanes[row + 6] + lanes[row + 7])
+    )

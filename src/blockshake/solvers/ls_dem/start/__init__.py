@@ -1,0 +1,1 @@
+"""The equilibrium that a run starts from, and the stable step."""

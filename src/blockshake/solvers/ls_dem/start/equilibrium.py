@@ -1,0 +1,236 @@
+"""Static equilibrium of stacks on their springs by Newton's method: relaxation alone takes ages in tall walls."""
+
+import numpy as np
+from scipy.sparse import coo_array, eye_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import splu
+
+from blockshake.geometry.rotations import rotate_into, rotation_matrices
+from blockshake.jit import kernel
+from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates
+from blockshake.solvers.ls_dem.contact.contact_forces import clear_loads, contact_forces_into, no_loads
+from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES, NORMAL_X, PHI, PLACE_X
+from blockshake.solvers.ls_dem.contact.relative_pose import Poses
+from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
+from blockshake.solvers.ls_dem.joints import no_joints
+from blockshake.solvers.ls_dem.start.stability import stable_time_step
+
+_MOST_ITERATIONS = 20
+_AT_REST = 1e-9  # out-of-balance force over weight; the thump it leaves is as small
+_SOFT = 1e-9  # of the stiffest entry; it lets a body that nothing holds move far, and is told by that
+
+
+def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near):
+    """Poses at which stacks rest under gravity on the springs between them, near the given poses.
+
+    Parameters
+    ----------
+    bodies, surfaces, interfaces : Bodies, Surfaces, Interfaces
+    skin : float
+        Reach of the lists [m].
+    state : State
+        Given poses; not changed.
+    near : float
+        Joints open by less than this are taken to close, and a stack with a body that moves farther
+        has no equilibrium near [m].
+
+    Returns
+    -------
+    position, orientation : float64 arrays, shape (n_bodies, 3) and (n_bodies, 4)
+        As given where no equilibrium is near.
+    at_rest : float64 array, shape (n_bodies,)
+        Out-of-balance force below which a body is at rest: a billionth of its weight, or what the rounding of
+        its position makes of its springs [N].
+    left : bool array, shape (n_bodies,)
+        Free bodies of stacks that would move farther even with their joints bonded: they have no
+        equilibrium near.
+    stable_step : float
+        Largest stable time step of the joints in touch, see `stable_time_step` [s].
+
+    Notes
+    -----
+    Newton's method on the forces of `contact_forces_into`, whose stiffness is the springs of the nodes in
+    touch. At the first iteration all nodes within ``near`` count, those of an open joint across which gravity acts
+    pulling it close. Where joints open or slide it may not converge, and relaxation has more to do. Bodies
+    without inverse inertia do not turn.
+    """
+    n_bodies = len(bodies.mass)
+    position, orientation = state.position.copy(), state.orientation.copy()
+    rotation = np.ascontiguousarray(rotation_matrices(orientation))
+    poses = Poses(position, rotation, position.copy(), rotation.copy())
+    candidates, joints = find_candidates(
+        surfaces, bodies.driven, poses, orientation, skin, empty_candidates(n_bodies), no_joints()
+    )
+    loads = no_loads(n_bodies, joints)
+    radius = surfaces.radius
+    at_rest = _AT_REST * bodies.mass * np.linalg.norm(bodies.gravity) + 1e-300
+    down = bodies.gravity / max(np.linalg.norm(bodies.gravity), 1e-300)
+    moves = np.repeat([[True] * 3 + [False] * 3], n_bodies, axis=0)
+    moves[bodies.inverse_inertia.any(axis=(1, 2)), 3:] = True
+    solved, left = ~bodies.driven, np.zeros(n_bodies, dtype=bool)
+    for iteration in range(_MOST_ITERATIONS):
+        clear_loads(bodies, loads)
+        contact_forces_into(candidates, surfaces, interfaces, poses, 0.0, loads)
+        poses.position_before[:] = position
+        poses.rotation_before[:] = rotation
+        reach = near if iteration == 0 else 0.0
+        stiffness, pull, touching, relaxation = _joint_stiffness(
+            candidates, interfaces, surfaces.offset, poses, reach, down
+        )
+        if iteration == 0:
+            stable_step = _stable_step(candidates.pairs, stiffness, relaxation, bodies)
+            at_rest = np.maximum(at_rest, _rounding(candidates.pairs, stiffness, position))
+            group = _groups(candidates.pairs[touching], bodies.driven)
+        load = np.where(moves, np.concatenate([loads.force, loads.moment], axis=1) + pull, 0.0)
+        limit = np.where(np.arange(6) < 3, 1.0, radius[:, None]) * at_rest[:, None]
+        if not solved.any() or (np.abs(load) < limit)[solved].all():
+            break
+        move = _solve(candidates.pairs, stiffness, solved[:, None] & moves, load)[solved]
+        for body, (shift, turn) in zip(np.flatnonzero(solved), move, strict=True):
+            position[body] += shift
+            rotate_into(orientation[body], turn, orientation[body])
+        # what nothing holds goes anywhere; not (x <= limit), so that NaN counts
+        with np.errstate(over="ignore", invalid="ignore"):
+            moved = np.linalg.norm(position - state.position, axis=1)
+            cosine = np.abs((orientation * state.orientation).sum(axis=1))
+            moved += 2.0 * radius * np.sqrt(np.maximum(1.0 - cosine**2, 0.0))
+            lost = np.isin(group, group[solved & ~(moved <= near)])
+        position[lost], orientation[lost] = state.position[lost], state.orientation[lost]
+        solved &= ~lost
+        if iteration == 0:
+            left = lost & ~bodies.driven
+        rotation[:] = rotation_matrices(orientation)
+    return position, orientation, at_rest, left, stable_step
+
+
+def _stable_step(pairs, stiffness, relaxation, bodies):
+    """Largest stable time step with this stiffness of the pairs and dashpots of these relaxation times [s]."""
+    free = np.flatnonzero(~bodies.driven)
+    chosen = (6 * free[:, None] + np.arange(6)).ravel()
+    size = 6 * len(bodies.mass)
+    parts = [stiffness, stiffness * relaxation[:, None, None]]
+    K, C = (_assembled(pairs, part, size)[chosen][:, chosen] for part in parts)
+    return stable_time_step(K, C, bodies, free)
+
+
+def _assembled(pairs, stiffness, size):
+    """Sparse matrix of the pairs' 12 x 12 blocks."""
+    entries = (6 * pairs[:, :, None] + np.arange(6)).reshape(-1, 12)
+    row = np.repeat(entries, 12, axis=1).ravel()
+    column = np.tile(entries, (1, 12)).ravel()
+    return coo_array((stiffness.ravel(), (row, column)), shape=(size, size)).tocsr()
+
+
+def _rounding(pairs, stiffness, position):
+    """Force that the last bit of the positions makes of the springs on each body [N]."""
+    stiffest = stiffness[:, np.arange(3), np.arange(3)].max(axis=1, initial=0.0)
+    on_body = np.bincount(pairs.ravel(), np.repeat(stiffest, 2), minlength=len(position))
+    return np.spacing(np.abs(position).max()) * on_body
+
+
+def _groups(pairs, driven):
+    """Number of the group of touching bodies that each belongs to, driven ones left out: int array (n_bodies,)."""
+    free = pairs[~driven[pairs].any(axis=1)]
+    links = coo_array((np.ones(len(free)), free.T), shape=(len(driven), len(driven)))
+    return connected_components(links, directed=False)[1]
+
+
+def _solve(pairs, stiffness, solved, load):
+    """Displacements and rotations under these loads, zero where not solved for: (n_bodies, 2, 3) [m, rad]."""
+    chosen = np.flatnonzero(solved)
+    matrix = _assembled(pairs, stiffness, solved.size)[chosen][:, chosen]
+    soft = _SOFT * abs(matrix).max() + 1e-300
+    move = np.zeros(solved.size)
+    move[chosen] = splu((matrix + soft * eye_array(len(chosen))).tocsc()).solve(load.ravel()[chosen])
+    return move.reshape(-1, 2, 3)
+
+
+@kernel
+def _joint_stiffness(candidates, interfaces, offset, poses, reach, down):
+    """Stiffness of each pair for the displacements and rotations of its two bodies, and the pull of open nodes.
+
+    Parameters
+    ----------
+    candidates : Candidates
+        Located nodes.
+    interfaces : Interfaces
+    offset : float64 array, shape (n_bodies, 3)
+        As in `Surfaces`.
+    poses : Poses
+    reach : float
+        Nodes whose level-set value is below this are in touch [m].
+    down : float64 array, shape (3,)
+        Direction of gravity; zero without any.
+
+    Returns
+    -------
+    stiffness : float64 array, shape (n_pairs, 12, 12)
+        World frame, about the mass centres [N/m, N, N m].
+    pull : float64 array, shape (n_bodies, 6)
+        Force and moment that nodes in touch but not inside would have if springs could pull [N, N m], where the
+        normal lies within 60 degrees of gravity: what the weight cannot close stays open.
+    touching : bool array, shape (n_pairs,)
+        Whether a pair has a node in touch.
+    relaxation : float64 array, shape (n_pairs,)
+        Coefficient of a pair's dashpots over the stiffness of its springs [s].
+    """
+    n_pairs = candidates.pairs.shape[0]
+    stiffness, pull = np.zeros((n_pairs, 12, 12)), np.zeros((poses.position.shape[0], 6))
+    touching, relaxation = np.zeros(n_pairs, np.bool_), np.zeros(n_pairs)
+    B, DB = np.zeros((3, 12)), np.empty((3, 12))
+    for pair in range(n_pairs):
+        a, b = candidates.pairs[pair, 0], candidates.pairs[pair, 1]
+        k_n, k_s = normal_stiffness(interfaces, a, b), in_series(interfaces.k_s, a, b)
+        area, weight = 0.0, 0.0
+        for side in range(2):
+            owner, other = candidates.pairs[pair, side], candidates.pairs[pair, 1 - side]
+            R = poses.rotation[other]
+            for packet in range(candidates.first[2 * pair + side], candidates.first[2 * pair + side + 1]):
+                for lane in range(LANES):
+                    node = candidates.packets[packet]
+                    phi = node[PHI + lane]
+                    if not phi < reach:
+                        continue
+                    n, arm = np.zeros(3), np.zeros(3)
+                    for i in range(3):
+                        for j in range(3):
+                            n[i] += R[i, j] * node[NORMAL_X + j * LANES + lane]
+                            arm[i] += R[i, j] * (node[PLACE_X + j * LANES + lane] - offset[other, j])
+                    if phi >= 0.0 and abs(n[0] * down[0] + n[1] * down[1] + n[2] * down[2]) < 0.5:
+                        continue
+                    touching[pair] = True
+                    half_area = 0.5 * node[AREA + lane]
+                    area += half_area
+                    weight += node[DAMPING_WEIGHT + lane]
+                    place = poses.position[other] + arm
+                    _relative_motion_into(place - poses.position[a], place - poses.position[b], B)
+                    for column in range(12):
+                        along = n[0] * B[0, column] + n[1] * B[1, column] + n[2] * B[2, column]
+                        for i in range(3):
+                            DB[i, column] = half_area * (k_s * B[i, column] + (k_n - k_s) * along * n[i])
+                    for row in range(12):
+                        for column in range(12):
+                            for i in range(3):
+                                stiffness[pair, row, column] += B[i, row] * DB[i, column]
+                    if phi >= 0.0:
+                        force = -half_area * k_n * phi * n
+                        pull[owner, :3] += force
+                        pull[owner, 3:] += np.cross(place - poses.position[owner], force)
+                        pull[other, :3] -= force
+                        pull[other, 3:] -= np.cross(arm, force)
+        if area > 0.0:
+            gamma = dashpot_coefficient(interfaces, a, b, interfaces.damping_ratio, k_n, area)
+            relaxation[pair] = gamma * weight / (k_n * area)
+    return stiffness, pull, touching, relaxation
+
+
+@kernel
+def _relative_motion_into(arm_a, arm_b, B):
+    """Motion of a point of body a against body b as a linear map of the displacements and rotations of both."""
+    for i in range(3):
+        B[i, i], B[i, 6 + i] = 1.0, -1.0
+    # rotation x arm
+    B[0, 4], B[0, 5], B[1, 3] = arm_a[2], -arm_a[1], -arm_a[2]
+    B[1, 5], B[2, 3], B[2, 4] = arm_a[0], arm_a[1], -arm_a[0]
+    B[0, 10], B[0, 11], B[1, 9] = -arm_b[2], arm_b[1], arm_b[2]
+    B[1, 11], B[2, 9], B[2, 10] = -arm_b[0], -arm_b[1], arm_b[0]

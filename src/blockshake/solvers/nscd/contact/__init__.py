@@ -1,0 +1,1 @@
+"""Contacts of convex polyhedra: detection and warm start."""

@@ -1,0 +1,223 @@
+"""The contacts of one step: where they are, their Delassus operators, and what they remember."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.jit import kernel
+from blockshake.solvers.nscd.contact.detection import detect_pair_into
+from blockshake.solvers.nscd.contact.polyhedra import find_pairs
+from blockshake.solvers.nscd.vectors import cross, dot, matrix_product, put_into, transposed_product
+
+# Contacts are looked for at least this far apart, since a body at rest may be pushed within a step [m].
+_LEAST_MARGIN = 1e-4
+# Entries of ``Contacts.delassus``: a symmetric 3 x 3 matrix whose entry of the two tangents is zero
+W_NN, W_11, W_22, W_N1, W_N2, N_DELASSUS = 0, 1, 2, 3, 4, 5
+
+
+class Contacts(NamedTuple):
+    """Contacts of one step, pair by pair in fixed order, stoppers last.
+
+    ``body_a``, ``body_b`` int64 (n,): impulses act on b and, reversed, on a. ``basis`` (n, 3, 3):
+    rows are the unit normal from a to b and two tangents, world frame. ``arm_a``, ``arm_b``
+    (n, 3): point minus mass centre, world frame [m]. ``home`` (n, 3): point in the frame of a [m].
+    ``gap`` (n,) [m]; ``friction`` (n,) [1] and ``bias`` (n, 2) [1]: the coefficient is ``friction + bias . s`` for
+    slip of b along the unit vector s of the tangents. ``shift`` (n, 3): velocity added to that of the contact before
+    the law is applied [m/s]. ``share`` (n,) [1] and ``compliance`` (n,) [1/kg] of the normal law ``share (u_n +
+    bound_n) + compliance p_n >= 0``: 1 and 0 where rigid bodies touch, a compliance where a layer is between them;
+    only a contact without friction may have another share. ``delassus`` (n, N_DELASSUS): operator of the local
+    problem, see `delassus_into` [1/kg]. ``impulse`` (n, 3) along the basis [N s]. ``slip_ratio`` (n,): slip speed
+    per friction impulse, of `solve_contact` [1/kg]. ``stopper`` int64
+    (n,): index of the stopper, or -1.
+    """
+
+    body_a: np.ndarray
+    body_b: np.ndarray
+    basis: np.ndarray
+    arm_a: np.ndarray
+    arm_b: np.ndarray
+    home: np.ndarray
+    gap: np.ndarray
+    friction: np.ndarray
+    bias: np.ndarray
+    shift: np.ndarray
+    share: np.ndarray
+    compliance: np.ndarray
+    delassus: np.ndarray
+    impulse: np.ndarray
+    slip_ratio: np.ndarray
+    stopper: np.ndarray
+
+
+@kernel
+def empty_contacts(capacity):
+    """Arrays for that many contacts."""
+    return Contacts(
+        np.empty(capacity, np.int64),
+        np.empty(capacity, np.int64),
+        np.empty((capacity, 3, 3)),
+        np.empty((capacity, 3)),
+        np.empty((capacity, 3)),
+        np.empty((capacity, 3)),
+        np.empty(capacity),
+        np.zeros(capacity),
+        np.zeros((capacity, 2)),
+        np.zeros((capacity, 3)),
+        np.ones(capacity),
+        np.zeros(capacity),
+        np.empty((capacity, N_DELASSUS)),
+        np.zeros((capacity, 3)),
+        np.zeros(capacity),
+        np.full(capacity, -1, np.int64),
+    )
+
+
+@kernel
+def _first_rows(contacts, count):
+    return Contacts(
+        contacts.body_a[:count],
+        contacts.body_b[:count],
+        contacts.basis[:count],
+        contacts.arm_a[:count],
+        contacts.arm_b[:count],
+        contacts.home[:count],
+        contacts.gap[:count],
+        contacts.friction[:count],
+        contacts.bias[:count],
+        contacts.shift[:count],
+        contacts.share[:count],
+        contacts.compliance[:count],
+        contacts.delassus[:count],
+        contacts.impulse[:count],
+        contacts.slip_ratio[:count],
+        contacts.stopper[:count],
+    )
+
+
+@kernel
+def contact_margin(v_start, radius, gravity, dt):
+    """Gap up to which points of two bodies are kept as contacts: what no pair can close in a step [m]."""
+    fastest = 0.0
+    for body in range(radius.size):
+        v = v_start[body]
+        fastest = max(fastest, np.sqrt(dot(v[:3], v[:3])) + radius[body] * np.sqrt(dot(v[3:], v[3:])))
+    return _LEAST_MARGIN + 2.0 * dt * (fastest + dt * np.sqrt(dot(gravity, gravity)))
+
+
+@kernel
+def detect_contacts(
+    bodies, polyhedra, placed, rotations, margin, shrink, layers, admittance, memory, n_stoppers
+):
+    """Contacts of all pairs of polyhedra, with room for the stoppers after them.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    polyhedra, placed : Polyhedra, Placed
+    rotations : float64 array, shape (n_bodies, 3, 3)
+        Body to world.
+    margin, shrink : float
+        As in `detect_pair_into`.
+    layers : float64 array, shape (n_bodies, n_bodies)
+        Compliance of the layers in the joints [m3/N].
+    admittance : float
+        Impulse over stiffness and velocity, ``theta h^2``, of an implicit spring [s2].
+    memory : int64 array, shape (n_bodies, n_bodies)
+        As in `detect_pair_into`.
+    n_stoppers : int
+
+    Returns
+    -------
+    contacts : Contacts
+        Geometry, gap and compliance filled in; the rows of the stoppers are still empty.
+    """
+    pairs = find_pairs(placed, bodies.driven, margin)
+    contacts = empty_contacts(5 * pairs.shape[0] + n_stoppers)
+    normal, points, gaps, areas = np.empty(3), np.empty((5, 3)), np.empty(5), np.empty(5)
+    count = 0
+    for pair in range(pairs.shape[0]):
+        a, b = pairs[pair, 0], pairs[pair, 1]
+        layer = layers[a, b]
+        found = detect_pair_into(
+            polyhedra, placed, a, b, margin, shrink, layer, memory, normal, points, gaps, areas
+        )
+        if found == 0:
+            memory[a, b] = -1
+        for point in range(found):
+            contacts.body_a[count], contacts.body_b[count] = a, b
+            contacts.gap[count] = gaps[point]
+            contacts.compliance[count] = layer / (admittance * areas[point])
+            put_into(normal, contacts.basis[count, 0])
+            for axis in range(3):
+                contacts.arm_a[count, axis] = points[point, axis] - placed.center[a, axis]
+                contacts.arm_b[count, axis] = points[point, axis] - placed.center[b, axis]
+            put_into(transposed_product(rotations[a], contacts.arm_a[count]), contacts.home[count])
+            count += 1
+    return _first_rows(contacts, count + n_stoppers)
+
+
+@kernel
+def _add_body_into(arm, inverse_mass, inverse_inertia, basis, W):
+    """Add one body's share of ``basis (1/m - arm x I^-1 arm x) basis^T`` to ``W``."""
+    levers = (cross(arm, basis[0]), cross(arm, basis[1]), cross(arm, basis[2]))
+    for i in range(3):
+        spin = matrix_product(inverse_inertia, levers[i])
+        W[i, i] += inverse_mass
+        for j in range(3):
+            W[i, j] += dot(levers[j], spin)
+
+
+@kernel
+def _tangents_into(basis):
+    """Two tangents that complete a right-handed frame with the normal ``basis[0]``."""
+    n = basis[0]
+    least = 0
+    for axis in range(1, 3):
+        if abs(n[axis]) < abs(n[least]):
+            least = axis
+    t = cross(n, (1.0 * (least == 0), 1.0 * (least == 1), 1.0 * (least == 2)))
+    size = np.sqrt(dot(t, t))
+    put_into((t[0] / size, t[1] / size, t[2] / size), basis[1])
+    put_into(cross(n, basis[1]), basis[2])
+
+
+@kernel
+def delassus_into(bodies, inverse_inertia, contacts):
+    """Fill in the tangents and the Delassus operators, ``W = J M^-1 J^T`` of each contact alone.
+
+    The velocity of a contact along its basis is ``u = W p + q``, q being that without its own impulse p.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    inverse_inertia : float64 array, shape (n_bodies, 3, 3)
+        World frame [1/(kg m2)]; zero for driven bodies.
+    contacts : Contacts
+        ``basis`` needs its normals; the tangents are turned such that the tangential block of
+        the operator is diagonal. A contact's share and compliance are in its `W_NN`.
+    """
+    W = np.empty((3, 3))
+    for contact in range(contacts.gap.size):
+        a, b = contacts.body_a[contact], contacts.body_b[contact]
+        basis = contacts.basis[contact]
+        _tangents_into(basis)
+        W[:] = 0.0
+        _add_body_into(contacts.arm_a[contact], bodies.inverse_mass[a], inverse_inertia[a], basis, W)
+        _add_body_into(contacts.arm_b[contact], bodies.inverse_mass[b], inverse_inertia[b], basis, W)
+        angle = 0.5 * np.arctan2(2.0 * W[1, 2], W[1, 1] - W[2, 2])
+        c, s = np.cos(angle), np.sin(angle)
+        for axis in range(3):
+            t_1, t_2 = basis[1, axis], basis[2, axis]
+            basis[1, axis], basis[2, axis] = c * t_1 + s * t_2, c * t_2 - s * t_1
+        w = contacts.delassus[contact]
+        w[W_NN] = contacts.share[contact] * W[0, 0] + contacts.compliance[contact]
+        w[W_11] = c * c * W[1, 1] + 2.0 * c * s * W[1, 2] + s * s * W[2, 2]
+        w[W_22] = s * s * W[1, 1] - 2.0 * c * s * W[1, 2] + c * c * W[2, 2]
+        w[W_N1] = c * W[0, 1] + s * W[0, 2]
+        w[W_N2] = c * W[0, 2] - s * W[0, 1]
+
+
+@kernel
+def effective_mass(w):
+    """Least mass that a contact with the Delassus operator ``w`` moves along its basis [kg]."""
+    return 1.0 / max(w[W_NN], max(w[W_11], w[W_22]))

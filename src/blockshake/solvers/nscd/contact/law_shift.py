@@ -1,0 +1,90 @@
+"""Velocities by which the contact law of a step differs from ``u_n >= 0``: gaps, restitution, levers that turn."""
+
+from blockshake.jit import kernel
+from blockshake.solvers.nscd.solve.gauss_seidel import relative_velocity
+from blockshake.solvers.nscd.vectors import dot
+
+
+@kernel
+def law_shift_into(step, dt, theta, restitution, contacts):
+    """Fill in ``shift``, the velocities that the contact law adds to those of the contacts.
+
+    Notes
+    -----
+    Poses of detection are ``dt`` apart, and the velocity at the end of a step carries one to the
+    next: ``gap + dt u_n`` is the next gap. So ``u_n + max(gap, 0) / dt >= 0`` lets a contact close
+    and no more, and leaves a penetration as it is. ``u`` must be measured with the levers halfway between these
+    two poses; those at hand are ``dt / 2`` older, and the difference is the centripetal velocity added here.
+    Newton's restitution replaces the anticipated gap where the velocity at the start would close the gap within the
+    step. The law of a stop and of a layer is implicit: impulse ``dt k`` times the closure at the end. All points of a
+    layer press at once, and what the levers add along it is that of its deepest point for all of them: else those that
+    stick would be stretched apart, and hold the block.
+    """
+    a, b, deepest = -1, -1, 0
+    for contact in range(contacts.gap.size):
+        basis, shift = contacts.basis[contact], contacts.shift[contact]
+        gap = contacts.gap[contact]
+        if contacts.body_a[contact] != a or contacts.body_b[contact] != b:
+            a, b, deepest = (
+                contacts.body_a[contact],
+                contacts.body_b[contact],
+                _deepest_of_pair(contacts, contact),
+            )
+        layered = contacts.compliance[contact] > 0.0 and contacts.stopper[contact] < 0
+        turn = _turn_of_levers(step, contacts, contact)
+        along = _turn_of_levers(step, contacts, deepest if layered else contact)
+        shift[0] = 0.5 * dt * dot(basis[0], turn)
+        shift[1], shift[2] = 0.5 * dt * dot(basis[1], along), 0.5 * dt * dot(basis[2], along)
+        if contacts.compliance[contact] > 0.0:
+            shift[0] += gap / (theta * dt)
+            continue
+        closing, _, _ = relative_velocity(contacts, contact, step.v_start)
+        if restitution > 0.0 and closing < 0.0 and gap + dt * closing <= 0.0:
+            shift[0] += restitution * closing
+        else:
+            shift[0] += max(gap, 0.0) / dt
+
+
+@kernel
+def _deepest_of_pair(contacts, first):
+    """The contact with the least gap among those of the pair of bodies that begin at ``first``."""
+    deepest, contact = first, first
+    while (
+        contact < contacts.gap.size
+        and contacts.body_a[contact] == contacts.body_a[first]
+        and contacts.body_b[contact] == contacts.body_b[first]
+    ):
+        if contacts.gap[contact] < contacts.gap[deepest]:
+            deepest = contact
+        contact += 1
+    return deepest
+
+
+@kernel
+def _turn_of_levers(step, contacts, contact):
+    """Centripetal acceleration of b's point less that of a's [m/s2]."""
+    of_b = _centripetal(step.v_start[contacts.body_b[contact], 3:], contacts.arm_b[contact])
+    of_a = _centripetal(step.v_start[contacts.body_a[contact], 3:], contacts.arm_a[contact])
+    return of_b[0] - of_a[0], of_b[1] - of_a[1], of_b[2] - of_a[2]
+
+
+@kernel
+def bodies_meet(contacts, n_contacts, v_start, speed):
+    """Whether a contact of bodies presses that closed faster than ``speed`` [m/s] when the step began."""
+    for contact in range(n_contacts):
+        if contacts.impulse[contact, 0] > 0.0:
+            closing, _, _ = relative_velocity(contacts, contact, v_start)
+            if closing < -speed:
+                return True
+    return False
+
+
+@kernel
+def _centripetal(spin, arm):
+    """``spin x (spin x arm)`` [m/s2]."""
+    along, squared = dot(spin, arm), dot(spin, spin)
+    return (
+        along * spin[0] - squared * arm[0],
+        along * spin[1] - squared * arm[1],
+        along * spin[2] - squared * arm[2],
+    )

@@ -1,0 +1,54 @@
+"""Motion of the driven bodies during a run."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.dynamics.motion import PITCH, MotionTable, find_segment, ground_state_into
+from blockshake.jit import kernel
+
+
+class Ground(NamedTuple):
+    """Ground motion at the time last asked for.
+
+    ``table`` (MotionTable). ``origin`` (4,): what counts as no displacement [m, rad]. ``displacement``,
+    ``velocity`` (4,): x, y, z and pitch since ``origin`` [m, rad], and their rates. ``segment`` int64 (1,): of
+    the table, where the next search starts.
+    """
+
+    table: MotionTable
+    origin: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    segment: np.ndarray
+
+
+@kernel
+def ground_at_start(table):
+    """Ground at time zero: its displacement counts from there, its pitch as it is."""
+    ground = Ground(table, np.zeros(4), np.empty(4), np.empty(4), np.zeros(1, np.int64))
+    move_ground_into(ground, 0.0)
+    ground.origin[:PITCH] = ground.displacement[:PITCH]
+    ground.displacement[:PITCH] = 0.0
+    return ground
+
+
+@kernel
+def move_ground_into(ground, t):
+    """Displacement and its rate at one time."""
+    segment = find_segment(ground.table.breaks, t, ground.segment[0])
+    ground_state_into(ground.table, segment, t, ground.displacement, ground.velocity)
+    for channel in range(4):
+        ground.displacement[channel] -= ground.origin[channel]
+    ground.segment[0] = segment
+
+
+@kernel
+def move_ground_by_secant_into(ground, t, later, dt):
+    """Displacement at the time ``t``, and the mean velocity from there to ``later``, which is ``dt`` after it."""
+    move_ground_into(ground, t)
+    now = ground.displacement.copy()
+    move_ground_into(ground, later)
+    for channel in range(4):
+        ground.velocity[channel] = (ground.displacement[channel] - now[channel]) / dt
+        ground.displacement[channel] = now[channel]

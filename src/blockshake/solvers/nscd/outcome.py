@@ -1,0 +1,87 @@
+"""A finished NSCD run as a trajectory: status, figures of the computation, bodies in the order of the file."""
+
+import numpy as np
+
+from blockshake.dynamics.system import Status, Trajectory
+from blockshake.solvers.nscd.progress import (
+    BAD_STEPS,
+    CAPPED_STEPS,
+    DEEPEST,
+    IN_PLAY,
+    ITERATIONS,
+    MISFIT,
+    MOST_ITERATIONS,
+    PARTED_STEPS,
+    WORST_RESIDUAL,
+)
+from blockshake.solvers.status import COLLAPSED, DIVERGED, NEXT_RECORD, SPEED_LIMIT, STATUS, STEP
+
+# Share of badly solved steps above which a run is not to be trusted; fixed by the project's contract.
+_MOST_BAD_STEPS = 0.01
+
+
+def trajectory_of(structure, order, times, time_step, code, culprit, progress, joints, record):
+    """Trajectory of a run.
+
+    Parameters
+    ----------
+    structure : Structure
+    order : int64 array, shape (n_bodies,)
+        From `order_of_bodies`.
+    times : float64 array, shape (n_times,)
+    time_step : float
+        [s]
+    code, culprit : int
+        As from `integrate`.
+    progress, joints, record : Progress, Joints, Record
+        At the end.
+    """
+    place = np.argsort(order)
+    end_time = min(int(progress.clock[STEP]) * time_step, float(times[-1]))
+    name = structure.body_names[order[culprit]]
+    status, reason = _status(code, name, end_time, progress.clock)
+    joint_force = record.joint_force[:, : len(joints.slip)]
+    joint_force[progress.clock[NEXT_RECORD] :] = np.nan
+    return Trajectory(
+        time=times,
+        position=record.position[:, place],
+        orientation=record.orientation[:, place],
+        velocity=record.velocity[:, place],
+        angular_velocity=record.angular_velocity[:, place],
+        energy=record.energy,
+        joints=order[joints.pair],
+        joint_force=np.ascontiguousarray(joint_force),
+        status=status,
+        reason=reason,
+        end_time=end_time,
+        numerics=_numerics(progress),
+    )
+
+
+def _status(code, name, end_time, clock):
+    status, reason = STATUS[code], ""
+    if code == COLLAPSED:
+        reason = f"{name} tipped over or dropped at {end_time:.3f} s"
+    if code == DIVERGED:
+        reason = f"{name} is faster than {SPEED_LIMIT:.0f} m/s or not finite at {end_time:.3f} s"
+    bad = clock[BAD_STEPS] / max(clock[STEP], 1)
+    if code != DIVERGED and bad > _MOST_BAD_STEPS:
+        words = f"{100.0 * bad:.1f} % of the steps ended above a relative residual of 1e-4"
+        status, reason = Status.NOT_CONVERGED, "; ".join(part for part in (words, reason) if part)
+    return status, reason
+
+
+def _numerics(progress):
+    clock, audit = progress.clock, progress.audit
+    steps = max(int(clock[STEP]), 1)
+    return {
+        "steps": int(clock[STEP]),
+        "mean_iterations": int(clock[ITERATIONS]) / steps,
+        "max_iterations": int(clock[MOST_ITERATIONS]),
+        "max_residual": float(audit[WORST_RESIDUAL]),
+        "fraction_above_1e-4": int(clock[BAD_STEPS]) / steps,
+        "capped_steps": int(clock[CAPPED_STEPS]),
+        "parted_steps": int(clock[PARTED_STEPS]),
+        "energy_residual": float(audit[MISFIT] / audit[IN_PLAY]) if audit[IN_PLAY] > 0.0 else 0.0,
+        "max_penetration": float(audit[DEEPEST]),
+    }

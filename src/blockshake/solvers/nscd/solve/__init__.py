@@ -1,0 +1,1 @@
+"""The local problem and the nonlinear block Gauss-Seidel iteration (NLGS)."""

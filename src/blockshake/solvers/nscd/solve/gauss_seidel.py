@@ -1,0 +1,146 @@
+"""Velocities at contacts, the residual of the contact law, and sweeps of nonlinear Gauss-Seidel (NLGS)."""
+
+import numpy as np
+
+from blockshake.jit import kernel
+from blockshake.solvers.nscd.contact.contacts import W_11, W_22, W_N1, W_N2, W_NN, effective_mass
+from blockshake.solvers.nscd.contact.friction import coefficient_along
+from blockshake.solvers.nscd.solve.local_solve import contact_residual, solve_contact
+from blockshake.solvers.nscd.vectors import cross, matrix_product, transposed_product
+
+
+@kernel
+def relative_velocity(contacts, contact, v):
+    """Velocity of b minus that of a at a contact, along its basis [m/s].
+
+    ``v`` (n_bodies, 6): velocity [m/s] and angular velocity [rad/s] of the bodies, world frame.
+    """
+    basis = contacts.basis[contact]
+    a, b = v[contacts.body_a[contact]], v[contacts.body_b[contact]]
+    r, s = contacts.arm_a[contact], contacts.arm_b[contact]
+    x = b[0] + b[4] * s[2] - b[5] * s[1] - a[0] - a[4] * r[2] + a[5] * r[1]
+    y = b[1] + b[5] * s[0] - b[3] * s[2] - a[1] - a[5] * r[0] + a[3] * r[2]
+    z = b[2] + b[3] * s[1] - b[4] * s[0] - a[2] - a[3] * r[1] + a[4] * r[0]
+    return (
+        basis[0, 0] * x + basis[0, 1] * y + basis[0, 2] * z,
+        basis[1, 0] * x + basis[1, 1] * y + basis[1, 2] * z,
+        basis[2, 0] * x + basis[2, 1] * y + basis[2, 2] * z,
+    )
+
+
+@kernel
+def contact_velocities(contacts, v):
+    """Velocities of all contacts along their bases: float64 array, shape (n_contacts, 3) [m/s]; ``v`` as there."""
+    u = np.empty((contacts.gap.size, 3))
+    for contact in range(contacts.gap.size):
+        u[contact, 0], u[contact, 1], u[contact, 2] = relative_velocity(contacts, contact, v)
+    return u
+
+
+@kernel
+def _push_into(v, arm, inverse_mass, inverse_inertia, x, y, z):
+    """Velocity of one body after an impulse (x, y, z) [N s] at ``arm`` from its mass centre."""
+    v[0] += inverse_mass * x
+    v[1] += inverse_mass * y
+    v[2] += inverse_mass * z
+    tx, ty, tz = arm[1] * z - arm[2] * y, arm[2] * x - arm[0] * z, arm[0] * y - arm[1] * x
+    J = inverse_inertia
+    v[3] += J[0, 0] * tx + J[0, 1] * ty + J[0, 2] * tz
+    v[4] += J[1, 0] * tx + J[1, 1] * ty + J[1, 2] * tz
+    v[5] += J[2, 0] * tx + J[2, 1] * ty + J[2, 2] * tz
+
+
+@kernel
+def apply_impulse_into(bodies, inverse_inertia, contacts, contact, p_n, p_1, p_2, v):
+    """Add the effect of an impulse [N s], along the basis, to the velocities of both bodies."""
+    basis = contacts.basis[contact]
+    x = basis[0, 0] * p_n + basis[1, 0] * p_1 + basis[2, 0] * p_2
+    y = basis[0, 1] * p_n + basis[1, 1] * p_1 + basis[2, 1] * p_2
+    z = basis[0, 2] * p_n + basis[1, 2] * p_1 + basis[2, 2] * p_2
+    a, b = contacts.body_a[contact], contacts.body_b[contact]
+    _push_into(v[b], contacts.arm_b[contact], bodies.inverse_mass[b], inverse_inertia[b], x, y, z)
+    if not bodies.driven[a]:
+        _push_into(v[a], contacts.arm_a[contact], bodies.inverse_mass[a], inverse_inertia[a], -x, -y, -z)
+
+
+@kernel
+def apply_impulses_into(bodies, inverse_inertia, contacts, v_free, v):
+    """Overwrite ``v`` with ``v_free`` and the effect of all impulses."""
+    v[:] = 0.0
+    for contact in range(contacts.gap.size):
+        world = transposed_product(contacts.basis[contact], contacts.impulse[contact])
+        a, b = v[contacts.body_a[contact]], v[contacts.body_b[contact]]
+        moment_a, moment_b = cross(contacts.arm_a[contact], world), cross(contacts.arm_b[contact], world)
+        for axis in range(3):
+            a[axis] -= world[axis]
+            a[3 + axis] -= moment_a[axis]
+            b[axis] += world[axis]
+            b[3 + axis] += moment_b[axis]
+    for body in range(bodies.mass.size):
+        if bodies.driven[body]:
+            v[body] = v_free[body]
+            continue
+        spin = matrix_product(inverse_inertia[body], v[body, 3:])
+        for axis in range(3):
+            v[body, axis] = v_free[body, axis] + bodies.inverse_mass[body] * v[body, axis]
+            v[body, 3 + axis] = v_free[body, 3 + axis] + spin[axis]
+
+
+@kernel
+def relative_residual(contacts, v, floor):
+    """Residual of the contact law, relative to the impulses [1].
+
+    Root of the summed squares of `contact_residual` over all contacts, divided by that of the
+    impulses or by ``floor`` [N s], whichever is larger.
+    """
+    left, load = 0.0, 0.0
+    for contact in range(contacts.gap.size):
+        u_n, u_1, u_2 = relative_velocity(contacts, contact, v)
+        p = contacts.impulse[contact]
+        shift = contacts.shift[contact]
+        u_n = contacts.share[contact] * (u_n + shift[0]) + contacts.compliance[contact] * p[0]
+        u_1, u_2 = u_1 + shift[1], u_2 + shift[2]
+        rho = effective_mass(contacts.delassus[contact])
+        mu = coefficient_along(contacts, contact, p[1] - rho * u_1, p[2] - rho * u_2)
+        part = contact_residual(p[0], p[1], p[2], u_n, u_1, u_2, mu, rho)
+        left += part * part
+        load += p[0] * p[0] + p[1] * p[1] + p[2] * p[2]
+    return np.sqrt(left) / max(np.sqrt(load), floor)
+
+
+@kernel
+def sweep_into(bodies, inverse_inertia, contacts, upwards, v):
+    """One sweep of NLGS: the local problem of every contact in turn, first to last if ``upwards``, else back.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    inverse_inertia : float64 array, shape (n_bodies, 3, 3)
+        World frame [1/(kg m2)].
+    contacts : Contacts
+        ``impulse`` is changed.
+    upwards : bool
+    v : float64 array, shape (n_bodies, 6)
+        Velocities at the end of the step, kept in line with the impulses.
+    """
+    n_contacts = contacts.gap.size
+    for rank in range(n_contacts):
+        contact = rank if upwards else n_contacts - 1 - rank
+        u_n, u_1, u_2 = relative_velocity(contacts, contact, v)
+        p, shift, w = contacts.impulse[contact], contacts.shift[contact], contacts.delassus[contact]
+        q_n = contacts.share[contact] * (u_n + shift[0]) + contacts.compliance[contact] * p[0]
+        q_n -= w[W_NN] * p[0] + w[W_N1] * p[1] + w[W_N2] * p[2]
+        q_1 = u_1 + shift[1] - (w[W_N1] * p[0] + w[W_11] * p[1])
+        q_2 = u_2 + shift[2] - (w[W_N2] * p[0] + w[W_22] * p[2])
+        rho = effective_mass(w)
+        mu = coefficient_along(
+            contacts, contact, p[1] - rho * (u_1 + shift[1]), p[2] - rho * (u_2 + shift[2])
+        )
+        p_n, p_1, p_2, slip_ratio = solve_contact(
+            w[W_NN], w[W_11], w[W_22], w[W_N1], w[W_N2], q_n, q_1, q_2, mu, contacts.slip_ratio[contact]
+        )
+        d_n, d_1, d_2 = p_n - p[0], p_1 - p[1], p_2 - p[2]
+        if d_n != 0.0 or d_1 != 0.0 or d_2 != 0.0:
+            apply_impulse_into(bodies, inverse_inertia, contacts, contact, d_n, d_1, d_2, v)
+            p[0], p[1], p[2] = p_n, p_1, p_2
+            contacts.slip_ratio[contact] = slip_ratio

@@ -1,0 +1,104 @@
+"""The local problem: Signorini and Coulomb at one contact alone, three unknowns, solved exactly."""
+
+import numpy as np
+
+from blockshake.jit import kernel
+
+_MAX_HALVINGS = 100
+_ROOT = 1e-14  # relative width of the last bracket: rounding, so that the local answer is exact
+
+
+@kernel
+def solve_contact(w_n, w_1, w_2, a_1, a_2, q_n, q_1, q_2, mu, guess):
+    """Impulse of one frictional contact that leaves the others as they are.
+
+    Parameters
+    ----------
+    w_n, w_1, w_2, a_1, a_2 : float
+        Delassus operator ``[[w_n, a_1, a_2], [a_1, w_1, 0], [a_2, 0, w_2]]`` [1/kg], positive
+        definite; the tangents are chosen such that its lower right block is diagonal.
+    q_n, q_1, q_2 : float
+        Velocity of the contact without its own impulse [m/s].
+    mu : float
+        Coulomb's coefficient [1].
+    guess : float
+        ``slip_ratio`` of an earlier answer [1/kg], where the search starts; 0 for none.
+
+    Returns
+    -------
+    p_n, p_1, p_2 : float
+        Impulse [N s].
+    slip_ratio : float
+        Slip speed per friction impulse [1/kg]; 0 where the contact sticks or is open.
+
+    Notes
+    -----
+    With velocity ``u = W p + q``: ``0 <= u_n, p_n`` with product zero, ``|p_t| <= mu p_n``, and
+    ``u_t = -slip_ratio p_t`` with ``slip_ratio > 0`` only where ``|p_t| = mu p_n``. Open and stuck contacts
+    are read off. For a slipping one, ``p`` follows from ``slip_ratio`` by a positive definite linear system, and
+    ``|p_t| - mu p_n`` falls from positive (stick outside the cone) at ``slip_ratio = 0`` to negative at
+    infinity, so that a root lies between: Newton's method, halving the bracket where it leaves it.
+    """
+    if q_n >= 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    if mu == 0.0:
+        return -q_n / w_n, 0.0, 0.0, 0.0
+    p_n, p_1, p_2 = _impulse(w_n, w_1, w_2, a_1, a_2, q_n, q_1, q_2, 0.0)
+    if p_n >= 0.0 and p_1 * p_1 + p_2 * p_2 <= mu * mu * p_n * p_n:
+        return p_n, p_1, p_2, 0.0
+    low, high = 0.0, np.inf
+    slip_ratio = guess if guess > 0.0 else max(w_1, w_2)
+    for _ in range(_MAX_HALVINGS):
+        d_1, d_2 = 1.0 / (w_1 + slip_ratio), 1.0 / (w_2 + slip_ratio)
+        schur = w_n - a_1 * a_1 * d_1 - a_2 * a_2 * d_2
+        p_n = (-q_n + a_1 * q_1 * d_1 + a_2 * q_2 * d_2) / schur
+        p_1, p_2 = -(a_1 * p_n + q_1) * d_1, -(a_2 * p_n + q_2) * d_2
+        size = np.sqrt(p_1 * p_1 + p_2 * p_2)
+        excess = size - mu * p_n
+        if excess > 0.0:
+            low = slip_ratio
+        else:
+            high = slip_ratio
+        slope_n = -(a_1 * q_1 * d_1 * d_1 + a_2 * q_2 * d_2 * d_2)
+        slope_n = (slope_n - p_n * (a_1 * a_1 * d_1 * d_1 + a_2 * a_2 * d_2 * d_2)) / schur
+        slope = -mu * slope_n
+        if size > 0.0:
+            slope += (
+                p_1 * (-a_1 * slope_n * d_1 - p_1 * d_1) + p_2 * (-a_2 * slope_n * d_2 - p_2 * d_2)
+            ) / size
+        following = slip_ratio - excess / slope if slope != 0.0 else -1.0
+        if not (low < following < high):
+            following = 0.5 * (low + high) if high < np.inf else 4.0 * slip_ratio
+        if abs(following - slip_ratio) <= _ROOT * slip_ratio or excess == 0.0:
+            break
+        slip_ratio = following
+    p_n, p_1, p_2 = _impulse(w_n, w_1, w_2, a_1, a_2, q_n, q_1, q_2, slip_ratio)
+    return max(p_n, 0.0), p_1, p_2, slip_ratio
+
+
+@kernel
+def _impulse(w_n, w_1, w_2, a_1, a_2, q_n, q_1, q_2, slip_ratio):
+    """Impulse with ``u_n = 0`` and ``u_t = -slip_ratio p_t``."""
+    d_1, d_2 = 1.0 / (w_1 + slip_ratio), 1.0 / (w_2 + slip_ratio)
+    p_n = (-q_n + a_1 * q_1 * d_1 + a_2 * q_2 * d_2) / (w_n - a_1 * a_1 * d_1 - a_2 * a_2 * d_2)
+    return p_n, -(a_1 * p_n + q_1) * d_1, -(a_2 * p_n + q_2) * d_2
+
+
+@kernel
+def contact_residual(p_n, p_1, p_2, u_n, u_1, u_2, mu, rho):
+    """Residual of the law at one contact, as an impulse [N s].
+
+    ``|p - P_K(p - rho u~)|`` with the cone ``K`` of Coulomb and ``u~ = u + mu |u_t| n``, zero
+    exactly where the law of `solve_contact` holds; De Saxce and Feng (1998), natural map as
+    in Acary and Cadoux (2013). ``rho`` [kg] turns velocities into impulses.
+    """
+    s_n = p_n - rho * (u_n + mu * np.sqrt(u_1 * u_1 + u_2 * u_2))
+    s_1, s_2 = p_1 - rho * u_1, p_2 - rho * u_2
+    size = np.sqrt(s_1 * s_1 + s_2 * s_2)
+    if size > mu * s_n or s_n < 0.0:
+        # outside the cone: onto its surface, or onto the apex from the polar cone
+        along = max((s_n + mu * size) / (1.0 + mu * mu), 0.0)
+        scale = mu * along / size if size > 0.0 else 0.0
+        s_n, s_1, s_2 = along, scale * s_1, scale * s_2
+    d_n, d_1, d_2 = p_n - s_n, p_1 - s_1, p_2 - s_2
+    return np.sqrt(d_n * d_n + d_1 * d_1 + d_2 * d_2)

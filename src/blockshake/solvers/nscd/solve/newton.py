@@ -1,0 +1,241 @@
+"""Nonsmooth Newton steps on all contacts at once, in the velocities of the bodies."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.jit import kernel
+from blockshake.solvers.nscd.contact.contacts import effective_mass
+from blockshake.solvers.nscd.contact.friction import coefficient_along
+from blockshake.solvers.nscd.solve.block_elimination import (
+    BlockSystem,
+    block_system,
+    find_block,
+    solve_blocks_into,
+)
+from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into, relative_velocity
+from blockshake.solvers.nscd.vectors import cross, matrix_product, transposed_product
+
+
+class NewtonSpace(NamedTuple):
+    """Work space of the Newton steps of one time step.
+
+    ``system`` (BlockSystem): in the velocities of the free bodies. ``entry`` int64 (n_contacts,): where the bodies
+    of a contact meet in it, -1 where one is driven. ``slope`` (n_contacts, 3, 3) [kg] and ``offset``
+    (n_contacts, 3) [N s]: of the linear laws.
+    """
+
+    system: BlockSystem
+    entry: np.ndarray
+    slope: np.ndarray
+    offset: np.ndarray
+
+
+@kernel
+def newton_space(bodies, contacts):
+    """Work space for the contacts of a step."""
+    n_contacts = contacts.gap.size
+    system = block_system(bodies.driven, contacts.body_a, contacts.body_b)
+    entry = np.full(n_contacts, -1, np.int64)
+    for contact in range(n_contacts):
+        one, other = system.rank[contacts.body_a[contact]], system.rank[contacts.body_b[contact]]
+        if one >= 0 and other >= 0:
+            entry[contact] = find_block(system, min(one, other), max(one, other))
+    return NewtonSpace(system, entry, np.empty((n_contacts, 3, 3)), np.empty((n_contacts, 3)))
+
+
+@kernel
+def linear_law_into(contacts, contact, u, stiffness, D, c):
+    """Linear law ``p = c - D u`` of one contact, from its state and where that points.
+
+    Parameters
+    ----------
+    contacts : Contacts
+    contact : int
+    u : three floats
+        Velocity of the contact that belongs to its impulse, along its basis [m/s].
+    stiffness : float
+        Of the proximal term, in effective masses of the contact [1]: the error it leaves in the contact
+        law is the change of the impulse divided by this.
+    D : float64 array, shape (3, 3)
+        Overwritten [kg], along the contact's basis.
+    c : float64 array, shape (3,)
+        Overwritten [N s].
+
+    Notes
+    -----
+    States by the projection of Alart and Curnier (1991) with the contact's own effective mass.
+    Open: no impulse. Sticking: ``p = p_old - r (u + shift)`` with a large ``r``, the proximal form of ``u +
+    shift = 0``, which stays regular however many contacts share a load. Slipping: the normal
+    part of that; friction ``mu p_n`` along the slip, and across it the linear part of ``-mu p_n u_t /
+    |u_t|``, the coefficient taken for the direction at hand. A contact's compliance adds to ``1 / r``.
+    """
+    D[:] = 0.0
+    c[:] = 0.0
+    p, shift = contacts.impulse[contact], contacts.shift[contact]
+    share, compliance = contacts.share[contact], contacts.compliance[contact]
+    u_n, u_1, u_2 = share * (u[0] + shift[0]) + compliance * p[0], u[1] + shift[1], u[2] + shift[2]
+    rho = effective_mass(contacts.delassus[contact])
+    trial_n = p[0] - rho * u_n
+    if trial_n <= 0.0:
+        return
+    stiff = stiffness * rho
+    D[0, 0] = stiff * share / (1.0 + stiff * compliance)
+    c[0] = (p[0] - stiff * share * shift[0]) / (1.0 + stiff * compliance)
+    s_1, s_2 = p[1] - rho * u_1, p[2] - rho * u_2
+    mu = coefficient_along(contacts, contact, s_1, s_2)
+    if mu == 0.0:
+        return
+    size = np.sqrt(s_1 * s_1 + s_2 * s_2)
+    limit = mu * trial_n
+    if size <= limit:
+        D[1, 1] = D[2, 2] = stiff
+        c[1], c[2] = p[1] - stiff * shift[1], p[2] - stiff * shift[2]
+        return
+    d_1, d_2 = s_1 / size, s_2 / size
+    across = min(rho * limit / (size - limit), stiff)
+    D[1, 0], D[2, 0] = mu * d_1 * D[0, 0], mu * d_2 * D[0, 0]
+    D[1, 1], D[1, 2] = across * d_2 * d_2, -across * d_1 * d_2
+    D[2, 1], D[2, 2] = -across * d_1 * d_2, across * d_1 * d_1
+    c[1] = mu * d_1 * c[0] - D[1, 1] * shift[1] - D[1, 2] * shift[2]
+    c[2] = mu * d_2 * c[0] - D[2, 1] * shift[1] - D[2, 2] * shift[2]
+
+
+@kernel
+def _columns_into(slope, transposed, basis, arm, T):
+    """Impulse [N s] of a contact on its second body, world frame, per velocity of a body at ``arm``: (3, 6).
+
+    Of the linear law, or of the one with ``slope`` transposed.
+    """
+    for i in range(3):
+        T[i, 0] = T[i, 1] = T[i, 2] = 0.0
+    for i in range(3):
+        for j in range(3):
+            d = slope[j, i] if transposed else slope[i, j]
+            if d != 0.0:
+                for k in range(3):
+                    for m in range(3):
+                        T[k, m] += d * basis[i, k] * basis[j, m]
+    for i in range(3):
+        T[i, 3], T[i, 4], T[i, 5] = cross(arm, T[i])
+
+
+@kernel
+def _add_block_into(sign, arm, T, block):
+    """Add force and moment about the mass centre, at ``arm``, of the columns ``T``."""
+    for j in range(6):
+        x, y, z = sign * T[0, j], sign * T[1, j], sign * T[2, j]
+        block[0, j] += x
+        block[1, j] += y
+        block[2, j] += z
+        block[3, j] += arm[1] * z - arm[2] * y
+        block[4, j] += arm[2] * x - arm[0] * z
+        block[5, j] += arm[0] * y - arm[1] * x
+
+
+@kernel
+def _add_contact_into(contacts, contact, slope, entry, system, T):
+    """Add the linear law of one contact, closed, to the matrix."""
+    basis = contacts.basis[contact]
+    first, first_arm = system.rank[contacts.body_a[contact]], contacts.arm_a[contact]
+    then, then_arm = system.rank[contacts.body_b[contact]], contacts.arm_b[contact]
+    if first > then:
+        first, first_arm, then, then_arm = then, then_arm, first, first_arm
+    _columns_into(slope, False, basis, then_arm, T)
+    _add_block_into(1.0, then_arm, T, system.diagonal[then])
+    if first < 0:
+        return
+    _add_block_into(-1.0, first_arm, T, system.right_of[entry])
+    _columns_into(slope, True, basis, then_arm, T)
+    _add_block_into(-1.0, first_arm, T, system.below[entry])
+    _columns_into(slope, False, basis, first_arm, T)
+    _add_block_into(1.0, first_arm, T, system.diagonal[first])
+
+
+@kernel
+def _add_impulse_into(sign, arm, f, x):
+    """Add an impulse [N s] and its moment to the right side of a body."""
+    moment = cross(arm, f)
+    for axis in range(3):
+        x[axis] += sign * f[axis]
+        x[3 + axis] += sign * moment[axis]
+
+
+@kernel
+def _assemble_into(bodies, inertia, contacts, stiffness, v, newton):
+    """Linear laws of all contacts, and the system that they give."""
+    system = newton.system
+    system.diagonal[:] = 0.0
+    system.right_of[:] = 0.0
+    system.below[:] = 0.0
+    system.x[:] = 0.0
+    T = np.empty((3, 6))
+    for body in range(system.rank.size):
+        rank = system.rank[body]
+        if rank >= 0:
+            for i in range(3):
+                system.diagonal[rank, i, i] = bodies.mass[body]
+                for j in range(3):
+                    system.diagonal[rank, 3 + i, 3 + j] = inertia[body, i, j]
+    for contact in range(contacts.gap.size):
+        D, c, p = newton.slope[contact], newton.offset[contact], contacts.impulse[contact]
+        u = relative_velocity(contacts, contact, v)
+        linear_law_into(contacts, contact, u, stiffness, D, c)
+        due = matrix_product(D, u)
+        c[0], c[1], c[2] = c[0] - due[0], c[1] - due[1], c[2] - due[2]
+        change = transposed_product(contacts.basis[contact], (c[0] - p[0], c[1] - p[1], c[2] - p[2]))
+        a, b = system.rank[contacts.body_a[contact]], system.rank[contacts.body_b[contact]]
+        if a >= 0:
+            _add_impulse_into(-1.0, contacts.arm_a[contact], change, system.x[a])
+        if b >= 0:
+            _add_impulse_into(1.0, contacts.arm_b[contact], change, system.x[b])
+        if D[0, 0] > 0.0:
+            _add_contact_into(contacts, contact, D, newton.entry[contact], system, T)
+
+
+@kernel
+def newton_step_into(bodies, inertia, inverse_inertia, contacts, stiffness, v_free, v, newton):
+    """Replace the impulses by those of one Newton step, inside Coulomb's cone, and the velocities with them.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    inertia, inverse_inertia : float64 arrays, shape (n_bodies, 3, 3)
+        World frame [kg m2, 1/(kg m2)].
+    contacts : Contacts
+        ``impulse`` is changed.
+    stiffness : float
+        As in `linear_law_into`.
+    v_free, v : float64 arrays, shape (n_bodies, 6)
+        Velocities without contact impulses; ``v`` with them, before, and overwritten with those after.
+    newton : NewtonSpace
+        Overwritten.
+
+    Returns
+    -------
+    bool
+        False, with nothing changed, where the linear system is singular.
+
+    Notes
+    -----
+    ``(M + J^T D J) dv = J^T (c - D u - p)`` with the linear laws of `linear_law_into`.
+    """
+    system = newton.system
+    _assemble_into(bodies, inertia, contacts, stiffness, v, newton)
+    if not solve_blocks_into(system):
+        return False
+    # the change of the velocities, until impulses inside the cone give the velocities themselves
+    for body in range(system.rank.size):
+        rank = system.rank[body]
+        for i in range(6):
+            v[body, i] = system.x[rank, i] if rank >= 0 else 0.0
+    for contact in range(contacts.gap.size):
+        c, p = newton.offset[contact], contacts.impulse[contact]
+        due = matrix_product(newton.slope[contact], relative_velocity(contacts, contact, v))
+        p[0], p[1], p[2] = max(c[0] - due[0], 0.0), c[1] - due[1], c[2] - due[2]
+        size = np.sqrt(p[1] * p[1] + p[2] * p[2])
+        limit = coefficient_along(contacts, contact, p[1], p[2]) * p[0]
+        if size > limit:
+            p[1], p[2] = p[1] * limit / size, p[2] * limit / size
+    apply_impulses_into(bodies, inverse_inertia, contacts, v_free, v)
+    return True

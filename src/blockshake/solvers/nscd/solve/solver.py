@@ -1,0 +1,132 @@
+"""All contacts of a step together: Newton steps, with Gauss-Seidel sweeps where they fail."""
+
+import numpy as np
+
+from blockshake.jit import kernel
+from blockshake.solvers.nscd.solve.gauss_seidel import (
+    apply_impulses_into,
+    relative_residual,
+    sweep_into,
+)
+from blockshake.solvers.nscd.solve.newton import newton_space, newton_step_into
+
+# Newton settles within a few steps, or wanders among states that do not fit together: the stiffer the
+# proximal term the faster, the softer the surer. Tried in turn, each with its limit of steps.
+_STIFFNESS = (1e6, 1e4, 1e3, 1e2)
+_NEWTON_STEPS = (10, 15, 25, 50)
+# Shares of a Newton step that are looked at when the whole step does not end the search.
+_SHARES = (0.5, 0.25, 0.125)
+# Sweeps before Newton is tried again from the start; they double after each failure.
+_FIRST_SWEEPS = 8
+
+
+@kernel
+def _shorten_into(contacts, v, floor, old_impulse, old_v, tolerance):
+    """Go back along a Newton step to the share of it with the least residual, which is returned.
+
+    Impulses inside Coulomb's cone stay inside it, and velocities belong to them, all along the way.
+    """
+    residual = relative_residual(contacts, v, floor)
+    if residual <= tolerance:
+        return residual
+    new_impulse, new_v = contacts.impulse.copy(), v.copy()
+    best, best_share = residual, 1.0
+    for share in _SHARES:
+        contacts.impulse[:] = old_impulse + share * (new_impulse - old_impulse)
+        v[:] = old_v + share * (new_v - old_v)
+        residual = relative_residual(contacts, v, floor)
+        if residual < best:
+            best, best_share = residual, share
+    contacts.impulse[:] = old_impulse + best_share * (new_impulse - old_impulse)
+    v[:] = old_v + best_share * (new_v - old_v)
+    return best
+
+
+@kernel
+def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, tolerance, max_iterations, v):
+    """Impulses that satisfy the contact law of all contacts at once.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    inertia, inverse_inertia : float64 arrays, shape (n_bodies, 3, 3)
+        World frame [kg m2, 1/(kg m2)].
+    contacts : Contacts
+        ``impulse`` holds the start and, afterwards, the answer.
+    floor : float
+        As in `relative_residual` [N s].
+    tolerance : float
+        Relative residual that ends the search [1].
+    max_iterations : int
+        Newton steps and sweeps allowed, together.
+    v : float64 array, shape (n_bodies, 6)
+        Velocities at the end of the step without contact impulses; with them afterwards.
+
+    Returns
+    -------
+    iterations : int
+        Newton steps and sweeps made, at least one where there are contacts.
+    residual : float
+        Relative residual of the answer, the best met.
+
+    Notes
+    -----
+    Newton's method on the nonsmooth equations of Alart and Curnier (1991), from the impulses of
+    the step before. Where it fails with all
+    proximal terms, sweeps of nonlinear Gauss-Seidel (NLGS) of Jean (1999), up and down in turn, start from the
+    best impulses so far, and Newton tries again from where they end.
+    """
+    n_contacts = contacts.gap.size
+    if n_contacts == 0:
+        return 0, 0.0
+    v_free = v.copy()
+    apply_impulses_into(bodies, inverse_inertia, contacts, v_free, v)
+    old_impulse, old_v = np.empty((n_contacts, 3)), np.empty(v.shape)
+    best, best_impulse, best_v = relative_residual(contacts, v, floor), contacts.impulse.copy(), v.copy()
+    iterations, sweeps = 0, _FIRST_SWEEPS
+    newton = newton_space(bodies, contacts)
+    while True:
+        for attempt in range(len(_STIFFNESS)):
+            for _ in range(_NEWTON_STEPS[attempt]):
+                if iterations == max_iterations:
+                    break
+                iterations += 1
+                old_impulse[:] = contacts.impulse
+                old_v[:] = v
+                if not newton_step_into(
+                    bodies,
+                    inertia,
+                    inverse_inertia,
+                    contacts,
+                    _STIFFNESS[attempt],
+                    v_free,
+                    v,
+                    newton,
+                ):
+                    break
+                residual = _shorten_into(contacts, v, floor, old_impulse, old_v, tolerance)
+                if residual < best:
+                    best = residual
+                    best_impulse[:] = contacts.impulse
+                    best_v[:] = v
+                if best <= tolerance:
+                    break
+            contacts.impulse[:] = best_impulse
+            v[:] = best_v
+            if best <= tolerance or iterations == max_iterations:
+                return iterations, best
+        for sweep in range(sweeps):
+            if iterations == max_iterations:
+                break
+            iterations += 1
+            sweep_into(bodies, inverse_inertia, contacts, sweep % 2 == 0, v)
+        residual = relative_residual(contacts, v, floor)
+        if residual < best:
+            best = residual
+            best_impulse[:] = contacts.impulse
+            best_v[:] = v
+        if best <= tolerance or iterations == max_iterations:
+            contacts.impulse[:] = best_impulse
+            v[:] = best_v
+            return iterations, best
+        sweeps *= 2

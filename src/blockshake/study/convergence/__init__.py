@@ -1,0 +1,1 @@
+"""LS-DEM with its numerical parameters varied one at a time."""

@@ -1,0 +1,24 @@
+"""The convergence study in a study's configuration."""
+
+from pydantic import Field
+
+from blockshake.validation import Positive, Strict
+
+
+class Convergence(Strict):
+    """The short runs that show how LS-DEM's numerical parameters act, varied one at a time."""
+
+    structure: str = Field(description="shipped name or file; one block of it rocks, and all of it is shaken")
+    acceleration: Positive = Field(2.5, description="amplitude of one cycle of sine along x [m/s2]")
+    frequency: Positive = Field(1.5, description="of that cycle [Hz]")
+    duration: Positive = Field(4.0, description="simulated time [s]")
+    time_steps: tuple[Positive, ...] = Field((1e-5, 2e-5, 5e-5, 1e-4), min_length=2, description="[s]")
+    node_spacings: tuple[Positive, ...] = Field((0.05, 0.1, 0.2, 0.4), min_length=2, description="[m]")
+    perimeter_insets: tuple[Positive, ...] = Field(
+        (0.0025, 0.005, 0.01, 0.02), min_length=2, description="[m]"
+    )
+    grid_spacings: tuple[Positive, ...] = Field(
+        (0.005, 0.01, 0.02, 0.04),
+        min_length=1,
+        description="of the sampled distance, beside the exact one [m]",
+    )

@@ -1,0 +1,1 @@
+"""Ensembles of samples, their envelopes and what they cover."""

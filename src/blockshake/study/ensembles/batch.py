@@ -1,0 +1,105 @@
+"""Samples simulated one after the other, each kept at once, so that a killed batch resumes."""
+
+from pathlib import Path
+
+import pandas as pd
+import xarray as xr
+
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.errors import InputError
+from blockshake.files import content_digest, write_dataset
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.sensors.markers import driven_marker
+from blockshake.simulation.simulate import simulate
+from blockshake.study.ensembles.ensemble import gather_ensemble
+from blockshake.study.sampling.latin_hypercube import load_design
+from blockshake.study.sampling.sample_parameters import sample_parameters
+
+DECIMALS = {"m": 7}  # digits kept in histories: 0.1 um, a thousandth of a marker's noise
+
+
+def simulate_samples(case, model, settings, output_rate, rows, linked, store, source, progress):
+    """Ensembles of one sample each, simulated where the store has not got them.
+
+    Parameters
+    ----------
+    case : dict
+        ``structure``, ``motion``, ``scale`` and ``duration`` [s] of a case of the configuration.
+    model : str
+    settings : dict
+        The model's: ``time_step`` [s], and optionally ``parameters`` of the solver that all samples share, by
+        dotted name.
+    output_rate : float
+        [Hz]
+    rows : pandas.DataFrame
+        Sampled values, index the sample, contact stiffness included.
+    linked : dict of str to str
+        As in `sample_parameters`.
+    store : str or path
+        Folder of finished samples, named by the digest of all that made them. A sample goes there
+        at once, whole or not at all; one that was cut short goes on from its checkpoint there.
+    source : str
+        Digest of the sources that compute.
+    progress : callable
+        Called with a line of text after each sample.
+
+    Returns
+    -------
+    list of Path
+        Files in the store, in the order of ``rows``: what `gather_ensemble` keeps of a run.
+    """
+    motion = load_motion(case["motion"], case["scale"])
+    structure = load_structure(case["structure"])
+    finished = []
+    for sample, row in rows.iterrows():
+        parameters = settings.get("parameters", {}) | sample_parameters(row, structure, linked)
+        key = content_digest(
+            source, model, structure.file.model_dump(), *(part.tobytes() for part in motion.table),
+            case["duration"], output_rate, settings["time_step"], parameters, int(sample), row.to_dict(),
+            *(solid.vertices.tobytes() for solid in structure.solids.values()),
+        )  # fmt: skip
+        path = Path(store) / f"{key}.nc"
+        how = "kept"
+        if not path.exists():
+            run = simulate(
+                structure, motion, model, parameters,
+                time_step=settings["time_step"], duration=case["duration"], output_rate=output_rate,
+                accelerometers=False, checkpoint=path.with_suffix(".checkpoint"),
+            )  # fmt: skip
+            write_dataset(path, gather_ensemble([run], [sample], rows, driven_marker(structure)), DECIMALS)
+            how = "simulated"
+        outcome = sample_outcome(path)
+        progress(f"{structure.file.name} {model} sample {sample}, {how}: {outcome}")
+        finished.append(path)
+    return finished
+
+
+def sample_outcome(path):
+    """Status and reason of a stored sample, as one line."""
+    with xr.open_dataset(path) as kept:
+        return f"{kept['status'].item()} {kept['reason'].item()}".rstrip()
+
+
+def batch_rows(batch, design, stiffness):
+    """Sampled values of a batch, contact stiffness beside them where the model has any.
+
+    Parameters
+    ----------
+    batch : str
+        First and last sample, such as ``010-019``.
+    design : str or path
+        CSV table by sample.
+    stiffness : str, path or empty
+        The same, for a model with contact stiffness.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Index the sample, columns the dotted names.
+    """
+    first, last = (int(part) for part in batch.split("-"))
+    tables = [load_design(path) for path in (design, stiffness) if path]
+    rows = pd.concat(tables, axis=1)
+    if last not in rows.index:
+        raise InputError(str(design), f"sample {last}", f"expected samples 0 to {rows.index[-1]}")
+    return rows.loc[first:last]

@@ -1,0 +1,198 @@
+"""Coverage: how much of a measured curve lies within an ensemble's bounds, never without its reference."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.study.described import describe
+from blockshake.study.ensembles.ensemble import join_batches, relative_to_slab
+from blockshake.study.ensembles.envelope import over_samples
+from blockshake.study.ensembles.measured import compared_curves
+
+REFERENCE_QUANTILES = (0.05, 0.5, 0.95)
+_FEWEST_MEMBERS = 3
+_DESCRIBED = {
+    "coverage": ("fraction of the time that the measured curve is within the bounds", "1"),
+    "reference": ("the same of the members, each in the bounds of the others", "1"),
+    "member_coverage": ("fraction of the time that a member is within the bounds of the others", "1"),
+    "curve_probability": (
+        "chance of a coverage as low if the measured curve were one of the members",
+        "1",
+    ),
+    "band_width": ("upper minus lower bound, mean over time", "m"),
+    "measured_peak": ("largest absolute measured displacement along x relative to the slab", "m"),
+    "quantile": ("probability of a smaller value", "1"),
+}
+
+
+class Band(NamedTuple):
+    """Edges of a band, float64 arrays, shape (n_times, ...)."""
+
+    lower: np.ndarray
+    upper: np.ndarray
+
+
+def coverage_of_case(named, batches):
+    """`coverage` of the test that a case is compared with.
+
+    Parameters
+    ----------
+    named : dict
+        Entries ``campaign``, a folder, and ``test``.
+    batches : sequence of path
+        Files of the case's samples.
+    """
+    campaign = load_campaign(named["campaign"])
+    measured = load_test(campaign, named["test"])
+    return coverage(measured, join_batches(batches), campaign.sensors.marker_noise)
+
+
+def coverage(measured, ensemble, marker_noise, seed=0):
+    """Fraction of the time that a measured curve lies within the bounds, and the same of the members.
+
+    Parameters
+    ----------
+    measured : xarray.Dataset
+        ``marker_displacement(time, marker, axis)`` [m], inertial frame, relative to the first
+        reading; NaN is a gap. Its first times are the ensemble's, as far as both go.
+    ensemble : xarray.Dataset
+        From `gather_ensemble`; only completed and collapsed samples count.
+    marker_noise : float
+        Standard deviation of a measured marker's position [m].
+    seed : int
+        Of the noise given to the members.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along the markers that both have, displacement along x, inertial frame: ``coverage(marker)``
+        of the measured curve in the bounds of all members; ``member_coverage(sample, marker)`` of
+        each member, read with the same noise, in the bounds of the others; its
+        ``reference(quantile, marker)``; ``curve_probability(marker)``, the rank of the measured curve's coverage
+        among the members', from 1 / (n + 1) to 1; ``band_width(marker)`` [m], mean over time; and
+        ``measured_peak(marker)`` [m], largest absolute displacement relative to the slab's marker,
+        to hold the width against.
+
+    Raises
+    ------
+    InputError
+        Fewer than three members, no marker in common, or other times.
+
+    Notes
+    -----
+    Coverage alone has no error rate: even a further run of the same ensemble leaves the band now and
+    then, for stretches as long as the motion's correlation. The reference, leave-one-out over
+    the members, carries that correlation. Its bounds come from one member less than the measured
+    curve's, which makes it a little lower: cautious, as 1 / n. A noise-free reference would fail every
+    measured curve wherever the band is thinner than the noise.
+    """
+    read, members, curves, readings = compared_curves(measured, ensemble, marker_noise, seed, _FEWEST_MEMBERS)
+    markers = list(read["marker"].values)
+    lower, upper = band(curves)
+    member_coverage = members_inside(curves, readings)
+    by_marker = {"marker": markers}
+    by_member = xr.DataArray(
+        member_coverage, dims=("sample", "marker"), coords={"sample": members["sample"], **by_marker}
+    )
+    probabilities = xr.DataArray(
+        list(REFERENCE_QUANTILES), dims="quantile", coords={"quantile": list(REFERENCE_QUANTILES)}
+    )
+    inside = share_inside(read.to_numpy(), lower, upper)
+    width = np.nanmean(upper - lower, axis=0)
+    result = xr.Dataset(
+        {
+            "coverage": ("marker", inside),
+            "reference": over_samples(by_member, probabilities),
+            "member_coverage": by_member,
+            "curve_probability": (by_member <= xr.DataArray(inside, dims="marker"))
+            .sum("sample")
+            .pipe(lambda lower: (1.0 + lower) / (1.0 + len(member_coverage))),
+            "band_width": ("marker", width),
+            "measured_peak": ("marker", _measured_peak(measured, members.attrs["slab_marker"], markers)),
+        },
+        coords=by_marker,
+    )
+    describe(result, _DESCRIBED)
+    result.attrs = {
+        **ensemble.attrs,
+        "title": "coverage of a measured curve by an ensemble, with its leave-one-out reference",
+        "synthetic": int(measured.attrs.get("synthetic", 0)),
+        "counted": members.sizes["sample"],
+        "marker_noise": float(marker_noise),
+        "noise_seed": int(seed),
+    }
+    return result
+
+
+def relative_width(comparison, peak):
+    """Mean width of the band over the peak of the measured curve [1].
+
+    Parameters
+    ----------
+    comparison : xarray.Dataset
+        From `coverage`.
+    peak : xarray.DataArray
+        Of the measured displacement relative to the slab over the simulated window [m].
+    """
+    return comparison["band_width"] / peak
+
+
+def band(curves):
+    """Smallest and largest value at each time.
+
+    Parameters
+    ----------
+    curves : float64 array, shape (n_curves, n_times, ...)
+        NaN is no value.
+
+    Returns
+    -------
+    Band
+        NaN where no curve has a value.
+
+    Examples
+    --------
+    >>> band(np.array([[0.0, 2.0], [1.0, np.nan]]))
+    Band(lower=array([0., 2.]), upper=array([1., 2.]))
+    """
+    return Band(np.fmin.reduce(curves, axis=0), np.fmax.reduce(curves, axis=0))
+
+
+def share_inside(curve, lower, upper):
+    """Share of the times at which curve and band exist that the curve is inside, over the first axis."""
+    known = np.isfinite(curve) & np.isfinite(lower)
+    with np.errstate(invalid="ignore"):
+        return (known & (curve >= lower) & (curve <= upper)).sum(axis=0) / known.sum(axis=0)
+
+
+def members_inside(curves, readings):
+    """Share of the times that each curve, as read, is within the band of the others.
+
+    Parameters
+    ----------
+    curves, readings : float64 arrays, shape (n_curves, n_times, ...)
+        Curves that span the band, and the same as an instrument would read them.
+
+    Returns
+    -------
+    float64 array, shape (n_curves, ...)
+    """
+    rising = np.sort(curves, axis=0)[:2]
+    falling = -np.sort(-curves, axis=0)[:2]
+    inside = []
+    for curve, reading in zip(curves, readings, strict=True):
+        # the bound of the others is the second value where this member is the first
+        lower = np.where(curve == rising[0], rising[1], rising[0])
+        upper = np.where(curve == falling[0], falling[1], falling[0])
+        inside.append(share_inside(reading, lower, upper))
+    return np.array(inside)
+
+
+def _measured_peak(measured, slab_marker, markers):
+    displacement = measured["marker_displacement"].sel(axis="x", drop=True)
+    if slab_marker not in displacement["marker"].values:
+        return np.full(len(markers), np.nan)
+    relative = relative_to_slab(displacement, slab_marker).sel(marker=markers)
+    return np.abs(relative).max("time").to_numpy()

@@ -1,0 +1,161 @@
+"""Envelopes: what an ensemble says of the displacement at each time."""
+
+import numpy as np
+import xarray as xr
+
+from blockshake.dynamics.system import FINISHED, Status
+from blockshake.files import content_digest
+from blockshake.study.ensembles.ensemble import in_frames
+from blockshake.study.ensembles.intervals import (
+    CONFIDENCE,
+    quantile_interval,
+    sample_quantiles,
+    share_interval,
+)
+
+QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
+BOUNDS = {"lower": 0.0, "upper": 1.0}
+
+
+def counted_samples(ensemble):
+    """The samples that enter statistics: completed or collapsed runs."""
+    return ensemble.isel(sample=np.isin(ensemble["status"].values, FINISHED))
+
+
+def envelope(ensemble, largest_drift):
+    """Bounds and quantiles of an ensemble over its samples.
+
+    Parameters
+    ----------
+    ensemble : xarray.Dataset
+        From `gather_ensemble`.
+    largest_drift : float
+        Displacement along x relative to the slab whose exceedance is counted [m].
+
+    Returns
+    -------
+    xarray.Dataset
+        ``marker_envelope(frame, bound, time, marker, axis)`` [m]: the smallest and the largest
+        displacement at each time, coordinate ``bound`` lower and upper;
+        ``marker_displacement(frame, quantile, time, marker, axis)`` [m]; ``peak`` and
+        ``residual(quantile, frame, marker)`` [m]; ``peak_rotation(quantile, body)`` [rad];
+        ``contributing(time)``: samples with a value at that time; ``collapse_probability`` and
+        ``drift_probability(marker)`` [1]. NaN where no sample has a value. The statistics of single numbers have their
+        95 % limits beside them, ``NAME_interval(bound, ...)``. Attributes
+        ``samples`` and ``counted``: how many runs there were and how many enter.
+
+    Notes
+    -----
+    Quantiles interpolate linearly between ordered values (Hyndman and Fan 1996, type 7) of the
+    samples that have a value: after a collapse cut a run short, those of the others. The peak of a
+    collapsed run is what it had reached, so that upper quantiles of the peak are then lower limits.
+    The band from lower to upper of n runs holds a further run at one instant with
+    probability (n - 1) / (n + 1); it has no stated probability for a whole record. A collapsed run counts as one whose
+    drift exceeded the limit.
+    """
+    counted = counted_samples(ensemble)
+    displacement = in_frames(counted["marker_displacement"], ensemble.attrs["slab_marker"])
+    probabilities = xr.DataArray(list(QUANTILES), dims="quantile", coords={"quantile": list(QUANTILES)})
+    bounds = xr.DataArray(list(BOUNDS.values()), dims="bound", coords={"bound": list(BOUNDS)})
+    result = xr.Dataset(
+        {
+            "marker_envelope": over_samples(displacement, bounds),
+            "marker_displacement": over_samples(displacement, probabilities),
+            "peak": over_samples(counted["peak"], probabilities),
+            "residual": over_samples(counted["residual"], probabilities),
+            "peak_rotation": over_samples(counted["peak_rotation"], probabilities),
+            "contributing": counted["marker_displacement"].notnull().all(("marker", "axis")).sum("sample"),
+        }
+    ).transpose("frame", "bound", "quantile", "time", "marker", "body", "axis")
+    result = result.merge(_probabilities(counted, largest_drift)).merge(_intervals(counted, probabilities))
+    result["marker_envelope"].attrs = {
+        "long_name": "smallest and largest marker displacement over the samples",
+        "units": "m",
+    }
+    result["marker_displacement"].attrs = {"long_name": "marker displacement since the start", "units": "m"}
+    for name in ("peak", "residual", "peak_rotation"):
+        result[name].attrs = {**ensemble[name].attrs, "ancillary_variables": f"{name}_interval"}
+    result["contributing"].attrs = {"long_name": "samples with a value at this time", "units": "1"}
+    result["quantile"].attrs = {"long_name": "probability of a smaller value", "units": "1"}
+    result["bound"].attrs = {"long_name": "edge of the envelope"}
+    result.attrs = {
+        **ensemble.attrs,
+        "title": "envelope of an ensemble of simulated runs",
+        "samples": ensemble.sizes["sample"],
+        "counted": counted.sizes["sample"],
+        "confidence": CONFIDENCE,
+    }
+    return result
+
+
+def _probabilities(counted, largest_drift):
+    """Shares of the samples that collapsed and that drifted too far, with their limits."""
+    collapsed = counted["status"].values == Status.COLLAPSED
+    peak = counted["peak"].sel(frame="slab", drop=True).transpose("sample", "marker").to_numpy()
+    beyond = (collapsed[:, None] | (peak > largest_drift)).sum(axis=0)
+    size = len(collapsed)
+    share = np.array([collapsed.sum(), *beyond]) / size if size else np.full(1 + len(beyond), np.nan)
+    limits = np.array([share_interval(int(count), size) for count in (collapsed.sum(), *beyond)]).T
+    result = xr.Dataset(
+        {
+            "collapse_probability": ((), share[0]),
+            "collapse_probability_interval": ("bound", limits[:, 0]),
+            "drift_probability": ("marker", share[1:]),
+            "drift_probability_interval": (("bound", "marker"), limits[:, 1:]),
+        }
+    )
+    what = {
+        "collapse": "collapse",
+        "drift": f"a displacement along x of more than {largest_drift:g} m from the slab",
+    }
+    for name, event in what.items():
+        variable = f"{name}_probability"
+        result[variable].attrs = {
+            "long_name": f"share of the samples with {event}",
+            "units": "1",
+            "ancillary_variables": f"{variable}_interval",
+        }
+        result[f"{variable}_interval"].attrs = {
+            "long_name": f"Clopper-Pearson limits of the probability of {event}",
+            "units": "1",
+        }
+    result["drift_probability"].attrs["largest_drift"] = float(largest_drift)
+    return result
+
+
+def _intervals(counted, probabilities):
+    """Bootstrap limits of the quantiles of single numbers."""
+    identity = (str(counted.attrs.get(key)) for key in ("model", "structure"))
+    generator = np.random.default_rng(int(content_digest("envelope", *identity), 16))
+    result = xr.Dataset()
+    for name in ("peak", "residual", "peak_rotation"):
+        values = counted[name].transpose("sample", ...)
+        limits = quantile_interval(values.to_numpy(), probabilities.to_numpy(), generator)
+        result[f"{name}_interval"] = (("bound", "quantile", *values.dims[1:]), limits)
+        result[f"{name}_interval"].attrs = {
+            "long_name": f"bootstrap limits of the quantiles of {name.replace('_', ' ')}",
+            "units": counted[name].attrs["units"],
+        }
+    return result
+
+
+def over_samples(values, probabilities):
+    """Quantiles over ``sample`` of the values that are there.
+
+    Parameters
+    ----------
+    values : xarray.DataArray
+        With dimension ``sample``; NaN is no value.
+    probabilities : xarray.DataArray, one dimension
+        In [0, 1]; 0 is the smallest, 1 the largest value.
+
+    Returns
+    -------
+    xarray.DataArray
+        Dimension of ``probabilities`` in place of ``sample``; NaN where no sample has a value.
+    """
+    rest = values.transpose("sample", ...)
+    found = sample_quantiles(rest.to_numpy(), probabilities.to_numpy())
+    dims = (*probabilities.dims, *rest.dims[1:])
+    coordinates = {name: rest.coords[name] for name in rest.dims[1:] if name in rest.coords}
+    return xr.DataArray(found, dims=dims, coords={**probabilities.coords, **coordinates})

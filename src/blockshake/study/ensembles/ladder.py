@@ -1,0 +1,86 @@
+"""The paper's ladder of intensities: 50 %, then 25 % more until a potential collapse."""
+
+import numpy as np
+
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.system import Status
+from blockshake.geometry.structure import load_structure
+from blockshake.simulation.simulate import simulate
+
+
+def climb_ladder(structure, motion, model, time_step, duration, ladder):
+    """Simulate one structure at growing intensities, each from the restored stack.
+
+    Parameters
+    ----------
+    structure, motion, model : str
+        Names or files.
+    time_step, duration : float
+        [s]
+    ladder : Ladder
+        First scale, increment, highest scale and the drift that counts as a potential collapse.
+
+    Returns
+    -------
+    list of dict
+        By rung: ``scale``, ``status``, ``reason`` and ``peak``, the largest displacement of any
+        block relative to the slab along x [m]; and ``passed``. The last rung is the first that did not
+        pass: it did not complete, or a block's drift exceeded ``largest_drift``.
+
+    Notes
+    -----
+    Zhou et al. (2023), section Case Study: first test at 50 %, increments of about 25 %.
+    """
+    loaded, rungs = load_structure(structure), []
+    count = int(np.floor((ladder.highest - ladder.first) / ladder.increment + 1e-9)) + 1
+    for scale in ladder.first + ladder.increment * np.arange(count):
+        run = simulate(
+            loaded,
+            load_motion(motion, float(scale)),
+            model,
+            time_step=time_step,
+            duration=duration,
+            accelerometers=False,
+        )
+        moved = run["position"].sel(axis="x") - run["position"].sel(axis="x").isel(time=0)
+        drift = np.abs(moved - moved.isel(body=0)).max()
+        rungs.append(
+            {
+                "scale": float(scale),
+                "status": run.attrs["status"],
+                "reason": run.attrs["reason"],
+                "peak": float(drift),
+                "passed": run.attrs["status"] == Status.COMPLETED and float(drift) <= ladder.largest_drift,
+            }
+        )
+        if not rungs[-1]["passed"]:
+            break
+    return rungs
+
+
+def climb_ladders(cases, time_step, ladder, progress):
+    """Climb the ladder of every case with every motion by LS-DEM, as `climb_ladder`.
+
+    Parameters
+    ----------
+    cases : sequence of dict
+        ``structure`` and ``duration`` [s] of the configuration's cases.
+    time_step : float
+        [s]
+    ladder : Ladder
+    progress : callable
+        Called with a line of text after each ladder.
+
+    Returns
+    -------
+    dict of str to dict of str to list of dict
+        By structure and motion: rungs.
+    """
+    found = {case["structure"]: {} for case in cases}
+    for case in cases:
+        for motion in ladder.motions:
+            rungs = climb_ladder(case["structure"], motion, "ls-dem", time_step, case["duration"], ladder)
+            found[case["structure"]][motion] = rungs
+            passed = [rung["scale"] for rung in rungs if rung["passed"]]
+            progress(f"{case['structure']} {motion}: passed {passed}")
+    return found

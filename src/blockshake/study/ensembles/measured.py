@@ -1,0 +1,93 @@
+"""Measured curves beside an ensemble: in its frames and window, and at its times."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from blockshake.errors import InputError
+from blockshake.measurement.motion.compared_curves import curves_along_x
+from blockshake.measurement.sensors.marker_noise import noisy_reading
+from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW, in_frames, peak_and_residual
+from blockshake.study.ensembles.envelope import counted_samples
+
+_SAME_TIME = 1e-6  # s
+
+
+class ComparedCurves(NamedTuple):
+    """Measured and simulated displacement along x at the same times, inertial frame [m].
+
+    Attributes
+    ----------
+    measured : xarray.DataArray, (time, marker)
+    members : xarray.Dataset
+        Completed and collapsed samples of the ensemble.
+    curves, readings : float64 arrays, shape (n_samples, n_times, n_markers)
+        Of the members, and the same with a marker's noise.
+    """
+
+    measured: xr.DataArray
+    members: xr.Dataset
+    curves: np.ndarray
+    readings: np.ndarray
+
+
+def compared_curves(measured, ensemble, marker_noise, seed, fewest):
+    """Curves of a measured test and of an ensemble, the ensemble's read with noise too.
+
+    Parameters
+    ----------
+    measured : xarray.Dataset
+        ``marker_displacement(time, marker, axis)`` [m], inertial frame, relative to the first reading; NaN is a
+        gap. Its first times are the ensemble's, as far as both go.
+    ensemble : xarray.Dataset
+        From `gather_ensemble`.
+    marker_noise : float
+        Standard deviation of a measured marker's position [m].
+    seed : int
+        Of the noise that the members are read with.
+    fewest : int
+        Members that the comparison needs.
+
+    Returns
+    -------
+    ComparedCurves
+
+    Raises
+    ------
+    InputError
+        Fewer members, no marker in common, or other times.
+    """
+    members = counted_samples(ensemble)
+    if members.sizes["sample"] < fewest:
+        raise InputError(
+            "comparison", "samples", f"expected at least {fewest} completed or collapsed samples"
+        )
+    read, curves = curves_along_x(measured, members)
+    curves, generator = curves.to_numpy(), np.random.default_rng(seed)
+    readings = np.stack([noisy_reading(curve, marker_noise, generator) for curve in curves])
+    return ComparedCurves(read, members, curves, readings)
+
+
+def measured_curves(test, slab_marker, duration):
+    """Measured displacement along x over the simulated window.
+
+    Parameters
+    ----------
+    test : xarray.Dataset
+        ``marker_displacement(time, marker, axis)`` [m], inertial frame.
+    slab_marker : str
+        Marker that the frame ``slab`` moves with.
+    duration : float
+        Length of the window [s].
+
+    Returns
+    -------
+    xarray.Dataset
+        ``displacement(frame, time, marker)``, and by the definitions of `gather_ensemble` ``peak`` and
+        ``residual(frame, marker)`` [m], over the window.
+    """
+    along = test["marker_displacement"].sel(axis="x", drop=True)
+    along = in_frames(along.isel(time=(along["time"] <= duration + _SAME_TIME).to_numpy()), slab_marker)
+    peak, residual = peak_and_residual(along, duration - RESIDUAL_WINDOW, skipna=True)
+    return xr.Dataset({"displacement": along, "peak": peak, "residual": residual})

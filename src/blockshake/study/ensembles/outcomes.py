@@ -1,0 +1,145 @@
+"""How the samples of an ensemble ended, and how many of them carry its statistics."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Outcomes(NamedTuple):
+    """Numbers of samples by the way they ended.
+
+    >>> count_outcomes(["completed", "collapsed", "completed", "not-converged"])
+    Outcomes(completed=2, collapsed=1, failed=1)
+    >>> count_outcomes(["completed", "collapsed"]).counted
+    2
+    """
+
+    completed: int
+    collapsed: int
+    failed: int
+
+    @property
+    def counted(self):
+        """Samples that enter statistics."""
+        return self.completed + self.collapsed
+
+
+class EnergyResiduals(NamedTuple):
+    """Energy residuals over the samples of an ensemble [1]; NaN where no sample has one."""
+
+    median: float
+    largest: float
+
+
+class Shortfall(NamedTuple):
+    """Samples that are missing from the statistics of an ensemble.
+
+    ``since`` is the first time without a value of every counted sample [s], NaN where there is none; ``at_end``
+    counts the samples with a value at the last time.
+    """
+
+    counted: int
+    failed: int
+    since: float
+    at_end: int
+
+
+def count_outcomes(status):
+    """Outcomes of samples from their statuses.
+
+    Parameters
+    ----------
+    status : sequence of str
+        Of each sample, as in the variable ``status`` of an ensemble.
+
+    Returns
+    -------
+    Outcomes
+    """
+    status = np.asarray(status, dtype=str)
+    completed, collapsed = (int((status == one).sum()) for one in ("completed", "collapsed"))
+    return Outcomes(completed, collapsed, len(status) - completed - collapsed)
+
+
+def add_outcomes(outcomes):
+    """Outcomes of several ensembles together.
+
+    >>> add_outcomes([Outcomes(2, 1, 0), Outcomes(3, 0, 1)])
+    Outcomes(completed=5, collapsed=1, failed=1)
+    """
+    return Outcomes(*(sum(column) for column in zip(*outcomes, strict=True)))
+
+
+def unfinished(samples):
+    """Samples that did not complete.
+
+    Parameters
+    ----------
+    samples : xarray.Dataset
+        From `sample_figures`.
+
+    Returns
+    -------
+    list of xarray.Dataset
+        One sample each.
+    """
+    return [
+        samples.sel(sample=one) for one in samples["sample"].values[samples["status"].values != "completed"]
+    ]
+
+
+def energy_residuals(samples):
+    """Median and largest energy residual over the samples.
+
+    Parameters
+    ----------
+    samples : xarray.Dataset
+        From `sample_figures`.
+
+    Returns
+    -------
+    EnergyResiduals
+    """
+    return EnergyResiduals(
+        *(numerical_figure(samples, "energy_residual", one) for one in (np.median, np.max))
+    )
+
+
+def numerical_figure(samples, name, statistic):
+    """Statistic of a figure of the computation over the samples that have it.
+
+    Parameters
+    ----------
+    samples : xarray.Dataset
+        From `sample_figures`.
+    name : str
+        Variable, such as ``numerics_steps``.
+    statistic : callable
+        Of a float64 array of at least one value.
+
+    Returns
+    -------
+    float
+        NaN where no sample has the figure.
+    """
+    values = np.asarray(samples.get(name, []), dtype=float)
+    values = values[np.isfinite(values)]
+    return float(statistic(values)) if len(values) else np.nan
+
+
+def shortfall(envelope):
+    """Samples that are missing from the statistics of an ensemble, or from those of its late times.
+
+    Parameters
+    ----------
+    envelope : xarray.Dataset
+        From `envelope`.
+
+    Returns
+    -------
+    Shortfall
+    """
+    there, counted = envelope["contributing"].values, int(envelope.attrs["counted"])
+    fewer = np.flatnonzero(there < counted)
+    since = float(envelope["time"][fewer[0]]) if len(fewer) else np.nan
+    return Shortfall(counted, int(envelope.attrs["samples"]) - counted, since, int(there[-1]))

@@ -1,0 +1,100 @@
+"""Cost of the simulations, from Snakemake's benchmark files."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Cost of one case by one model, as its jobs last ran.
+
+    Attributes
+    ----------
+    model, case : str
+    jobs, samples : int
+        Jobs with a benchmark file, and the samples in their batches.
+    simulated, cpu_time, wall_time : float
+        Time simulated in those samples and spent on them, start of the jobs included [s]; NaN
+        where there is no benchmark file.
+    """
+
+    model: str
+    case: str
+    jobs: int
+    samples: int
+    simulated: float
+    cpu_time: float
+    wall_time: float
+
+    @property
+    def cpu_per_simulated(self):
+        """CPU time over simulated time [1]; NaN where nothing was simulated."""
+        return self.cpu_time / self.simulated if self.simulated > 0.0 else np.nan
+
+
+def read_timings(benchmarks, samples):
+    """Costs of all cases and models.
+
+    Parameters
+    ----------
+    benchmarks : str or path
+        Folder with ``simulate_batch/MODEL/CASE/FIRST-LAST.jsonl``.
+    samples : dict of (str, str) to xarray.Dataset
+        By model and case, with ``end_time(sample)`` [s].
+
+    Returns
+    -------
+    tuple of Timing
+    """
+    timings = []
+    for (model, case), figures in samples.items():
+        jobs, covered, cpu_time, wall_time = 0, [], 0.0, 0.0
+        for path in sorted(Path(benchmarks, "simulate_batch", model, case).glob("*-*.jsonl")):
+            first, last = (int(part) for part in path.stem.split("-"))
+            record = json.loads(path.read_text(encoding="utf-8").splitlines()[-1])
+            inside = [int(one) for one in figures["sample"].values if first <= one <= last]
+            if not inside:
+                continue  # of a batch of an earlier configuration
+            jobs += 1
+            covered += inside
+            cpu_time += _seconds(record["cpu_time"])
+            wall_time += _seconds(record["s"])
+        end = figures["end_time"].sel(sample=sorted(set(covered)))
+        known = jobs > 0
+        timings.append(
+            Timing(
+                model,
+                case,
+                jobs,
+                len(set(covered)),
+                float(end.sum()),
+                cpu_time if known else np.nan,
+                wall_time if known else np.nan,
+            )
+        )
+    return tuple(timings)
+
+
+def total_timing(timings):
+    """Cost of all cases and models whose CPU time is known.
+
+    Parameters
+    ----------
+    timings : sequence of Timing
+
+    Returns
+    -------
+    Timing
+        Model and case are empty.
+    """
+    known = [one for one in timings if np.isfinite(one.cpu_time)]
+    names = ("jobs", "samples", "simulated", "cpu_time", "wall_time")
+    return Timing("", "", *(sum(getattr(one, name) for one in known) for name in names))
+
+
+def _seconds(value):
+    """Seconds of a benchmark; NaN where the job was too short for a measurement."""
+    return float(value) if isinstance(value, (int, float)) else np.nan

@@ -1,0 +1,153 @@
+"""The friction calibration of one case: replicated ensembles for every candidate mean, against its measured test."""
+
+import numpy as np
+import pandas as pd
+
+from blockshake.files import source_digest
+from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.simulation.models import model_of
+from blockshake.sources import script_sources
+from blockshake.study.ensembles.batch import simulate_samples
+from blockshake.study.ensembles.coverage import coverage
+from blockshake.study.ensembles.ensemble import join_batches
+from blockshake.study.friction.calibration import mean_score, search_mean, with_mean
+from blockshake.study.friction.replicates import replicated_designs
+from blockshake.study.sampling.distributions import load_distributions
+from blockshake.study.stiffness.wave_speed import calibrate_design
+
+_UNLIKELY = 0.05  # chance of a whole curve at or below which an ensemble does not fit
+
+
+def calibrate_case(case, named, given, store, tower, progress):
+    """Friction calibration of one case of a configuration.
+
+    Parameters
+    ----------
+    case : dict
+        As for `simulate_samples`.
+    named : dict
+        Entries ``campaign``, a folder, and ``test``: the measured test.
+    given : dict
+        Entries ``search``, ``models``, ``ensemble`` and ``output_rate`` of the configuration.
+    store : str or path
+        Of finished samples, shared with the study's batches.
+    tower : str
+        Structure that gives the stiffness of LS-DEM's samples.
+    progress : callable
+
+    Returns
+    -------
+    dict
+        From `friction_summary`.
+    """
+    search, ensemble = given["search"], given["ensemble"]
+    model = search["model"]
+    campaign = load_campaign(named["campaign"])
+    measured = load_test(campaign, named["test"])
+    settings = {"model": model, **given["models"][model], "output_rate": given["output_rate"], "tower": tower}
+    drawn_from = {
+        "distributions": load_distributions(ensemble["distributions"], "ensemble"),
+        "seed": ensemble["seed"],
+        "linked": ensemble["linked"],
+    }
+    source = source_digest(*script_sources("simulate_batch", model))
+    noise = campaign.sensors.marker_noise
+    found, beside = calibrate_friction(
+        case, settings, drawn_from, search, measured, noise, store, source, progress
+    )
+    return friction_summary(found, beside, search, measured)
+
+
+def calibrate_friction(case, run_settings, ensemble, search, measured, marker_noise, store, source, say):
+    """Search the mean coefficient of friction of a case.
+
+    Parameters
+    ----------
+    case : dict
+        As for `simulate_samples`.
+    run_settings : dict
+        ``model``, its ``time_step`` [s] and ``parameters``, ``output_rate`` [Hz], and ``tower``, the structure that
+        gives the stiffness of LS-DEM's samples.
+    ensemble : dict
+        ``distributions``, ``seed``, ``linked``.
+    search : dict
+        ``variables``, ``lowest``, ``highest``, ``step``, ``finest`` [1]; ``size`` of an ensemble, ``replicates``.
+    measured : xarray.Dataset
+        The measured test.
+    marker_noise : float
+        [m]
+    store, source : as for `simulate_samples`
+        Finished samples are kept, so that a search that was cut goes on.
+    say : callable
+        Called with a line of text as it goes.
+
+    Returns
+    -------
+    FrictionCalibration
+    beside : pandas.DataFrame
+        By mean, medians over the replicates: ``coverage`` of the measured curves, its leave-one-out ``reference``
+        and ``chance`` of whole curves, medians over the markers [1]; ``residual``, the largest over the markers of
+        the samples' median residual relative to the slab [m].
+    """
+    distributions, linked = ensemble["distributions"], ensemble["linked"]
+    drawn = replicated_designs(
+        search["replicates"], search["size"], ensemble["seed"], distributions=distributions
+    )
+    designs = [one.values for one in drawn]
+    if model_of(run_settings["model"]).calibrated:
+        tower = run_settings["tower"]
+        designs = [pd.concat([design, calibrate_design(tower, design, linked)], axis=1) for design in designs]
+    beside = {}
+
+    def evaluate(mean):
+        scores, covered = [], []
+        for index, design in enumerate(designs):
+            rows = with_mean(design, distributions, search["variables"], mean)
+            finished = simulate_samples(
+                case, run_settings["model"], run_settings, run_settings["output_rate"],
+                rows, linked, store, source, lambda line: None,
+            )  # fmt: skip
+            members = join_batches(finished)
+            scores.append(mean_score(members, measured, marker_noise, seed=index))
+            covered.append(_beside(members, measured, marker_noise))
+        beside[mean] = pd.DataFrame(covered).median()
+        say(
+            f"mean friction {mean:g}: score {1e3 * sum(scores) / len(scores):.3f} mm of {len(scores)} ensembles"
+        )
+        return scores
+
+    found = search_mean(
+        evaluate, search["lowest"], search["highest"], search["step"], search["finest"], marker_noise
+    )
+    say(found.answer)
+    return found, pd.DataFrame(beside).T.rename_axis("mean").sort_index()
+
+
+def friction_summary(found, beside, search, measured):
+    """A calibration as JSON-like values, with what it was made of; refused bounds that are missing are null.
+
+    Where the measured curves are unlike those of the best mean's ensembles too, the differences between means say
+    nothing of friction, and the answer is that no mean fits.
+    """
+    fits = beside["chance"].loc[found.best] > max(_UNLIKELY, 1.0 / (1.0 + search["size"]))
+    return {
+        "answer": found.answer if fits else "unknown: no mean fits the measured curves",
+        "best": found.best,
+        "lower": None if np.isnan(found.lower) else found.lower,
+        "upper": None if np.isnan(found.upper) else found.upper,
+        "synthetic": int(measured.attrs.get("synthetic", 0)),
+        **search,
+        "means": found.table.join(beside).reset_index().to_dict("list"),
+    }
+
+
+def _beside(members, measured, marker_noise):
+    """Figures told beside the score of one ensemble."""
+    compared = coverage(measured, members, marker_noise)
+    residual = np.abs(members["residual"].sel(frame="slab")).median("sample")
+    return {
+        "chance": float(compared["curve_probability"].median()),
+        "coverage": float(compared["coverage"].median()),
+        "reference": float(compared["reference"].sel(quantile=0.5).median()),
+        "residual": float(residual.max()),
+    }

@@ -1,0 +1,1 @@
+"""Latin hypercube sampling with correlation control."""

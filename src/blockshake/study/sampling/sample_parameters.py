@@ -1,0 +1,49 @@
+"""Parameters of one structure that a sample of the design stands for."""
+
+
+def sample_parameters(row, structure, linked):
+    """Parameters of one sample that this structure has.
+
+    Parameters
+    ----------
+    row : pandas.Series
+        Sampled values by dotted name, stiffness among them.
+    structure : Structure
+        What it has no material or pair for is left out: configuration 1 has no steel.
+    linked : dict of str to str
+        Parameters that take the sampled value of another.
+
+    Returns
+    -------
+    dict of str to float
+    """
+    values = {str(name): float(value) for name, value in row.items()}
+    values |= {name: values[source] for name, source in linked.items() if source in values}
+    file = structure.file
+    pairs = {tuple(sorted(entry.pair)) for entry in file.friction}
+    return {name: value for name, value in values.items() if _has(name.split("."), file.materials, pairs)}
+
+
+def has_parameter(structure, name):
+    """Whether a structure has the material or the pair that a parameter describes.
+
+    Parameters
+    ----------
+    structure : Structure
+    name : str
+        Dotted.
+
+    Returns
+    -------
+    bool
+    """
+    pairs = {tuple(sorted(entry.pair)) for entry in structure.file.friction}
+    return _has(name.split("."), structure.file.materials, pairs)
+
+
+def _has(parts, materials, pairs):
+    if parts[0] == "materials":
+        return parts[1] in materials
+    if parts[0] == "friction":
+        return tuple(sorted(parts[1:])) in pairs
+    return True

@@ -1,0 +1,1 @@
+"""Sensitivities of the response to the sampled variables."""

@@ -1,0 +1,255 @@
+"""Sensitivity: which random variable makes the samples of an ensemble differ, block by block."""
+
+from itertools import pairwise
+
+import numpy as np
+import xarray as xr
+
+from blockshake.dynamics.system import Status
+from blockshake.errors import InputError
+from blockshake.files import content_digest
+from blockshake.geometry.structure import load_structure
+from blockshake.simulation.models import model_of
+from blockshake.study.ensembles.ensemble import join_batches
+from blockshake.study.ensembles.envelope import counted_samples
+from blockshake.study.sampling.latin_hypercube import load_design
+from blockshake.study.sampling.sample_parameters import sample_parameters
+from blockshake.study.sensitivity.histories import completed_histories, principal_components, window_bounds
+from blockshake.study.sensitivity.measures import (
+    FEWEST_SAMPLES,
+    bootstrap_interval,
+    chance_level,
+    first_order_share,
+    partial_rank_correlation,
+)
+
+QUANTITIES = {"history": "m", "peak": "m", "residual": "m", "rotation": "rad"}
+CONFIDENCE = 0.95
+_DRAWS = 400  # bootstrap and permutations: the tail of 2.5 % then rests on ten draws
+_MEASURES = {
+    "first_order": first_order_share,
+    "rank_correlation": lambda *pair: partial_rank_correlation(*pair)[0],
+}
+
+
+def sensitivity_of_case(batches, design, model, structure, linked):
+    """`sensitivity` of a case's samples to all variables of a design, with those that cannot matter as controls.
+
+    Parameters
+    ----------
+    batches : sequence of path
+        Files of the samples.
+    design : path
+        CSV table by sample.
+    model, structure : str
+    linked : dict of str to str
+        As in `sample_parameters`.
+    """
+    values = load_design(design)
+    given = sample_parameters(values.iloc[0], load_structure(structure), linked)
+    variables = list(values.columns)
+    return sensitivity(join_batches(batches), variables, unused_variables(variables, model, given))
+
+
+def sensitivity(ensemble, variables, controls=()):
+    """Sensitivity of the histories, peaks, residuals and rotations of an ensemble to its random variables.
+
+    Parameters
+    ----------
+    ensemble : xarray.Dataset
+        From `gather_ensemble`.
+    variables : list of str
+        Dotted names of the sampled variables; stiffness that follows from them is not one.
+    controls : sequence of str
+        Those among them that cannot matter, from `unused_variables`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``first_order(quantity, marker, parameter)`` [1], the first-order Sobol index, and ``rank_correlation``
+        [1], the partial rank correlation; of each the 95 % bootstrap interval ``_interval(bound, ...)`` and
+        ``_chance(quantity)``, what the largest over all markers and variables reaches without any effect in 95
+        of 100 cases; ``explained(quantity, marker)`` [1], adjusted R^2 of a regression of ranks on all
+        variables; ``spread(quantity, marker)``, standard deviation over the samples in ``quantity_unit``;
+        ``used(quantity)``, samples; ``control(parameter)``, 1 where a variable cannot matter. Quantities, of
+        each marker relative to the slab's along x: ``history``, the displacement at all times together;
+        ``peak``; ``residual``; and ``rotation``, the largest of the marker's body. A history has no rank
+        correlation; ``window_first_order(window, marker, parameter)`` is the index of its seconds one by one, with
+        ``window_spread`` [m].
+
+    Raises
+    ------
+    InputError
+        A variable that the ensemble does not hold.
+
+    Notes
+    -----
+    Only completed and collapsed samples are used. A collapsed one ranks first: its peak and rotation are at least the
+    largest of the completed ones. It has no residual, and its history ends: both then rest on the completed samples.
+    Variables are taken as independent; of correlated ones the index holds what they carry of each other. The share of
+    a history weighs each time by the variance there: it says what the envelope's thickness over time comes from.
+    """
+    names = [str(name) for name in ensemble["parameter"].values]
+    for variable in variables:
+        if variable not in names:
+            raise InputError("sensitivity", variable, "expected a parameter of the ensemble")
+    counted = counted_samples(ensemble)
+    slab = str(ensemble.attrs["slab_marker"])
+    markers = [str(name) for name in ensemble["marker"].values if name != slab]
+    inputs = counted["parameter_value"].sel(parameter=variables).transpose("sample", "parameter").to_numpy()
+    seed = int(
+        content_digest("sensitivity", *(str(ensemble.attrs.get(key)) for key in ("model", "structure"))), 16
+    )
+    generator = np.random.default_rng(seed)
+    parts = []
+    for quantity in QUANTITIES:
+        values = _outputs(counted, quantity, markers, slab)
+        used = np.isfinite(values).all(axis=(1, 2))
+        parts.append(_measured(inputs[used], values[used], quantity == "history", generator))
+    result = xr.concat(parts, dim=xr.Variable("quantity", list(QUANTITIES)))
+    result = result.merge(_over_time(counted, markers, slab, inputs, generator))
+    result["control"] = ("parameter", np.array([name in controls for name in variables], dtype=np.int8))
+    return _described(result.assign_coords(marker=markers, parameter=variables), ensemble, counted, seed)
+
+
+def unused_variables(variables, model, parameters):
+    """Variables that cannot matter: controls that a sound measure must find at the level of chance.
+
+    Parameters
+    ----------
+    variables : list of str
+        Dotted names.
+    model : str
+    parameters : dict
+        What a sample gives to the structure, from `sample_parameters`: what the structure lacks is not there.
+
+    Returns
+    -------
+    list of str
+    """
+    unused = model_of(model).without_effect
+    return [name for name in variables if name not in parameters or name.rsplit(".", 1)[1] in unused]
+
+
+def _outputs(counted, quantity, markers, slab):
+    """Values of one quantity, float64 (n_samples, n_markers, n_components); NaN where a sample has none."""
+    completed = counted["status"].values == Status.COMPLETED
+    if quantity == "history":
+        return principal_components(completed_histories(counted, markers, slab))
+    if quantity == "rotation":
+        bodies = counted["marker_body"].sel(marker=markers)
+        values = counted["peak_rotation"].sel(body=bodies).transpose("sample", "marker").to_numpy()
+    else:
+        chosen = counted[quantity].sel(frame="slab", marker=markers)
+        values = chosen.transpose("sample", "marker").to_numpy()
+    if quantity != "residual" and completed.any():
+        values = np.where(completed[:, None], values, np.fmax(values, values[completed].max(axis=0)))
+    return values[:, :, None]
+
+
+def _over_time(counted, markers, slab, inputs, generator):
+    """First-order shares of the displacement window by window, and their level of chance."""
+    histories = completed_histories(counted, markers, slab)
+    used = np.isfinite(histories).all(axis=(1, 2))
+    edges, middle = window_bounds(counted["time"].to_numpy())
+    shape = (len(middle), len(markers))
+    shares, spread, level = np.full((*shape, inputs.shape[1]), np.nan), np.full(shape, np.nan), np.nan
+    if used.sum() >= FEWEST_SAMPLES:
+        pieces = [principal_components(histories[used][:, :, a:b]) for a, b in pairwise(edges)]
+        most = max(piece.shape[2] for piece in pieces)
+        padded = [np.pad(piece, ((0, 0), (0, 0), (0, most - piece.shape[2]))) for piece in pieces]
+        outputs = np.concatenate(padded, axis=1)
+        shares = first_order_share(inputs[used], outputs).reshape(*shape, -1)
+        spread = np.sqrt(outputs.var(axis=0).sum(axis=1)).reshape(shape)
+        level = chance_level(first_order_share, inputs[used], outputs, CONFIDENCE, _DRAWS, generator)
+    return xr.Dataset(
+        {
+            "window_first_order": (("window", "marker", "parameter"), shares),
+            "window_spread": (("window", "marker"), spread),
+            "window_first_order_chance": ((), level),
+        },
+        coords={"window": middle},
+    )
+
+
+def _measured(inputs, outputs, is_history, generator):
+    """Measures, intervals and levels of one quantity."""
+    n_outputs, n_inputs = outputs.shape[1], inputs.shape[1]
+    by_pair = ("marker", "parameter")
+    result = {"used": ((), len(inputs)), "explained": ("marker", np.full(n_outputs, np.nan))}
+    enough = len(inputs) >= FEWEST_SAMPLES
+    spread = np.sqrt((outputs.var(axis=0)).sum(axis=1)) if enough else np.full(n_outputs, np.nan)
+    result["spread"] = ("marker", spread)
+    if enough and not is_history:
+        result["explained"] = ("marker", partial_rank_correlation(inputs, outputs)[1])
+    for name, measure in _MEASURES.items():
+        estimate = np.full((n_outputs, n_inputs), np.nan)
+        interval, level = np.stack([estimate, estimate]), np.nan
+        if enough and not (is_history and name == "rank_correlation"):
+            estimate = measure(inputs, outputs)
+        if np.isfinite(estimate).any():
+            interval = bootstrap_interval(measure, inputs, outputs, estimate, CONFIDENCE, _DRAWS, generator)
+            level = chance_level(measure, inputs, outputs, CONFIDENCE, _DRAWS, generator)
+        result[name] = (by_pair, estimate)
+        result[f"{name}_interval"] = (("bound", *by_pair), np.clip(interval, -1.0, 1.0))
+        result[f"{name}_chance"] = ((), level)
+    return xr.Dataset(result, coords={"bound": ["lower", "upper"]})
+
+
+def _described(result, ensemble, counted, seed):
+    what = {
+        "first_order": "first-order Sobol index, correlation ratio over classes of ranks",
+        "rank_correlation": "partial rank correlation",
+    }
+    for name, long_name in what.items():
+        result[name].attrs = {
+            "long_name": long_name, "units": "1",
+            "ancillary_variables": f"{name}_interval {name}_chance",
+        }  # fmt: skip
+        result[f"{name}_interval"].attrs = {
+            "long_name": f"bootstrap interval of the {long_name}",
+            "units": "1",
+            "confidence": CONFIDENCE,
+        }
+        result[f"{name}_chance"].attrs = {
+            "long_name": f"what the largest absolute {long_name} reaches without any effect",
+            "units": "1",
+            "confidence": CONFIDENCE,
+        }
+    result["window_first_order"].attrs = {
+        "long_name": "first-order Sobol index of the displacement within a second",
+        "units": "1",
+        "ancillary_variables": "window_first_order_chance",
+    }
+    result["window_first_order_chance"].attrs = {
+        "long_name": "what the largest of all seconds, markers and variables reaches without any effect",
+        "units": "1",
+        "confidence": CONFIDENCE,
+    }
+    result["window_spread"].attrs = {
+        "long_name": "standard deviation over the samples within a second",
+        "units": "m",
+    }
+    result["window"].attrs = {"long_name": "middle of the second", "units": "s"}
+    result["explained"].attrs = {
+        "long_name": "adjusted R^2 of a regression of ranks on all variables",
+        "units": "1",
+    }
+    result["spread"].attrs = {"long_name": "standard deviation over the samples, in quantity_unit"}
+    result["used"].attrs = {"long_name": "samples used", "units": "1"}
+    result["control"].attrs = {
+        "long_name": "1 where model or structure has no use for the variable",
+        "units": "1",
+    }
+    result["marker"].attrs = {"long_name": "marker, relative to the slab's marker"}
+    result["parameter"].attrs = {"long_name": "dotted name of the random variable"}
+    result["bound"].attrs = {"long_name": "edge of the interval"}
+    result = result.assign_coords(quantity_unit=("quantity", list(QUANTITIES.values())))
+    result.attrs = {
+        **ensemble.attrs,
+        "title": "sensitivity of an ensemble of simulated runs to its random variables",
+        "counted": counted.sizes["sample"],
+        "sensitivity_seed": f"{seed:x}",
+        "draws": _DRAWS,
+    }
+    return result

@@ -1,0 +1,1 @@
+"""Contact stiffness from the speed of waves."""

@@ -1,0 +1,165 @@
+"""The way of a diagnosis, step by step, on a campaign of two blocks that a formula simulates."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray as xr
+from tiny_campaign import TESTS, prescribed_run, write_campaign
+
+from blockshake.diagnosis import steps
+from blockshake.diagnosis.inference.calibration import write_cases
+from blockshake.diagnosis.inference.decision import write_result
+from blockshake.diagnosis.libraries import candidates, designed_test, efforts, plan
+from blockshake.diagnosis.misfit import predictability
+from blockshake.diagnosis.verdict.frozen import freeze
+from blockshake.errors import InputError
+from blockshake.files import PACKAGE, write_dataset, write_json
+
+TINY = efforts.Effort(runs=1000, tests=2, nominal_draws=10, own_draws=2, further_draws=2, members=2, twins=2)
+SOLVERS = ("ls-dem", "nscd-rigid")
+PITCH = {"name": "table-pitch", "values": {"coefficient": 1.2e-3, "frequency": 18.0}, "place": {}}
+STRUCTURE = PACKAGE.parents[1] / "hidden_effects" / "two-blocks.yaml"
+
+
+def _silent(line):
+    """No progress."""
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    """Results of every step and the files that the next ones read."""
+    folder = tmp_path_factory.mktemp("tiny")
+    campaign = folder / "campaign"
+    write_campaign(campaign, STRUCTURE, PITCH)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(efforts.EFFORTS, "tiny", TINY)
+        patch.setattr(designed_test, "simulate", prescribed_run)
+        patch.setattr(predictability, "simulate", prescribed_run)
+        everywhere = candidates.candidates
+        patch.setattr(
+            plan,
+            "candidates",
+            lambda built: [
+                one for one in everywhere(built) if one.effect in ("table-pitch", "vertical-motion")
+            ],
+        )
+        yield _diagnose(folder, str(campaign))
+
+
+def _diagnose(folder, campaign):
+    effects, config = plan.considered(), {"diagnosed": [campaign], "diagnosis_effort": "tiny"}
+    made_by = folder / "store", "source", _silent
+    path = {
+        name: str(folder / f"{name}.json")
+        for name in ("parity", "decision", "frozen", "size", "frozen-size", "cases")
+    } | {name: str(folder / f"{name}.nc") for name in ("readings", "forces", "misfit")}
+    measured = steps.read_measured(campaign, "tiny", [])
+    write_dataset(path["readings"], measured.readings)
+    write_dataset(path["forces"], measured.forces)
+    write_json(path["parity"], measured.parity.as_json())
+    planned = plan.plan_diagnosis(campaign, "tiny")
+    names = [planned.library(test, "source") for test in planned.tests]
+    libraries, histories, further = [], [], []
+    for name in names:
+        for solver in SOLVERS:
+            features, moved = steps.simulate_library(name, solver, config, *made_by)
+            for kind, files, dataset in (("", libraries, features), ("-histories", histories, moved)):
+                files.append(str(folder / f"{name}-{solver}{kind}.nc"))
+                write_dataset(files[-1], dataset)
+    write_cases(path["cases"], steps.calibrate_decision(libraries, effects, _silent))
+    files = SimpleNamespace(
+        readings=path["readings"], forces=path["forces"], libraries=libraries, histories=histories,
+        calibration=path["cases"],
+        parity=path["parity"], decision=path["decision"], frozen=path["frozen"], misfit=path["misfit"],
+    )  # fmt: skip
+    decided = steps.decide(campaign, effects, files)
+    write_result(files.decision, decided.decision)
+    write_dataset(files.misfit, decided.misfit)
+    freeze(files.frozen, files.decision, decided.tests)
+    for name in names:
+        for solver in SOLVERS:
+            features = steps.simulate_cause(
+                name, solver, decided.decision.first_key, TINY.further_draws, config, *made_by
+            )
+            further.append(str(folder / f"{name}-{solver}-further.nc"))
+            write_dataset(further[-1], features)
+    files.further = further
+    sized = steps.size_cause(files, effects)
+    write_result(path["size"], sized.size)
+    freeze(path["frozen-size"], path["size"], sized.tests)
+    extended = [str(folder / f"extended-{solver}.nc") for solver in SOLVERS]
+    files.posterior, files.frozen_size = path["size"], path["frozen-size"]
+    for solver, file in zip(SOLVERS, extended, strict=True):
+        write_dataset(file, steps.extend_model(campaign, "tiny", solver, files, effects, *made_by))
+    files.posterior, files.extended = (path["size"], path["frozen-size"]), extended
+    gained = steps.measure_gain(campaign, files)
+    files.gain = str(folder / "gain.json"), str(folder / "gain.nc")
+    write_result(files.gain[0], gained.summary)
+    write_dataset(files.gain[1], gained.scores)
+    return SimpleNamespace(
+        campaign=campaign, files=files, measured=measured, decided=decided, sized=sized, gained=gained,
+        verdict=steps.conclude(campaign, "tiny", files),
+        horizon=steps.predict_twins(names[0], histories[:2], config, "source", _silent),
+    )  # fmt: skip
+
+
+def test_open_tests_are_read_off_with_sound_sensors(found):
+    assert found.measured.parity.findings == ()
+    assert found.measured.readings["test"].values.tolist() == ["one-100", "two-100"]
+
+
+def test_the_cause_is_named_with_its_size(found):
+    assert found.decided.decision.causes == ("table-pitch",)
+    coefficient = found.sized.size.parameters["coefficient"]
+    assert coefficient.lower < coefficient.estimate < coefficient.upper
+    assert coefficient.lower > 0.0
+    assert found.decided.evidence.attrs["candidate"] == "table-pitch"
+    assert found.decided.misfit["test"].values.tolist() == found.decided.tests
+
+
+def test_the_extended_model_is_scored_on_the_sealed_test(found):
+    (sealed,) = (name for name, (_, _, role) in TESTS.items() if role == "sealed")
+    assert found.gained.scores["test"].values.tolist() == [sealed]
+    assert np.isfinite(found.gained.scores["fall"]).all()
+    assert found.gained.consequences["drift_history"].notnull().any()
+    # nominal, recalibrated and extended members by both solvers
+    assert found.gained.summary.runs == 3 * len(SOLVERS) * TINY.members
+
+
+def test_the_verdict_counts_its_runs_and_carries_its_word(found):
+    verdict = found.verdict
+    assert (verdict.decision, verdict.causes) == ("named", ("table-pitch",))
+    assert verdict.word == "probable"
+    assert "it was judged by 2 tests only" in verdict.missing
+    planned = 2 * len(SOLVERS) * (TINY.nominal_draws + 2 * TINY.own_draws + 1 + TINY.twins)
+    assert verdict.runs == planned + 2 * len(SOLVERS) * TINY.further_draws + found.gained.summary.runs
+
+
+def test_twins_have_a_horizon_by_each_solver(found):
+    assert found.horizon["model"].values.tolist() == list(SOLVERS)
+    assert np.isfinite(found.horizon["horizon"]).all()
+
+
+def test_a_decision_that_was_changed_is_refused_by_the_steps_behind_it(found, tmp_path):
+    changed = tmp_path / "decision.json"
+    write_result(changed, found.decided.decision.model_copy(update={"p_none": 0.5}))
+    files = SimpleNamespace(**vars(found.files) | {"decision": str(changed)})
+    with pytest.raises(InputError, match="frozen"):
+        steps.size_cause(files, ["table-pitch"])
+    with pytest.raises(InputError, match="frozen"):
+        steps.measure_gain(found.campaign, files)
+
+
+def test_a_campaign_without_a_gain_says_why(found):
+    files = SimpleNamespace(**vars(found.files) | {"gain": (), "posterior": ()})
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(efforts.EFFORTS, "tiny", TINY)
+        verdict = steps.conclude(found.campaign, "tiny", files)
+    assert "no gain was measured on a sealed test" in verdict.missing
+    assert verdict.gain is None
+
+
+def test_readings_of_the_library_are_those_of_the_campaign(found):
+    features = xr.load_dataset(found.files.libraries[0])
+    assert set(features["feature"].values) == set(found.measured.readings["feature"].values)

@@ -1,0 +1,237 @@
+"""Lines of `check` on a campaign; the good test is that of resting_stack.py, whose truth is known."""
+
+import os
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from resting_stack import MARKERS, NOISE, resting_stack, write_campaign
+
+from blockshake.dynamics.records.contract_csv import write_motion_csv
+from blockshake.errors import InputError
+from blockshake.files import file_digest
+from blockshake.measurement.checks.campaign_check import campaign_lines
+from blockshake.virtual.settings import Sine
+from blockshake.virtual.shake_table import swelling_sine
+
+SHARED = Path(os.environ.get("BLOCKSHAKE_SHARED", Path(__file__).parents[3] / "shared"))
+BLOCKS = [place for place, name in enumerate(MARKERS) if not name.startswith("slab")]
+
+
+def _lines(folder, spoil=lambda test: None, **how):
+    test = resting_stack()
+    spoil(test)
+    return campaign_lines(write_campaign(folder, test, **how))
+
+
+def test_a_good_campaign_is_described_and_never_changed(tmp_path):
+    folder = write_campaign(tmp_path, resting_stack())
+    before = file_digest(folder / "t1.nc")
+    lines = campaign_lines(folder)
+    assert f"10 s at 200 Hz, {len(MARKERS)} markers on 4 bodies" in lines[1]
+    assert "2 accelerometer channels at 512 Hz" in lines[1]
+    assert "table moved by 100 % of the command" in lines[1]
+    assert lines[-1] == "no inconsistency found"
+    assert file_digest(folder / "t1.nc") == before
+
+
+def test_noise_is_found_in_the_quiet_part(tmp_path):
+    lines = _lines(tmp_path, noise=1e-3)
+    found = float(re.search(r"marker noise ([\d.]+) mm", lines[1]).group(1))
+    # 48 channels of 100 readings: a standard error of 1.2 % of what differences of neighbours give
+    assert found == pytest.approx(1e3 * NOISE, rel=0.05)
+    assert any("marker noise found" in line and "stated 1 mm" in line for line in lines)
+
+
+def test_of_a_sealed_test_shape_and_noise_are_told_and_no_more(tmp_path):
+    def answer(test):
+        _turn_blocks(test)
+        test["marker_displacement"][..., 0] *= 0.5
+
+    lines = _lines(tmp_path, answer, role="sealed")
+    assert f"{len(MARKERS)} markers" in lines[1]
+    assert "table moved" not in lines[1]
+    assert lines[-1] == "no inconsistency found"
+
+
+def test_a_marker_that_no_test_reads_and_a_weak_table_are_remarked(tmp_path):
+    test = resting_stack()
+    test["marker_displacement"][:] *= 0.6
+    lines = campaign_lines(write_campaign(tmp_path, test.sel(marker=MARKERS[:-1])))
+    assert any(f"marker {MARKERS[-1]} of the structure is in no test" in line for line in lines)
+    assert any("table moved by 0.60 of what was commanded" in line for line in lines)
+
+
+def _turn_blocks(test):
+    values = test["marker_displacement"].to_numpy().copy()
+    values[:, BLOCKS] = values[:, BLOCKS][..., [1, 0, 2]]
+    test["marker_displacement"][:] = values
+
+
+def _uplift_along_y(test):
+    test["marker_displacement"][:, BLOCKS, 1] += 0.01 * np.sin(test["time"].to_numpy())[:, None] ** 2
+
+
+def _noisy_marker(test):
+    generator = np.random.default_rng(2)
+    test["marker_displacement"][:, 5] += generator.normal(0.0, 5.0 * NOISE, (test.sizes["time"], 3))
+
+
+def _noisy_accelerometer(test):
+    test["accelerometer"][:, 1] += np.random.default_rng(2).normal(0.0, 1.0, test.sizes["time_acc"])
+
+
+def _quiet_accelerometer(test):
+    test["accelerometer"][:, 1] /= 9.81
+
+
+def _late_clock(test):
+    test["time_acc"] = test["time_acc"].to_numpy() - 0.02
+
+
+def _reversed_accelerometer(test):
+    test["accelerometer"][:, 0] *= -1.0
+
+
+def _another_motion(test):
+    test["marker_displacement"][:] = test["marker_displacement"].to_numpy()[::-1]
+    test["marker_displacement"][:] -= test["marker_displacement"].to_numpy()[:5].mean(axis=0)
+
+
+def _away(test):
+    test["marker_displacement"][:, 5, 2] += 0.004
+
+
+REMARKS = {
+    "axes of the blocks": (_turn_blocks, r"block-1-face moves by -?0\.0\d, 1\.00, .*and 11 more markers likewise"),
+    "y and z of the blocks": (_uplift_along_y, "are y and z swapped"),
+    "a noisy marker": (_noisy_marker, r"marker noise of block-1-lower found 0\.5\d* mm, stated 0\.1 mm"),
+    "a noisy accelerometer": (_noisy_accelerometer, r"accelerometer noise of block-1-acc-x found [\d.]+ m/s2, stated"),
+    "a block's accelerometer in g": (_quiet_accelerometer, "accelerometer noise of block-1-acc-x found 0.00"),
+    # what the accelerometers' clock calls earlier, the markers show later
+    "a late clock": (_late_clock, r"the markers' clock is (20|19\.\d+|20\.\d+) ms behind the accelerometers'"),
+    "a reversed accelerometer": (_reversed_accelerometer, r"slab's accelerometer along x reads -(0\.99|1)\d* of"),
+    "another motion": (_another_motion, "does not follow the commanded motion"),
+    "a start that is off": (_away, "block-1-lower starts 4.* mm off"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", REMARKS)
+def test_what_is_odd_but_usable_is_remarked(what, tmp_path):
+    spoil, remark = REMARKS[what]
+    lines = _lines(tmp_path, spoil)
+    assert [line for line in lines if re.search(remark, line)], lines
+
+
+def test_a_record_without_the_strong_part_is_remarked(tmp_path):
+    test = resting_stack().isel(time=slice(0, 400), time_acc=slice(0, 1000))
+    lines = campaign_lines(write_campaign(tmp_path, test))
+    assert any("ends before the strongest shaking" in line for line in lines)
+
+
+def _swap(test):
+    test["marker_displacement"][:] = test["marker_displacement"].to_numpy()[..., [1, 0, 2]]
+
+
+def _reverse(test):
+    test["marker_displacement"][..., 0] *= -1.0
+
+
+def _millimetres(test):
+    test["marker_displacement"][:] *= 1000.0
+
+
+def _centimetres(test):
+    test["marker_displacement"][:] *= 100.0
+
+
+def _one_in_millimetres(test):
+    _rest(test)
+    test["marker_displacement"][:, 7] *= 1000.0
+
+
+def _rest(test):
+    """Nothing but noise, which betrays the unit where nothing moves or the command is not at hand."""
+    test["marker_displacement"][..., 0] -= test["marker_displacement"][..., 0].mean("marker")
+
+
+def _resting_millimetres(test):
+    _rest(test)
+    test["marker_displacement"][:] *= 1000.0
+
+
+def _in_g(test):
+    test["accelerometer"][:] /= 9.81
+
+
+LATER = {"motion": "of-the-laboratory"}
+REFUSED = {
+    "swapped axes": (_swap, {}, "axis: expected the table to move along x; what was commanded is along y"),
+    "swapped axes, sealed": (_swap, {"role": "sealed"}, "axis: expected the table to move along x"),
+    "x reversed": (_reverse, {}, "axis: expected the table to move along x as commanded; it moves by -1.00"),
+    "x reversed, sealed": (_reverse, {"role": "sealed"}, "axis: expected the table to move along x as"),
+    "millimetres": (_millimetres, {}, "marker_displacement: expected metres; a displacement of"),
+    "centimetres": (_centimetres, {}, "marker_displacement: expected metres; the table moves by 100 times what"),
+    "centimetres, sealed": (_centimetres, {"role": "sealed"}, "marker_displacement: expected metres; the table moves"),
+    "millimetres, no command": (_resting_millimetres, LATER, r"\S+: expected metres; its noise at rest, 0\.\d+, is"),
+    "one marker in millimetres": (_one_in_millimetres, LATER, f"{MARKERS[7]}: expected metres; its noise"),
+    "accelerometers in g": (_in_g, {}, r"accelerometer: expected m/s2; the slab's reads 0\.1\d* of"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_another_unit_or_axis_is_refused_in_one_line(what, tmp_path):
+    spoil, how, message = REFUSED[what]
+    test = resting_stack()
+    spoil(test)
+    folder = write_campaign(tmp_path, test.drop_vars("marker_initial_position"), **how)
+    with pytest.raises(InputError) as error:
+        campaign_lines(folder)
+    assert re.match(f"{re.escape(str(folder / 't1.nc'))}: ({message})", str(error.value)), error.value
+    assert "\n" not in str(error.value)
+
+
+def test_a_small_sine_is_no_weak_or_strong_table(tmp_path):
+    """Of 0.3 mm read with 0.1 mm the peak would be a third too large; the regression is not.
+
+    Its standard error is noise / (rms of the sine x root of the readings x markers) = 0.1 / (0.18 x 57) = 1 %.
+    """
+    motion = swelling_sine(Sine(frequency=5.0, acceleration=0.3, duration=4.0))
+    write_motion_csv(motion, tmp_path / "sine.csv")
+    test = resting_stack().isel(time=slice(0, 801)).drop_vars("accelerometer").drop_dims("time_acc")
+    read = np.zeros(test["marker_displacement"].shape)
+    read[..., 0] = motion.evaluate(test["time"].to_numpy())[:, :1]
+    read += np.random.default_rng(3).normal(0.0, NOISE, read.shape)
+    test["marker_displacement"][:] = read - read[0]
+    lines = campaign_lines(write_campaign(tmp_path, test, motion="sine.csv"))
+    assert lines[-1] == "no inconsistency found", lines
+    assert float(re.search(r"table moved by ([\d.]+) %", lines[1]).group(1)) == pytest.approx(100.0, abs=4.0)
+
+
+def test_a_motion_that_is_not_at_hand_is_remarked_and_a_broken_one_refused(tmp_path):
+    lines = _lines(tmp_path, motion="of-the-laboratory")
+    assert any("the commanded motion of-the-laboratory is not at hand" in line for line in lines)
+    (tmp_path / "own.csv").write_text("time_s,acceleration_x\n0,0\n0.1,far\n")
+    with pytest.raises(InputError, match=r"own\.csv: .*far"):
+        _lines(tmp_path, motion="own.csv")
+
+
+@pytest.mark.parametrize(
+    ("scale", "message"),
+    [(".nan", "finite number"), (".inf", "finite number"), ("0", "other than 0"), ('"1"', "valid number")],
+)
+def test_a_scale_is_a_finite_number_other_than_zero(scale, message, tmp_path):
+    with pytest.raises(InputError, match=rf"campaign\.yaml: tests\.t1\.scale: .*{message}") as error:
+        _lines(tmp_path, scale=scale)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("name", ["example-clean", "example-pitch"])
+def test_the_example_campaigns_pass(name):
+    folder = SHARED / "campaigns" / name
+    if not folder.is_dir():
+        pytest.skip(f"{folder} is not here")
+    lines = campaign_lines(folder)
+    assert len(lines) == 7
+    assert lines[-1] == "no inconsistency found"

@@ -1,0 +1,17 @@
+from blockshake.report.study.content import load_content
+from blockshake.report.study.probability_table import probability_table
+
+
+def test_collapse_and_quantiles_are_those_of_the_files_with_limits(fake):
+    content = load_content(fake.study, fake.results, fake.benchmarks)
+    table = probability_table(content)
+    rows = {row[:2]: row[2:] for row in table.rows}
+    # one collapsed and one failed of six: 1 of 5 counts, limits of Clopper and Pearson
+    counted, collapse, drift, *_ = rows["configuration-4", "NSCD rigid"]
+    assert counted == "5 + 1 failed"
+    assert collapse == "20.0 [0.5, 71.6]"
+    assert drift == collapse  # a collapse is a drift beyond all limits, and no other sample drifts by 400 mm
+    assert rows["configuration-1", "LS-DEM"][:2] == ("10", "0.0 [0.0, 30.8]")
+    envelope = content.cases["configuration-1"].responses["ls-dem"].envelope
+    peak = envelope["peak"].sel(frame="slab", marker="block-3-face", quantile=0.95)
+    assert rows["configuration-1", "LS-DEM"][4].startswith(f"{1e3 * float(peak):.1f} [")

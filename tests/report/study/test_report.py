@@ -1,0 +1,293 @@
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+from fake_inputs import PEAK_ACCELERATION
+from fake_study import COLLAPSE_REASON, CPU_TIME, MODELS, FakeStudy
+from page import CLAIMS, Page
+
+from blockshake.errors import InputError
+from blockshake.report.document.html import write_html
+from blockshake.report.document.pdf import write_pdf
+from blockshake.report.document.wording import number
+from blockshake.report.study.closing_sections import checks
+from blockshake.report.study.content import load_content
+from blockshake.report.study.convergence_section import convergence as annex
+from blockshake.report.study.report import compose, make_report
+from blockshake.study.convergence.table import load_convergence
+from blockshake.study.peer_record import load_peer_record
+
+
+@pytest.fixture(scope="module")
+def report(fake, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    paths = folder / "fake.html", folder / "fake.pdf"
+    make_report(fake.study, fake.results, fake.benchmarks, *paths)
+    return paths
+
+
+@pytest.fixture(scope="module")
+def document(fake):
+    """Composed a second time from the same files."""
+    return compose(load_content(fake.study, fake.results, fake.benchmarks))
+
+
+@pytest.fixture(scope="module")
+def page(report):
+    parsed = Page()
+    parsed.feed(report[0].read_text(encoding="utf-8"))
+    parsed.close()
+    return parsed
+
+
+@pytest.fixture(scope="module")
+def text(page):
+    return " ".join(" ".join(page.words).split())
+
+
+def test_tags_close_and_ids_are_unique(page):
+    assert page.open == []
+    assert len(set(page.ids)) == len(page.ids)
+
+
+def test_page_refers_to_nothing_outside_itself(page):
+    inside = {f"#{one}" for one in page.ids}
+    for reference in page.references:
+        assert reference in inside or reference.startswith("data:"), reference
+    assert not {"script", "link", "iframe", "object"} & set(page.tags)
+
+
+def test_style_and_drawings_refer_to_nothing_outside(report, page):
+    html = report[0].read_text(encoding="utf-8")
+    used = set(re.findall(r"url\(([^)]*)\)", html))
+    assert used  # clipped curves are
+    assert used <= {f"#{one}" for one in page.ids}
+    assert "@import" not in html
+
+
+@pytest.mark.parametrize(
+    "title",
+    [
+        "Summary", "Structures", "Ground motions", "Samples", "Contact stiffness", "Displacement of the blocks",
+        "Causes of the thickness of the envelopes", "Completion, energy and computation", "Timings", "Origin",
+        "Limits of this study", "Annex: numerical parameters of LS-DEM", "Annex: NSCD rigid beside LMGC90",
+    ],
+)  # fmt: skip
+def test_sections_and_contents(text, title):
+    assert text.count(title) >= 2  # in the table of contents and over the section
+
+
+def test_synthetic_is_said_where_it_shows(report, text):
+    assert "The measured curves of configuration-1, configuration-4 are SYNTHETIC" in text
+    assert "ground motions are synthetic" in text
+    assert "Peak, virtual test (synthetic)" in text
+    assert not [claim for claim in CLAIMS if claim in text.lower()]
+
+
+def test_peaks_are_those_of_the_files(fake, text):
+    for model in MODELS:
+        envelope = xr.load_dataset(fake.results / "envelopes" / model / "configuration-4.nc")
+        peak = envelope["peak"].sel(frame="slab", marker="top-face")
+        shown = " / ".join(f"{1e3 * float(peak.sel(quantile=one)):.1f}" for one in (0.05, 0.5, 0.95))
+        assert f"{shown} (n = {envelope.attrs['counted']})" in text
+        assert text.count(shown) >= 2  # in the summary and among the blocks
+
+
+def test_measured_peak_is_that_of_the_simulated_window(fake, tmp_path):
+    study = {**fake.study, "cases": [{**fake.study["cases"][0], "duration": 1.0}]}
+    case = load_content(study, fake.results, fake.benchmarks).cases["configuration-1"]
+    test = xr.load_dataset(f"{study['cases'][0]['measured']['campaign']}/virtual.nc")
+    along = test["marker_displacement"].sel(axis="x")
+    relative = np.abs(along.sel(marker="block-3-face") - along.sel(marker="slab-face"))
+    shown = float(case.measured["peak"].sel(frame="slab", marker="block-3-face"))
+    assert shown == float(relative.sel(time=slice(0.0, 1.0 + 1e-9)).max())
+    assert shown < float(relative.max())
+
+
+def test_coverage_never_stands_alone(fake, text):
+    compared = xr.load_dataset(fake.results / "comparisons" / "ls-dem" / "configuration-1.nc").sel(
+        marker="block-2-face"
+    )
+    reference = " / ".join(f"{100 * float(one):.1f}" for one in compared["reference"])
+    width = f"{1e3 * float(compared['band_width']):.1f}"
+    chance = number(float(compared["curve_probability"]), 2)
+    assert f"{100 * float(compared['coverage']):.1f} {reference} {chance} {width}" in text
+
+
+def test_samples_that_did_not_complete_are_listed_with_their_reason(text):
+    assert f"configuration-4 NSCD rigid 2 collapsed 1 {COLLAPSE_REASON}" in text
+    assert "configuration-4 NSCD rigid 4 not-converged" in text
+    assert "36 runs: 34 completed, 1 collapsed, 1 failed" in text
+    assert "NSCD rigid: 5 samples contribute until" in text
+    assert "the statistics leave out failed samples (1)" in text
+
+
+def test_fewer_samples_of_a_model_are_said_first(text):
+    assert text.index("NSCD rigid ran 6 of the 10 samples on configuration-4") < text.index("Table 1.")
+
+
+def test_figures_of_motion_computation_and_cost(text):
+    assert f"{2.0 * PEAK_ACCELERATION:.2f}" in text  # scaled by the case
+    assert "3.50e-06" in text  # residual of NSCD
+    simulated = 10 * 2.0
+    assert f"{simulated:.0f} {CPU_TIME:.1f} 50 {CPU_TIME / simulated:.2f}" in text
+
+
+def test_origin_holds_configuration_digests_and_seed(text):
+    assert "0123456789ab (blockshake 0.0.7)" in text
+    assert "seed: 77" in text
+    assert "friction.concrete.concrete" in text
+    assert "snakemake -c2 reports/fake.html" in text
+
+
+def test_figures_and_tables_are_counted(document):
+    for kind in ("figure", "table"):
+        blocks = [block for section in document.sections for block in section.blocks if block.kind == kind]
+        assert [block.number for block in blocks] == list(range(1, len(blocks) + 1))
+        assert len(blocks) > 8
+
+
+def test_rows_are_as_long_as_their_header(document):
+    tables = [block for section in document.sections for block in section.blocks if block.kind == "table"]
+    for table in tables:
+        assert {len(table.header), len(table.align)} == {len(row) for row in table.rows}
+
+
+def test_pdf_has_pages_and_vector_figures(report):
+    pdf = report[1].read_bytes()
+    assert pdf.startswith(b"%PDF")
+    assert len(re.findall(rb"/Type\s*/Page\b", pdf)) > 8
+    assert b"CreationDate" not in pdf
+    assert b"/Subtype/Image" not in pdf.replace(b" ", b"")
+
+
+def test_same_results_same_bytes(document, report, tmp_path):
+    again = tmp_path / "fake.html", tmp_path / "fake.pdf"
+    write_html(again[0], document)
+    write_pdf(again[1], document)
+    for first, second in zip(report, again, strict=True):
+        assert first.read_bytes() == second.read_bytes()
+
+
+def test_complete_study_says_that_all_completed(fake):
+    study = {**fake.study, "cases": fake.study["cases"][:1]}
+    section = checks(load_content(study, fake.results, fake.benchmarks))
+    assert section.blocks[0].text == "Every sample of every case and model completed."
+
+
+def test_annex_has_the_numbers_of_the_convergence_table_and_marks_defaults(fake, text):
+    table = load_convergence(fake.results / "convergence.csv")
+    value = table.set_index(["parameter", "setting", "observable"])["value"][
+        "node_spacing", 0.2, "peak_drift"
+    ]
+    row = text[text.index("node spacing 200 mm *") :]
+    assert f"{1e3 * value:.2f}" in row[:120]
+    assert "grid spacing exact *" in text
+    assert "node spacing 50 mm 250000.00" in text  # sink, in micrometres
+
+
+def test_study_without_convergence_has_no_annex_and_says_so(fake):
+    study = {name: value for name, value in fake.study.items() if name != "convergence"}
+    document = compose(load_content(study, fake.results, fake.benchmarks))
+    assert "convergence" not in [section.key for section in document.sections]
+    said = [
+        item
+        for section in document.sections
+        for block in section.blocks
+        if block.kind == "items"
+        for item in block.items
+    ]
+    assert sum("The convergence with time step" in item and "annex" not in item for item in said) == 1
+
+
+def test_annex_has_the_recorded_comparison_with_lmgc90_and_its_date(text):
+    record = load_peer_record()
+    annex = text[text.rindex("Annex: NSCD rigid beside LMGC90") :]
+    assert f"side by side on {record.attrs['date']}" in annex
+    for case in record["case"].values:
+        one = record.sel(case=case)
+        theirs, ours = (number(1e6 * one["step_time"].sel(program=name)) for name in ("LMGC90", "blockshake"))
+        assert f"{case} {theirs} {ours} {number(one['times_faster'], 2)}" in annex
+    nine = record.sel(history="nine blocks")
+    peak = 1e3 * float(abs(nine["displacement"].sel(program="LMGC90")).max())
+    assert f"{peak:.1f}" in annex
+    assert number(1e3 * nine["largest_difference"], 2) in annex
+
+
+def test_study_without_nscd_has_no_annex_on_lmgc90(fake):
+    study = {**fake.study, "models": {"ls-dem": MODELS["ls-dem"]}}
+    document = compose(load_content(study, fake.results, fake.benchmarks))
+    assert "peer" not in [section.key for section in document.sections]
+
+
+def test_missing_results_are_named(tmp_path):
+    fake = FakeStudy(tmp_path, size=10)
+    missing = fake.results / "envelopes" / "ls-dem" / "configuration-1.nc"
+    missing.unlink()
+    with pytest.raises(InputError, match=r"envelopes/ls-dem/configuration-1\.nc"):
+        make_report(fake.study, fake.results, fake.benchmarks, tmp_path / "a.html", tmp_path / "a.pdf")
+    assert not (tmp_path / "a.html").exists()
+
+
+def test_the_friction_calibration_says_what_the_test_does_not_tell(document):
+    section = next(section for section in document.sections if section.key == "friction")
+    table = next(block for block in section.blocks if block.kind == "table")
+    row = dict(zip(table.header, table.rows[0], strict=True))
+    assert row["Mean friction is"] == "not informed above 0.4"
+    assert row["Best"] == "0.6"
+    assert row["Score [mm]"] == "3"
+    assert row["Coverage"] == "0.830"
+    assert row["Test"] == "synthetic"
+
+
+def test_a_study_without_a_friction_calibration_has_no_such_section(fake):
+    study = {name: value for name, value in fake.study.items() if name != "friction_calibration"}
+    made = compose(load_content(study, fake.results, fake.benchmarks))
+    assert "friction" not in [section.key for section in made.sections]
+
+
+def texts(document):
+    """All sentences of a document but those in tables and listings."""
+    for section in document.sections:
+        for block in section.blocks:
+            if block.kind == "text":
+                yield block.text
+            if block.kind == "items":
+                yield from block.items
+
+
+def test_findings_on_numerical_parameters_follow_the_table(fake, document):
+    section = next(one for one in document.sections if one.key == "convergence")
+    (items,) = [block.items for block in section.blocks if block.kind == "items"]
+    assert any("default node spacing of 200 mm differs from the finest setting" in one for one in items)
+    content = load_content(fake.study, fake.results, fake.benchmarks)
+    residual = content.convergence["observable"] == "energy_residual"
+    content.convergence.loc[residual, "value"] = content.convergence.loc[residual, "setting"] ** 2
+    (items,) = [block.items for block in annex(content).blocks if block.kind == "items"]
+    assert any("goes with the time step to the power 2.0" in one for one in items)
+
+
+def test_variables_without_use_are_those_of_the_models_of_the_study(fake):
+    study = {**fake.study, "models": {"ls-dem": MODELS["ls-dem"]}}
+    said = " ".join(texts(compose(load_content(study, fake.results, fake.benchmarks))))
+    assert "LS-DEM has no use for viscous modulus of concrete" in said
+    assert "NSCD rigid has no use" not in said
+
+
+def test_bands_that_are_lines_are_counted(fake):
+    content = load_content(fake.study, fake.results, fake.benchmarks)
+    assert not [one for one in texts(compose(content)) if "close to lines" in one]
+    spread = content.cases["configuration-1"].responses["nscd-rigid"].sensitivity["spread"]
+    spread.loc[{"quantity": "history", "marker": "block-1-face"}] = 1e-6
+    (said,) = [one for one in texts(compose(content)) if "close to lines" in one]
+    assert said.startswith("NSCD rigid: the samples of 1 of 3 blocks differ by less")
+
+
+def test_a_window_that_ends_with_the_motion_has_no_remark(fake):
+    content = load_content(fake.study, fake.results, fake.benchmarks)
+    remarks = [one for one in texts(compose(content)) if one.startswith("The window ends before the motion")]
+    assert len(remarks) == len(content.cases)
+    for motion in content.motions.values():
+        motion.attrs["duration"] = 2.0
+    assert not [one for one in texts(compose(content)) if one.startswith("The window ends")]

@@ -1,0 +1,123 @@
+import matplotlib
+import numpy as np
+import pytest
+import xarray as xr
+from fake_study import convergence_table
+from matplotlib.collections import FillBetweenPolyCollection
+
+from blockshake.geometry.structure import load_structure
+from blockshake.report.document.drawing import svg_of
+from blockshake.report.study.content import load_content
+from blockshake.report.study.figures.convergence import plot_convergence
+from blockshake.report.study.figures.displacement import plot_displacements
+from blockshake.report.study.figures.motion import plot_spectra
+from blockshake.report.study.figures.peer import plot_peer
+from blockshake.report.study.figures.samples import bin_count
+from blockshake.report.study.figures.structure import plot_structure
+from blockshake.study.convergence.findings import value_scales
+from blockshake.study.peer_record import load_peer_record
+
+
+@pytest.fixture(scope="module")
+def case(fake):
+    return load_content(fake.study, fake.results, fake.benchmarks).cases["configuration-4"]
+
+
+def drawn(case, markers, frame):
+    envelopes = {model: one.envelope for model, one in case.responses.items()}
+    return plot_displacements(envelopes, case.measured, markers, markers, frame, synthetic=True)
+
+
+def test_each_block_has_a_row_and_each_model_a_column(case):
+    figure = drawn(case, ["top-face", "wall-a-1-face"], "slab")
+    assert len(figure.axes) == 4
+    assert figure.axes[0].get_ylabel() == "top-face\n[mm]"
+    assert figure.axes[1].get_title() == "NSCD rigid, 5 of 6 samples"
+    for axes in figure.axes:
+        assert len(axes.lines) == 3  # two bounds and the measured curve
+        assert sum(isinstance(one, FillBetweenPolyCollection) for one in axes.collections) == 2
+
+
+@pytest.mark.parametrize("frame", ["inertial", "slab"])
+def test_curves_are_those_of_the_files_in_mm(case, frame):
+    axes = drawn(case, ["wall-b-4-face"], frame).axes[0]
+    at = {"frame": frame, "marker": "wall-b-4-face"}
+    envelope = case.responses["ls-dem"].envelope.sel(axis="x", **at)
+    lower, upper, measured = (line.get_ydata() for line in axes.lines)
+    np.testing.assert_array_equal(lower, 1e3 * envelope["marker_envelope"].sel(bound="lower"))
+    np.testing.assert_array_equal(upper, 1e3 * envelope["marker_envelope"].sel(bound="upper"))
+    np.testing.assert_array_equal(measured, 1e3 * case.measured["displacement"].sel(**at))
+    assert axes.lines[2].is_dashed()
+
+
+def test_legend_calls_a_virtual_test_synthetic(case):
+    labels = [text.get_text() for text in drawn(case, ["top-face"], "slab").legends[0].get_texts()]
+    assert "virtual test (synthetic)" in labels
+
+
+def test_structure_is_to_scale_with_its_sizes():
+    figure = plot_structure(load_structure("configuration-3"))
+    front, side = figure.axes
+    assert {front.get_aspect(), side.get_aspect()} == {1.0}
+    words = {text.get_text() for text in front.texts}
+    assert {"top", "wall-a-1", "wall-b-4", "7.2", "0.8", "2.4"} <= words
+    assert {"1.6", "0.8", "2.4", "3"} <= {text.get_text() for text in side.texts}
+
+
+def test_beams_one_behind_the_other_share_their_name():
+    front = plot_structure(load_structure("configuration-4")).axes[0]
+    assert "beam-1 to 4" in {text.get_text() for text in front.texts}
+
+
+def test_spectrum_of_a_recorded_motion_has_no_target():
+    motion = xr.Dataset(
+        {"pseudo_acceleration": ("period", [1.0, 2.0])},
+        coords={"period": [0.1, 1.0]},
+        attrs={"name": "own record", "synthetic": 0},
+    )
+    axes = plot_spectra([motion]).axes[0]
+    assert axes.get_title() == "own record"
+    assert len(axes.lines) == 1
+
+
+def test_convergence_is_drawn_with_its_floor_but_equal_values_are_not():
+    table = convergence_table()
+    figure = plot_convergence(table)
+    first = figure.axes[0]
+    drawn = {line.get_label(): line for line in first.lines if not line.get_label().startswith("_")}
+    assert len(drawn["sink"].get_xdata()) == 0
+    ((setting,), (size,)) = drawn["impact ratio"].get_data()
+    assert setting == pytest.approx(100.0, rel=1e-12)  # microseconds
+    scale = value_scales(table)["impact_ratio"]
+    assert size == pytest.approx(0.1 * (1.0 - 1e-2) / scale, rel=1e-12)
+    floors = [line.get_ydata()[0] for line in first.lines if line.get_label().startswith("_")]
+    assert floors == pytest.approx([1e-5 / scale] * 3, rel=1e-12)
+
+
+def test_svg_says_no_date_loads_nothing_and_leaves_the_style_alone():
+    before = dict(matplotlib.rcParams)
+    svg = svg_of(plot_structure, load_structure("configuration-1"))
+    assert svg.startswith("<svg")
+    assert svg == svg_of(plot_structure, load_structure("configuration-1"))
+    assert "<metadata>" not in svg
+    assert "<text" not in svg  # letters are outlines: the same wherever it is opened
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_histograms_have_about_the_root_of_the_samples_as_bins():
+    assert [bin_count(size) for size in (10, 50)] == [5, 9]
+
+
+def test_lmgc90_is_drawn_from_the_record_to_each_history_s_end():
+    record = load_peer_record()
+    figure = plot_peer(record)
+    upper, lower = figure.axes[: len(record["history"])], figure.axes[len(record["history"]) :]
+    for axes, below, name in zip(upper, lower, record["history"].values, strict=True):
+        curves = record["displacement"].sel(history=name).dropna("time")
+        ours, theirs = (line.get_ydata() for line in axes.lines)
+        np.testing.assert_array_equal(ours, 1e3 * curves.sel(program="blockshake"))
+        np.testing.assert_array_equal(theirs, 1e3 * curves.sel(program="LMGC90"))
+        assert axes.lines[1].is_dashed()
+        exact = curves.sel(program="LMGC90").astype(float) - curves.sel(program="blockshake").astype(float)
+        np.testing.assert_array_equal(below.lines[0].get_ydata(), 1e3 * exact)
+        assert below.get_xlim()[1] == float(curves["time"][-1])

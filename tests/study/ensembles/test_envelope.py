@@ -1,0 +1,118 @@
+import numpy as np
+import pytest
+import xarray as xr
+
+from blockshake.study.ensembles.envelope import QUANTILES, envelope, over_samples
+
+ROUNDING = 1e-12  # m
+LIMIT = 0.4  # m
+
+
+def test_bounds_and_quantiles_of_eleven_constant_curves(make_run, gather):
+    # 0, 1, ... 10 mm in mixed order: the quantile q is 10 q mm
+    levels = 1e-3 * np.array([3, 0, 7, 10, 1, 9, 4, 2, 8, 5, 6])
+    result = envelope(gather([make_run(level, slab=0.1) for level in levels]), LIMIT)
+    along = result.sel(marker="block-1-face", axis="x").isel(time=slice(1, None))
+    slab, inertial = along.sel(frame="slab"), along.sel(frame="inertial")
+    np.testing.assert_allclose(slab["marker_envelope"].sel(bound="lower"), 0.0, atol=ROUNDING)
+    np.testing.assert_allclose(slab["marker_envelope"].sel(bound="upper"), 0.01, atol=ROUNDING)
+    np.testing.assert_allclose(inertial["marker_envelope"].sel(bound="upper"), 0.11, atol=ROUNDING)
+    for quantile in QUANTILES:
+        expected = 0.01 * quantile
+        curve = slab["marker_displacement"].sel(quantile=quantile)
+        np.testing.assert_allclose(curve, expected, atol=ROUNDING)
+        assert slab["peak"].sel(quantile=quantile) == pytest.approx(expected, abs=ROUNDING)
+        assert slab["residual"].sel(quantile=quantile) == pytest.approx(expected, abs=ROUNDING)
+    np.testing.assert_array_equal(result["contributing"], 11)
+    assert result["marker_envelope"].dims == ("frame", "bound", "time", "marker", "axis")
+    assert list(result["bound"].values) == ["lower", "upper"]
+
+
+def test_only_runs_that_ended_well_or_collapsed_count(make_run, gather):
+    result = envelope(
+        gather(
+            [
+                make_run(0.01),
+                make_run(0.02),
+                make_run(0.5, status="collapsed", end=1.0),
+                make_run(9.0, status="diverged"),
+                make_run(9.0, status="not-converged"),
+            ]
+        ),
+        LIMIT,
+    )
+    upper = result["marker_envelope"].sel(frame="slab", bound="upper", marker="block-1-face", axis="x")
+    time = result["time"].to_numpy()
+    before, after = (time > 0.0) & (time <= 1.0), time > 1.0
+    np.testing.assert_allclose(upper[before], 0.5, atol=ROUNDING)
+    np.testing.assert_allclose(upper[after], 0.02, atol=ROUNDING)
+    np.testing.assert_array_equal(result["contributing"], np.where(after, 2, 3))
+    assert (result.attrs["samples"], result.attrs["counted"]) == (5, 3)
+    # the collapsed run's peak counts, its residual does not exist
+    block = result.sel(frame="slab", marker="block-1-face")
+    assert block["peak"].sel(quantile=0.5) == pytest.approx(0.02, abs=ROUNDING)
+    assert block["residual"].sel(quantile=0.5) == pytest.approx(0.015, abs=ROUNDING)
+
+
+def test_where_nothing_contributes_there_is_no_value(make_run, gather):
+    every_run_stopped = envelope(gather([make_run(0.1, status="collapsed", end=1.0)] * 3), LIMIT)
+    assert np.isnan(every_run_stopped["marker_envelope"].isel(time=-1)).all()
+    assert every_run_stopped["contributing"][-1] == 0
+    none_counts = envelope(gather([make_run(0.1, status="diverged")] * 3), LIMIT)
+    assert np.isnan(none_counts["marker_displacement"]).all()
+    assert none_counts.attrs["counted"] == 0
+
+
+def test_quantiles_are_numpys_with_nan_left_out():
+    generator = np.random.default_rng(8)
+    values = generator.normal(size=(13, 40))
+    values[generator.uniform(size=values.shape) < 0.3] = np.nan
+    probabilities = xr.DataArray([0.0, 0.05, 0.5, 0.95, 1.0], dims="quantile")
+    ours = over_samples(xr.DataArray(values, dims=("sample", "time")), probabilities)
+    np.testing.assert_allclose(ours, np.nanquantile(values, probabilities, axis=0), rtol=0.0, atol=1e-14)
+
+
+def test_every_variable_has_a_name_and_a_unit(make_run, gather):
+    result = envelope(gather([make_run(0.01), make_run(0.02)]), LIMIT)
+    for name, variable in result.data_vars.items():
+        assert variable.attrs["units"], name
+        assert variable.attrs["long_name"], name
+
+
+def test_probabilities_count_collapses_as_too_much_drift(make_run, gather):
+    """Two collapsed and three that drifted too far of ten; limits from tables of Clopper and Pearson (1934)."""
+    runs = [make_run(0.5) for _ in range(3)] + [make_run(0.1) for _ in range(5)]
+    runs += [make_run(0.05, status="collapsed", end=1.0) for _ in range(2)]
+    result = envelope(gather([*runs, make_run(9.0, status="diverged")]), LIMIT)
+    assert float(result["collapse_probability"]) == 0.2
+    np.testing.assert_allclose(result["collapse_probability_interval"], [0.0252, 0.5561], atol=5e-5)
+    drift = result.sel(marker="block-1-face")
+    assert float(drift["drift_probability"]) == 0.5
+    np.testing.assert_allclose(drift["drift_probability_interval"], [0.1871, 0.8129], atol=5e-5)
+    assert result["drift_probability"].attrs["largest_drift"] == LIMIT
+    # the slab's marker does not drift, but a fall is one of everything
+    assert float(result["drift_probability"].sel(marker="slab-face")) == 0.2
+
+
+def test_limits_of_quantiles_stand_beside_them(make_run, gather):
+    generator = np.random.default_rng(2)
+    result = envelope(gather([make_run(level) for level in generator.normal(0.02, 0.001, 50)]), LIMIT)
+    peak = result["peak"].sel(frame="slab", marker="block-1-face")
+    low, high = (
+        result["peak_interval"].sel(frame="slab", marker="block-1-face", bound=one)
+        for one in ("lower", "upper")
+    )
+    assert (low <= peak).all()
+    assert (peak <= high).all()
+    # the median's deviation is sqrt(pi / 2) sigma / sqrt(n) = 0.177 mm; four of them wide, to a factor of two
+    width = float((high - low).sel(quantile=0.5))
+    assert 0.5 < width / (3.92 * 0.177e-3) < 2.0
+    for name in ("peak", "residual", "peak_rotation", "collapse_probability", "drift_probability"):
+        assert result[name].attrs["ancillary_variables"] in result
+
+
+def test_nobody_counted_has_no_probability(make_run, gather):
+    result = envelope(gather([make_run(0.1, status="diverged")] * 3), LIMIT)
+    assert np.isnan(result["collapse_probability"])
+    np.testing.assert_array_equal(result["collapse_probability_interval"], [0.0, 1.0])
+    assert np.isnan(result["peak_interval"]).all()

@@ -1,0 +1,62 @@
+import numpy as np
+import pytest
+import xarray as xr
+
+from blockshake.study.ensembles.outcomes import (
+    count_outcomes,
+    energy_residuals,
+    numerical_figure,
+    shortfall,
+    unfinished,
+)
+from blockshake.study.ensembles.timing import Timing, total_timing
+
+STATUS = ["completed", "collapsed", "not-converged", "completed"]
+
+
+@pytest.fixture
+def samples():
+    return xr.Dataset(
+        {
+            "status": ("sample", STATUS),
+            "energy_residual": ("sample", [1e-4, np.nan, 5e-4, 2e-4]),
+            "numerics_steps": ("sample", [10.0, 30.0, np.nan, 20.0]),
+        },
+        coords={"sample": [3, 5, 8, 9]},
+    )
+
+
+def test_every_sample_has_one_outcome():
+    found = count_outcomes(STATUS)
+    assert found == (2, 1, 1)
+    assert (sum(found), found.counted) == (4, 3)
+
+
+def test_unfinished_samples_are_those_that_did_not_complete(samples):
+    assert [int(one["sample"]) for one in unfinished(samples)] == [5, 8]
+
+
+def test_figures_leave_out_samples_without_one(samples):
+    assert energy_residuals(samples) == (2e-4, 5e-4)
+    assert numerical_figure(samples, "numerics_steps", np.max) == 30.0
+    assert np.isnan(numerical_figure(samples, "numerics_capped_steps", np.max))
+
+
+def test_shortfall_begins_where_a_counted_sample_has_no_value():
+    envelope = xr.Dataset(
+        {"contributing": ("time", [3, 3, 2, 1])},
+        coords={"time": [0.0, 0.5, 1.0, 1.5]},
+        attrs={"counted": 3, "samples": 4},
+    )
+    assert shortfall(envelope) == (3, 1, 1.0, 1)
+    whole = envelope.assign(contributing=("time", [3, 3, 3, 3]))
+    assert np.isnan(shortfall(whole).since)
+
+
+def test_total_cost_is_of_those_that_are_known():
+    known = Timing("ls-dem", "a", 2, 8, 16.0, 32.0, 40.0)
+    unknown = Timing("ls-dem", "b", 0, 0, 0.0, np.nan, np.nan)
+    total = total_timing([known, unknown, known])
+    assert (total.jobs, total.samples, total.simulated, total.cpu_time) == (4, 16, 32.0, 64.0)
+    assert total.cpu_per_simulated == 2.0
+    assert np.isnan(unknown.cpu_per_simulated)

@@ -1,0 +1,121 @@
+import itertools
+
+import numpy as np
+import pytest
+from scipy import integrate
+
+from blockshake.errors import InputError
+from blockshake.study.sampling.distributions import (
+    TABLE_2,
+    Lognormal,
+    draw_true_parameters,
+    load_distributions,
+    parameter_unit,
+)
+
+# Zhou et al. (2023), Table 2: mean and standard deviation as printed
+PRINTED = {
+    "friction.concrete.concrete": (0.75, 0.075),
+    "friction.concrete.foundation": (0.75, 0.075),
+    "friction.concrete.steel": (0.3, 0.03),
+    "materials.concrete.density": (2400.0, 96.0),
+    "materials.concrete.youngs_modulus": (3.45e10, 5.175e9),
+    "materials.concrete.viscous_modulus": (1.5e8, 2.25e7),
+    "materials.steel.density": (7700.0, 77.0),
+    "materials.steel.youngs_modulus": (0.21e12, 6.3e9),
+    "materials.steel.viscous_modulus": (0.21e10, 6.3e7),
+}
+QUADRATURE = 1e-8  # relative error of adaptive quadrature over 12 deviations
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_moments_of_the_density_are_those_of_table_2(name):
+    mean, deviation = PRINTED[name]
+    variable = TABLE_2[name]
+
+    def moment(power):
+        def weighed(score):
+            value = variable.median * np.exp(score * variable.log_deviation)
+            return (value / mean) ** power * variable.density(value) * value * variable.log_deviation
+
+        return integrate.quad(weighed, -12.0, 12.0, epsabs=0.0, epsrel=1e-10)[0]
+
+    assert moment(0) == pytest.approx(1.0, rel=QUADRATURE)
+    assert moment(1) == pytest.approx(1.0, rel=QUADRATURE)
+    assert moment(2) - 1.0 == pytest.approx(
+        (deviation / mean) ** 2, rel=1e-4
+    )  # a difference of order COV squared
+
+
+def test_table_2_has_its_nine_variables_in_order():
+    assert list(TABLE_2) == list(PRINTED)
+
+
+def test_quantiles_are_those_of_the_normal_logarithm():
+    variable = Lognormal(mean=2.0, cov=0.5)
+    assert variable.quantile(0.5) == pytest.approx(variable.median, rel=1e-15)
+    # the 97.5 % quantile of the standard normal is 1.959964
+    assert np.log(variable.quantile(0.975) / variable.median) / variable.log_deviation == pytest.approx(
+        1.959963985, abs=1e-8
+    )
+
+
+def test_stratum_means_are_conditional_means_by_quadrature():
+    variable, size = Lognormal(mean=0.75, cov=0.3), 10
+    edges = np.arange(size + 1) / size
+    by_quadrature = [
+        size * integrate.quad(variable.quantile, low, high, epsrel=1e-10)[0]
+        for low, high in itertools.pairwise(edges)
+    ]
+    # the integrand is unbounded, though integrable, at 0 and 1
+    np.testing.assert_allclose(variable.stratum_means(size), by_quadrature, rtol=1e-6)
+
+
+def test_config_replaces_table_2_as_a_whole():
+    entry = {"distribution": "lognormal", "mean": 0.5, "cov": 0.2}
+    loaded = load_distributions({"friction.concrete.concrete": entry}, "study.yaml")
+    assert loaded == {"friction.concrete.concrete": Lognormal(mean=0.5, cov=0.2)}
+    assert load_distributions(None, "study.yaml") == TABLE_2
+
+
+@pytest.mark.parametrize(
+    ("mapping", "key"),
+    [
+        ({"friction.concrete": {"mean": 1, "cov": 0.1}}, "friction.concrete"),
+        ({"materials.concrete.densty": {"mean": 1, "cov": 0.1}}, "materials.concrete.densty"),
+        ({"friction.a.b": {"mean": 1, "cov": 0.1, "sd": 2}}, "friction.a.b.sd"),
+        ({"friction.a.b": {"mean": 1}}, "friction.a.b.cov"),
+        ({"friction.a.b": {"mean": -1, "cov": 0.1}}, "friction.a.b.mean"),
+        ({"friction.a.b": {"mean": 1, "cov": 0.1, "distribution": "normal"}}, "friction.a.b.distribution"),
+        ({"friction.a.b": {"mean": 1, "cov": 0.1}, "friction.b.a": {"mean": 1, "cov": 0.1}}, "friction.b.a"),
+        ({}, ""),
+        ({"friction.a.b": 3}, "friction.a.b"),
+    ],
+)
+def test_a_wrong_config_is_refused_in_one_line(mapping, key):
+    with pytest.raises(InputError) as error:
+        load_distributions(mapping, "study.yaml")
+    assert str(error.value).startswith("study.yaml: distributions" + (f".{key}" if key else ""))
+    assert "\n" not in str(error.value)
+
+
+def test_units_follow_the_property():
+    assert parameter_unit("friction.concrete.concrete") == "1"
+    assert parameter_unit("materials.concrete.density") == "kg/m3"
+    assert parameter_unit("materials.steel.viscous_modulus") == "Pa s"
+    assert parameter_unit("ls_dem.shear_stiffness") == "N/m3"
+    with pytest.raises(InputError, match=r"ls_dem\.skin: expected"):
+        parameter_unit("ls_dem.skin")
+
+
+def test_true_parameters_are_independent_draws_of_table_2():
+    assert draw_true_parameters(7) == draw_true_parameters(7)
+    assert draw_true_parameters(7) != draw_true_parameters(8)
+    draws = np.array([list(draw_true_parameters(seed).values()) for seed in range(2000)])
+    logs = np.array([variable.log_deviation for variable in TABLE_2.values()])
+    medians = np.array([variable.median for variable in TABLE_2.values()])
+    scores = np.log(draws / medians) / logs
+    # 4 standard errors of 2000 normal draws: mean 0.022, deviation 0.016, correlation 0.022
+    assert np.abs(scores.mean(axis=0)).max() < 4 * 0.0224
+    assert np.abs(scores.std(axis=0) - 1.0).max() < 4 * 0.0158
+    assert np.abs(np.corrcoef(scores, rowvar=False) - np.eye(9)).max() < 4.5 * 0.0224

@@ -1,0 +1,144 @@
+"""Sensitivity of an ensemble: which variable is found, what becomes of collapsed samples, what is written."""
+
+import numpy as np
+import pytest
+
+from blockshake.errors import InputError
+from blockshake.geometry.structure import load_structure
+from blockshake.study.ensembles.ensemble import gather_ensemble
+from blockshake.study.sampling.latin_hypercube import draw_samples
+from blockshake.study.sampling.sample_parameters import sample_parameters
+from blockshake.study.sensitivity.sensitivity import QUANTITIES, sensitivity, unused_variables
+
+FRICTION, DENSITY = "friction.concrete.concrete", "materials.concrete.density"
+VISCOUS, YOUNG = "materials.concrete.viscous_modulus", "materials.concrete.youngs_modulus"
+TIME = np.arange(401) / 200.0
+
+
+@pytest.fixture(scope="module")
+def design():
+    return draw_samples(50, seed=3, effort=1).values
+
+
+@pytest.fixture
+def ensemble(make_run, design):
+    """Fifty runs: friction moves the block, density turns it, chance is a tenth of friction's effect."""
+
+    def gathered(change=lambda sample, run: run, values=design):
+        score = (design - design.mean()) / design.std()
+        noise = np.random.default_rng(4).normal(size=len(design))
+        runs = []
+        for sample in design.index:
+            moved = 0.02 + 0.002 * score[FRICTION][sample] + 0.0002 * noise[sample]
+            turned = 0.01 + 0.001 * score[DENSITY][sample]
+            runs.append(change(sample, make_run(moved * np.minimum(TIME, 1.0), angle=turned)))
+        return gather_ensemble(runs, design.index, values, "slab-face")
+
+    return gathered
+
+
+def at(result, name, quantity, parameter, **bound):
+    return float(result[name].sel(quantity=quantity, marker="block-1-face", parameter=parameter, **bound))
+
+
+def test_the_input_that_acts_is_found_and_no_other(ensemble, design):
+    result = sensitivity(ensemble(), list(design.columns))
+    for quantity, acting in (
+        ("history", FRICTION), ("peak", FRICTION), ("residual", FRICTION), ("rotation", DENSITY)
+    ):  # fmt: skip
+        for name in ("first_order", "rank_correlation"):
+            if quantity == "history" and name == "rank_correlation":
+                assert np.isnan(result[name].sel(quantity=quantity)).all()
+                continue
+            level = float(result[f"{name}_chance"].sel(quantity=quantity))
+            found = [one for one in design.columns if abs(at(result, name, quantity, one)) > level]
+            assert found == [acting]
+            low, high = (
+                at(result, f"{name}_interval", quantity, acting, bound=one) for one in ("lower", "upper")
+            )
+            assert level < low <= at(result, name, quantity, acting) <= high <= 1.0
+    # 0.99 of the variance, of which five classes of a nearly normal variable see 0.9
+    assert at(result, "first_order", "peak", FRICTION) == pytest.approx(0.9, abs=0.05)
+    assert float(result["explained"].sel(quantity="peak", marker="block-1-face")) > 0.9
+
+
+def test_spread_is_the_standard_deviation_and_of_a_history_its_mean_square_over_time(ensemble, design):
+    gathered = ensemble()
+    result = sensitivity(gathered, [FRICTION]).sel(marker="block-1-face")
+    peaks = gathered["peak"].sel(frame="slab", marker="block-1-face")
+    assert float(result["spread"].sel(quantity="peak")) == pytest.approx(float(peaks.std()), rel=1e-9)
+    along = gathered["marker_displacement"].sel(axis="x", marker="block-1-face")
+    mean_square = np.sqrt(float((along.var("sample")).mean()))
+    assert float(result["spread"].sel(quantity="history")) == pytest.approx(mean_square, rel=1e-6)
+    assert list(result["quantity_unit"].values) == list(QUANTITIES.values())
+
+
+def test_collapsed_samples_rank_first_and_have_neither_residual_nor_history(ensemble, design):
+    """The ten of least friction fall at 1 s, with hardly any motion before: as peaks they would seem the smallest."""
+    weakest = design[FRICTION].nsmallest(10).index
+
+    def fall(sample, run):
+        if sample in weakest:
+            run.attrs |= {"status": "collapsed", "reason": "fell", "end_time": 1.0}
+            run["marker_displacement"][TIME > 1.0] = np.nan
+            run["orientation"][TIME > 1.0] = np.nan
+            run["marker_displacement"][:, 1] *= 0.0
+        return run
+
+    result = sensitivity(ensemble(fall), list(design.columns))
+    assert list(result["used"].values) == [40, 50, 40, 50]
+    # all others grow with friction, the ten of least friction are put above them
+    ranks = np.concatenate([np.full(10, 45.5), np.arange(1.0, 41.0)])
+    of_ranks = np.corrcoef(np.arange(50.0), ranks)[0, 1]
+    assert at(result, "rank_correlation", "peak", FRICTION) == pytest.approx(of_ranks, abs=0.15)
+    assert at(result, "first_order", "residual", FRICTION) > 0.8
+
+
+def test_samples_that_the_solver_could_not_finish_are_left_out(ensemble, design):
+    def fail(sample, run):
+        if sample < 5:
+            run.attrs["status"] = "diverged"
+            run["marker_displacement"][:, 1] *= 1000.0
+        return run
+
+    result = sensitivity(ensemble(fail), list(design.columns))
+    assert (result["used"] == 45).all()
+    assert at(result, "first_order", "peak", FRICTION) > 0.8
+
+
+def test_same_ensemble_same_numbers(ensemble, design):
+    first, second = (sensitivity(ensemble(), list(design.columns)) for _ in range(2))
+    assert first.identical(second)
+
+
+def test_every_variable_has_a_name_and_a_unit(ensemble, design):
+    result = sensitivity(ensemble(), [FRICTION, DENSITY])
+    for name, variable in result.data_vars.items():
+        assert variable.attrs["long_name"], name
+        # a spread has its quantity's unit
+        assert name == "spread" or variable.attrs["units"] == ("m" if name == "window_spread" else "1"), name
+    assert "slab-face" not in result["marker"].values
+
+
+def test_stiffness_is_no_variable_unless_asked_for(ensemble, design):
+    values = design.assign(**{"ls_dem.normal_stiffness": design[YOUNG] / 1.6})
+    result = sensitivity(ensemble(values=values), list(design.columns))
+    assert "ls_dem.normal_stiffness" not in result["parameter"].values
+    with pytest.raises(InputError, match=r"sensitivity: friction\.nothing"):
+        sensitivity(ensemble(), ["friction.nothing"])
+
+
+def test_controls_are_what_model_and_structure_have_no_use_for(design):
+    row = design.loc[0]
+    given = sample_parameters(row, load_structure("configuration-1"), {})
+    names = list(design.columns)
+    assert load_structure("configuration-1").file.materials.keys() == {"concrete", "foundation"}
+    steel = [name for name in names if "steel" in name]
+    assert set(unused_variables(names, "ls-dem", given)) == {VISCOUS, *steel}
+    assert set(unused_variables(names, "nscd-rigid", given)) == {VISCOUS, YOUNG, *steel}
+    with_steel = sample_parameters(row, load_structure("configuration-4"), {})
+    viscous = {VISCOUS, "materials.steel.viscous_modulus"}
+    # LS-DEM's joint of steel on concrete has both materials' moduli in series
+    assert set(unused_variables(names, "ls-dem", with_steel)) == viscous
+    elastic = {YOUNG, "materials.steel.youngs_modulus"}
+    assert set(unused_variables(names, "nscd-rigid", with_steel)) == viscous | elastic

@@ -1,0 +1,94 @@
+import numpy as np
+import pytest
+import xarray as xr
+
+from blockshake.study.sensitivity.findings import (
+    differs,
+    influences,
+    is_known,
+    quiet_markers,
+    windows_beyond_chance,
+)
+from blockshake.study.sensitivity.thickness import Thickness, growth_with_structure, thickness
+
+NAMES = ["a", "b", "c"]
+
+
+def result(values, measure="first_order", chance=0.3):
+    values = np.asarray(values)
+    return xr.Dataset(
+        {
+            measure: ("parameter", values),
+            f"{measure}_interval": (("bound", "parameter"), np.stack([values - 0.1, values + 0.2])),
+            f"{measure}_chance": ((), chance),
+            "control": ("parameter", [0, 0, 1]),
+            "spread": ((), 2e-3),
+        },
+        coords={"parameter": NAMES, "bound": ["lower", "upper"]},
+    )
+
+
+def test_variables_are_ranked_by_their_share_and_a_negative_share_is_last():
+    found = influences(result([-0.9, 0.5, 0.31]), "first_order")
+    assert [one.parameter for one in found.ranked] == ["b", "c", "a"]
+    assert [one.parameter for one in found.beyond_chance] == ["b", "c"]
+    assert found.ranked[0][2:5] == pytest.approx((0.5, 0.4, 0.7))
+    assert found.ranked[1].control
+
+
+def test_variables_are_ranked_by_the_magnitude_of_their_correlation():
+    found = influences(result([-0.9, 0.5, 0.3], "rank_correlation"), "rank_correlation")
+    assert [one.parameter for one in found.ranked] == ["a", "b", "c"]
+    assert [one.beyond_chance for one in found.ranked] == [True, True, False]  # 0.3 is not beyond 0.3
+
+
+def test_what_is_not_known_differs_from_nothing():
+    assert differs(result([0.0] * 3), 2e-3)
+    assert not differs(result([0.0] * 3), 2.1e-3)
+    assert not differs(result([0.0] * 3).assign(spread=np.nan), 1e-9)
+    assert is_known(result([0.0] * 3), "first_order")
+    assert not is_known(result([0.0] * 3, chance=np.nan), "first_order")
+
+
+def test_windows_with_a_spread_within_the_noise_do_not_count():
+    shares = np.array([[0.9, 0.0], [0.5, 0.1], [0.7, 0.2]])
+    found = windows_beyond_chance(
+        xr.Dataset(
+            {
+                "window_first_order": (("window", "parameter"), shares),
+                "window_spread": ("window", [1e-5, 1e-3, 1e-3]),
+                "window_first_order_chance": ((), 0.3),
+            },
+            coords={"window": [0.5, 1.5, 2.5], "parameter": ["a", "b"]},
+        ),
+        1e-4,
+    )
+    assert (found.count, found.chance) == (2, 0.3)
+    assert found.found == (("a", 2, 1.5, 2.5, 0.7),)
+
+
+def test_quiet_markers_have_a_known_spread_below_the_noise():
+    spread = xr.Dataset(
+        {"spread": (("quantity", "marker"), [[1e-5, 1e-3, np.nan]])},
+        coords={"quantity": ["history"], "marker": ["x", "y", "z"]},
+    )
+    assert quiet_markers(spread, ["x", "y", "z"], 1e-4) == 1
+
+
+def test_thickness_reads_the_markers_from_the_lowest_up():
+    spread = xr.Dataset(
+        {"spread": (("quantity", "marker"), [[3.0, 1.0]])},
+        coords={"quantity": ["history"], "marker": ["t", "f"]},
+    )
+    found = thickness(spread, ["f", "t"], 2, ("m", 1.0))
+    assert found.spread == (1.0, 3.0)
+    assert found.grows_upward
+    assert not Thickness(2, (), (3.0, 1.0)).grows_upward
+    assert not Thickness(2, (), (3.0, np.nan)).known
+
+
+def test_growth_counts_pairs_of_different_size_only():
+    small, other = Thickness(3, ("m",), (1.0, 2.0)), Thickness(3, ("m",), (1.0, 9.0))
+    large, unknown = Thickness(9, ("n",), (1.0, 5.0)), Thickness(20, ("n",), (np.nan, np.nan))
+    assert growth_with_structure([large, unknown, small, other]) == (2, 1, False)
+    assert growth_with_structure([small, other]) == (0, 0, True)

@@ -1,0 +1,94 @@
+"""The house has floors: a module imports from its own floor or from one below, never from one above."""
+
+import ast
+
+import pytest
+
+from blockshake.files import PACKAGE
+
+# From the ground up; what stands on one line knows nothing of its neighbours.
+FLOORS = [
+    ["errors"],
+    ["files", "quantities"],
+    ["validation", "log", "sources"],
+    ["jit"],
+    ["geometry"],
+    ["dynamics"],
+    ["solvers", "measurement"],
+    ["simulation", "effects", "parity", "forces"],
+    ["study"],
+    ["diagnosis", "virtual"],
+    ["report"],
+    ["diagnose"],
+    ["cli"],
+]
+ROOMS_OF_DIAGNOSIS = [
+    ["laws"],
+    ["features"],
+    ["libraries"],
+    ["inference", "misfit"],
+    ["verdict"],
+    ["gain"],
+    ["steps"],
+]
+ROOMS_OF_REPORT = [["document"], ["study", "diagnosis"]]
+MOST_MODULES = 15
+
+
+def place(name, floors):
+    """Floor of a room, or none where it is no room of these floors."""
+    return next((number for number, rooms in enumerate(floors) if name in rooms), None)
+
+
+def arrows():
+    """Every import as the parts of the importing and of the imported module's name."""
+    for path in sorted(PACKAGE.rglob("*.py")):
+        own = path.relative_to(PACKAGE).with_suffix("").parts
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("blockshake."):
+                yield own, tuple(node.module.split(".")[1:])
+
+
+def upward(floors, depth, inside=()):
+    """Arrows that point up, or across a floor, between the rooms at a depth of the modules' names."""
+    found = set()
+    for own, other in arrows():
+        if own[:depth] != inside or other[:depth] != inside or len(own) <= depth or len(other) <= depth:
+            continue
+        here, there = place(own[depth], floors), place(other[depth], floors)
+        if own[depth] != other[depth] and here is not None and (there is None or there >= here):
+            found.add((".".join(own), ".".join(other)))
+    return sorted(found)
+
+
+def test_every_room_has_a_floor():
+    rooms = {path.relative_to(PACKAGE).with_suffix("").parts[0] for path in PACKAGE.rglob("*.py")}
+    assert rooms - {"__init__", "__main__"} == {room for floor in FLOORS for room in floor}
+
+
+def test_no_module_imports_from_a_floor_above():
+    # the one table of solvers is read when a source digest is asked for
+    allowed = {("sources", "simulation.models")}
+    assert set(upward(FLOORS, 0)) - allowed == set()
+
+
+@pytest.mark.parametrize(
+    ("inside", "floors"), [("diagnosis", ROOMS_OF_DIAGNOSIS), ("report", ROOMS_OF_REPORT)]
+)
+def test_rooms_inside_a_room_have_floors_too(inside, floors):
+    assert upward(floors, 1, (inside,)) == []
+
+
+def test_rooms_of_the_diagnosis_have_few_arrows():
+    pairs = {
+        (own[1], other[1])
+        for own, other in arrows()
+        if own[0] == other[0] == "diagnosis" and len(own) > 2 and len(other) > 2 and own[1] != other[1]
+    }
+    assert len(pairs) <= 15
+
+
+def test_no_folder_holds_more_than_fifteen_modules():
+    for folder in {path.parent for path in PACKAGE.rglob("*.py")}:
+        modules = [path for path in folder.glob("*.py") if path.stem != "__init__"]
+        assert len(modules) <= MOST_MODULES, folder.relative_to(PACKAGE)

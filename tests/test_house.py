@@ -1,0 +1,167 @@
+"""The project is whole in itself: pages, paths and names that it mentions exist, and its pages are plain to read."""
+
+import ast
+import importlib
+import re
+from pathlib import Path
+
+import pytest
+
+from blockshake.files import PACKAGE
+
+ROOT = PACKAGE.parents[1]
+# being rewritten: their prose is not judged yet
+UNFINISHED = [ROOT / "docs" / "method.md", ROOT / "docs" / "nscd.md"]
+PAGES = sorted([ROOT / "README.md", *ROOT.glob("docs/**/*.md"), *ROOT.glob("*/README.md")])
+TEXTS = (".py", ".smk", ".md", ".yaml", ".yml", ".toml", ".j2", ".typ", ".json", ".lock", "")
+FOLDERS = ("src", "tests", "docs", "bench", "hidden_effects", "workflow", "config", "data", "profiles", ".ci")
+WIDTH = 100
+# names of pages, folders and hosts outside of the project; written so that this file does not hold them
+OUTSIDE = re.compile(
+    r"design[.]md|facts[.]md|design[ ]contract|(?<![\w.])/work[/]|design[ ]section|the[ ]issue(?:'s| asks)"
+    r"|(?:files[.])?pythonhosted[.]org|pypi[.]org/simple"
+)
+
+
+def source_files():
+    """Text files that belong to the project."""
+    for path in sorted([*ROOT.iterdir(), *(path for name in FOLDERS for path in (ROOT / name).rglob("*"))]):
+        if (
+            path.is_file()
+            and path.suffix in TEXTS
+            and "__pycache__" not in path.parts
+            and path.name != ".git"
+        ):
+            yield path
+
+
+def prose(page):
+    """Lines of a page with their numbers, without tables, headings and code."""
+    fenced = False
+    for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), start=1):
+        if line.startswith("```"):
+            fenced = not fenced
+        elif not fenced and not line.startswith(("|", "#", "    ", "<!--")):
+            yield number, line
+
+
+def sentences(text):
+    """Sentences of a text; the dot of an abbreviation or a number does not end one."""
+    return re.split(r"(?<=[.:?!])[*`)\"]*\s+(?=[*`(\"]*[A-Z])", text)
+
+
+def code_spans(page):
+    """Words in code spans outside of fenced code, tables included."""
+    text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    return re.findall(r"`([^`\n]+)`", text)
+
+
+def by_name(pages):
+    """Parameters that show a page by its path in the project."""
+    return pytest.mark.parametrize("page", pages, ids=lambda page: str(page.relative_to(ROOT)))
+
+
+FINISHED = [page for page in PAGES if page not in UNFINISHED]
+
+
+def test_nothing_points_outside_the_project():
+    for path in source_files():
+        found = OUTSIDE.findall(path.read_text(encoding="utf-8"))
+        assert found == [], path.relative_to(ROOT)
+
+
+@by_name(PAGES)
+def test_every_link_of_a_page_leads_somewhere(page):
+    text = page.read_text(encoding="utf-8")
+    for target in re.findall(r"\]\(([^)#\s]+)[^)]*\)", text):
+        if not target.startswith("http"):
+            assert (page.parent / target).exists(), target
+
+
+def test_every_page_is_linked_from_another():
+    linked = {
+        (page.parent / target).resolve()
+        for page in PAGES
+        for target in re.findall(r"\]\(([^)#\s]+)", page.read_text(encoding="utf-8"))
+        if not target.startswith("http") and (page.parent / target).resolve() != page
+    }
+    for page in ROOT.glob("docs/**/*.md"):
+        assert page.resolve() in linked, page.relative_to(ROOT)
+
+
+PATH = re.compile(r"[\w.-]+(?:/[\w.-]+)*/?")
+MADE = ("results", "reports", "logs", "benchmarks", "~", ".venv", ".venv-peers", ".snakemake")
+
+
+def is_path(word):
+    """Whether a code span is a path of a file or folder that the project holds."""
+    if not PATH.fullmatch(word) or word.split("/")[0] in MADE or not word.isascii():
+        return False
+    head = word.split("/")[0]
+    rooms = {path.name for base in (ROOT, PACKAGE) for path in base.iterdir()}
+    return ("/" in word and head in rooms) or word.endswith((".py", ".smk"))
+
+
+def exists(word, page):
+    """Whether a path is there: from the root, the package or the page, or a file's name anywhere."""
+    bases = (ROOT, ROOT / "src", PACKAGE, page.parent, ROOT / "hidden_effects", ROOT / "bench")
+    if any((base / word).exists() for base in bases):
+        return True
+    return "/" not in word and any(
+        next((ROOT / room).rglob(word), None) for room in ("src", "tests", "workflow")
+    )
+
+
+@by_name(FINISHED)
+def test_every_path_of_a_page_exists(page):
+    words = [word.split(":")[0].strip() for span in code_spans(page) for word in span.split(", ")]
+    missing = [word for word in words if is_path(word) and not exists(word, page)]
+    # an example of a file that the reader is to write
+    assert [word for word in missing if not Path(word).name.startswith("my_")] == []
+
+
+@by_name(PAGES)
+def test_every_name_of_a_page_can_be_imported(page):
+    for name in re.findall(r"\bblockshake(?:\.[a-zA-Z_]\w*)+", page.read_text(encoding="utf-8")):
+        parts = name.split(".")
+        for length in range(len(parts), 0, -1):
+            try:
+                found = importlib.import_module(".".join(parts[:length]))
+            except ModuleNotFoundError:
+                continue
+            break
+        for attribute in parts[length:]:
+            found = getattr(found, attribute)
+
+
+@by_name(FINISHED)
+def test_lines_of_a_page_fit_a_screen(page):
+    long = [number for number, line in prose(page) if len(line) > WIDTH]
+    assert long == []
+
+
+def starts_with_what(text):
+    """Sentences that start with a pronoun for their noun."""
+    return [
+        words
+        for words in sentences(text)
+        if re.match(r"[*`(\"]*What\b(?! (is|are|do|does|did|can)\b.*\?)", words)
+    ]
+
+
+@by_name(FINISHED)
+def test_no_sentence_of_a_page_starts_with_what(page):
+    text = re.sub(r"^[-*] ", "", "\n".join(line for _, line in prose(page)), flags=re.MULTILINE)
+    assert [words for block in text.split("\n\n") for words in starts_with_what(block.strip())] == []
+
+
+@pytest.mark.parametrize("folder", ["bench", "hidden_effects", "src", "tests"])
+def test_no_docstring_starts_with_what(folder):
+    found = []
+    for path in sorted((ROOT / folder).rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and (
+                text := ast.get_docstring(node)
+            ):
+                found += [f"{path.relative_to(ROOT)}: {words}" for words in starts_with_what(text)]
+    assert found == []
