@@ -1,0 +1,1 @@
+"""Nonsmooth contact dynamics of elastic and viscoelastic boxes."""

@@ -1,0 +1,108 @@
+"""Elastic shapes of a free block: free modes and constraint shapes, made orthogonal."""
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh
+from scipy.sparse import kron
+from scipy.sparse.linalg import eigsh, splu
+
+from blockshake.solvers.nscd_deformable.block.box_mesh import BoxMesh, assemble, box_mesh, rigid_motions
+from blockshake.solvers.nscd_deformable.block.lattice import Lattice, surface_lattice
+
+# Shapes whose part that no other shape has is smaller than this, in mass, are the others' sum.
+_DEPENDENT = 1e-9
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """Elastic displacements of a box of unit Young's modulus and density, in its mean axes.
+
+    Attributes
+    ----------
+    mesh : BoxMesh
+    lattice : Lattice
+    squared_frequency : float64 array, shape (n_shapes,)
+        Increasing [1/m2]: times Young's modulus over density it is the square of an angular frequency.
+    displacement : float64 array, shape (3 n_nodes, n_shapes)
+        Orthogonal in mass and stiffness and to all rigid motions, of unit mass [m^-1.5].
+    """
+
+    mesh: BoxMesh
+    lattice: Lattice
+    squared_frequency: np.ndarray
+    displacement: np.ndarray
+
+    def at_lattice(self):
+        """Displacement of the lattice's nodes: float64 array, shape (n_points, 3, n_shapes)."""
+        return self.displacement.reshape(len(self.mesh.nodes), 3, -1)[self.lattice.nodes]
+
+
+@functools.cache
+def elastic_shapes(size, poisson_ratio, mesh_size, contact_spacing, free_modes):
+    """Elastic shapes of a box.
+
+    Parameters
+    ----------
+    size : tuple of 3 float
+        Edge lengths [m].
+    poisson_ratio : float
+    mesh_size, contact_spacing : float
+        Of the bricks and of the lattice [m].
+    free_modes : int
+        Free modes of vibration, lowest first, that join the constraint shapes; as many as the mesh has or more give
+        all modes and no constraint shapes: the full mesh.
+
+    Returns
+    -------
+    Shapes
+
+    Notes
+    -----
+    Craig and Bampton (1968): a constraint shape is the static answer to a unit displacement of a node of the lattice,
+    the nodes between following bilinearly and the others of the lattice at rest; free modes take the place of the
+    fixed-interface ones (Rubin 1975). With the lattice on all nodes of the faces balanced forces on them are answered
+    exactly in the static limit; on a coarser one a uniform stress still is. Rigid motions are taken out, so that the
+    shapes are those of the mean axes. Young's modulus and density only rescale: ``omega^2 E / rho``, and displacements
+    over the root of the density.
+    """
+    mesh = box_mesh(size, mesh_size)
+    lattice = surface_lattice(mesh, contact_spacing)
+    K, M = assemble(mesh, poisson_ratio)
+    rigid = rigid_motions(mesh)
+    count = K.shape[0] - 6
+    if free_modes >= count:
+        squared, displacement = eigh(K.toarray(), M.toarray())
+        return Shapes(mesh, lattice, squared[6:], np.ascontiguousarray(displacement[:, 6:]))
+    basis = _constraint_shapes(K, lattice)
+    if free_modes:
+        basis = np.hstack([_free_modes(K, M, free_modes), basis])
+    # what rounding left of rigid motions
+    basis -= rigid @ np.linalg.solve(rigid.T @ (M @ rigid), rigid.T @ (M @ basis))
+    basis /= np.sqrt(np.einsum("ij,ij->j", basis, M @ basis))
+    weight, vectors = eigh(basis.T @ (M @ basis))
+    kept = weight > _DEPENDENT * weight[-1]
+    basis = basis @ (vectors[:, kept] / np.sqrt(weight[kept]))
+    squared, vectors = eigh(basis.T @ (K @ basis))
+    return Shapes(mesh, lattice, squared, np.ascontiguousarray(basis @ vectors))
+
+
+def _constraint_shapes(K, lattice):
+    """Answers to unit displacements of the lattice's nodes: float64 array, shape (3 n_nodes, 3 n_points)."""
+    held = (3 * lattice.surface[:, None] + np.arange(3)).ravel()
+    free = np.setdiff1d(np.arange(K.shape[0]), held)
+    shapes = np.zeros((K.shape[0], 3 * len(lattice.nodes)))
+    shapes[held] = kron(lattice.bilinear, np.eye(3)).toarray()
+    if len(free):
+        shapes[free] = -splu(K[free][:, free].tocsc()).solve(np.asarray(K[free][:, held] @ shapes[held]))
+    return shapes
+
+
+def _free_modes(K, M, count):
+    """Lowest modes of the free block: float64 array, shape (3 n_nodes, count)."""
+    # below all frequencies, near the lowest ones; a fixed start makes the answer one
+    shift = -1e-2 * K.diagonal().mean() / M.diagonal().mean()
+    start = np.cos(np.arange(K.shape[0]) ** 2 % 97)
+    squared, modes = eigsh(K, count + 6, M, sigma=shift, v0=start)
+    return modes[:, np.argsort(squared)[6:]]

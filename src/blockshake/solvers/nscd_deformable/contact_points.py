@@ -1,0 +1,274 @@
+"""Contact points of deformable bodies: a lattice over each joint, with the lattice points of both faces around each."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.jit import kernel
+from blockshake.solvers.nscd.contact.contacts import empty_contacts
+from blockshake.solvers.nscd.contact.detection import detect_pair_into
+from blockshake.solvers.nscd.contact.polyhedra import find_pairs
+from blockshake.solvers.nscd.vectors import cross, dot, put_into, transposed_product
+from blockshake.solvers.nscd_deformable.elastic_bodies import anchor_into
+
+# Corners of a joint are looked for this many margins apart, to find points between an open and a closed corner.
+_WIDE = 10.0
+_SAME_POINT = 1e-6  # m
+_LEAST_AREA = 1e-12  # m2, of a joint that has none
+
+
+class Anchors(NamedTuple):
+    """Where the contacts of a step hold on to the deformable bodies.
+
+    ``points`` int64 (n_contacts, 2, 4), ``weights`` (n_contacts, 2, 4): lattice points of bodies a and b around each
+    contact, as in `anchor_into`. ``first`` int64 (n_bodies + 1,) and ``active`` int64 (n_active,): those of any
+    contact, body by body, increasing.
+    """
+
+    points: np.ndarray
+    weights: np.ndarray
+    first: np.ndarray
+    active: np.ndarray
+
+
+@kernel
+def _parts(one, other, spacing):
+    """Equal parts of at most ``spacing`` into which the longer of two opposite sides, given by their ends, is cut."""
+    longest = 0.0
+    for side in (one, other):
+        dx, dy, dz = side[0], side[1], side[2]
+        longest = max(longest, np.sqrt(dx * dx + dy * dy + dz * dz))
+    return max(1, int(np.ceil(longest / spacing - 1e-6)))
+
+
+@kernel
+def joint_points(corners, gaps, count, spacing):
+    """Points over a joint, from its corners.
+
+    Parameters
+    ----------
+    corners : float64 array, shape (4, 3)
+        In order around the joint [m]; the first ``count`` are used.
+    gaps : float64 array, shape (4,)
+        Clearance at each [m].
+    count : int
+        4 for a face, 3 for a triangle, 2 for an edge, 1 for a point.
+    spacing : float
+        Largest distance of neighbours [m].
+
+    Returns
+    -------
+    points : float64 array, shape (n, 3)
+    clearance : float64 array, shape (n,)
+        Bilinear between the corners, as the points are [m].
+    areas : float64 array, shape (n,)
+        Part of the joint that each stands for, by the trapezoidal rule, exact for a parallelogram [m2].
+    """
+    P = np.empty((4, 3))
+    g = np.empty(4)
+    for corner in range(4):
+        # a triangle's last side and an edge's two ends have no length
+        source = min(corner, count - 1) if count != 2 else (0, 1, 1, 0)[corner]
+        put_into(corners[source], P[corner])
+        g[corner] = gaps[source]
+    n_s = _parts(P[1] - P[0], P[2] - P[3], spacing)
+    n_t = _parts(P[3] - P[0], P[2] - P[1], spacing)
+    area = _LEAST_AREA
+    for corner in (1, 2):
+        x = cross(P[corner] - P[0], P[corner + 1] - P[0])
+        area += 0.5 * np.sqrt(dot(x, x))
+    points, clearance = np.empty(((n_s + 1) * (n_t + 1), 3)), np.empty((n_s + 1) * (n_t + 1))
+    areas = np.empty((n_s + 1) * (n_t + 1))
+    found = 0
+    for i in range(n_s + 1):
+        for j in range(n_t + 1):
+            s, t = i / n_s, j / n_t
+            weights = ((1.0 - s) * (1.0 - t), s * (1.0 - t), s * t, (1.0 - s) * t)
+            for axis in range(3):
+                points[found, axis] = (
+                    weights[0] * P[0, axis] + weights[1] * P[1, axis]
+                    + weights[2] * P[2, axis] + weights[3] * P[3, axis]
+                )  # fmt: skip
+            share = (0.5 if i in (0, n_s) else 1.0) * (0.5 if j in (0, n_t) else 1.0) / (n_s * n_t)
+            new = True
+            for other in range(found):
+                d = points[other] - points[found]
+                if dot(d, d) < _SAME_POINT * _SAME_POINT:
+                    areas[other] += share * area
+                    new = False
+                    break
+            if new:
+                clearance[found] = (
+                    weights[0] * g[0] + weights[1] * g[1] + weights[2] * g[2] + weights[3] * g[3]
+                )
+                areas[found] = share * area
+                found += 1
+    return points[:found], clearance[:found], areas[:found]
+
+
+@kernel
+def _with_capacity(contacts, points, weights, capacity):
+    """The contacts so far, with room for more."""
+    if capacity <= contacts.gap.size:
+        return contacts, points, weights
+    more = empty_contacts(2 * capacity)
+    n = contacts.gap.size
+    more.body_a[:n], more.body_b[:n], more.gap[:n] = contacts.body_a, contacts.body_b, contacts.gap
+    more.arm_a[:n], more.arm_b[:n], more.home[:n] = contacts.arm_a, contacts.arm_b, contacts.home
+    more.basis[:n], more.compliance[:n] = contacts.basis, contacts.compliance
+    more_points, more_weights = np.empty((2 * capacity, 2, 4), np.int64), np.empty((2 * capacity, 2, 4))
+    more_points[:n], more_weights[:n] = points, weights
+    return more, more_points, more_weights
+
+
+@kernel
+def find_contacts(
+    bodies, elastic, polyhedra, placed, rotations, margin, spacing, layers, admittance, memory, n_stoppers
+):
+    """Contacts of all pairs of bodies, with room for the stoppers after them, and their anchors.
+
+    Parameters
+    ----------
+    bodies, elastic : Bodies, Elastic
+    polyhedra, placed : Polyhedra, Placed
+        Without deformation.
+    rotations : float64 array, shape (n_bodies, 3, 3)
+        Body to world.
+    margin : float
+        Points with a larger gap are left out [m].
+    spacing : float
+        Of the points of a joint [m].
+    layers : float64 array, shape (n_bodies, n_bodies)
+        Compliance of soft layers in the joints [m3/N].
+    admittance : float
+        Impulse over stiffness and velocity, ``theta h^2``, of an implicit spring [s2].
+    memory : int64 array, shape (n_bodies, n_bodies)
+        Reference faces, as in `detect_pair_into`.
+    n_stoppers : int
+
+    Returns
+    -------
+    contacts : Contacts
+        Geometry, undeformed gap and compliance filled in; the rows of the stoppers are still empty.
+    anchors : Anchors
+    """
+    pairs = find_pairs(placed, bodies.driven, margin)
+    contacts = empty_contacts(64)
+    points, weights = np.empty((64, 2, 4), np.int64), np.empty((64, 2, 4))
+    normal, corners, gaps, unused = np.empty(3), np.empty((5, 3)), np.empty(5), np.empty(5)
+    count = 0
+    for pair in range(pairs.shape[0]):
+        a, b = pairs[pair, 0], pairs[pair, 1]
+        found = detect_pair_into(
+            polyhedra, placed, a, b, _WIDE * margin, 0.0, 0.0, memory, normal, corners, gaps, unused
+        )
+        if found == 0:
+            memory[a, b] = -1
+            continue
+        joint, clearance, areas = joint_points(corners, gaps, found, spacing)
+        contacts, points, weights = _with_capacity(contacts, points, weights, count + clearance.size)
+        outward_a = np.array(transposed_product(rotations[a], normal))
+        outward_b = -np.array(transposed_product(rotations[b], normal))
+        for point in range(clearance.size):
+            if clearance[point] > margin:
+                continue
+            contacts.body_a[count], contacts.body_b[count] = a, b
+            contacts.gap[count] = clearance[point]
+            contacts.compliance[count] = layers[a, b] / (admittance * areas[point])
+            put_into(normal, contacts.basis[count, 0])
+            contacts.arm_a[count] = joint[point] - placed.center[a]
+            contacts.arm_b[count] = joint[point] - placed.center[b]
+            put_into(transposed_product(rotations[a], contacts.arm_a[count]), contacts.home[count])
+            place_b = np.array(transposed_product(rotations[b], contacts.arm_b[count]))
+            anchor_into(elastic, a, contacts.home[count], outward_a, points[count, 0], weights[count, 0])
+            anchor_into(elastic, b, place_b, outward_b, points[count, 1], weights[count, 1])
+            count += 1
+    contacts, points, weights = _with_capacity(contacts, points, weights, count + n_stoppers)
+    points[count : count + n_stoppers] = 0
+    weights[count : count + n_stoppers] = 0.0
+    total = count + n_stoppers
+    first, active = _active_points(elastic, points[:count], weights[:count])
+    return _first_rows(contacts, total), Anchors(points[:total].copy(), weights[:total].copy(), first, active)
+
+
+@kernel
+def _active_points(elastic, points, weights):
+    """Points that any contact holds on to, and where those of each body begin."""
+    n_bodies = elastic.first_point.size - 1
+    touched = np.zeros(elastic.first_point[n_bodies], np.bool_)
+    for contact in range(points.shape[0]):
+        for side in range(2):
+            for corner in range(4):
+                if weights[contact, side, corner] != 0.0:
+                    touched[points[contact, side, corner]] = True
+    first, active = np.zeros(n_bodies + 1, np.int64), np.empty(touched.size, np.int64)
+    count = 0
+    for body in range(n_bodies):
+        for point in range(elastic.first_point[body], elastic.first_point[body + 1]):
+            if touched[point]:
+                active[count] = point
+                count += 1
+        first[body + 1] = count
+    return first, active[:count].copy()
+
+
+@kernel
+def _first_rows(contacts, total):
+    """Contacts with as many rows."""
+    kept = empty_contacts(total)
+    kept.body_a[:], kept.body_b[:], kept.gap[:] = (
+        contacts.body_a[:total], contacts.body_b[:total], contacts.gap[:total]
+    )  # fmt: skip
+    kept.arm_a[:], kept.arm_b[:], kept.home[:] = (
+        contacts.arm_a[:total], contacts.arm_b[:total], contacts.home[:total]
+    )  # fmt: skip
+    kept.basis[:], kept.compliance[:] = contacts.basis[:total], contacts.compliance[:total]
+    return kept
+
+
+@kernel
+def tangents_into(rotations, contacts):
+    """Complete each contact's basis with tangents that follow body a: they turn with it and never flip."""
+    for contact in range(contacts.gap.size):
+        basis, R = contacts.basis[contact], rotations[contacts.body_a[contact]]
+        n = basis[0]
+        inward = transposed_product(R, n)
+        across = 0
+        for axis in range(1, 3):
+            if abs(inward[axis]) > abs(inward[across]) + 1e-6:
+                across = axis
+        x = R[:, (across + 1) % 3]
+        along = dot(x, n)
+        size = np.sqrt(dot(x, x) - along * along)
+        for axis in range(3):
+            basis[1, axis] = (x[axis] - along * n[axis]) / size
+        put_into(cross(n, basis[1]), basis[2])
+
+
+@kernel
+def deform_gaps_into(anchors, rotations, displacements, contacts):
+    """Add to each gap what the deformation opens it by.
+
+    ``displacements`` (n_points, 3): of the lattice's points, body frames [m].
+    """
+    for contact in range(contacts.gap.size):
+        n = contacts.basis[contact, 0]
+        for side in range(2):
+            body = contacts.body_b[contact] if side else contacts.body_a[contact]
+            moved = anchored(anchors, contact, side, displacements)
+            inward = transposed_product(rotations[body], n)
+            contacts.gap[contact] += (1.0 if side else -1.0) * dot(inward, moved)
+
+
+@kernel
+def anchored(anchors, contact, side, values):
+    """Vector at a contact, from those at the lattice's points of one of its bodies; body frame."""
+    x, y, z = 0.0, 0.0, 0.0
+    for corner in range(4):
+        weight = anchors.weights[contact, side, corner]
+        if weight != 0.0:
+            value = values[anchors.points[contact, side, corner]]
+            x += weight * value[0]
+            y += weight * value[1]
+            z += weight * value[2]
+    return x, y, z

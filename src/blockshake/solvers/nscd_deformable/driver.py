@@ -1,0 +1,113 @@
+"""Nonsmooth contact dynamics of elastic and viscoelastic boxes: one call, one trajectory."""
+
+import dataclasses
+
+import numpy as np
+
+from blockshake.dynamics.system import assemble_bodies
+from blockshake.solvers.checkpoint import Checkpoint, run_key
+from blockshake.solvers.nscd.contact.contacts import empty_contacts
+from blockshake.solvers.nscd.joints import no_joints
+from blockshake.solvers.nscd.outcome import trajectory_of
+from blockshake.solvers.nscd.progress import start_progress
+from blockshake.solvers.nscd.scene import order_of_bodies, reordered
+from blockshake.solvers.nscd_deformable import checkpoint as layout
+from blockshake.solvers.nscd_deformable.loop import integrate
+from blockshake.solvers.nscd_deformable.model import assemble_model
+from blockshake.solvers.nscd_deformable.solve.newton import no_factor
+from blockshake.solvers.nscd_deformable.start import settled_state
+from blockshake.solvers.pieces import run_in_pieces
+from blockshake.solvers.record import empty_record
+
+
+def simulate_elastic(structure, motion, parameters, record_times, time_step=1e-3, checkpoint=None):
+    """Motion of elastic boxes; as `simulate_deformable`, without viscosity."""
+    return simulate_deformable(
+        structure, motion, parameters, record_times, time_step, checkpoint, viscous=False
+    )
+
+
+def simulate_viscoelastic(structure, motion, parameters, record_times, time_step=1e-3, checkpoint=None):
+    """Motion of boxes of Kelvin and Voigt's material; as `simulate_deformable`, with viscosity."""
+    return simulate_deformable(
+        structure, motion, parameters, record_times, time_step, checkpoint, viscous=True
+    )
+
+
+def simulate_deformable(
+    structure,
+    motion,
+    parameters,
+    record_times,
+    time_step=1e-3,
+    checkpoint=None,
+    checkpoint_interval=60.0,
+    *,
+    viscous,
+):
+    """Motion of deformable boxes with Signorini's condition and Coulomb's friction at the points of their joints.
+
+    Parameters
+    ----------
+    structure : Structure
+    motion : GroundMotion or None
+        Of the driven bodies, which are rigid; None keeps them at rest.
+    parameters : DeformableParameters
+    record_times : float64 array, shape (n_times,)
+        Increasing, the first is 0 [s]; the run ends at the last.
+    time_step : float
+        [s]
+    checkpoint : path, optional
+        File that a run which was cut short goes on from, see `run_in_pieces`.
+    checkpoint_interval : float
+        Wall time between savings [s].
+    viscous : bool
+        Whether the viscous moduli of the materials act.
+
+    Returns
+    -------
+    Trajectory
+        As of `simulate_nscd`: positions, orientations and velocities are those of the bodies' mean axes.
+        ``numerics`` has ``energy_lost_to_scheme`` [J] and the number of ``elastic_shapes`` besides.
+
+    Raises
+    ------
+    InputError
+        A free body is not a box, or its mesh is too fine.
+    KeyboardInterrupt
+        See `run_in_pieces`.
+
+    Notes
+    -----
+    ``docs/nscd-deformable.md`` has the equations. Bodies are handled from the lowest upwards, whatever their order in
+    the file.
+    """
+    times = np.ascontiguousarray(record_times, dtype=float)
+    order = order_of_bodies(structure)
+    bodies, given, stoppers = assemble_bodies(structure)
+    model = assemble_model(structure, bodies, stoppers, motion, parameters, time_step, order, viscous)
+
+    def start():
+        touching = structure.touching[np.ix_(order, order)]
+        state, deformation = settled_state(model, touching, reordered(given, order))
+        record = empty_record(len(times), len(order))
+        return (
+            start_progress(state),
+            deformation,
+            empty_contacts(0),
+            no_joints(len(order)),
+            no_factor(),
+            record,
+        )
+
+    def go_on(pause, progress, deformation, *parts):
+        code, culprit, *parts = integrate(model, times, pause, progress, deformation, *parts)
+        return code, culprit, (progress, deformation, *parts)
+
+    key = run_key(structure, model.scene.table, parameters, times, time_step, viscous)
+    saving = Checkpoint(checkpoint, checkpoint_interval, key, layout)
+    code, culprit, parts = run_in_pieces(start, go_on, time_step, times[-1], saving)
+    progress, deformation, _, joints, _, record = parts
+    trajectory = trajectory_of(structure, order, times, time_step, code, culprit, progress, joints, record)
+    figures = {"energy_lost_to_scheme": float(deformation.lost[0]), "elastic_shapes": len(deformation.rate)}
+    return dataclasses.replace(trajectory, numerics=trajectory.numerics | figures)

@@ -1,0 +1,195 @@
+"""All deformable bodies packed into flat arrays, and their elastic coordinates."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.errors import InputError
+from blockshake.jit import kernel
+from blockshake.solvers.nscd_deformable.block.shapes import elastic_shapes
+
+# What fits into 2 GiB: constraint shapes of a mesh, and all modes of one
+_MOST_NODES, _MOST_NODES_OF_FULL_MESH = 20_000, 3_000
+
+
+class Elastic(NamedTuple):
+    """Elastic shapes of all bodies, each with its own copy; driven bodies are rigid and have none.
+
+    ``first_shape``, ``first_point``, ``first_entry``, ``first_cell`` int64 (n_bodies + 1,): where the shapes, the
+    lattice's points, the entries of ``shape`` and the cells of ``table`` of each body begin.
+    ``squared_frequency`` [1/s2] and ``damping`` [1/s] (n_shapes,). ``shape`` (n_entries,): displacements of the
+    points, rows ``3 point + axis``, columns the body's shapes [kg^-0.5]. ``first_line`` int64 (3 n_bodies + 1,),
+    ``lines`` (n_lines,): planes of the lattices across each body's x, y, z, from the mass centre [m]. ``table``
+    int64 (n_cells,): point of the body at each crossing of its planes, -1 inside.
+    """
+
+    first_shape: np.ndarray
+    first_point: np.ndarray
+    first_entry: np.ndarray
+    first_cell: np.ndarray
+    squared_frequency: np.ndarray
+    damping: np.ndarray
+    shape: np.ndarray
+    first_line: np.ndarray
+    lines: np.ndarray
+    table: np.ndarray
+
+
+class Deformation(NamedTuple):
+    """Elastic coordinates of all bodies at one instant, changed in place by kernels.
+
+    ``amplitude`` (n_shapes,) [kg^0.5 m] and ``rate`` (n_shapes,) [kg^0.5 m/s]; ``lost`` (1,): energy that the
+    scheme took so far [J].
+    """
+
+    amplitude: np.ndarray
+    rate: np.ndarray
+    lost: np.ndarray
+
+
+def pack_elastic(structure, order, parameters, viscous):
+    """Elastic shapes of a structure's bodies, in the order of the body indices ``order``.
+
+    Parameters
+    ----------
+    structure : Structure
+    order : int64 array, shape (n_bodies,)
+    parameters : DeformableParameters
+    viscous : bool
+        Whether the viscous moduli act.
+
+    Raises
+    ------
+    InputError
+        A free body is not a box, or its mesh is too fine.
+
+    Notes
+    -----
+    Kelvin and Voigt: the stress is ``C (strain + (eta / E) strain rate)``, so that a shape of angular frequency omega
+    has the damping ``(eta / E) omega^2``. The mesh fills the box; its density is the body's mass over
+    the box's volume, a chamfer being a small part of it.
+    """
+    file = structure.file
+    squared, damping, shape, lines, tables, n_points = [], [], [], [], [], []
+    for body in order:
+        one = file.bodies[body]
+        if one.driven:
+            squared.append(np.empty(0))
+            damping.append(np.empty(0))
+            shape.append(np.empty(0))
+            lines += [np.empty(0)] * 3
+            tables.append(np.empty(0, np.int64))
+            n_points.append(0)
+            continue
+        box, material = file.shapes[one.shape].box, file.materials[one.material]
+        if box is None:
+            raise InputError(
+                structure.source, f"shapes.{one.shape}", "expected a box: meshes deform in no model yet"
+            )
+        _check_size(box, parameters)
+        found = elastic_shapes(
+            box, material.poisson_ratio, parameters.mesh_size, parameters.contact_spacing, parameters.modes
+        )
+        density = structure.mass[body] / np.prod(box)
+        squared.append(found.squared_frequency * material.youngs_modulus / density)
+        ratio = material.viscous_modulus / material.youngs_modulus if viscous else 0.0
+        damping.append(ratio * squared[-1])
+        shape.append((found.at_lattice() / np.sqrt(density)).ravel())
+        lines += [part - offset for part, offset in zip(found.lattice.lines, one.mass_offset, strict=True)]
+        tables.append(found.lattice.table.ravel())
+        n_points.append(len(found.lattice.nodes))
+    return Elastic(
+        first_shape=_first(squared),
+        first_point=np.concatenate([[0], np.cumsum(n_points)]).astype(np.int64),
+        first_entry=_first(shape),
+        first_cell=_first(tables),
+        squared_frequency=np.concatenate(squared),
+        damping=np.concatenate(damping),
+        shape=np.concatenate(shape),
+        first_line=_first(lines),
+        lines=np.concatenate(lines),
+        table=np.concatenate(tables),
+    )
+
+
+def _check_size(box, parameters):
+    """Refuse a mesh that this program's dense matrices do not hold."""
+    counts = [max(1, round(edge / parameters.mesh_size)) for edge in box]
+    nodes = int(np.prod([count + 1 for count in counts]))
+    limit = _MOST_NODES if parameters.modes < 3 * nodes - 6 else _MOST_NODES_OF_FULL_MESH
+    if nodes > limit:
+        raise InputError(
+            "--set",
+            "nscd_deformable.mesh_size",
+            f"expected at most {limit} nodes in a block, not {nodes}: a larger size",
+        )
+
+
+def _first(parts):
+    """Where parts of an array begin when they are put one after another."""
+    return np.concatenate([[0], np.cumsum([len(part) for part in parts])]).astype(np.int64)
+
+
+def undeformed(elastic):
+    """Deformation at rest."""
+    n_shapes = len(elastic.squared_frequency)
+    return Deformation(np.zeros(n_shapes), np.zeros(n_shapes), np.zeros(1))
+
+
+@kernel
+def shapes_of(elastic, body):
+    """Displacements of one body's points: float64 array, shape (3 n_points, n_shapes), a view."""
+    rows = 3 * (elastic.first_point[body + 1] - elastic.first_point[body])
+    columns = elastic.first_shape[body + 1] - elastic.first_shape[body]
+    return elastic.shape[elastic.first_entry[body] : elastic.first_entry[body + 1]].reshape(rows, columns)
+
+
+@kernel
+def _cell(elastic, body, axis, x):
+    """Line below a coordinate, within the lattice, and how far the coordinate is from it to the next, 0 to 1."""
+    first, last = elastic.first_line[3 * body + axis], elastic.first_line[3 * body + axis + 1]
+    line = first
+    while line + 2 < last and elastic.lines[line + 1] <= x:
+        line += 1
+    share = (x - elastic.lines[line]) / (elastic.lines[line + 1] - elastic.lines[line])
+    return line - first, min(max(share, 0.0), 1.0)
+
+
+@kernel
+def anchor_into(elastic, body, x, outward, points, weights):
+    """Four points of a body's lattice around a place on its surface, and their weights.
+
+    Parameters
+    ----------
+    elastic : Elastic
+    body : int
+    x : float64 array, shape (3,)
+        Place seen from the mass centre, body frame [m].
+    outward : float64 array, shape (3,)
+        Direction out of the body there, body frame: says on which of the six faces the place is.
+    points : int64 array, shape (4,)
+        Overwritten: indices among the points of all bodies.
+    weights : float64 array, shape (4,)
+        Overwritten: bilinear, of sum 1 [1]; zero where the body is rigid.
+    """
+    points[:], weights[:] = 0, 0.0
+    if elastic.first_point[body] == elastic.first_point[body + 1]:
+        return
+    across = 0
+    for axis in range(1, 3):
+        if abs(outward[axis]) > abs(outward[across]) + 1e-9:
+            across = axis
+    one, other = (across + 1) % 3, (across + 2) % 3
+    counts = np.empty(3, np.int64)
+    for axis in range(3):
+        counts[axis] = elastic.first_line[3 * body + axis + 1] - elastic.first_line[3 * body + axis]
+    place = np.empty(3, np.int64)
+    place[across] = counts[across] - 1 if outward[across] > 0.0 else 0
+    u, share_u = _cell(elastic, body, one, x[one])
+    v, share_v = _cell(elastic, body, other, x[other])
+    for corner in range(4):
+        step_u, step_v = corner & 1, corner >> 1
+        place[one], place[other] = u + step_u, v + step_v
+        cell = (place[0] * counts[1] + place[1]) * counts[2] + place[2]
+        points[corner] = elastic.first_point[body] + elastic.table[elastic.first_cell[body] + cell]
+        weights[corner] = (share_u if step_u else 1.0 - share_u) * (share_v if step_v else 1.0 - share_v)

@@ -1,0 +1,175 @@
+"""One step of the elastic coordinates: implicit, each by itself, so that its law is known in closed form."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.jit import kernel
+from blockshake.solvers.nscd_deformable.elastic_bodies import shapes_of
+
+
+class Response(NamedTuple):
+    """How the elastic coordinates answer impulses over a step of one length.
+
+    ``dt`` [s]; ``theta`` [1]; ``admittance`` (n_shapes,): rate per modal impulse [1]. ``first_entry`` int64
+    (n_bodies + 1,), ``compliance`` (n_entries,): velocity of each body's points per impulse at them [1/kg], rows and
+    columns ``3 point + axis``, body frame.
+    """
+
+    dt: float
+    theta: float
+    admittance: np.ndarray
+    first_entry: np.ndarray
+    compliance: np.ndarray
+
+
+@kernel
+def step_response(elastic, dt, theta):
+    """Response over steps of a length.
+
+    Notes
+    -----
+    ``rate' = rate - h (omega^2 amplitude_theta + damping rate_theta) + impulse`` with ``amplitude' = amplitude +
+    h rate_theta`` gives ``rate' (1 + theta^2 h^2 omega^2 + theta h damping) = ... + impulse``.
+    """
+    n_bodies = elastic.first_shape.size - 1
+    w, d = elastic.squared_frequency, elastic.damping
+    admittance = 1.0 / (1.0 + theta * theta * dt * dt * w + theta * dt * d)
+    first_entry = np.zeros(n_bodies + 1, np.int64)
+    for body in range(n_bodies):
+        rows = 3 * (elastic.first_point[body + 1] - elastic.first_point[body])
+        first_entry[body + 1] = first_entry[body] + rows * rows
+    compliance = np.empty(first_entry[n_bodies])
+    for body in range(n_bodies):
+        if first_entry[body + 1] > first_entry[body]:
+            shapes = shapes_of(elastic, body)
+            own = admittance[elastic.first_shape[body] : elastic.first_shape[body + 1]]
+            answer = np.dot(shapes * own, np.ascontiguousarray(shapes.T))
+            compliance[first_entry[body] : first_entry[body + 1]] = answer.ravel()
+    return Response(dt, theta, admittance, first_entry, compliance)
+
+
+@kernel
+def compliance_of(elastic, response, body):
+    """Velocity per impulse of one body's points: float64 array, shape (3 n_points, 3 n_points), a view."""
+    rows = 3 * (elastic.first_point[body + 1] - elastic.first_point[body])
+    first, last = response.first_entry[body], response.first_entry[body + 1]
+    return response.compliance[first:last].reshape(rows, rows)
+
+
+@kernel
+def predict_elastic_into(elastic, response, deformation, amplitude, rate):
+    """Elastic coordinates at which contacts are found, and rates at the end of the step without contact.
+
+    ``amplitude`` and ``rate`` (n_shapes,) are overwritten.
+    """
+    dt, theta = response.dt, response.theta
+    for shape in range(amplitude.size):
+        q, v = deformation.amplitude[shape], deformation.rate[shape]
+        w, d = elastic.squared_frequency[shape], elastic.damping[shape]
+        amplitude[shape] = q + (1.0 - theta) * dt * v
+        pull = dt * (w * (q + theta * (1.0 - theta) * dt * v) + (1.0 - theta) * d * v)
+        rate[shape] = response.admittance[shape] * (v - pull)
+
+
+@kernel
+def points_into(elastic, coordinates, anchors, points):
+    """Displacements, or velocities, of the lattice's points that carry contact, body frames.
+
+    Parameters
+    ----------
+    elastic : Elastic
+    coordinates : float64 array, shape (n_shapes,)
+        Amplitudes or rates.
+    anchors : Anchors
+        Says which points.
+    points : float64 array, shape (n_points, 3)
+        Rows of these points are overwritten.
+    """
+    for body in range(elastic.first_shape.size - 1):
+        shapes, first = shapes_of(elastic, body), elastic.first_point[body]
+        own = coordinates[elastic.first_shape[body] : elastic.first_shape[body + 1]]
+        for entry in range(anchors.first[body], anchors.first[body + 1]):
+            point = anchors.active[entry]
+            for axis in range(3):
+                points[point, axis] = _dot(shapes[3 * (point - first) + axis], own)
+
+
+@kernel
+def _dot(x, y):
+    """``x`` times ``y`` in four sums that are added in a fixed order."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    n = x.size
+    last = n - n % 4
+    for i in range(0, last, 4):
+        a += x[i] * y[i]
+        b += x[i + 1] * y[i + 1]
+        c += x[i + 2] * y[i + 2]
+        d += x[i + 3] * y[i + 3]
+    for i in range(last, n):
+        a += x[i] * y[i]
+    return (a + b) + (c + d)
+
+
+@kernel
+def move_elastic_into(elastic, response, anchors, forces, rate, deformation):
+    """Elastic coordinates at the end of the step; the energy that they lost in it is returned.
+
+    Parameters
+    ----------
+    elastic : Elastic
+    response : Response
+    anchors : Anchors
+    forces : float64 array, shape (n_points, 3)
+        Impulses on the points, body frames [N s]; rows of those that carry contact count.
+    rate : float64 array, shape (n_shapes,)
+        At the end of the step without contact; overwritten with those with it.
+    deformation : Deformation
+        Changed in place.
+
+    Returns
+    -------
+    float
+        Energy that viscosity and the scheme took, neither below zero [J].
+
+    Notes
+    -----
+    With rates and amplitudes weighted by theta the work of an impulse is ``impulse rate_theta``, the viscosity takes
+    ``h damping rate_theta^2`` and the scheme ``(theta - 1/2) (change of rate^2 + omega^2 change of amplitude^2)``:
+    these add up to the change of the elastic and kinetic energy exactly.
+    """
+    for body in range(elastic.first_shape.size - 1):
+        shapes = shapes_of(elastic, body)
+        first, low, high = elastic.first_point[body], elastic.first_shape[body], elastic.first_shape[body + 1]
+        push = np.zeros(high - low)
+        for entry in range(anchors.first[body], anchors.first[body + 1]):
+            point = anchors.active[entry]
+            for axis in range(3):
+                force, row = forces[point, axis], shapes[3 * (point - first) + axis]
+                if force != 0.0:
+                    for shape in range(push.size):
+                        push[shape] += force * row[shape]
+        for shape in range(push.size):
+            rate[low + shape] += response.admittance[low + shape] * push[shape]
+    dt, theta = response.dt, response.theta
+    viscous, algorithmic = 0.0, 0.0
+    for shape in range(rate.size):
+        old, new = deformation.rate[shape], rate[shape]
+        mean = (1.0 - theta) * old + theta * new
+        change = dt * mean
+        viscous += dt * elastic.damping[shape] * mean * mean
+        algorithmic += (new - old) * (new - old) + elastic.squared_frequency[shape] * change * change
+        deformation.amplitude[shape] += change
+        deformation.rate[shape] = new
+    deformation.lost[0] += (theta - 0.5) * algorithmic
+    return viscous + (theta - 0.5) * algorithmic
+
+
+@kernel
+def elastic_energy(elastic, deformation):
+    """Kinetic and strain energy of the elastic coordinates [J]."""
+    kinetic, strain = 0.0, 0.0
+    for shape in range(deformation.rate.size):
+        kinetic += 0.5 * deformation.rate[shape] ** 2
+        strain += 0.5 * elastic.squared_frequency[shape] * deformation.amplitude[shape] ** 2
+    return kinetic, strain

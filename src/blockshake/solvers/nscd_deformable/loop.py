@@ -1,0 +1,139 @@
+"""The time loop of deformable bodies, compiled whole: predict, find, solve, move, account, record."""
+
+import numpy as np
+
+from blockshake.dynamics.collapse import find_collapsed
+from blockshake.dynamics.system import place_driven_into
+from blockshake.jit import kernel
+from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit
+from blockshake.solvers.nscd.contact.contacts import contact_margin
+from blockshake.solvers.nscd.contact.law_shift import bodies_meet
+from blockshake.solvers.nscd.contact.polyhedra import empty_placed, place_into
+from blockshake.solvers.nscd.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
+from blockshake.solvers.nscd.joints import slip_into, with_pressed
+from blockshake.solvers.nscd.loop import find_diverged, least_impulse, record_until_into
+from blockshake.solvers.nscd.progress import LAST_STEP
+from blockshake.solvers.nscd.recording import record_into
+from blockshake.solvers.nscd.step import empty_step, move_into, predict_into
+from blockshake.solvers.nscd_deformable.contact_points import find_contacts
+from blockshake.solvers.nscd_deformable.contact_step import solve_step
+from blockshake.solvers.nscd_deformable.elastic_step import elastic_energy, move_elastic_into, points_into
+from blockshake.solvers.nscd_deformable.solve.operator import working_velocities
+from blockshake.solvers.record import with_room
+from blockshake.solvers.status import COLLAPSED, COMPLETED, DIVERGED, NEXT_RECORD, PAUSED, STEP
+
+_ROUNDING = 1e-9  # of a step, when a record time meets the end of a step
+
+
+@kernel
+def integrate(model, times, pause, progress, deformation, contacts, joints, factor, record):
+    """Integrate from where ``progress`` stands to the last record time, to a pause, to collapse or divergence.
+
+    Parameters
+    ----------
+    model : Model
+    times : float64 array, shape (n_times,)
+        When to record, increasing from 0 [s].
+    pause : int
+        Number of steps made after which to pause.
+    progress, deformation : Progress, Deformation
+        Changed in place.
+    contacts : Contacts
+        Of the step before, to start the next one from.
+    joints : Joints
+    factor : Factor
+    record : Record
+        Filled from the next record on.
+
+    Returns
+    -------
+    code, culprit : int
+        Of `blockshake.solvers.status`; body that collapsed or ran away, else -1.
+    contacts, joints, factor, record : Contacts, Joints, Factor, Record
+        To go on with.
+    """
+    scene, elastic, bodies = model.scene, model.elastic, model.scene.bodies
+    settings, state, clock = scene.settings, progress.state, progress.clock
+    dt, theta = settings.dt, settings.theta
+    step, placed, ground = empty_step(state), empty_placed(scene.polyhedra), ground_at_start(scene.table)
+    energy_before = progress.energy.copy()
+    meeting_speed = np.linalg.norm(bodies.gravity) * dt
+    rate = np.empty(deformation.rate.size)
+    if clock[STEP] == 0:
+        _start(model, ground, step, placed, deformation, progress)
+    n_steps = int(np.ceil(times[times.size - 1] / dt - _ROUNDING))
+    if n_steps == 0:
+        record_into(bodies, state, state, progress.energy, progress.energy, 0.0, 0, record)
+        clock[NEXT_RECORD] = 1
+    while clock[STEP] < n_steps:
+        if clock[STEP] == pause:
+            return PAUSED, -1, contacts, joints, factor, record
+        iterations, residual, part, parts, response = 0, 0.0, 0, 1, model.whole
+        while part < parts:
+            h, place = dt / parts, clock[STEP] * parts + part
+            move_ground_by_secant_into(ground, (place + 1.0 - theta) * h, (place + 2.0 - theta) * h, h)
+            predict_into(bodies, state, ground, h, theta, step)
+
+            margin = contact_margin(step.v_start, scene.polyhedra.radius, bodies.gravity, h)
+            floor, share = least_impulse(bodies, step.v, h), h / progress.audit[LAST_STEP]
+            found, anchors, motion, tried, left, factor = solve_step(
+                model, response, theta, settings.restitution, margin, joints, progress.face, contacts, share,
+                floor, settings.tolerance, deformation, rate, step, placed, factor,
+            )  # fmt: skip
+            n_contacts = found.gap.size - scene.stoppers.body.size
+            iterations += tried
+            if parts < settings.impact_parts and bodies_meet(found, n_contacts, step.v_start, meeting_speed):
+                parts, response = settings.impact_parts, model.part
+                continue
+            contacts, residual = found, max(residual, left)
+
+            move_ground_into(ground, (place + 1) * h)
+            move_into(bodies, ground, h, theta, contacts, step, state)
+            mean = (1.0 - response.theta) * deformation.rate
+            lost = move_elastic_into(elastic, response, anchors, motion.forces, rate, deformation)
+            mean += response.theta * deformation.rate
+            points_into(elastic, mean, anchors, motion.points)
+            u_mean = working_velocities(anchors, step.rotations, contacts, step.v_mean, motion.points)
+            kinetic, strain = elastic_energy(elastic, deformation)
+            energy_before[:] = progress.energy
+            account_into(
+                bodies, scene.stoppers, scene.watch.base, contacts, u_mean, step, theta, (kinetic, strain, lost),
+                progress,
+            )  # fmt: skip
+            audit_into(contacts, n_contacts, progress)
+            joints = with_pressed(joints, contacts, n_contacts)
+            slip_into(contacts, n_contacts, motion.u, h, theta, joints)
+            progress.audit[LAST_STEP] = h
+            part += 1
+
+            runaway = find_diverged(state)
+            if runaway >= 0:
+                clock[STEP] += 1
+                return DIVERGED, runaway, contacts, joints, factor, record
+            record = with_room(record, joints.slip.size)
+            record_until_into(
+                bodies, ground, step.before, energy_before, contacts, n_contacts, joints, place, h, times, progress,
+                record,
+            )  # fmt: skip
+        count_into(iterations, residual, settings.tolerance, parts, clock, progress.audit)
+        clock[STEP] += 1
+        fallen = find_collapsed(bodies, state, scene.watch.supported, scene.watch.drop_limit)
+        if fallen >= 0:
+            return COLLAPSED, fallen, contacts, joints, factor, record
+    return COMPLETED, -1, contacts, joints, factor, record
+
+
+@kernel
+def _start(model, ground, step, placed, deformation, progress):
+    """Driven bodies where the motion has them at time zero, and the energy that the run starts with."""
+    scene, state = model.scene, progress.state
+    dt, theta = scene.settings.dt, scene.settings.theta
+    place_driven_into(scene.bodies, ground.displacement, ground.velocity, state)
+    place_into(scene.polyhedra, state.position, state.orientation, placed)
+    predict_into(scene.bodies, state, ground, 0.0, theta, step)
+    at_start, _ = find_contacts(
+        scene.bodies, model.elastic, scene.polyhedra, placed, step.rotations, 0.0, model.spacing, scene.layers,
+        theta * dt * dt, progress.face.copy(), 0,
+    )  # fmt: skip
+    _, strain = elastic_energy(model.elastic, deformation)
+    start_audit(scene.bodies, at_start, dt, theta, strain, progress)

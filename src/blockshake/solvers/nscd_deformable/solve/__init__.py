@@ -1,0 +1,1 @@
+"""The contact problem of deformable bodies, in the impulses."""

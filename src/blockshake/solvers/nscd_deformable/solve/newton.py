@@ -1,0 +1,204 @@
+"""Newton steps on all contacts at once, in their impulses, with a factorisation kept as long as it serves."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.jit import kernel
+from blockshake.solvers.nscd.contact.friction import coefficient_along
+from blockshake.solvers.nscd.solve.newton import linear_law_into
+from blockshake.solvers.nscd.vectors import matrix_product
+from blockshake.solvers.nscd_deformable.solve.band_elimination import factor_into, solve_into
+from blockshake.solvers.nscd_deformable.solve.operator import extend_into, velocities_into
+
+OPEN, STUCK, SLIPPING = 0, 1, 2
+_SAME_PLACE = 0.01  # m; contacts that moved farther on their body have another operator
+
+
+class Factor(NamedTuple):
+    """A factored system, and the contacts that it belongs to.
+
+    ``body_a``, ``body_b``, ``state`` int64 (n_contacts,) and ``home`` (n_contacts, 3): of these contacts.
+    ``setting`` (2,): step [s] and stiffness of the proximal term [1]. ``matrix`` (n, n) and ``last`` int64 (n,): of
+    the closed contacts' impulses, as in `factor_into`.
+    """
+
+    body_a: np.ndarray
+    body_b: np.ndarray
+    state: np.ndarray
+    home: np.ndarray
+    setting: np.ndarray
+    matrix: np.ndarray
+    last: np.ndarray
+
+
+class Laws(NamedTuple):
+    """Linear laws ``p = offset - slope u`` of the contacts, as in `linear_law_into`, and their ``state``."""
+
+    slope: np.ndarray
+    offset: np.ndarray
+    state: np.ndarray
+
+
+@kernel
+def no_factor():
+    """Nothing factored yet."""
+    none = np.empty(0, np.int64)
+    return Factor(none, none, none, np.empty((0, 3)), np.zeros(2), np.empty((0, 0)), none)
+
+
+@kernel
+def empty_laws(n_contacts):
+    """Work space."""
+    return Laws(np.empty((n_contacts, 3, 3)), np.empty((n_contacts, 3)), np.empty(n_contacts, np.int64))
+
+
+@kernel
+def _laws_into(contacts, u, stiffness, laws):
+    """Linear laws at the velocities ``u`` of the contacts."""
+    for contact in range(contacts.gap.size):
+        D = laws.slope[contact]
+        linear_law_into(contacts, contact, u[contact], stiffness, D, laws.offset[contact])
+        state = OPEN
+        if D[0, 0] > 0.0:
+            state = SLIPPING if D[1, 0] != 0.0 or D[2, 0] != 0.0 or D[1, 1] == 0.0 else STUCK
+        laws.state[contact] = state
+
+
+@kernel
+def _serves(factor, contacts, laws, setting):
+    """Whether a factored system still belongs to these contacts and states."""
+    n = contacts.gap.size
+    if factor.state.size != n or factor.setting[0] != setting[0] or factor.setting[1] != setting[1]:
+        return False
+    for contact in range(n):
+        if (
+            factor.state[contact] != laws.state[contact]
+            or factor.body_a[contact] != contacts.body_a[contact]
+            or factor.body_b[contact] != contacts.body_b[contact]
+        ):
+            return False
+        for axis in range(3):
+            if abs(factor.home[contact, axis] - contacts.home[contact, axis]) > _SAME_PLACE:
+                return False
+    return True
+
+
+@kernel
+def _factored(contacts, laws, setting, operator):
+    """The system ``I + D W`` of the closed contacts, factored; its ``matrix`` is empty where it is singular."""
+    n = contacts.gap.size
+    row = np.full(n, -1, np.int64)
+    closed = 0
+    for contact in range(n):
+        if laws.state[contact] != OPEN:
+            row[contact] = closed
+            closed += 1
+    A, last = np.zeros((3 * closed, 3 * closed)), np.empty(3 * closed, np.int64)
+    for one in range(n):
+        if row[one] < 0:
+            continue
+        end = row[one]
+        D = laws.slope[one]
+        for other in range(n):
+            if row[other] < 0:
+                continue
+            if other > operator.last[one]:
+                break
+            end = max(end, row[other])
+            if operator.last[other] < one:
+                continue
+            for i in range(3):
+                below = A[3 * row[one] + i, 3 * row[other] : 3 * row[other] + 3]
+                if one == other:
+                    below[i] = 1.0
+                for k in range(3):
+                    slope = D[i, k]
+                    if slope != 0.0:
+                        given = operator.matrix[3 * one + k, 3 * other : 3 * other + 3]
+                        for j in range(3):
+                            below[j] += slope * given[j]
+        last[3 * row[one] : 3 * row[one] + 3] = 3 * end + 2
+    if not factor_into(A, last):
+        A = np.empty((0, 0))
+    return Factor(
+        contacts.body_a.copy(), contacts.body_b.copy(), laws.state.copy(), contacts.home.copy(), setting.copy(), A,
+        last,
+    )  # fmt: skip
+
+
+@kernel
+def newton_step_into(problem, contacts, stiffness, fresh, operator, motion, laws, factor):
+    """Replace the impulses by those of one Newton step, inside Coulomb's cone, and the velocities with them.
+
+    Parameters
+    ----------
+    problem : Problem
+    contacts : Contacts
+        ``impulse`` is changed.
+    stiffness : float
+        Of the proximal term, as in `linear_law_into`.
+    fresh : bool
+        Factor anew even where the kept factorisation belongs to these contacts.
+    operator : Operator
+        Of this step; extended where it is needed.
+    motion : Motion
+        Of the impulses before, and after.
+    laws : Laws
+        Overwritten.
+    factor : Factor
+
+    Returns
+    -------
+    done : bool
+        False, with the impulses of open contacts gone at most, where the system is singular.
+    made : bool
+        Whether the factorisation was made in this step.
+    factor : Factor
+
+    Notes
+    -----
+    ``(I + D W) dp = c - D u - p`` with the linear laws of `linear_law_into`. The velocities are those of the exact
+    operator, so that an old factorisation costs iterations and no accuracy.
+    """
+    n = contacts.gap.size
+    _laws_into(contacts, motion.u, stiffness, laws)
+    dropped = False
+    for contact in range(n):
+        if laws.state[contact] == OPEN:
+            p = contacts.impulse[contact]
+            if p[0] != 0.0 or p[1] != 0.0 or p[2] != 0.0:
+                p[:] = 0.0
+                dropped = True
+    if dropped:
+        velocities_into(problem, contacts, motion)
+    setting, made = np.array([problem.response.dt, stiffness]), False
+    if fresh or not _serves(factor, contacts, laws, setting):
+        extend_into(problem, contacts, laws.state != OPEN, operator)
+        factor, made = _factored(contacts, laws, setting, operator), True
+    x, closed = np.empty(factor.matrix.shape[0]), 0
+    for contact in range(n):
+        if laws.state[contact] != OPEN:
+            due = matrix_product(laws.slope[contact], motion.u[contact])
+            for axis in range(3):
+                x[3 * closed + axis] = (
+                    laws.offset[contact, axis] - due[axis] - contacts.impulse[contact, axis]
+                )
+            closed += 1
+    if factor.matrix.shape[0] != 3 * closed:
+        return False, made, factor
+    solve_into(factor.matrix, factor.last, x)
+    closed = 0
+    for contact in range(n):
+        if laws.state[contact] != OPEN:
+            p = contacts.impulse[contact]
+            for axis in range(3):
+                p[axis] += x[3 * closed + axis]
+            p[0] = max(p[0], 0.0)
+            size = np.sqrt(p[1] * p[1] + p[2] * p[2])
+            limit = coefficient_along(contacts, contact, p[1], p[2]) * p[0]
+            if size > limit:
+                p[1], p[2] = p[1] * limit / size, p[2] * limit / size
+            closed += 1
+    velocities_into(problem, contacts, motion)
+    return True, made, factor

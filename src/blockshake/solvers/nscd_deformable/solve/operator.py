@@ -1,0 +1,279 @@
+"""Velocities of contacts that impulses cause, through rigid motion and through deformation."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.jit import kernel
+from blockshake.solvers.nscd.contact.contacts import W_11, W_22, W_N1, W_N2, W_NN
+from blockshake.solvers.nscd.solve.gauss_seidel import (
+    apply_impulses_into,
+    contact_velocities,
+    relative_velocity,
+)
+from blockshake.solvers.nscd.vectors import cross, dot, matrix_product, put_into, transposed_product
+from blockshake.solvers.nscd_deformable.contact_points import anchored
+from blockshake.solvers.nscd_deformable.elastic_step import compliance_of
+
+
+class Problem(NamedTuple):
+    """One step's contact problem but for the contacts themselves.
+
+    ``inverse_inertia`` (n_bodies, 3, 3): world frame [1/(kg m2)]; ``rotations`` (n_bodies, 3, 3), body to world;
+    ``v_free`` (n_bodies, 6) and ``point_free`` (n_points, 3): velocities of the bodies, world frame, and of the
+    lattice's points, body frames, at the end of the step without contact; ``bodies``, ``elastic``, ``response``,
+    ``anchors``: Bodies, Elastic, Response, Anchors.
+    """
+
+    bodies: tuple
+    elastic: tuple
+    response: tuple
+    anchors: tuple
+    inverse_inertia: np.ndarray
+    rotations: np.ndarray
+    v_free: np.ndarray
+    point_free: np.ndarray
+
+
+class Motion(NamedTuple):
+    """Velocities that belong to the impulses.
+
+    ``v`` (n_bodies, 6); ``forces`` and ``points`` (n_points, 3): impulses on the lattice's points and their velocities,
+    body frames; ``u`` (n_contacts, 3): of the contacts, along their bases [m/s].
+    """
+
+    v: np.ndarray
+    forces: np.ndarray
+    points: np.ndarray
+    u: np.ndarray
+
+
+@kernel
+def empty_motion(n_bodies, n_points, n_contacts):
+    """Work space."""
+    return Motion(
+        np.empty((n_bodies, 6)), np.empty((n_points, 3)), np.empty((n_points, 3)), np.empty((n_contacts, 3))
+    )
+
+
+@kernel
+def impulses_on_points_into(anchors, rotations, contacts, forces):
+    """Share the contacts' impulses out to the lattice's points, body frames."""
+    forces[:] = 0.0
+    for contact in range(contacts.gap.size):
+        world = transposed_product(contacts.basis[contact], contacts.impulse[contact])
+        for side in range(2):
+            body = contacts.body_b[contact] if side else contacts.body_a[contact]
+            sign = 1.0 if side else -1.0
+            inward = transposed_product(rotations[body], world)
+            for corner in range(4):
+                weight = sign * anchors.weights[contact, side, corner]
+                if weight != 0.0:
+                    force = forces[anchors.points[contact, side, corner]]
+                    for axis in range(3):
+                        force[axis] += weight * inward[axis]
+
+
+@kernel
+def elastic_velocity(anchors, rotations, contacts, contact, points):
+    """Velocity of b's surface minus that of a's by deformation, along the contact's basis [m/s]."""
+    R_a, R_b = rotations[contacts.body_a[contact]], rotations[contacts.body_b[contact]]
+    of_a = matrix_product(R_a, anchored(anchors, contact, 0, points))
+    of_b = matrix_product(R_b, anchored(anchors, contact, 1, points))
+    return matrix_product(contacts.basis[contact], (of_b[0] - of_a[0], of_b[1] - of_a[1], of_b[2] - of_a[2]))
+
+
+@kernel
+def velocities_into(problem, contacts, motion):
+    """Velocities that the contacts' impulses give: the exact operator, without a matrix for all contacts."""
+    bodies, elastic, anchors = problem.bodies, problem.elastic, problem.anchors
+    apply_impulses_into(bodies, problem.inverse_inertia, contacts, problem.v_free, motion.v)
+    impulses_on_points_into(anchors, problem.rotations, contacts, motion.forces)
+    for body in range(bodies.mass.size):
+        first, own = elastic.first_point[body], anchors.active[anchors.first[body] : anchors.first[body + 1]]
+        C = compliance_of(elastic, problem.response, body)
+        for point in own:
+            for axis in range(3):
+                motion.points[point, axis] = problem.point_free[point, axis]
+        for source in own:
+            for axis in range(3):
+                force = motion.forces[source, axis]
+                if force != 0.0:
+                    # the compliance is symmetric: its rows are its columns
+                    row = C[3 * (source - first) + axis]
+                    for point in own:
+                        at = 3 * (point - first)
+                        motion.points[point, 0] += force * row[at]
+                        motion.points[point, 1] += force * row[at + 1]
+                        motion.points[point, 2] += force * row[at + 2]
+    for contact in range(contacts.gap.size):
+        u = relative_velocity(contacts, contact, motion.v)
+        e = elastic_velocity(anchors, problem.rotations, contacts, contact, motion.points)
+        for axis in range(3):
+            motion.u[contact, axis] = u[axis] + e[axis]
+
+
+@kernel
+def _point_rows_into(problem, contacts, contact, side, G):
+    """Velocity of the lattice points of a contact's body, along the contact's basis, per impulse: ``G`` (3, 3 n)."""
+    anchors, elastic = problem.anchors, problem.elastic
+    body = contacts.body_b[contact] if side else contacts.body_a[contact]
+    C, first = compliance_of(elastic, problem.response, body), elastic.first_point[body]
+    basis, R = contacts.basis[contact], problem.rotations[body]
+    own = anchors.active[anchors.first[body] : anchors.first[body + 1]]
+    for point in own:
+        at = 3 * (point - first)
+        for i in range(3):
+            G[i, at] = G[i, at + 1] = G[i, at + 2] = 0.0
+    for corner in range(4):
+        weight = anchors.weights[contact, side, corner]
+        if weight == 0.0:
+            continue
+        source = 3 * (anchors.points[contact, side, corner] - first)
+        for i in range(3):
+            direction = transposed_product(R, basis[i])
+            for axis in range(3):
+                factor, row = weight * direction[axis], C[source + axis]
+                if factor != 0.0:
+                    for point in own:
+                        at = 3 * (point - first)
+                        G[i, at] += factor * row[at]
+                        G[i, at + 1] += factor * row[at + 1]
+                        G[i, at + 2] += factor * row[at + 2]
+
+
+@kernel
+def _levers_into(contacts, contact, side, lever):
+    """Moments about the mass centre of unit impulses along a contact's basis: rows of ``lever`` (3, 3) [m]."""
+    arm = contacts.arm_b[contact] if side else contacts.arm_a[contact]
+    for i in range(3):
+        put_into(cross(arm, contacts.basis[contact, i]), lever[i])
+
+
+@kernel
+def _add_block_into(problem, contacts, one, side, G, lever, other, other_side, block):
+    """Add the effect of contact ``other``'s impulse on contact ``one``'s velocity through a body of both."""
+    sign = 1.0 if side == other_side else -1.0
+    elastic, anchors = problem.elastic, problem.anchors
+    body = contacts.body_b[one] if side else contacts.body_a[one]
+    arm = contacts.arm_b[other] if other_side else contacts.arm_a[other]
+    inverse_mass = problem.bodies.inverse_mass[body]
+    first, R, inertia = elastic.first_point[body], problem.rotations[body], problem.inverse_inertia[body]
+    for j in range(3):
+        along = contacts.basis[other, j]
+        spin = matrix_product(inertia, cross(arm, along))
+        inward = transposed_product(R, along)
+        for i in range(3):
+            w = inverse_mass * dot(contacts.basis[one, i], along) + dot(lever[i], spin)
+            for corner in range(4):
+                weight = anchors.weights[other, other_side, corner]
+                if weight != 0.0:
+                    at = 3 * (anchors.points[other, other_side, corner] - first)
+                    w += weight * (G[i, at] * inward[0] + G[i, at + 1] * inward[1] + G[i, at + 2] * inward[2])
+            block[i, j] += sign * w
+
+
+@kernel
+def own_operators_into(problem, contacts):
+    """Fill in ``contacts.delassus``: what each contact's velocity makes of its own impulse."""
+    elastic, anchors = problem.elastic, problem.anchors
+    lever = np.empty((3, 3))
+    for contact in range(contacts.gap.size):
+        W, basis = np.zeros((3, 3)), contacts.basis[contact]
+        for side in range(2):
+            body = contacts.body_b[contact] if side else contacts.body_a[contact]
+            C, first = compliance_of(elastic, problem.response, body), elastic.first_point[body]
+            held = np.zeros((3, 3))
+            for corner in range(4):
+                for other in range(4):
+                    weight = anchors.weights[contact, side, corner] * anchors.weights[contact, side, other]
+                    if weight != 0.0:
+                        row = 3 * (anchors.points[contact, side, corner] - first)
+                        column = 3 * (anchors.points[contact, side, other] - first)
+                        for k in range(3):
+                            for m in range(3):
+                                held[k, m] += weight * C[row + k, column + m]
+            _levers_into(contacts, contact, side, lever)
+            for j in range(3):
+                spin = matrix_product(problem.inverse_inertia[body], lever[j])
+                answer = matrix_product(held, transposed_product(problem.rotations[body], basis[j]))
+                W[j, j] += problem.bodies.inverse_mass[body]
+                for i in range(3):
+                    inward = transposed_product(problem.rotations[body], basis[i])
+                    W[i, j] += dot(lever[i], spin) + dot(inward, answer)
+        w = contacts.delassus[contact]
+        w[W_NN] = contacts.share[contact] * W[0, 0] + contacts.compliance[contact]
+        w[W_11], w[W_22], w[W_N1], w[W_N2] = W[1, 1], W[2, 2], W[0, 1], W[0, 2]
+
+
+@kernel
+def working_velocities(anchors, rotations, contacts, v, points):
+    """Velocities that impulses do work on: of the contacts, for velocities ``v`` of the bodies and of the points."""
+    u = contact_velocities(contacts, v)
+    for contact in range(contacts.gap.size):
+        e = elastic_velocity(anchors, rotations, contacts, contact, points)
+        for axis in range(3):
+            u[contact, axis] += e[axis]
+    return u
+
+
+class Operator(NamedTuple):
+    """Velocity of contacts per impulse of each other, as far as it has been asked for in a step.
+
+    ``known`` bool (n_contacts,): contacts in it. ``last`` int64 (n_contacts,): the last contact that each, or one
+    before it, shares a body with. ``matrix`` (3 n_contacts, 3 n_contacts): zero where contacts are not coupled [1/kg].
+    """
+
+    known: np.ndarray
+    last: np.ndarray
+    matrix: np.ndarray
+
+
+@kernel
+def empty_operator(problem, contacts):
+    """Nothing known but which contacts are coupled."""
+    n, driven = contacts.gap.size, problem.bodies.driven
+    of_body, last = np.full(driven.size, -1, np.int64), np.arange(n)
+    for contact in range(n):
+        of_body[contacts.body_a[contact]] = of_body[contacts.body_b[contact]] = contact
+    for contact in range(n):
+        if contact:
+            last[contact] = max(contact, last[contact - 1])
+        for body in (contacts.body_a[contact], contacts.body_b[contact]):
+            if not driven[body]:
+                last[contact] = max(last[contact], of_body[body])
+    return Operator(np.zeros(n, np.bool_), last, np.zeros((3 * n, 3 * n)))
+
+
+@kernel
+def extend_into(problem, contacts, wanted, operator):
+    """Bring the contacts that are ``wanted``, bool (n_contacts,), into the operator."""
+    elastic, driven, n = problem.elastic, problem.bodies.driven, contacts.gap.size
+    widest = 0
+    for body in range(driven.size):
+        widest = max(widest, 3 * (elastic.first_point[body + 1] - elastic.first_point[body]))
+    G_a, G_b, block = np.empty((3, widest)), np.empty((3, widest)), np.empty((3, 3))
+    lever_a, lever_b = np.empty((3, 3)), np.empty((3, 3))
+    known, W = operator.known, operator.matrix
+    for one in range(n):
+        if not wanted[one] or known[one]:
+            continue
+        known[one] = True
+        a, b = contacts.body_a[one], contacts.body_b[one]
+        _point_rows_into(problem, contacts, one, 0, G_a)
+        _point_rows_into(problem, contacts, one, 1, G_b)
+        _levers_into(contacts, one, 0, lever_a)
+        _levers_into(contacts, one, 1, lever_b)
+        for other in range(n):
+            c, d = contacts.body_a[other], contacts.body_b[other]
+            if not known[other] or (a not in (c, d) and b not in (c, d)):
+                continue
+            block[:] = 0.0
+            if not driven[a] and a in (c, d):
+                _add_block_into(problem, contacts, one, 0, G_a, lever_a, other, 0 if a == c else 1, block)
+            if not driven[b] and b in (c, d):
+                _add_block_into(problem, contacts, one, 1, G_b, lever_b, other, 0 if b == c else 1, block)
+            for i in range(3):
+                for j in range(3):
+                    W[3 * one + i, 3 * other + j] = block[i, j]
+                    W[3 * other + j, 3 * one + i] = block[i, j]

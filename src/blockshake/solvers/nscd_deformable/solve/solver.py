@@ -1,0 +1,122 @@
+"""All contacts of a step together: Newton steps, with Gauss-Seidel sweeps where they fail."""
+
+import numpy as np
+
+from blockshake.jit import kernel
+from blockshake.solvers.nscd_deformable.solve.gauss_seidel import sweep_into
+from blockshake.solvers.nscd_deformable.solve.newton import empty_laws, newton_step_into
+from blockshake.solvers.nscd_deformable.solve.operator import (
+    empty_operator,
+    extend_into,
+    own_operators_into,
+    velocities_into,
+)
+from blockshake.solvers.nscd_deformable.solve.residual import residual_of
+
+# As in `blockshake.solvers.nscd.solve.solver`: the stiffer the proximal term the faster, the softer the surer.
+_STIFFNESS = (1e6, 1e4, 1e3, 1e2)
+_NEWTON_STEPS = (15, 15, 25, 50)
+_SHARES = (0.5, 0.25, 0.125)
+_FIRST_SWEEPS = 8
+# A kept factorisation that lowers the residual by less than this is made anew.
+_SLOW = 0.1
+
+
+@kernel
+def _shorten_into(problem, contacts, motion, floor, old_impulse, old_u, tolerance):
+    """Go back along a Newton step to the share of it with the least residual, which is returned."""
+    residual = residual_of(contacts, motion.u, floor)
+    if residual <= tolerance:
+        return residual
+    new_impulse, new_u = contacts.impulse.copy(), motion.u.copy()
+    best, best_share = residual, 1.0
+    for share in _SHARES:
+        contacts.impulse[:] = old_impulse + share * (new_impulse - old_impulse)
+        motion.u[:] = old_u + share * (new_u - old_u)
+        residual = residual_of(contacts, motion.u, floor)
+        if residual < best:
+            best, best_share = residual, share
+    contacts.impulse[:] = old_impulse + best_share * (new_impulse - old_impulse)
+    motion.u[:] = old_u + best_share * (new_u - old_u)
+    return best
+
+
+@kernel
+def solve_contacts_into(problem, contacts, floor, tolerance, max_iterations, motion, factor):
+    """Impulses that satisfy the contact law of all contacts at once.
+
+    Parameters
+    ----------
+    problem : Problem
+    contacts : Contacts
+        ``impulse`` holds the start and, afterwards, the answer.
+    floor : float
+        As in `residual_of` [N s].
+    tolerance : float
+        Relative residual that ends the search [1].
+    max_iterations : int
+        Newton steps and sweeps allowed, together.
+    motion : Motion
+        Overwritten with the velocities of the answer.
+    factor : Factor
+        Kept from an earlier step.
+
+    Returns
+    -------
+    iterations : int
+    residual : float
+        Relative residual of the answer, the best met.
+    factor : Factor
+        To keep.
+    """
+    n = contacts.gap.size
+    own_operators_into(problem, contacts)
+    velocities_into(problem, contacts, motion)
+    if n == 0:
+        return 0, 0.0, factor
+    best, best_impulse = residual_of(contacts, motion.u, floor), contacts.impulse.copy()
+    old_impulse, old_u = np.empty((n, 3)), np.empty((n, 3))
+    operator, laws = empty_operator(problem, contacts), empty_laws(n)
+    iterations, sweeps = 0, _FIRST_SWEEPS
+    while True:
+        for attempt in range(len(_STIFFNESS)):
+            fresh = False
+            for _ in range(_NEWTON_STEPS[attempt]):
+                if iterations == max_iterations:
+                    break
+                iterations += 1
+                old_impulse[:] = contacts.impulse
+                old_u[:] = motion.u
+                before = residual_of(contacts, motion.u, floor)
+                done, made, factor = newton_step_into(
+                    problem, contacts, _STIFFNESS[attempt], fresh, operator, motion, laws, factor
+                )
+                if not done:
+                    break
+                residual = _shorten_into(problem, contacts, motion, floor, old_impulse, old_u, tolerance)
+                fresh = not made and residual > _SLOW * before
+                if residual < best:
+                    best = residual
+                    best_impulse[:] = contacts.impulse
+                if best <= tolerance:
+                    break
+            contacts.impulse[:] = best_impulse
+            velocities_into(problem, contacts, motion)
+            if best <= tolerance or iterations == max_iterations:
+                return iterations, best, factor
+        extend_into(problem, contacts, np.ones(n, np.bool_), operator)
+        for sweep in range(sweeps):
+            if iterations == max_iterations:
+                break
+            iterations += 1
+            sweep_into(contacts, operator.matrix, sweep % 2 == 0, motion.u)
+        velocities_into(problem, contacts, motion)
+        residual = residual_of(contacts, motion.u, floor)
+        if residual < best:
+            best = residual
+            best_impulse[:] = contacts.impulse
+        if best <= tolerance or iterations == max_iterations:
+            contacts.impulse[:] = best_impulse
+            velocities_into(problem, contacts, motion)
+            return iterations, best, factor
+        sweeps *= 2

@@ -1,0 +1,65 @@
+import numpy as np
+import pytest
+
+from blockshake.geometry.structure import build_structure
+from blockshake.solvers.nscd_deformable.driver import simulate_deformable
+from blockshake.solvers.nscd_deformable.parameters import DeformableParameters
+
+SLAB = {"name": "slab", "shape": "slab", "position": [0.0, 0.0, -0.1], "driven": True}
+SHAPES = {
+    "slab": {"box": [3.0, 3.0, 0.2]},
+    "sharp": {"box": [0.8, 2.4, 1.6]},
+    "cube": {"box": [1.0, 1.0, 1.0]},
+}
+
+
+@pytest.fixture(scope="session")
+def stone():
+    """Structure of boxes of one material on a driven slab whose top is at z = 0."""
+
+    def make(
+        bodies, *, youngs_modulus=3.45e10, poisson_ratio=0.2, viscous_modulus=1.5e8, friction=0.75, **keys
+    ):
+        material = {
+            "density": 2400.0,
+            "youngs_modulus": youngs_modulus,
+            "poisson_ratio": poisson_ratio,
+            "viscous_modulus": viscous_modulus,
+        }
+        mapping = {
+            "name": "test",
+            "materials": {"stone": material},
+            "shapes": {**SHAPES, **keys.pop("shapes", {})},
+            "bodies": [{"material": "stone", **body} for body in [SLAB, *bodies]],
+            "friction": [{"pair": ["stone", "stone"], "coefficient": friction}],
+            **keys,
+        }
+        return build_structure(mapping, "test.yaml", ".")
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def tower():
+    """Bodies of a tower of equal boxes."""
+
+    def make(count, shape="sharp", height=1.6):
+        return [
+            {"name": f"block-{n + 1}", "shape": shape, "position": [0.0, 0.0, (n + 0.5) * height]}
+            for n in range(count)
+        ]
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def deform():
+    """Run of the deformable solver recorded at a uniform rate; keys are ``nscd_deformable`` parameters."""
+
+    def run(structure, duration, *, motion=None, time_step=1e-3, rate=200, viscous=False, **parameters):
+        times = np.arange(round(duration * rate) + 1) / rate
+        return simulate_deformable(
+            structure, motion, DeformableParameters(**parameters), times, time_step, viscous=viscous
+        )
+
+    return run
