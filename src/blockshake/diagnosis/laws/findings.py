@@ -1,0 +1,91 @@
+"""Which laws a campaign breaks, and which effects break just these."""
+
+from blockshake.validation import Strict
+
+
+class LawFinding(Strict):
+    """One law over all open tests.
+
+    Attributes
+    ----------
+    name, unit : str
+    value, error : float
+        Mean departure from the nominal model over the tests that tell it, and its standard error, on the law's scale.
+    measured : dict of str to float
+        By test: the value that was read.
+    expected : dict of str to float
+        By test: mean over nominal draws.
+    departures : dict of str to float
+        By test: departure in standard deviations.
+    broken : bool
+    """
+
+    name: str
+    unit: str
+    value: float
+    error: float
+    measured: dict[str, float]
+    expected: dict[str, float]
+    departures: dict[str, float]
+    broken: bool
+
+
+class OutsideForce(Strict):
+    """A force from outside that accounts for the broken laws.
+
+    Attributes
+    ----------
+    bodies : tuple of str
+        Blocks on any of which it may act, as a force along x through the block's centre; the best first.
+    law : str
+        ``steady`` throughout, ``constant`` from an instant on, ``pulse``, ``spring``, ``damper`` or ``proportional``.
+    scores : dict of str to float
+        By law: information criterion less that of the best, summed over tests.
+    amplitude, lower, upper : float
+        Of the law on the first body, with an interval of 90 % over the tests [N, N/m, N s/m].
+    unit : str
+    tests : dict of str to dict of str to float
+        By test that shows it: ``start`` and ``end`` [s], ``largest`` force [N], and a spring's ``gap`` [m] and
+        ``side``.
+    """
+
+    bodies: tuple[str, ...]
+    law: str
+    scores: dict[str, float]
+    amplitude: float
+    lower: float
+    upper: float
+    unit: str
+    tests: dict[str, dict[str, float]]
+
+
+class LawFindings(Strict):
+    """Laws of a campaign.
+
+    Attributes
+    ----------
+    laws : tuple of LawFinding
+        By falling departure.
+    isolated : tuple of str
+        Effects whose own law is broken and that account for all others that are.
+    holding : dict of str to str
+        By effect whose own law was told and holds: that law.
+    outside : OutsideForce or None
+        Where no effect of the registry accounts for the broken laws and a force from outside does.
+    outside_of_stop : OutsideForce or None
+        Force of the stop, where a contact with a stop is isolated.
+    p : float
+        Chance of departures as large as the largest by the nominal model [1].
+    """
+
+    laws: tuple[LawFinding, ...]
+    isolated: tuple[str, ...]
+    holding: dict[str, str]
+    outside: OutsideForce | None
+    outside_of_stop: OutsideForce | None = None
+    p: float
+
+    @property
+    def broken(self):
+        """Laws that are broken."""
+        return tuple(one for one in self.laws if one.broken)

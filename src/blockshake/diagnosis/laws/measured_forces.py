@@ -1,0 +1,80 @@
+"""Joint forces of the measured tests: histories for the reader's eye, and the force from outside they ask for."""
+
+import json
+
+import numpy as np
+import xarray as xr
+
+from blockshake.diagnosis.laws.findings import OutsideForce
+from blockshake.diagnosis.laws.outside_force import outside_force
+from blockshake.forces.joint_forces import gives_forces, joint_forces
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign import load_test
+from blockshake.measurement.motion.outliers import without_outliers
+from blockshake.parity.correction import corrected
+
+
+def measured_forces(campaign, names, findings):
+    """Joint forces of open tests, their sensors' faults taken out.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    names : sequence of str
+        Of the tests.
+    findings : sequence of Finding
+        Sensor faults.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``test`` and ``time``, single precision: ``lever``, ``lever_error``, ``normal`` and ``shear(joint)`` of
+        the joints that are statically determinate [m, N], ``side(joint)``, the edge that bears, and
+        ``unexplained(body)``, the least unexplained force along x [N]; ``half_width(joint)`` [m]. The attribute
+        ``outside`` is an `OutsideForce` as JSON, or null. Empty where the sensors give no forces.
+    """
+    structure = load_structure(campaign.structure)
+    found = {}
+    for name in names:
+        test = without_outliers(corrected(load_test(campaign, name), name, structure, findings), structure)
+        test = test.assign_coords(time=np.round(test["time"] - test["time"][0], 6))
+        if gives_forces(test, structure, campaign.sensors):
+            found[name] = joint_forces(test, structure, campaign.sensors)
+    if not found:
+        return xr.Dataset(attrs={"outside": json.dumps(None)})
+    outside = outside_force(found)
+    whole = xr.concat([_histories(one) for one in found.values()], dim="test", join="outer")
+    text = json.dumps(outside.model_dump() if outside else None)
+    return whole.assign_coords(test=list(found)).assign_attrs(outside=text)
+
+
+def outside_of(forces):
+    """Force from outside that `measured_forces` found, or None."""
+    found = json.loads(forces.attrs["outside"])
+    return OutsideForce(**found) if found else None
+
+
+def _histories(forces):
+    """Histories of one test."""
+    joints = [forces.faces.index(face) for face in forces.transmitted.faces]
+    free = np.flatnonzero(~forces.structure.driven)
+    names = forces.structure.body_names
+    columns = {
+        "lever": forces.transmitted.lever,
+        "lever_error": forces.transmitted.lever_error,
+        "normal": forces.transmitted.normal,
+        "shear": forces.transmitted.force[..., 0],
+        "side": forces.joints.side[:, joints],
+    }
+    return xr.Dataset(
+        {
+            **{name: (("time", "joint"), values.astype(np.float32)) for name, values in columns.items()},
+            "unexplained": (("time", "body"), forces.least.wrench[:, free, 0].astype(np.float32)),
+            "half_width": ("joint", [face.half_width for face in forces.transmitted.faces]),
+        },
+        {
+            "time": np.round(forces.motion.time, 6),
+            "joint": [face.name for face in forces.transmitted.faces],
+            "body": [names[body] for body in free],
+        },
+    )

@@ -1,0 +1,86 @@
+"""A force from outside over all tests of a campaign: the blocks it may act on, its law and its size."""
+
+import numpy as np
+
+from blockshake.diagnosis.laws.findings import OutsideForce
+from blockshake.forces.outside.force_laws import fit_laws
+from blockshake.forces.outside.push_history import push_history
+
+_UNITS = {
+    "steady": "N",
+    "constant": "N",
+    "pulse": "N",
+    "spring": "N/m",
+    "damper": "N s/m",
+    "proportional": "N/m",
+}
+_SHOWN = 25.0  # by how much a law's information must beat that of no force, for a test to show it
+_AGREES = 3.0  # factor of the least unexplained distance that blocks agree within
+_NOISE = 1.0  # squared distance of an instant that is explained
+_NORMAL_90 = 1.645
+
+
+def outside_force(forces):
+    """Force from outside that explains most of what dry joints cannot.
+
+    Parameters
+    ----------
+    forces : dict of str to JointForces
+        By open test.
+
+    Returns
+    -------
+    OutsideForce or None
+        None where no test shows one.
+    """
+    structure = next(iter(forces.values())).structure
+    free = [int(body) for body in np.flatnonzero(~structure.driven)]
+    left, fits = {}, {}
+    for body in free:
+        pushes = {test: push_history(one, body) for test, one in forces.items()}
+        left[body] = sum(float(np.nansum(one.distance**2)) for one in pushes.values())
+        fits[body] = {test: fit_laws(forces[test].motion.time, one) for test, one in pushes.items()}
+    instants = sum(len(one.motion.time) for one in forces.values())
+    floor = min(left.values()) + _NOISE * 0.05 * instants
+    agreeing = [body for body in free if left[body] <= _AGREES * floor]
+    scored = {body: _score(fits[body]) for body in agreeing}
+    shown = {body: one for body, one in scored.items() if one}
+    if not shown:
+        return None
+    # of blocks that agree the lowest information is no measure: their errors differ; the middle one stands for all
+    order = sorted(shown, key=lambda body: left[body])
+    best = order[0] if left[order[0]] < 0.5 * left[order[-1]] else order[len(order) // 2]
+    law, scores, tests = shown[best]
+    amplitudes = np.array([one.amplitude for one in tests.values()])
+    errors = np.array([one.error for one in tests.values()])
+    weight = errors**-2
+    mean = float(weight @ amplitudes / weight.sum())
+    scatter = float(amplitudes.std(ddof=1) / np.sqrt(len(amplitudes))) if len(amplitudes) > 1 else 0.0
+    half = _NORMAL_90 * float(np.hypot(weight.sum() ** -0.5, scatter))
+    names = structure.body_names
+    return OutsideForce(
+        bodies=tuple(names[body] for body in [best, *[one for one in order if one != best]]),
+        law=law,
+        scores=scores,
+        amplitude=mean,
+        lower=mean - half,
+        upper=mean + half,
+        unit=_UNITS[law],
+        tests={test: {**one.parameters, "amplitude": one.amplitude} for test, one in tests.items()},
+    )
+
+
+def _score(fits):
+    """Best law over the tests that show a force, the scores of all laws, and its fits; None if no test shows one."""
+    shown = {}
+    for test, own in fits.items():
+        by_name = {one.name: one for one in own}
+        if own and own[0].name != "none" and by_name["none"].information - own[0].information > _SHOWN:
+            shown[test] = by_name
+    if not shown:
+        return None
+    names = [name for name in _UNITS if all(name in own for own in shown.values())]
+    total = {name: sum(own[name].information for own in shown.values()) for name in names}
+    law = min(total, key=total.get)
+    scores = {name: value - total[law] for name, value in sorted(total.items(), key=lambda item: item[1])}
+    return law, scores, {test: own[law] for test, own in shown.items()}

@@ -1,0 +1,1 @@
+"""Joint forces: the forces that the joints must have transmitted, computed from the readings alone."""

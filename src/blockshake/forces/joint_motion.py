@@ -1,0 +1,131 @@
+"""Motion of the joints: rotation, slip and where each face still bears, from the smoothed motion."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import binary_dilation
+from scipy.spatial.transform import Rotation
+
+from blockshake.forces.local_fit import REACH
+from blockshake.geometry.rotations import rotation_matrices
+
+TURNED = 3e-4  # rad: a joint that bears on an edge; elastic joints turn by a tenth of it before they open
+_SURE = 5.0  # standard deviations
+_CALM = 3.0  # widths of the kernel: a change of edge farther away moves a lever by less than a millimetre
+
+
+@dataclass(frozen=True)
+class JointMotion:
+    """Motion of the joints in the axes of the lower body's face.
+
+    Attributes
+    ----------
+    rotation : float64 array, shape (n_times, n_joints)
+        Of the upper body about the second tangent: positive leans its top along the first one [rad].
+    rotation_error : float64 array, shape (n_joints,)
+        [rad]
+    slip, slip_rate : float64 arrays, shape (n_times, n_joints)
+        Along the first tangent, of the point of the upper body that bears [m, m/s].
+    slip_rate_error : float64 array, shape (n_joints,)
+        [m/s]
+    side, across : int8 arrays, shape (n_times, n_joints)
+        Edge that bears: 1 or -1 along the first, and along the second tangent, 0 for the whole face.
+    steady : bool array, shape (n_times,)
+        No joint's bearing edge changes within three widths of the kernel.
+    bears : bool array, shape (n_times, n_joints, 2, 2)
+        By tangent, for its negative and its positive edge: whether it bears at any time within the kernel's reach.
+    """
+
+    rotation: np.ndarray
+    rotation_error: np.ndarray
+    slip: np.ndarray
+    slip_rate: np.ndarray
+    slip_rate_error: np.ndarray
+    side: np.ndarray
+    across: np.ndarray
+    steady: np.ndarray
+    bears: np.ndarray
+
+
+def joint_motion(structure, faces, motion, still, width):
+    """Motion of all joints.
+
+    Parameters
+    ----------
+    structure : Structure
+    faces : list of Face
+    motion : Motion
+    still : bool array, shape (n_times,)
+        The quiet start, from whose mean rotations count.
+    width : float
+        Of the kernel of the motion [s].
+
+    Returns
+    -------
+    JointMotion
+    """
+    histories = [_one_joint(structure, face, motion, still) for face in faces]
+    one = {name: np.stack([own[name] for own in histories], axis=-1) for name in histories[0]}
+    side, across = _bearing(one["rotation"], one["rotation_error"]), -_bearing(one["roll"], one["roll_error"])
+    reach = int(np.ceil(REACH * width / np.median(np.diff(motion.time))))
+    calm = int(np.ceil(_CALM * width / np.median(np.diff(motion.time))))
+    changed = np.zeros(len(side), dtype=bool)
+    changed[1:] = (side[1:] != side[:-1]).any(axis=1)
+    near = np.ones((2 * reach + 1, 1), dtype=bool)
+    bears = [[binary_dilation(tangent * sign >= 0, near) for sign in (-1, 1)] for tangent in (side, across)]
+    return JointMotion(
+        one["rotation"], one["rotation_error"], one["slip"], one["slip_rate"], one["slip_rate_error"],
+        side, across, ~binary_dilation(changed, iterations=calm), np.moveaxis(np.array(bears), (0, 1), (2, 3)),
+    )  # fmt: skip
+
+
+def _bearing(rotation, error):
+    """Edge that bears, by the sign of a rotation that is surely more than an elastic one."""
+    turned = np.abs(rotation) > np.maximum(TURNED, _SURE * error)
+    return np.where(turned, np.sign(rotation), 0.0).astype(np.int8)
+
+
+def _one_joint(structure, face, motion, still):
+    """Histories and errors of one joint by name, see `JointMotion`."""
+    lower, upper = face.lower, face.upper
+    start = rotation_matrices(structure.orientation[[lower, upper]])
+    axes = motion.rotation[:, lower] @ (start[0].T @ face.axes)
+    turned = motion.rotation[:, upper] @ start[1].T
+    relative = np.swapaxes(motion.rotation[:, lower] @ start[0].T, -1, -2) @ turned
+    roll, turn = (_about(relative, face.axes[:, axis], still) for axis in range(2))
+    bearing = face.half_width * np.clip(turn / TURNED, -1.0, 1.0)
+    middle = motion.position[:, upper] + motion.rotation[:, upper] @ face.on_upper
+    seat = motion.position[:, lower] + motion.rotation[:, lower] @ face.on_lower
+    point = middle + bearing[:, None] * (turned @ face.axes[:, 0])
+    rate = _velocity(motion, upper, point) - _velocity(motion, lower, point)
+    pose, rates = (
+        covariance[upper] + covariance[lower]
+        for covariance in (motion.pose_covariance, motion.rate_covariance)
+    )
+    arm = rotation_matrices(structure.orientation[upper]) @ face.on_upper
+    along = np.concatenate([face.axes[:, 0], np.cross(arm, face.axes[:, 0])])
+    return {
+        "rotation": turn,
+        "rotation_error": np.sqrt(face.axes[:, 1] @ pose[3:, 3:] @ face.axes[:, 1]),
+        "roll": roll,
+        "roll_error": np.sqrt(face.axes[:, 0] @ pose[3:, 3:] @ face.axes[:, 0]),
+        "slip": np.einsum("ti,ti->t", axes[..., 0], middle - seat),
+        "slip_rate": np.einsum("ti,ti->t", axes[..., 0], rate),
+        "slip_rate_error": np.sqrt(along @ rates @ along),
+    }
+
+
+def _velocity(motion, body, point):
+    """Velocity of the point of a body that is at a place [m/s]."""
+    return motion.velocity[:, body] + np.cross(
+        motion.angular_velocity[:, body], point - motion.position[:, body]
+    )
+
+
+def _about(turns, axis, still):
+    """Component of the rotation vectors of some matrices along an axis, less its mean in the quiet start."""
+    found = np.full(len(turns), np.nan)
+    known = np.isfinite(turns).all(axis=(-2, -1))
+    found[known] = Rotation.from_matrix(turns[known]).as_rotvec() @ axis
+    rest = still & known
+    return found - (found[rest].mean() if rest.any() else 0.0)

@@ -1,0 +1,1 @@
+"""Laws of the joints, read off their forces: each a number with its standard error."""

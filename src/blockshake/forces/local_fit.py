@@ -1,0 +1,107 @@
+"""Local quadratic fits of readings: smoothed values and derivatives by a positive kernel, with their noise."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+REACH = 4.0  # of the kernel's standard deviation: what lies beyond has no weight
+_FEWEST = 6  # readings of a fit
+
+
+@dataclass(frozen=True)
+class LocalFit:
+    """Value and first two derivatives at some times.
+
+    Attributes
+    ----------
+    values : float64 array, shape (degree + 1, n_times, n_channels)
+        Value and derivatives; NaN where the readings do not tell.
+    variances : float64 array, shape (degree + 1, n_times, n_channels)
+        For readings with noise of variance 1, of the same memory throughout.
+    """
+
+    values: np.ndarray
+    variances: np.ndarray
+
+
+def fit_locally(times, readings, at, width, degree=2, memory=0.0):
+    """Fit a polynomial with Gaussian weights about each time, channel by channel.
+
+    Parameters
+    ----------
+    times : float64 array, shape (n_readings,)
+        Uniform, increasing [s].
+    readings : float64 array, shape (n_readings, n_channels)
+        NaN is a gap.
+    at : float64 array, shape (n_times,)
+        Where it is asked for [s].
+    width : float
+        Standard deviation of the kernel [s].
+    degree : int
+        Of the polynomial: 2, or 0 for a mean with positive weights.
+    memory : float
+        Correlation of the noise of neighbouring readings, first-order autoregressive [1].
+
+    Returns
+    -------
+    LocalFit
+
+    Notes
+    -----
+    The second derivative is a mean of the true second derivative with weights that are nowhere negative, whatever the
+    gaps: the leading coefficient of a least-squares polynomial is a positively weighted mean of divided
+    differences (Jacobi 1841; de Boor and Pinkus 2003), and a divided difference is a mean of the derivative over a
+    B-spline. So a smoothed history of forces that a joint can carry is one that it can carry. Without
+    gaps the weights are the Gaussian itself.
+
+    A fit needs readings on both sides of its time, and no gap near it longer than twice the width.
+    """
+    rate = (len(times) - 1) / (times[-1] - times[0])
+    half = int(np.ceil(REACH * width * rate))
+    offsets = np.arange(-half, half + 1)
+    nearest = np.rint((at - times[0]) * rate).astype(int)
+    places = nearest[:, None] + offsets
+    inside = (places >= 0) & (places < len(times))
+    places = np.clip(places, 0, len(times) - 1)
+    u = (times[places] - at[:, None]) / width
+    weight = np.where(inside & (np.abs(u) <= REACH), np.exp(-0.5 * u**2), 0.0)
+    powers = u[..., None] ** np.arange(degree + 1)
+    read = np.isfinite(readings)
+    filled = np.where(read, readings, 0.0)
+    n_times, n_channels = len(at), readings.shape[1]
+    values = np.full((degree + 1, n_times, n_channels), np.nan)
+    variances = np.full((degree + 1, n_times, n_channels), np.inf)
+    scale = np.array([1.0, 1.0 / width, 2.0 / width**2])[: degree + 1]
+    shared = {}
+    for channel in range(n_channels):
+        pattern = read[:, channel].tobytes()
+        if pattern not in shared:
+            shared[pattern] = _operators(weight * read[places, channel], powers, u, scale, memory)
+        rows, told, variance = shared[pattern]
+        found = np.einsum("dtw,tw->dt", rows, filled[places, channel])
+        values[:, told, channel] = found[:, told]
+        variances[:, told, channel] = variance[:, told]
+    return LocalFit(values, variances)
+
+
+def _operators(weight, powers, u, scale, memory):
+    """Weights of the readings in value and derivatives, where they tell, and the variances for unit noise."""
+    moments = np.einsum("tw,twi,twj->tij", weight, powers, powers, optimize=True)
+    told = ((weight > 0.0).sum(axis=1) >= _FEWEST) & _surrounded(weight, u)
+    moments[~told] = np.eye(powers.shape[-1])
+    rows = np.einsum("tij,twj,tw->itw", np.linalg.inv(moments), powers, weight, optimize=True)
+    rows *= scale[:, None, None]
+    variance = (rows**2).sum(axis=-1)
+    together = memory
+    for lag in range(1, rows.shape[-1] if memory > 0.0 else 1):
+        variance = variance + 2.0 * together * (rows[..., lag:] * rows[..., :-lag]).sum(axis=-1)
+        together *= memory
+    return rows, told, variance
+
+
+def _surrounded(weight, u):
+    """Whether there are readings within one width of the time on both sides, and beyond."""
+    used = weight > 0.0
+    before, after = (used & (u <= 0.0) & (u > -1.0)).any(axis=1), (used & (u >= 0.0) & (u < 1.0)).any(axis=1)
+    far = (used & (u < -1.5)).any(axis=1) & (used & (u > 1.5)).any(axis=1)
+    return before & after & far

@@ -1,0 +1,189 @@
+"""Motion of the bodies with its covariance, from all their sensors at once."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from blockshake.forces.equations import AccelerationEquations
+from blockshake.forces.local_fit import fit_locally
+from blockshake.forces.noise import noise_memory
+from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.motion.body_poses import PLANAR, TRANSLATION, body_poses
+
+WIDTH = 0.015  # s, standard deviation of the smoothing kernel
+_COVERED = 2.5  # of it: an instant nearer to an end of the record is left out
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Smoothed motion of all bodies; all vectors in the world frame.
+
+    Attributes
+    ----------
+    time : float64 array, shape (n_times,)
+        [s]
+    position, velocity, acceleration : float64 arrays, shape (n_times, n_bodies, 3)
+        Of the mass centres [m, m/s, m/s2]; NaN where unknown.
+    rotation : float64 array, shape (n_times, n_bodies, 3, 3)
+        Body to world.
+    angular_velocity, angular_acceleration : float64 arrays, shape (n_times, n_bodies, 3)
+        [rad/s, rad/s2]
+    information : float64 array, shape (n_times, n_bodies, 6, 6)
+        Inverse covariance of acceleration and angular acceleration; singular where a direction is not read, zero
+        where nothing is.
+    pose_covariance, rate_covariance : float64 arrays, shape (n_bodies, 6, 6)
+        Of the smoothed position and small rotation [m, rad], and of their rates [m/s, rad/s].
+    known : list of str, length n_bodies
+        As of `body_poses`.
+    """
+
+    time: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+    rotation: np.ndarray
+    angular_velocity: np.ndarray
+    angular_acceleration: np.ndarray
+    information: np.ndarray
+    pose_covariance: np.ndarray
+    rate_covariance: np.ndarray
+    known: list
+
+
+def smooth_motion(test, structure, sensors, step, width=WIDTH):
+    """Motion of all bodies of a test.
+
+    Parameters
+    ----------
+    test : xarray.Dataset
+        As in a campaign's test file, outliers left out; markers count from rest.
+    structure : Structure
+    sensors : Sensors
+    step : float
+        Between instants, at least one reading of the markers [s].
+    width : float
+        Standard deviation of the Gaussian kernel [s].
+
+    Returns
+    -------
+    Motion
+        At instants that the kernel covers, of the markers' times.
+
+    Notes
+    -----
+    Positions are local parabolas through the poses that the markers give. Accelerations are the least squares of
+    two kinds of equations, each with its variance: a marker at the arm r has the second derivative
+    ``a + alpha x r + omega x (omega x r)``, and an accelerometer along d reads ``d . (that - g)``, both smoothed by the
+    same positive kernel, see `fit_locally`.
+    """
+    read_at = test["time"].to_numpy()
+    time = _instants(read_at, step, width)
+    poses = body_poses(test, structure, sensors.marker_noise)
+    memory = noise_memory(test, structure)
+    start = rotation_matrices(structure.orientation)
+    position, velocity, gains = _smooth_position(read_at, poses.position, time, width, memory)
+    rotation, spin = _smooth_rotation(read_at, poses.rotation, start, time, width)
+    equations = AccelerationEquations(len(time), len(structure.mass))
+    turning = np.where(np.isfinite(rotation), rotation, start), np.where(np.isfinite(spin), spin, 0.0)
+    _add_markers(equations, test, structure, sensors, time, turning, width, memory)
+    if "accelerometer" in test:
+        _add_accelerometers(equations, test, structure, sensors, time, turning, width)
+    _hold_unread(equations, structure, poses.known)
+    acceleration, information = equations.solve()
+    return Motion(
+        time, position, velocity, acceleration[..., :3], rotation, spin, acceleration[..., 3:], information,
+        gains[0] * poses.covariance, gains[1] * poses.covariance, poses.known,
+    )  # fmt: skip
+
+
+def _instants(read_at, step, width):
+    """Times of every so-manieth reading, from where to where the kernel's weight lies within the record."""
+    every = max(1, round(step / float(np.median(np.diff(read_at)))))
+    chosen = read_at[::every]
+    return chosen[(chosen >= read_at[0] + _COVERED * width) & (chosen <= read_at[-1] - _COVERED * width)]
+
+
+def _smooth_position(read_at, position, time, width, memory):
+    """Smoothed positions and velocities, and by how much less noise they have than one reading."""
+    fit = fit_locally(read_at, position.reshape(len(read_at), -1), time, width, memory=memory)
+    usual = np.where(np.isfinite(fit.variances), fit.variances, np.nan)
+    gains = np.nanmedian(usual.reshape(3, -1), axis=1)
+    return *fit.values[:2].reshape(2, len(time), *position.shape[1:]), gains
+
+
+def _smooth_rotation(read_at, rotation, start, time, width):
+    """Smoothed rotations and angular velocities.
+
+    Rotation vectors from the start are smoothed: those of blocks that rock stay far below a radian, and to second
+    order the angular velocity is ``v' + v x v' / 2``.
+    """
+    turned = rotation @ np.swapaxes(start, -1, -2)
+    vectors = np.full(rotation.shape[:-1], np.nan)
+    known = np.isfinite(turned).all(axis=(-2, -1))
+    vectors[known] = Rotation.from_matrix(turned[known]).as_rotvec()
+    fit = fit_locally(read_at, vectors.reshape(len(read_at), -1), time, width)
+    value, rate = fit.values[:2].reshape(2, len(time), *vectors.shape[1:])
+    told = np.isfinite(value).all(axis=-1)
+    smooth = np.full((len(time), *rotation.shape[1:]), np.nan)
+    smooth[told] = Rotation.from_rotvec(value[told]).as_matrix()
+    return smooth @ start, rate + 0.5 * np.cross(value, rate)
+
+
+def _add_markers(equations, test, structure, sensors, time, turning, width, memory):
+    """Equations of all markers: their second derivatives along the three axes."""
+    read_at = test["time"].to_numpy()
+    rotation, spin = turning
+    displacement = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()
+    fit = fit_locally(read_at, displacement.reshape(len(read_at), -1), time, width, memory=memory)
+    shape = len(time), *displacement.shape[1:]
+    second, variance = fit.values[2].reshape(shape), sensors.marker_noise**2 * fit.variances[2].reshape(shape)
+    axes = np.broadcast_to(np.eye(3), (len(time), 3, 3))
+    for place, name in enumerate(map(str, test["marker"].values)):
+        (marker,) = (one for one in structure.file.markers if one.name == name)
+        body, arm = _carried(structure, marker, rotation)
+        towards = _centripetal(spin[:, body], arm)
+        equations.add(body, axes, arm, second[:, place] - towards, variance[:, place])
+
+
+def _add_accelerometers(equations, test, structure, sensors, time, turning, width):
+    """Equations of all channels: specific force along an axis of the body, less its value at rest."""
+    read_at = test["time_acc"].to_numpy()
+    rotation, spin = turning
+    gravity = np.array(structure.file.gravity)
+    readings = test["accelerometer"].transpose("time_acc", "channel").to_numpy()
+    channels = [str(name) for name in test["channel"].values]
+    for sensor in structure.file.accelerometers:
+        for axis in sensor.axes:
+            if f"{sensor.name}-{axis}" not in channels:
+                continue
+            body, arm = _carried(structure, sensor, rotation)
+            direction = rotation[:, body, :, "xyz".index(axis)]
+            weight = direction @ gravity
+            # the direction turns little within the kernel: its product with gravity is smoothed with the reading
+            force = readings[:, channels.index(f"{sensor.name}-{axis}")] + np.interp(
+                read_at, time, weight - weight[0]
+            )
+            fit = fit_locally(read_at, force[:, None], time, width, degree=0)
+            towards = (direction * _centripetal(spin[:, body], arm)).sum(axis=-1)
+            equations.add(
+                body, direction[:, None], arm, fit.values[0] - towards[:, None],
+                sensors.accelerometer_noise**2 * fit.variances[0],
+            )  # fmt: skip
+
+
+def _carried(structure, sensor, rotation):
+    """Body of a sensor, and its arm from the mass centre in the world frame, (n_times, 3)."""
+    (body,), (arm,) = structure.carriers([sensor]), structure.arms([sensor])
+    return body, rotation[:, body] @ arm
+
+
+def _centripetal(spin, arm):
+    return np.cross(spin, np.cross(spin, arm))
+
+
+def _hold_unread(equations, structure, known):
+    """Take as none the turns that too few markers leave open: of planar bodies, and of a table with one marker."""
+    equations.hold([body for body, one in enumerate(known) if one == PLANAR], [3, 5])
+    tables = [body for body, one in enumerate(known) if one == TRANSLATION and structure.driven[body]]
+    equations.hold(tables, [3, 4, 5])

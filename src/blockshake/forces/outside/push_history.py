@@ -1,0 +1,98 @@
+"""History of a horizontal force on one block that would explain what dry joints cannot."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from blockshake.forces.laws.friction import SLIPS
+from blockshake.forces.least_force import least_force
+
+
+@dataclass(frozen=True)
+class PushHistory:
+    """A force along x through a body's mass centre.
+
+    Attributes
+    ----------
+    body : int
+    force, error : float64 arrays, shape (n_times,)
+        And its standard deviation [N].
+    told : bool array, shape (n_times,)
+        Whether the joints tell it: a joint below is turned and stays on its edge or slips, or the force is needed
+        for sure.
+    distance : float64 array, shape (n_times,)
+        What it leaves unexplained, in standard deviations [1].
+    edge : float64 array, shape (n_times,)
+        Force by which the joint's edge would seem to lie a metre further out [N/m]: edges are known to millimetres.
+    displacement, velocity : float64 arrays, shape (n_times,)
+        Of the body against the table along x [m, m/s].
+    """
+
+    body: int
+    force: np.ndarray
+    error: np.ndarray
+    told: np.ndarray
+    distance: np.ndarray
+    edge: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+
+
+_SURE = 4.0  # standard deviations
+
+
+def push_history(forces, body):
+    """Smallest force on a body that explains as much as any.
+
+    Parameters
+    ----------
+    forces : JointForces
+    body : int
+        Free.
+
+    Returns
+    -------
+    PushHistory
+
+    Notes
+    -----
+    A force that the contacts can take up without moving leaves no trace: the history is told only where a joint below
+    the body bears on an edge or slips.
+    """
+    motion = forces.motion
+    least = least_force(forces.structure, forces.faces, motion, forces.joints, forces.required, pushed=body)
+    n_times = len(motion.time)
+    error, turned = np.full(n_times, np.inf), np.zeros(n_times, dtype=bool)
+    edge, slips = np.zeros(n_times), np.zeros(n_times, dtype=bool)
+    for place, face in enumerate(forces.transmitted.faces):
+        if body not in forces.transmitted.carried[place]:
+            continue
+        joint = forces.faces.index(face)
+        middle = motion.position[:, face.upper] + motion.rotation[:, face.upper] @ face.on_upper
+        arm = motion.position[:, body, 2] - middle[:, 2]
+        side = forces.joints.side[:, joint]
+        here = (side != 0) & forces.joints.steady & ~turned
+        by_lever = forces.transmitted.normal[:, place] / arm
+        # the lowest joint that is turned tells the force best; before any is, the lowest joint's error stands
+        first = here | ~np.isfinite(error)
+        error = np.where(first, forces.transmitted.lever_error[:, place] * by_lever, error)
+        edge = np.where(here, side * by_lever, edge)
+        turned |= here
+        slips |= np.abs(forces.joints.slip_rate[:, joint]) > np.maximum(
+            SLIPS, _SURE * forces.joints.slip_rate_error[joint]
+        )
+    known = np.isfinite(least.distance) & np.isfinite(error)
+    told = known & (turned | slips | (np.abs(least.push) > _SURE * error))
+    driven = int(np.flatnonzero(forces.structure.driven)[0])
+    moved = motion.position[:, body, 0] - motion.position[:, driven, 0]
+    rest = np.nanmean(moved[forces.still]) if forces.still.any() else 0.0
+    return PushHistory(
+        body=body,
+        force=least.push,
+        error=error,
+        told=told,
+        distance=least.distance,
+        edge=edge,
+        displacement=moved - rest,
+        velocity=motion.velocity[:, body, 0] - motion.velocity[:, driven, 0],
+    )

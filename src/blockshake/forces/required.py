@@ -1,0 +1,55 @@
+"""Newton and Euler: the wrench that each body must have been given, from its motion."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class RequiredWrenches:
+    """Wrenches of all contacts on each body, about its mass centre, world frame.
+
+    Attributes
+    ----------
+    wrench : float64 array, shape (n_times, n_bodies, 6)
+        Force [N] and moment [N m]; NaN where the body's motion is unknown.
+    information : float64 array, shape (n_times, n_bodies, 6, 6)
+        Inverse covariance; singular where a direction is not read.
+    """
+
+    wrench: np.ndarray
+    information: np.ndarray
+
+
+def required_wrenches(structure, motion):
+    """Wrenches by the equations of Newton, ``F = m (a - g)``, and Euler, ``M = I alpha + omega x I omega``.
+
+    Parameters
+    ----------
+    structure : Structure
+    motion : Motion
+
+    Returns
+    -------
+    RequiredWrenches
+        Of driven bodies too, whose mass is the structure's.
+    """
+    turn = motion.rotation
+    inertia = turn @ structure.inertia @ np.swapaxes(turn, -1, -2)
+    gravity = np.array(structure.file.gravity)
+    force = structure.mass[:, None] * (motion.acceleration - gravity)
+    spin = motion.angular_velocity
+    momentum = np.einsum("tbij,tbj->tbi", inertia, spin)
+    moment = np.einsum("tbij,tbj->tbi", inertia, motion.angular_acceleration) + np.cross(spin, momentum)
+    known = np.isfinite(inertia).all(axis=(-2, -1))
+    inverse = np.zeros((*inertia.shape[:2], 6, 6))
+    inverse[..., :3, :3] = np.eye(3) / structure.mass[:, None, None]
+    inverse[known, 3:, 3:] = np.linalg.inv(inertia[known])
+    information = np.swapaxes(inverse, -1, -2) @ motion.information @ inverse
+    return RequiredWrenches(np.concatenate([force, moment], axis=-1), information)
+
+
+def information_root(information):
+    """Roots W of information matrices, ``W^T W`` the matrix; rows of directions that are not read are zero."""
+    values, vectors = np.linalg.eigh(information)
+    return np.sqrt(np.maximum(values, 0.0))[..., :, None] * np.swapaxes(vectors, -1, -2)

@@ -1,0 +1,58 @@
+"""Decisions that the laws of the joints overrule, narrow or leave as they are."""
+
+import pytest
+from made_up_decision import made_up_decision
+
+from blockshake.diagnosis.inference.lawful_decision import with_laws
+from blockshake.diagnosis.laws.findings import LawFinding, LawFindings, OutsideForce
+
+PLACES = {"table-pitch": {}, "weak-joint@slab-block-1": {"joint": ("slab", "block-1")}}
+PITCH = LawFinding(
+    name="table.pitch", unit="rad s2/m", value=3.7, error=0.2, measured={"one": 4.1e-4, "two": 4.3e-4},
+    expected={"one": 0.0, "two": 0.0}, departures={"one": 9.0, "two": 9.0}, broken=True,
+)  # fmt: skip
+SOFT = PITCH.model_copy(update={"name": "table.compliance", "unit": "rad/(N m)"})
+PUSH = OutsideForce(
+    bodies=("block-2",), law="constant", scores={"constant": 0.0}, amplitude=-2e3, lower=-2.2e3, upper=-1.8e3,
+    unit="N", tests={"one": {"start": 3.0}},
+)  # fmt: skip
+
+
+def findings(laws=(), isolated=(), holding=(), outside=None):
+    return LawFindings(
+        laws=laws, isolated=isolated, holding=dict.fromkeys(holding, "law"), outside=outside,
+        p=1e-9 if laws or outside else 0.5,
+    )  # fmt: skip
+
+
+def test_an_isolated_effect_is_the_cause_with_the_size_that_its_law_reads():
+    found = with_laws(made_up_decision("none"), findings((PITCH,), ("table-pitch",)), PLACES)
+    assert (found.decision, found.causes) == ("named", ("table-pitch",))
+    assert found.p_none == 1e-9
+    size = found.parameters["table-pitch"]["coefficient"]
+    assert size.estimate == pytest.approx(4.2e-4)
+    assert size.lower < 4.2e-4 < size.upper
+
+
+def test_an_effect_whose_law_holds_is_struck_out():
+    found = with_laws(made_up_decision("named", ("table-pitch",)), findings(holding=("table-pitch",)), PLACES)
+    assert (found.decision, found.causes) == ("none", ())
+    assert "its law holds" in found.struck_out["table-pitch"][-1]
+
+
+def test_features_of_whole_tests_decide_where_no_law_is_broken():
+    decision = made_up_decision("named", ("table-pitch",))
+    found = with_laws(decision, findings(), PLACES)
+    assert (found.decision, found.causes) == ("named", ("table-pitch",))
+    assert found.p_none == decision.p_none
+
+
+def test_laws_that_no_effect_accounts_for_make_the_cause_unknown():
+    found = with_laws(made_up_decision("named", ("table-pitch",)), findings((SOFT,)), PLACES)
+    assert (found.decision, found.causes) == ("unknown", ())
+
+
+def test_a_force_that_nobody_thought_of_makes_the_cause_unknown():
+    found = with_laws(made_up_decision("named", ("weak-joint",)), findings(outside=PUSH), PLACES)
+    assert found.decision == "unknown"
+    assert found.laws.outside.bodies == ("block-2",)

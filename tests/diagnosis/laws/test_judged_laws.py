@@ -1,0 +1,147 @@
+"""Broken laws and the effects that they isolate, on values with known answers."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from blockshake.diagnosis.laws.findings import OutsideForce
+from blockshake.diagnosis.laws.judged_laws import judge_laws
+from blockshake.diagnosis.laws.null_laws import null_laws, tamed
+
+TESTS = ("one", "two", "three")
+# law: its value in nominal draws, their scatter, its standard error in a test
+NOMINAL = {
+    "joint1.lever.short": (5e-3, 2e-3, 5e-4),
+    "joint1.lever.bias": (0.0, 5e-4, 3e-4),
+    "joint1.lever.slope": (0.0, 0.05, 0.1),
+    "joint1.lever.stray": (1.1, 0.1, 0.03),
+    "joint1.closed.compliance": (0.0, 1e-9, 1e-9),
+    "joint1.impact.ringing": (0.018, 5e-3, 2e-3),
+    "table.pitch": (0.0, 5e-6, 5e-6),
+    "table.compliance": (0.0, 3e-11, 3e-11),
+    "unexplained.largest": (0.017, 4e-3, 1e-4),
+    "unexplained.mean": (0.0, 1e-4, 1e-4),
+}
+NAMES = list(NOMINAL)
+
+
+def draws(seed, count=20):
+    generator = np.random.default_rng(seed)
+    centre, scatter, _ = np.array(list(NOMINAL.values())).T
+    return centre + scatter * generator.normal(size=(count, len(NAMES)))
+
+
+def reading(seed, **changed):
+    values = dict(zip(NAMES, draws(seed, 1)[0], strict=True)) | changed
+    errors = [error for _, _, error in NOMINAL.values()]
+    return xr.Dataset(
+        {"law_value": ("law", [values[name] for name in NAMES]), "law_error": ("law", errors)}, {"law": NAMES}
+    )
+
+
+def judged(outside=None, by_test=None, **changed):
+    measured = {
+        test: reading(100 + place, **(changed if by_test is None else by_test.get(test, {})))
+        for place, test in enumerate(TESTS)
+    }
+    return judge_laws(measured, {test: draws(place) for place, test in enumerate(TESTS)}, outside)
+
+
+def force(law, **parameters):
+    tests = {test: {"amplitude": 1.0, **parameters} for test in TESTS}
+    return OutsideForce(
+        bodies=("block-2",),
+        law=law,
+        scores={law: 0.0},
+        amplitude=1.0,
+        lower=0.5,
+        upper=1.5,
+        unit="N",
+        tests=tests,
+    )
+
+
+def test_clean_tests_break_no_law():
+    found = judged()
+    assert found.broken == ()
+    assert found.isolated == ()
+    assert found.outside is None
+    assert found.p > 0.01
+    assert set(found.holding) >= {"table-pitch", "reduced-bearing", "eccentricity"}
+
+
+def test_clean_campaigns_seldom_break_a_law():
+    """Two hundred campaigns by the null distribution itself: the thresholds lie far in the tail."""
+    broken = 0
+    for seed in range(200):
+        measured = {test: reading(1000 + 10 * seed + place) for place, test in enumerate(TESTS)}
+        null = {test: draws(5000 + 10 * seed + place) for place, test in enumerate(TESTS)}
+        broken += bool(judge_laws(measured, null, None).broken)
+    assert broken <= 4
+
+
+@pytest.mark.parametrize(
+    ("effect", "changed"),
+    [
+        (
+            "reduced-bearing",
+            {"joint1.lever.short": 0.06, "joint1.lever.stray": 2.5, "joint1.lever.slope": 5.0},
+        ),
+        ("table-pitch", {"table.pitch": 4e-4}),
+        ("table-pitch", {"table.pitch": -4e-4}),
+        ("eccentricity", {"joint1.lever.bias": 0.03, "unexplained.mean": -0.006}),
+    ],
+)
+def test_an_effect_is_isolated_by_its_own_law(effect, changed):
+    assert judged(**changed).isolated == (effect,)
+
+
+def test_a_bearing_that_is_wider_is_no_reduced_one():
+    found = judged(**{"joint1.lever.short": -0.06})
+    assert found.broken
+    assert found.isolated == ()
+
+
+def test_a_law_beside_the_effects_own_isolates_nothing():
+    found = judged(**{"table.pitch": 4e-4, "joint1.lever.bias": 0.03})
+    assert found.isolated == ()
+
+
+def test_an_effect_has_one_size_in_all_tests():
+    by_test = {"one": {"joint1.lever.bias": 0.05}}
+    assert judged(by_test=by_test).isolated == ()
+
+
+def test_a_force_from_an_instant_on_is_no_eccentric_mass():
+    changed = {"joint1.lever.bias": 0.03, "unexplained.mean": -0.006}
+    found = judged(force("constant", start=3.0), **changed)
+    assert found.isolated == ()
+    assert found.outside.law == "constant"
+    assert judged(force("steady"), **changed).isolated == ("eccentricity",)
+
+
+def test_a_spring_beyond_a_gap_is_a_stop():
+    changed = {"joint1.lever.stray": 9.0, "unexplained.largest": 0.4}
+    found = judged(force("spring", gap=0.02, side=1.0), **changed)
+    assert found.isolated == ("stopper-contact",)
+    assert found.outside is None
+    assert found.outside_of_stop.law == "spring"
+    assert judged(force("spring", gap=0.0, side=1.0), **changed).isolated == ()
+
+
+def test_a_force_that_no_law_asks_for_is_dropped():
+    assert judged(force("pulse", start=3.0)).outside is None
+
+
+def test_a_soft_base_is_broken_and_belongs_to_no_effect():
+    found = judged(**{"table.compliance": 2e-9})
+    assert [one.name for one in found.broken] == ["table.compliance"]
+    assert found.isolated == ()
+
+
+def test_laws_that_no_draw_tells_keep_their_usual_value():
+    untold = np.full((20, len(NAMES)), np.nan)
+    nulls = null_laws(NAMES, untold)
+    assert "joint1.impact.ringing" not in nulls
+    assert nulls["joint1.lever.bias"].mean == 0.0
+    assert nulls["joint1.lever.stray"].mean == pytest.approx(tamed("joint1.lever.stray", 1.0))

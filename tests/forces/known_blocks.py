@@ -1,0 +1,122 @@
+"""Readings of blocks whose motion is known in closed form, so that every force follows by hand."""
+
+import numpy as np
+import xarray as xr
+
+from blockshake.geometry.structure import build_structure
+
+GRAVITY = 9.81
+HEIGHT, WIDTH, DEPTH = 1.6, 0.8, 2.4
+RATE, RATE_ACC = 200.0, 512.0
+DURATION = 6.0
+STILL = 0.6  # s
+PLACES = {"a": (0.4, 0.0, 0.0), "b": (-0.3, -1.2, 0.65), "c": (0.3, -1.2, -0.65), "d": (-0.3, -1.2, -0.65)}
+
+
+def stack(n_blocks, friction=0.75):
+    """Stack of sharp-edged blocks on a slab, four markers and an accelerometer a block."""
+    names = [f"block-{number}" for number in range(1, n_blocks + 1)]
+    bodies = [
+        {"name": "slab", "shape": "slab", "material": "concrete", "position": [0, 0, -0.1], "driven": True}
+    ]
+    bodies += [
+        {"name": name, "shape": "block", "material": "concrete", "position": [0, 0, HEIGHT * (place + 0.5)]}
+        for place, name in enumerate(names)
+    ]
+    mapping = {
+        "name": "known",
+        "description": "known",
+        "materials": {
+            "concrete": {
+                "density": 2400.0, "youngs_modulus": 3e10, "poisson_ratio": 0.2, "viscous_modulus": 1e8,
+            }
+        },
+        "shapes": {"slab": {"box": [3.0, 3.0, 0.2]}, "block": {"box": [WIDTH, DEPTH, HEIGHT]}},
+        "bodies": bodies,
+        "friction": [{"pair": ["concrete", "concrete"], "coefficient": friction}],
+        "restitution": 0.5,
+        "markers": [
+            {"name": f"{name}-{key}", "body": name, "position": list(place)}
+            for name in names
+            for key, place in PLACES.items()
+        ]
+        + [
+            {"name": f"slab-{key}", "body": "slab", "position": place}
+            for key, place in {"a": [1.5, 0, 0], "b": [-1.2, -1.5, 0.05], "c": [1.2, -1.5, 0.05]}.items()
+        ],
+        "accelerometers": [
+            {"name": f"{name}-acc", "body": name, "position": [0.4, 0, 0.7], "axes": ["x", "z"]}
+            for name in ["slab", *names]
+        ],
+    }  # fmt: skip
+    return build_structure(mapping, "known.yaml", ".")
+
+
+def shaken(amplitude=1.0, frequency=1.0):
+    """Displacement of a table whose acceleration is a sine of an amplitude [m/s2] once it has grown."""
+
+    def moved(t):
+        own = np.clip(t - STILL, 0.0, None)
+        grown = own**3 / (own**3 + 0.3**3)
+        return -amplitude / (2.0 * np.pi * frequency) ** 2 * grown * np.sin(2.0 * np.pi * frequency * own)
+
+    return moved
+
+
+def readings(structure, poses, noise=0.0, noise_acc=0.0, seed=0):
+    """A test file of bodies whose poses are functions of time.
+
+    Parameters
+    ----------
+    structure : Structure
+    poses : callable
+        Of a time: displacements along x and z of the mass centres [m] and turns about y [rad], (n_bodies, 3).
+    noise, noise_acc : float
+        White, of markers [m] and accelerometers [m/s2].
+    seed : int
+    """
+    generator = np.random.default_rng(seed)
+    time, time_acc = (np.arange(int(DURATION * rate) + 1) / rate for rate in (RATE, RATE_ACC))
+    markers = structure.file.markers
+    places = np.array([_point(structure, poses(t), marker) for t in time for marker in markers])
+    places = places.reshape(len(time), len(markers), 3)
+    moved = places - places[0] + generator.normal(0.0, noise, places.shape)
+    step, channels, columns = 1e-3, [], []
+    for sensor in structure.file.accelerometers:
+        for axis in sensor.axes:
+            channels.append(f"{sensor.name}-{axis}")
+            columns.append([_specific_force(structure, poses, sensor, axis, t, step) for t in time_acc])
+    force = np.array(columns).T
+    return xr.Dataset(
+        {
+            "marker_displacement": (("time", "marker", "axis"), moved),
+            "accelerometer": (
+                ("time_acc", "channel"), force - force[0] + generator.normal(0.0, noise_acc, force.shape)
+            ),
+        },
+        {
+            "time": time, "marker": [marker.name for marker in markers], "axis": ["x", "y", "z"],
+            "time_acc": time_acc, "channel": channels,
+        },
+    )  # fmt: skip
+
+
+def _point(structure, pose, sensor):
+    (body,), (arm,) = structure.carriers([sensor]), structure.arms([sensor])
+    x, z, turn = pose[body]
+    c, s = np.cos(turn), np.sin(turn)
+    own = np.array([c * arm[0] + s * arm[2], arm[1], c * arm[2] - s * arm[0]])
+    return structure.position[body] + [x, 0.0, z] + own
+
+
+def _specific_force(structure, poses, sensor, axis, t, step):
+    before, now, after = (_point(structure, poses(t + shift), sensor) for shift in (-step, 0.0, step))
+    along = (before - 2.0 * now + after) / step**2 + [0.0, 0.0, GRAVITY]
+    turn = poses(t)[structure.carriers([sensor])[0], 2]
+    c, s = np.cos(turn), np.sin(turn)
+    return along @ {"x": [c, 0.0, -s], "z": [s, 0.0, c]}[axis]
+
+
+def accelerations(poses, t, step=1e-3):
+    """Second derivatives of all poses, (n_bodies, 3)."""
+    return (poses(t - step) - 2.0 * poses(t) + poses(t + step)) / step**2

@@ -1,0 +1,66 @@
+"""Histories that follow one law are told from all others."""
+
+import numpy as np
+import pytest
+
+from blockshake.forces.outside.force_laws import fit_laws
+from blockshake.forces.outside.push_history import PushHistory
+
+TIME = np.arange(0.0, 10.0, 0.01)
+ERROR = 200.0  # N
+MOVED = 0.04 * np.sin(2.0 * np.pi * 0.7 * TIME) * np.exp(-0.1 * TIME)
+RATE = np.gradient(MOVED, TIME)
+FORCES = {
+    "steady": np.full(len(TIME), -2000.0),
+    "constant": np.where(TIME > 4.0, -2200.0, 0.0),
+    "pulse": np.where((TIME > 3.5) & (TIME < 3.58), 20e3, 0.0),
+    "spring": -5e6 * np.maximum(MOVED - 0.015, 0.0),
+    "damper": -2e4 * RATE,
+    "proportional": -1e5 * MOVED,
+}
+
+
+def history(force, seed=0):
+    noise = np.random.default_rng(seed).normal(0.0, ERROR, len(TIME))
+    return PushHistory(
+        body=1,
+        force=force + noise,
+        error=np.full(len(TIME), ERROR),
+        told=np.ones(len(TIME), dtype=bool),
+        distance=np.zeros(len(TIME)),
+        edge=np.zeros(len(TIME)),
+        displacement=MOVED,
+        velocity=RATE,
+    )
+
+
+@pytest.mark.parametrize("law", FORCES)
+def test_the_law_of_a_history_is_told_from_all_others(law):
+    best, second, *_ = fit_laws(TIME, history(FORCES[law]))
+    assert best.name == law
+    assert second.information - best.information > 5.0
+
+
+def test_no_force_is_told_from_any():
+    """A hundred histories of noise alone: the criterion of Schwarz (1978) seldom prefers a law."""
+    preferred = [fit_laws(TIME, history(np.zeros(len(TIME)), seed))[0].name for seed in range(100)]
+    assert preferred.count("none") >= 90
+
+
+@pytest.mark.parametrize(("law", "amplitude"), [("constant", -2200.0), ("spring", 5e6), ("damper", -2e4)])
+def test_amplitudes_are_within_their_errors(law, amplitude):
+    best = fit_laws(TIME, history(FORCES[law]))[0]
+    assert best.amplitude == pytest.approx(amplitude, abs=max(4.0 * best.error, 0.05 * abs(amplitude)))
+
+
+def test_starts_and_gaps_are_those_of_the_history():
+    assert fit_laws(TIME, history(FORCES["constant"]))[0].parameters["start"] == pytest.approx(4.0, abs=0.26)
+    assert fit_laws(TIME, history(FORCES["spring"]))[0].parameters["gap"] == pytest.approx(0.015, abs=2e-3)
+    pulse = fit_laws(TIME, history(FORCES["pulse"]))[0].parameters
+    assert pulse["start"] == pytest.approx(3.5, abs=0.03)
+
+
+def test_a_history_that_tells_nothing_has_no_law():
+    nothing = history(FORCES["constant"])
+    nothing.told[:] = False
+    assert fit_laws(TIME, nothing) == []

@@ -1,0 +1,228 @@
+"""Forces from readings against those that follow by hand from a motion in closed form."""
+
+import numpy as np
+import pytest
+from known_blocks import DURATION, GRAVITY, HEIGHT, WIDTH, accelerations, readings, shaken, stack
+from scipy.interpolate import CubicSpline
+from scipy.ndimage import gaussian_filter1d
+
+from blockshake.forces.joint_forces import joint_forces
+from blockshake.forces.laws.friction import friction_law
+from blockshake.forces.laws.lever import lever_law
+from blockshake.forces.laws.table import table_law
+from blockshake.forces.laws.unexplained import unexplained_law
+from blockshake.forces.motion import WIDTH as WIDTH_OF_KERNEL
+from blockshake.forces.outside.force_laws import fit_laws
+from blockshake.forces.outside.push_history import push_history
+
+INNER = slice(10, -10)
+
+
+def smoothed(history, time):
+    """A history in closed form seen through the kernel of the forces."""
+    step = 2e-3
+    fine = np.arange(0.0, DURATION, step)
+    values = gaussian_filter1d([history(t) for t in fine], WIDTH_OF_KERNEL / step)
+    return np.interp(time, fine, values)
+
+
+def carried(table, n_bodies):
+    """All bodies go with the table."""
+
+    def poses(t):
+        found = np.zeros((n_bodies, 3))
+        found[:, 0] = table(t)
+        return found
+
+    return poses
+
+
+def rocking(table, turn):
+    """One block that rocks about its edges on a table."""
+    half, high = 0.5 * WIDTH, 0.5 * HEIGHT
+
+    def poses(t):
+        angle = turn(t)
+        side = np.sign(angle) if angle else 1.0
+        c, s = np.cos(angle), np.sin(angle)
+        # the mass centre seen from the edge turns with the block
+        x = side * half + (-side * half * c + high * s)
+        z = (side * half * s + high * c) - high
+        return np.array([[table(t), 0.0, 0.0], [table(t) + x, z, angle]])
+
+    return poses
+
+
+def tilted(t, size=0.02, start=2.0):
+    """A turn that comes and goes smoothly, to one side and to the other."""
+    if t < start or t > DURATION - 1.0:
+        return 0.0
+    return size * np.sin(np.pi * (t - start) / 1.0) ** 3
+
+
+def test_blocks_that_go_with_the_table_need_shear_and_lever_of_their_inertia(sensors):
+    structure, table = stack(2), shaken(0.5)
+    forces = joint_forces(readings(structure, carried(table, 3)), structure, sensors)
+    time = forces.motion.time[INNER]
+    acceleration = smoothed(lambda t: accelerations(carried(table, 3), t)[0, 0], time)
+    for place, above in enumerate((2, 1)):
+        mass = above * structure.mass[1]
+        np.testing.assert_allclose(forces.transmitted.normal[INNER, place], mass * GRAVITY, rtol=1e-4)
+        np.testing.assert_allclose(
+            forces.transmitted.friction[INNER, place], acceleration / GRAVITY, atol=0.01 * 0.5 / GRAVITY
+        )
+        # statics: the resultant of weight and inertia passes through the centre of what is above
+        lever = -0.5 * above * HEIGHT * acceleration / GRAVITY
+        np.testing.assert_allclose(
+            forces.transmitted.lever[INNER, place], lever, atol=0.01 * np.abs(lever).max()
+        )
+    assert np.nanmax(np.abs(forces.least.wrench[INNER])) < 1e-6 * structure.mass[1] * GRAVITY
+
+
+def test_forces_of_a_rocking_block_are_those_of_newton_and_euler(sensors):
+    structure = stack(1)
+    poses = rocking(shaken(0.0), tilted)
+    forces = joint_forces(readings(structure, poses), structure, sensors)
+    mass, inertia = structure.mass[1], structure.inertia[1, 1, 1]
+
+    def required(t):
+        (ax, az, alpha), (_, _, angle) = accelerations(poses, t)[1], poses(t)[1]
+        c, s = np.cos(angle), np.sin(angle)
+        # moment about the middle of the lower face of the force at the mass centre, 0.8 m above it in the block
+        moment = inertia * alpha + 0.5 * HEIGHT * mass * (c * ax - s * (az + GRAVITY))
+        return mass * (c * (az + GRAVITY) + s * ax), moment
+
+    rows = np.flatnonzero(forces.joints.steady & (forces.joints.side[:, 0] != 0))
+    time = forces.motion.time[rows]
+    normal, moment = (smoothed(lambda t, place=place: required(t)[place], time) for place in (0, 1))
+    np.testing.assert_allclose(forces.transmitted.normal[rows, 0], normal, rtol=5e-3)
+    np.testing.assert_allclose(forces.transmitted.lever[rows, 0], -moment / normal, atol=5e-3)
+
+
+def test_errors_are_as_large_as_they_are_said_to_be(sensors):
+    """Chi-square of the levers over many draws of the noise."""
+    structure, table = stack(2), shaken(0.5)
+    exact = joint_forces(readings(structure, carried(table, 3)), structure, sensors).transmitted.lever
+    squares = []
+    for seed in range(6):
+        noisy = readings(
+            structure, carried(table, 3), sensors.marker_noise, sensors.accelerometer_noise, seed
+        )
+        forces = joint_forces(noisy, structure, sensors)
+        squares.append(((forces.transmitted.lever - exact) / forces.transmitted.lever_error)[INNER] ** 2)
+    assert np.nanmean(squares) == pytest.approx(1.0, abs=0.25)
+
+
+def test_a_force_that_friction_cannot_carry_is_unexplained(sensors):
+    """A block slides as mu = 0.3 has it, and is pushed with another tenth of its weight."""
+    mu, extra = 0.3, 0.1
+    structure = stack(1, friction=mu)
+    rate = (mu + extra) * GRAVITY
+
+    def poses(t):
+        own = np.clip(t - 2.0, 0.0, None)
+        return np.array([[0.0, 0.0, 0.0], [0.5 * rate * own**2 * (own < 1.0), 0.0, 0.0]])
+
+    forces = joint_forces(readings(structure, poses), structure, sensors)
+    inner = (forces.motion.time > 2.1) & (forces.motion.time < 2.9)
+    weight = structure.mass[1] * GRAVITY
+    # the smallest wrench takes a part of it as a load that presses the joint, for more friction
+    found = forces.least.wrench[inner, 1, 0] / (extra * weight)
+    assert found.min() > 0.8
+    assert found.max() < 1.0
+    assert unexplained_law(forces)["unexplained.largest"].value > 0.09
+
+
+def test_what_slips_shows_its_friction(sensors):
+    """Sine shaking of 4 m/s2 slides a block with mu = 0.25 to and fro: known by integration."""
+    mu = 0.25
+    structure, table = stack(1, friction=mu), shaken(4.0, 1.5)
+    step = 1e-4
+    grid = np.arange(int((DURATION + 0.1) / step)) * step
+    speed = np.gradient(table(grid), step)
+    own = np.zeros_like(grid)
+    for row in range(1, len(grid)):
+        limit = mu * GRAVITY * step
+        own[row] = own[row - 1] + np.clip(speed[row] - own[row - 1], -limit, limit)
+    place = np.cumsum(own) * step
+    at_table, at_block = (
+        lambda t, values=values: np.interp(t, grid, values) for values in (table(grid), place)
+    )
+
+    def poses(t):
+        return np.array([[at_table(t), 0.0, 0.0], [at_block(t), 0.0, 0.0]])
+
+    told = friction_law(joint_forces(readings(structure, poses), structure, sensors), 0)
+    assert abs(told["friction.loss"].value) < 0.02
+    assert abs(told["friction.rate"].value) < 0.1  # the spread that the table of laws gives it
+
+
+def test_lever_of_a_worn_edge_is_short(sensors):
+    """The structure is told to be wider than the block that rocks."""
+    structure = stack(1)
+    inset = 0.03
+    half, high = 0.5 * WIDTH - inset, 0.5 * HEIGHT
+    inertia = structure.mass[1] * (half**2 + high**2) + structure.inertia[1, 1, 1]
+
+    def swing(t):
+        """Rocking about the edge further in: ``I theta'' = -m g R sin(alpha - |theta|)`` over half a cycle."""
+        return float(smooth(t))
+
+    step = 1e-3
+    turns = np.zeros(int((DURATION + 0.1) / step))
+    angle, rate, weight = 0.0, 0.0, structure.mass[1] * GRAVITY
+    for row in range(int(2.0 / step), len(turns)):
+        if row == int(2.0 / step):
+            rate = 0.6
+        side = np.sign(angle) if angle else np.sign(rate)
+        arm = half * np.cos(angle) - side * high * np.sin(angle)
+        rate += step * -side * weight * arm / inertia
+        angle += step * rate
+        turns[row] = angle
+
+    smooth = CubicSpline(np.arange(len(turns)) * step, turns)
+
+    def poses(t):
+        angle = swing(t)
+        side = np.sign(angle) if angle else 1.0
+        c, s = np.cos(angle), np.sin(angle)
+        x = side * half + (-side * half * c + high * s)
+        z = (side * half * s + high * c) - high
+        return np.array([[0.0, 0.0, 0.0], [x, z, angle]])
+
+    told = lever_law(joint_forces(readings(structure, poses), structure, sensors), 0)
+    assert told["lever.short"].value == pytest.approx(inset, abs=4e-3)
+    assert abs(told["lever.bias"].value) < 3e-3
+
+
+def test_a_table_that_pitches_with_its_acceleration(sensors):
+    structure, table, coefficient = stack(1), shaken(1.0), 4e-4
+
+    def poses(t):
+        pitch = coefficient * accelerations(lambda at: np.array([[table(at)]]), t)[0, 0]
+        # the block goes with the slab about the slab's centre
+        return np.array([[table(t), 0.0, pitch], [table(t) + 0.9 * pitch, 0.0, pitch]])
+
+    noisy = readings(structure, poses, sensors.marker_noise, sensors.accelerometer_noise)
+    told = table_law(joint_forces(noisy, structure, sensors))
+    assert told["table.pitch"].value == pytest.approx(coefficient, abs=5.0 * told["table.pitch"].error + 1e-5)
+
+
+def test_a_constant_push_is_found_with_its_start_and_size(sensors):
+    """A sliding block is pushed from a time on: the excess over Coulomb's force is a step."""
+    mu, push, start = 0.2, 3000.0, 3.0
+    structure = stack(1, friction=mu)
+    mass = structure.mass[1]
+
+    def poses(t):
+        own = np.clip(t - 1.5, 0.0, None)
+        after = np.clip(t - start, 0.0, None)
+        x = 0.5 * mu * GRAVITY * own**2 + 0.5 * push / mass * after**2
+        return np.array([[0.0, 0.0, 0.0], [x, 0.0, 0.0]])
+
+    noisy = readings(structure, poses, sensors.marker_noise, sensors.accelerometer_noise)
+    forces = joint_forces(noisy, structure, sensors)
+    best = fit_laws(forces.motion.time, push_history(forces, 1))[0]
+    assert best.name == "constant"
+    assert best.amplitude == pytest.approx(push, rel=0.1)
+    assert best.parameters["start"] == pytest.approx(start, abs=0.1)
