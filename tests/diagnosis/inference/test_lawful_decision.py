@@ -18,11 +18,9 @@ PUSH = OutsideForce(
 )  # fmt: skip
 
 
-def findings(laws=(), isolated=(), holding=(), outside=None):
-    return LawFindings(
-        laws=laws, isolated=isolated, holding=dict.fromkeys(holding, "law"), outside=outside,
-        p=1e-9 if laws or outside else 0.5,
-    )  # fmt: skip
+def findings(laws=(), isolated=(), outside=None):
+    broken = outside or any(law.broken for law in laws)
+    return LawFindings(laws=laws, isolated=isolated, outside=outside, p=1e-9 if broken else 0.5)
 
 
 def test_an_isolated_effect_is_the_cause_with_the_size_that_its_law_reads():
@@ -35,9 +33,14 @@ def test_an_isolated_effect_is_the_cause_with_the_size_that_its_law_reads():
 
 
 def test_an_effect_whose_law_holds_is_struck_out():
-    found = with_laws(made_up_decision("named", ("table-pitch",)), findings(holding=("table-pitch",)), PLACES)
+    holds = PITCH.model_copy(update={"broken": False, "departures": {"one": 0.4, "two": -0.2}})
+    found = with_laws(made_up_decision("named", ("table-pitch",)), findings((holds,)), PLACES)
     assert (found.decision, found.causes) == ("none", ())
-    assert "its law holds" in found.struck_out["table-pitch"][-1]
+    law, features = found.struck_out["table-pitch"]
+    assert "its law holds" in law
+    # no misfit is left that chance does not account for, and what the features said is not lost
+    assert found.p_none == 0.5
+    assert "by themselves gave p = " in features
 
 
 def test_features_of_whole_tests_decide_where_no_law_is_broken():
@@ -50,9 +53,24 @@ def test_features_of_whole_tests_decide_where_no_law_is_broken():
 def test_laws_that_no_effect_accounts_for_make_the_cause_unknown():
     found = with_laws(made_up_decision("named", ("table-pitch",)), findings((SOFT,)), PLACES)
     assert (found.decision, found.causes) == ("unknown", ())
+    assert "does not account for" in found.struck_out["table-pitch"][-1]
 
 
 def test_a_force_that_nobody_thought_of_makes_the_cause_unknown():
     found = with_laws(made_up_decision("named", ("weak-joint",)), findings(outside=PUSH), PLACES)
     assert found.decision == "unknown"
     assert found.laws.outside.bodies == ("block-2",)
+
+
+def test_an_isolated_effect_is_where_its_law_is_broken():
+    weak = PITCH.model_copy(update={"name": "joint2.friction.loss", "unit": "1", "joint": "block-1-block-2"})
+    places = PLACES | {"weak-joint@block-1-block-2": {"joint": ("block-1", "block-2")}}
+    decision = made_up_decision("none")
+    assert decision.places["weak-joint"] == "weak-joint@slab-block-1"
+    found = with_laws(decision, findings((weak,), ("weak-joint",)), places)
+    assert found.location == {"weak-joint": {"joint": ("block-1", "block-2")}}
+
+
+def test_features_keep_the_parameters_that_they_found():
+    decision = made_up_decision("named", ("table-pitch",))
+    assert with_laws(decision, findings(), PLACES).parameters == decision.parameters

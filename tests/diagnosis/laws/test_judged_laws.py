@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from blockshake.diagnosis.laws.findings import OutsideForce
-from blockshake.diagnosis.laws.judged_laws import judge_laws
+from blockshake.diagnosis.laws.judged_laws import judge_laws, law_that_holds
 from blockshake.diagnosis.laws.null_laws import null_laws, tamed
 
 TESTS = ("one", "two", "three")
@@ -34,8 +34,14 @@ def draws(seed, count=20):
 def reading(seed, **changed):
     values = dict(zip(NAMES, draws(seed, 1)[0], strict=True)) | changed
     errors = [error for _, _, error in NOMINAL.values()]
+    of_joint = [name.startswith("joint1") for name in NAMES]
     return xr.Dataset(
-        {"law_value": ("law", [values[name] for name in NAMES]), "law_error": ("law", errors)}, {"law": NAMES}
+        {"law_value": ("law", [values[name] for name in NAMES]), "law_error": ("law", errors)},
+        {
+            "law": NAMES,
+            "joint": ("law", ["slab-block-1" if one else "" for one in of_joint]),
+            "beneath": ("law", of_joint),
+        },
     )
 
 
@@ -67,7 +73,28 @@ def test_clean_tests_break_no_law():
     assert found.isolated == ()
     assert found.outside is None
     assert found.p > 0.01
-    assert set(found.holding) >= {"table-pitch", "reduced-bearing", "eccentricity"}
+
+
+def test_a_law_that_holds_excludes_its_effect_at_its_place():
+    found = judged()
+    assert law_that_holds("table-pitch", {}, found) == "table.pitch"
+    assert law_that_holds("reduced-bearing", {}, found) == "joint1.lever.short"
+    # the joint beneath carries every block
+    assert law_that_holds("eccentricity", {"body": "block-2"}, found) == "joint1.lever.bias"
+    assert law_that_holds("eccentricity", {"body": "block-2"}, judged(**{"joint1.lever.bias": 0.03})) == ""
+
+
+def test_a_law_of_one_joint_excludes_nothing_at_another():
+    known = (
+        judged()
+        .laws[0]
+        .model_copy(
+            update={"name": "joint1.friction.loss", "joint": "slab-block-1", "departures": {"one": 0.5}}
+        )
+    )
+    found = judged().model_copy(update={"laws": (known,)})
+    assert law_that_holds("weak-joint", {"joint": ["slab", "block-1"]}, found) == "joint1.friction.loss"
+    assert law_that_holds("weak-joint", {"joint": ["block-1", "block-2"]}, found) == ""
 
 
 def test_clean_campaigns_seldom_break_a_law():

@@ -3,9 +3,9 @@
 import numpy as np
 
 from blockshake.diagnosis.inference.decision import ParameterEstimate
-from blockshake.diagnosis.laws.judged_laws import accounts_for
-from blockshake.diagnosis.laws.law_table import kind_of
-from blockshake.diagnosis.laws.signatures import SIGNATURES, STOP
+from blockshake.diagnosis.laws.judged_laws import accounts_for, law_that_holds, own_laws
+from blockshake.diagnosis.laws.signatures import STOP
+from blockshake.diagnosis.libraries.candidates import effect_of
 from blockshake.effects.registry import EFFECTS
 
 _NORMAL_90 = 1.645
@@ -30,45 +30,68 @@ def with_laws(decision, findings, places_of):
 
     Notes
     -----
-    An effect is isolated if its own law is broken and it accounts for all laws that are: the cause. An effect whose
-    own law was told and holds is struck out, and so is one that does not account for the broken laws. The features of
-    whole tests decide among the effects that are left. Where laws are broken and no effect is left, the cause is
-    unknown, and is described.
+    An effect is isolated if its own law is broken and it accounts for all laws that are: the cause, at the joint whose
+    law is broken. An effect whose own law was told at its place and holds is struck out, and so is one that does not
+    account for the broken laws. The features of whole tests decide among the effects that are left. Where laws are
+    broken and no effect is left, the cause is unknown, and is described.
     """
-    holding = {effect: law for effect, law in findings.holding.items() if effect in decision.places}
     isolated = [effect for effect in findings.isolated if effect in decision.places]
     told = bool(findings.broken or findings.outside)
     places = dict(decision.places)
-    if STOP in isolated:
-        places[STOP] = _stop_at(findings.outside_of_stop, places[STOP], places_of)
-    struck_out = dict(decision.struck_out)
-    for effect, law in holding.items():
-        struck_out[effect] = (*struck_out.get(effect, ()), f"its law holds: {law} is as in the nominal model")
+    for effect in isolated:
+        places[effect] = _place_by_law(effect, places[effect], findings, places_of)
+    struck_out = {effect: list(why) for effect, why in decision.struck_out.items()}
+    for effect in decision.places:
+        if effect not in isolated:
+            struck_out.setdefault(effect, []).extend(_reasons(effect, places_of[places[effect]], findings))
     if isolated:
         causes, kind = tuple(isolated), "named" if len(isolated) == 1 else "ambiguous"
     else:
-        causes = tuple(
-            effect for effect in decision.causes if effect not in holding and accounts_for(effect, findings)
-        )
+        causes = tuple(effect for effect in decision.causes if not struck_out[effect])
         kind = "unknown" if told and not causes else _kind(decision, causes)
-    parameters = {effect: _parameters(effect, decision, findings) for effect in causes}
+    if decision.causes and kind == "none":
+        for effect in decision.causes:
+            struck_out[effect].append(f"features of whole tests by themselves gave p = {decision.p_none:.2g}")
+    sizes, parameters = {}, {}
+    for effect in causes:
+        if effect in isolated:
+            parameters[effect] = _parameters(effect, decision, findings)
+            sizes[effect] = _visible(effect, parameters[effect])
+        else:
+            parameters |= {effect: decision.parameters[effect]} if effect in decision.parameters else {}
+            sizes[effect] = decision.sizes[effect]
     return decision.model_copy(
         update={
             "decision": kind,
             "causes": causes,
             "places": {effect: places[effect] for effect in [*causes, *places]},
-            "sizes": {
-                effect: _visible(effect, parameters[effect]) if effect in isolated else decision.sizes[effect]
-                for effect in causes
+            "sizes": sizes,
+            "p_none": _chance_of_none(decision, findings, kind),
+            "struck_out": {
+                effect: tuple(why) for effect, why in struck_out.items() if effect not in causes and why
             },
-            "p_none": min(decision.p_none, findings.p) if told else decision.p_none,
-            "struck_out": {effect: why for effect, why in struck_out.items() if effect not in causes and why},
             "solver_dependent": () if isolated else decision.solver_dependent,
             "parameters": parameters,
             "location": {effect: places_of[places[effect]] for effect in causes},
             "laws": findings,
         }
     )
+
+
+def _reasons(effect, place, findings):
+    """Reasons for which the laws strike an effect out."""
+    law = law_that_holds(effect, place, findings)
+    if law:
+        yield f"its law holds: {law} is as in the nominal model"
+    if (findings.broken or findings.outside) and not accounts_for(effect, findings):
+        yield "it does not account for the laws that are broken"
+
+
+def _chance_of_none(decision, findings, kind):
+    """Chance of such readings without an effect: by the laws where they decide, else by features of whole tests."""
+    if kind == "none" and decision.causes:
+        return findings.p
+    return min(decision.p_none, findings.p) if findings.broken or findings.outside else decision.p_none
 
 
 def _kind(decision, causes):
@@ -78,16 +101,24 @@ def _kind(decision, causes):
     return {0: "none", 1: "named"}.get(len(causes), "ambiguous")
 
 
-def _stop_at(outside, otherwise, places_of):
-    """Key of the candidate at the block and on the side of a stop."""
-    side = "+x" if next(iter(outside.tests.values()))["side"] > 0.0 else "-x"
-    wanted = {"body": outside.bodies[0], "axis": side}
-    keys = [key for key, place in places_of.items() if key.startswith(f"{STOP}@") and place == wanted]
-    return keys[0] if keys else otherwise
+def _place_by_law(effect, otherwise, findings, places_of):
+    """Key of the candidate where the laws see an isolated effect, else that of the features."""
+    if effect == STOP:
+        outside = findings.outside_of_stop
+        side = "+x" if next(iter(outside.tests.values()))["side"] > 0.0 else "-x"
+        wanted = ("body", outside.bodies[0]), ("axis", side)
+    else:
+        broken = next(one for one in own_laws(effect, findings.laws) if one.broken)
+        wanted = (("joint", broken.joint),)
+    for key, place in places_of.items():
+        known = place | ({"joint": "-".join(place["joint"])} if "joint" in place else {})
+        if effect_of(key) == effect and tuple((name, known.get(name)) for name, _ in wanted) == wanted:
+            return key
+    return otherwise
 
 
 def _parameters(effect, decision, findings):
-    """Parameters of an effect, those that a law reads from the law."""
+    """Parameters of an isolated effect, those that a law reads from the law."""
     known = dict(decision.parameters.get(effect, {}))
     first, *others = EFFECTS[effect].parameters
     for item in others:
@@ -100,18 +131,25 @@ def _parameters(effect, decision, findings):
         known["gap"] = _estimate(
             float(gaps.mean()), float(gaps.mean()) - half, float(gaps.mean()) + half, "m"
         )
-    elif effect in _DIRECT and effect in findings.isolated:
+    elif effect in _DIRECT:
         known[_DIRECT[effect]] = _read(effect, findings)
-    elif first.name not in known:
-        known[first.name] = _prior(first)
+    else:
+        known.setdefault(first.name, _prior(first))
     return known
 
 
 def _read(effect, findings):
     """Size of an effect from its own law, with an interval from the scatter between tests and the law's error."""
-    (law,) = (one for one in findings.laws if kind_of(one.name) == SIGNATURES[effect].own and one.broken)
-    nominal = np.array(list(law.expected.values())) if effect == "reduced-bearing" else 0.0
-    values = np.array(list(law.measured.values())) - nominal
+    # the nominal table does not pitch, but nominal blocks do not bear on their very edges
+    nominal = float(effect == "reduced-bearing")
+    values = np.array(
+        [
+            value - nominal * law.expected[test]
+            for law in own_laws(effect, findings.laws)
+            if law.broken
+            for test, value in law.measured.items()
+        ]
+    )
     spread = float(values.std(ddof=1) / np.sqrt(len(values))) if len(values) > 1 else 0.0
     half = _NORMAL_90 * max(spread, 0.02 * abs(float(values.mean())))
     mean = float(values.mean())

@@ -9,12 +9,16 @@ class LawFinding(Strict):
     Attributes
     ----------
     name, unit : str
+    joint : str
+        Name of the joint, empty for a law of the whole test.
+    beneath : bool
+        Whether the joint carries all free bodies.
     value, error : float
         Mean departure from the nominal model over the tests that tell it, and its standard error, on the law's scale.
     measured : dict of str to float
-        By test: the value that was read.
+        By test: the value that was read, in its unit.
     expected : dict of str to float
-        By test: mean over nominal draws.
+        By test: mean over nominal draws, on the law's scale, as of `tamed`.
     departures : dict of str to float
         By test: departure in standard deviations.
     broken : bool
@@ -22,6 +26,8 @@ class LawFinding(Strict):
 
     name: str
     unit: str
+    joint: str = ""
+    beneath: bool = False
     value: float
     error: float
     measured: dict[str, float]
@@ -68,19 +74,17 @@ class LawFindings(Strict):
         By falling departure.
     isolated : tuple of str
         Effects whose own law is broken and that account for all others that are.
-    holding : dict of str to str
-        By effect whose own law was told and holds: that law.
     outside : OutsideForce or None
         Where no effect of the registry accounts for the broken laws and a force from outside does.
     outside_of_stop : OutsideForce or None
         Force of the stop, where a contact with a stop is isolated.
     p : float
-        Chance of departures as large as the largest by the nominal model [1].
+        Chance of departures as large as the largest by the nominal model, at most: the number of laws times the chance
+        of one (Bonferroni) [1].
     """
 
     laws: tuple[LawFinding, ...]
     isolated: tuple[str, ...]
-    holding: dict[str, str]
     outside: OutsideForce | None
     outside_of_stop: OutsideForce | None = None
     p: float

@@ -6,7 +6,7 @@ from scipy.stats import t as student
 from blockshake.diagnosis.laws.findings import LawFinding, LawFindings
 from blockshake.diagnosis.laws.law_table import kind_of, law_of
 from blockshake.diagnosis.laws.null_laws import null_laws, tamed, tamed_error
-from blockshake.diagnosis.laws.signatures import ECCENTRIC, OF_A_STOP, OUTSIDE, SIGNATURES, STOP
+from blockshake.diagnosis.laws.signatures import ECCENTRIC, OF_A_STOP, OF_ANY, OUTSIDE, SIGNATURES, STOP
 
 _BROKEN_ONCE = 7.0  # standard deviations, in one test
 _BROKEN = 5.0  # of the sum over all tests, in its standard deviation
@@ -34,7 +34,7 @@ def judge_laws(measured, draws, outside):
     -------
     LawFindings
     """
-    departures = {}
+    departures, places = {}, {}
     for test, own in measured.items():
         names = [str(name) for name in own["law"].values]
         nulls = null_laws(names, draws[test])
@@ -42,8 +42,10 @@ def judge_laws(measured, draws, outside):
             value, error = float(own["law_value"][place]), float(own["law_error"][place])
             if name in nulls and np.isfinite(value):
                 departures.setdefault(name, {})[test] = (value, error, nulls[name])
+                places[name] = {key: own[key].values[place].item() for key in ("joint", "beneath")}
     laws = sorted(
-        (_law(name, by_test) for name, by_test in departures.items()), key=lambda one: -_largest(one)
+        (_law(name, by_test, **places[name]) for name, by_test in departures.items()),
+        key=lambda one: -_largest(one),
     )
     outside = outside if outside and _needed(outside, laws) else None
     isolated = tuple(effect for effect in SIGNATURES if _isolates(effect, laws))
@@ -54,7 +56,6 @@ def judge_laws(measured, draws, outside):
     return LawFindings(
         laws=tuple(laws),
         isolated=isolated,
-        holding={effect: law for effect in SIGNATURES if (law := _held(effect, laws))},
         outside=None if isolated else outside,
         outside_of_stop=outside if isolated == (STOP,) else None,
         p=_chance(laws),
@@ -79,13 +80,43 @@ def accounts_for(effect, findings):
     elif effect in SIGNATURES:
         kinds, forces = (SIGNATURES[effect].own, *SIGNATURES[effect].others), ("steady",)
     else:
-        kinds, forces = (), ()
+        kinds, forces = OF_ANY, ()
     if findings.outside and findings.outside.law not in forces:
         return False
     return all(kind_of(one.name) in kinds for one in findings.broken)
 
 
-def _law(name, by_test):
+def law_that_holds(effect, place, findings):
+    """Name of an effect's own law that was told at a place and holds, so that the effect is not there; else empty.
+
+    Parameters
+    ----------
+    effect : str
+    place : dict
+        In the structure, with a ``joint``, a ``body`` or neither.
+    findings : LawFindings
+
+    Returns
+    -------
+    str
+        Of a body the joint beneath all bodies tells, as that joint carries it.
+    """
+    if effect not in SIGNATURES or not SIGNATURES[effect].excludes:
+        return ""
+    told = [one for one in own_laws(effect, findings.laws) if _at(place, one)]
+    if not told or any(_largest(one) > _HOLDS for one in told):
+        return ""
+    return told[0].name
+
+
+def _at(place, law):
+    """Whether a law tells of a place; of one that is nowhere in particular every law does."""
+    if "joint" in place:
+        return law.joint in ("-".join(place["joint"]), "-".join(reversed(place["joint"])))
+    return law.beneath or "body" not in place
+
+
+def _law(name, by_test, joint, beneath):
     """One law over the tests."""
     rows = {}
     for test, (value, error, null) in by_test.items():
@@ -96,6 +127,8 @@ def _law(name, by_test):
     return LawFinding(
         name=name,
         unit=law_of(name).unit,
+        joint=joint,
+        beneath=beneath,
         value=float(weight @ away / weight.sum()),
         error=float(weight.sum() ** -0.5),
         measured={test: value for test, (value, _, _) in by_test.items()},
@@ -134,14 +167,15 @@ def _is_stop(outside, laws):
     return all(kind_of(one.name) in OF_A_STOP for one in laws if one.broken)
 
 
-def _own_laws(effect, laws):
+def own_laws(effect, laws):
+    """Laws of an effect's own kind."""
     return [one for one in laws if kind_of(one.name) == SIGNATURES[effect].own]
 
 
 def _isolates(effect, laws):
     """Whether an effect's own law is broken its way, alike in all tests, and all broken laws are among its others."""
     signature = SIGNATURES[effect]
-    own = [one for one in _own_laws(effect, laws) if one.broken]
+    own = [one for one in own_laws(effect, laws) if one.broken]
     if not own or any(signature.sign * one.value < 0.0 for one in own):
         return False
     if not all(_alike(one) for one in own):
@@ -159,15 +193,7 @@ def _alike(law):
     return bool((np.abs(own - law.value) < _ALIKE * sigma).all())
 
 
-def _held(effect, laws):
-    """The law of an effect that was told and holds, empty where none was told or one is broken."""
-    own = _own_laws(effect, laws)
-    if not SIGNATURES[effect].excludes or not own or any(_largest(one) > _HOLDS for one in own):
-        return ""
-    return own[0].name
-
-
 def _chance(laws):
-    """Chance of the largest departure over all laws and tests."""
+    """Chance of the largest departure over all laws and tests, at most."""
     largest = max((_largest(one) for one in laws), default=0.0)
     return float(min(1.0, 2.0 * student.sf(largest, _FREEDOM) * max(len(laws), 1)))

@@ -15,7 +15,12 @@ _LAWS_OF_JOINTS = (lever_law, friction_law, closed_joint_law, impact_law)
 
 
 NO_LAWS = xr.Dataset(
-    {"law_value": ("law", np.empty(0)), "law_error": ("law", np.empty(0))}, {"law": np.empty(0, dtype=str)}
+    {"law_value": ("law", np.empty(0)), "law_error": ("law", np.empty(0))},
+    {
+        "law": np.empty(0, dtype=str),
+        "joint": ("law", np.empty(0, dtype=str)),
+        "beneath": ("law", np.empty(0, bool)),
+    },
 )
 
 
@@ -37,18 +42,29 @@ def read_laws(forces):
     -------
     xarray.Dataset
         Along ``law``: ``law_value`` in the unit of the table, NaN where the test does not tell, and ``law_error``, its
-        standard error.
+        standard error; coordinates ``joint``, the joint's name, empty for laws of the whole test, and ``beneath``,
+        whether the joint carries all free bodies.
     """
-    found = {}
+    found, joint, beneath = {}, [], []
+    n_free = np.count_nonzero(~forces.structure.driven)
     for place, face in enumerate(forces.transmitted.faces):
         number = forces.faces.index(face) + 1
+        own = {}
         for law in _LAWS_OF_JOINTS:
-            found |= {f"joint{number}.{name}": one for name, one in law(forces, place).items()}
-    found |= table_law(forces) | unexplained_law(forces)
+            own |= {f"joint{number}.{name}": one for name, one in law(forces, place).items()}
+        joint += [face.name] * len(own)
+        beneath += [len(forces.transmitted.carried[place]) == n_free] * len(own)
+        found |= own
+    of_test = table_law(forces) | unexplained_law(forces)
+    found |= of_test
     return xr.Dataset(
         {
             "law_value": ("law", np.array([one.value for one in found.values()])),
             "law_error": ("law", np.array([one.error for one in found.values()])),
         },
-        {"law": list(found)},
+        {
+            "law": list(found),
+            "joint": ("law", joint + [""] * len(of_test)),
+            "beneath": ("law", beneath + [False] * len(of_test)),
+        },
     )

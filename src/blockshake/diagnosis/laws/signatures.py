@@ -23,8 +23,8 @@ class Signature(NamedTuple):
     others : tuple of str
         Kinds of laws that it may break too.
     excludes : bool
-        Whether the effect at its visible size surely breaks its own law where that is told: if the law holds then, the
-        effect is excluded.
+        Whether the effect at its visible size surely breaks its own law where that is told at its place: if the law
+        holds there, the effect is excluded.
     """
 
     own: str
@@ -35,6 +35,7 @@ class Signature(NamedTuple):
 
 STOP, ECCENTRIC = "stopper-contact", "eccentricity"  # told by the law of the force that would explain them
 OF_A_STOP = (*OUTSIDE, *_IMPACTS, "closed.compliance")
+OF_ANY = _IMPACTS  # whatever acts on the blocks lets them meet at other velocities
 
 SIGNATURES = {
     "table-pitch": Signature(
