@@ -26,7 +26,7 @@ class Face:
         Coulomb's coefficient of the pair, as the structure states it [1].
     corners : float64 array, shape (n_corners, 3)
         Of the common area, from the middle of the face, in the axes of ``axes`` [m].
-    on_lower, on_upper : float64 arrays, shape (3,)
+    on_upper : float64 array, shape (3,)
         Middle of the face from the mass centres, body frames [m].
     axes : float64 array, shape (3, 3)
         At the start, world frame, in columns: two tangents, the first one along x as far as the face allows, and the
@@ -38,7 +38,6 @@ class Face:
     upper: int
     friction: float
     corners: np.ndarray
-    on_lower: np.ndarray
     on_upper: np.ndarray
     axes: np.ndarray
 
@@ -90,7 +89,6 @@ def find_faces(structure):
                 upper=int(upper),
                 friction=float(structure.friction[lower, upper]),
                 corners=(points[:count] - middle) @ axes,
-                on_lower=(middle - structure.position[lower]) @ turns[lower],
                 on_upper=(middle - structure.position[upper]) @ turns[upper],
                 axes=axes,
             )

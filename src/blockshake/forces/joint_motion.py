@@ -24,8 +24,8 @@ class JointMotion:
         Of the upper body about the second tangent: positive leans its top along the first one [rad].
     rotation_error : float64 array, shape (n_joints,)
         [rad]
-    slip, slip_rate : float64 arrays, shape (n_times, n_joints)
-        Along the first tangent, of the point of the upper body that bears [m, m/s].
+    slip_rate : float64 array, shape (n_times, n_joints)
+        Along the first tangent, of the point of the upper body that bears [m/s].
     slip_rate_error : float64 array, shape (n_joints,)
         [m/s]
     side, across : int8 arrays, shape (n_times, n_joints)
@@ -38,7 +38,6 @@ class JointMotion:
 
     rotation: np.ndarray
     rotation_error: np.ndarray
-    slip: np.ndarray
     slip_rate: np.ndarray
     slip_rate_error: np.ndarray
     side: np.ndarray
@@ -74,7 +73,7 @@ def joint_motion(structure, faces, motion, still, width):
     near = np.ones((2 * reach + 1, 1), dtype=bool)
     bears = [[binary_dilation(tangent * sign >= 0, near) for sign in (-1, 1)] for tangent in (side, across)]
     return JointMotion(
-        one["rotation"], one["rotation_error"], one["slip"], one["slip_rate"], one["slip_rate_error"],
+        one["rotation"], one["rotation_error"], one["slip_rate"], one["slip_rate_error"],
         side, across, ~binary_dilation(changed, iterations=calm), np.moveaxis(np.array(bears), (0, 1), (2, 3)),
     )  # fmt: skip
 
@@ -92,10 +91,9 @@ def _one_joint(structure, face, motion, still):
     axes = motion.rotation[:, lower] @ (start[0].T @ face.axes)
     turned = motion.rotation[:, upper] @ start[1].T
     relative = np.swapaxes(motion.rotation[:, lower] @ start[0].T, -1, -2) @ turned
-    roll, turn = (_about(relative, face.axes[:, axis], still) for axis in range(2))
+    roll, turn = (_turn_about(relative, face.axes[:, axis], still) for axis in range(2))
     bearing = face.half_width * np.clip(turn / TURNED, -1.0, 1.0)
     middle = motion.position[:, upper] + motion.rotation[:, upper] @ face.on_upper
-    seat = motion.position[:, lower] + motion.rotation[:, lower] @ face.on_lower
     point = middle + bearing[:, None] * (turned @ face.axes[:, 0])
     rate = _velocity(motion, upper, point) - _velocity(motion, lower, point)
     pose, rates = (
@@ -109,7 +107,6 @@ def _one_joint(structure, face, motion, still):
         "rotation_error": np.sqrt(face.axes[:, 1] @ pose[3:, 3:] @ face.axes[:, 1]),
         "roll": roll,
         "roll_error": np.sqrt(face.axes[:, 0] @ pose[3:, 3:] @ face.axes[:, 0]),
-        "slip": np.einsum("ti,ti->t", axes[..., 0], middle - seat),
         "slip_rate": np.einsum("ti,ti->t", axes[..., 0], rate),
         "slip_rate_error": np.sqrt(along @ rates @ along),
     }
@@ -122,7 +119,7 @@ def _velocity(motion, body, point):
     )
 
 
-def _about(turns, axis, still):
+def _turn_about(turns, axis, still):
     """Component of the rotation vectors of some matrices along an axis, less its mean in the quiet start."""
     found = np.full(len(turns), np.nan)
     known = np.isfinite(turns).all(axis=(-2, -1))

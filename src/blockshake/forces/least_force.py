@@ -20,8 +20,6 @@ class LeastForce:
 
     Attributes
     ----------
-    time : float64 array, shape (n_times,)
-        [s]
     wrench : float64 array, shape (n_times, n_bodies, 6)
         Force [N] and moment [N m]; zero for driven bodies, NaN where the motion is unknown.
     distance : float64 array, shape (n_times,)
@@ -30,7 +28,6 @@ class LeastForce:
         Of a body that is pushed [N].
     """
 
-    time: np.ndarray
     wrench: np.ndarray
     distance: np.ndarray
     push: np.ndarray
@@ -92,7 +89,7 @@ def least_force(structure, faces, motion, joints, required, pushed=None):
         if pushed is not None:
             pushes[place] = weight * (found[-2] - found[-1])
         wrench[place, free] = wanted - weight * columns[free] @ found
-    return LeastForce(motion.time, wrench, distance, pushes)
+    return LeastForce(wrench, distance, pushes)
 
 
 def _generators(structure, faces, motion, joints):

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
+from blockshake.geometry.rotations import rotation_matrices
+
 _SMALL = 1e-12  # of the largest eigenvalue
 
 
@@ -88,10 +90,10 @@ def transmitted_forces(structure, faces, motion, required):
     for face, above in zip(chosen, carried, strict=True):
         turn = motion.rotation[:, face.upper]
         middle = motion.position[:, face.upper] + turn @ face.on_upper
-        start = np.einsum("tij,jk->tik", turn, _body_axes(structure, face))
+        start = np.einsum("tij,jk->tik", turn, _axes_on_body(structure, face))
         total, covariance = np.zeros((len(middle), 6)), np.zeros((len(middle), 6, 6))
         for body in above:
-            shift = _about(motion.position[:, body] - middle)
+            shift = _moved_by(motion.position[:, body] - middle)
             total += np.einsum("tij,tj->ti", shift, required.wrench[:, body])
             covariance += shift @ scatter[:, body] @ np.swapaxes(shift, -1, -2)
         axes = np.zeros((len(middle), 6, 6))
@@ -118,14 +120,12 @@ def _cut_off(structure, faces, cut):
     return np.flatnonzero(group == group[cut.upper])
 
 
-def _body_axes(structure, face):
+def _axes_on_body(structure, face):
     """Axes of the face in the frame of the upper body."""
-    from blockshake.geometry.rotations import rotation_matrices
-
     return rotation_matrices(structure.orientation[face.upper]).T @ face.axes
 
 
-def _about(arm):
+def _moved_by(arm):
     """Matrices that take a wrench to another point, ``arm`` from there to its own: (n_times, 6, 6)."""
     x, y, z = arm.T
     shift = np.zeros((len(arm), 6, 6))

@@ -4,11 +4,18 @@ import numpy as np
 import xarray as xr
 
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.campaigns.campaign import load_test
 from blockshake.measurement.motion.body_frame import see_from_body
 
 _AT_RANGE = 1e-6  # of the largest reading
 _REST = 0.1  # s, whose mean is an accelerometer's reading at rest
 _ORDERS = {"x and y": [1, 0, 2], "x and z": [2, 1, 0], "y and z": [0, 2, 1]}
+
+
+def load_corrected_test(campaign, name, structure, findings):
+    """Load a test of a campaign without the faults that were found, its time counted from its first reading."""
+    test = corrected(load_test(campaign, name), name, structure, findings)
+    return test.assign_coords(time=np.round(test["time"] - test["time"][0], 6))
 
 
 def corrected(test, name, structure, findings):

@@ -5,8 +5,7 @@ import xarray as xr
 
 from blockshake.diagnosis.features.reading import read_off
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaigns.campaign import load_test
-from blockshake.parity.correction import corrected
+from blockshake.parity.correction import load_corrected_test
 
 
 def measured_readings(campaign, names, findings, longest=np.inf):
@@ -30,8 +29,7 @@ def measured_readings(campaign, names, findings, longest=np.inf):
     structure = load_structure(campaign.structure)
     parts = []
     for name in names:
-        test = corrected(load_test(campaign, name), name, structure, findings)
-        test = test.assign_coords(time=np.round(test["time"] - test["time"][0], 6))
+        test = load_corrected_test(campaign, name, structure, findings)
         test = test.isel(time=test["time"].to_numpy() <= longest)
         parts.append(read_off(test, structure, campaign.sensors))
     return xr.concat(parts, dim="test", join="outer", coords="minimal", compat="override").assign_coords(

@@ -9,9 +9,8 @@ from blockshake.diagnosis.laws.findings import OutsideForce
 from blockshake.diagnosis.laws.outside_force import outside_force
 from blockshake.forces.joint_forces import gives_forces, joint_forces
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaigns.campaign import load_test
 from blockshake.measurement.motion.outliers import without_outliers
-from blockshake.parity.correction import corrected
+from blockshake.parity.correction import load_corrected_test
 
 
 def measured_forces(campaign, names, findings):
@@ -36,8 +35,7 @@ def measured_forces(campaign, names, findings):
     structure = load_structure(campaign.structure)
     found = {}
     for name in names:
-        test = without_outliers(corrected(load_test(campaign, name), name, structure, findings), structure)
-        test = test.assign_coords(time=np.round(test["time"] - test["time"][0], 6))
+        test = without_outliers(load_corrected_test(campaign, name, structure, findings), structure)
         if gives_forces(test, structure, campaign.sensors):
             found[name] = joint_forces(test, structure, campaign.sensors)
     if not found:
