@@ -27,7 +27,7 @@ class Face:
     corners : float64 array, shape (n_corners, 3)
         Of the common area, from the middle of the face, in the axes of ``axes`` [m].
     on_upper : float64 array, shape (3,)
-        Middle of the face from the mass centres, body frames [m].
+        Middle of the face from the mass centre of the upper body, in its frame [m].
     axes : float64 array, shape (3, 3)
         At the start, world frame, in columns: two tangents, the first one along x as far as the face allows, and the
         normal from the lower to the upper body.
