@@ -131,6 +131,12 @@ def test_the_content_digest_tells_values_apart_and_not_the_order_of_keys():
     assert len(content_digest(1)) == 12
 
 
+def _clear():
+    """Forget the digests of sources: these change while a test runs, as they never do under a program."""
+    source_digest.cache_clear()
+    files._syntax.cache_clear()
+
+
 @pytest.fixture
 def package(tmp_path, monkeypatch):
     monkeypatch.setattr(files, "PACKAGE", tmp_path)
@@ -139,13 +145,13 @@ def package(tmp_path, monkeypatch):
         '"""Doc."""\n\n\ndef f(x):\n    """Add one."""\n    return x + 1\n'
     )
     (tmp_path / "b.py").write_text("B = 2\n")
-    source_digest.cache_clear()
+    _clear()
     yield tmp_path
-    source_digest.cache_clear()
+    _clear()
 
 
 def _digests():
-    source_digest.cache_clear()
+    _clear()
     return source_digest(), source_digest("part"), source_digest("b.py")
 
 

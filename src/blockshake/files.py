@@ -205,11 +205,17 @@ def source_digest(*packages):
         path = PACKAGE / path
         for source in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
             digest.update(str(source.relative_to(PACKAGE)).encode())
-            tree = _without_docstrings(ast.parse(source.read_text(encoding="utf-8")))
-            if function:
-                tree.body = [node for node in tree.body if getattr(node, "name", function) == function]
-            digest.update(ast.dump(tree).encode())
+            digest.update(_syntax(source, function))
     return digest.hexdigest()[:12]
+
+
+@functools.cache
+def _syntax(source, function):
+    """Digest of the syntax tree of a file, or of its top and one of its functions: many packages share a file."""
+    tree = _without_docstrings(ast.parse(source.read_text(encoding="utf-8")))
+    if function:
+        tree.body = [node for node in tree.body if getattr(node, "name", function) == function]
+    return hashlib.sha256(ast.dump(tree).encode()).digest()
 
 
 def _without_docstrings(tree):

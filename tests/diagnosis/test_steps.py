@@ -10,6 +10,7 @@ from tiny_campaign import TESTS, prescribed_run, write_campaign
 from blockshake.diagnosis import steps
 from blockshake.diagnosis.inference.calibration import write_cases
 from blockshake.diagnosis.inference.decision import write_result
+from blockshake.diagnosis.laws.findings import LawFindings, OutsideForce
 from blockshake.diagnosis.libraries import candidates, designed_test, efforts, plan
 from blockshake.diagnosis.misfit import predictability
 from blockshake.diagnosis.verdict.frozen import freeze
@@ -20,6 +21,11 @@ TINY = efforts.Effort(runs=1000, tests=2, nominal_draws=10, own_draws=2, further
 SOLVERS = ("ls-dem", "nscd-rigid")
 PITCH = {"name": "table-pitch", "values": {"coefficient": 1.2e-3, "frequency": 18.0}, "place": {}}
 STRUCTURE = PACKAGE.parents[1] / "hidden_effects" / "two-blocks.yaml"
+
+PUSH = OutsideForce(
+    bodies=("block-2",), law="constant", scores={"constant": 0.0}, amplitude=-2e3, lower=-2.2e3, upper=-1.8e3,
+    unit="N", tests={"one-100": {"start": 2.0}},
+)  # fmt: skip
 
 
 def _silent(line):
@@ -89,10 +95,10 @@ def _diagnose(folder, campaign):
     write_result(path["size"], sized.size)
     freeze(path["frozen-size"], path["size"], sized.tests)
     extended = [str(folder / f"extended-{solver}.nc") for solver in SOLVERS]
-    files.posterior, files.frozen_size = path["size"], path["frozen-size"]
+    files.posterior = path["size"], path["frozen-size"]
     for solver, file in zip(SOLVERS, extended, strict=True):
         write_dataset(file, steps.extend_model(campaign, "tiny", solver, files, effects, *made_by))
-    files.posterior, files.extended = (path["size"], path["frozen-size"]), extended
+    files.extended = extended
     gained = steps.measure_gain(campaign, files)
     files.gain = str(folder / "gain.json"), str(folder / "gain.nc")
     write_result(files.gain[0], gained.summary)
@@ -158,6 +164,26 @@ def test_a_campaign_without_a_gain_says_why(found):
         verdict = steps.conclude(found.campaign, "tiny", files)
     assert "no gain was measured on a sealed test" in verdict.missing
     assert verdict.gain is None
+
+
+def test_a_force_that_the_laws_describe_extends_the_model(found, tmp_path):
+    """The cause is unknown, and its gain is measured like that of a named one."""
+    laws = LawFindings(laws=(), isolated=(), outside=PUSH, p=1e-6)
+    unknown = found.decided.decision.model_copy(update={"decision": "unknown", "causes": (), "laws": laws})
+    decision, frozen = tmp_path / "decision.json", tmp_path / "frozen.json"
+    write_result(decision, unknown)
+    freeze(frozen, decision, found.decided.tests)
+    given = {"decision": str(decision), "frozen": str(frozen), "posterior": (), "further": ()}
+    files = SimpleNamespace(**vars(found.files) | given)
+    made_by = tmp_path / "store", "source", _silent
+    files.extended = [str(tmp_path / f"{solver}.nc") for solver in SOLVERS]
+    for solver, file in zip(SOLVERS, files.extended, strict=True):
+        runs = steps.extend_model(found.campaign, "tiny", solver, files, plan.considered(), *made_by)
+        assert (runs["kind"] == "extended").sum() == TINY.members
+        write_dataset(file, runs)
+    gained = steps.measure_gain(found.campaign, files)
+    # the formula that simulates here feels no force: nothing is gained, and that is told
+    assert gained.summary.gain.nominal.estimate == pytest.approx(0.0, abs=1e-6)
 
 
 def test_readings_of_the_library_are_those_of_the_campaign(found):

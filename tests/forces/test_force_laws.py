@@ -24,6 +24,7 @@ def history(force, seed=0):
     noise = np.random.default_rng(seed).normal(0.0, ERROR, len(TIME))
     return PushHistory(
         body=1,
+        height=0.0,
         force=force + noise,
         error=np.full(len(TIME), ERROR),
         told=np.ones(len(TIME), dtype=bool),

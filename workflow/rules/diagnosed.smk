@@ -128,47 +128,59 @@ def sealed_motions(campaign):
 
 
 def decided(wildcards):
-    """Physical causes of a campaign and whether its sensors have a fault; asks for the decision first."""
-    files = checkpoints.decide.get(**wildcards).output
-    parity = f"results/diagnosis/{wildcards.campaign}/parity.json"
-    causes = json.loads(Path(files.decision).read_text())["causes"]
-    return causes, bool(json.loads(Path(parity).read_text())["findings"])
+    """Decision on the physical causes of a campaign; asks for it first."""
+    path = checkpoints.decide.get(campaign=wildcards.campaign).output.decision
+    return json.loads(Path(path).read_text())
+
+
+def described(decision):
+    """Whether the cause is unknown but described as a force from outside."""
+    return bool(
+        decision["decision"] == "unknown" and (decision["laws"] or {}).get("outside")
+    )
 
 
 def further_files(wildcards):
     """More draws with the first cause by both solvers, test by test."""
-    path = checkpoints.decide.get(campaign=wildcards.campaign).output.decision
-    decision = json.loads(Path(path).read_text())
+    decision = decided(wildcards)
     if not decision["causes"]:
+        path = f"results/diagnosis/{wildcards.campaign}/decision.json"
         refuse(InputError(path, "causes", "expected a cause to simulate"))
     key = decision["places"][decision["causes"][0]]
     return library_files(wildcards.campaign, f"{{solver}}/{key}.nc")
 
 
+def cause_files(wildcards):
+    """These draws, or none where a described force extends the model."""
+    return further_files(wildcards) if decided(wildcards)["causes"] else []
+
+
 def size_files(wildcards):
     """The size of the first cause and its hash, where there is one and the effort has further draws for it."""
-    causes, _ = decided(wildcards)
+    causes = decided(wildcards)["causes"]
     further = causes and plan(wildcards.campaign).effort.further_draws
     names = ["size.json", "frozen-size.json"] if further else []
     return expand(f"results/diagnosis/{wildcards.campaign}/{{name}}", name=names)
 
 
 def extended_files(wildcards):
-    """Extended ensembles by both solvers, where a physical cause was found."""
-    causes, _ = decided(wildcards)
+    """Extended ensembles by both solvers, where a physical cause was found or described."""
+    decision = decided(wildcards)
     return expand(
         f"results/diagnosis/{wildcards.campaign}/extended/{{solver}}.nc",
-        solver=NULL_MODELS if causes else [],
+        solver=NULL_MODELS if decision["causes"] or described(decision) else [],
     )
 
 
 def gain_files(wildcards):
-    """The gain and its scores, where a cause was found, there are sealed tests and the effort has members to predict them with."""
+    """The gain and its scores, where there are sealed tests, and a cause that only sensors have or members to simulate one with."""
     from blockshake.diagnosis.libraries.plan import sealed_tests
 
-    causes, faulty = decided(wildcards)
-    asked = plan(wildcards.campaign)
-    measurable = (causes and asked.effort.members) or (faulty and not causes)
+    decision, asked = decided(wildcards), plan(wildcards.campaign)
+    parity = f"results/diagnosis/{wildcards.campaign}/parity.json"
+    faulty = bool(json.loads(Path(parity).read_text())["findings"])
+    physical = bool(decision["causes"]) or described(decision)
+    measurable = asked.effort.members if physical else faulty
     if measurable and sealed_tests(asked.campaign):
         return expand(
             f"results/diagnosis/{wildcards.campaign}/{{name}}",

@@ -172,12 +172,11 @@ rule extend_model:
     input:
         frozen="results/diagnosis/{campaign}/frozen.json",
         decision="results/diagnosis/{campaign}/decision.json",
-        posterior=rules.size_cause.output.posterior,
-        frozen_size=rules.size_cause.output.frozen,
+        posterior=size_files,
         motions=lambda wildcards: sealed_motions(wildcards.campaign),
         readings=rules.read_measured.output.readings,
         libraries=lambda wildcards: library_files(wildcards.campaign),
-        further=further_files,
+        further=cause_files,
         kernels=lambda wildcards: kernels(wildcards.solver),
     output:
         "results/diagnosis/{campaign}/extended/{solver}.nc",

@@ -236,8 +236,9 @@ def extend_model(folder, effort, solver, files, effects, store, source, progress
     ----------
     folder, effort, solver : str
     files : object
-        Attributes ``frozen``, ``decision``, ``frozen_size``, ``posterior``, ``readings``, ``libraries`` and
-        ``further``: files of the earlier steps.
+        Attributes ``frozen``, ``decision``, ``readings``, ``libraries``, and ``posterior`` (the size and its hash) and
+        ``further``, both empty where the cause is unknown and a force from outside extends the model: files of the
+        earlier steps.
     effects : sequence of str
     store, source, progress
         As of `library`.
@@ -248,23 +249,32 @@ def extend_model(folder, effort, solver, files, effects, store, source, progress
         From `extended_runs`.
     """
     from blockshake.diagnosis.features.measured_readings import tamed_readings
-    from blockshake.diagnosis.gain.extended_runs import extended_runs
+    from blockshake.diagnosis.gain.described_force import members_with_force
+    from blockshake.diagnosis.gain.extended_runs import extended_runs, members_with_cause, nominal_draws
+    from blockshake.diagnosis.gain.extension import open_features
     from blockshake.diagnosis.inference.decision import CauseSize, Decision, load_result
     from blockshake.diagnosis.inference.library_scores import load_tables, score_library
     from blockshake.diagnosis.inference.size_of_cause import library_of_cause, without_second
     from blockshake.diagnosis.libraries.plan import plan_diagnosis
     from blockshake.diagnosis.verdict.frozen import check_frozen
+    from blockshake.geometry.structure import load_structure
 
     check_frozen(files.frozen, files.decision)
-    check_frozen(files.frozen_size, files.posterior)
-    decision, size = load_result(Decision, files.decision), load_result(CauseSize, files.posterior)
-    tables = load_tables(files.libraries)
-    whole, scales = score_library(tables, effects)
+    decision, tables = load_result(Decision, files.decision), load_tables(files.libraries)
+    library, scales = score_library(tables, effects)
     features = tamed_readings(scales, xr.load_dataset(files.readings))
-    library, _ = library_of_cause(tables, load_tables(files.further), size.key)
-    left = without_second(whole, features, decision)
     plan = plan_diagnosis(folder, effort)
-    return extended_runs(plan, solver, decision, size, library, features, left, store, source, progress)
+    if files.posterior:
+        posterior, frozen = files.posterior
+        check_frozen(frozen, posterior)
+        size, left = load_result(CauseSize, posterior), without_second(library, features, decision)
+        library, _ = library_of_cause(tables, load_tables(files.further), size.key)
+        members = members_with_cause(plan, solver, decision, size, library, left)
+    else:
+        draws = nominal_draws(plan, solver)[: plan.effort.members]
+        members = members_with_force(decision.laws.outside, draws, load_structure(plan.campaign.structure))
+    known = open_features(library, solver)
+    return extended_runs(plan, solver, members, known, features, store, source, progress)
 
 
 def measure_gain(folder, files):
@@ -327,7 +337,8 @@ def conclude(folder, effort, files):
     if files.gain:
         measured, scores = load_result(MeasuredGain, files.gain[0]), xr.load_dataset(files.gain[1])
     else:
-        caveats = plan.caveats([*decision.causes, *parity.findings])
+        described = decision.decision == "unknown" and decision.laws and decision.laws.outside
+        caveats = plan.caveats([*decision.causes, *parity.findings, *([described] if described else [])])
         measured, scores = MeasuredGain(gain=None, caveats=caveats, runs=0), None
     runs = plan.runs + (plan.further_runs if size else 0) + measured.runs
     channels = parity.channels["channel"].values.tolist()

@@ -33,7 +33,7 @@ class LeastForce:
     push: np.ndarray
 
 
-def least_force(structure, faces, motion, joints, required, pushed=None):
+def least_force(structure, faces, motion, joints, required, pushed=None, height=0.0):
     """Smallest external wrenches, in units of their standard deviations.
 
     Parameters
@@ -44,7 +44,9 @@ def least_force(structure, faces, motion, joints, required, pushed=None):
     joints : JointMotion
     required : RequiredWrenches
     pushed : int, optional
-        Body on which a horizontal force along x through its mass centre costs nothing.
+        Body on which a horizontal force along x costs nothing.
+    height : float, optional
+        Of that force's line above the body's mass centre [m].
 
     Returns
     -------
@@ -68,6 +70,7 @@ def least_force(structure, faces, motion, joints, required, pushed=None):
     if pushed is not None:
         push = np.zeros((n_times, len(structure.mass), 6, 2))
         push[:, pushed, 0] = 1.0, -1.0
+        push[:, pushed, 4] = height, -height
         generators = np.concatenate([generators, push], axis=-1)
     # of all forces that explain as much the smallest one
     small = np.zeros(generators.shape[-1])

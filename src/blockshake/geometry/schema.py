@@ -98,6 +98,23 @@ class Stopper(Strict):
     )
 
 
+class ExternalForce(Strict):
+    """A force from outside on a body, along a fixed axis; nothing of it acts on the driven body."""
+
+    body: str
+    position: Vector = Field(
+        (0.0, 0.0, 0.0), description="point of the body, body frame, from the centroid [m]"
+    )
+    axis: Literal[AXES] = Field("x", description="world frame")
+    amplitude: Finite = Field(0.0, description="along the axis, from start until end [N]")
+    start: NotNegative = Field(0.0, description="[s]")
+    end: Positive = Field(1e9, description="[s]")
+    stiffness: Finite = Field(
+        0.0, description="force against the point's displacement relative to the driven body [N/m]"
+    )
+    damping: Finite = Field(0.0, description="force against the point's velocity relative to it [N s/m]")
+
+
 class Marker(Strict):
     """A point of a body whose displacement is measured."""
 
@@ -129,5 +146,6 @@ class StructureFile(Strict):
     restitution: Fraction = Field(0.5, description="C_res of Eq. (3), LS-DEM; 0 means critical damping [1]")
     nscd_restitution: Fraction = Field(0.0, description="Newton's restitution, NSCD [1]")
     stoppers: tuple[Stopper, ...] = ()
+    external_forces: tuple[ExternalForce, ...] = ()
     markers: tuple[Marker, ...] = ()
     accelerometers: tuple[Accelerometer, ...] = ()

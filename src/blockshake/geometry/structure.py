@@ -132,7 +132,7 @@ class Structure:
         return offset_solid(self.solids[one.shape], np.array(one.mass_offset))
 
     def carriers(self, points):
-        """Bodies of markers, accelerometers or stoppers: int64 array, shape (n_points,)."""
+        """Bodies of markers, accelerometers, stoppers or external forces: int64 array, shape (n_points,)."""
         names = self.body_names
         return np.array([names.index(point.body) for point in points], dtype=np.int64)
 

@@ -81,7 +81,7 @@ def check_names(file, source):
             raise InputError(
                 source, f"bodies.{body.name}", "expected no velocity of a driven body: it follows the motion"
             )
-    for kind in ("stoppers", "markers", "accelerometers"):
+    for kind in ("stoppers", "external_forces", "markers", "accelerometers"):
         for index, item in enumerate(getattr(file, kind)):
             if item.body not in bodies:
                 name = getattr(item, "name", index)
@@ -98,6 +98,9 @@ def check_names(file, source):
         if len(pair) == 1 or pair in joints:
             raise InputError(source, key, "expected two different bodies, and every joint once")
         joints.add(pair)
+    for index, force in enumerate(file.external_forces):
+        if any(body.driven and body.name == force.body for body in file.bodies):
+            raise InputError(source, f"external_forces.{index}.body", "expected a body that is not driven")
     if file.stoppers and not any(body.driven for body in file.bodies):
         raise InputError(source, "stoppers", "expected a driven body to fix the stoppers to")
 

@@ -39,8 +39,8 @@ def reading(seed, **changed):
         {"law_value": ("law", [values[name] for name in NAMES]), "law_error": ("law", errors)},
         {
             "law": NAMES,
-            "joint": ("law", ["slab-block-1" if one else "" for one in of_joint]),
-            "beneath": ("law", of_joint),
+            "law_joint": ("law", ["slab-block-1" if one else "" for one in of_joint]),
+            "law_beneath": ("law", of_joint),
         },
     )
 

@@ -102,10 +102,14 @@ def test_a_checkpoint_that_cannot_be_read_starts_anew(content, whole, motion, tm
 def test_bodies_that_meet_late_find_room_in_the_record(make_structure, run_ls_dem):
     """Cubes fall one after the other: with short lists every landing is a new joint, with long ones none is."""
     cubes = [
-        {"name": f"c{index}", "shape": "cube", "position": [3.0 * index, 0.0, 0.5 + 0.001 * (index + 1)]}
+        {
+            "name": f"c{index}",
+            "shape": "cube",
+            "position": [1.2 * index - 13.8, 0.0, 0.5 + 0.001 * (index + 1)],
+        }
         for index in range(24)
     ]
-    structure = make_structure(cubes, shapes={"slab": {"box": [160.0, 3.0, 0.2]}})
+    structure = make_structure(cubes, shapes={"slab": {"box": [32.0, 3.0, 0.2]}})
     late, early = (run_ls_dem(structure, 0.1, time_step=5e-5, skin=skin) for skin in (0.0005, 0.05))
     assert len(early.joints) == 24
     assert late.numerics["list_searches"] > early.numerics["list_searches"]

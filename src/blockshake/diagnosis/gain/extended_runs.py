@@ -17,8 +17,14 @@ from blockshake.diagnosis.libraries.plan import planned_sealed, sealed_tests
 RECALIBRATED, EXTENDED = "recalibrated", "extended"
 
 
-def extended_runs(plan, model, decision, size, library, features, left, store, source, progress):
-    """Simulated tests of the nominal, the recalibrated and the extended model.
+def nominal_draws(plan, model):
+    """Nominal models of a plan's libraries by one solver, in their order."""
+    like = next(iter(plan.tests.values()))
+    return [draw_nominal(like.structure, model, k) for k in range(plan.effort.nominal_draws)]
+
+
+def members_with_cause(plan, model, decision, size, library, left):
+    """Members of the model that a decision's causes extend.
 
     Parameters
     ----------
@@ -31,10 +37,49 @@ def extended_runs(plan, model, decision, size, library, features, left, store, s
         Of the first cause.
     library : ScoreLibrary
         Of the first cause, from `library_of_cause`.
+    left : list of float64 array, shape (n_features,)
+        The part of the measured features that the first cause has to explain: from `without_second`.
+
+    Returns
+    -------
+    list of (Draw, list of dict)
+        With the effects as `simulated_test` is given them.
+    """
+    by_key = {candidate.key: candidate for candidate in plan.candidates}
+    cause, *others = (by_key[decision.places[effect]] for effect in decision.causes)
+    members = extended_members(
+        cause,
+        (np.array(size.sizes), np.array(size.posterior)),
+        nominal_draws(plan, model),
+        open_features(library, model),
+        np.concatenate(left),
+        open_responses(library, model, cause.key),
+        plan.effort.members,
+    )
+    if decision.decision != "combination":
+        return members
+    (second,) = others
+    beside = decision.sizes[second.effect]
+    return [
+        (draw, [*effects, second.as_effect(second.values_at(beside, number))])
+        for number, (draw, effects) in enumerate(members)
+    ]
+
+
+def extended_runs(plan, model, extended, known, features, store, source, progress):
+    """Simulated tests of the nominal, the recalibrated and the extended model.
+
+    Parameters
+    ----------
+    plan : Plan
+    model : str
+        Solver.
+    extended : list of (Draw, list of dict)
+        Members of the extended model, from `members_with_cause` or `members_with_force`.
+    known : float64 array, shape (n_draws, n_features)
+        From `open_features`.
     features : list of float64 array, shape (n_features,)
         Measured in the open tests, tamed.
-    left : list of float64 array, shape (n_features,)
-        The part of them that the first cause has to explain: from `without_second`.
     store, source, progress
         As of `library`.
 
@@ -45,33 +90,14 @@ def extended_runs(plan, model, decision, size, library, features, left, store, s
         ``test``, ``draw``, ``status``. Along ``parameter``: what the tests tell of the nominal parameters without the
         cause, as of `Recalibration.informed`.
     """
-    by_key = {candidate.key: candidate for candidate in plan.candidates}
-    cause, *others = (by_key[decision.places[effect]] for effect in decision.causes)
-    like = next(iter(plan.tests.values()))
-    draws = [draw_nominal(like.structure, model, k) for k in range(plan.effort.nominal_draws)]
-    known = open_features(library, model)
-    count = plan.effort.members
+    draws, count = nominal_draws(plan, model), plan.effort.members
     recalibration = posterior_draws(draws, known, np.concatenate(features))
     members = {
         NOMINAL: [(draw, []) for draw in draws[:count]],
         RECALIBRATED: [(draw, []) for draw in recalibration.draws[:count]],
-        EXTENDED: extended_members(
-            cause,
-            (np.array(size.sizes), np.array(size.posterior)),
-            draws,
-            known,
-            np.concatenate(left),
-            open_responses(library, model, cause.key),
-            count,
-        ),
+        EXTENDED: extended,
     }
-    if decision.decision == "combination":
-        (second,) = others
-        beside = decision.sizes[second.effect]
-        members[EXTENDED] = [
-            (draw, [*effects, second.as_effect(second.values_at(beside, number))])
-            for number, (draw, effects) in enumerate(members[EXTENDED])
-        ]
+    like = next(iter(plan.tests.values()))
     sealed = {name: planned_sealed(plan.campaign, name, like) for name in sealed_tests(plan.campaign)}
     jobs = [(kind, name, planned) for kind in members for name, planned in sealed.items()]
     parts, total = [], len(jobs) * count

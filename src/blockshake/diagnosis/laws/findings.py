@@ -42,7 +42,9 @@ class OutsideForce(Strict):
     Attributes
     ----------
     bodies : tuple of str
-        Blocks on any of which it may act, as a force along x through the block's centre; the best first.
+        Blocks on any of which it may act, as a force along x; the best first.
+    height : float
+        Of its line above the mass centre of that block: at the centre or at the top [m].
     law : str
         ``steady`` throughout, ``constant`` from an instant on, ``pulse``, ``spring``, ``damper`` or ``proportional``.
     scores : dict of str to float
@@ -56,6 +58,7 @@ class OutsideForce(Strict):
     """
 
     bodies: tuple[str, ...]
+    height: float = 0.0
     law: str
     scores: dict[str, float]
     amplitude: float

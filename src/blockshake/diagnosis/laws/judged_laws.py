@@ -42,7 +42,8 @@ def judge_laws(measured, draws, outside):
             value, error = float(own["law_value"][place]), float(own["law_error"][place])
             if name in nulls and np.isfinite(value):
                 departures.setdefault(name, {})[test] = (value, error, nulls[name])
-                places[name] = {key: own[key].values[place].item() for key in ("joint", "beneath")}
+                joint, beneath = (own[key].values[place].item() for key in ("law_joint", "law_beneath"))
+                places[name] = {"joint": joint, "beneath": beneath}
     laws = sorted(
         (_law(name, by_test, **places[name]) for name, by_test in departures.items()),
         key=lambda one: -_largest(one),

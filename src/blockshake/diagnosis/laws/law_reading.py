@@ -18,8 +18,8 @@ NO_LAWS = xr.Dataset(
     {"law_value": ("law", np.empty(0)), "law_error": ("law", np.empty(0))},
     {
         "law": np.empty(0, dtype=str),
-        "joint": ("law", np.empty(0, dtype=str)),
-        "beneath": ("law", np.empty(0, bool)),
+        "law_joint": ("law", np.empty(0, dtype=str)),
+        "law_beneath": ("law", np.empty(0, bool)),
     },
 )
 
@@ -42,8 +42,8 @@ def read_laws(forces):
     -------
     xarray.Dataset
         Along ``law``: ``law_value`` in the unit of the table, NaN where the test does not tell, and ``law_error``, its
-        standard error; coordinates ``joint``, the joint's name, empty for laws of the whole test, and ``beneath``,
-        whether the joint carries all free bodies.
+        standard error; coordinates ``law_joint``, the joint's name, empty for laws of the whole test, and
+        ``law_beneath``, whether the joint carries all free bodies.
     """
     found, joint, beneath = {}, [], []
     n_free = np.count_nonzero(~forces.structure.driven)
@@ -64,7 +64,7 @@ def read_laws(forces):
         },
         {
             "law": list(found),
-            "joint": ("law", joint + [""] * len(of_test)),
-            "beneath": ("law", beneath + [False] * len(of_test)),
+            "law_joint": ("law", joint + [""] * len(of_test)),
+            "law_beneath": ("law", beneath + [False] * len(of_test)),
         },
     )

@@ -5,6 +5,7 @@ import numpy as np
 from blockshake.diagnosis.laws.findings import OutsideForce
 from blockshake.forces.outside.force_laws import fit_laws
 from blockshake.forces.outside.push_history import push_history
+from blockshake.geometry.rotations import rotation_matrices
 
 _UNITS = {
     "steady": "N",
@@ -34,22 +35,21 @@ def outside_force(forces):
         None where no test shows one.
     """
     structure = next(iter(forces.values())).structure
-    free = [int(body) for body in np.flatnonzero(~structure.driven)]
     left, fits = {}, {}
-    for body in free:
-        pushes = {test: push_history(one, body) for test, one in forces.items()}
-        left[body] = sum(float(np.nansum(one.distance**2)) for one in pushes.values())
-        fits[body] = {test: fit_laws(forces[test].motion.time, one) for test, one in pushes.items()}
+    for place in _places(structure):
+        pushes = {test: push_history(one, *place) for test, one in forces.items()}
+        left[place] = sum(float(np.nansum(one.distance**2)) for one in pushes.values())
+        fits[place] = {test: fit_laws(forces[test].motion.time, one) for test, one in pushes.items()}
     instants = sum(len(one.motion.time) for one in forces.values())
     floor = min(left.values()) + _NOISE * 0.05 * instants
-    agreeing = [body for body in free if left[body] <= _AGREES * floor]
-    scored = {body: _score(fits[body]) for body in agreeing}
-    shown = {body: one for body, one in scored.items() if one}
+    agreeing = [place for place in left if left[place] <= _AGREES * floor]
+    scored = {place: _score(fits[place]) for place in agreeing}
+    shown = {place: one for place, one in scored.items() if one}
     if not shown:
         return None
-    # of blocks that agree the lowest information is no measure: their errors differ; the middle one stands for all
-    order = sorted(shown, key=lambda body: left[body])
-    best = order[0] if left[order[0]] < 0.5 * left[order[-1]] else order[len(order) // 2]
+    # of places that agree the lowest information is no measure: their errors differ; the middle one stands for all
+    order = sorted(shown, key=lambda place: structure.position[place[0], 2] + place[1])
+    best = order[len(order) // 2]
     law, scores, tests = shown[best]
     amplitudes = np.array([one.amplitude for one in tests.values()])
     errors = np.array([one.error for one in tests.values()])
@@ -59,7 +59,8 @@ def outside_force(forces):
     half = _NORMAL_90 * float(np.hypot(weight.sum() ** -0.5, scatter))
     names = structure.body_names
     return OutsideForce(
-        bodies=tuple(names[body] for body in [best, *[one for one in order if one != best]]),
+        bodies=tuple(dict.fromkeys(names[body] for body, _ in [best, *order])),
+        height=best[1],
         law=law,
         scores=scores,
         amplitude=mean,
@@ -68,6 +69,15 @@ def outside_force(forces):
         unit=_UNITS[law],
         tests={test: {**one.parameters, "amplitude": one.amplitude} for test, one in tests.items()},
     )
+
+
+def _places(structure):
+    """Bodies and heights above their mass centres at which a force may act: the centre and the top of each block."""
+    for body in map(int, np.flatnonzero(~structure.driven)):
+        solid = structure.solids[structure.file.bodies[body].shape]
+        turned = solid.vertices @ rotation_matrices(structure.orientation[body]).T
+        yield body, 0.0
+        yield body, float(turned[:, 2].max() + structure.centroid[body, 2] - structure.position[body, 2])
 
 
 def _score(fits):

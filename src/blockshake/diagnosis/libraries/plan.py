@@ -108,7 +108,7 @@ class Plan:
         return len(MODELS) * len(self.tests) * self.effort.further_draws
 
     def caveats(self, causes):
-        """Reason why no gain was measured, where there are causes."""
+        """Reason why no gain was measured, where there are causes, or a description of an unknown one."""
         if not causes:
             return []
         if not sealed_tests(self.campaign):

@@ -10,11 +10,13 @@ from blockshake.forces.least_force import least_force
 
 @dataclass(frozen=True)
 class PushHistory:
-    """A force along x through a body's mass centre.
+    """A force along x on a body.
 
     Attributes
     ----------
     body : int
+    height : float
+        Of the force's line above the body's mass centre [m].
     force, error : float64 arrays, shape (n_times,)
         And its standard deviation [N].
     told : bool array, shape (n_times,)
@@ -29,6 +31,7 @@ class PushHistory:
     """
 
     body: int
+    height: float
     force: np.ndarray
     error: np.ndarray
     told: np.ndarray
@@ -41,7 +44,7 @@ class PushHistory:
 _SURE = 4.0  # standard deviations
 
 
-def push_history(forces, body):
+def push_history(forces, body, height=0.0):
     """Smallest force on a body that explains as much as any.
 
     Parameters
@@ -49,6 +52,8 @@ def push_history(forces, body):
     forces : JointForces
     body : int
         Free.
+    height : float, optional
+        Of the force's line above the body's mass centre [m].
 
     Returns
     -------
@@ -60,7 +65,7 @@ def push_history(forces, body):
     the body bears on an edge or slips.
     """
     motion = forces.motion
-    least = least_force(forces.structure, forces.faces, motion, forces.joints, forces.required, pushed=body)
+    least = least_force(forces.structure, forces.faces, motion, forces.joints, forces.required, body, height)
     n_times = len(motion.time)
     error, turned = np.full(n_times, np.inf), np.zeros(n_times, dtype=bool)
     edge, slips = np.zeros(n_times), np.zeros(n_times, dtype=bool)
@@ -69,7 +74,7 @@ def push_history(forces, body):
             continue
         joint = forces.faces.index(face)
         middle = motion.position[:, face.upper] + motion.rotation[:, face.upper] @ face.on_upper
-        arm = motion.position[:, body, 2] - middle[:, 2]
+        arm = motion.position[:, body, 2] + height - middle[:, 2]
         side = forces.joints.side[:, joint]
         here = (side != 0) & forces.joints.steady & ~turned
         by_lever = forces.transmitted.normal[:, place] / arm
@@ -88,6 +93,7 @@ def push_history(forces, body):
     rest = np.nanmean(moved[forces.still]) if forces.still.any() else 0.0
     return PushHistory(
         body=body,
+        height=height,
         force=least.push,
         error=error,
         told=told,

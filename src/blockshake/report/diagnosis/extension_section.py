@@ -2,6 +2,7 @@
 
 from blockshake.diagnosis.libraries.candidates import effect_of
 from blockshake.effects.registry import EFFECTS
+from blockshake.report.diagnosis.forces_section import FORCE_LAWS
 from blockshake.report.diagnosis.verdict import single_size
 from blockshake.report.diagnosis.wording import (
     acting,
@@ -55,6 +56,12 @@ def _opening(found):
     kind, physical = found.verdict.decision, found.decision.causes
     if kind == "none":
         return "The model was not extended: nothing is missing that these tests would show."
+    if kind == "unknown" and found.gain is not None:
+        outside = found.verdict.outside
+        return (
+            f"The cause is unknown. The model was extended by an empirical force on {outside.bodies[0]}, "
+            f"{FORCE_LAWS[outside.law]}, as the laws of the joints describe it: an equation of what acts, not a cause."
+        )
     if kind == "unknown":
         return "The model was not extended: the cause is unknown, and an extension by a wrong cause misleads."
     if not physical:

@@ -8,7 +8,7 @@ from blockshake.report.document.blocks import Figure, Section, Table, Text
 from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
 from blockshake.report.document.wording import number
 
-_LAWS = {
+FORCE_LAWS = {
     "steady": "steady throughout",
     "constant": "constant from an instant on",
     "pulse": "a pulse",
@@ -89,16 +89,21 @@ def _outside(outside):
         f"{number(factor * outside.amplitude, 3)} ({number(factor * outside.lower, 3)} to "
         f"{number(factor * outside.upper, 3)}) {unit}"
     )
-    rivals = [f"{_LAWS[name]} {number(score, 2)}" for name, score in list(outside.scores.items())[1:3]]
+    rivals = [f"{FORCE_LAWS[name]} {number(score, 2)}" for name, score in list(outside.scores.items())[1:3]]
     when = []
     for test, values in outside.tests.items():
         words = [f"{name} {number(values[name], 3)} s" for name in ("start", "end") if name in values]
         words += [f"gap {number(1e3 * values['gap'], 3)} mm"] if "gap" in values else []
         when.append(f"{test}: {', '.join(words) if words else 'throughout'}")
+    line = (
+        f"{number(outside.height, 2)} m above the mass centre of {outside.bodies[0]}"
+        if abs(outside.height) > 1e-3
+        else f"through the mass centre of {outside.bodies[0]}"
+    )
     towards = "+x" if outside.amplitude > 0.0 else "-x"
     direction = f", towards {towards}" if np.isin(outside.law, ("steady", "constant", "pulse")) else ""
     return (
-        f"A force from outside would explain the broken laws: on {bodies}, as a force through the block's centre, "
-        f"{_LAWS[outside.law]}, {size}{direction} (90 % interval over the tests). {'; '.join(when)}. The next best "
-        f"laws are worse by (information criterion): {'; '.join(rivals)}."
+        f"A force from outside would explain the broken laws: on {bodies}, here {line}, "
+        f"{FORCE_LAWS[outside.law]}, {size}{direction} (90 % interval over the tests). {'; '.join(when)}. The "
+        f"next best laws are worse by (information criterion): {'; '.join(rivals)}."
     )

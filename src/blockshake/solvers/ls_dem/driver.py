@@ -6,6 +6,7 @@ from blockshake.dynamics.collapse import collapse_limits
 from blockshake.dynamics.motion import PITCH, rest_table
 from blockshake.dynamics.system import Trajectory, assemble_bodies, place_driven_into
 from blockshake.solvers.checkpoint import Checkpoint, run_key
+from blockshake.solvers.external_forces import assemble_external_forces
 from blockshake.solvers.ls_dem import checkpoint as layout
 from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
 from blockshake.solvers.ls_dem.loop import integrate
@@ -61,6 +62,7 @@ def simulate_ls_dem(
     bodies, state, stoppers = assemble_bodies(structure)
     if rotations_blocked:
         bodies = bodies._replace(inverse_inertia=np.zeros_like(bodies.inverse_inertia))
+    forces = assemble_external_forces(structure)
     surfaces = assemble_surfaces(structure, parameters)
     interfaces = assemble_interfaces(structure, parameters)
     ground = motion.table if motion is not None else rest_table()
@@ -80,7 +82,7 @@ def simulate_ls_dem(
 
     def go_on(pause, progress, candidates, joints, record, started):
         code, culprit, candidates, joints, record = integrate(
-            bodies, surfaces, interfaces, stoppers, ground, *limits, parameters.skin, time_step,
+            bodies, surfaces, interfaces, stoppers, forces, ground, *limits, parameters.skin, time_step,
             n_steps, pause, record_times, progress, candidates, joints, record,
         )  # fmt: skip
         return code, culprit, (progress, candidates, joints, record, started)

@@ -23,11 +23,13 @@ from blockshake.solvers.ls_dem.contact.candidates import find_candidates, lists_
 from blockshake.solvers.ls_dem.contact.contact_forces import (
     SPRING_ENERGY,
     STEP_DASHPOT_HEAT,
+    STEP_EXTERNAL_WORK,
     STEP_FRICTION_HEAT,
     clear_loads,
     contact_forces_into,
     no_loads,
 )
+from blockshake.solvers.ls_dem.external_loads import external_loads_into, external_power
 from blockshake.solvers.ls_dem.progress import (
     DASHPOT_HEAT,
     FRICTION_HEAT,
@@ -54,6 +56,7 @@ def integrate(
     surfaces,
     interfaces,
     stoppers,
+    forces,
     ground,
     supported,
     drop_limit,
@@ -71,7 +74,7 @@ def integrate(
 
     Parameters
     ----------
-    bodies, surfaces, interfaces, stoppers : Bodies, Surfaces, Interfaces, Stoppers
+    bodies, surfaces, interfaces, stoppers, forces : Bodies, Surfaces, Interfaces, Stoppers, ExternalForces
     ground : MotionTable
         Motion of the driven bodies.
     supported : bool array, shape (n_bodies,)
@@ -106,7 +109,7 @@ def integrate(
     state, poses = progress.state, progress.poses
     loads, record = no_loads(n_bodies, joints), with_room(record, joints.slip.size)
     now, velocity = np.zeros(4), np.zeros(4)
-    workspace = np.zeros(3)
+    workspace, external = np.zeros(3), np.zeros((n_bodies, 6))
     start = ground.coefficients[0, :, 0].copy()
     start[PITCH] = 0.0
     segment = 0
@@ -141,9 +144,13 @@ def integrate(
         poses.position_before[:] = state.position
         poses.rotation_before[:] = poses.rotation
         loads.energy[SPRING_ENERGY] += stopper_forces_into(bodies, stoppers, state, loads)
+        external_loads_into(bodies, forces, state, t, external, loads)
         _account_into(bodies, loads, now, progress)
 
         _kick(bodies, loads, dt, step > 0, progress)
+        loads.energy[STEP_EXTERNAL_WORK] = dt * external_power(external, state)
+        # the first kick is half a step's
+        progress.audit[INPUT_WORK] += loads.energy[STEP_EXTERNAL_WORK] * (1.0 if step > 0 else 0.5)
         if _has_diverged(state.velocity):
             return DIVERGED, -1, candidates, joints, record
         while progress.clock[NEXT_RECORD] < times.size and times[progress.clock[NEXT_RECORD]] < t + 0.5 * dt:
@@ -235,9 +242,10 @@ def _record_into(bodies, loads, offset, dt, progress, turn, row, record):
     energy[POTENTIAL] = potential_energy(bodies, state.position)
     energy[ELASTIC] = loads.energy[SPRING_ENERGY]
     energy[FRICTION_LOSS] = audit[MOST_FRICTION_HEAT]
-    # a step's dashpot heat lasts to half a step ahead
+    # a step's dashpot heat and external work last to half a step ahead
     energy[CONTACT_LOSS] = audit[DASHPOT_HEAT] - 0.5 * loads.energy[STEP_DASHPOT_HEAT]
-    energy[VISCOUS_LOSS], energy[INPUT] = 0.0, audit[INPUT_WORK]
+    energy[VISCOUS_LOSS] = 0.0
+    energy[INPUT] = audit[INPUT_WORK] - 0.5 * loads.energy[STEP_EXTERNAL_WORK]
     record.joint_force[row, : loads.joints.slip.size] = loads.joints.force
 
 

@@ -103,7 +103,9 @@ def _nodes(structure, name, parameters):
     points, areas = box_nodes(shape.box, shape.chamfer, parameters.node_spacing, inset)
     if areas.min() <= 0.0:
         raise InputError(
-            structure.source, f"shapes.{name}", "expected flats much wider than ls_dem.perimeter_inset"
+            structure.source,
+            f"shapes.{name}",
+            "expected flats much wider than ls_dem.perimeter_inset, and for long ones a wider ls_dem.node_spacing",
         )
     if parameters.edge_spacing == 0.0:
         return points, areas

@@ -5,6 +5,7 @@ import numpy as np
 from blockshake.dynamics.collapse import find_collapsed
 from blockshake.dynamics.system import place_driven_into
 from blockshake.jit import kernel
+from blockshake.solvers.external_forces import external_wrenches_into
 from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit
 from blockshake.solvers.nscd.contact.contacts import contact_margin, delassus_into, detect_contacts
 from blockshake.solvers.nscd.contact.friction import friction_into
@@ -82,6 +83,10 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
         while part < parts:
             h, place = dt / parts, clock[STEP] * parts + part
             move_ground_by_secant_into(ground, (place + 1.0 - theta) * h, (place + 2.0 - theta) * h, h)
+            external_wrenches_into(
+                scene.bodies, scene.forces, state, (place + 0.5) * h, 0.5 * h, step.external
+            )
+            step.external *= h
             predict_into(scene.bodies, state, ground, h, theta, step)
 
             found = _detect(scene, step, placed, progress.face, h)

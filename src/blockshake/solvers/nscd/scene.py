@@ -8,6 +8,7 @@ from blockshake.dynamics.collapse import collapse_limits
 from blockshake.dynamics.joint_layers import joint_compliance
 from blockshake.dynamics.motion import MotionTable, rest_table
 from blockshake.dynamics.system import Bodies, Stoppers
+from blockshake.solvers.external_forces import ExternalForces, assemble_external_forces
 from blockshake.solvers.nscd.contact.friction import Friction, ordered_friction
 from blockshake.solvers.nscd.contact.polyhedra import Polyhedra, pack_polyhedra
 
@@ -42,6 +43,7 @@ class Scene(NamedTuple):
     bodies: Bodies
     friction: Friction
     stoppers: Stoppers
+    forces: ExternalForces
     layers: np.ndarray
     polyhedra: Polyhedra
     table: MotionTable
@@ -82,12 +84,14 @@ def assemble_scene(structure, bodies, stoppers, motion, parameters, time_step, o
     """
     place = np.argsort(order)
     table = rest_table() if motion is None else motion.table
-    driven = np.flatnonzero(structure.driven)
+    driven, forces = np.flatnonzero(structure.driven), assemble_external_forces(structure)
+    base = int(place[driven[0]]) if len(driven) else -1
     supported, drop_limit = collapse_limits(structure)
     return Scene(
         bodies=reordered(bodies._replace(gravity=None), order)._replace(gravity=bodies.gravity),
         friction=ordered_friction(structure, order),
         stoppers=stoppers._replace(body=place[stoppers.body]),
+        forces=forces._replace(body=place[forces.body], base=base),
         layers=np.ascontiguousarray(joint_compliance(structure)[np.ix_(order, order)]),
         polyhedra=pack_polyhedra(structure, order),
         table=MotionTable(*(np.ascontiguousarray(part) for part in table)),
@@ -100,5 +104,5 @@ def assemble_scene(structure, bodies, stoppers, motion, parameters, time_step, o
             structure.file.nscd_restitution,
             parameters.impact_parts,
         ),
-        watch=Watch(supported[order], drop_limit[order], int(place[driven[0]]) if len(driven) else -1),
+        watch=Watch(supported[order], drop_limit[order], base),
     )

@@ -17,8 +17,9 @@ class Step(NamedTuple):
     ``before``: state at the start. ``detection``: poses at which contacts are found, and the driven bodies'
     velocities at the end of the step. ``rotations``, ``inertia`` and ``inverse_inertia`` (n_bodies, 3, 3): body to
     world, and [kg m2] and [1/(kg m2)] in the world frame, there. ``v_start``, ``v`` (n_bodies, 6): velocities at the
-    start and at the end of the step. ``v_mean`` (n_bodies, 6): their mean, rotation as in `turn_into`. ``impulse``
-    (n_bodies, 6): contact impulse and its moment about the mass centre [N s, N m s].
+    start and at the end of the step. ``external`` (n_bodies, 6): impulse of external forces and its moment about the
+    mass centre [N s, N m s]. ``v_mean`` (n_bodies, 6): mean of both velocities, rotation as in `turn_into`.
+    ``impulse`` (n_bodies, 6): that of contacts and external forces together.
     """
 
     before: State
@@ -28,6 +29,7 @@ class Step(NamedTuple):
     inverse_inertia: np.ndarray
     v_start: np.ndarray
     v: np.ndarray
+    external: np.ndarray
     v_mean: np.ndarray
     impulse: np.ndarray
 
@@ -44,6 +46,7 @@ def empty_step(state):
         np.empty((n_bodies, 3, 3)),
         np.empty((n_bodies, 6)),
         np.empty((n_bodies, 6)),
+        np.zeros((n_bodies, 6)),
         np.empty((n_bodies, 6)),
         np.empty((n_bodies, 6)),
     )
@@ -59,13 +62,12 @@ def copy_state(state):
 
 @kernel
 def predict_into(bodies, state, ground, dt, theta, step):
-    """Poses at ``(1 - theta) dt`` into the step, and velocities at its end without contact.
+    """Poses at ``(1 - theta) dt`` into the step, and velocities at its end without contact, but for external impulses.
 
     ``ground`` (Ground): displacement there, and velocity at the end of the step.
     """
     detection, v = step.detection, step.v
-    rotation, no_torque = np.empty(3), np.zeros(3)
-    orientation, mean = np.empty(4), np.empty(3)
+    rotation, orientation, mean = np.empty(3), np.empty(4), np.empty(3)
     for body in range(bodies.mass.size):
         for axis in range(3):
             step.v_start[body, axis] = state.velocity[body, axis]
@@ -78,13 +80,14 @@ def predict_into(bodies, state, ground, dt, theta, step):
             )
             rotation[axis] = (1.0 - theta) * dt * state.angular_velocity[body, axis]
             v[body, axis] = state.velocity[body, axis] + dt * bodies.gravity[axis]
+            v[body, axis] += bodies.inverse_mass[body] * step.external[body, axis]
         rotate_into(state.orientation[body], rotation, detection.orientation[body])
         turn_into(
             state.orientation[body],
             state.angular_velocity[body],
             bodies.inertia[body],
             bodies.inverse_inertia[body],
-            no_torque,
+            step.external[body, 3:],
             dt,
             theta,
             orientation,
@@ -104,7 +107,7 @@ def predict_into(bodies, state, ground, dt, theta, step):
 
 @kernel
 def move_into(bodies, ground, dt, theta, contacts, step, state):
-    """Newton-Euler equations: poses and velocities at the end of the step under gravity and the contacts' impulses.
+    """Newton-Euler equations: poses and velocities at the end of the step under gravity and all impulses.
 
     ``ground`` (Ground): at the end of the step. ``step.before`` is overwritten with the state at the start.
     """
@@ -113,7 +116,7 @@ def move_into(bodies, ground, dt, theta, contacts, step, state):
     before.orientation[:] = state.orientation
     before.velocity[:] = state.velocity
     before.angular_velocity[:] = state.angular_velocity
-    step.impulse[:] = 0.0
+    step.impulse[:] = step.external
     for contact in range(contacts.gap.size):
         world = transposed_product(contacts.basis[contact], contacts.impulse[contact])
         for sign, body, arm in (

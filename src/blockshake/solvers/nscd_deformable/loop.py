@@ -5,6 +5,7 @@ import numpy as np
 from blockshake.dynamics.collapse import find_collapsed
 from blockshake.dynamics.system import place_driven_into
 from blockshake.jit import kernel
+from blockshake.solvers.external_forces import external_wrenches_into
 from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit
 from blockshake.solvers.nscd.contact.contacts import contact_margin
 from blockshake.solvers.nscd.contact.law_shift import bodies_meet
@@ -72,6 +73,8 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
         while part < parts:
             h, place = dt / parts, clock[STEP] * parts + part
             move_ground_by_secant_into(ground, (place + 1.0 - theta) * h, (place + 2.0 - theta) * h, h)
+            external_wrenches_into(bodies, scene.forces, state, (place + 0.5) * h, 0.5 * h, step.external)
+            step.external *= h
             predict_into(bodies, state, ground, h, theta, step)
 
             margin = contact_margin(step.v_start, scene.polyhedra.radius, bodies.gravity, h)

@@ -14,8 +14,9 @@ from blockshake.solvers.ls_dem.contact.side_forces import side_forces_into
 from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
 from blockshake.solvers.ls_dem.joints import Joints
 
-# Entries of ``Loads.energy``: what springs hold, and what friction and dashpots turned into heat in the step [J]
-SPRING_ENERGY, STEP_FRICTION_HEAT, STEP_DASHPOT_HEAT, N_ENERGIES = 0, 1, 2, 3
+# Entries of ``Loads.energy`` [J]: what springs hold, what friction and dashpots turned into heat in the step, and the
+# work of external forces in it
+SPRING_ENERGY, STEP_FRICTION_HEAT, STEP_DASHPOT_HEAT, STEP_EXTERNAL_WORK, N_ENERGIES = 0, 1, 2, 3, 4
 _RATE_TIME = (
     1e-3  # s, of the slip rate's delay; the time step of the nonsmooth solver, which has one of its own
 )
