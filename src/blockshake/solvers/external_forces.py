@@ -59,35 +59,45 @@ def external_wrenches_into(bodies, forces, state, time, ahead, wrench):
         Time from the state until then, over which every point keeps its velocity [s].
     wrench : float64 array, shape (n_bodies, 6)
         Overwritten: force and moment, world frame [N, N m].
-    """
-    wrench[:] = 0.0
-    arm = np.empty(3)
-    for force in range(forces.body.size):
-        push = _size(bodies, forces, force, state, time, ahead, arm) * forces.axis[force]
-        wrench[forces.body[force], :3] += push
-        wrench[forces.body[force], 3:] += np.cross(arm, push)
 
-
-@kernel
-def _size(bodies, forces, force, state, time, ahead, arm):
-    """Size of one force along its axis [N]; ``arm`` (3,) is overwritten with its point from the mass centre [m].
-
+    Notes
+    -----
     ``amplitude`` from ``start`` until before ``end``, less ``stiffness`` times the point's displacement against the
     driven body since the start of the run, less ``damping`` times its velocity against it.
     """
-    body, base, axis, point = forces.body[force], forces.base, forces.axis[force], forces.point[force]
-    R = np.empty((3, 3))
-    rotation_matrix_into(bodies.home_orientation[body], R)
-    home = bodies.home[body] + R @ point
-    rotation_matrix_into(state.orientation[body], R)
-    arm[:] = R @ point
-    moved = state.position[body] + arm - home
-    rate = state.velocity[body] + np.cross(state.angular_velocity[body], arm)
-    if base >= 0:
-        moved -= state.position[base] - bodies.home[base]
-        rate -= state.velocity[base]
-    speed = np.dot(axis, rate)
-    size = -forces.stiffness[force] * (np.dot(axis, moved) + ahead * speed) - forces.damping[force] * speed
-    if forces.start[force] <= time < forces.end[force]:
-        size += forces.amplitude[force]
-    return size
+    wrench[:] = 0.0
+    home, arm, rate, turn = np.empty(3), np.empty(3), np.empty(3), np.empty((3, 3))
+    for force in range(forces.body.size):
+        body, point, axis = forces.body[force], forces.point[force], forces.axis[force]
+        rotation_matrix_into(bodies.home_orientation[body], turn)
+        _turned_into(turn, point, home)
+        rotation_matrix_into(state.orientation[body], turn)
+        _turned_into(turn, point, arm)
+        _cross_into(state.angular_velocity[body], arm, rate)
+        moved, speed = 0.0, 0.0
+        for i in range(3):
+            moved += axis[i] * (state.position[body, i] + arm[i] - bodies.home[body, i] - home[i])
+            speed += axis[i] * (state.velocity[body, i] + rate[i])
+            if forces.base >= 0:
+                moved -= axis[i] * (state.position[forces.base, i] - bodies.home[forces.base, i])
+                speed -= axis[i] * state.velocity[forces.base, i]
+        size = -forces.stiffness[force] * (moved + ahead * speed) - forces.damping[force] * speed
+        if forces.start[force] <= time < forces.end[force]:
+            size += forces.amplitude[force]
+        _cross_into(arm, axis, rate)
+        for i in range(3):
+            wrench[body, i] += size * axis[i]
+            wrench[body, 3 + i] += size * rate[i]
+
+
+@kernel
+def _turned_into(turn, vector, out):
+    for i in range(3):
+        out[i] = turn[i, 0] * vector[0] + turn[i, 1] * vector[1] + turn[i, 2] * vector[2]
+
+
+@kernel
+def _cross_into(a, b, out):
+    out[0] = a[1] * b[2] - a[2] * b[1]
+    out[1] = a[2] * b[0] - a[0] * b[2]
+    out[2] = a[0] * b[1] - a[1] * b[0]

@@ -10,8 +10,10 @@ def external_loads_into(bodies, forces, state, time, external, loads):
     if forces.body.size == 0:
         return
     external_wrenches_into(bodies, forces, state, time, 0.0, external)
-    loads.force[:] += external[:, :3]
-    loads.moment[:] += external[:, 3:]
+    for body in range(external.shape[0]):
+        for axis in range(3):
+            loads.force[body, axis] += external[body, axis]
+            loads.moment[body, axis] += external[body, 3 + axis]
 
 
 @kernel

@@ -145,7 +145,9 @@ def account_into(bodies, stoppers, base, contacts, u_mean, step, theta, deformat
         if bodies.driven[b]:
             world = transposed_product(contacts.basis[contact], p)
             energy[INPUT] -= dot(world, velocity_at(step.v_mean[b], contacts.arm_b[contact]))
-    energy[INPUT] += (step.external * step.v_mean).sum()
+    for body in range(bodies.mass.size):
+        for i in range(6):
+            energy[INPUT] += step.external[body, i] * step.v_mean[body, i]
     reach, arm, toward = np.empty(3), np.empty(3), np.empty(3)
     for stopper in range(stoppers.body.size):
         squeezed = closure_into(bodies, stoppers, stopper, base, state, reach, arm, toward)

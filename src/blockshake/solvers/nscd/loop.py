@@ -86,7 +86,7 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
             external_wrenches_into(
                 scene.bodies, scene.forces, state, (place + 0.5) * h, 0.5 * h, step.external
             )
-            step.external *= h
+            step.external[:] *= h
             predict_into(scene.bodies, state, ground, h, theta, step)
 
             found = _detect(scene, step, placed, progress.face, h)

@@ -74,7 +74,7 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
             h, place = dt / parts, clock[STEP] * parts + part
             move_ground_by_secant_into(ground, (place + 1.0 - theta) * h, (place + 2.0 - theta) * h, h)
             external_wrenches_into(bodies, scene.forces, state, (place + 0.5) * h, 0.5 * h, step.external)
-            step.external *= h
+            step.external[:] *= h
             predict_into(bodies, state, ground, h, theta, step)
 
             margin = contact_margin(step.v_start, scene.polyhedra.radius, bodies.gravity, h)
