@@ -10,8 +10,6 @@ import pytest
 from blockshake.files import PACKAGE
 
 ROOT = PACKAGE.parents[1]
-# being rewritten: their prose is not judged yet
-UNFINISHED = [ROOT / "docs" / "method.md", ROOT / "docs" / "nscd.md"]
 PAGES = sorted([ROOT / "README.md", *ROOT.glob("docs/**/*.md"), *ROOT.glob("*/README.md")])
 TEXTS = (".py", ".smk", ".md", ".yaml", ".yml", ".toml", ".j2", ".typ", ".json", ".lock", "")
 FOLDERS = ("src", "tests", "docs", "bench", "hidden_effects", "workflow", "config", "data", "profiles", ".ci")
@@ -59,9 +57,6 @@ def code_spans(page):
 def by_name(pages):
     """Parameters that show a page by its path in the project."""
     return pytest.mark.parametrize("page", pages, ids=lambda page: str(page.relative_to(ROOT)))
-
-
-FINISHED = [page for page in PAGES if page not in UNFINISHED]
 
 
 def test_nothing_points_outside_the_project():
@@ -112,7 +107,7 @@ def exists(word, page):
     )
 
 
-@by_name(FINISHED)
+@by_name(PAGES)
 def test_every_path_of_a_page_exists(page):
     words = [word.split(":")[0].strip() for span in code_spans(page) for word in span.split(", ")]
     missing = [word for word in words if is_path(word) and not exists(word, page)]
@@ -131,7 +126,7 @@ def test_every_name_of_a_page_can_be_imported(page):
     assert missing == []
 
 
-@by_name(FINISHED)
+@by_name(PAGES)
 def test_lines_of_a_page_fit_a_screen(page):
     long = [number for number, line in prose(page) if len(line) > WIDTH]
     assert long == []
@@ -146,7 +141,7 @@ def starts_with_what(text):
     ]
 
 
-@by_name(FINISHED)
+@by_name(PAGES)
 def test_no_sentence_of_a_page_starts_with_what(page):
     text = re.sub(r"^[-*] ", "", "\n".join(line for _, line in prose(page)), flags=re.MULTILINE)
     assert [words for block in text.split("\n\n") for words in starts_with_what(block.strip())] == []
