@@ -1,4 +1,4 @@
-"""LS-DEM with stiff, critically damped contacts beside nonsmooth contact dynamics: 2 % of the peak (issue 4).
+"""LS-DEM with stiff, critically damped contacts beside nonsmooth contact dynamics: 2 % of the peak.
 
 Both move the same blocks; what differs is the contact: springs and dashpots against Signorini's condition. As the
 springs stiffen, what they store and how long an impact lasts go to zero with the square root of the stiffness.
@@ -25,7 +25,7 @@ FLAT = 0.76  # m, width of the flats
 SHIFT = (
     1e-5  # m, of the twin: the sink of a stack at rest at the usual stiffness, which rigid blocks do not have
 )
-AGREE = 0.02  # of the peak: issue 4
+AGREE = 0.02  # of the peak, aimed at
 SPREAD = 0.01  # of the peak, at which twins have parted: half of what is asked for is then chance
 NORMAL, SHEAR = (
     LsDemParameters.model_fields[name].default for name in ("normal_stiffness", "shear_stiffness")

@@ -5,7 +5,9 @@ from pathlib import Path
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import load_yaml, shipped_names
+from blockshake.forces.sight import sight_lines
 from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.study.config import load_config
 
@@ -50,7 +52,7 @@ def _structure_line(source):
 
 
 def _campaign_line(folder):
-    return "\n".join(campaign_lines(folder))
+    return "\n".join([*campaign_lines(folder), *sight_lines(load_campaign(folder))])
 
 
 def _study_line(source):

@@ -133,11 +133,13 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
 def _start(scene, ground, step, placed, progress):
     """Driven bodies where the motion has them at time zero, and the energy that the run starts with."""
     state, dt, theta = progress.state, scene.settings.dt, scene.settings.theta
+    # a typed zero: for a literal one the whole detection would be compiled once more
+    no_stoppers = np.int64(0)
     place_driven_into(scene.bodies, ground.displacement, ground.velocity, state)
     place_into(scene.polyhedra, state.position, state.orientation, placed)
     at_start = detect_contacts(
         scene.bodies, scene.polyhedra, placed, step.rotations, 0.0, scene.settings.shrink, scene.layers,
-        theta * dt * dt, progress.face.copy(), 0,
+        theta * dt * dt, progress.face.copy(), no_stoppers,
     )  # fmt: skip
     start_audit(scene.bodies, at_start, dt, theta, 0.0, progress)
 

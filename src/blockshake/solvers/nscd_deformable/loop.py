@@ -131,12 +131,14 @@ def _start(model, ground, step, placed, deformation, progress):
     """Driven bodies where the motion has them at time zero, and the energy that the run starts with."""
     scene, state = model.scene, progress.state
     dt, theta = scene.settings.dt, scene.settings.theta
+    # a typed zero: for a literal one the whole detection would be compiled once more
+    no_stoppers = np.int64(0)
     place_driven_into(scene.bodies, ground.displacement, ground.velocity, state)
     place_into(scene.polyhedra, state.position, state.orientation, placed)
     predict_into(scene.bodies, state, ground, 0.0, theta, step)
     at_start, _ = find_contacts(
         scene.bodies, model.elastic, scene.polyhedra, placed, step.rotations, 0.0, model.spacing, scene.layers,
-        theta * dt * dt, progress.face.copy(), 0,
+        theta * dt * dt, progress.face.copy(), no_stoppers,
     )  # fmt: skip
     _, strain = elastic_energy(model.elastic, deformation)
     start_audit(scene.bodies, at_start, dt, theta, strain, progress)
