@@ -1,6 +1,7 @@
 """The registry of effects: their names, each with its entry."""
 
 from blockshake.effects import (
+    base_compliance,
     clock_lag,
     eccentricity,
     impact_restitution,
@@ -29,6 +30,7 @@ _FILES = (
     weak_joint,
     rate_weakening_friction,
     joint_compliance,
+    base_compliance,
 )
 EFFECTS = {file.EFFECT.name: file.EFFECT for file in _FILES}
 

@@ -123,6 +123,10 @@ class Structure:
         mapping = self.file.model_dump(mode="json")
         for key, value in parameters.items():
             replace_into(mapping, key, value, self.source)
+        return self.with_mapping(mapping)
+
+    def with_mapping(self, mapping):
+        """Structure of another mapping of a structure file; solids of shapes that it keeps are taken over."""
         known = {name: (shape, self.solids[name]) for name, shape in self.file.shapes.items()}
         return build_structure(mapping, self.source, self.folder, known)
 

@@ -10,7 +10,7 @@ from blockshake.effects.registry import EFFECTS
 
 _NORMAL_90 = 1.645
 # parameter of an effect that its own law reads directly
-_DIRECT = {"table-pitch": "coefficient", "reduced-bearing": "inset"}
+_DIRECT = {"table-pitch": "coefficient", "base-compliance": "compliance", "reduced-bearing": "inset"}
 
 
 def with_laws(decision, findings, places_of):

@@ -43,6 +43,11 @@ SIGNATURES = {
         ("lever.short", "lever.slope", "unexplained.rms", "unexplained.largest", "closed.compliance", *_IMPACTS),
         excludes=True,
     ),
+    "base-compliance": Signature(
+        "table.compliance", 1,
+        ("lever.short", "lever.slope", "unexplained.rms", "unexplained.largest", "closed.compliance", *_IMPACTS),
+        excludes=True,
+    ),
     "reduced-bearing": Signature(
         "lever.short", 1,
         ("lever.slope", "lever.stray", "unexplained.rms", "unexplained.largest", "closed.compliance", *_IMPACTS),
