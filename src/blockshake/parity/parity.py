@@ -1,13 +1,12 @@
 """Parity checks of a campaign's sensors against each other, without a simulator."""
 
-import json
 from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
 from blockshake.errors import InputError
-from blockshake.files import read_text
+from blockshake.files import load_json
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
@@ -75,7 +74,7 @@ class Parity:
 
 def load_parity(path):
     """Parity of the file ``parity.json``."""
-    return Parity.from_json(json.loads(read_text(path)))
+    return Parity.from_json(load_json(path))
 
 
 def _columns(table, dim):

@@ -75,10 +75,9 @@ class Distances:
 
         Notes
         -----
-        ``sum_i w_i |X_i - y| - sum_ij w_i w_j |X_i - X_j| / (2 (1 - sum_i w_i^2))``: the score fair to small
-        ensembles (Ferro 2014), `blockshake.study.ensembles.scores.crps` where all weights are equal; members that a
-        bootstrap drew twice are no pair. In the mean over members, each scored by the others, this is the second
-        sum: the floor.
+        ``sum_i w_i |X_i - y| - sum_ij w_i w_j |X_i - X_j| / (2 (1 - sum_i w_i^2))``: the score fair to small ensembles
+        (Ferro 2014), `blockshake.study.ensembles.scores.crps` where all weights are equal; members that a bootstrap
+        drew twice are no pair. In the mean over members, each scored by the others, this is the second sum: the floor.
         """
         floor = 0.5 * (self.pairs @ weights @ weights) / (1.0 - weights @ weights)
         return self.record @ weights - floor, floor

@@ -1,13 +1,12 @@
 """Calibration of the scores: every draw of the library is judged in turn as a measurement of known truth."""
 
-import json
 from dataclasses import dataclass
 
 import numpy as np
 
 from blockshake.diagnosis.inference.constancy import constancy
 from blockshake.diagnosis.libraries.candidates import effect_of
-from blockshake.files import read_text, write_json
+from blockshake.files import load_json, write_json
 
 NONE = "none"
 _CASES_NEEDED = 10  # cases with which a chance below 10 % can be told
@@ -57,7 +56,7 @@ def write_cases(path, cases):
 
 def load_cases(path):
     """Cases of a file that `write_cases` wrote."""
-    rows = json.loads(read_text(path))
+    rows = load_json(path)
     return [
         ScoredReadings(**row | {"missed": np.nan if row["missed"] is None else row["missed"]}) for row in rows
     ]

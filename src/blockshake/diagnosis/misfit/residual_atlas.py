@@ -131,13 +131,9 @@ def code_word(atlases):
     sided = abs(pair[0] - pair[1]) > _ONE_SIDED * np.abs(pair).sum()
     cells = [atlas.sel(phase=phase).isel(joint=joint, quantity=quantity, side=side) for atlas in atlases]
     return CodeWord(
-        phase,
-        "one-sided" if sided else "both",
-        _profile(abs(residual).max("side").to_numpy()),
-        _law(cells, limit),
-        str(residual["joint"].values[joint]),
-        QUANTITIES[quantity],
-    )
+        phase, "one-sided" if sided else "both", _profile(abs(residual).max("side").to_numpy()), _law(cells, limit),
+        str(residual["joint"].values[joint]), QUANTITIES[quantity],
+    )  # fmt: skip
 
 
 def _limit(cells, members):

@@ -3,12 +3,7 @@
 from blockshake.diagnosis.inference.decision import INADEQUATE, INCONSTANT, NOT_IN_SET
 from blockshake.effects.registry import EFFECTS
 from blockshake.report.diagnosis.figures.candidates import plot_candidates
-from blockshake.report.diagnosis.wording import (
-    beyond,
-    size_in_unit,
-    title_of,
-    with_place,
-)
+from blockshake.report.diagnosis.wording import beyond, size_in_unit, title_of, with_place
 from blockshake.report.document.blocks import Figure, Section, Table, Text
 from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
 from blockshake.report.document.units import quantity

@@ -3,12 +3,7 @@
 from blockshake.diagnosis.libraries.candidates import effect_of
 from blockshake.effects.registry import EFFECTS
 from blockshake.report.diagnosis.verdict import single_size
-from blockshake.report.diagnosis.wording import (
-    acting,
-    estimate_words,
-    place_words,
-    title_of,
-)
+from blockshake.report.diagnosis.wording import acting, estimate_words, place_words, title_of
 from blockshake.report.document.blocks import Heading, Items, Section, Table, Text
 from blockshake.report.document.units import interval, quantity, with_unit
 from blockshake.report.document.wording import MISSING

@@ -13,8 +13,7 @@ def face_markers(structure):
     Returns
     -------
     dict of str to str
-        Body to marker: the one named ``BODY-face``; where no body has one, the first of each
-        free body that has any.
+        Body to marker: the one named ``BODY-face``; where no body has one, the first of each free body that has any.
     """
     free = {body.name for body in structure.file.bodies if not body.driven}
     chosen = {}

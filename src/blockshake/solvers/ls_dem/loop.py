@@ -37,36 +37,14 @@ from blockshake.solvers.ls_dem.progress import (
 )
 from blockshake.solvers.ls_dem.stoppers import stopper_forces_into
 from blockshake.solvers.record import with_room
-from blockshake.solvers.status import (
-    COLLAPSED,
-    COMPLETED,
-    DIVERGED,
-    NEXT_RECORD,
-    PAUSED,
-    SPEED_LIMIT,
-    STEP,
-)
+from blockshake.solvers.status import COLLAPSED, COMPLETED, DIVERGED, NEXT_RECORD, PAUSED, SPEED_LIMIT, STEP
 
 
 @kernel
 def integrate(
-    bodies,
-    surfaces,
-    interfaces,
-    stoppers,
-    ground,
-    supported,
-    drop_limit,
-    skin,
-    dt,
-    n_steps,
-    pause,
-    times,
-    progress,
-    candidates,
-    joints,
-    record,
-):
+    bodies, surfaces, interfaces, stoppers, ground, supported, drop_limit, skin, dt, n_steps, pause, times, progress,
+    candidates, joints, record,
+):  # fmt: skip
     """Run LS-DEM from where ``progress`` stands to its last step, or to a pause.
 
     Parameters

@@ -17,10 +17,7 @@ _DESCRIBED = {
     "coverage": ("fraction of the time that the measured curve is within the bounds", "1"),
     "reference": ("the same of the members, each in the bounds of the others", "1"),
     "member_coverage": ("fraction of the time that a member is within the bounds of the others", "1"),
-    "curve_probability": (
-        "chance of a coverage as low if the measured curve were one of the members",
-        "1",
-    ),
+    "curve_probability": ("chance of a coverage as low if the measured curve were one of the members", "1"),
     "band_width": ("upper minus lower bound, mean over time", "m"),
     "measured_peak": ("largest absolute measured displacement along x relative to the slab", "m"),
     "quantile": ("probability of a smaller value", "1"),
@@ -67,13 +64,12 @@ def coverage(measured, ensemble, marker_noise, seed=0):
     Returns
     -------
     xarray.Dataset
-        Along the markers that both have, displacement along x, inertial frame: ``coverage(marker)``
-        of the measured curve in the bounds of all members; ``member_coverage(sample, marker)`` of
-        each member, read with the same noise, in the bounds of the others; its
-        ``reference(quantile, marker)``; ``curve_probability(marker)``, the rank of the measured curve's coverage
-        among the members', from 1 / (n + 1) to 1; ``band_width(marker)`` [m], mean over time; and
-        ``measured_peak(marker)`` [m], largest absolute displacement relative to the slab's marker,
-        to hold the width against.
+        Along the markers that both have, displacement along x, inertial frame: ``coverage(marker)`` of the measured
+        curve in the bounds of all members; ``member_coverage(sample, marker)`` of each member, read with the same
+        noise, in the bounds of the others; its ``reference(quantile, marker)``; ``curve_probability(marker)``, the rank
+        of the measured curve's coverage among the members', from 1 / (n + 1) to 1; ``band_width(marker)`` [m], mean
+        over time; and ``measured_peak(marker)`` [m], largest absolute displacement relative to the slab's marker, to
+        hold the width against.
 
     Raises
     ------

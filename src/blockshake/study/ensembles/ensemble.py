@@ -38,12 +38,11 @@ def gather_ensemble(runs, samples, parameters, slab_marker):
     Returns
     -------
     xarray.Dataset
-        Along ``sample``: ``marker_displacement(sample, time, marker, axis)`` and
-        ``position(sample, time, body, axis)`` [m], inertial frame; ``status`` and ``reason``;
-        ``end_time`` [s]; ``peak`` and ``residual(sample, frame, marker)`` [m], along x;
-        ``peak_rotation(sample, body)`` [rad]; ``parameter_value(sample, parameter)``; and the runs'
-        figures of their computation, ``energy_residual`` and ``numerics_*``, NaN where a run has
-        none. Attributes: the others that all runs share, and ``slab_marker``.
+        Along ``sample``: ``marker_displacement(sample, time, marker, axis)`` and ``position(sample, time, body, axis)``
+        [m], inertial frame; ``status`` and ``reason``; ``end_time`` [s]; ``peak`` and
+        ``residual(sample, frame, marker)`` [m], along x; ``peak_rotation(sample, body)`` [rad];
+        ``parameter_value(sample, parameter)``; and the runs' figures of their computation, ``energy_residual`` and
+        ``numerics_*``, NaN where a run has none. Attributes: the others that all runs share, and ``slab_marker``.
 
     Raises
     ------
@@ -146,10 +145,7 @@ def _check_alike(piece, first, sample, names=("time", "marker", "body")):
 
 def _endings(attributes):
     """How each run ended and the figures of its computation, along ``sample``."""
-    described = {
-        "status": "how the run ended",
-        "reason": "why the run ended so",
-    }
+    described = {"status": "how the run ended", "reason": "why the run ended so"}
     endings = {
         name: ("sample", [str(run.get(name, "")) for run in attributes], {"long_name": long_name})
         for name, long_name in described.items()

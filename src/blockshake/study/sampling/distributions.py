@@ -24,8 +24,7 @@ _NAME = re.compile(rf"friction\.({_WORD})\.({_WORD})|materials\.{_WORD}\.({'|'.j
 class Lognormal(Strict):
     """A positive variable whose logarithm is normal, given by its mean and coefficient of variation.
 
-    The two parameters of the logarithm follow exactly: variance ``ln(1 + cov^2)`` and mean
-    ``ln(mean) - variance / 2``.
+    The two parameters of the logarithm follow exactly: variance ``ln(1 + cov^2)`` and mean ``ln(mean) - variance / 2``.
     """
 
     distribution: Literal["lognormal"] = "lognormal"

@@ -114,8 +114,7 @@ def draw_samples(
     Raises
     ------
     InputError
-        Too few samples, an unknown word, a target with unknown names or that is no correlation
-        matrix.
+        Too few samples, an unknown word, a target with unknown names or that is no correlation matrix.
 
     Notes
     -----
@@ -240,8 +239,7 @@ def load_design(path):
     Raises
     ------
     InputError
-        Missing file, no rows, a name twice, a row of another length, or an entry that is no
-        finite number.
+        Missing file, no rows, a name twice, a row of another length, or an entry that is no finite number.
     """
     rows = [row for row in csv.reader(io.StringIO(read_text(path))) if row]
     if len(rows) < 2:

@@ -118,9 +118,8 @@ def calibrate_stiffness(structure="configuration-2", parameters=None):
 
     Notes
     -----
-    In a chain whose joints neither open nor slip every speed goes with the square root of the stiffness, but for
-    the damping and the time step; so the search multiplies by the square of the speed ratio and is over in a few
-    rounds.
+    In a chain whose joints neither open nor slip every speed goes with the square root of the stiffness, but for the
+    damping and the time step; so the search multiplies by the square of the speed ratio and is over in a few rounds.
     """
     tower = load_structure(structure, parameters)
     targets = target_wave_speeds(tower)

@@ -20,12 +20,7 @@ from blockshake.study.sensitivity.findings import differs, is_known
 
 SHOWN = {
     "first_order": ("history", "share of the envelope's thickness [1]", (-0.25, 1.05), (0.0, 0.5, 1.0)),
-    "rank_correlation": (
-        "peak",
-        "partial rank correlation with the peak [1]",
-        (-1.05, 1.05),
-        (-0.5, 0.5),
-    ),
+    "rank_correlation": ("peak", "partial rank correlation with the peak [1]", (-1.05, 1.05), (-0.5, 0.5)),
 }
 _COLORS = {"first_order": BLUE, "rank_correlation": RED}
 # by place of the variable, so that one has its colour in every case

@@ -94,14 +94,9 @@ def block_system(driven, body_a, body_b):
                 at -= 1
             column[at] = here
     return BlockSystem(
-        rank,
-        first,
-        column[:count].copy(),
-        np.empty((n, _FREE, _FREE)),
-        np.empty((count, _FREE, _FREE)),
-        np.empty((count, _FREE, _FREE)),
-        np.empty((n, _FREE)),
-    )
+        rank, first, column[:count].copy(), np.empty((n, _FREE, _FREE)), np.empty((count, _FREE, _FREE)),
+        np.empty((count, _FREE, _FREE)), np.empty((n, _FREE)),
+    )  # fmt: skip
 
 
 @kernel
