@@ -34,16 +34,9 @@ class ClockLag(NamedTuple):
 
 
 def clock_lag(pairs_by_test):
-    """Delay of the optical clock against the accelerometers, test by test and over time.
+    """`ClockLag` of the optical clock against the accelerometers, test by test and over time, from the pairs by test.
 
-    Parameters
-    ----------
-    pairs_by_test : dict of str to list of ChannelPair
-
-    Returns
-    -------
-    ClockLag
-        Tests that tell nothing are missing.
+    Tests that tell nothing are missing.
     """
     lags, blocks = {}, []
     for name, pairs in pairs_by_test.items():

@@ -11,19 +11,7 @@ from blockshake.simulation.models import model_of
 
 
 def run_dataset(structure, trajectory, rows):
-    """A trajectory as the run file's Dataset, at some of its times, without accelerometers and attributes.
-
-    Parameters
-    ----------
-    structure : Structure
-    trajectory : Trajectory
-    rows : int array, shape (n_times,)
-        Of the trajectory's times.
-
-    Returns
-    -------
-    xarray.Dataset
-    """
+    """A trajectory as the run file's Dataset, at some of its rows, without accelerometers and attributes."""
     names = structure.body_names
     lower, upper = ([names[body] for body in trajectory.joints[:, side]] for side in (0, 1))
     markers = np.array([marker.name for marker in structure.file.markers], dtype=str)

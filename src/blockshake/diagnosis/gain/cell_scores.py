@@ -104,16 +104,7 @@ class Distances:
 
 
 def cells_of(tests):
-    """Cells of tests.
-
-    Parameters
-    ----------
-    tests : list of SealedTest
-
-    Returns
-    -------
-    Cells
-    """
+    """`Cells` of a list of `SealedTest`."""
     found = [
         (number, name, np.flatnonzero([family(one) == name for one in test.features]))
         for number, test in enumerate(tests)
@@ -124,19 +115,9 @@ def cells_of(tests):
 
 
 def distances(tests, cells, kind):
-    """Distances of one kind of ensemble.
+    """`Distances` of one kind of ensemble, by its name, from its tests and their `Cells`.
 
-    Parameters
-    ----------
-    tests : list of SealedTest
-        With the same members in all, in one order.
-    cells : Cells
-        Of these tests.
-    kind : str
-
-    Returns
-    -------
-    Distances
+    ``tests``: list of `SealedTest`, with the same members in all, in one order.
     """
     by_model = tests[0].members[kind]
     record, pairs = [], []

@@ -121,19 +121,9 @@ def gain_on(tests):
 
 
 def gain_of_verdict(gained, runs):
-    """Gain in the form of the verdict, with caveats.
+    """`MeasuredGain`, the gain of `gain_on` in the form of the verdict, with caveats and the number of simulated tests.
 
-    Parameters
-    ----------
-    gained : xarray.Dataset
-        From `gain_on`.
-    runs : int
-        Simulated tests.
-
-    Returns
-    -------
-    MeasuredGain
-        Its gain is cut off at -1 and 1. Where there is nothing to gain, it is 0, from -1 to 1.
+    It is cut off at -1 and 1. Where there is nothing to gain, it is 0, from -1 to 1.
     """
     contrasts, caveats = {}, []
     for rival in ("recalibrated", "nominal", "discrepancy"):

@@ -85,17 +85,9 @@ def as_case(scores, key="", size=0.0):
 
 
 def library_cases(library, progress=None):
-    """Every draw of a library in turn as a measurement, itself left out of the library that judges it.
+    """Every draw of a `ScoreLibrary` in turn as a measurement, itself left out of the library that judges it.
 
-    Parameters
-    ----------
-    library : ScoreLibrary
-    progress : callable, optional
-        Called with a line of text after each draw.
-
-    Returns
-    -------
-    list of ScoredReadings
+    A list of `ScoredReadings`. ``progress`` is called with a line of text after each draw.
     """
     cases = []
     for model in library.models:

@@ -11,16 +11,7 @@ from blockshake.diagnosis.libraries.candidates import NOMINAL, effect_of
 
 
 def load_tables(paths):
-    """Datasets of `library` by test and solver, from files that are ordered by test and then by solver.
-
-    Parameters
-    ----------
-    paths : sequence of str
-
-    Returns
-    -------
-    list of dict of str to xarray.Dataset
-    """
+    """Datasets of `library` by test and solver, a list of mappings, from files ordered by test and then by solver."""
     tables = []
     for path in paths:
         table = xr.load_dataset(path)

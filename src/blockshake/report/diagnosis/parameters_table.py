@@ -15,17 +15,7 @@ _OTHERS = {"amplitude": "1", "restitution": "1"} | {
 
 
 def nominal_parameters(gain):
-    """Parameters of the recalibrated rival before and after the open tests, by solver.
-
-    Parameters
-    ----------
-    gain : xarray.Dataset
-        From `campaign_gain`.
-
-    Returns
-    -------
-    Table
-    """
+    """`Table` of the recalibrated rival's parameters before and after the open tests, from `campaign_gain`."""
     rows, unmoved = [], []
     for model in gain["model"].values:
         own = gain.sel(model=model)

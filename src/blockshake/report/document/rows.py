@@ -58,17 +58,7 @@ def main_bodies(structure, bodies, most=4):
 def bodies_by_height(structure, bodies, most=5):
     """One body of each height, from the lowest up: in two equal walls those of the first.
 
-    Parameters
-    ----------
-    structure : Structure
-    bodies : iterable of str
-        From the top down.
-    most : int
-        Columns that a figure has room for; of more, the lowest, the highest and those evenly between.
-
-    Returns
-    -------
-    list of str
+    ``bodies`` from the top down. Of more than ``most``, the lowest, the highest and those evenly between.
     """
     heights = {}
     for body in bodies:

@@ -9,17 +9,7 @@ _STIFFNESS = printed("N/m3")
 
 
 def definition_blocks(definitions):
-    """Blocks of the stiffness section on the definition of arrival.
-
-    Parameters
-    ----------
-    definitions : xarray.Dataset
-        From `compare_definitions`.
-
-    Returns
-    -------
-    list
-    """
+    """Blocks of the stiffness section on the definition of arrival, from `compare_definitions`."""
     found = definition_range(definitions)
     return [
         Heading("Influence of the definition of arrival and of the damping", "stiffness-definitions"),

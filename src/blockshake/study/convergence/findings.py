@@ -79,17 +79,9 @@ def observed_order(table, parameter, observable):
 
 
 def default_departures(table):
-    """Largest departure of the default settings from the finest, by numerical parameter.
+    """List of `Departure`, the largest of the default settings from the finest, by parameter of `study_convergence`.
 
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        From `study_convergence`.
-
-    Returns
-    -------
-    list of Departure
-        Parameters whose default is the finest setting, or was not run, are left out.
+    Parameters whose default is the finest setting, or was not run, are left out.
     """
     scales, found = value_scales(table), []
     for parameter, group in table.groupby("parameter", sort=False):

@@ -32,14 +32,9 @@ class Band(NamedTuple):
 
 
 def coverage_of_case(named, batches):
-    """`coverage` of the test that a case is compared with.
+    """`coverage` of the test that a case is compared with, ``named`` by ``campaign``, a folder, and ``test``.
 
-    Parameters
-    ----------
-    named : dict
-        Entries ``campaign``, a folder, and ``test``.
-    batches : sequence of path
-        Files of the case's samples.
+    ``batches``: files of the case's samples.
     """
     campaign = load_campaign(named["campaign"])
     measured = load_test(campaign, named["test"])
@@ -123,14 +118,9 @@ def coverage(measured, ensemble, marker_noise, seed=0):
 
 
 def relative_width(comparison, peak):
-    """Mean width of the band over the peak of the measured curve [1].
+    """Mean width of the band of a `coverage` over the peak of the measured curve [1].
 
-    Parameters
-    ----------
-    comparison : xarray.Dataset
-        From `coverage`.
-    peak : xarray.DataArray
-        Of the measured displacement relative to the slab over the simulated window [m].
+    ``peak``: of the displacement relative to the slab over the simulated window [m].
     """
     return comparison["band_width"] / peak
 

@@ -45,17 +45,7 @@ class Shortfall(NamedTuple):
 
 
 def count_outcomes(status):
-    """Outcomes of samples from their statuses.
-
-    Parameters
-    ----------
-    status : sequence of str
-        Of each sample, as in the variable ``status`` of an ensemble.
-
-    Returns
-    -------
-    Outcomes
-    """
+    """`Outcomes` of samples from their statuses, as in the variable ``status`` of an ensemble."""
     status = np.asarray(status, dtype=str)
     completed, collapsed = (int((status == one).sum()) for one in ("completed", "collapsed"))
     return Outcomes(completed, collapsed, len(status) - completed - collapsed)
@@ -71,35 +61,14 @@ def add_outcomes(outcomes):
 
 
 def unfinished(samples):
-    """Samples that did not complete.
-
-    Parameters
-    ----------
-    samples : xarray.Dataset
-        From `sample_figures`.
-
-    Returns
-    -------
-    list of xarray.Dataset
-        One sample each.
-    """
+    """Samples of `sample_figures` that did not complete, a dataset each."""
     return [
         samples.sel(sample=one) for one in samples["sample"].values[samples["status"].values != "completed"]
     ]
 
 
 def energy_residuals(samples):
-    """Median and largest energy residual over the samples.
-
-    Parameters
-    ----------
-    samples : xarray.Dataset
-        From `sample_figures`.
-
-    Returns
-    -------
-    EnergyResiduals
-    """
+    """`EnergyResiduals` over the samples of `sample_figures`: median and largest."""
     return EnergyResiduals(
         *(numerical_figure(samples, "energy_residual", one) for one in (np.median, np.max))
     )
@@ -128,17 +97,7 @@ def numerical_figure(samples, name, statistic):
 
 
 def shortfall(envelope):
-    """Samples that are missing from the statistics of an ensemble, or from those of its late times.
-
-    Parameters
-    ----------
-    envelope : xarray.Dataset
-        From `envelope`.
-
-    Returns
-    -------
-    Shortfall
-    """
+    """`Shortfall` of an `envelope`: samples missing from its statistics, or from those of its late times."""
     there, counted = envelope["contributing"].values, int(envelope.attrs["counted"])
     fewer = np.flatnonzero(there < counted)
     since = float(envelope["time"][fewer[0]]) if len(fewer) else np.nan

@@ -79,17 +79,7 @@ def read_timings(benchmarks, samples):
 
 
 def total_timing(timings):
-    """Cost of all cases and models whose CPU time is known.
-
-    Parameters
-    ----------
-    timings : sequence of Timing
-
-    Returns
-    -------
-    Timing
-        Model and case are empty.
-    """
+    """`Timing` of all cases and models whose CPU time is known; its model and case are empty."""
     known = [one for one in timings if np.isfinite(one.cpu_time)]
     names = ("jobs", "samples", "simulated", "cpu_time", "wall_time")
     return Timing("", "", *(sum(getattr(one, name) for one in known) for name in names))

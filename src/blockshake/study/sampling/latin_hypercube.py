@@ -196,16 +196,9 @@ def complete_correlation(correlation, names):
 
 
 def draw_design(ensemble):
-    """Design of a configuration's ensemble.
+    """`SampleDesign` of a configuration's ensemble.
 
-    Parameters
-    ----------
-    ensemble : dict
-        Entries ``size``, ``seed``, ``distributions``, and ``correlation``, the file of the target or none.
-
-    Returns
-    -------
-    SampleDesign
+    A mapping with ``size``, ``seed``, ``distributions``, and ``correlation``, the file of the target or none.
     """
     correlation = ensemble["correlation"]
     return draw_samples(

@@ -25,18 +25,7 @@ def sample_parameters(row, structure, linked):
 
 
 def has_parameter(structure, name):
-    """Whether a structure has the material or the pair that a parameter describes.
-
-    Parameters
-    ----------
-    structure : Structure
-    name : str
-        Dotted.
-
-    Returns
-    -------
-    bool
-    """
+    """Whether a structure has the material or the pair that a parameter describes, by its dotted name."""
     pairs = {tuple(sorted(entry.pair)) for entry in structure.file.friction}
     return _has(name.split("."), structure.file.materials, pairs)
 

@@ -122,18 +122,9 @@ def influences(result, measure):
 
 
 def windows_beyond_chance(result, noise):
-    """Variables whose share of a window's spread stands out from chance.
+    """`WindowFindings`: variables whose share of a window's spread stands out from chance.
 
-    Parameters
-    ----------
-    result : xarray.Dataset
-        From `sensitivity`, at one marker.
-    noise : float
-        [m]; windows with a smaller spread are left out.
-
-    Returns
-    -------
-    WindowFindings
+    ``result`` from `sensitivity`, at one marker; windows with a smaller spread than ``noise`` [m] are left out.
     """
     chance = float(result["window_first_order_chance"])
     loud = result["window_spread"] >= noise
@@ -149,19 +140,8 @@ def windows_beyond_chance(result, noise):
 
 
 def quiet_markers(result, markers, noise):
-    """Number of markers whose histories differ by less than the noise.
+    """Number of markers of a `sensitivity` whose histories differ by less than the noise [m].
 
-    Parameters
-    ----------
-    result : xarray.Dataset
-        From `sensitivity`.
-    markers : sequence of str
-    noise : float
-        [m]
-
-    Returns
-    -------
-    int
-        Markers without a known spread do not count.
+    Markers without a known spread do not count.
     """
     return int((result["spread"].sel(quantity="history", marker=list(markers)) < noise).sum())

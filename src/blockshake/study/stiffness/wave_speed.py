@@ -178,14 +178,7 @@ def stiffness_parameters(calibrated):
 
 
 def speed_deviation(waves, direction):
-    """Deviation of the wave speed reached from its target, over the target [1].
-
-    Parameters
-    ----------
-    waves : xarray.Dataset
-        From `wave_tests`.
-    direction : str
-    """
+    """Deviation of the wave speed reached from its target in a direction of `wave_tests`, over the target [1]."""
     one = waves.sel(direction=direction)
     return float(one["wave_speed"]) / float(one["target_wave_speed"]) - 1.0
 

@@ -8,19 +8,9 @@ _BAND = 2.0  # standard deviations
 
 
 def plot_features(rows, labels, extended_word):
-    """Residuals of features with the nominal model and with the candidate.
+    """Figure of the residuals of features with the nominal model and with the candidate.
 
-    Parameters
-    ----------
-    rows : xarray.Dataset
-        Rows of `deciding_features`.
-    labels : list of str
-    extended_word : str
-        What the model with the candidate is called.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    ``rows`` of `deciding_features`; ``extended_word``: what the model with the candidate is called.
     """
     count = rows.sizes["row"]
     figure = new_figure(0.021 + 0.0058 * count)
