@@ -29,20 +29,9 @@ def face_markers(structure):
 
 
 def main_bodies(structure, bodies, most=4):
-    """Bodies for a figure of few rows: all, or of each stack every second one from its top.
+    """Bodies for a figure of few rows, from the top down: all, or of each stack every second one from its top.
 
-    Parameters
-    ----------
-    structure : Structure
-    bodies : iterable of str
-        From the top down.
-    most : int
-        Rows up to which all are shown.
-
-    Returns
-    -------
-    list of str
-        From the top down, stack by stack.
+    ``most``: rows up to which all are shown.
     """
     bodies = list(bodies)
     if len(bodies) <= most:

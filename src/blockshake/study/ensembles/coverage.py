@@ -154,16 +154,9 @@ def share_inside(curve, lower, upper):
 
 
 def members_inside(curves, readings):
-    """Share of the times that each curve, as read, is within the band of the others.
+    """Share of the times that each curve, as read, is within the band of the others: (n_curves, ...).
 
-    Parameters
-    ----------
-    curves, readings : float64 arrays, shape (n_curves, n_times, ...)
-        Curves that span the band, and the same as an instrument would read them.
-
-    Returns
-    -------
-    float64 array, shape (n_curves, ...)
+    ``curves``, ``readings`` (n_curves, n_times, ...): those that span the band, and as an instrument would read them.
     """
     rising = np.sort(curves, axis=0)[:2]
     falling = -np.sort(-curves, axis=0)[:2]

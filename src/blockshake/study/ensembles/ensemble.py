@@ -209,20 +209,9 @@ def in_frames(displacement, slab_marker):
 
 
 def peak_and_residual(along, since, skipna):
-    """Largest magnitude of curves over ``time``, and their mean from a time on.
+    """`PeakAndResidual`: largest magnitude of curves along x over ``time`` [m], and their mean from ``since`` [s] on.
 
-    Parameters
-    ----------
-    along : xarray.DataArray
-        Displacement along x over ``time`` [m].
-    since : float
-        Begin of the mean [s].
-    skipna : bool
-        Leave gaps out of the mean; otherwise the mean of a curve with a gap is NaN.
-
-    Returns
-    -------
-    PeakAndResidual
+    ``skipna``: gaps are left out of the mean; otherwise the mean of a curve with a gap is NaN.
     """
     window = (along["time"] >= since).to_numpy()
     return PeakAndResidual(np.abs(along).max("time"), along.isel(time=window).mean("time", skipna=skipna))

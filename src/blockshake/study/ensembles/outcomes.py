@@ -75,21 +75,9 @@ def energy_residuals(samples):
 
 
 def numerical_figure(samples, name, statistic):
-    """Statistic of a figure of the computation over the samples that have it.
+    """Statistic of a figure of the computation, such as ``numerics_steps``, over the samples that have it, or NaN.
 
-    Parameters
-    ----------
-    samples : xarray.Dataset
-        From `sample_figures`.
-    name : str
-        Variable, such as ``numerics_steps``.
-    statistic : callable
-        Of a float64 array of at least one value.
-
-    Returns
-    -------
-    float
-        NaN where no sample has the figure.
+    ``samples`` from `sample_figures`; ``statistic``: of a float64 array of at least one value.
     """
     values = np.asarray(samples.get(name, []), dtype=float)
     values = values[np.isfinite(values)]

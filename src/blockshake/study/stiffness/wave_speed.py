@@ -148,21 +148,10 @@ def calibrate_stiffness(structure="configuration-2", parameters=None):
 
 
 def calibrate_design(structure, design, linked):
-    """Stiffness of every sample of a design.
+    """Stiffness of a tower for every sample of a design, with the same index.
 
-    Parameters
-    ----------
-    structure : Structure, str or path
-        The tower.
-    design : pandas.DataFrame
-        Sampled values, index the sample.
-    linked : dict of str to str
-        Parameters that take the sampled value of another.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Columns ``ls_dem.normal_stiffness`` and ``ls_dem.shear_stiffness`` [N/m3], index as the design's.
+    ``linked``: parameters that take another's sampled value. Columns ``ls_dem.normal_stiffness`` and
+    ``ls_dem.shear_stiffness`` [N/m3].
     """
     tower = load_structure(structure)
     found = [

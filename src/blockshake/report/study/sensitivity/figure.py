@@ -85,21 +85,10 @@ def is_shown(result, markers, measure, noise):
 
 
 def plot_sensitivity_over_time(sensitivities, marker, noise):
-    """Spread of the top block second by second, and the share of it that each variable explains.
+    """Figure of the top block's spread second by second, and of the share of it that each variable explains, by model.
 
-    Parameters
-    ----------
-    sensitivities : dict of str to xarray.Dataset
-        By model.
-    marker : str
-    noise : float
-        [m]; seconds in which samples differ by less have no shares.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Above: standard deviation over the samples [mm], dashed the marker's noise. Below: first-order shares of the
-        variables of use.
+    Above: standard deviation over the samples [mm], dashed the marker's noise [m]. Below: first-order shares of the
+    variables of use; seconds in which samples differ by less than the noise have none.
     """
     figure = new_figure(0.085)
     panels = figure.subplots(2, len(sensitivities), sharex=True, sharey="row", squeeze=False)
