@@ -1,5 +1,7 @@
 """Sections on the inputs: summary, structures, motions, samples, stiffness."""
 
+import numpy as np
+
 from blockshake.report.document.blocks import Figure, Heading, Items, Section, Text
 from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
 from blockshake.report.document.wording import given, model_label, number, parameter_label
@@ -16,7 +18,7 @@ from blockshake.report.study.input_tables import (
     waves_table,
 )
 from blockshake.report.study.result_tables import top_block_table
-from blockshake.study.ensembles.outcomes import add_outcomes, count_outcomes
+from blockshake.study.ensembles.outcomes import count_outcomes
 from blockshake.study.sensitivity.sensitivity import unused_variables
 
 
@@ -47,7 +49,7 @@ def summary(content):
             )
         )
     responses = [one for case in cases for one in case.responses.values()]
-    ended = add_outcomes([count_outcomes(one.samples["status"]) for one in responses])
+    ended = count_outcomes(np.concatenate([one.samples["status"] for one in responses]))
     items = [
         f"{len(content.cases)} structures, {len(content.study['models'])} models "
         f"({', '.join(model_label(model) for model in content.study['models'])}), {sum(ended)} runs: "

@@ -57,7 +57,7 @@ def settle_stacks(scene, touching, soft, state, static_step, most_steps, at_rest
 
     Parameters
     ----------
-    scene, touching, state : Scene, bool array, State
+    scene, touching, state : Scene, bool array, shape (n_bodies, n_bodies), State
         As of `settled_state`.
     soft : bool array, shape (n_bodies,)
         A stack is settled where one of its free bodies is.

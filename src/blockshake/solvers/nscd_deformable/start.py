@@ -26,10 +26,8 @@ def settled_state(model, touching, state):
     ----------
     model : Model
         The driven bodies have the pitch of the motion's start.
-    touching : bool array, shape (n_bodies, n_bodies)
-        As in `Structure`, in the solver's order.
-    state : State
-        Given; velocities are kept.
+    touching, state : bool array, State
+        As of `settle_stacks`.
 
     Returns
     -------

@@ -51,15 +51,6 @@ def count_outcomes(status):
     return Outcomes(completed, collapsed, len(status) - completed - collapsed)
 
 
-def add_outcomes(outcomes):
-    """Outcomes of several ensembles together.
-
-    >>> add_outcomes([Outcomes(2, 1, 0), Outcomes(3, 0, 1)])
-    Outcomes(completed=5, collapsed=1, failed=1)
-    """
-    return Outcomes(*(sum(column) for column in zip(*outcomes, strict=True)))
-
-
 def unfinished(samples):
     """Samples of `sample_figures` that did not complete, a dataset each."""
     return [
