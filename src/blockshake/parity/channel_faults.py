@@ -159,15 +159,10 @@ def swapped_channels(pairs_by_test, lags):
             if not count or other_misfit > _MISFIT_LEFT_AT_MOST * own_misfit:
                 continue
             variance = max(other_misfit / count, noise**2)
-            found.append(
-                (
-                    name,
-                    other,
-                    float(
-                        np.exp(-(own_misfit - other_misfit) / (2.0 * variance * _READINGS_PER_INDEPENDENT))
-                    ),
-                )
-            )
+            found.append((
+                name, other,
+                float(np.exp(-(own_misfit - other_misfit) / (2.0 * variance * _READINGS_PER_INDEPENDENT))),
+            ))  # fmt: skip
     return found
 
 

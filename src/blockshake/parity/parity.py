@@ -226,17 +226,9 @@ def _without_saturation(test, name, level, looked_at):
                 if p * looked_at >= level:
                     continue
                 largest = np.abs(columns[at_end, column]).max(keepdims=True)
-                findings.append(
-                    Finding(
-                        "sensor-saturation",
-                        (str(where),),
-                        "range",
-                        largest,
-                        np.zeros((1, 1)),
-                        p * looked_at,
-                        (name,),
-                    )
-                )
+                findings.append(Finding(
+                    "sensor-saturation", (str(where),), "range", largest, np.zeros((1, 1)), p * looked_at, (name,),
+                ))  # fmt: skip
                 array[at_end, index] = np.nan
         test[variable] = values.copy(data=array)
     return test, findings

@@ -78,15 +78,10 @@ def _parameters(found, name):
     informed = {key: value.informed for key, value in found.decision.parameters.get(name, {}).items()}
     rows = []
     for place, item in enumerate(EFFECTS[name].parameters):
-        rows.append(
-            (
-                item.name,
-                item.meaning,
-                *_estimate(found, name, item, place, informed),
-                with_unit(interval(item.lower, item.upper, item.unit), item.unit),
-                quantity(item.null, item.unit),
-            )
-        )
+        rows.append((
+            item.name, item.meaning, *_estimate(found, name, item, place, informed),
+            with_unit(interval(item.lower, item.upper, item.unit), item.unit), quantity(item.null, item.unit),
+        ))  # fmt: skip
     return Table(
         f"Parameters of {title_of(name)}: estimate with its 90 % interval, what it rests on, prior, value of the "
         "nominal model.",

@@ -25,16 +25,10 @@ def nominal_parameters(gain):
                 unmoved.append(f"{name} ({model_label(model)})")
                 continue
             factor, unit = printed(_OTHERS.get(name) or parameter_unit(name))
-            rows.append(
-                (
-                    str(name),
-                    model_label(model),
-                    unit,
-                    _words(factor * one["prior"]),
-                    _words(factor * one["posterior"]),
-                    number(one["narrowing"], 2),
-                )
-            )
+            rows.append((
+                str(name), model_label(model), unit, _words(factor * one["prior"]), _words(factor * one["posterior"]),
+                number(one["narrowing"], 2),
+            ))  # fmt: skip
     rest = (
         f" Not informed by the data, so that they keep their prior: {', '.join(unmoved)}." if unmoved else ""
     )

@@ -5,7 +5,7 @@ import re
 import jinja2
 
 from blockshake.files import write_text
-from blockshake.report.document.drawing import PAGE_WIDTH
+from blockshake.report.document.blocks import PAGE_WIDTH
 
 
 def write_html(path, document):

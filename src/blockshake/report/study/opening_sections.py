@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.report.document.blocks import Figure, Heading, Items, Section, Text
-from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.wording import given, model_label, number, parameter_label
 from blockshake.report.study.definition_tables import definition_blocks
 from blockshake.report.study.figures.motion import plot_motions, plot_spectra
@@ -127,12 +127,10 @@ def motions(content):
             "Ground acceleration, velocity and displacement along x (after the paper's Fig. 5); dashed: end of the "
             "window that the cases simulate.",
             svg_of(plot_motions, data, windows),
-            PAGE_WIDTH,
         ),
         Figure(
             "Response spectra at 5 % damping, with the ordinates that a synthetic motion aims at.",
             svg_of(plot_spectra, data),
-            PAGE_WIDTH,
         ),
         motions_table(content.motions),
     ]
@@ -153,7 +151,6 @@ def samples(content):
         Figure(
             "Histograms of the samples and target densities (after the paper's Fig. 8).",
             svg_of(plot_samples, content.design, content.distributions),
-            PAGE_WIDTH,
         ),
         samples_table(content),
         Figure(
@@ -196,13 +193,11 @@ def stiffness(content):
             f"{given(1e3 * content.waves.attrs['step_velocity'])} mm/s at its base, nominal parameters; "
             "dots: arrivals (after the paper's Fig. 9).",
             svg_of(plot_waves, content.waves),
-            PAGE_WIDTH,
         ),
         waves_table(content.waves),
         Figure(
             f"Stiffness per area of the {len(content.stiffness)} samples (after the paper's Fig. 10).",
             svg_of(plot_stiffness, content.stiffness),
-            PAGE_WIDTH,
         ),
         *definition_blocks(content.definitions),
     )

@@ -64,17 +64,10 @@ def read_timings(benchmarks, samples):
             wall_time += _seconds(record["s"])
         end = figures["end_time"].sel(sample=sorted(set(covered)))
         known = jobs > 0
-        timings.append(
-            Timing(
-                model,
-                case,
-                jobs,
-                len(set(covered)),
-                float(end.sum()),
-                cpu_time if known else np.nan,
-                wall_time if known else np.nan,
-            )
-        )
+        timings.append(Timing(
+            model, case, jobs, len(set(covered)), float(end.sum()), cpu_time if known else np.nan,
+            wall_time if known else np.nan,
+        ))  # fmt: skip
     return tuple(timings)
 
 
