@@ -121,7 +121,7 @@ def campaign_parity(campaign, names, without=()):
 
 
 def check_parity(tests, structure, sensors, level=LEVEL):
-    """Faults of the sensors, found from readings alone.
+    """`Parity`: faults of the sensors, found from readings alone.
 
     Parameters
     ----------
@@ -132,10 +132,6 @@ def check_parity(tests, structure, sensors, level=LEVEL):
         Stated noise.
     level : float
         Chance of any finding where all sensors are within their tolerances; shared evenly by all hypotheses.
-
-    Returns
-    -------
-    Parity
 
     Notes
     -----

@@ -16,16 +16,12 @@ class Saturation(NamedTuple):
 
 
 def saturated(values):
-    """Readings at the end of the range, and the chance of as many in a sound record.
+    """`Saturation`: readings at the end of the range, and the chance of as many in a sound record.
 
     Parameters
     ----------
     values : float64 array, shape (n_times,)
         NaN is a gap.
-
-    Returns
-    -------
-    Saturation
 
     Notes
     -----

@@ -39,16 +39,12 @@ class Phases:
 
 
 def find_phases(histories):
-    """Onset of every joint and phases of a test.
+    """`Phases` of a test, with the onset of every joint.
 
     Parameters
     ----------
     histories : xarray.Dataset
         From `joint_histories`.
-
-    Returns
-    -------
-    Phases
 
     Notes
     -----

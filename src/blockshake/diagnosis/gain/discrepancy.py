@@ -72,7 +72,7 @@ class Discrepancy:
 
 
 def fit_discrepancy(conditions, names, measured, members):
-    """Discrepancy of the nominal model over the open tests.
+    """`Discrepancy` of the nominal model over the open tests.
 
     Parameters
     ----------
@@ -83,10 +83,6 @@ def fit_discrepancy(conditions, names, measured, members):
         By test, tamed.
     members : list of float64 array, shape (n_members, n_own_features)
         By test: the nominal members of both solvers in it.
-
-    Returns
-    -------
-    Discrepancy
 
     Notes
     -----

@@ -34,7 +34,7 @@ class ScaledLibrary(NamedTuple):
 
 
 def score_library(tables, effects):
-    """Libraries of several tests, ready to score readings.
+    """`ScaledLibrary`: libraries of several tests, ready to score readings.
 
     Parameters
     ----------
@@ -42,10 +42,6 @@ def score_library(tables, effects):
         By test and solver: features from `library`.
     effects : sequence of str
         Names of the effects that are considered.
-
-    Returns
-    -------
-    ScaledLibrary
     """
     keys = list(dict.fromkeys(tables[0][next(iter(tables[0]))]["candidate"].values.tolist()))
     keys = [key for key in keys if key == NOMINAL or effect_of(key) in effects]

@@ -97,16 +97,12 @@ def residual_atlas(measured, members):
 
 
 def code_word(atlases):
-    """Code word of the residuals of several tests.
+    """`CodeWord` of the residuals of several tests.
 
     Parameters
     ----------
     atlases : sequence of xarray.Dataset
         From `residual_atlas`, of tests of one structure.
-
-    Returns
-    -------
-    CodeWord
 
     Notes
     -----

@@ -132,16 +132,12 @@ class TrackRecord(Strict):
 
 
 def load_track_record(path):
-    """Track record of a file.
+    """`TrackRecord` of a file.
 
     Parameters
     ----------
     path : str or path
         ``data/track-record/hidden-effects.json``, which the long tests of hidden effects write.
-
-    Returns
-    -------
-    TrackRecord
 
     Raises
     ------

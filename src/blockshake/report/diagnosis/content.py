@@ -126,7 +126,7 @@ class Diagnosed:
 
 
 def load_diagnosed(campaign, results, effort, track_record, horizons=()):
-    """Read the results of a diagnosis; no sealed test's file is opened.
+    """Read a `Diagnosed` campaign from its results; no sealed test's file is opened.
 
     Parameters
     ----------
@@ -139,10 +139,6 @@ def load_diagnosed(campaign, results, effort, track_record, horizons=()):
         The procedure's track record, or where it will be.
     horizons : sequence of str or path, optional
         Files of the tests' predictability, in the order of the readings.
-
-    Returns
-    -------
-    Diagnosed
 
     Raises
     ------

@@ -138,7 +138,7 @@ class Content:
 
 
 def load_content(study, results, benchmarks):
-    """Read a finished study.
+    """Read the `Content` of a finished study.
 
     Parameters
     ----------
@@ -146,10 +146,6 @@ def load_content(study, results, benchmarks):
         Its configuration, checked.
     results, benchmarks : str or path
         Folders of its results and of its jobs' benchmarks.
-
-    Returns
-    -------
-    Content
 
     Raises
     ------

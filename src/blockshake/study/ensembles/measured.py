@@ -33,7 +33,7 @@ class ComparedCurves(NamedTuple):
 
 
 def compared_curves(measured, ensemble, marker_noise, seed, fewest):
-    """Curves of a measured test and of an ensemble, the ensemble's read with noise too.
+    """`ComparedCurves` of a measured test and of an ensemble, the ensemble's read with noise too.
 
     Parameters
     ----------
@@ -48,10 +48,6 @@ def compared_curves(measured, ensemble, marker_noise, seed, fewest):
         Of the noise that the members are read with.
     fewest : int
         Members that the comparison needs.
-
-    Returns
-    -------
-    ComparedCurves
 
     Raises
     ------

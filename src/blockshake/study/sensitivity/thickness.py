@@ -66,7 +66,7 @@ class Growth(NamedTuple):
 
 
 def thickness(result, markers, blocks, shaking):
-    """Thickness of the envelopes of one structure by one model.
+    """`Thickness` of the envelopes of one structure by one model.
 
     Parameters
     ----------
@@ -76,10 +76,6 @@ def thickness(result, markers, blocks, shaking):
         From the lowest block up.
     blocks, shaking
         As in `Thickness`.
-
-    Returns
-    -------
-    Thickness
     """
     spread = result["spread"].sel(quantity="history", marker=list(markers))
     return Thickness(int(blocks), shaking, tuple(float(one) for one in spread))

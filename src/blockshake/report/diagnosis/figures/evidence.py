@@ -34,17 +34,13 @@ def plot_features(rows, labels, extended_word):
 
 
 def plot_constancy(panels):
-    """Size of a candidate by each test, and by all of them.
+    """Figure of the size of a candidate by each test, and by all of them.
 
     Parameters
     ----------
     panels : list of dict
         One a candidate: ``title``, ``axis`` (label of the size), ``tests``, ``estimate``, ``lower`` and ``upper`` by
         test, ``all``, the three of all tests together, or None, and ``ends`` of the prior.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     count = max(len(panel["tests"]) for panel in panels)
     columns = min(2, len(panels))
