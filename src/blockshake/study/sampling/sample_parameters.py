@@ -4,8 +4,8 @@
 def sample_parameters(row, structure, linked):
     """Parameters of one sample that this structure has, by dotted name, from a row that has stiffness too.
 
-    ``linked``: parameters that take another's sampled value. What the structure has no material or pair for is left
-    out: configuration 1 has no steel.
+    ``linked``: parameters that take another's sampled value. Parameters of a material or pair that the structure does
+    not have are left out: configuration 1 has no steel.
     """
     values = {str(name): float(value) for name, value in row.items()}
     values |= {name: values[source] for name, source in linked.items() if source in values}
