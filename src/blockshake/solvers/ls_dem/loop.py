@@ -42,9 +42,23 @@ from blockshake.solvers.status import COLLAPSED, COMPLETED, DIVERGED, NEXT_RECOR
 
 @kernel
 def integrate(
-    bodies, surfaces, interfaces, stoppers, ground, supported, drop_limit, skin, dt, n_steps, pause, times, progress,
-    candidates, joints, record,
-):  # fmt: skip
+    bodies,
+    surfaces,
+    interfaces,
+    stoppers,
+    ground,
+    supported,
+    drop_limit,
+    skin,
+    dt,
+    n_steps,
+    pause,
+    times,
+    progress,
+    candidates,
+    joints,
+    record,
+):
     """Run LS-DEM from where ``progress`` stands to its last step, or to a pause.
 
     Parameters

@@ -37,10 +37,16 @@ def empty_step(state):
     """Work space for the bodies of a state."""
     n_bodies = state.position.shape[0]
     return Step(
-        copy_state(state), copy_state(state), np.empty((n_bodies, 3, 3)), np.empty((n_bodies, 3, 3)),
-        np.empty((n_bodies, 3, 3)), np.empty((n_bodies, 6)), np.empty((n_bodies, 6)), np.empty((n_bodies, 6)),
+        copy_state(state),
+        copy_state(state),
+        np.empty((n_bodies, 3, 3)),
+        np.empty((n_bodies, 3, 3)),
+        np.empty((n_bodies, 3, 3)),
         np.empty((n_bodies, 6)),
-    )  # fmt: skip
+        np.empty((n_bodies, 6)),
+        np.empty((n_bodies, 6)),
+        np.empty((n_bodies, 6)),
+    )
 
 
 @kernel
@@ -74,9 +80,17 @@ def predict_into(bodies, state, ground, dt, theta, step):
             v[body, axis] = state.velocity[body, axis] + dt * bodies.gravity[axis]
         rotate_into(state.orientation[body], rotation, detection.orientation[body])
         turn_into(
-            state.orientation[body], state.angular_velocity[body], bodies.inertia[body], bodies.inverse_inertia[body],
-            no_torque, dt, theta, orientation, v[body, 3:], mean,
-        )  # fmt: skip
+            state.orientation[body],
+            state.angular_velocity[body],
+            bodies.inertia[body],
+            bodies.inverse_inertia[body],
+            no_torque,
+            dt,
+            theta,
+            orientation,
+            v[body, 3:],
+            mean,
+        )
     place_driven_into(bodies, ground.displacement, ground.velocity, detection)
     for body in range(bodies.mass.size):
         R = step.rotations[body]
@@ -125,7 +139,14 @@ def move_into(bodies, ground, dt, theta, contacts, step, state):
             state.position[body, axis] += dt * ((1.0 - theta) * old + theta * new)
             step.v_mean[body, axis] = 0.5 * (old + new)
         turn_into(
-            before.orientation[body], before.angular_velocity[body], bodies.inertia[body],
-            bodies.inverse_inertia[body], step.impulse[body, 3:], dt, theta, state.orientation[body],
-            state.angular_velocity[body], step.v_mean[body, 3:],
-        )  # fmt: skip
+            before.orientation[body],
+            before.angular_velocity[body],
+            bodies.inertia[body],
+            bodies.inverse_inertia[body],
+            step.impulse[body, 3:],
+            dt,
+            theta,
+            state.orientation[body],
+            state.angular_velocity[body],
+            step.v_mean[body, 3:],
+        )
