@@ -85,6 +85,37 @@ def read_text(path):
         raise InputError(path, "", "expected a text file; its bytes are not UTF-8") from None
 
 
+def load_json(path):
+    """Value of a JSON file.
+
+    Raises
+    ------
+    InputError
+        The file is missing or holds something else.
+    """
+    try:
+        return json.loads(read_text(path))
+    except json.JSONDecodeError as error:
+        raise InputError(path, "", f"expected JSON; {error}") from None
+
+
+def named_file(kind, name):
+    """Path of a file that ships with the program, by its name among its kind, or of a file of the user.
+
+    Raises
+    ------
+    InputError
+        Neither of them, for a name without a suffix.
+    """
+    path = shipped(kind, name)
+    if not path.is_file():
+        path = Path(name)
+        if not path.exists() and path.suffix == "":
+            known = f"expected a {kind.removesuffix('s')} file or one of {', '.join(shipped_names(kind))}"
+            raise InputError(name, "", known)
+    return path
+
+
 def shipped(kind, name):
     """Path of a file that ships with the program, such as ``shipped("structures", "configuration-1")``."""
     return _SHIPPED / kind / f"{name}.yaml"
@@ -119,8 +150,7 @@ def check_output(path):
 def replacing(path):
     """Temporary path beside ``path`` that takes its place when the block ends well.
 
-    A reader sees the whole old file or the whole new one; a failed or killed writer leaves the
-    old one.
+    A reader sees the whole old file or the whole new one; a failed or killed writer leaves the old one.
     """
     path = check_output(path)
     handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=path.suffix, dir=path.parent)

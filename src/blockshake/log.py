@@ -16,9 +16,8 @@ _VERSIONS = ("numpy", "numba", "scipy", "xarray")
 def logging_to(path):
     """Write the block's log to a file.
 
-    Yields a function that says one line of progress, in the log and on the terminal. Python
-    warnings and logging go to the log; so does the traceback of an error, which is raised on, but for bad input: that
-    ends the job with one line.
+    Yields a function that says one line of progress, in the log and on the terminal. Python warnings and logging go to
+    the log; so does the traceback of an error, which is raised on, but for bad input: that ends the job with one line.
     """
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     with open(path, "w", encoding="utf-8", buffering=1) as log:

@@ -344,17 +344,8 @@ def conclude(folder, effort, files):
     channels = parity.channels["channel"].values.tolist()
     judged = Judged(where(misfit), misfit.sizes["test"])
     return conclude(
-        decision,
-        parity.findings,
-        channels,
-        judged,
-        runs,
-        measured.caveats,
-        effort,
-        size,
-        measured.gain,
-        scores,
-    )
+        decision, parity.findings, channels, judged, runs, measured.caveats, effort, size, measured.gain, scores,
+    )  # fmt: skip
 
 
 def predict_twins(name, histories, config, source, progress):

@@ -28,15 +28,13 @@ def correct_baseline(acceleration, time_step, corner_frequency=CORNER_FREQUENCY)
 
     Notes
     -----
-    The steps that Boore and Bommer (2005), Processing of strong-motion accelerograms, Soil Dyn.
-    Earthq. Eng. 25, describe, with the compatible ending of Paolucci et al.
-    (2011), Record processing in ITACA: subtract the mean; taper both ends by half-cosines over
-    2 % of the record; pad with zeros for ``1.5 order / corner`` at each end; high-pass by a
-    fourth-order Butterworth filter in both directions (no phase shift, amplitude
-    ``1 / (1 + (corner / f)^8)``); strip the pads. The pads' content would leave an end velocity
-    and offset; the one linear function of time that cancels both is subtracted from the
-    acceleration (a parabola in velocity). Choices of ours: the mean is of the whole record,
-    because triggered analogue records have no quiet start; the corner is one for all records.
+    The steps that Boore and Bommer (2005), Processing of strong-motion accelerograms, Soil Dyn. Earthq. Eng. 25,
+    describe, with the compatible ending of Paolucci et al. (2011), Record processing in ITACA: subtract the mean; taper
+    both ends by half-cosines over 2 % of the record; pad with zeros for ``1.5 order / corner`` at each end; high-pass
+    by a fourth-order Butterworth filter in both directions (no phase shift, amplitude ``1 / (1 + (corner / f)^8)``);
+    strip the pads. The pads' content would leave an end velocity and offset; the one linear function of time that
+    cancels both is subtracted from the acceleration (a parabola in velocity). Choices of ours: the mean is of the whole
+    record, because triggered analogue records have no quiet start; the corner is one for all records.
     """
     filtered = high_pass(taper_ends(acceleration - np.mean(acceleration)), time_step, corner_frequency)
     return close_integrals(filtered, time_step)

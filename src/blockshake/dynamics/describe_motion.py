@@ -25,10 +25,9 @@ def describe_motion(motion, definition):
     Returns
     -------
     xarray.Dataset
-        ``acceleration``, ``velocity``, ``displacement(time)`` [m/s2, m/s, m];
-        ``pseudo_acceleration(period)`` [m/s2] and, for a synthetic motion, ``target(ordinate)`` at
-        ``target_period`` with ``published`` (1 where an ordinate is published). Attributes: the motion's own and
-        its figures.
+        ``acceleration``, ``velocity``, ``displacement(time)`` [m/s2, m/s, m]; ``pseudo_acceleration(period)`` [m/s2]
+        and, for a synthetic motion, ``target(ordinate)`` at ``target_period`` with ``published`` (1 where an ordinate
+        is published). Attributes: the motion's own and its figures.
     """
     time = np.arange(int(np.floor(motion.duration * _RATE + 1e-9)) + 1) / _RATE
     described = xr.Dataset(

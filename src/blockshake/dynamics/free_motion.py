@@ -50,10 +50,9 @@ def drift_into(inverse_inertia, velocity, angular_momentum, spin_now, dt, positi
 
     Notes
     -----
-    Explicit midpoint in the rotation group, in the manner of Fincham (1992), Leapfrog rotational
-    algorithms, Molecular Simulation 8: the orientation half a step ahead is predicted with
-    ``spin_now`` and turns the angular momentum, which is exact, into the mean angular velocity of
-    the step.
+    Explicit midpoint in the rotation group, in the manner of Fincham (1992), Leapfrog rotational algorithms, Molecular
+    Simulation 8: the orientation half a step ahead is predicted with ``spin_now`` and turns the angular momentum, which
+    is exact, into the mean angular velocity of the step.
     """
     half_turn, middle = np.empty(3), np.empty(4)
     for axis in range(3):

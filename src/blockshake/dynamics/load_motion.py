@@ -1,7 +1,5 @@
 """A ground motion from a name that ships with the program or from a file of any known format."""
 
-from pathlib import Path
-
 import numpy as np
 
 from blockshake.dynamics.baseline import CORNER_FREQUENCY, correct_baseline
@@ -13,7 +11,7 @@ from blockshake.dynamics.records.dyna import is_dyna, read_dyna
 from blockshake.dynamics.synthetic_motion import synthesise
 from blockshake.dynamics.synthetic_schema import load_synthetic
 from blockshake.errors import InputError
-from blockshake.files import read_text, shipped, shipped_names
+from blockshake.files import named_file, read_text
 
 # content decides; the ending only where a broken file of that format should say what it lacks
 _RECORD_FORMATS = (
@@ -50,14 +48,7 @@ def load_motion(source, scale=1.0, correct=True):
     """
     if not np.isfinite(scale):
         raise InputError(source, "scale", f"expected a finite number, found {scale}")
-    path = shipped("motions", source)
-    if not path.is_file():
-        path = Path(source)
-        if not path.exists() and path.suffix == "":
-            raise InputError(
-                source, "", f"expected a motion file or one of {', '.join(shipped_names('motions'))}"
-            )
-    motion = _read(path, correct)
+    motion = _read(named_file("motions", source), correct)
     return motion if scale == 1.0 else motion.scaled(scale)
 
 

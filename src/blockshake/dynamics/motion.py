@@ -84,9 +84,8 @@ class GroundMotion:
 def ground_motion(name, time, columns, kind, attributes=None):
     """Ground motion from sampled columns, integrated exactly.
 
-    Acceleration and velocity are linear between rows, displacement is a cubic spline;
-    displacement and, but for ``velocity``, velocity are zero at the first row. No baseline
-    correction is made.
+    Acceleration and velocity are linear between rows, displacement is a cubic spline; displacement and, but for
+    ``velocity``, velocity are zero at the first row. No baseline correction is made.
 
     Parameters
     ----------
@@ -94,8 +93,7 @@ def ground_motion(name, time, columns, kind, attributes=None):
     time : float64 array, shape (n_rows,)
         Increasing, not necessarily uniform [s].
     columns : dict of str to float64 array, shape (n_rows,)
-        By channel: ``x``, ``y``, ``z`` in the unit of ``kind``, ``pitch_y`` in rad (always an
-        angle, a cubic spline).
+        By channel: ``x``, ``y``, ``z`` in the unit of ``kind``, ``pitch_y`` in rad (always an angle, a cubic spline).
     kind : str
         ``acceleration`` [m/s2], ``velocity`` [m/s] or ``displacement`` [m].
     attributes : dict, optional

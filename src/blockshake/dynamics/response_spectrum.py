@@ -65,10 +65,9 @@ def pseudo_acceleration(step, start, end, periods, damping):
 
     Notes
     -----
-    Nigam and Jennings (1969), Calculation of response spectra from strong-motion earthquake
-    records, Bull. Seismol. Soc. Am. 59: the exact solution of
-    ``u'' + 2 zeta w u' + w^2 u = -(a0 + a1 t)`` over each piece. Pieces are cut so that a cycle has
-    at least 32 points, which bounds the peak missed between points, not the solution.
+    Nigam and Jennings (1969), Calculation of response spectra from strong-motion earthquake records, Bull. Seismol.
+    Soc. Am. 59: the exact solution of ``u'' + 2 zeta w u' + w^2 u = -(a0 + a1 t)`` over each piece. Pieces are cut so
+    that a cycle has at least 32 points, which bounds the peak missed between points, not the solution.
     """
     peaks = np.zeros(periods.size)
     for index in range(periods.size):

@@ -33,11 +33,10 @@ def synthesise(parameters):
 
     Notes
     -----
-    Boore (2003), Simulation of ground motion using the stochastic method, Pure Appl. Geophys. 160,
-    for noise, window and point source; the spectral matching multiplies Fourier
-    amplitudes by the ratio of target to response spectrum at the period of each frequency and
-    keeps phases, after Gasparini and Vanmarcke (1976), SIMQKE. Path attenuation and site
-    amplification are not modelled: the matching gives what they would.
+    Boore (2003), Simulation of ground motion using the stochastic method, Pure Appl. Geophys. 160, for noise, window
+    and point source; the spectral matching multiplies Fourier amplitudes by the ratio of target to response spectrum at
+    the period of each frequency and keeps phases, after Gasparini and Vanmarcke (1976), SIMQKE. Path attenuation and
+    site amplification are not modelled: the matching gives what they would.
     """
     step = parameters.time_step
     time = step * np.arange(round(parameters.duration / step) + 1)
@@ -79,9 +78,8 @@ def standard_normal(seed, count):
 def window(time, envelope):
     """Saragoni-Hart window ``(t / t_peak)^b exp(b (1 - t / t_peak))``, peak 1.
 
-    Boore (2003), after Saragoni and Hart (1974): ``b = -peak ln(level) / (1 + peak (ln(peak) - 1))``, and
-    ``t_peak`` is set so that the window's square gathers 5 to 95 % of its integral, a gamma
-    function, in the significant duration.
+    Boore (2003), after Saragoni and Hart (1974): ``b = -peak ln(level) / (1 + peak (ln(peak) - 1))``, and ``t_peak`` is
+    set so that the window's square gathers 5 to 95 % of its integral, a gamma function, in the significant duration.
     """
     peak, level = envelope.peak, envelope.level
     b = -peak * np.log(level) / (1.0 + peak * (np.log(peak) - 1.0))
@@ -97,9 +95,8 @@ def window(time, envelope):
 def source_shape(frequency, source):
     """Acceleration spectrum of a point source in its shape only, shape as ``frequency`` [1].
 
-    Boore (2003), after Brune (1970), in SI: omega-squared, corner frequency
-    ``0.49 beta (stress_drop / M0)^(1/3)``, seismic moment ``M0 = 10^(1.5 Mw + 9.05)`` N m, and the decay
-    ``exp(-pi kappa f)``.
+    Boore (2003), after Brune (1970), in SI: omega-squared, corner frequency ``0.49 beta (stress_drop / M0)^(1/3)``,
+    seismic moment ``M0 = 10^(1.5 Mw + 9.05)`` N m, and the decay ``exp(-pi kappa f)``.
     """
     moment = 10.0 ** (1.5 * source.moment_magnitude + 9.05)
     corner = 0.49 * source.shear_wave_velocity * (source.stress_drop / moment) ** (1.0 / 3.0)

@@ -38,9 +38,8 @@ FINISHED = (Status.COMPLETED, Status.COLLAPSED)  # a run that the solver could n
 class Bodies(NamedTuple):
     """Constants of the bodies, as kernels read them.
 
-    ``mass`` (n_bodies,) [kg]; ``inertia`` and ``inverse_inertia`` (n_bodies, 3, 3), body axes
-    [kg m2]; ``inverse_mass`` (n_bodies,), zero with ``inverse_inertia`` for driven bodies;
-    ``driven`` bool (n_bodies,); ``gravity`` (3,) [m/s2];
+    ``mass`` (n_bodies,) [kg]; ``inertia`` and ``inverse_inertia`` (n_bodies, 3, 3), body axes [kg m2]; ``inverse_mass``
+    (n_bodies,), zero with ``inverse_inertia`` for driven bodies; ``driven`` bool (n_bodies,); ``gravity`` (3,) [m/s2];
     ``home`` (n_bodies, 3) and ``home_orientation`` (n_bodies, 4): poses of the structure file.
     """
 

@@ -33,11 +33,10 @@ def box_distance(x, y, z, a, b, c, chamfer):
 
     Notes
     -----
-    Zhou et al. (2023), Eq. (1). The box is symmetric, so that three flats and three chamfers
-    in ``(|x|, |y|, |z|)`` are all its 18 faces, and of the chamfers the nearest is that between the
-    two nearest flats. There is no branch: each choice is a select. A tie between a flat and a
-    chamfer goes to the flat; where two flats (or two chamfers) tie, the normal is still a unit
-    vector, that of the axis that comes first.
+    Zhou et al. (2023), Eq. (1). The box is symmetric, so that three flats and three chamfers in ``(|x|, |y|, |z|)`` are
+    all its 18 faces, and of the chamfers the nearest is that between the two nearest flats. There is no branch: each
+    choice is a select. A tie between a flat and a chamfer goes to the flat; where two flats (or two chamfers) tie, the
+    normal is still a unit vector, that of the axis that comes first.
     """
     fx, fy, fz = abs(x) - a, abs(y) - b, abs(z) - c
     x_over_y, x_over_z, y_over_z = fx >= fy, fx >= fz, fy >= fz

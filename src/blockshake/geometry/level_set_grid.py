@@ -25,11 +25,10 @@ class LevelSetGrid(NamedTuple):
 class GridTable(NamedTuple):
     """The grids of all shapes as kernels read them.
 
-    ``values`` float64 (n_values,): one grid after the other, z fastest [m]. ``first`` int64
-    (n_shapes + 1,): where each begins. ``origin`` (n_shapes, 3) [m], ``counts`` int64
-    (n_shapes, 3): points along each axis; ``spacing`` (n_shapes,) [m]. ``steepest`` (n_shapes,):
-    the interpolated level set changes by at most this times the distance moved, at least 1. A
-    list of near nodes with a skin must hold those below ``steepest * skin``.
+    ``values`` float64 (n_values,): one grid after the other, z fastest [m]. ``first`` int64 (n_shapes + 1,): where each
+    begins. ``origin`` (n_shapes, 3) [m], ``counts`` int64 (n_shapes, 3): points along each axis; ``spacing``
+    (n_shapes,) [m]. ``steepest`` (n_shapes,): the interpolated level set changes by at most this times the distance
+    moved, at least 1. A list of near nodes with a skin must hold those below ``steepest * skin``.
     """
 
     values: np.ndarray

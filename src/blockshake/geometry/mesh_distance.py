@@ -93,8 +93,7 @@ def _dot(ax, ay, az, bx, by, bz):
 def _nearest_on_triangle(triangle, px, py, pz):
     """Vector from the nearest point of a triangle (3, 3) to a point, and the feature it lies on.
 
-    By the signs of the projections on the edges: which corner, edge or face the point is in
-    front of.
+    By the signs of the projections on the edges: which corner, edge or face the point is in front of.
     """
     ax, ay, az = px - triangle[0, 0], py - triangle[0, 1], pz - triangle[0, 2]
     bx, by, bz = px - triangle[1, 0], py - triangle[1, 1], pz - triangle[1, 2]

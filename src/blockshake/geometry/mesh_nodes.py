@@ -34,9 +34,8 @@ def mesh_nodes(vertices, faces, spacing, inset, sharp=SHARP):
         most a quarter of the width of a narrow face. A body sinks by at most that much onto an
         edge before a node touches, and by 1.15 times that much onto the corner of a cube.
     sharp : float
-        Two triangles that meet at a larger angle between their normals belong to different
-        faces [rad]. Below it the surface counts as curved. A rough scan wants a larger angle, else
-        every facet of it has edges of its own.
+        Two triangles that meet at a larger angle between their normals belong to different faces [rad]. Below it the
+        surface counts as curved. A rough scan wants a larger angle, else every facet of it has edges of its own.
 
     Returns
     -------

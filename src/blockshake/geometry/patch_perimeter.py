@@ -58,9 +58,8 @@ def perimeter_points(vertices, normals, sides, area, spacing, inset, sharp):
     Returns
     -------
     float64 array, shape (n_points, 3)
-        In the planes of the triangles along the edge [m]; each straight piece begins and ends
-        where it is ``inset`` away from the next piece too, and has at least two intervals if it
-        is as long as the spacing.
+        In the planes of the triangles along the edge [m]; each straight piece begins and ends where it is ``inset``
+        away from the next piece too, and has at least two intervals if it is as long as the spacing.
     """
     points = [np.empty((0, 3))]
     if sides:

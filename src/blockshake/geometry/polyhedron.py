@@ -65,8 +65,7 @@ def box_vertices(size, chamfer):
     Returns
     -------
     float64 array, shape (8, 3) or (32, 3)
-        With a chamfer: the 24 corners of the six flats, then the 8 points where three chamfers
-        meet.
+        With a chamfer: the 24 corners of the six flats, then the 8 points where three chamfers meet.
     """
     half = np.asarray(size, dtype=float) / 2.0
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)

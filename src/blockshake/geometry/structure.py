@@ -8,7 +8,7 @@ import numpy as np
 import trimesh
 
 from blockshake.errors import InputError
-from blockshake.files import load_yaml, shipped, shipped_names
+from blockshake.files import load_yaml, named_file
 from blockshake.geometry.mass_offset import check_offset, offset_inertia, offset_solid
 from blockshake.geometry.overlap import near_pairs, penetration_depths
 from blockshake.geometry.polyhedron import (
@@ -164,13 +164,7 @@ def load_structure(source, parameters=None):
     """
     if isinstance(source, Structure):
         return source.with_parameters(parameters)
-    path = shipped("structures", source)
-    if not path.exists():
-        path = Path(source)
-        if not path.exists() and path.suffix == "":
-            raise InputError(
-                source, "", f"expected a structure file or one of {', '.join(shipped_names('structures'))}"
-            )
+    path = named_file("structures", source)
     mapping = copy.deepcopy(load_yaml(path))
     for key, value in (parameters or {}).items():
         replace_into(mapping, key, value, str(source))

@@ -23,10 +23,9 @@ def box_nodes(size, chamfer, spacing, inset):
     points : float64 array, shape (n_nodes, 3)
         Body frame [m].
     areas : float64 array, shape (n_nodes,)
-        Area that each node stands for [m2]. Over a flat they integrate a constant and a linear
-        pressure exactly: their sum is the flat's area, and their second moments are its second
-        moments, whatever spacing and inset, so that the number of nodes does not change the
-        stiffness of an interface in compression or in rocking.
+        Area that each node stands for [m2]. Over a flat they integrate a constant and a linear pressure exactly: their
+        sum is the flat's area, and their second moments are its second moments, whatever spacing and inset, so that the
+        number of nodes does not change the stiffness of an interface in compression or in rocking.
     """
     size = np.asarray(size, dtype=float)
     points, areas = [], []
@@ -106,9 +105,8 @@ def line_nodes(length, spacing, inset):
     Returns
     -------
     positions, weights : float64 arrays, shape (n,)
-        [m]; the trapezoidal weights, scaled to the whole length, with part of the end weights
-        moved to their neighbours so that the second moment is ``length**3 / 12``. With two
-        intervals and no inset this is Simpson's rule.
+        [m]; the trapezoidal weights, scaled to the whole length, with part of the end weights moved to their neighbours
+        so that the second moment is ``length**3 / 12``. With two intervals and no inset this is Simpson's rule.
     """
     n_intervals = max(2, round(length / spacing))
     positions = np.linspace(-0.5, 0.5, n_intervals + 1) * (length - 2.0 * inset)

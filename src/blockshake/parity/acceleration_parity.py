@@ -99,19 +99,10 @@ def channel_pairs(structure, test, bodies, faults, accelerometer_noise):
             noise = accelerometer_noise * np.sqrt(
                 (weights**2).sum() * 3.0
             )  # colour: 3 at a coefficient of 0.5
-            pairs.append(
-                ChannelPair(
-                    name,
-                    sensor.name,
-                    time,
-                    expected,
-                    slow,
-                    _filtered(time_acc, read[name], _band, _LONG_GAUSSIAN),
-                    _filtered(time_acc, read[name], _low, _SLOW_GAUSSIAN),
-                    noise,
-                    unseen > _LARGEST_UNSEEN_ARM,
-                )
-            )
+            pairs.append(ChannelPair(
+                name, sensor.name, time, expected, slow, _filtered(time_acc, read[name], _band, _LONG_GAUSSIAN),
+                _filtered(time_acc, read[name], _low, _SLOW_GAUSSIAN), noise, unseen > _LARGEST_UNSEEN_ARM,
+            ))  # fmt: skip
     return pairs
 
 

@@ -34,16 +34,9 @@ class ClockLag(NamedTuple):
 
 
 def clock_lag(pairs_by_test):
-    """Delay of the optical clock against the accelerometers, test by test and over time.
+    """`ClockLag` of the optical clock against the accelerometers, test by test and over time, from the pairs by test.
 
-    Parameters
-    ----------
-    pairs_by_test : dict of str to list of ChannelPair
-
-    Returns
-    -------
-    ClockLag
-        Tests that tell nothing are missing.
+    Tests that tell nothing are missing.
     """
     lags, blocks = {}, []
     for name, pairs in pairs_by_test.items():
@@ -166,15 +159,10 @@ def swapped_channels(pairs_by_test, lags):
             if not count or other_misfit > _MISFIT_LEFT_AT_MOST * own_misfit:
                 continue
             variance = max(other_misfit / count, noise**2)
-            found.append(
-                (
-                    name,
-                    other,
-                    float(
-                        np.exp(-(own_misfit - other_misfit) / (2.0 * variance * _READINGS_PER_INDEPENDENT))
-                    ),
-                )
-            )
+            found.append((
+                name, other,
+                float(np.exp(-(own_misfit - other_misfit) / (2.0 * variance * _READINGS_PER_INDEPENDENT))),
+            ))  # fmt: skip
     return found
 
 

@@ -21,7 +21,7 @@ class ChannelFindings(NamedTuple):
 
 
 def channel_findings(pairs, accelerometer_noise, level, looked_at):
-    """Findings of clock and channels.
+    """`ChannelFindings` of clock and channels.
 
     Parameters
     ----------
@@ -33,10 +33,6 @@ def channel_findings(pairs, accelerometer_noise, level, looked_at):
         Of all hypotheses together.
     looked_at : int
         Number of hypotheses in the campaign.
-
-    Returns
-    -------
-    ChannelFindings
     """
     lags, common = clock_lag(pairs)
     gains = channel_gains(pairs, lags)

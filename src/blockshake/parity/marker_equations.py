@@ -87,7 +87,7 @@ def columns(kind, n_tests, n_markers, marker, test=0):
 
 
 def marker_equations(points, start_position, start_rotation, tests, faults):
-    """Equations of one body, linear about the faults given.
+    """`MarkerEquations` of one body, linear about the faults given.
 
     Parameters
     ----------
@@ -99,10 +99,6 @@ def marker_equations(points, start_position, start_rotation, tests, faults):
         Times [s] and readings (n_times, n_markers, 3) of each test, inertial frame [m].
     faults : MarkerFaults
         Faults that are taken out of the readings first.
-
-    Returns
-    -------
-    MarkerEquations
 
     Notes
     -----

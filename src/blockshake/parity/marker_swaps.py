@@ -44,9 +44,8 @@ def unswapped(tests, bodies, marker_noise, level, looked_at):
     Notes
     -----
     Every exchange is tried on the bodies whose markers do not move as one; it is accepted where it halves the sum of
-    squares and leaves no more than gains, places and drifts would. Its chance is bounded by the ratio of
-    likelihoods: a wrong hypothesis beats the true one by a factor L with a chance of at most 1/L. An exchange holds
-    for all tests.
+    squares and leaves no more than gains, places and drifts would. Its chance is bounded by the ratio of likelihoods: a
+    wrong hypothesis beats the true one by a factor L with a chance of at most 1/L. An exchange holds for all tests.
     """
     readings = {
         (name, marker): [values[:, index] for _, values in body.readings]

@@ -1,13 +1,12 @@
 """Parity checks of a campaign's sensors against each other, without a simulator."""
 
-import json
 from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
 from blockshake.errors import InputError
-from blockshake.files import read_text
+from blockshake.files import load_json
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
@@ -75,7 +74,7 @@ class Parity:
 
 def load_parity(path):
     """Parity of the file ``parity.json``."""
-    return Parity.from_json(json.loads(read_text(path)))
+    return Parity.from_json(load_json(path))
 
 
 def _columns(table, dim):
@@ -122,7 +121,7 @@ def campaign_parity(campaign, names, without=()):
 
 
 def check_parity(tests, structure, sensors, level=LEVEL):
-    """Faults of the sensors, found from readings alone.
+    """`Parity`: faults of the sensors, found from readings alone.
 
     Parameters
     ----------
@@ -133,10 +132,6 @@ def check_parity(tests, structure, sensors, level=LEVEL):
         Stated noise.
     level : float
         Chance of any finding where all sensors are within their tolerances; shared evenly by all hypotheses.
-
-    Returns
-    -------
-    Parity
 
     Notes
     -----
@@ -227,17 +222,9 @@ def _without_saturation(test, name, level, looked_at):
                 if p * looked_at >= level:
                     continue
                 largest = np.abs(columns[at_end, column]).max(keepdims=True)
-                findings.append(
-                    Finding(
-                        "sensor-saturation",
-                        (str(where),),
-                        "range",
-                        largest,
-                        np.zeros((1, 1)),
-                        p * looked_at,
-                        (name,),
-                    )
-                )
+                findings.append(Finding(
+                    "sensor-saturation", (str(where),), "range", largest, np.zeros((1, 1)), p * looked_at, (name,),
+                ))  # fmt: skip
                 array[at_end, index] = np.nan
         test[variable] = values.copy(data=array)
     return test, findings

@@ -16,23 +16,18 @@ class Saturation(NamedTuple):
 
 
 def saturated(values):
-    """Readings at the end of the range, and the chance of as many in a sound record.
+    """`Saturation`: readings at the end of the range, and the chance of as many in a sound record.
 
     Parameters
     ----------
     values : float64 array, shape (n_times,)
         NaN is a gap.
 
-    Returns
-    -------
-    Saturation
-
     Notes
     -----
     Beside a largest (or smallest) reading that is shared by neighbours each further one has the chance with which any
-    reading repeats the one before, taken from the record itself below the plateau, so that coarse digits and a
-    sensor at rest are no saturation. A limit that acts before the noise is added leaves no equal readings
-    and is not seen.
+    reading repeats the one before, taken from the record itself below the plateau, so that coarse digits and a sensor
+    at rest are no saturation. A limit that acts before the noise is added leaves no equal readings and is not seen.
     """
     known = np.isfinite(values)
     nothing = np.zeros(len(values), dtype=bool)

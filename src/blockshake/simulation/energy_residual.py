@@ -16,9 +16,8 @@ def energy_residual(energy):
     Returns
     -------
     float
-        Largest ``|kinetic + potential + elastic + dissipated - input - initial|`` over the largest of the
-        work done on the bodies, their kinetic and their elastic energy and a millionth of their potential
-        energy [1].
+        Largest ``|kinetic + potential + elastic + dissipated - input - initial|`` over the largest of the work done on
+        the bodies, their kinetic and their elastic energy and a millionth of their potential energy [1].
     """
     energy = energy[np.isfinite(energy).all(axis=1)]
     if not len(energy):

@@ -77,8 +77,7 @@ class Model:
 
     Notes
     -----
-    The driver and the class are named, not imported: a job that runs one solver neither imports nor watches the
-    other.
+    The driver and the class are named, not imported: a job that runs one solver neither imports nor watches the other.
     """
 
     name: str

@@ -4,18 +4,9 @@ from scipy.spatial.transform import Rotation
 
 
 def placed(structure, places):
-    """Start poses of the free bodies, as parameters of the structure.
+    """Start poses of the free bodies: ``bodies.NAME.position`` and ``bodies.NAME.orientation`` of the structure.
 
-    Parameters
-    ----------
-    structure : Structure
-    places : float64 array, shape (n_bodies, 3)
-        Off the structure file: along x and y [m], turned about z [rad]; driven bodies stay.
-
-    Returns
-    -------
-    dict of str to list of float
-        ``bodies.NAME.position`` and ``bodies.NAME.orientation``.
+    ``places`` (n_bodies, 3): off the structure file, along x and y [m], turned about z [rad]; driven bodies stay.
     """
     poses = {}
     for body, (along_x, along_y, turn) in zip(structure.file.bodies, places, strict=True):

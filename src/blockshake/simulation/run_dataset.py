@@ -11,76 +11,48 @@ from blockshake.simulation.models import model_of
 
 
 def run_dataset(structure, trajectory, rows):
-    """A trajectory as the run file's Dataset, at some of its times, without accelerometers and attributes.
-
-    Parameters
-    ----------
-    structure : Structure
-    trajectory : Trajectory
-    rows : int array, shape (n_times,)
-        Of the trajectory's times.
-
-    Returns
-    -------
-    xarray.Dataset
-    """
+    """A trajectory as the run file's Dataset, at some of its rows, without accelerometers and attributes."""
     names = structure.body_names
     lower, upper = ([names[body] for body in trajectory.joints[:, side]] for side in (0, 1))
     markers = np.array([marker.name for marker in structure.file.markers], dtype=str)
     position, orientation = trajectory.position[rows], trajectory.orientation[rows]
 
     def variable(dims, values, units, long_name):
-        return (dims, values, {"units": units, "long_name": long_name})
+        return (dims.split(), values, {"units": units, "long_name": long_name})
 
     return xr.Dataset(
         {
-            "position": variable(("time", "body", "axis"), position, "m", "mass centre, inertial frame"),
+            "position": variable("time body axis", position, "m", "mass centre, inertial frame"),
             "orientation": variable(
-                ("time", "body", "quaternion"), orientation, "1", "unit quaternion, body to inertial frame"
+                "time body quaternion", orientation, "1", "unit quaternion, body to inertial frame"
             ),
             "velocity": variable(
-                ("time", "body", "axis"),
-                trajectory.velocity[rows],
-                "m s-1",
-                "velocity of the mass centre, inertial frame",
+                "time body axis", trajectory.velocity[rows], "m s-1", "velocity of the mass centre, inertial frame"
             ),
             "angular_velocity": variable(
-                ("time", "body", "axis"),
-                trajectory.angular_velocity[rows],
-                "rad s-1",
-                "angular velocity, inertial frame",
+                "time body axis", trajectory.angular_velocity[rows], "rad s-1", "angular velocity, inertial frame"
             ),
             "marker_displacement": variable(
-                ("time", "marker", "axis"),
-                marker_displacement(structure, position, orientation),
-                "m",
+                "time marker axis", marker_displacement(structure, position, orientation), "m",
                 "displacement of the marker since the start, inertial frame",
             ),
-            "energy": variable(
-                ("time", "term"), trajectory.energy[rows], "J", "energy audit of the free bodies"
-            ),
+            "energy": variable("time term", trajectory.energy[rows], "J", "energy audit of the free bodies"),
             "joint_force": variable(
-                ("time", "joint", "axis"),
-                trajectory.joint_force[rows],
-                "N",
-                "resultant contact force on the upper body",
+                "time joint axis", trajectory.joint_force[rows], "N", "resultant contact force on the upper body"
             ),
         },
         coords={
-            "time": variable(("time",), trajectory.time[rows], "s", "time since the start of the motion"),
+            "time": variable("time", trajectory.time[rows], "s", "time since the start of the motion"),
             "body": names,
             "axis": list(AXES),
             "quaternion": list(QUATERNION),
             "marker": markers,
-            "marker_body": (
-                "marker",
-                np.array([marker.body for marker in structure.file.markers], dtype=str),
-            ),
+            "marker_body": ("marker", np.array([marker.body for marker in structure.file.markers], dtype=str)),
             "term": list(ENERGY_TERMS),
             "lower": ("joint", np.array(lower, dtype=str)),
             "upper": ("joint", np.array(upper, dtype=str)),
         },
-    )
+    )  # fmt: skip
 
 
 def add_accelerometers(run, structure, trajectory, rows):

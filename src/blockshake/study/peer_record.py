@@ -57,33 +57,13 @@ def load_peer_record():
 
 
 def speed(record):
-    """Cases of a record that meet the target and the goal of the speed.
-
-    Parameters
-    ----------
-    record : xarray.Dataset
-        From `load_peer_record`.
-
-    Returns
-    -------
-    Speed
-    """
+    """`Speed` of a record from `load_peer_record`: its cases that meet the target and the goal."""
     faster = record["times_faster"].to_numpy()
     return Speed(len(faster), int((faster >= TARGET).sum()), int((faster >= GOAL).sum()))
 
 
 def largest_residual(record):
-    """Case in which the residual of LMGC90's contacts is largest.
-
-    Parameters
-    ----------
-    record : xarray.Dataset
-        From `load_peer_record`.
-
-    Returns
-    -------
-    Residual
-    """
+    """`Residual` of the case of a record in which the residual of LMGC90's contacts is largest."""
     theirs = record["residual"].sel(program="LMGC90")
     place = int(np.argmax(theirs.to_numpy()))
     return Residual(str(record["case"].values[place]), float(theirs[place]), float(theirs.median()))

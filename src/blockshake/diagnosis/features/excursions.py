@@ -6,6 +6,8 @@ import numpy as np
 from scipy.stats import theilslopes
 
 _SWING_LEVEL = 0.25  # of the peak, above the noise of a swing of 5 sigma
+_FEWEST_STEPS = 4  # for an exponent
+_FARTHEST_TURNS = 3
 _PARABOLA_HALF_WIDTH = 5  # readings to each side in the parabola at a turning point: 25 ms at 200 Hz
 
 
@@ -81,7 +83,7 @@ def steps(values, threshold):
     return Steps(places[np.abs(sizes) > threshold], sizes[np.abs(sizes) > threshold])
 
 
-def growth(values, drive, threshold, fewest=4):
+def growth(values, drive, threshold):
     """Exponent of the growth of steps with the drive.
 
     Parameters
@@ -90,16 +92,15 @@ def growth(values, drive, threshold, fewest=4):
         History, and its drive, of which the largest magnitude while the step goes from 10 to 90 % counts.
     threshold : float
         Smaller steps are none.
-    fewest : int
-        Steps below which there is no exponent.
 
     Returns
     -------
     float or None
-        Median of the slopes of ln|step| over ln|drive| between all pairs of steps (Theil 1950, Sen 1968).
+        Median of the slopes of ln|step| over ln|drive| between all pairs of steps (Theil 1950, Sen 1968); None with
+        fewer than four.
     """
     places, sizes = steps(values, threshold)
-    if len(sizes) < fewest:
+    if len(sizes) < _FEWEST_STEPS:
         return None
     drives = []
     for (begin, end), size in zip(places, sizes, strict=True):
@@ -146,8 +147,8 @@ def largest_swing(time, values):
     return float(end - begin)
 
 
-def turning_acceleration(time, values, threshold, most=3):
-    """Second derivative at the farthest turning points, median over as many as asked for.
+def turning_acceleration(time, values, threshold):
+    """Second derivative at the farthest turning points, median over three of them.
 
     Returns
     -------
@@ -163,7 +164,7 @@ def turning_acceleration(time, values, threshold, most=3):
     places = places[(places >= _PARABOLA_HALF_WIDTH) & (places < len(values) - _PARABOLA_HALF_WIDTH)]
     if not len(places):
         return None
-    places = places[np.argsort(-np.abs(values[places]), kind="stable")[:most]]
+    places = places[np.argsort(-np.abs(values[places]), kind="stable")[:_FARTHEST_TURNS]]
     curvatures = [
         2.0
         * np.polyfit(

@@ -6,17 +6,9 @@ from blockshake.diagnosis.features.feature_table import kind
 
 
 def signed_log(values):
-    """Features on a scale that is linear near zero and logarithmic far from it.
+    """Features, with their coordinate, on a scale that is linear near zero and logarithmic far from it.
 
-    Parameters
-    ----------
-    values : xarray.DataArray
-        With coordinate ``feature``, as of `features`.
-
-    Returns
-    -------
-    xarray.DataArray
-        sign(x) ln(1 + |x| / scale) with the scale of the feature table [1]; as they are where it has none.
+    sign(x) ln(1 + |x| / scale) with the scale of the feature table [1]; as they are where it has none.
     """
     scale = np.array([kind(str(name)).scale for name in values["feature"].values])
     scale = values["feature"].copy(data=scale).reset_coords(drop=True)

@@ -39,16 +39,12 @@ class Phases:
 
 
 def find_phases(histories):
-    """Onset of every joint and phases of a test.
+    """`Phases` of a test, with the onset of every joint.
 
     Parameters
     ----------
     histories : xarray.Dataset
         From `joint_histories`.
-
-    Returns
-    -------
-    Phases
 
     Notes
     -----
@@ -68,18 +64,9 @@ def find_phases(histories):
 
 
 def known_values(values):
-    """History with gaps filled and single wrong readings taken out.
+    """History (n_times,) with gaps, NaN as at the end of a run cut short, filled and single wrong readings taken out.
 
-    Parameters
-    ----------
-    values : float64 array, shape (n_times,)
-        NaN is a gap, and at the end a run cut short.
-
-    Returns
-    -------
-    float64 array, shape (n_times,)
-        Linear across gaps, the last value held to the end, then the median of three neighbours; zero if nothing is
-        known.
+    Linear across gaps, the last value held to the end, then the median of three neighbours; zero if nothing is known.
     """
     known = np.isfinite(values)
     if not known.any():

@@ -47,19 +47,9 @@ class Delay(NamedTuple):
 
 
 def delay(time, first, second, most=0.25):
-    """Lag of the second history behind the first where their correlation is largest.
+    """`Delay` of the second history behind the first, arrays (n_times,) at uniform times, where they correlate most.
 
-    Parameters
-    ----------
-    time, first, second : float64 arrays, shape (n_times,)
-        Uniform times [s]; finite values.
-    most : float
-        Largest lag [s].
-
-    Returns
-    -------
-    Delay
-        Between readings by a parabola.
+    Over lags up to ``most`` [s]; between readings by a parabola. Values are finite.
     """
     step = (time[-1] - time[0]) / (len(time) - 1)
     first, second = first - first.mean(), second - second.mean()

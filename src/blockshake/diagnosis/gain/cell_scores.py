@@ -75,10 +75,9 @@ class Distances:
 
         Notes
         -----
-        ``sum_i w_i |X_i - y| - sum_ij w_i w_j |X_i - X_j| / (2 (1 - sum_i w_i^2))``: the score fair to small
-        ensembles (Ferro 2014), `blockshake.study.ensembles.scores.crps` where all weights are equal; members that a
-        bootstrap drew twice are no pair. In the mean over members, each scored by the others, this is the second
-        sum: the floor.
+        ``sum_i w_i |X_i - y| - sum_ij w_i w_j |X_i - X_j| / (2 (1 - sum_i w_i^2))``: the score fair to small ensembles
+        (Ferro 2014), `blockshake.study.ensembles.scores.crps` where all weights are equal; members that a bootstrap
+        drew twice are no pair. In the mean over members, each scored by the others, this is the second sum: the floor.
         """
         floor = 0.5 * (self.pairs @ weights @ weights) / (1.0 - weights @ weights)
         return self.record @ weights - floor, floor
@@ -105,16 +104,7 @@ class Distances:
 
 
 def cells_of(tests):
-    """Cells of tests.
-
-    Parameters
-    ----------
-    tests : list of SealedTest
-
-    Returns
-    -------
-    Cells
-    """
+    """`Cells` of a list of `SealedTest`."""
     found = [
         (number, name, np.flatnonzero([family(one) == name for one in test.features]))
         for number, test in enumerate(tests)
@@ -125,19 +115,9 @@ def cells_of(tests):
 
 
 def distances(tests, cells, kind):
-    """Distances of one kind of ensemble.
+    """`Distances` of one kind of ensemble, by its name, from its tests and their `Cells`.
 
-    Parameters
-    ----------
-    tests : list of SealedTest
-        With the same members in all, in one order.
-    cells : Cells
-        Of these tests.
-    kind : str
-
-    Returns
-    -------
-    Distances
+    ``tests``: list of `SealedTest`, with the same members in all, in one order.
     """
     by_model = tests[0].members[kind]
     record, pairs = [], []

@@ -72,7 +72,7 @@ class Discrepancy:
 
 
 def fit_discrepancy(conditions, names, measured, members):
-    """Discrepancy of the nominal model over the open tests.
+    """`Discrepancy` of the nominal model over the open tests.
 
     Parameters
     ----------
@@ -84,19 +84,14 @@ def fit_discrepancy(conditions, names, measured, members):
     members : list of float64 array, shape (n_members, n_own_features)
         By test: the nominal members of both solvers in it.
 
-    Returns
-    -------
-    Discrepancy
-
     Notes
     -----
     Kennedy and O'Hagan (2001, J. R. Stat. Soc. B 63, section 4): measured = model + discrepancy + noise, here feature
     by feature with zero mean and the covariance ``s^2 exp(-(ln a - ln a')^2 / 2 l^2)``, times ``r`` where the motions
     differ; the noise is the members' own variance, mean over features. ``l`` and ``r`` are one for all features, ``s``
-    is each one's own, of the largest likelihood on a grid, features taken for independent. They are known badly: two
-    to four tests tell little of how a discrepancy changes with the motion, and this is a weak rival. It repeats under
-    another motion what was missed under the first, as far as those were alike; farther away it is wide and has no
-    mean.
+    is each one's own, of the largest likelihood on a grid, features taken for independent. They are known badly: two to
+    four tests tell little of how a discrepancy changes with the motion, and this is a weak rival. It repeats under
+    another motion what was missed under the first, as far as those were alike; farther away it is wide and has no mean.
     """
     common = [name for name in names[0] if all(name in own for own in names)]
     columns = [[own.index(name) for name in common] for own in names]

@@ -3,11 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from blockshake.diagnosis.gain.extension import (
-    extended_members,
-    open_features,
-    open_responses,
-)
+from blockshake.diagnosis.gain.extension import extended_members, open_features, open_responses
 from blockshake.diagnosis.gain.recalibration import posterior_draws
 from blockshake.diagnosis.libraries.candidates import NOMINAL
 from blockshake.diagnosis.libraries.designed_test import kept_reading

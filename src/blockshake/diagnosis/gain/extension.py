@@ -10,33 +10,12 @@ _DENSITY_POINTS = 2001  # points at which the density of sizes is summed
 
 
 def open_features(library, model):
-    """Features of a library's nominal draws, of all its tests side by side.
-
-    Parameters
-    ----------
-    library : ScoreLibrary
-        Of the open tests.
-    model : str
-
-    Returns
-    -------
-    float64 array, shape (n_draws, n_features)
-    """
+    """Features of a library's nominal draws by one model, of all its open tests side by side: (n_draws, n_features)."""
     return np.concatenate([test[model]["nominal"] for test in library.tamed], axis=1)
 
 
 def open_responses(library, model, key):
-    """Response of the features to a candidate, for each of a library's tests.
-
-    Parameters
-    ----------
-    library : ScoreLibrary
-    model, key : str
-
-    Returns
-    -------
-    list of Response
-    """
+    """List of `Response` of the features to a candidate, by its key, for each test of a library, by one model."""
     sizes = library.sizes[model][key]
     return [
         fit_response(sizes, test[model][key] - test[model]["nominal"][: len(sizes)], size_grid(sizes))

@@ -47,10 +47,9 @@ def gain_on(tests):
     -----
     The score is the continuous ranked probability score, mean over tests of the mean over features, each in units of
     its standard deviation over nominal and extended members together. In units of the nominal spread alone the mean
-    would be that of one feature: a weak joint moves the correlation of the top with the lowest block by 16 000 of
-    them. Gain is ``(S_rival - S_extended) / (S_rival - S_floor)``: 1 leaves nothing to gain, below 0 the extension is
-    worse. The floor is what the extended members score in the mean when each is taken for the record and judged by
-    the others.
+    would be that of one feature: a weak joint moves the correlation of the top with the lowest block by 16 000 of them.
+    Gain is ``(S_rival - S_extended) / (S_rival - S_floor)``: 1 leaves nothing to gain, below 0 the extension is worse.
+    The floor is what the extended members score in the mean when each is taken for the record and judged by the others.
 
     One record scores by chance above or below the floor. Where the rival does not score more than 95 % of the extended
     members as the record would, its distance from the floor is noise and the ratio would be wild: nothing is there to
@@ -122,19 +121,9 @@ def gain_on(tests):
 
 
 def gain_of_verdict(gained, runs):
-    """Gain in the form of the verdict, with caveats.
+    """`MeasuredGain`, the gain of `gain_on` in the form of the verdict, with caveats and the number of simulated tests.
 
-    Parameters
-    ----------
-    gained : xarray.Dataset
-        From `gain_on`.
-    runs : int
-        Simulated tests.
-
-    Returns
-    -------
-    MeasuredGain
-        Its gain is cut off at -1 and 1. Where there is nothing to gain, it is 0, from -1 to 1.
+    It is cut off at -1 and 1. Where there is nothing to gain, it is 0, from -1 to 1.
     """
     contrasts, caveats = {}, []
     for rival in ("recalibrated", "nominal", "discrepancy"):

@@ -38,7 +38,7 @@ class Recalibration:
 
 
 def posterior_draws(draws, features, measured, added=None):
-    """Nominal draws of one solver, conditioned on measured features.
+    """`Recalibration`: nominal draws of one solver, conditioned on measured features.
 
     Parameters
     ----------
@@ -51,10 +51,6 @@ def posterior_draws(draws, features, measured, added=None):
     added : float64 array, shape (n_conditioned, n_features), optional
         Addition of a candidate to each draw. Only the first so many draws are conditioned; without it all are, and
         nothing is added.
-
-    Returns
-    -------
-    Recalibration
 
     Notes
     -----

@@ -28,7 +28,7 @@ class SealedTest:
 
 
 def tamed_test(name, measured, readings):
-    """A test and its ensembles on one scale; an open one for the discrepancy as well.
+    """`SealedTest`: a test and its ensembles on one scale; an open one for the discrepancy as well.
 
     Parameters
     ----------
@@ -37,10 +37,6 @@ def tamed_test(name, measured, readings):
         From `read_off`.
     readings : dict of str to dict of str to xarray.Dataset
         By kind and solver: ``value(..., feature)``; ``nominal`` is among them and gives the scale.
-
-    Returns
-    -------
-    SealedTest
     """
     scale = feature_scale(list(readings["nominal"].values()))
     members = {

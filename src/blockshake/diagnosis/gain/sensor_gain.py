@@ -20,19 +20,9 @@ _REST = 1.0  # s, before which nothing has moved: what is left there is noise
 
 
 def sensors_gain(campaign, readings, findings):
-    """Gain on a campaign's sealed tests of the sensor fault whose gain can be measured.
+    """`CampaignGain` on a campaign's sealed tests of the sensor fault whose gain can be measured.
 
-    Parameters
-    ----------
-    campaign : Campaign
-    readings : xarray.Dataset
-        From `measured_readings`, of open tests.
-    findings : sequence of Finding
-        From the open tests.
-
-    Returns
-    -------
-    CampaignGain
+    ``readings`` from `measured_readings` and ``findings`` are of the open tests.
     """
     structure = load_structure(campaign.structure)
     opened, sealed = (

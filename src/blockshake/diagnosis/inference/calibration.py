@@ -1,13 +1,12 @@
 """Calibration of the scores: every draw of the library is judged in turn as a measurement of known truth."""
 
-import json
 from dataclasses import dataclass
 
 import numpy as np
 
 from blockshake.diagnosis.inference.constancy import constancy
 from blockshake.diagnosis.libraries.candidates import effect_of
-from blockshake.files import read_text, write_json
+from blockshake.files import load_json, write_json
 
 NONE = "none"
 _CASES_NEEDED = 10  # cases with which a chance below 10 % can be told
@@ -57,7 +56,7 @@ def write_cases(path, cases):
 
 def load_cases(path):
     """Cases of a file that `write_cases` wrote."""
-    rows = json.loads(read_text(path))
+    rows = load_json(path)
     return [
         ScoredReadings(**row | {"missed": np.nan if row["missed"] is None else row["missed"]}) for row in rows
     ]
@@ -86,17 +85,9 @@ def as_case(scores, key="", size=0.0):
 
 
 def library_cases(library, progress=None):
-    """Every draw of a library in turn as a measurement, itself left out of the library that judges it.
+    """Every draw of a `ScoreLibrary` in turn as a measurement, itself left out of the library that judges it.
 
-    Parameters
-    ----------
-    library : ScoreLibrary
-    progress : callable, optional
-        Called with a line of text after each draw.
-
-    Returns
-    -------
-    list of ScoredReadings
+    A list of `ScoredReadings`. ``progress`` is called with a line of text after each draw.
     """
     cases = []
     for model in library.models:

@@ -64,7 +64,7 @@ class ScoreLibrary:
         return size_grid(self.sizes[self.models[0]][key])
 
     def score(self, features, model=None, left_out=None):
-        """Scores of one set of readings.
+        """`Scores` of one set of readings.
 
         Parameters
         ----------
@@ -74,10 +74,6 @@ class ScoreLibrary:
         left_out : int, optional
             Solver and draw of the library that these readings come from: then that draw, in all its tests and with all
             its candidates, is left out of the library.
-
-        Returns
-        -------
-        Scores
         """
         parts = self._parts(len(features), model, left_out)
 

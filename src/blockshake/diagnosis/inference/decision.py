@@ -1,10 +1,9 @@
 """The decision on a campaign's open tests: which effects they speak for, with all that it rests on."""
 
-import json
 from typing import Literal
 
 from blockshake.diagnosis.laws.findings import LawFindings
-from blockshake.files import read_text, write_json
+from blockshake.files import load_json, write_json
 from blockshake.validation import Strict, validated
 
 FALSE_ALARM = 0.05  # level at which readings are called an effect
@@ -156,4 +155,4 @@ def load_result(schema, path):
     InputError
         The file is missing or holds something else.
     """
-    return validated(schema, json.loads(read_text(path)), path)
+    return validated(schema, load_json(path), path)

@@ -11,16 +11,7 @@ from blockshake.diagnosis.libraries.candidates import NOMINAL, effect_of
 
 
 def load_tables(paths):
-    """Datasets of `library` by test and solver, from files that are ordered by test and then by solver.
-
-    Parameters
-    ----------
-    paths : sequence of str
-
-    Returns
-    -------
-    list of dict of str to xarray.Dataset
-    """
+    """Datasets of `library` by test and solver, a list of mappings, from files ordered by test and then by solver."""
     tables = []
     for path in paths:
         table = xr.load_dataset(path)
@@ -43,7 +34,7 @@ class ScaledLibrary(NamedTuple):
 
 
 def score_library(tables, effects):
-    """Libraries of several tests, ready to score readings.
+    """`ScaledLibrary`: libraries of several tests, ready to score readings.
 
     Parameters
     ----------
@@ -51,10 +42,6 @@ def score_library(tables, effects):
         By test and solver: features from `library`.
     effects : sequence of str
         Names of the effects that are considered.
-
-    Returns
-    -------
-    ScaledLibrary
     """
     keys = list(dict.fromkeys(tables[0][next(iter(tables[0]))]["candidate"].values.tolist()))
     keys = [key for key in keys if key == NOMINAL or effect_of(key) in effects]

@@ -42,18 +42,9 @@ class SizeInterval(NamedTuple):
 
 
 def size_interval(sizes, weights, share):
-    """Median of the posterior and the interval about it that holds a share of it.
+    """`SizeInterval`: median of the posterior, and the interval about it that holds a share of it, in (0, 1].
 
-    Parameters
-    ----------
-    sizes, weights : float64 array, shape (n_sizes,)
-        As of `Scores`.
-    share : float
-        In (0, 1].
-
-    Returns
-    -------
-    SizeInterval
+    ``sizes`` and ``weights`` (n_sizes,) as of `Scores`.
     """
     # up to the middle of each size's own share
     below = (np.cumsum(weights) - 0.5 * weights) / np.sum(weights)

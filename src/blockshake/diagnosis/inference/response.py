@@ -52,7 +52,7 @@ class Response:
 
 
 def fit_response(own_sizes, added, sizes):
-    """Response of all features to a candidate's size.
+    """`Response` of all features to a candidate's size.
 
     Parameters
     ----------
@@ -62,10 +62,6 @@ def fit_response(own_sizes, added, sizes):
         To the nominal run of the same draw.
     sizes : float64 array, shape (n_sizes,)
         Sizes of the response that is returned.
-
-    Returns
-    -------
-    Response
 
     Notes
     -----

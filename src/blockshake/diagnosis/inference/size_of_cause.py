@@ -64,7 +64,7 @@ def without_second(library, features, decision):
 
 
 def size_of_cause(library, features):
-    """Posterior of the size, and the parameters with it.
+    """`CauseSize`: posterior of the size, and the parameters with it.
 
     Parameters
     ----------
@@ -72,10 +72,6 @@ def size_of_cause(library, features):
         From `library_of_cause`.
     features : list of float64 array, shape (n_features,)
         Measured, by test, tamed; of a combination as from `without_second`.
-
-    Returns
-    -------
-    CauseSize
     """
     (key,) = library.candidates
     scores = library.score(features)

@@ -78,7 +78,7 @@ class KeptReading(NamedTuple):
 
 
 def simulated_test(planned, draw, effects=()):
-    """Synthetic readings that a sampled model gives for a planned test.
+    """`SimulatedTest`: synthetic readings that a sampled model gives for a planned test.
 
     Parameters
     ----------
@@ -87,10 +87,6 @@ def simulated_test(planned, draw, effects=()):
     draw : Draw
     effects : sequence of dict
         ``name``, ``values`` and ``place`` of each effect that the model has too.
-
-    Returns
-    -------
-    SimulatedTest
     """
     physical, numerics = part_parameters(draw.parameters)
     readings = {name: value for name, value in draw.noise.items() if name != "louder"}
@@ -127,7 +123,7 @@ def faster_part(motion):
 
 
 def kept_reading(planned, draw, effects, store, source, histories=True):
-    """Features and histories of a simulated test, from the store if it was simulated before.
+    """`KeptReading` of a simulated test: features and histories, from the store if it was simulated before.
 
     Parameters
     ----------
@@ -141,10 +137,6 @@ def kept_reading(planned, draw, effects, store, source, histories=True):
         Digest of the sources that compute.
     histories : bool
         Whether they are kept too.
-
-    Returns
-    -------
-    KeptReading
     """
     key = content_digest(
         source, planned.digest(), draw.model, draw.time_step, draw.parameters, draw.amplitude, draw.fast,

@@ -62,17 +62,13 @@ class Draw:
 
 
 def draw_nominal(structure, model, number):
-    """A nominal model, the same for the same structure, model and number.
+    """`Draw` of a nominal model, the same for the same structure, model and number.
 
     Parameters
     ----------
     structure : Structure
     model : str
     number : int
-
-    Returns
-    -------
-    Draw
 
     Notes
     -----

@@ -167,7 +167,7 @@ class PlannedLibrary(NamedTuple):
 
 
 def plan_of_library(library, folders, effort, source):
-    """Plan and test of the first of several campaigns that has a library.
+    """`PlannedLibrary`: plan and test of the first of several campaigns that has a library.
 
     Parameters
     ----------
@@ -176,10 +176,6 @@ def plan_of_library(library, folders, effort, source):
     folders : sequence of str
         Of campaigns.
     effort, source : str
-
-    Returns
-    -------
-    PlannedLibrary
     """
     for folder in folders:
         plan = plan_diagnosis(folder, effort)

@@ -8,19 +8,10 @@ from blockshake.study.ensembles.scores import crps
 
 
 def joint_curves(histories, test):
-    """Slip along x, rotation about y and opening of every joint as named curves.
+    """Slip along x, rotation about y and opening of every joint as curves (n_times,) or (n_draws, n_times), by name.
 
-    Parameters
-    ----------
-    histories : xarray.Dataset
-        From `read_off`; with a dimension ``draw`` for an ensemble.
-    test : str
-        Name that goes first, so that the curves of several tests can be joined.
-
-    Returns
-    -------
-    dict of str to float64 array, shape (n_times,) or (n_draws, n_times)
-        ``TEST.jointJ.slip`` and so on; joints that nobody can know are left out.
+    ``histories`` from `read_off`, of an ensemble along ``draw``. ``TEST.jointJ.slip`` and so on, so that the curves of
+    several tests can be joined; joints that nobody can know are left out.
     """
     found = {}
     for joint in range(histories.sizes["joint"]):

@@ -24,38 +24,14 @@ class WorstCurves(NamedTuple):
 
 
 def worst_joints(misfit, most):
-    """Joints with the largest residuals.
-
-    Parameters
-    ----------
-    misfit : xarray.Dataset
-        From `misfit`.
-    most : int
-
-    Returns
-    -------
-    list of str
-        At most so many, from the lowest up.
-    """
+    """Joints with the largest residuals of a `misfit`, at most so many, from the lowest up."""
     residual = np.abs(misfit["residual"]).max(("test", "phase", "quantity", "side")).to_numpy()
     chosen = np.sort(np.argsort(-residual, kind="stable")[:most])
     return [str(misfit["joint"].values[place]) for place in chosen]
 
 
 def worst_curves(misfit, most):
-    """Curves with the largest score over the median of the members' leave-one-out scores.
-
-    Parameters
-    ----------
-    misfit : xarray.Dataset
-        From `misfit`.
-    most : int
-
-    Returns
-    -------
-    WorstCurves
-        At most so many names.
-    """
+    """`WorstCurves` of a `misfit`, at most so many: by score over the median of the members' leave-one-out scores."""
     known = misfit.dropna("curve", subset=["crps"])
     excess = (known["crps"] / known["crps_reference"].sel(reference=0.5)).to_numpy()
     chosen = np.argsort(-excess, kind="stable")[:most]

@@ -97,16 +97,12 @@ def residual_atlas(measured, members):
 
 
 def code_word(atlases):
-    """Code word of the residuals of several tests.
+    """`CodeWord` of the residuals of several tests.
 
     Parameters
     ----------
     atlases : sequence of xarray.Dataset
         From `residual_atlas`, of tests of one structure.
-
-    Returns
-    -------
-    CodeWord
 
     Notes
     -----
@@ -131,13 +127,9 @@ def code_word(atlases):
     sided = abs(pair[0] - pair[1]) > _ONE_SIDED * np.abs(pair).sum()
     cells = [atlas.sel(phase=phase).isel(joint=joint, quantity=quantity, side=side) for atlas in atlases]
     return CodeWord(
-        phase,
-        "one-sided" if sided else "both",
-        _profile(abs(residual).max("side").to_numpy()),
-        _law(cells, limit),
-        str(residual["joint"].values[joint]),
-        QUANTITIES[quantity],
-    )
+        phase, "one-sided" if sided else "both", _profile(abs(residual).max("side").to_numpy()), _law(cells, limit),
+        str(residual["joint"].values[joint]), QUANTITIES[quantity],
+    )  # fmt: skip
 
 
 def _limit(cells, members):

@@ -17,7 +17,7 @@ class Judged(NamedTuple):
 
 
 def conclude(decision, findings, channels, judged, runs, caveats, effort, size=None, gain=None, scores=None):
-    """Verdict of a campaign.
+    """`Verdict` of a campaign.
 
     Parameters
     ----------
@@ -38,10 +38,6 @@ def conclude(decision, findings, channels, judged, runs, caveats, effort, size=N
     gain : Gain, optional
     scores : xarray.Dataset, optional
         From `gain_on`, where a physical cause's gain was measured.
-
-    Returns
-    -------
-    Verdict
 
     Notes
     -----

@@ -1,10 +1,7 @@
 """A file frozen by its hash before sealed tests are opened: one that was changed since is refused."""
 
-import json
-from pathlib import Path
-
 from blockshake.errors import InputError
-from blockshake.files import file_digest, write_json
+from blockshake.files import file_digest, load_json, write_json
 
 
 def freeze(path, decided, tests):
@@ -19,7 +16,7 @@ def check_frozen(path, decided):
     ------
     InputError
     """
-    frozen = json.loads(Path(path).read_text())["digest"]
+    frozen = load_json(path)["digest"]
     found = file_digest(decided)
     if found != frozen:
         raise InputError(decided, "", f"expected the file that was frozen as {frozen}, found {found}")

@@ -21,7 +21,7 @@ class Rung(NamedTuple):
 
 
 def rung(kind, decision, beside_sensor, effort, n_tests, gain, scores):
-    """Rung of the ladder on which a verdict stands.
+    """`Rung` of the ladder on which a verdict stands.
 
     Parameters
     ----------
@@ -37,10 +37,6 @@ def rung(kind, decision, beside_sensor, effort, n_tests, gain, scores):
     gain : Gain or None
     scores : xarray.Dataset or None
         From `gain_on`, where a physical cause's gain was measured.
-
-    Returns
-    -------
-    Rung
     """
     if kind == "none":
         return Rung(NOTHING, ())

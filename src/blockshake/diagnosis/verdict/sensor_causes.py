@@ -17,18 +17,9 @@ class SensorCause(NamedTuple):
 
 
 def sensor_causes(findings, channels):
-    """Sensor faults by name.
+    """`SensorCause` by registry name, from findings and the names of the accelerometer channels.
 
-    Parameters
-    ----------
-    findings : sequence of Finding
-    channels : sequence of str
-        Names of the accelerometer channels.
-
-    Returns
-    -------
-    dict of str to SensorCause
-        By registry name. Of several findings of one name the one with the smallest chance stands for all.
+    Of several findings of one name the one with the smallest chance stands for all.
     """
     causes = {}
     for finding in sorted(findings, key=lambda finding: (finding.p, finding.where, finding.tests)):

@@ -1,13 +1,11 @@
 """The track record of the procedure: how often it was right on tests whose truth was known."""
 
-import json
 from pathlib import Path
 from typing import Literal
 
 from pydantic import Field, model_validator
 
-from blockshake.errors import InputError
-from blockshake.files import read_text, write_json
+from blockshake.files import load_json, write_json
 from blockshake.validation import Count, Finite, Fraction, Strict, validated
 
 VERSION = 1
@@ -134,27 +132,19 @@ class TrackRecord(Strict):
 
 
 def load_track_record(path):
-    """Track record of a file.
+    """`TrackRecord` of a file.
 
     Parameters
     ----------
     path : str or path
         ``data/track-record/hidden-effects.json``, which the long tests of hidden effects write.
 
-    Returns
-    -------
-    TrackRecord
-
     Raises
     ------
     InputError
         Missing, not JSON, another version, an unknown key, or figures that contradict each other.
     """
-    try:
-        mapping = json.loads(read_text(path))
-    except json.JSONDecodeError as error:
-        raise InputError(path, "", f"expected JSON; {error}") from None
-    return validated(TrackRecord, mapping, Path(path))
+    return validated(TrackRecord, load_json(path), Path(path))
 
 
 def write_track_record(path, record):

@@ -1,6 +1,5 @@
 """The verdict of a diagnosis, in a file whose form is fixed and versioned."""
 
-import json
 from pathlib import Path
 from typing import Literal
 
@@ -8,8 +7,7 @@ from pydantic import Field, model_validator
 
 from blockshake.diagnosis.laws.findings import OutsideForce
 from blockshake.diagnosis.verdict.ladder import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN
-from blockshake.errors import InputError
-from blockshake.files import read_text, write_json
+from blockshake.files import load_json, write_json
 from blockshake.validation import Finite, Fraction, Strict, validated
 
 VERSION = 2
@@ -129,8 +127,4 @@ def load_verdict(path):
     InputError
         Not JSON, another version, an unknown key, or a decision that its causes contradict.
     """
-    try:
-        mapping = json.loads(read_text(path))
-    except json.JSONDecodeError as error:
-        raise InputError(path, "", f"expected JSON; {error}") from None
-    return validated(Verdict, mapping, Path(path))
+    return validated(Verdict, load_json(path), Path(path))

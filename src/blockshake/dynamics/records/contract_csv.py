@@ -31,8 +31,7 @@ def read_motion_csv(text, where):
     columns : dict of str to float64 array, shape (n_rows,)
         By channel (``x``, ``y``, ``z``, ``pitch_y``).
     kind : str
-        ``acceleration``, ``velocity`` or ``displacement``; ``displacement`` for a file of
-        ``pitch_y`` alone.
+        ``acceleration``, ``velocity`` or ``displacement``; ``displacement`` for a file of ``pitch_y`` alone.
 
     Raises
     ------

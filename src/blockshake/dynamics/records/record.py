@@ -105,8 +105,7 @@ def values_of(tokens_by_line, count, where, count_key):
     Raises
     ------
     InputError
-        A value is not a finite number, or there are more or fewer than ``count``, or fewer
-        than two.
+        A value is not a finite number, or there are more or fewer than ``count``, or fewer than two.
     """
     values = []
     for line, tokens in tokens_by_line:

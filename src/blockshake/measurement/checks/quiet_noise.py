@@ -15,17 +15,10 @@ _NORMAL = 0.6745  # of a standard deviation is the median size of a normal devia
 
 
 def marker_noise(readings):
-    """Standard deviation of each marker's readings, from the differences of neighbours: no slow motion enters.
+    """Standard deviation of each marker's readings [m], (n_markers,), from the differences of neighbours.
 
-    Parameters
-    ----------
-    readings : float64 array, shape (n_times, n_markers, 3)
-        Of the quiet start [m]; gaps are NaN.
-
-    Returns
-    -------
-    float64 array, shape (n_markers,)
-        [m]; NaN where there are too few readings.
+    No slow motion enters. ``readings`` (n_times, n_markers, 3) of the quiet start [m], gaps are NaN; NaN where there
+    are too few.
     """
     steps = np.diff(readings, axis=0)
     known = np.isfinite(steps)

@@ -40,12 +40,11 @@ def modes_from_noise(test, structure, marker_noise, accelerometer_noise, axis="x
     Returns
     -------
     xarray.Dataset
-        Along ``mode``: ``frequency`` [Hz], ``damping_ratio`` [1], each with ``..._error``, and ``chance``, the
-        decimal logarithm of the chance that noise explains as much. Over ``mode, marker, axis``: ``shape``,
-        displacement relative to the base (along its axis; else absolute) over the largest, with ``shape_error`` at
-        known poles, and ``coherence``; NaN for channels left out and modes beyond the markers' band. Attributes
-        say the bands, what was left out, and the ``finding`` in words. Errors are of noise alone, one standard
-        deviation.
+        Along ``mode``: ``frequency`` [Hz], ``damping_ratio`` [1], each with ``..._error``, and ``chance``, the decimal
+        logarithm of the chance that noise explains as much. Over ``mode, marker, axis``: ``shape``, displacement
+        relative to the base (along its axis; else absolute) over the largest, with ``shape_error`` at known poles, and
+        ``coherence``; NaN for channels left out and modes beyond the markers' band. Attributes say the bands, what was
+        left out, and the ``finding`` in words. Errors are of noise alone, one standard deviation.
 
     Raises
     ------

@@ -104,16 +104,12 @@ def _run_around_peak(power, least):
 
 
 def local_response(read):
-    """Responses fitted bin by bin by the local polynomial method.
+    """`LocalResponse`: responses fitted bin by bin by the local polynomial method.
 
     Parameters
     ----------
     read : Spectra
         Of at least ``2 * 12 + 1`` bins.
-
-    Returns
-    -------
-    LocalResponse
 
     Notes
     -----

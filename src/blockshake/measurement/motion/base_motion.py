@@ -73,8 +73,7 @@ def smoothed_base(time, marker, marker_noise, time_acc=None, accelerometer=None,
     Notes
     -----
     The base starts at rest and its acceleration is driven by white jerk, whose density is the one of the largest
-    likelihood. The first reading's own error is in all displacements: it is a constant and no part of
-    the velocity.
+    likelihood. The first reading's own error is in all displacements: it is a constant and no part of the velocity.
     """
     time, marker = np.asarray(time, dtype=float), np.asarray(marker, dtype=float)
     _check(time, marker, marker_noise)

@@ -39,7 +39,7 @@ class BodyPoses:
 
 
 def body_poses(test, structure, marker_noise):
-    """Poses of all bodies from the markers of a test.
+    """`BodyPoses` of all bodies from the markers of a test.
 
     Parameters
     ----------
@@ -48,10 +48,6 @@ def body_poses(test, structure, marker_noise):
     structure : Structure
     marker_noise : float
         Standard deviation of a reading along an axis [m].
-
-    Returns
-    -------
-    BodyPoses
 
     Notes
     -----

@@ -7,19 +7,9 @@ from blockshake.measurement.motion.body_poses import body_poses, driven_body
 
 
 def reconstruct_base(test, structure, sensors):
-    """The base's motion along x from the markers of the driven body and, where there is one, its accelerometer.
+    """`BaseMotion` along x of the driven body's mass centre, from its markers and, where there is one, accelerometer.
 
-    Parameters
-    ----------
-    test : xarray.Dataset
-        As in a campaign's test file.
-    structure : Structure
-    sensors : Sensors
-
-    Returns
-    -------
-    BaseMotion
-        See `smoothed_base`; of the driven body's mass centre.
+    See `smoothed_base`.
     """
     poses = body_poses(test, structure, sensors.marker_noise)
     body = driven_body(structure, poses)

@@ -50,12 +50,11 @@ def accelerometer_readings(structure, time, orientation, velocity, angular_veloc
 
     Notes
     -----
-    The velocity of the sensor's point, differenced over a fine interval, is the mean acceleration in
-    it exactly, whatever impacts it holds: an impact enters with its whole change of velocity. That
-    mean belongs to the middle of the interval and is turned into the body's axes by the orientation
-    there; four neighbours give the value at the state between them (third order), the low-pass (a
-    4th-order Butterworth at 50 Hz, forwards and backwards, so without lag) runs at 2048 Hz, and
-    every fourth value is a reading. Beyond the ends the record continues as its point
+    The velocity of the sensor's point, differenced over a fine interval, is the mean acceleration in it exactly,
+    whatever impacts it holds: an impact enters with its whole change of velocity. That mean belongs to the middle of
+    the interval and is turned into the body's axes by the orientation there; four neighbours give the value at the
+    state between them (third order), the low-pass (a 4th-order Butterworth at 50 Hz, forwards and backwards, so without
+    lag) runs at 2048 Hz, and every fourth value is a reading. Beyond the ends the record continues as its point
     reflection for a quarter second; a record cut by an abort ends where the states do.
     """
     if len(time) > 1 and not np.allclose(np.diff(time), 1.0 / FINE_RATE, rtol=1e-6, atol=0.0):

@@ -3,14 +3,9 @@
 from blockshake.diagnosis.inference.decision import INADEQUATE, INCONSTANT, NOT_IN_SET
 from blockshake.effects.registry import EFFECTS
 from blockshake.report.diagnosis.figures.candidates import plot_candidates
-from blockshake.report.diagnosis.wording import (
-    beyond,
-    size_in_unit,
-    title_of,
-    with_place,
-)
+from blockshake.report.diagnosis.wording import beyond, size_in_unit, title_of, with_place
 from blockshake.report.document.blocks import Figure, Section, Table, Text
-from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.units import quantity
 from blockshake.report.document.wording import MISSING, number
 
@@ -33,7 +28,6 @@ def candidates_section(found):
             "Log ratio of each effect at its best place to the nominal model. "
             + ("Shaded: effects that are not excluded." if causes else "No effect is a cause."),
             svg_of(plot_candidates, rows, [_words(found, row) for row in rows], causes, decision.placebo),
-            PAGE_WIDTH,
         ),
         _table(found, rows),
         _reasons(found, rows),
@@ -61,17 +55,12 @@ def _table(found, rows):
         name = row.effect
         unit = EFFECTS[name].parameters[0].unit
         shown = decision.shown_above.get(name)
-        lines.append(
-            (
-                _words(found, row),
-                number(row.log_ratio),
-                quantity(size_in_unit(name, row.size), unit),
-                number(decision.probabilities[name], 2),
-                number(decision.adequacy[name], 2),
-                number(decision.constancy[name], 2),
-                beyond(name, size_in_unit(name, shown)) if shown is not None else MISSING,
-            )
-        )
+        lines.append((
+            _words(found, row), number(row.log_ratio), quantity(size_in_unit(name, row.size), unit),
+            number(decision.probabilities[name], 2), number(decision.adequacy[name], 2),
+            number(decision.constancy[name], 2),
+            beyond(name, size_in_unit(name, shown)) if shown is not None else MISSING,
+        ))  # fmt: skip
     return Table(
         "Effects at their best places. Set: conformal p value, how often the effect falls as far short of the "
         f"strongest where it is the truth; it leaves the set at {NOT_IN_SET:g} or less, and the values are no "

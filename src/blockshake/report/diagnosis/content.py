@@ -11,13 +11,13 @@ from blockshake.diagnosis.libraries.candidates import candidates
 from blockshake.diagnosis.libraries.efforts import EFFORTS
 from blockshake.diagnosis.verdict.track_record import TrackRecord, load_track_record
 from blockshake.diagnosis.verdict.verdict import MeasuredGain, Verdict, load_verdict
-from blockshake.files import file_digest
+from blockshake.files import file_digest, load_json
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Campaign, load_campaign, load_test
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 from blockshake.parity.parity import Parity, load_parity
 from blockshake.report.document.origin import software_versions
-from blockshake.report.document.results import load_json, load_results
+from blockshake.report.document.results import load_results
 
 _PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "xarray", "snakemake", "matplotlib", "typst")
 _RESULTS = (
@@ -126,7 +126,7 @@ class Diagnosed:
 
 
 def load_diagnosed(campaign, results, effort, track_record, horizons=()):
-    """Read the results of a diagnosis; no sealed test's file is opened.
+    """Read a `Diagnosed` campaign from its results; no sealed test's file is opened.
 
     Parameters
     ----------
@@ -139,10 +139,6 @@ def load_diagnosed(campaign, results, effort, track_record, horizons=()):
         The procedure's track record, or where it will be.
     horizons : sequence of str or path, optional
         Files of the tests' predictability, in the order of the readings.
-
-    Returns
-    -------
-    Diagnosed
 
     Raises
     ------

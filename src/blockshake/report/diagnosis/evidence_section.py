@@ -4,7 +4,7 @@ from blockshake.effects.registry import EFFECTS
 from blockshake.report.diagnosis.figures.evidence import plot_constancy, plot_features
 from blockshake.report.diagnosis.wording import size_in_unit, title_of, with_place
 from blockshake.report.document.blocks import Figure, Section, Table, Text
-from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.units import printed, quantity
 from blockshake.report.document.wording import model_label, number
 
@@ -40,7 +40,6 @@ def evidence_section(found):
         Figure(
             f"The {rows.sizes['row']} features that weigh most: residual by the nominal model and with the effect.",
             svg_of(plot_features, rows, labels, f"with {title_of(effect)}"),
-            PAGE_WIDTH,
         ),
         _table(rows),
         Text(
@@ -56,7 +55,6 @@ def evidence_section(found):
                 else "The candidate is no cause, and no size is given."
             ),
             svg_of(plot_constancy, [_panel(found, one) for one in shown]),
-            PAGE_WIDTH,
         ),
         _constancy_table(found, shown),
     )
@@ -67,16 +65,10 @@ def _table(rows):
     lines = []
     for place in range(rows.sizes["row"]):
         one = rows.isel(row=place)
-        lines.append(
-            (
-                one["feature"].item(),
-                one["test"].item(),
-                quantity(float(one["value"]), one["unit"].item()),
-                number(float(one["nominal"])),
-                number(float(one["extended"])),
-                number(float(one["weight"])),
-            )
-        )
+        lines.append((
+            one["feature"].item(), one["test"].item(), quantity(float(one["value"]), one["unit"].item()),
+            number(float(one["nominal"])), number(float(one["extended"])), number(float(one["weight"])),
+        ))  # fmt: skip
     return Table(
         "The same features: measured value, residuals in standard deviations, weight.",
         ("Feature", "Test", "Measured", "Nominal", "With the effect", "Weight"),

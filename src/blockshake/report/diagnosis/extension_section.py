@@ -4,12 +4,7 @@ from blockshake.diagnosis.libraries.candidates import effect_of
 from blockshake.effects.registry import EFFECTS
 from blockshake.report.diagnosis.forces_section import FORCE_LAWS
 from blockshake.report.diagnosis.verdict import single_size
-from blockshake.report.diagnosis.wording import (
-    acting,
-    estimate_words,
-    place_words,
-    title_of,
-)
+from blockshake.report.diagnosis.wording import acting, estimate_words, place_words, title_of
 from blockshake.report.document.blocks import Heading, Items, Section, Table, Text
 from blockshake.report.document.units import interval, quantity, with_unit
 from blockshake.report.document.wording import MISSING
@@ -90,15 +85,10 @@ def _parameters(found, name):
     informed = {key: value.informed for key, value in found.decision.parameters.get(name, {}).items()}
     rows = []
     for place, item in enumerate(EFFECTS[name].parameters):
-        rows.append(
-            (
-                item.name,
-                item.meaning,
-                *_estimate(found, name, item, place, informed),
-                with_unit(interval(item.lower, item.upper, item.unit), item.unit),
-                quantity(item.null, item.unit),
-            )
-        )
+        rows.append((
+            item.name, item.meaning, *_estimate(found, name, item, place, informed),
+            with_unit(interval(item.lower, item.upper, item.unit), item.unit), quantity(item.null, item.unit),
+        ))  # fmt: skip
     return Table(
         f"Parameters of {title_of(name)}: estimate with its 90 % interval, what it rests on, prior, value of the "
         "nominal model.",

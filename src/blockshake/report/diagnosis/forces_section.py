@@ -5,7 +5,7 @@ import numpy as np
 from blockshake.diagnosis.laws.law_table import law_of
 from blockshake.report.diagnosis.figures.forces import plot_levers, plot_unexplained
 from blockshake.report.document.blocks import Figure, Section, Table, Text
-from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.wording import number
 
 FORCE_LAWS = {
@@ -32,7 +32,6 @@ def forces_section(found):
                 "alone by the equations of Newton and Euler. Dashed: the edges of the face. Red: beyond an edge by "
                 "more than three standard deviations, which a dry joint cannot carry.",
                 svg_of(plot_levers, found.forces, joints[0]),
-                PAGE_WIDTH,
             )
         )
     blocks.append(
@@ -41,7 +40,6 @@ def forces_section(found):
             "the joints carry no tension and no more than Coulomb's friction. How a force is shared among the blocks "
             "is not told by one turned joint.",
             svg_of(plot_unexplained, found.forces),
-            PAGE_WIDTH,
         )
     )
     if found.decision.laws:

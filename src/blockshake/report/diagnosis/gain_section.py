@@ -5,7 +5,7 @@ import numpy as np
 from blockshake.report.diagnosis.figures.drift import plot_extended_drift
 from blockshake.report.diagnosis.parameters_table import nominal_parameters
 from blockshake.report.document.blocks import Figure, Items, Section, Table, Text
-from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.wording import MISSING, model_label, number, sentence_case
 
 _KINDS = {
@@ -46,7 +46,6 @@ def gain_section(found):
             f"Displacement of {found.top} against the table on sealed tests, before and after: 5 to 95 % of both "
             "solvers' members together, median, and the test.",
             svg_of(plot_extended_drift, found.consequences, shown, found.top, found.measured_word),
-            PAGE_WIDTH,
         )
     )
     blocks.append(nominal_parameters(gain))

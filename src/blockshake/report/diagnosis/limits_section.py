@@ -14,17 +14,9 @@ _ROLES = {True: "judged by", False: "left out: the effort allows fewer tests"}
 
 def limits_section(found):
     """Tests, sensors, caveats, effects, assumptions, digests, versions."""
-    blocks = [
-        Items(_not_tested(found)),
-        _tests_table(found),
-        Text(_sensors(found)),
-        *_findings(found),
-    ]
+    blocks = [Items(_not_tested(found)), _tests_table(found), Text(_sensors(found)), *_findings(found)]
     if found.verdict.caveats:
-        blocks += [
-            Text("Caveats of the verdict:"),
-            Items(tuple(map(sentence_case, found.verdict.caveats))),
-        ]
+        blocks += [Text("Caveats of the verdict:"), Items(tuple(map(sentence_case, found.verdict.caveats)))]
     blocks += [
         *command_blocks(f"snakemake -c2 diagnose --config campaign=FOLDER effort={found.effort}"),
         digests_table(found.digests),

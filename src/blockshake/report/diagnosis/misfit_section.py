@@ -5,7 +5,7 @@ from blockshake.diagnosis.misfit.ranking import worst_curves, worst_joints
 from blockshake.report.diagnosis.figures.atlas import plot_atlas
 from blockshake.report.diagnosis.figures.joint import plot_joints
 from blockshake.report.document.blocks import Figure, Section, Table, Text
-from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.wording import number, percent
 
 _MOST_JOINTS = 5  # rows that a page has room for beside its text
@@ -31,7 +31,7 @@ def misfit_section(found):
     blocks = [Text(_summary(found))]
     for first in range(0, len(found.tests), _MOST_PANELS):
         tests = found.tests[first : first + _MOST_PANELS]
-        blocks.append(Figure(_ATLAS, svg_of(plot_atlas, misfit, tests, joints), PAGE_WIDTH))
+        blocks.append(Figure(_ATLAS, svg_of(plot_atlas, misfit, tests, joints)))
     left_out = misfit.sizes["joint"] - len(joints)
     for test in found.tests:
         horizon = found.horizon.get(test)
@@ -43,7 +43,6 @@ def misfit_section(found):
                 + _horizon_words(found, horizon)
                 + (f" {left_out} joints with smaller residuals are not drawn." if left_out else ""),
                 svg_of(plot_joints, misfit, found.readings, test, joints, horizon, found.measured_word),
-                PAGE_WIDTH,
             )
         )
     blocks.append(_curves_table(misfit))
@@ -77,16 +76,11 @@ def _curves_table(misfit):
     worst, rows = worst_curves(misfit, _MOST_CURVES), []
     for curve in worst.names:
         own = misfit.sel(curve=curve)
-        rows.append(
-            (
-                curve,
-                percent(own["coverage"]),
-                " / ".join(percent(one) for one in own["coverage_reference"].values),
-                number(own["sharpness"], 2),
-                number(1e3 * own["crps"]),
-                " / ".join(number(1e3 * one, 2) for one in own["crps_reference"].values),
-            )
-        )
+        rows.append((
+            curve, percent(own["coverage"]), " / ".join(percent(one) for one in own["coverage_reference"].values),
+            number(own["sharpness"], 2), number(1e3 * own["crps"]),
+            " / ".join(number(1e3 * one, 2) for one in own["crps_reference"].values),
+        ))  # fmt: skip
     return Table(
         f"Curves that the nominal ensemble predicts worst, {len(rows)} of {worst.known}, joint 1 being the "
         f"lowest; {worst.below_reference} curves are inside the band for less time than 95 % of the members are. "

@@ -15,17 +15,7 @@ _OTHERS = {"amplitude": "1", "restitution": "1"} | {
 
 
 def nominal_parameters(gain):
-    """Parameters of the recalibrated rival before and after the open tests, by solver.
-
-    Parameters
-    ----------
-    gain : xarray.Dataset
-        From `campaign_gain`.
-
-    Returns
-    -------
-    Table
-    """
+    """`Table` of the recalibrated rival's parameters before and after the open tests, from `campaign_gain`."""
     rows, unmoved = [], []
     for model in gain["model"].values:
         own = gain.sel(model=model)
@@ -35,16 +25,10 @@ def nominal_parameters(gain):
                 unmoved.append(f"{name} ({model_label(model)})")
                 continue
             factor, unit = printed(_OTHERS.get(name) or parameter_unit(name))
-            rows.append(
-                (
-                    str(name),
-                    model_label(model),
-                    unit,
-                    _words(factor * one["prior"]),
-                    _words(factor * one["posterior"]),
-                    number(one["narrowing"], 2),
-                )
-            )
+            rows.append((
+                str(name), model_label(model), unit, _words(factor * one["prior"]), _words(factor * one["posterior"]),
+                number(one["narrowing"], 2),
+            ))  # fmt: skip
     rest = (
         f" Not informed by the data, so that they keep their prior: {', '.join(unmoved)}." if unmoved else ""
     )

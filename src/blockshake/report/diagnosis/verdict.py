@@ -5,13 +5,7 @@ import numpy as np
 from blockshake.diagnosis.inference.decision import FALSE_ALARM
 from blockshake.diagnosis.verdict.ladder import ONE_OF
 from blockshake.effects.registry import EFFECTS
-from blockshake.report.diagnosis.wording import (
-    beyond,
-    estimate_words,
-    size_in_unit,
-    title_of,
-    with_place,
-)
+from blockshake.report.diagnosis.wording import beyond, estimate_words, size_in_unit, title_of, with_place
 from blockshake.report.document.units import interval, quantity
 from blockshake.report.document.wording import number
 

@@ -5,7 +5,7 @@ from blockshake.report.diagnosis.box import Box
 from blockshake.report.diagnosis.figures.drift import plot_extended_drift, plot_nominal_drift
 from blockshake.report.diagnosis.verdict import drift_change, excluded, facts, statement
 from blockshake.report.document.blocks import Figure, Items, Section, Text
-from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.drawing import svg_of
 
 
 def verdict_section(found):
@@ -53,7 +53,6 @@ def _picture(found):
             f"Displacement of {found.top} against the table on {test}, a sealed test that nothing was fitted to: "
             f"before and after the extension, and the {found.measured_word} curve.",
             svg_of(plot_extended_drift, found.consequences, [test], found.top, found.measured_word),
-            PAGE_WIDTH,
         )
     test = strongest_test(found.readings, found.top)
     return Figure(
@@ -65,5 +64,4 @@ def _picture(found):
             else "The model was not extended."
         ),
         svg_of(plot_nominal_drift, found.misfit, found.readings, [test], found.top, found.measured_word),
-        PAGE_WIDTH,
     )

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field, replace
 
+PAGE_WIDTH = 0.17  # m, of the text on A4
+
 
 @dataclass(frozen=True)
 class Text:
@@ -50,7 +52,7 @@ class Figure:
 
     caption: str
     svg: str
-    width: float
+    width: float = PAGE_WIDTH
     number: int = 0
     kind: str = field(default="figure", init=False)
 

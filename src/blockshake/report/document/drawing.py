@@ -6,7 +6,8 @@ import re
 import matplotlib
 from matplotlib.figure import Figure
 
-PAGE_WIDTH = 0.17  # m, of the text on A4
+from blockshake.report.document.blocks import PAGE_WIDTH
+
 # Okabe and Ito's palette with Tol's red in place of vermilion, told apart by colour-blind readers
 BLACK, ORANGE, BLUE, GREEN, RED = "#000000", "#e69f00", "#0072b2", "#009e73", "#cc3311"
 SKY, PURPLE = "#56b4e9", "#cc79a7"

@@ -5,18 +5,11 @@ import re
 import jinja2
 
 from blockshake.files import write_text
-from blockshake.report.document.drawing import PAGE_WIDTH
+from blockshake.report.document.blocks import PAGE_WIDTH
 
 
 def write_html(path, document):
-    """Write a document as one self-contained HTML file: no script, no link out of it.
-
-    Parameters
-    ----------
-    path : str or path
-    document : Document
-        Numbered.
-    """
+    """Write a numbered `Document` as one self-contained HTML file: no script, no link out of it."""
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("blockshake.report.document"),
         autoescape=True,

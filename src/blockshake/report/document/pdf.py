@@ -10,14 +10,7 @@ from blockshake.files import replacing
 
 
 def write_pdf(path, document):
-    """Write a document as PDF: A4, pages numbered, the same bytes for the same document.
-
-    Parameters
-    ----------
-    path : str or path
-    document : Document
-        Numbered.
-    """
+    """Write a numbered `Document` as PDF: A4, pages numbered, the same bytes for the same document."""
     template = files("blockshake.report.document").joinpath("templates/report.typ").read_bytes()
     content = json.dumps(dataclasses.asdict(document)).encode()
     pdf = typst.compile({"main.typ": template, "content.json": content}, ignore_system_fonts=True)

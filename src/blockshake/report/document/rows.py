@@ -13,8 +13,7 @@ def face_markers(structure):
     Returns
     -------
     dict of str to str
-        Body to marker: the one named ``BODY-face``; where no body has one, the first of each
-        free body that has any.
+        Body to marker: the one named ``BODY-face``; where no body has one, the first of each free body that has any.
     """
     free = {body.name for body in structure.file.bodies if not body.driven}
     chosen = {}
@@ -30,20 +29,9 @@ def face_markers(structure):
 
 
 def main_bodies(structure, bodies, most=4):
-    """Bodies for a figure of few rows: all, or of each stack every second one from its top.
+    """Bodies for a figure of few rows, from the top down: all, or of each stack every second one from its top.
 
-    Parameters
-    ----------
-    structure : Structure
-    bodies : iterable of str
-        From the top down.
-    most : int
-        Rows up to which all are shown.
-
-    Returns
-    -------
-    list of str
-        From the top down, stack by stack.
+    ``most``: rows up to which all are shown.
     """
     bodies = list(bodies)
     if len(bodies) <= most:
@@ -59,17 +47,7 @@ def main_bodies(structure, bodies, most=4):
 def bodies_by_height(structure, bodies, most=5):
     """One body of each height, from the lowest up: in two equal walls those of the first.
 
-    Parameters
-    ----------
-    structure : Structure
-    bodies : iterable of str
-        From the top down.
-    most : int
-        Columns that a figure has room for; of more, the lowest, the highest and those evenly between.
-
-    Returns
-    -------
-    list of str
+    ``bodies`` from the top down. Of more than ``most``, the lowest, the highest and those evenly between.
     """
     heights = {}
     for body in bodies:

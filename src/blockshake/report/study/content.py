@@ -6,11 +6,11 @@ from pathlib import Path
 import pandas as pd
 import xarray as xr
 
-from blockshake.files import content_digest, file_digest, shipped
+from blockshake.files import content_digest, file_digest, load_json, named_file
 from blockshake.geometry.structure import Structure, load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.report.document.origin import software_versions
-from blockshake.report.document.results import load_json, load_results
+from blockshake.report.document.results import load_results
 from blockshake.study.convergence.table import load_convergence
 from blockshake.study.ensembles.measured import measured_curves
 from blockshake.study.ensembles.timing import read_timings
@@ -138,7 +138,7 @@ class Content:
 
 
 def load_content(study, results, benchmarks):
-    """Read a finished study.
+    """Read the `Content` of a finished study.
 
     Parameters
     ----------
@@ -146,10 +146,6 @@ def load_content(study, results, benchmarks):
         Its configuration, checked.
     results, benchmarks : str or path
         Folders of its results and of its jobs' benchmarks.
-
-    Returns
-    -------
-    Content
 
     Raises
     ------
@@ -163,7 +159,9 @@ def load_content(study, results, benchmarks):
     for named in [*(case["motion"] for case in cases.values()), *study["ladder"]["motions"]]:
         motions[Path(named).stem] = load_results(results / "motions" / f"{Path(named).stem}.nc")
     design, stiffness = results / "design.csv", results / "stiffness.csv"
-    inputs = [_definition(kind, case[kind]) for kind in ("structure", "motion") for case in cases.values()]
+    inputs = [
+        named_file(f"{kind}s", case[kind]) for kind in ("structure", "motion") for case in cases.values()
+    ]
     tests = [case.test_file for case in loaded.values()]
     return Content(
         study=study,
@@ -217,11 +215,6 @@ def _case(study, results, name, settings):
         marker_noise=campaign.sensors.marker_noise,
         responses=responses,
     )
-
-
-def _definition(kind, named):
-    path = shipped(f"{kind}s", named)
-    return path if path.exists() else Path(named)
 
 
 def _shown(path):

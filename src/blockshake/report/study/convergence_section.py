@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.report.document.blocks import Figure, Items, Section, Table, Text
-from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.units import MICROMETRES, MICROSECONDS
 from blockshake.report.document.wording import given, model_label, number, percent, share_words
 from blockshake.report.study.figures.convergence import PARAMETERS, plot_convergence
@@ -47,7 +47,6 @@ def convergence(content):
             "default; that of the distance is the exact one. The drift at the end is divided by the peak drift. "
             "Differences below one part in 1e8 are not drawn.",
             svg_of(plot_convergence, table),
-            PAGE_WIDTH,
         ),
         _numbers(table),
     ]

@@ -9,17 +9,7 @@ _STIFFNESS = printed("N/m3")
 
 
 def definition_blocks(definitions):
-    """Blocks of the stiffness section on the definition of arrival.
-
-    Parameters
-    ----------
-    definitions : xarray.Dataset
-        From `compare_definitions`.
-
-    Returns
-    -------
-    list
-    """
+    """Blocks of the stiffness section on the definition of arrival, from `compare_definitions`."""
     found = definition_range(definitions)
     return [
         Heading("Influence of the definition of arrival and of the damping", "stiffness-definitions"),
@@ -57,19 +47,12 @@ def _definition_table(definitions):
     for restitution in definitions["restitution"].values:
         for definition in definitions["definition"].values:
             at = definitions.sel(restitution=restitution, definition=definition)
-            rows.append(
-                (
-                    given(restitution),
-                    str(definition),
-                    *(
-                        number(_STIFFNESS.factor * at["stiffness"].sel(direction=one))
-                        for one in ("normal", "shear")
-                    ),
-                    *(number(at["wave_speed"].sel(direction=one), 4) for one in ("normal", "shear")),
-                    millimetres(at["top_peak"]),
-                    millimetres(at["top_peak_same_damping"]),
-                )
-            )
+            rows.append((
+                given(restitution), str(definition),
+                *(number(_STIFFNESS.factor * at["stiffness"].sel(direction=one)) for one in ("normal", "shear")),
+                *(number(at["wave_speed"].sel(direction=one), 4) for one in ("normal", "shear")),
+                millimetres(at["top_peak"]), millimetres(at["top_peak_same_damping"]),
+            ))  # fmt: skip
     own = definitions.attrs
     return Table(
         "Contact stiffness per area that meets the wave speed of the material, by restitution C_res of the dashpot and "

@@ -1,7 +1,7 @@
 """Section on the friction calibration."""
 
 from blockshake.report.document.blocks import Figure, Section, Table, Text
-from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.wording import given, model_label, number, parameter_label
 from blockshake.report.study.figures.friction import plot_friction
 from blockshake.study.friction.calibration import LEVEL
@@ -32,7 +32,6 @@ def friction(content):
     figure = Figure(
         "Score of the candidate means above that of the best, with the standard error over the designs.",
         svg_of(plot_friction, content.friction),
-        PAGE_WIDTH,
     )
     return Section("Friction calibration", "friction", (Text(text), figure, table))
 

@@ -21,19 +21,12 @@ def cases_table(content):
     rows = []
     for case in content.cases.values():
         for model, response in case.responses.items():
-            rows.append(
-                (
-                    case.name,
-                    case.motion,
-                    given(case.settings["scale"]),
-                    number(content.peak_acceleration(case)),
-                    given(case.settings["duration"]),
-                    model_label(model),
-                    given(content.study["models"][model]["time_step"]),
-                    str(response.samples.sizes["sample"]),
-                    " / ".join(map(str, count_outcomes(response.samples["status"]))),
-                )
-            )
+            rows.append((
+                case.name, case.motion, given(case.settings["scale"]), number(content.peak_acceleration(case)),
+                given(case.settings["duration"]), model_label(model),
+                given(content.study["models"][model]["time_step"]), str(response.samples.sizes["sample"]),
+                " / ".join(map(str, count_outcomes(response.samples["status"]))),
+            ))  # fmt: skip
     header = (
         "Case", "Motion", "Scale", f"Peak acceleration [m/s{SQUARED}]", "Window [s]", "Model", "Time step [s]",
         "Samples", "completed / collapsed / failed",
@@ -56,16 +49,10 @@ def bodies_table(case):
     for body, mass in zip(case.structure.file.bodies, case.structure.mass, strict=True):
         shape = case.structure.file.shapes[body.shape]
         size = " x ".join(f"{edge:g}" for edge in shape.box) if shape.box else f"mesh {shape.mesh}"
-        rows.append(
-            (
-                body.name + (" (driven)" if body.driven else ""),
-                size,
-                f"{shape.chamfer:g}",
-                body.material,
-                f"{body.density or case.structure.file.materials[body.material].density:g}",
-                f"{mass:.0f}",
-            )
-        )
+        rows.append((
+            body.name + (" (driven)" if body.driven else ""), size, f"{shape.chamfer:g}", body.material,
+            f"{body.density or case.structure.file.materials[body.material].density:g}", f"{mass:.0f}",
+        ))  # fmt: skip
     return Table(
         f"Bodies of {case.name}; sizes along x, y, z; masses of the chamfered shapes at nominal density.",
         ("Body", "Size [m]", "Chamfer [m]", "Material", f"Density [kg/m{CUBED}]", "Mass [kg]"),
@@ -111,17 +98,12 @@ def samples_table(content):
     rows = []
     for name, target in content.distributions.items():
         factor, unit = printed(parameter_unit(name))
-        rows.append(
-            (
-                parameter_label(name),
-                unit,
-                number(factor * target.mean, 4),
-                number(factor * content.design_summary["mean"][name], 4),
-                percent(target.cov),
-                percent(content.design_summary["cov"][name]),
-                ", ".join(one.removeprefix("configuration-") for one in content.users(name)) or "no case",
-            )
-        )
+        rows.append((
+            parameter_label(name), unit, number(factor * target.mean, 4),
+            number(factor * content.design_summary["mean"][name], 4), percent(target.cov),
+            percent(content.design_summary["cov"][name]),
+            ", ".join(one.removeprefix("configuration-") for one in content.users(name)) or "no case",
+        ))  # fmt: skip
     return Table(
         "Random variables, all log-normal: mean and coefficient of variation (COV) of the target and of the "
         "samples, and the cases whose structure has the material or the pair.",
@@ -135,15 +117,10 @@ def waves_table(waves):
     rows = []
     for direction in waves["direction"].values:
         one = waves.sel(direction=direction)
-        rows.append(
-            (
-                str(direction),
-                number(one["target_wave_speed"], 5),
-                number(one["wave_speed"], 5),
-                f"{1e6 * speed_deviation(waves, direction):.0f}",
-                quantity(float(one["stiffness"]), "N/m3", 4),
-            )
-        )
+        rows.append((
+            str(direction), number(one["target_wave_speed"], 5), number(one["wave_speed"], 5),
+            f"{1e6 * speed_deviation(waves, direction):.0f}", quantity(float(one["stiffness"]), "N/m3", 4),
+        ))  # fmt: skip
     return Table(
         "Effective wave speed at the calibrated stiffness, nominal parameters.",
         ("Direction", "Target [m/s]", "Reached [m/s]", "Difference [ppm]", "Stiffness"), tuple(rows), "lrrrr",

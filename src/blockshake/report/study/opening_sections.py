@@ -1,7 +1,9 @@
 """Sections on the inputs: summary, structures, motions, samples, stiffness."""
 
+import numpy as np
+
 from blockshake.report.document.blocks import Figure, Heading, Items, Section, Text
-from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.wording import given, model_label, number, parameter_label
 from blockshake.report.study.definition_tables import definition_blocks
 from blockshake.report.study.figures.motion import plot_motions, plot_spectra
@@ -16,7 +18,7 @@ from blockshake.report.study.input_tables import (
     waves_table,
 )
 from blockshake.report.study.result_tables import top_block_table
-from blockshake.study.ensembles.outcomes import add_outcomes, count_outcomes
+from blockshake.study.ensembles.outcomes import count_outcomes
 from blockshake.study.sensitivity.sensitivity import unused_variables
 
 
@@ -47,7 +49,7 @@ def summary(content):
             )
         )
     responses = [one for case in cases for one in case.responses.values()]
-    ended = add_outcomes([count_outcomes(one.samples["status"]) for one in responses])
+    ended = count_outcomes(np.concatenate([one.samples["status"] for one in responses]))
     items = [
         f"{len(content.cases)} structures, {len(content.study['models'])} models "
         f"({', '.join(model_label(model) for model in content.study['models'])}), {sum(ended)} runs: "
@@ -125,12 +127,10 @@ def motions(content):
             "Ground acceleration, velocity and displacement along x (after the paper's Fig. 5); dashed: end of the "
             "window that the cases simulate.",
             svg_of(plot_motions, data, windows),
-            PAGE_WIDTH,
         ),
         Figure(
             "Response spectra at 5 % damping, with the ordinates that a synthetic motion aims at.",
             svg_of(plot_spectra, data),
-            PAGE_WIDTH,
         ),
         motions_table(content.motions),
     ]
@@ -151,7 +151,6 @@ def samples(content):
         Figure(
             "Histograms of the samples and target densities (after the paper's Fig. 8).",
             svg_of(plot_samples, content.design, content.distributions),
-            PAGE_WIDTH,
         ),
         samples_table(content),
         Figure(
@@ -194,13 +193,11 @@ def stiffness(content):
             f"{given(1e3 * content.waves.attrs['step_velocity'])} mm/s at its base, nominal parameters; "
             "dots: arrivals (after the paper's Fig. 9).",
             svg_of(plot_waves, content.waves),
-            PAGE_WIDTH,
         ),
         waves_table(content.waves),
         Figure(
             f"Stiffness per area of the {len(content.stiffness)} samples (after the paper's Fig. 10).",
             svg_of(plot_stiffness, content.stiffness),
-            PAGE_WIDTH,
         ),
         *definition_blocks(content.definitions),
     )

@@ -3,7 +3,7 @@
 import json
 
 from blockshake.report.document.blocks import Figure, Section, Table, Text
-from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.units import MICROSECONDS, quantity
 from blockshake.report.document.wording import SQUARED, given, model_label, number, share_words
 from blockshake.report.study.figures.peer import plot_peer
@@ -33,7 +33,6 @@ def peer(content):
             )
             + ".",
             svg_of(plot_peer, record),
-            PAGE_WIDTH,
         ),
         _agreement(record),
         Text(
@@ -75,16 +74,11 @@ def _cost(record):
     for name in record["case"].values:
         one = record.sel(case=name)
         theirs, ours = one.sel(program="LMGC90"), one.sel(program="blockshake")
-        rows.append(
-            (
-                str(name),
-                number(MICROSECONDS.factor * theirs["step_time"]),
-                number(MICROSECONDS.factor * ours["step_time"]),
-                number(one["times_faster"], 2),
-                f"{float(theirs['residual']):.0e}",
-                f"{float(ours['residual']):.0e}",
-            )
-        )
+        rows.append((
+            str(name), number(MICROSECONDS.factor * theirs["step_time"]),
+            number(MICROSECONDS.factor * ours["step_time"]), number(one["times_faster"], 2),
+            f"{float(theirs['residual']):.0e}", f"{float(ours['residual']):.0e}",
+        ))  # fmt: skip
     found = speed(record)
     return Table(
         "CPU time of a step, medians of runs in turn on one core, and the largest relative residual of the contact "

@@ -20,17 +20,12 @@ def probability_table(content):
             one = response.envelope
             counted, failed, *_ = shortfall(one)
             top = one.sel(marker=marker, body=body)
-            rows.append(
-                (
-                    case.name,
-                    model_label(model),
-                    f"{counted} + {failed} failed" if failed else str(counted),
-                    _with_limits(top, "collapse_probability", percent),
-                    _with_limits(top, "drift_probability", percent),
-                    *(_with_limits(top.sel(frame="slab", quantile=q), "peak", _thousandths) for q in _SHOWN),
-                    *(_with_limits(top.sel(quantile=q), "peak_rotation", _thousandths) for q in _SHOWN),
-                )
-            )
+            rows.append((
+                case.name, model_label(model), f"{counted} + {failed} failed" if failed else str(counted),
+                _with_limits(top, "collapse_probability", percent), _with_limits(top, "drift_probability", percent),
+                *(_with_limits(top.sel(frame="slab", quantile=q), "peak", _thousandths) for q in _SHOWN),
+                *(_with_limits(top.sel(quantile=q), "peak_rotation", _thousandths) for q in _SHOWN),
+            ))  # fmt: skip
     limit = next(iter(next(iter(content.cases.values())).responses.values())).envelope["drift_probability"]
     shown = " and ".join(f"{100 * one:.0f} %" for one in _SHOWN)
     quantiles = [f"{100 * one:.0f} %" for one in _SHOWN]

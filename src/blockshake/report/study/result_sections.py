@@ -1,7 +1,7 @@
 """Section on the responses: displacement of the blocks by every model, case by case."""
 
 from blockshake.report.document.blocks import Figure, Heading, Section, Text
-from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.rows import face_markers, main_bodies
 from blockshake.report.document.wording import given, model_label, number, share_words
 from blockshake.report.study.figures.displacement import plot_displacements
@@ -44,7 +44,7 @@ def _response(case, motion):
     def figure(bodies, frame, caption):
         chosen = [markers[body] for body in bodies]
         drawn = svg_of(plot_displacements, envelopes, case.measured, chosen, bodies, frame, case.synthetic)
-        return Figure(caption, drawn, PAGE_WIDTH)
+        return Figure(caption, drawn)
 
     return [
         Heading(case.title, f"response-{case.name}"),

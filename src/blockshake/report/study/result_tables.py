@@ -89,17 +89,11 @@ def coverage_table(case):
                 continue
             at = one.comparison.sel(marker=marker)
             peak = case.measured["peak"].sel(frame="slab", marker=marker)
-            rows.append(
-                (
-                    body,
-                    model_label(model),
-                    percent(at["coverage"]),
-                    quantile_range(at["reference"], percent),
-                    number(float(at["curve_probability"]), 2),
-                    millimetres(at["band_width"]),
-                    percent(relative_width(at, peak)),
-                )
-            )
+            rows.append((
+                body, model_label(model), percent(at["coverage"]), quantile_range(at["reference"], percent),
+                number(float(at["curve_probability"]), 2), millimetres(at["band_width"]),
+                percent(relative_width(at, peak)),
+            ))  # fmt: skip
     word = "virtual test" if case.synthetic else "measured curve"
     return Table(
         f"{case.name}: share of the time that the {word} lies within the bounds (inertial frame), beside the share of "

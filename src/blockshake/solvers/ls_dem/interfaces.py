@@ -12,12 +12,11 @@ from blockshake.jit import inline_kernel
 class Interfaces(NamedTuple):
     """Contact parameters.
 
-    ``k_n``, ``k_s`` (n_bodies,): stiffness per area that a body has against its like [N/m3];
-    ``layer`` (n_bodies, n_bodies): normal compliance of the soft layer in each joint [m3/N];
-    ``inverse_mass`` (n_bodies,): zero for driven bodies [1/kg]; ``friction``: Coulomb's laws;
-    ``damping_ratio`` of Eq. (3) and ``shear_damping_ratio`` [1]; ``per_node`` 1.0 where Eq. (3) is taken
-    literally, node by node, else 0.0; ``least_force``: below which a damped force is cut,
-    0 or (pulling) -inf [N].
+    ``k_n``, ``k_s`` (n_bodies,): stiffness per area that a body has against its like [N/m3]; ``layer``
+    (n_bodies, n_bodies): normal compliance of the soft layer in each joint [m3/N]; ``inverse_mass`` (n_bodies,): zero
+    for driven bodies [1/kg]; ``friction``: Coulomb's laws; ``damping_ratio`` of Eq. (3) and ``shear_damping_ratio``
+    [1]; ``per_node`` 1.0 where Eq. (3) is taken literally, node by node, else 0.0; ``least_force``: below which a
+    damped force is cut, 0 or (pulling) -inf [N].
     """
 
     k_n: np.ndarray
@@ -34,9 +33,8 @@ class Interfaces(NamedTuple):
 def damping_ratio(restitution):
     """Fraction of critical damping of Eq. (3) for a coefficient of restitution.
 
-    Zhou et al. (2023), Eq. (3) after Tsuji et al. (1993), with ``ln C_res^2`` read as
-    ``(ln C_res)^2``: a spring and dashpot that may pull then rebounds with exactly ``C_res``.
-    ``C_res = 0`` means critical damping.
+    Zhou et al. (2023), Eq. (3) after Tsuji et al. (1993), with ``ln C_res^2`` read as ``(ln C_res)^2``: a spring and
+    dashpot that may pull then rebounds with exactly ``C_res``. ``C_res = 0`` means critical damping.
     """
     if restitution == 0.0:
         return 1.0

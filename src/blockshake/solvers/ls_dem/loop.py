@@ -39,15 +39,7 @@ from blockshake.solvers.ls_dem.progress import (
 )
 from blockshake.solvers.ls_dem.stoppers import stopper_forces_into
 from blockshake.solvers.record import with_room
-from blockshake.solvers.status import (
-    COLLAPSED,
-    COMPLETED,
-    DIVERGED,
-    NEXT_RECORD,
-    PAUSED,
-    SPEED_LIMIT,
-    STEP,
-)
+from blockshake.solvers.status import COLLAPSED, COMPLETED, DIVERGED, NEXT_RECORD, PAUSED, SPEED_LIMIT, STEP
 
 
 @kernel

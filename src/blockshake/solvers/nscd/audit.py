@@ -79,24 +79,14 @@ def audit_into(contacts, n_contacts, progress):
     for contact in range(n_contacts):
         audit[DEEPEST] = max(audit[DEEPEST], -contacts.gap[contact])
     in_play = (
-        energy[KINETIC]
-        + abs(energy[POTENTIAL] - start[POTENTIAL])
-        + energy[ELASTIC]
-        + energy[FRICTION_LOSS]
-        + energy[CONTACT_LOSS]
-        + energy[VISCOUS_LOSS]
-        + abs(energy[INPUT])
-    )
+        energy[KINETIC] + abs(energy[POTENTIAL] - start[POTENTIAL]) + energy[ELASTIC] + energy[FRICTION_LOSS]
+        + energy[CONTACT_LOSS] + energy[VISCOUS_LOSS] + abs(energy[INPUT])
+    )  # fmt: skip
     audit[IN_PLAY] = max(audit[IN_PLAY], in_play)
     balance = (
-        energy[KINETIC]
-        + energy[POTENTIAL]
-        + energy[ELASTIC]
-        + energy[FRICTION_LOSS]
-        + energy[CONTACT_LOSS]
-        + energy[VISCOUS_LOSS]
-        - energy[INPUT]
-    )
+        energy[KINETIC] + energy[POTENTIAL] + energy[ELASTIC] + energy[FRICTION_LOSS] + energy[CONTACT_LOSS]
+        + energy[VISCOUS_LOSS] - energy[INPUT]
+    )  # fmt: skip
     audit[MISFIT] = max(audit[MISFIT], abs(balance - start[KINETIC] - start[POTENTIAL] - start[ELASTIC]))
 
 

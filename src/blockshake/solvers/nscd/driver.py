@@ -39,13 +39,12 @@ def simulate_nscd(
     Returns
     -------
     Trajectory
-        Between steps, positions, velocities and energies are linear and orientations follow the
-        rotation of the step; a joint's force is the mean over the step in which the time falls.
-        ``numerics``: ``steps``, ``mean_iterations``, ``max_iterations``, ``max_residual``,
-        ``fraction_above_1e-4`` (of the steps, by residual), ``capped_steps`` (stopped short of the tolerance),
-        ``parted_steps`` (in which bodies met, with ``impact_parts``),
-        ``energy_residual`` (largest misfit of the energy terms, relative to the energy in play)
-        and ``max_penetration`` [m].
+        Between steps, positions, velocities and energies are linear and orientations follow the rotation of the step; a
+        joint's force is the mean over the step in which the time falls. ``numerics``: ``steps``, ``mean_iterations``,
+        ``max_iterations``, ``max_residual``, ``fraction_above_1e-4`` (of the steps, by residual), ``capped_steps``
+        (stopped short of the tolerance), ``parted_steps`` (in which bodies met, with ``impact_parts``),
+        ``energy_residual`` (largest misfit of the energy terms, relative to the energy in play) and ``max_penetration``
+        [m].
 
     Raises
     ------

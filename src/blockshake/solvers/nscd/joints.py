@@ -11,8 +11,7 @@ class Joints(NamedTuple):
     """Joints in the order in which their bodies first pressed on each other.
 
     ``row`` int64 (n_bodies, n_bodies): joint of a pair, the lower index first, -1 for none. ``pair`` int64
-    (n_joints, 2). ``slip`` (n_joints,): made so far, either way [m]; ``slip_rate`` (n_joints,): at the last
-    step [m/s].
+    (n_joints, 2). ``slip`` (n_joints,): made so far, either way [m]; ``slip_rate`` (n_joints,): at the last step [m/s].
     """
 
     row: np.ndarray

@@ -22,15 +22,7 @@ from blockshake.solvers.nscd.solve.solver import solve_contacts_into
 from blockshake.solvers.nscd.step import empty_step, move_into, predict_into
 from blockshake.solvers.nscd.vectors import dot
 from blockshake.solvers.record import with_room
-from blockshake.solvers.status import (
-    COLLAPSED,
-    COMPLETED,
-    DIVERGED,
-    NEXT_RECORD,
-    PAUSED,
-    SPEED_LIMIT,
-    STEP,
-)
+from blockshake.solvers.status import COLLAPSED, COMPLETED, DIVERGED, NEXT_RECORD, PAUSED, SPEED_LIMIT, STEP
 
 _ROUNDING = 1e-9  # of a step, when a record time meets the end of a step
 

@@ -21,20 +21,9 @@ _MOST_BAD_STEPS = 0.01
 
 
 def trajectory_of(structure, order, times, time_step, code, culprit, progress, joints, record):
-    """Trajectory of a run.
+    """`Trajectory` of a run from what `integrate` leaves at its end.
 
-    Parameters
-    ----------
-    structure : Structure
-    order : int64 array, shape (n_bodies,)
-        From `order_of_bodies`.
-    times : float64 array, shape (n_times,)
-    time_step : float
-        [s]
-    code, culprit : int
-        As from `integrate`.
-    progress, joints, record : Progress, Joints, Record
-        At the end.
+    ``order`` int64 (n_bodies,) from `order_of_bodies`; ``times`` (n_times,) and ``time_step`` [s].
     """
     place = np.argsort(order)
     end_time = min(int(progress.clock[STEP]) * time_step, float(times[-1]))

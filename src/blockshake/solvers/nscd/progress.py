@@ -11,17 +11,7 @@ ITERATIONS, MOST_ITERATIONS, BAD_STEPS, CAPPED_STEPS, PARTED_STEPS, N_CLOCK = 2,
 # Entries of ``audit``: net work taken out so far by friction and by normal impulses, largest misfit of the
 # energy terms and largest energy in play [J], largest relative residual [1], deepest penetration [m], length of
 # the last step or part of a step [s], energy in soft layers and stops [J]
-FRICTION_WORK, NORMAL_WORK, MISFIT, IN_PLAY, WORST_RESIDUAL, DEEPEST, LAST_STEP, HELD, N_AUDIT = (
-    0,
-    1,
-    2,
-    3,
-    4,
-    5,
-    6,
-    7,
-    8,
-)
+FRICTION_WORK, NORMAL_WORK, MISFIT, IN_PLAY, WORST_RESIDUAL, DEEPEST, LAST_STEP, HELD, N_AUDIT = range(9)
 
 
 class Progress(NamedTuple):

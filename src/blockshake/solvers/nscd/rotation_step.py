@@ -63,10 +63,9 @@ def turn_into(
 
     Notes
     -----
-    The midpoint scheme with convected velocities of Simo and Wong (1991): ``R1 J W1 = R0 J W0 +
-    torque`` with ``R1 = R0 exp(dt W)`` and ``W = (1 - theta) W0 + theta W1`` in the body frame, by fixed-point
-    iteration. As ``exp(dt W)`` leaves ``W`` alone, the kinetic energy changes at theta 0.5 by exactly
-    ``torque`` times ``mean_spin``.
+    The midpoint scheme with convected velocities of Simo and Wong (1991): ``R1 J W1 = R0 J W0 + torque`` with
+    ``R1 = R0 exp(dt W)`` and ``W = (1 - theta) W0 + theta W1`` in the body frame, by fixed-point iteration. As
+    ``exp(dt W)`` leaves ``W`` alone, the kinetic energy changes at theta 0.5 by exactly ``torque`` times ``mean_spin``.
     """
     R = np.empty((3, 3))
     rotation_matrix_into(orientation, R)

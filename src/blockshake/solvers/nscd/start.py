@@ -16,10 +16,10 @@ from blockshake.solvers.nscd.joints import no_joints
 from blockshake.solvers.nscd.solve.solver import solve_contacts_into
 from blockshake.solvers.nscd.step import empty_step, predict_into
 
-_LONG_STEP = 0.1  # s; what swings faster than 10 rad/s comes to rest by at least half in each
+LONG_STEP = 0.1  # s; what swings faster than 10 rad/s comes to rest by at least half in each
+SETTLING_TOLERANCE = 1e-12  # of the contact problem of a long step, below that of a run: it leaves no thump
 _MOST_STEPS = 100
 _AT_REST = 1e-13  # m, of a step's motion: the rounding of a position
-_TOLERANCE = 1e-12  # of the contact problem of a step, below that of a run: it leaves no thump
 _MOST_ITERATIONS = 200
 
 
@@ -45,28 +45,53 @@ def settled_state(scene, touching, state):
     Implicit Euler steps, each from rest and far longer than any period: with the mass next to nothing beside
     ``k h^2`` they are Newton's method for the equilibrium, with the contact law of the run.
     """
+    joints = no_joints(len(scene.bodies.driven))
+    soft = (touching & (scene.layers > 0.0)).any(axis=1)
+    return settle_stacks(
+        scene, touching, soft, state, lambda _, settled: _static_step(scene, joints, settled), _MOST_STEPS, _AT_REST
+    )[0]  # fmt: skip
+
+
+def settle_stacks(scene, touching, soft, state, static_step, most_steps, at_rest):
+    """State whose stacks rest under gravity, by long static steps; everything else as given.
+
+    Parameters
+    ----------
+    scene, touching, state : Scene, bool array, shape (n_bodies, n_bodies), State
+        As of `settled_state`.
+    soft : bool array, shape (n_bodies,)
+        A stack is settled where one of its free bodies is.
+    static_step : callable
+        Of the bodies that still move, a bool array, and the state, which it changes in place.
+    most_steps : int
+    at_rest : float
+        Largest motion in a step that ends the search [m].
+
+    Returns
+    -------
+    state : State
+        Poses as given where a body of the stack would move by more than 0.1 mm; velocities as given.
+    moves : bool array, shape (n_bodies,)
+        Bodies of the settled stacks.
+    """
     free, radius = ~scene.bodies.driven, scene.polyhedra.radius
     _, group = connected_components(touching & free[:, None] & free[None, :])
-    soft = (touching & (scene.layers > 0.0)).any(axis=1) & free
-    moves = free & np.isin(group, group[soft])
-    joints = no_joints(len(free))
+    moves = free & np.isin(group, group[soft & free])
     settled = State(*(part.copy() for part in state))
     settled.velocity[:], settled.angular_velocity[:] = 0.0, 0.0
-    for _ in range(_MOST_STEPS):
+    for _ in range(most_steps):
         if not moves.any():
             break
         before = State(*(part.copy() for part in settled))
-        _static_step(scene, joints, settled)
+        static_step(moves, settled)
         away = largest_motion(settled, state, radius)
         # not (x <= limit), so that NaN counts
         moves &= ~np.isin(group, group[moves & ~(away <= START_TOLERANCE)])
-        settled.position[~moves], settled.orientation[~moves] = (
-            state.position[~moves],
-            state.orientation[~moves],
-        )
-        if largest_motion(settled, before, radius).max() < _AT_REST:
+        settled.position[~moves] = state.position[~moves]
+        settled.orientation[~moves] = state.orientation[~moves]
+        if largest_motion(settled, before, radius).max() < at_rest:
             break
-    return settled._replace(velocity=state.velocity, angular_velocity=state.angular_velocity)
+    return settled._replace(velocity=state.velocity, angular_velocity=state.angular_velocity), moves
 
 
 def largest_motion(state, other, radius):
@@ -79,35 +104,33 @@ def largest_motion(state, other, radius):
 @kernel
 def _static_step(scene, joints, state):
     """Move the free bodies by one long implicit step from rest."""
-    bodies, polyhedra, dt, theta = scene.bodies, scene.polyhedra, _LONG_STEP, 1.0
+    bodies, polyhedra, dt, theta = scene.bodies, scene.polyhedra, LONG_STEP, 1.0
     step, placed, ground = empty_step(state), empty_placed(polyhedra), ground_at_start(scene.table)
     ground.velocity[:] = 0.0
     predict_into(bodies, state, ground, dt, theta, step)
     place_into(polyhedra, step.detection.position, step.detection.orientation, placed)
     memory = np.full(scene.layers.shape, -1, np.int64)
     contacts = detect_contacts(
-        bodies,
-        polyhedra,
-        placed,
-        step.rotations,
-        START_TOLERANCE,
-        scene.settings.shrink,
-        scene.layers,
-        theta * dt * dt,
-        memory,
-        0,
-    )
+        bodies, polyhedra, placed, step.rotations, START_TOLERANCE, scene.settings.shrink, scene.layers,
+        theta * dt * dt, memory, 0,
+    )  # fmt: skip
     delassus_into(bodies, step.inverse_inertia, contacts)
     friction_into(scene.friction, joints, step.rotations, contacts)
     law_shift_into(step, dt, theta, 0.0, contacts)
     floor = 1e-12 * dt * bodies.mass.max() * np.sqrt((bodies.gravity * bodies.gravity).sum()) + 1e-300
     solve_contacts_into(
-        bodies, step.inertia, step.inverse_inertia, contacts, floor, _TOLERANCE, _MOST_ITERATIONS, step.v
-    )
+        bodies, step.inertia, step.inverse_inertia, contacts, floor, SETTLING_TOLERANCE, _MOST_ITERATIONS, step.v
+    )  # fmt: skip
+    move_from_rest_into(bodies, step.v, dt, state)
+
+
+@kernel
+def move_from_rest_into(bodies, v, dt, state):
+    """Poses after a step with the velocities ``v`` (n_bodies, 6) at its end."""
     turn = np.empty(3)
     for body in range(bodies.mass.size):
         if not bodies.driven[body]:
             for axis in range(3):
-                state.position[body, axis] += dt * step.v[body, axis]
-                turn[axis] = dt * step.v[body, 3 + axis]
+                state.position[body, axis] += dt * v[body, axis]
+                turn[axis] = dt * v[body, 3 + axis]
             rotate_into(state.orientation[body], turn, state.orientation[body])

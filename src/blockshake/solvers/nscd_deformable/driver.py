@@ -49,18 +49,9 @@ def simulate_deformable(
 
     Parameters
     ----------
-    structure : Structure
-    motion : GroundMotion or None
-        Of the driven bodies, which are rigid; None keeps them at rest.
+    structure, motion, record_times, time_step, checkpoint, checkpoint_interval
+        As of `simulate_nscd`; the driven bodies are rigid.
     parameters : DeformableParameters
-    record_times : float64 array, shape (n_times,)
-        Increasing, the first is 0 [s]; the run ends at the last.
-    time_step : float
-        [s]
-    checkpoint : path, optional
-        File that a run which was cut short goes on from, see `run_in_pieces`.
-    checkpoint_interval : float
-        Wall time between savings [s].
     viscous : bool
         Whether the viscous moduli of the materials act.
 
@@ -90,15 +81,8 @@ def simulate_deformable(
     def start():
         touching = structure.touching[np.ix_(order, order)]
         state, deformation = settled_state(model, touching, reordered(given, order))
-        record = empty_record(len(times), len(order))
-        return (
-            start_progress(state),
-            deformation,
-            empty_contacts(0),
-            no_joints(len(order)),
-            no_factor(),
-            record,
-        )
+        joints, record = no_joints(len(order)), empty_record(len(times), len(order))
+        return start_progress(state), deformation, empty_contacts(0), joints, no_factor(), record
 
     def go_on(pause, progress, deformation, *parts):
         code, culprit, *parts = integrate(model, times, pause, progress, deformation, *parts)

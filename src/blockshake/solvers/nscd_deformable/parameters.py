@@ -28,8 +28,7 @@ class DeformableParameters(Strict):
         description="weight of the end of a step in the rigid motion [1]; 0.5 conserves energy, Jean (1999)",
     )
     elastic_theta: Annotated[float, Field(ge=0.5, le=1.0)] = Field(
-        0.6,
-        description="weight of the end of a step in the deformation [1]; chosen, docs/nscd-deformable.md",
+        0.6, description="weight of the end of a step in the deformation [1]; chosen, docs/nscd-deformable.md"
     )
     tolerance: Positive = Field(
         1e-8,

@@ -34,18 +34,10 @@ class Departure(NamedTuple):
 
 
 def value_scales(table):
-    """Scales that differences are divided by, by observable.
+    """Scales that differences of `study_convergence` are divided by, by observable.
 
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        From `study_convergence`.
-
-    Returns
-    -------
-    dict of str to float
-        Magnitude at the smallest time step; for the drift at the end that of the peak drift, since the former
-        passes zero; 1 for the energy residual, which is a share itself.
+    Magnitude at the smallest time step; for the drift at the end that of the peak drift, since the former passes zero;
+    1 for the energy residual, which is a share itself.
     """
     finest = (
         table[table["parameter"] == "time_step"]
@@ -57,18 +49,9 @@ def value_scales(table):
 
 
 def observed_order(table, parameter, observable):
-    """Observed order of a value that vanishes with a numerical parameter: slope in logarithms by least squares.
+    """Observed order [1] of a value of `study_convergence` that vanishes with a parameter: a slope in logarithms.
 
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        From `study_convergence`.
-    parameter, observable : str
-
-    Returns
-    -------
-    float
-        [1]; NaN where fewer than two settings have a value other than zero.
+    By least squares; NaN where fewer than two settings have a value other than zero.
     """
     rows = table[(table["parameter"] == parameter) & (table["observable"] == observable)]
     setting, value = rows["setting"].to_numpy(), np.abs(rows["value"].to_numpy())
@@ -79,17 +62,9 @@ def observed_order(table, parameter, observable):
 
 
 def default_departures(table):
-    """Largest departure of the default settings from the finest, by numerical parameter.
+    """List of `Departure`, the largest of the default settings from the finest, by parameter of `study_convergence`.
 
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        From `study_convergence`.
-
-    Returns
-    -------
-    list of Departure
-        Parameters whose default is the finest setting, or was not run, are left out.
+    Parameters whose default is the finest setting, or was not run, are left out.
     """
     scales, found = value_scales(table), []
     for parameter, group in table.groupby("parameter", sort=False):

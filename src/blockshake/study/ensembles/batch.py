@@ -81,21 +81,10 @@ def sample_outcome(path):
 
 
 def batch_rows(batch, design, stiffness):
-    """Sampled values of a batch, contact stiffness beside them where the model has any.
+    """Sampled values of a batch, columns the dotted names, contact stiffness beside them where the model has any.
 
-    Parameters
-    ----------
-    batch : str
-        First and last sample, such as ``010-019``.
-    design : str or path
-        CSV table by sample.
-    stiffness : str, path or empty
-        The same, for a model with contact stiffness.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Index the sample, columns the dotted names.
+    ``batch``: first and last sample, such as ``010-019``; ``design`` and ``stiffness``: CSV tables by sample, the
+    latter empty without contact stiffness.
     """
     first, last = (int(part) for part in batch.split("-"))
     tables = [load_design(path) for path in (design, stiffness) if path]

@@ -17,10 +17,7 @@ _DESCRIBED = {
     "coverage": ("fraction of the time that the measured curve is within the bounds", "1"),
     "reference": ("the same of the members, each in the bounds of the others", "1"),
     "member_coverage": ("fraction of the time that a member is within the bounds of the others", "1"),
-    "curve_probability": (
-        "chance of a coverage as low if the measured curve were one of the members",
-        "1",
-    ),
+    "curve_probability": ("chance of a coverage as low if the measured curve were one of the members", "1"),
     "band_width": ("upper minus lower bound, mean over time", "m"),
     "measured_peak": ("largest absolute measured displacement along x relative to the slab", "m"),
     "quantile": ("probability of a smaller value", "1"),
@@ -35,14 +32,9 @@ class Band(NamedTuple):
 
 
 def coverage_of_case(named, batches):
-    """`coverage` of the test that a case is compared with.
+    """`coverage` of the test that a case is compared with, ``named`` by ``campaign``, a folder, and ``test``.
 
-    Parameters
-    ----------
-    named : dict
-        Entries ``campaign``, a folder, and ``test``.
-    batches : sequence of path
-        Files of the case's samples.
+    ``batches``: files of the case's samples.
     """
     campaign = load_campaign(named["campaign"])
     measured = load_test(campaign, named["test"])
@@ -67,13 +59,12 @@ def coverage(measured, ensemble, marker_noise, seed=0):
     Returns
     -------
     xarray.Dataset
-        Along the markers that both have, displacement along x, inertial frame: ``coverage(marker)``
-        of the measured curve in the bounds of all members; ``member_coverage(sample, marker)`` of
-        each member, read with the same noise, in the bounds of the others; its
-        ``reference(quantile, marker)``; ``curve_probability(marker)``, the rank of the measured curve's coverage
-        among the members', from 1 / (n + 1) to 1; ``band_width(marker)`` [m], mean over time; and
-        ``measured_peak(marker)`` [m], largest absolute displacement relative to the slab's marker,
-        to hold the width against.
+        Along the markers that both have, displacement along x, inertial frame: ``coverage(marker)`` of the measured
+        curve in the bounds of all members; ``member_coverage(sample, marker)`` of each member, read with the same
+        noise, in the bounds of the others; its ``reference(quantile, marker)``; ``curve_probability(marker)``, the rank
+        of the measured curve's coverage among the members', from 1 / (n + 1) to 1; ``band_width(marker)`` [m], mean
+        over time; and ``measured_peak(marker)`` [m], largest absolute displacement relative to the slab's marker, to
+        hold the width against.
 
     Raises
     ------
@@ -127,14 +118,9 @@ def coverage(measured, ensemble, marker_noise, seed=0):
 
 
 def relative_width(comparison, peak):
-    """Mean width of the band over the peak of the measured curve [1].
+    """Mean width of the band of a `coverage` over the peak of the measured curve [1].
 
-    Parameters
-    ----------
-    comparison : xarray.Dataset
-        From `coverage`.
-    peak : xarray.DataArray
-        Of the measured displacement relative to the slab over the simulated window [m].
+    ``peak``: of the displacement relative to the slab over the simulated window [m].
     """
     return comparison["band_width"] / peak
 
@@ -168,16 +154,9 @@ def share_inside(curve, lower, upper):
 
 
 def members_inside(curves, readings):
-    """Share of the times that each curve, as read, is within the band of the others.
+    """Share of the times that each curve, as read, is within the band of the others: (n_curves, ...).
 
-    Parameters
-    ----------
-    curves, readings : float64 arrays, shape (n_curves, n_times, ...)
-        Curves that span the band, and the same as an instrument would read them.
-
-    Returns
-    -------
-    float64 array, shape (n_curves, ...)
+    ``curves``, ``readings`` (n_curves, n_times, ...): those that span the band, and as an instrument would read them.
     """
     rising = np.sort(curves, axis=0)[:2]
     falling = -np.sort(-curves, axis=0)[:2]

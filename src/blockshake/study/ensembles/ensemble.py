@@ -38,12 +38,11 @@ def gather_ensemble(runs, samples, parameters, slab_marker):
     Returns
     -------
     xarray.Dataset
-        Along ``sample``: ``marker_displacement(sample, time, marker, axis)`` and
-        ``position(sample, time, body, axis)`` [m], inertial frame; ``status`` and ``reason``;
-        ``end_time`` [s]; ``peak`` and ``residual(sample, frame, marker)`` [m], along x;
-        ``peak_rotation(sample, body)`` [rad]; ``parameter_value(sample, parameter)``; and the runs'
-        figures of their computation, ``energy_residual`` and ``numerics_*``, NaN where a run has
-        none. Attributes: the others that all runs share, and ``slab_marker``.
+        Along ``sample``: ``marker_displacement(sample, time, marker, axis)`` and ``position(sample, time, body, axis)``
+        [m], inertial frame; ``status`` and ``reason``; ``end_time`` [s]; ``peak`` and
+        ``residual(sample, frame, marker)`` [m], along x; ``peak_rotation(sample, body)`` [rad];
+        ``parameter_value(sample, parameter)``; and the runs' figures of their computation, ``energy_residual`` and
+        ``numerics_*``, NaN where a run has none. Attributes: the others that all runs share, and ``slab_marker``.
 
     Raises
     ------
@@ -146,10 +145,7 @@ def _check_alike(piece, first, sample, names=("time", "marker", "body")):
 
 def _endings(attributes):
     """How each run ended and the figures of its computation, along ``sample``."""
-    described = {
-        "status": "how the run ended",
-        "reason": "why the run ended so",
-    }
+    described = {"status": "how the run ended", "reason": "why the run ended so"}
     endings = {
         name: ("sample", [str(run.get(name, "")) for run in attributes], {"long_name": long_name})
         for name, long_name in described.items()
@@ -213,20 +209,9 @@ def in_frames(displacement, slab_marker):
 
 
 def peak_and_residual(along, since, skipna):
-    """Largest magnitude of curves over ``time``, and their mean from a time on.
+    """`PeakAndResidual`: largest magnitude of curves along x over ``time`` [m], and their mean from ``since`` [s] on.
 
-    Parameters
-    ----------
-    along : xarray.DataArray
-        Displacement along x over ``time`` [m].
-    since : float
-        Begin of the mean [s].
-    skipna : bool
-        Leave gaps out of the mean; otherwise the mean of a curve with a gap is NaN.
-
-    Returns
-    -------
-    PeakAndResidual
+    ``skipna``: gaps are left out of the mean; otherwise the mean of a curve with a gap is NaN.
     """
     window = (along["time"] >= since).to_numpy()
     return PeakAndResidual(np.abs(along).max("time"), along.isel(time=window).mean("time", skipna=skipna))

@@ -35,23 +35,21 @@ def envelope(ensemble, largest_drift):
     Returns
     -------
     xarray.Dataset
-        ``marker_envelope(frame, bound, time, marker, axis)`` [m]: the smallest and the largest
-        displacement at each time, coordinate ``bound`` lower and upper;
-        ``marker_displacement(frame, quantile, time, marker, axis)`` [m]; ``peak`` and
-        ``residual(quantile, frame, marker)`` [m]; ``peak_rotation(quantile, body)`` [rad];
+        ``marker_envelope(frame, bound, time, marker, axis)`` [m]: the smallest and the largest displacement at each
+        time, coordinate ``bound`` lower and upper; ``marker_displacement(frame, quantile, time, marker, axis)`` [m];
+        ``peak`` and ``residual(quantile, frame, marker)`` [m]; ``peak_rotation(quantile, body)`` [rad];
         ``contributing(time)``: samples with a value at that time; ``collapse_probability`` and
         ``drift_probability(marker)`` [1]. NaN where no sample has a value. The statistics of single numbers have their
-        95 % limits beside them, ``NAME_interval(bound, ...)``. Attributes
-        ``samples`` and ``counted``: how many runs there were and how many enter.
+        95 % limits beside them, ``NAME_interval(bound, ...)``. Attributes ``samples`` and ``counted``: how many runs
+        there were and how many enter.
 
     Notes
     -----
-    Quantiles interpolate linearly between ordered values (Hyndman and Fan 1996, type 7) of the
-    samples that have a value: after a collapse cut a run short, those of the others. The peak of a
-    collapsed run is what it had reached, so that upper quantiles of the peak are then lower limits.
-    The band from lower to upper of n runs holds a further run at one instant with
-    probability (n - 1) / (n + 1); it has no stated probability for a whole record. A collapsed run counts as one whose
-    drift exceeded the limit.
+    Quantiles interpolate linearly between ordered values (Hyndman and Fan 1996, type 7) of the samples that have a
+    value: after a collapse cut a run short, those of the others. The peak of a collapsed run is what it had reached, so
+    that upper quantiles of the peak are then lower limits. The band from lower to upper of n runs holds a further run
+    at one instant with probability (n - 1) / (n + 1); it has no stated probability for a whole record. A collapsed run
+    counts as one whose drift exceeded the limit.
     """
     counted = counted_samples(ensemble)
     displacement = in_frames(counted["marker_displacement"], ensemble.attrs["slab_marker"])

@@ -59,22 +59,10 @@ def climb_ladder(structure, motion, model, time_step, duration, ladder):
 
 
 def climb_ladders(cases, time_step, ladder, progress):
-    """Climb the ladder of every case with every motion by LS-DEM, as `climb_ladder`.
+    """Climb the ladder of every case with every motion by LS-DEM, as `climb_ladder`: rungs by structure and motion.
 
-    Parameters
-    ----------
-    cases : sequence of dict
-        ``structure`` and ``duration`` [s] of the configuration's cases.
-    time_step : float
-        [s]
-    ladder : Ladder
-    progress : callable
-        Called with a line of text after each ladder.
-
-    Returns
-    -------
-    dict of str to dict of str to list of dict
-        By structure and motion: rungs.
+    ``cases``: ``structure`` and ``duration`` [s] of the configuration's; ``time_step`` [s]; ``progress`` is called with
+    a line of text after each ladder.
     """
     found = {case["structure"]: {} for case in cases}
     for case in cases:

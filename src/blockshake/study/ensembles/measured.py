@@ -33,7 +33,7 @@ class ComparedCurves(NamedTuple):
 
 
 def compared_curves(measured, ensemble, marker_noise, seed, fewest):
-    """Curves of a measured test and of an ensemble, the ensemble's read with noise too.
+    """`ComparedCurves` of a measured test and of an ensemble, the ensemble's read with noise too.
 
     Parameters
     ----------
@@ -48,10 +48,6 @@ def compared_curves(measured, ensemble, marker_noise, seed, fewest):
         Of the noise that the members are read with.
     fewest : int
         Members that the comparison needs.
-
-    Returns
-    -------
-    ComparedCurves
 
     Raises
     ------
@@ -70,22 +66,11 @@ def compared_curves(measured, ensemble, marker_noise, seed, fewest):
 
 
 def measured_curves(test, slab_marker, duration):
-    """Measured displacement along x over the simulated window.
+    """Measured displacement along x over the simulated window, ``displacement(frame, time, marker)`` [m].
 
-    Parameters
-    ----------
-    test : xarray.Dataset
-        ``marker_displacement(time, marker, axis)`` [m], inertial frame.
-    slab_marker : str
-        Marker that the frame ``slab`` moves with.
-    duration : float
-        Length of the window [s].
-
-    Returns
-    -------
-    xarray.Dataset
-        ``displacement(frame, time, marker)``, and by the definitions of `gather_ensemble` ``peak`` and
-        ``residual(frame, marker)`` [m], over the window.
+    And by the definitions of `gather_ensemble` ``peak`` and ``residual(frame, marker)`` [m]. ``test`` has
+    ``marker_displacement(time, marker, axis)`` [m], inertial frame; the frame ``slab`` moves with ``slab_marker``;
+    ``duration`` of the window [s].
     """
     along = test["marker_displacement"].sel(axis="x", drop=True)
     along = in_frames(along.isel(time=(along["time"] <= duration + _SAME_TIME).to_numpy()), slab_marker)

@@ -45,82 +45,30 @@ class Shortfall(NamedTuple):
 
 
 def count_outcomes(status):
-    """Outcomes of samples from their statuses.
-
-    Parameters
-    ----------
-    status : sequence of str
-        Of each sample, as in the variable ``status`` of an ensemble.
-
-    Returns
-    -------
-    Outcomes
-    """
+    """`Outcomes` of samples from their statuses, as in the variable ``status`` of an ensemble."""
     status = np.asarray(status, dtype=str)
     completed, collapsed = (int((status == one).sum()) for one in ("completed", "collapsed"))
     return Outcomes(completed, collapsed, len(status) - completed - collapsed)
 
 
-def add_outcomes(outcomes):
-    """Outcomes of several ensembles together.
-
-    >>> add_outcomes([Outcomes(2, 1, 0), Outcomes(3, 0, 1)])
-    Outcomes(completed=5, collapsed=1, failed=1)
-    """
-    return Outcomes(*(sum(column) for column in zip(*outcomes, strict=True)))
-
-
 def unfinished(samples):
-    """Samples that did not complete.
-
-    Parameters
-    ----------
-    samples : xarray.Dataset
-        From `sample_figures`.
-
-    Returns
-    -------
-    list of xarray.Dataset
-        One sample each.
-    """
+    """Samples of `sample_figures` that did not complete, a dataset each."""
     return [
         samples.sel(sample=one) for one in samples["sample"].values[samples["status"].values != "completed"]
     ]
 
 
 def energy_residuals(samples):
-    """Median and largest energy residual over the samples.
-
-    Parameters
-    ----------
-    samples : xarray.Dataset
-        From `sample_figures`.
-
-    Returns
-    -------
-    EnergyResiduals
-    """
+    """`EnergyResiduals` over the samples of `sample_figures`: median and largest."""
     return EnergyResiduals(
         *(numerical_figure(samples, "energy_residual", one) for one in (np.median, np.max))
     )
 
 
 def numerical_figure(samples, name, statistic):
-    """Statistic of a figure of the computation over the samples that have it.
+    """Statistic of a figure of the computation, such as ``numerics_steps``, over the samples that have it, or NaN.
 
-    Parameters
-    ----------
-    samples : xarray.Dataset
-        From `sample_figures`.
-    name : str
-        Variable, such as ``numerics_steps``.
-    statistic : callable
-        Of a float64 array of at least one value.
-
-    Returns
-    -------
-    float
-        NaN where no sample has the figure.
+    ``samples`` from `sample_figures`; ``statistic``: of a float64 array of at least one value.
     """
     values = np.asarray(samples.get(name, []), dtype=float)
     values = values[np.isfinite(values)]
@@ -128,17 +76,7 @@ def numerical_figure(samples, name, statistic):
 
 
 def shortfall(envelope):
-    """Samples that are missing from the statistics of an ensemble, or from those of its late times.
-
-    Parameters
-    ----------
-    envelope : xarray.Dataset
-        From `envelope`.
-
-    Returns
-    -------
-    Shortfall
-    """
+    """`Shortfall` of an `envelope`: samples missing from its statistics, or from those of its late times."""
     there, counted = envelope["contributing"].values, int(envelope.attrs["counted"])
     fewer = np.flatnonzero(there < counted)
     since = float(envelope["time"][fewer[0]]) if len(fewer) else np.nan

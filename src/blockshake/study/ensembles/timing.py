@@ -64,32 +64,15 @@ def read_timings(benchmarks, samples):
             wall_time += _seconds(record["s"])
         end = figures["end_time"].sel(sample=sorted(set(covered)))
         known = jobs > 0
-        timings.append(
-            Timing(
-                model,
-                case,
-                jobs,
-                len(set(covered)),
-                float(end.sum()),
-                cpu_time if known else np.nan,
-                wall_time if known else np.nan,
-            )
-        )
+        timings.append(Timing(
+            model, case, jobs, len(set(covered)), float(end.sum()), cpu_time if known else np.nan,
+            wall_time if known else np.nan,
+        ))  # fmt: skip
     return tuple(timings)
 
 
 def total_timing(timings):
-    """Cost of all cases and models whose CPU time is known.
-
-    Parameters
-    ----------
-    timings : sequence of Timing
-
-    Returns
-    -------
-    Timing
-        Model and case are empty.
-    """
+    """`Timing` of all cases and models whose CPU time is known; its model and case are empty."""
     known = [one for one in timings if np.isfinite(one.cpu_time)]
     names = ("jobs", "samples", "simulated", "cpu_time", "wall_time")
     return Timing("", "", *(sum(getattr(one, name) for one in known) for name in names))

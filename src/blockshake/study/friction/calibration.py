@@ -62,18 +62,7 @@ def mean_score(ensemble, measured, marker_noise, seed):
 
 
 def with_mean(design, distributions, variables, mean):
-    """Design whose variables have another mean, their variation and pairing kept.
-
-    Parameters
-    ----------
-    design : pandas.DataFrame
-        Samples of ``distributions``.
-    distributions : dict of str to Lognormal
-    variables : sequence of str
-        Dotted names of the coefficients that are searched together.
-    mean : float
-        [1]
-    """
+    """Design whose ``variables``, by dotted name, have another mean [1], their variation and pairing kept."""
     scaled = design.copy()
     for name in variables:
         scaled[name] *= mean / distributions[name].mean

@@ -9,16 +9,7 @@ from blockshake.study.sampling.latin_hypercube import draw_samples
 def replicate_seed(seed, replicate):
     """Seed of one of several independent designs: of who it is, not of the order in which it is drawn.
 
-    Parameters
-    ----------
-    seed : int
-        Of the study's design.
-    replicate : int
-        From 1; the study's own design is no replicate.
-
-    Returns
-    -------
-    int
+    ``seed`` of the study's design; ``replicate`` from 1, the study's own design being none.
     """
     return int(np.random.SeedSequence([seed, replicate]).generate_state(1)[0])
 

@@ -132,9 +132,8 @@ def nearest_correlation(matrix):
 
     Notes
     -----
-    Alternating projections with Dykstra's correction, Higham (2002), Algorithm 3.3, onto the
-    matrices with eigenvalues of at least 0.001 instead of 0, so that the answer stays valid when
-    rounded to four digits.
+    Alternating projections with Dykstra's correction, Higham (2002), Algorithm 3.3, onto the matrices with eigenvalues
+    of at least 0.001 instead of 0, so that the answer stays valid when rounded to four digits.
     """
     unit = (matrix + matrix.T) / 2.0
     correction = np.zeros_like(unit)

@@ -24,8 +24,7 @@ _NAME = re.compile(rf"friction\.({_WORD})\.({_WORD})|materials\.{_WORD}\.({'|'.j
 class Lognormal(Strict):
     """A positive variable whose logarithm is normal, given by its mean and coefficient of variation.
 
-    The two parameters of the logarithm follow exactly: variance ``ln(1 + cov^2)`` and mean
-    ``ln(mean) - variance / 2``.
+    The two parameters of the logarithm follow exactly: variance ``ln(1 + cov^2)`` and mean ``ln(mean) - variance / 2``.
     """
 
     distribution: Literal["lognormal"] = "lognormal"
@@ -148,23 +147,11 @@ def parameter_unit(name):
     raise InputError("design", name, "expected a friction coefficient, a material's property or a stiffness")
 
 
-def draw_true_parameters(seed, distributions=TABLE_2):
-    """One independent draw of every variable: the hidden truth of a virtual test.
-
-    Parameters
-    ----------
-    seed : int
-        Same seed, same truth.
-    distributions : dict of str to Lognormal
-
-    Returns
-    -------
-    dict of str to float
-        By dotted name, SI.
-    """
-    bits = np.random.PCG64(np.random.SeedSequence(seed, spawn_key=(1,))).random_raw(len(distributions))
+def draw_true_parameters(seed):
+    """One independent draw of every variable of Table 2 by dotted name, SI: the hidden truth of a virtual test."""
+    bits = np.random.PCG64(np.random.SeedSequence(seed, spawn_key=(1,))).random_raw(len(TABLE_2))
     chances = ((bits >> np.uint64(11)) + 0.5) * 2.0**-53
     return {
         name: float(distribution.quantile(chance))
-        for (name, distribution), chance in zip(distributions.items(), chances, strict=True)
+        for (name, distribution), chance in zip(TABLE_2.items(), chances, strict=True)
     }

@@ -114,8 +114,7 @@ def draw_samples(
     Raises
     ------
     InputError
-        Too few samples, an unknown word, a target with unknown names or that is no correlation
-        matrix.
+        Too few samples, an unknown word, a target with unknown names or that is no correlation matrix.
 
     Notes
     -----
@@ -197,16 +196,9 @@ def complete_correlation(correlation, names):
 
 
 def draw_design(ensemble):
-    """Design of a configuration's ensemble.
+    """`SampleDesign` of a configuration's ensemble.
 
-    Parameters
-    ----------
-    ensemble : dict
-        Entries ``size``, ``seed``, ``distributions``, and ``correlation``, the file of the target or none.
-
-    Returns
-    -------
-    SampleDesign
+    A mapping with ``size``, ``seed``, ``distributions``, and ``correlation``, the file of the target or none.
     """
     correlation = ensemble["correlation"]
     return draw_samples(
@@ -240,8 +232,7 @@ def load_design(path):
     Raises
     ------
     InputError
-        Missing file, no rows, a name twice, a row of another length, or an entry that is no
-        finite number.
+        Missing file, no rows, a name twice, a row of another length, or an entry that is no finite number.
     """
     rows = [row for row in csv.reader(io.StringIO(read_text(path))) if row]
     if len(rows) < 2:

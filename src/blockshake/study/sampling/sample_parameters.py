@@ -2,20 +2,10 @@
 
 
 def sample_parameters(row, structure, linked):
-    """Parameters of one sample that this structure has.
+    """Parameters of one sample that this structure has, by dotted name, from a row that has stiffness too.
 
-    Parameters
-    ----------
-    row : pandas.Series
-        Sampled values by dotted name, stiffness among them.
-    structure : Structure
-        What it has no material or pair for is left out: configuration 1 has no steel.
-    linked : dict of str to str
-        Parameters that take the sampled value of another.
-
-    Returns
-    -------
-    dict of str to float
+    ``linked``: parameters that take another's sampled value. Parameters of a material or pair that the structure does
+    not have are left out: configuration 1 has no steel.
     """
     values = {str(name): float(value) for name, value in row.items()}
     values |= {name: values[source] for name, source in linked.items() if source in values}
@@ -25,18 +15,7 @@ def sample_parameters(row, structure, linked):
 
 
 def has_parameter(structure, name):
-    """Whether a structure has the material or the pair that a parameter describes.
-
-    Parameters
-    ----------
-    structure : Structure
-    name : str
-        Dotted.
-
-    Returns
-    -------
-    bool
-    """
+    """Whether a structure has the material or the pair that a parameter describes, by its dotted name."""
     pairs = {tuple(sorted(entry.pair)) for entry in structure.file.friction}
     return _has(name.split("."), structure.file.materials, pairs)
 

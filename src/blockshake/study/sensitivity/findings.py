@@ -69,19 +69,9 @@ class WindowFindings(NamedTuple):
 
 
 def differs(result, noise):
-    """Whether samples differ by at least a marker's noise.
+    """Whether samples of a `sensitivity` differ by at least a marker's noise [m], a standard deviation.
 
-    Parameters
-    ----------
-    result : xarray.Dataset
-        From `sensitivity`, of one quantity or of several.
-    noise : float
-        Standard deviation of a measured marker's position [m].
-
-    Returns
-    -------
-    bool
-        Of any marker and quantity; false where the spread is not known.
+    At any marker and for any quantity; false where the spread is not known.
     """
     return bool((result["spread"] >= noise).any())
 
@@ -92,19 +82,9 @@ def is_known(result, measure):
 
 
 def influences(result, measure):
-    """Variables ranked by a measure, at one marker and for one quantity.
+    """`Influences`: variables of a `sensitivity` ranked by a measure, at one marker and for one quantity that is known.
 
-    Parameters
-    ----------
-    result : xarray.Dataset
-        From `sensitivity`; ``is_known`` holds.
-    measure : str
-        ``first_order``, ranked by the share, which is noise where negative; or ``rank_correlation``, ranked by its
-        magnitude.
-
-    Returns
-    -------
-    Influences
+    ``first_order``, ranked by the share, which is noise where negative; or ``rank_correlation``, by its magnitude.
     """
     chance, values = float(result[f"{measure}_chance"]), result[measure].to_numpy()
     strength = values if measure == "first_order" else np.abs(values)
@@ -122,18 +102,9 @@ def influences(result, measure):
 
 
 def windows_beyond_chance(result, noise):
-    """Variables whose share of a window's spread stands out from chance.
+    """`WindowFindings`: variables whose share of a window's spread stands out from chance.
 
-    Parameters
-    ----------
-    result : xarray.Dataset
-        From `sensitivity`, at one marker.
-    noise : float
-        [m]; windows with a smaller spread are left out.
-
-    Returns
-    -------
-    WindowFindings
+    ``result`` from `sensitivity`, at one marker; windows with a smaller spread than ``noise`` [m] are left out.
     """
     chance = float(result["window_first_order_chance"])
     loud = result["window_spread"] >= noise
@@ -149,19 +120,8 @@ def windows_beyond_chance(result, noise):
 
 
 def quiet_markers(result, markers, noise):
-    """Number of markers whose histories differ by less than the noise.
+    """Number of markers of a `sensitivity` whose histories differ by less than the noise [m].
 
-    Parameters
-    ----------
-    result : xarray.Dataset
-        From `sensitivity`.
-    markers : sequence of str
-    noise : float
-        [m]
-
-    Returns
-    -------
-    int
-        Markers without a known spread do not count.
+    Markers without a known spread do not count.
     """
     return int((result["spread"].sel(quantity="history", marker=list(markers)) < noise).sum())

@@ -10,20 +10,9 @@ _KEPT = 1.0 - 1e-9  # of a history's variance, by the components that stand for 
 
 
 def completed_histories(counted, markers, slab):
-    """Displacement along x relative to the slab of the completed samples.
+    """Displacement along x relative to the slab's marker of completed samples, (n_samples, n_markers, n_times) [m].
 
-    Parameters
-    ----------
-    counted : xarray.Dataset
-        From `counted_samples`.
-    markers : list of str
-    slab : str
-        Marker that displacements are relative to.
-
-    Returns
-    -------
-    float64 array, shape (n_samples, n_markers, n_times)
-        [m]; NaN for samples that did not complete.
+    ``counted`` from `counted_samples`; NaN for samples that did not complete.
     """
     completed = counted["status"].values == Status.COMPLETED
     along = relative_to_slab(counted["marker_displacement"].sel(axis="x", drop=True), slab)

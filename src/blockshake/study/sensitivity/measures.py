@@ -39,9 +39,8 @@ def first_order_share(inputs, outputs):
     Notes
     -----
     Correlation ratio over classes (Pearson 1905; Plischke, Borgonovo and Smith 2013, Eur. J. Oper. Res. 226, 536, for
-    sensitivity) with the correction of Kelley (1935, PNAS 21, 554) for the variance of the class means:
-    1 - (n - 1) / (n - M) (1 - eta^2). For components summed: Gamboa, Janon, Klein and Lagnoux (2014, Electron. J.
-    Stat. 8, 575).
+    sensitivity) with the correction of Kelley (1935, PNAS 21, 554) for the variance of the class means: 1 - (n - 1) /
+    (n - M) (1 - eta^2). For components summed: Gamboa, Janon, Klein and Lagnoux (2014, Electron. J. Stat. 8, 575).
     """
     n_samples = len(inputs)
     n_classes = class_count(n_samples)

@@ -35,15 +35,7 @@ _MEASURES = {
 def sensitivity_of_case(batches, design, model, structure, linked):
     """`sensitivity` of a case's samples to all variables of a design, with those that cannot matter as controls.
 
-    Parameters
-    ----------
-    batches : sequence of path
-        Files of the samples.
-    design : path
-        CSV table by sample.
-    model, structure : str
-    linked : dict of str to str
-        As in `sample_parameters`.
+    ``batches``: files of the samples; ``design``: CSV table by sample; ``linked`` as in `sample_parameters`.
     """
     values = load_design(design)
     given = sample_parameters(values.iloc[0], load_structure(structure), linked)
@@ -115,17 +107,7 @@ def sensitivity(ensemble, variables, controls=()):
 def unused_variables(variables, model, parameters):
     """Variables that cannot matter: controls that a sound measure must find at the level of chance.
 
-    Parameters
-    ----------
-    variables : list of str
-        Dotted names.
-    model : str
-    parameters : dict
-        What a sample gives to the structure, from `sample_parameters`: what the structure lacks is not there.
-
-    Returns
-    -------
-    list of str
+    Dotted names. ``parameters``: what a sample gives to the structure, from `sample_parameters`, without what it lacks.
     """
     unused = model_of(model).without_effect
     return [name for name in variables if name not in parameters or name.rsplit(".", 1)[1] in unused]

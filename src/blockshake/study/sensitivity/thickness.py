@@ -66,7 +66,7 @@ class Growth(NamedTuple):
 
 
 def thickness(result, markers, blocks, shaking):
-    """Thickness of the envelopes of one structure by one model.
+    """`Thickness` of the envelopes of one structure by one model.
 
     Parameters
     ----------
@@ -76,27 +76,13 @@ def thickness(result, markers, blocks, shaking):
         From the lowest block up.
     blocks, shaking
         As in `Thickness`.
-
-    Returns
-    -------
-    Thickness
     """
     spread = result["spread"].sel(quantity="history", marker=list(markers))
     return Thickness(int(blocks), shaking, tuple(float(one) for one in spread))
 
 
 def growth_with_structure(structures):
-    """Pairwise comparison of structures by their number of blocks.
-
-    Parameters
-    ----------
-    structures : sequence of Thickness
-        Those that are not known are left out.
-
-    Returns
-    -------
-    Growth
-    """
+    """`Growth`: known structures, each a `Thickness`, compared in pairs by their number of blocks."""
     known = sorted((one for one in structures if one.known), key=lambda one: one.blocks)
     pairs = [(less, more) for less, more in combinations(known, 2) if less.blocks < more.blocks]
     thicker = sum(more.spread[-1] > less.spread[-1] for less, more in pairs)

@@ -55,17 +55,7 @@ class DefinitionRange(NamedTuple):
 
 
 def definition_range(definitions):
-    """Range of stiffness and peak over definitions of arrival and dampings.
-
-    Parameters
-    ----------
-    definitions : xarray.Dataset
-        From `compare_definitions`.
-
-    Returns
-    -------
-    DefinitionRange
-    """
+    """`DefinitionRange` of stiffness and peak over the definitions and dampings of `compare_definitions`."""
     own = {
         "definition": definitions.attrs["definition"],
         "restitution": definitions.attrs["study_restitution"],

@@ -25,10 +25,7 @@ _DESCRIBED = {
     "target_wave_speed": ("wave speed of the material", "m s-1"),
     "wave_speed": ("wave speed at the study's stiffness", "m s-1"),
     "top_peak": ("peak of the highest block relative to the slab, this restitution", "m"),
-    "top_peak_same_damping": (
-        "peak of the highest block relative to the slab, the study's restitution",
-        "m",
-    ),
+    "top_peak_same_damping": ("peak of the highest block relative to the slab, the study's restitution", "m"),
     "blocked_speed": ("speed of a horizontal step, rotations blocked", "m s-1"),
     "free_speed": ("speed of a horizontal step, rotations free", "m s-1"),
     "restitution": ("restitution of LS-DEM's dashpot", "1"),

@@ -118,9 +118,8 @@ def calibrate_stiffness(structure="configuration-2", parameters=None):
 
     Notes
     -----
-    In a chain whose joints neither open nor slip every speed goes with the square root of the stiffness, but for
-    the damping and the time step; so the search multiplies by the square of the speed ratio and is over in a few
-    rounds.
+    In a chain whose joints neither open nor slip every speed goes with the square root of the stiffness, but for the
+    damping and the time step; so the search multiplies by the square of the speed ratio and is over in a few rounds.
     """
     tower = load_structure(structure, parameters)
     targets = target_wave_speeds(tower)
@@ -149,21 +148,10 @@ def calibrate_stiffness(structure="configuration-2", parameters=None):
 
 
 def calibrate_design(structure, design, linked):
-    """Stiffness of every sample of a design.
+    """Stiffness of a tower for every sample of a design, with the same index.
 
-    Parameters
-    ----------
-    structure : Structure, str or path
-        The tower.
-    design : pandas.DataFrame
-        Sampled values, index the sample.
-    linked : dict of str to str
-        Parameters that take the sampled value of another.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Columns ``ls_dem.normal_stiffness`` and ``ls_dem.shear_stiffness`` [N/m3], index as the design's.
+    ``linked``: parameters that take another's sampled value. Columns ``ls_dem.normal_stiffness`` and
+    ``ls_dem.shear_stiffness`` [N/m3].
     """
     tower = load_structure(structure)
     found = [
@@ -179,14 +167,7 @@ def stiffness_parameters(calibrated):
 
 
 def speed_deviation(waves, direction):
-    """Deviation of the wave speed reached from its target, over the target [1].
-
-    Parameters
-    ----------
-    waves : xarray.Dataset
-        From `wave_tests`.
-    direction : str
-    """
+    """Deviation of the wave speed reached from its target in a direction of `wave_tests`, over the target [1]."""
     one = waves.sel(direction=direction)
     return float(one["wave_speed"]) / float(one["target_wave_speed"]) - 1.0
 

@@ -35,7 +35,7 @@ class StepTest(NamedTuple):
 
 
 def send_step(structure, parameters, direction, passages=3.0, rotations_blocked=True):
-    """Histories of the blocks of a tower whose base moves with the step's velocity from the start.
+    """`StepTest` of the blocks of a tower whose base moves with the step's velocity from the start.
 
     Parameters
     ----------
@@ -47,10 +47,6 @@ def send_step(structure, parameters, direction, passages=3.0, rotations_blocked=
         Length of the test, in passages of the tower at the chain's long-wave speed [1].
     rotations_blocked : bool
         Of the blocks under a horizontal step; a vertical one turns none.
-
-    Returns
-    -------
-    StepTest
 
     Raises
     ------

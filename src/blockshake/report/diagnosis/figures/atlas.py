@@ -12,21 +12,9 @@ _COLORS = 31  # so few are drawn as areas
 
 
 def plot_atlas(misfit, tests, joints):
-    """Standardised residuals, one panel a test.
+    """Figure of the standardised residuals of `misfit`, one panel a test; ``joints`` from the lowest up.
 
-    Parameters
-    ----------
-    misfit : xarray.Dataset
-        From `misfit`.
-    tests : list of str
-    joints : list of str
-        From the lowest up.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Red: the joint moved farther than simulated, blue: less far; a number where a residual is beyond its test's
-        limit.
+    Red: the joint moved farther than simulated, blue: less far; a number where a residual is beyond its test's limit.
     """
     columns = min(_COLUMNS, len(tests))
     rows = -(-len(tests) // columns)

@@ -21,22 +21,10 @@ _MARKERS = ("s", "D", "^")
 
 
 def plot_candidates(rows, labels, causes, placebo):
-    """Log ratio of each effect at its best place, the strongest on top.
+    """Figure of the log ratio of each effect at its best place, a `CandidateScore`, the strongest on top.
 
-    Parameters
-    ----------
-    rows : list of CandidateScore
-    labels : list of str
-        Of the rows.
-    causes : collection of str
-        Effects that are not excluded.
-    placebo : float
-        Largest log ratio of a candidate that means nothing.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Both solvers taken together and each by itself; rows of causes shaded; placebo and nominal model as lines.
+    ``causes``: effects that are not excluded, their rows shaded; ``placebo``: largest log ratio of a candidate that
+    means nothing, a line as the nominal model. Both solvers taken together and each by itself.
     """
     figure = new_figure(0.022 + 0.0055 * len(rows))
     axes = figure.subplots()

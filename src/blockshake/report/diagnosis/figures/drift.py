@@ -13,19 +13,9 @@ _MOST_POINTS = 600  # in print half a point apart
 
 
 def plot_extended_drift(consequences, tests, body, measured_word):
-    """The recalibrated and the extended model side by side, one row a sealed test.
+    """Figure of the recalibrated and the extended model of `campaign_gain` side by side, one row a sealed test.
 
-    Parameters
-    ----------
-    consequences : xarray.Dataset
-        From `campaign_gain`.
-    tests : list of str
-    body, measured_word : str
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Band of 5 to 95 %, median and measured curve [mm] in each panel.
+    Band of 5 to 95 %, median and measured curve [mm] in each panel.
     """
     kinds = ("recalibrated", "extended")
     figure = new_figure(0.02 + 0.032 * len(tests))
@@ -48,15 +38,7 @@ def plot_extended_drift(consequences, tests, body, measured_word):
 
 
 def plot_nominal_drift(misfit, readings, tests, body, measured_word):
-    """The nominal model and the tests, one row a test; see `plot_extended_drift`.
-
-    Parameters
-    ----------
-    misfit, readings : xarray.Dataset
-        From `misfit` and `measured_readings`.
-    tests : list of str
-    body, measured_word : str
-    """
+    """Figure of the nominal model of `misfit` and of `measured_readings`, one row a test; see `plot_extended_drift`."""
     figure = new_figure(0.02 + 0.034 * len(tests))
     panels = figure.subplots(len(tests), 1, squeeze=False)[:, 0]
     for axes, test in zip(panels, tests, strict=True):

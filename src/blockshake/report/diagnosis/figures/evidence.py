@@ -8,19 +8,9 @@ _BAND = 2.0  # standard deviations
 
 
 def plot_features(rows, labels, extended_word):
-    """Residuals of features with the nominal model and with the candidate.
+    """Figure of the residuals of features with the nominal model and with the candidate.
 
-    Parameters
-    ----------
-    rows : xarray.Dataset
-        Rows of `deciding_features`.
-    labels : list of str
-    extended_word : str
-        What the model with the candidate is called.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    ``rows`` of `deciding_features`; ``extended_word``: what the model with the candidate is called.
     """
     count = rows.sizes["row"]
     figure = new_figure(0.021 + 0.0058 * count)
@@ -44,17 +34,13 @@ def plot_features(rows, labels, extended_word):
 
 
 def plot_constancy(panels):
-    """Size of a candidate by each test, and by all of them.
+    """Figure of the size of a candidate by each test, and by all of them.
 
     Parameters
     ----------
     panels : list of dict
         One a candidate: ``title``, ``axis`` (label of the size), ``tests``, ``estimate``, ``lower`` and ``upper`` by
         test, ``all``, the three of all tests together, or None, and ``ends`` of the prior.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     count = max(len(panel["tests"]) for panel in panels)
     columns = min(2, len(panels))

@@ -10,18 +10,7 @@ _KILO = 1e-3
 
 
 def plot_levers(forces, joint):
-    """Lever of one joint in every test, with the edges of its face.
-
-    Parameters
-    ----------
-    forces : xarray.Dataset
-        From `measured_forces`.
-    joint : str
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Figure of the lever of one joint in every test of `measured_forces`, with the edges of its face."""
     tests = [str(name) for name in forces["test"].values]
     figure = new_figure(0.012 + 0.026 * len(tests))
     panels = figure.subplots(len(tests), 1, sharex=True, squeeze=False)[:, 0]
@@ -41,17 +30,7 @@ def plot_levers(forces, joint):
 
 
 def plot_unexplained(forces):
-    """Least unexplained force of every block in every test.
-
-    Parameters
-    ----------
-    forces : xarray.Dataset
-        From `measured_forces`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Figure of the least unexplained force of every block in every test of `measured_forces`."""
     tests = [str(name) for name in forces["test"].values]
     figure = new_figure(0.016 + 0.026 * len(tests))
     panels = figure.subplots(len(tests), 1, sharex=True, squeeze=False)[:, 0]

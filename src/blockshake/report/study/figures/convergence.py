@@ -33,17 +33,7 @@ _ROWS = {
 
 
 def plot_convergence(table):
-    """Differences to the finest setting against each parameter, and the energy residual itself.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        From `study_convergence`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Figure of a `study_convergence`: differences to the finest setting by parameter, and the energy residual."""
     figure = new_figure(0.15)
     panels = figure.subplots(len(_ROWS), len(PARAMETERS), sharex="col", sharey="row")
     scales = value_scales(table)

@@ -6,16 +6,9 @@ from blockshake.report.document.drawing import BLACK, BLUE, LIGHT_GREY, RED, new
 
 
 def plot_friction(calibrations):
-    """Excess score over the best candidate with its error, one panel a case; accepted candidates filled.
+    """Figure of the excess score over the best candidate with its error, one panel a case; accepted ones are filled.
 
-    Parameters
-    ----------
-    calibrations : dict of str to dict
-        From `friction_summary`, by case.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    ``calibrations``: from `friction_summary`, by case.
     """
     figure = new_figure(0.065)
     panels = figure.subplots(1, len(calibrations), squeeze=False, sharey=True)[0]

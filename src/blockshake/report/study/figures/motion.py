@@ -13,18 +13,9 @@ _ROWS = (
 
 
 def plot_motions(motions, windows):
-    """Histories along x at 100 %, one column a motion.
+    """Figure of histories along x at 100 %, one column a motion.
 
-    Parameters
-    ----------
-    motions : list of xarray.Dataset
-        From `describe_motion`.
-    windows : dict of str to list of float
-        Durations simulated of a motion, by name [s].
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    ``motions`` from `describe_motion`; ``windows``: durations simulated of each, by name [s].
     """
     figure = new_figure(0.125)
     panels = figure.subplots(3, len(motions), sharex="col", sharey="row", squeeze=False)
@@ -42,16 +33,9 @@ def plot_motions(motions, windows):
 
 
 def plot_spectra(motions):
-    """Response spectra at 5 % damping and 100 %, with the ordinates that a synthetic motion aims at.
+    """Figure of response spectra at 5 % damping and 100 %, with the ordinates that a synthetic motion aims at.
 
-    Parameters
-    ----------
-    motions : list of xarray.Dataset
-        From `describe_motion`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    ``motions`` from `describe_motion`.
     """
     figure = new_figure(0.075)
     panels = figure.subplots(1, len(motions), sharey=True, squeeze=False)[0]

@@ -10,17 +10,7 @@ _THEIRS = {"color": RED, "linestyle": (0, (4, 2)), "linewidth": 1.0}
 
 
 def plot_peer(record):
-    """Top block of every history by both programs, and theirs less ours.
-
-    Parameters
-    ----------
-    record : xarray.Dataset
-        From `load_peer_record`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Figure of the top block of every history of `load_peer_record` by both programs, and of theirs less ours."""
     figure = new_figure(0.085)
     panels = figure.subplots(
         2, record.sizes["history"], sharex="col", squeeze=False, height_ratios=(1.6, 1.0)

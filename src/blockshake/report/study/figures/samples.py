@@ -12,18 +12,9 @@ _ROW_HEIGHT = 0.044  # m of paper
 
 
 def plot_samples(design, distributions):
-    """Density of each sampled variable beside its target.
+    """Figure of the density of each sampled variable beside its target.
 
-    Parameters
-    ----------
-    design : pandas.DataFrame
-        One row a sample, columns the dotted names, SI.
-    distributions : dict of str to Lognormal
-        Targets, by dotted name.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    ``design``: one row a sample, columns the dotted names, SI; ``distributions``: `Lognormal` targets by dotted name.
     """
     rows = -(-len(distributions) // _COLUMNS)
     figure = new_figure(_ROW_HEIGHT * rows + 0.008)
@@ -51,18 +42,7 @@ def plot_samples(design, distributions):
 
 
 def plot_correlation(correlation, labels):
-    """Correlation reached between the variables, as numbers on a shaded square.
-
-    Parameters
-    ----------
-    correlation : float64 array, shape (n_variables, n_variables)
-        [1]
-    labels : list of str
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Figure of the correlation reached between the labelled variables, as numbers on a shaded square [1]."""
     correlation = np.asarray(correlation, dtype=float)
     figure = new_figure(0.105, 0.15)
     axes = figure.subplots()

@@ -13,17 +13,7 @@ _STEP = {"normal": "vertical step: normal stiffness", "shear": "horizontal step:
 
 
 def plot_waves(waves):
-    """Displacement of the blocks of a tower after a step of velocity, with the arrivals.
-
-    Parameters
-    ----------
-    waves : xarray.Dataset
-        From `wave_tests`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Figure of the displacement of a tower's blocks after a step of velocity, with the arrivals, from `wave_tests`."""
     figure = new_figure(0.075)
     panels = figure.subplots(1, waves.sizes["direction"], squeeze=False)[0]
     for axes, direction in zip(panels, waves["direction"].values, strict=True):
@@ -43,16 +33,9 @@ def plot_waves(waves):
 
 
 def plot_stiffness(stiffness):
-    """Histograms of the calibrated stiffness over the samples: the paper's Fig. 10.
+    """Figure of histograms of the calibrated stiffness over the samples [N/m3]: the paper's Fig. 10.
 
-    Parameters
-    ----------
-    stiffness : pandas.DataFrame
-        Columns ``ls_dem.normal_stiffness`` and ``ls_dem.shear_stiffness`` [N/m3].
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    Columns ``ls_dem.normal_stiffness`` and ``ls_dem.shear_stiffness``.
     """
     figure = new_figure(0.055)
     panels = figure.subplots(1, 2, sharey=True)

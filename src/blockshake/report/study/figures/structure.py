@@ -18,18 +18,10 @@ _FILL = ("#eceff1", "#f7dfc0", "#cfd8dc", "#d9e8d0")
 
 
 def plot_structure(structure):
-    """Front view (x, z) and side view (y, z) at the same scale.
+    """Figure of a structure at its start: front view (x, z) and side view (y, z) at the same scale.
 
-    Parameters
-    ----------
-    structure : Structure
-        At its start.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Sizes in m; circles are markers, triangles accelerometers. Nearer parts hide those
-        behind; sensors are drawn where they face the eye or not.
+    Sizes in m; circles are markers, triangles accelerometers. Nearer parts hide those behind; sensors are drawn where
+    they face the eye or not.
     """
     corners = _corners(structure)
     together = np.vstack(corners)

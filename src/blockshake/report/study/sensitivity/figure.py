@@ -20,12 +20,7 @@ from blockshake.study.sensitivity.findings import differs, is_known
 
 SHOWN = {
     "first_order": ("history", "share of the envelope's thickness [1]", (-0.25, 1.05), (0.0, 0.5, 1.0)),
-    "rank_correlation": (
-        "peak",
-        "partial rank correlation with the peak [1]",
-        (-1.05, 1.05),
-        (-0.5, 0.5),
-    ),
+    "rank_correlation": ("peak", "partial rank correlation with the peak [1]", (-1.05, 1.05), (-0.5, 0.5)),
 }
 _COLORS = {"first_order": BLUE, "rank_correlation": RED}
 # by place of the variable, so that one has its colour in every case
@@ -90,21 +85,10 @@ def is_shown(result, markers, measure, noise):
 
 
 def plot_sensitivity_over_time(sensitivities, marker, noise):
-    """Spread of the top block second by second, and the share of it that each variable explains.
+    """Figure of the top block's spread second by second, and of the share of it that each variable explains, by model.
 
-    Parameters
-    ----------
-    sensitivities : dict of str to xarray.Dataset
-        By model.
-    marker : str
-    noise : float
-        [m]; seconds in which samples differ by less have no shares.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Above: standard deviation over the samples [mm], dashed the marker's noise. Below: first-order shares of the
-        variables of use.
+    Above: standard deviation over the samples [mm], dashed the marker's noise [m]. Below: first-order shares of the
+    variables of use; seconds in which samples differ by less than the noise have none.
     """
     figure = new_figure(0.085)
     panels = figure.subplots(2, len(sensitivities), sharex=True, sharey="row", squeeze=False)

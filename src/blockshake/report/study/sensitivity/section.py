@@ -1,7 +1,7 @@
 """Section on the causes of the differences between samples: figures, words and the summary over cases."""
 
 from blockshake.report.document.blocks import Figure, Heading, Section, Text
-from blockshake.report.document.drawing import PAGE_WIDTH, svg_of
+from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.wording import model_label, number
 from blockshake.report.study.sensitivity.figure import (
     SHOWN,
@@ -59,13 +59,11 @@ def _case(case):
             "Models and measures with nothing to show are left out: samples that differ by less than the noise of a "
             f"marker ({noise} mm, standard deviation), or too few of them.",
             svg_of(plot_sensitivity, results, chosen, case.marker_noise),
-            PAGE_WIDTH,
         ),
         Figure(
             f"{case.name}, {top}: standard deviation over the samples in every second (dashed: noise of a marker), and "
             "the share of it that each variable of use explains by itself; grey: level of chance over all seconds, "
             "blocks and variables.",
             svg_of(plot_sensitivity_over_time, results, chosen[top], case.marker_noise),
-            PAGE_WIDTH,
         ),
     ]

@@ -9,17 +9,7 @@ from blockshake.study.sensitivity.findings import differs, influences, is_known,
 def sentence(result, body, marker, noise):
     """Spread of a block, and the variables that explain it beyond chance, in sentences.
 
-    Parameters
-    ----------
-    result : xarray.Dataset
-        From `sensitivity`.
-    body, marker : str
-    noise : float
-        Of a measured marker [m].
-
-    Returns
-    -------
-    str
+    ``result`` from `sensitivity`; ``noise`` of a measured marker [m].
     """
     history = result.sel(quantity="history", marker=marker)
     if not np.isfinite(history["spread"]):

@@ -31,12 +31,11 @@ from blockshake.solvers.ls_dem.surfaces import level_set
 class Candidates(NamedTuple):
     """Near nodes, by side of a pair of bodies.
 
-    ``pairs`` int64 (n_pairs, 2), lower index first; ``joint`` int64 (n_pairs,): their rows in `Joints`.
-    Side ``2 p`` of pair ``p`` holds nodes of its first body against the level set of its
-    second, side ``2 p + 1`` the reverse. ``first`` int64 (2 n_pairs + 1,): first packet of each
-    side. ``node`` int64 (n_packets * LANES,): index in `Surfaces`, -1 for filling. ``packets``
-    float64 (n_packets, PACKET): see `packets`. ``position`` and ``orientation``: poses for
-    which the list was made.
+    ``pairs`` int64 (n_pairs, 2), lower index first; ``joint`` int64 (n_pairs,): their rows in `Joints`. Side ``2 p`` of
+    pair ``p`` holds nodes of its first body against the level set of its second, side ``2 p + 1`` the reverse.
+    ``first`` int64 (2 n_pairs + 1,): first packet of each side. ``node`` int64 (n_packets * LANES,): index in
+    `Surfaces`, -1 for filling. ``packets`` float64 (n_packets, PACKET): see `packets`. ``position`` and
+    ``orientation``: poses for which the list was made.
     """
 
     pairs: np.ndarray
@@ -52,23 +51,17 @@ class Candidates(NamedTuple):
 def empty_candidates(n_bodies):
     """Lists before the first search."""
     return Candidates(
-        np.empty((0, 2), np.int64),
-        np.empty(0, np.int64),
-        np.zeros(1, np.int64),
-        np.empty(0, np.int64),
-        np.empty((0, PACKET)),
-        np.full((n_bodies, 3), np.inf),
-        np.zeros((n_bodies, 4)),
-    )
+        np.empty((0, 2), np.int64), np.empty(0, np.int64), np.zeros(1, np.int64), np.empty(0, np.int64),
+        np.empty((0, PACKET)), np.full((n_bodies, 3), np.inf), np.zeros((n_bodies, 4)),
+    )  # fmt: skip
 
 
 @kernel
 def lists_expired(candidates, surfaces, driven, position, orientation, skin):
     """Whether a node outside the lists could touch by now.
 
-    A node is in a list when the level set there was below ``skin`` times its steepest slope, so that
-    nothing is missed while no two bodies together have moved, with respect to the first driven
-    body, by more than ``skin``.
+    A node is in a list when the level set there was below ``skin`` times its steepest slope, so that nothing is missed
+    while no two bodies together have moved, with respect to the first driven body, by more than ``skin``.
     """
     shift = np.zeros(3)
     for body in range(driven.size):

@@ -70,9 +70,8 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
 
     Notes
     -----
-    Each body's nodes are checked against the other's level set; each side carries half of the
-    interface's stiffness, so that a face on a face has it once. The area in touch is the mean
-    of what the two sides find.
+    Each body's nodes are checked against the other's level set; each side carries half of the interface's stiffness, so
+    that a face on a face has it once. The area in touch is the mean of what the two sides find.
     """
     R, d = np.empty((2, 3, 3)), np.empty((2, 3))
     lanes, sums = np.empty(N_SUMS * LANES), np.empty(N_SUMS)
@@ -114,18 +113,9 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
                 packets, bounds[2 * pair + side], bounds[2 * pair + side + 1], law, gamma_s, lanes, sums
             )
             _share_into(
-                pairs[pair, side],
-                pairs[pair, 1 - side],
-                side,
-                rotation,
-                offset,
-                d,
-                sums,
-                force,
-                moment,
-                joint,
+                pairs[pair, side], pairs[pair, 1 - side], side, rotation, offset, d, sums, force, moment, joint,
                 joint_force,
-            )
+            )  # fmt: skip
             heat += sums[SUM_SLID]
             energy[STEP_DASHPOT_HEAT] += sums[SUM_DAMPED]
             energy[SPRING_ENERGY] += sums[SUM_HELD]

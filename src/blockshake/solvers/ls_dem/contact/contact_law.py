@@ -112,12 +112,11 @@ def node_force(phi, slope, nx, ny, nz, ux, uy, uz, ox, oy, oz, closed, area, wei
 
     Notes
     -----
-    The stretch is kept in the frame of the body whose level set is read, so that it turns with
-    the interface; where the normal changes (from a flat to a chamfer) its part along the new
-    normal is dropped, and what the spring held of it counts as dashpot heat. The velocity of the
-    dashpot is that of the last two half steps carried on to the step, which is of second order.
-    Friction heat is the mean shear force of the step times the slip: exactly the work on the
-    spring less the energy it gained.
+    The stretch is kept in the frame of the body whose level set is read, so that it turns with the interface; where the
+    normal changes (from a flat to a chamfer) its part along the new normal is dropped, and what the spring held of it
+    counts as dashpot heat. The velocity of the dashpot is that of the last two half steps carried on to the step, which
+    is of second order. Friction heat is the mean shear force of the step times the slip: exactly the work on the spring
+    less the energy it gained.
     """
     k_node, k_shear = law.k_n * area, law.k_s * area
     tx, ty, tz, dropped, now_closed = trial_stretch(ox, oy, oz, ux, uy, uz, nx, ny, nz)

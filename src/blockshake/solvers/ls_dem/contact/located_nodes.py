@@ -150,20 +150,13 @@ def _locate_in_lattice_into(packets, first, last, lattice, values, shape, R, d, 
             ) = corner_values(values, packets[packet, CORNERS + lane], n_y, n_z)
         for lane in range(LANES):
             phi, nx, ny, nz, slope = interpolate(
-                packets[packet, CORNERS + lane],
-                packets[packet, CORNERS + LANES + lane],
-                packets[packet, CORNERS + 2 * LANES + lane],
-                packets[packet, CORNERS + 3 * LANES + lane],
-                packets[packet, CORNERS + 4 * LANES + lane],
-                packets[packet, CORNERS + 5 * LANES + lane],
-                packets[packet, CORNERS + 6 * LANES + lane],
-                packets[packet, CORNERS + 7 * LANES + lane],
-                packets[packet, NORMAL_X + lane],
-                packets[packet, NORMAL_Y + lane],
-                packets[packet, NORMAL_Z + lane],
-                packets[packet, PHI + lane],
-                inverse,
-            )
+                packets[packet, CORNERS + lane], packets[packet, CORNERS + LANES + lane],
+                packets[packet, CORNERS + 2 * LANES + lane], packets[packet, CORNERS + 3 * LANES + lane],
+                packets[packet, CORNERS + 4 * LANES + lane], packets[packet, CORNERS + 5 * LANES + lane],
+                packets[packet, CORNERS + 6 * LANES + lane], packets[packet, CORNERS + 7 * LANES + lane],
+                packets[packet, NORMAL_X + lane], packets[packet, NORMAL_Y + lane], packets[packet, NORMAL_Z + lane],
+                packets[packet, PHI + lane], inverse,
+            )  # fmt: skip
             packets[packet, SLOPE + lane] = slope
             packets[packet, PHI + lane] = phi
             packets[packet, NORMAL_X + lane] = nx

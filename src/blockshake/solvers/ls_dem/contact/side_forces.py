@@ -76,22 +76,12 @@ def side_forces_into(packets, first, last, law, gamma_s, lanes, sums):
             continue
         for lane in range(LANES):
             fx, fy, fz, sx, sy, sz, closed, held, slid, damped = node_force(
-                packets[packet, PHI + lane],
-                packets[packet, SLOPE + lane],
-                packets[packet, NORMAL_X + lane],
-                packets[packet, NORMAL_Y + lane],
-                packets[packet, NORMAL_Z + lane],
-                packets[packet, MOVED_X + lane],
-                packets[packet, MOVED_Y + lane],
-                packets[packet, MOVED_Z + lane],
-                packets[packet, STRETCH_X + lane],
-                packets[packet, STRETCH_Y + lane],
-                packets[packet, STRETCH_Z + lane],
-                packets[packet, CLOSED + lane],
-                packets[packet, AREA + lane],
-                packets[packet, DAMPING_WEIGHT + lane],
-                law,
-            )
+                packets[packet, PHI + lane], packets[packet, SLOPE + lane], packets[packet, NORMAL_X + lane],
+                packets[packet, NORMAL_Y + lane], packets[packet, NORMAL_Z + lane], packets[packet, MOVED_X + lane],
+                packets[packet, MOVED_Y + lane], packets[packet, MOVED_Z + lane], packets[packet, STRETCH_X + lane],
+                packets[packet, STRETCH_Y + lane], packets[packet, STRETCH_Z + lane], packets[packet, CLOSED + lane],
+                packets[packet, AREA + lane], packets[packet, DAMPING_WEIGHT + lane], law,
+            )  # fmt: skip
             x, y = packets[packet, PLACE_X + lane], packets[packet, PLACE_Y + lane]
             z = packets[packet, PLACE_Z + lane]
             packets[packet, STRETCH_X + lane] = sx

@@ -42,8 +42,7 @@ def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near):
         Out-of-balance force below which a body is at rest: a billionth of its weight, or what the rounding of
         its position makes of its springs [N].
     left : bool array, shape (n_bodies,)
-        Free bodies of stacks that would move farther even with their joints bonded: they have no
-        equilibrium near.
+        Free bodies of stacks that would move farther even with their joints bonded: they have no equilibrium near.
     stable_step : float
         Largest stable time step of the joints in touch, see `stable_time_step` [s].
 

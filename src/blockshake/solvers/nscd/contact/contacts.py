@@ -18,17 +18,16 @@ W_NN, W_11, W_22, W_N1, W_N2, N_DELASSUS = 0, 1, 2, 3, 4, 5
 class Contacts(NamedTuple):
     """Contacts of one step, pair by pair in fixed order, stoppers last.
 
-    ``body_a``, ``body_b`` int64 (n,): impulses act on b and, reversed, on a. ``basis`` (n, 3, 3):
-    rows are the unit normal from a to b and two tangents, world frame. ``arm_a``, ``arm_b``
-    (n, 3): point minus mass centre, world frame [m]. ``home`` (n, 3): point in the frame of a [m].
-    ``gap`` (n,) [m]; ``friction`` (n,) [1] and ``bias`` (n, 2) [1]: the coefficient is ``friction + bias . s`` for
-    slip of b along the unit vector s of the tangents. ``shift`` (n, 3): velocity added to that of the contact before
-    the law is applied [m/s]. ``share`` (n,) [1] and ``compliance`` (n,) [1/kg] of the normal law ``share (u_n +
-    bound_n) + compliance p_n >= 0``: 1 and 0 where rigid bodies touch, a compliance where a layer is between them;
-    only a contact without friction may have another share. ``delassus`` (n, N_DELASSUS): operator of the local
-    problem, see `delassus_into` [1/kg]. ``impulse`` (n, 3) along the basis [N s]. ``slip_ratio`` (n,): slip speed
-    per friction impulse, of `solve_contact` [1/kg]. ``stopper`` int64
-    (n,): index of the stopper, or -1.
+    ``body_a``, ``body_b`` int64 (n,): impulses act on b and, reversed, on a. ``basis`` (n, 3, 3): rows are the unit
+    normal from a to b and two tangents, world frame. ``arm_a``, ``arm_b`` (n, 3): point minus mass centre, world frame
+    [m]. ``home`` (n, 3): point in the frame of a [m]. ``gap`` (n,) [m]; ``friction`` (n,) [1] and ``bias`` (n, 2) [1]:
+    the coefficient is ``friction + bias . s`` for slip of b along the unit vector s of the tangents. ``shift`` (n, 3):
+    velocity added to that of the contact before the law is applied [m/s]. ``share`` (n,) [1] and ``compliance`` (n,)
+    [1/kg] of the normal law ``share (u_n + bound_n) + compliance p_n >= 0``: 1 and 0 where rigid bodies touch, a
+    compliance where a layer is between them; only a contact without friction may have another share. ``delassus``
+    (n, N_DELASSUS): operator of the local problem, see `delassus_into` [1/kg]. ``impulse`` (n, 3) along the basis
+    [N s]. ``slip_ratio`` (n,): slip speed per friction impulse, of `solve_contact` [1/kg]. ``stopper`` int64 (n,):
+    index of the stopper, or -1.
     """
 
     body_a: np.ndarray
@@ -53,45 +52,22 @@ class Contacts(NamedTuple):
 def empty_contacts(capacity):
     """Arrays for that many contacts."""
     return Contacts(
-        np.empty(capacity, np.int64),
-        np.empty(capacity, np.int64),
-        np.empty((capacity, 3, 3)),
-        np.empty((capacity, 3)),
-        np.empty((capacity, 3)),
-        np.empty((capacity, 3)),
-        np.empty(capacity),
-        np.zeros(capacity),
-        np.zeros((capacity, 2)),
-        np.zeros((capacity, 3)),
-        np.ones(capacity),
-        np.zeros(capacity),
-        np.empty((capacity, N_DELASSUS)),
-        np.zeros((capacity, 3)),
-        np.zeros(capacity),
+        np.empty(capacity, np.int64), np.empty(capacity, np.int64), np.empty((capacity, 3, 3)),
+        np.empty((capacity, 3)), np.empty((capacity, 3)), np.empty((capacity, 3)), np.empty(capacity),
+        np.zeros(capacity), np.zeros((capacity, 2)), np.zeros((capacity, 3)), np.ones(capacity), np.zeros(capacity),
+        np.empty((capacity, N_DELASSUS)), np.zeros((capacity, 3)), np.zeros(capacity),
         np.full(capacity, -1, np.int64),
-    )
+    )  # fmt: skip
 
 
 @kernel
 def _first_rows(contacts, count):
     return Contacts(
-        contacts.body_a[:count],
-        contacts.body_b[:count],
-        contacts.basis[:count],
-        contacts.arm_a[:count],
-        contacts.arm_b[:count],
-        contacts.home[:count],
-        contacts.gap[:count],
-        contacts.friction[:count],
-        contacts.bias[:count],
-        contacts.shift[:count],
-        contacts.share[:count],
-        contacts.compliance[:count],
-        contacts.delassus[:count],
-        contacts.impulse[:count],
-        contacts.slip_ratio[:count],
-        contacts.stopper[:count],
-    )
+        contacts.body_a[:count], contacts.body_b[:count], contacts.basis[:count], contacts.arm_a[:count],
+        contacts.arm_b[:count], contacts.home[:count], contacts.gap[:count], contacts.friction[:count],
+        contacts.bias[:count], contacts.shift[:count], contacts.share[:count], contacts.compliance[:count],
+        contacts.delassus[:count], contacts.impulse[:count], contacts.slip_ratio[:count], contacts.stopper[:count],
+    )  # fmt: skip
 
 
 @kernel

@@ -67,9 +67,7 @@ def detect_pair_into(polyhedra, placed, a, b, margin, shrink, layer, memory, nor
     owner, other = (
         (a, b) if face < polyhedra.first_face[a + 1] and face >= polyhedra.first_face[a] else (b, a)
     )
-    count = _face_points_into(
-        polyhedra, placed, owner, other, face, margin, shrink, layer, points, gaps, areas
-    )
+    count = _face_points_into(polyhedra, placed, other, face, margin, shrink, layer, points, gaps, areas)
     if count == 0 or separation < -_TOUCH * size:
         edge_normal = np.empty(3)
         edge_separation = _best_edge_into(polyhedra, placed, a, b, edge_normal)
@@ -143,7 +141,7 @@ def _incident_face(polyhedra, placed, face, other):
 
 
 @kernel
-def _face_points_into(polyhedra, placed, owner, other, face, margin, shrink, layer, points, gaps, areas):
+def _face_points_into(polyhedra, placed, other, face, margin, shrink, layer, points, gaps, areas):
     """Corners of the overlap, and its middle where there is a layer; those within ``margin``.
 
     Every corner stands for a twelfth of the area and the middle for the rest, so that springs there have the axial

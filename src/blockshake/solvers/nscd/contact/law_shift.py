@@ -11,14 +11,13 @@ def law_shift_into(step, dt, theta, restitution, contacts):
 
     Notes
     -----
-    Poses of detection are ``dt`` apart, and the velocity at the end of a step carries one to the
-    next: ``gap + dt u_n`` is the next gap. So ``u_n + max(gap, 0) / dt >= 0`` lets a contact close
-    and no more, and leaves a penetration as it is. ``u`` must be measured with the levers halfway between these
-    two poses; those at hand are ``dt / 2`` older, and the difference is the centripetal velocity added here.
-    Newton's restitution replaces the anticipated gap where the velocity at the start would close the gap within the
-    step. The law of a stop and of a layer is implicit: impulse ``dt k`` times the closure at the end. All points of a
-    layer press at once, and what the levers add along it is that of its deepest point for all of them: else those that
-    stick would be stretched apart, and hold the block.
+    Poses of detection are ``dt`` apart, and the velocity at the end of a step carries one to the next: ``gap + dt u_n``
+    is the next gap. So ``u_n + max(gap, 0) / dt >= 0`` lets a contact close and no more, and leaves a penetration as it
+    is. ``u`` must be measured with the levers halfway between these two poses; those at hand are ``dt / 2`` older, and
+    the difference is the centripetal velocity added here. Newton's restitution replaces the anticipated gap where the
+    velocity at the start would close the gap within the step. The law of a stop and of a layer is implicit: impulse
+    ``dt k`` times the closure at the end. All points of a layer press at once, and what the levers add along it is that
+    of its deepest point for all of them: else those that stick would be stretched apart, and hold the block.
     """
     a, b, deepest = -1, -1, 0
     for contact in range(contacts.gap.size):

@@ -15,11 +15,10 @@ _SAME_DIRECTION = 1e-9
 class Polyhedra(NamedTuple):
     """Shapes of all bodies, each body with its own copy, body frames.
 
-    ``first_vertex`` int64 (n_bodies + 1,), ``vertices`` (n_vertices, 3) [m]; ``first_face``
-    (n_bodies + 1,), ``normals`` (n_faces, 3) outward, ``offsets`` (n_faces,) [m];
-    ``first_corner`` (n_faces + 1,), ``corners`` (n_corners,): rows of ``vertices``,
-    counter-clockwise seen from outside; ``first_direction`` (n_bodies + 1,), ``directions``
-    (n_directions, 3): distinct unit directions of edges; ``first_edge`` (n_bodies + 1,), ``edges``
+    ``first_vertex`` int64 (n_bodies + 1,), ``vertices`` (n_vertices, 3) [m]; ``first_face`` (n_bodies + 1,),
+    ``normals`` (n_faces, 3) outward, ``offsets`` (n_faces,) [m]; ``first_corner`` (n_faces + 1,), ``corners``
+    (n_corners,): rows of ``vertices``, counter-clockwise seen from outside; ``first_direction`` (n_bodies + 1,),
+    ``directions`` (n_directions, 3): distinct unit directions of edges; ``first_edge`` (n_bodies + 1,), ``edges``
     (n_edges, 2): rows of ``vertices``; ``radius`` and ``inradius`` (n_bodies,) about the mass centre [m].
     """
 
@@ -120,14 +119,10 @@ def empty_placed(polyhedra):
     """Arrays for `place_into`."""
     n_bodies = polyhedra.radius.size
     return Placed(
+        np.empty((n_bodies, 3)), np.empty(polyhedra.vertices.shape), np.empty(polyhedra.normals.shape),
+        np.empty(polyhedra.offsets.shape), np.empty(polyhedra.directions.shape), np.empty((n_bodies, 3)),
         np.empty((n_bodies, 3)),
-        np.empty(polyhedra.vertices.shape),
-        np.empty(polyhedra.normals.shape),
-        np.empty(polyhedra.offsets.shape),
-        np.empty(polyhedra.directions.shape),
-        np.empty((n_bodies, 3)),
-        np.empty((n_bodies, 3)),
-    )
+    )  # fmt: skip
 
 
 @kernel

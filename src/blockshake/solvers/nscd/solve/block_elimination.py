@@ -30,16 +30,12 @@ class BlockSystem(NamedTuple):
 
 @kernel
 def block_system(driven, body_a, body_b):
-    """System of bodies joined in pairs, its numbers not filled in.
+    """`BlockSystem` of bodies joined in pairs, its numbers not filled in.
 
     Parameters
     ----------
     driven : bool array, shape (n_bodies,)
     body_a, body_b : int64 arrays, shape (n_contacts,)
-
-    Returns
-    -------
-    BlockSystem
 
     Notes
     -----
@@ -94,14 +90,9 @@ def block_system(driven, body_a, body_b):
                 at -= 1
             column[at] = here
     return BlockSystem(
-        rank,
-        first,
-        column[:count].copy(),
-        np.empty((n, _FREE, _FREE)),
-        np.empty((count, _FREE, _FREE)),
-        np.empty((count, _FREE, _FREE)),
-        np.empty((n, _FREE)),
-    )
+        rank, first, column[:count].copy(), np.empty((n, _FREE, _FREE)), np.empty((count, _FREE, _FREE)),
+        np.empty((count, _FREE, _FREE)), np.empty((n, _FREE)),
+    )  # fmt: skip
 
 
 @kernel

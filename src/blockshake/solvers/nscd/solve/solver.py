@@ -3,11 +3,7 @@
 import numpy as np
 
 from blockshake.jit import kernel
-from blockshake.solvers.nscd.solve.gauss_seidel import (
-    apply_impulses_into,
-    relative_residual,
-    sweep_into,
-)
+from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into, relative_residual, sweep_into
 from blockshake.solvers.nscd.solve.newton import newton_space, newton_step_into
 
 # Newton settles within a few steps, or wanders among states that do not fit together: the stiffer the
@@ -71,10 +67,9 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
 
     Notes
     -----
-    Newton's method on the nonsmooth equations of Alart and Curnier (1991), from the impulses of
-    the step before. Where it fails with all
-    proximal terms, sweeps of nonlinear Gauss-Seidel (NLGS) of Jean (1999), up and down in turn, start from the
-    best impulses so far, and Newton tries again from where they end.
+    Newton's method on the nonsmooth equations of Alart and Curnier (1991), from the impulses of the step before. Where
+    it fails with all proximal terms, sweeps of nonlinear Gauss-Seidel (NLGS) of Jean (1999), up and down in turn, start
+    from the best impulses so far, and Newton tries again from where they end.
     """
     n_contacts = contacts.gap.size
     if n_contacts == 0:
@@ -94,14 +89,7 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
                 old_impulse[:] = contacts.impulse
                 old_v[:] = v
                 if not newton_step_into(
-                    bodies,
-                    inertia,
-                    inverse_inertia,
-                    contacts,
-                    _STIFFNESS[attempt],
-                    v_free,
-                    v,
-                    newton,
+                    bodies, inertia, inverse_inertia, contacts, _STIFFNESS[attempt], v_free, v, newton
                 ):
                     break
                 residual = _shorten_into(contacts, v, floor, old_impulse, old_v, tolerance)

@@ -41,7 +41,7 @@ class Shapes:
 
 @functools.cache
 def elastic_shapes(size, poisson_ratio, mesh_size, contact_spacing, free_modes):
-    """Elastic shapes of a box.
+    """`Shapes` of a box, elastic.
 
     Parameters
     ----------
@@ -53,10 +53,6 @@ def elastic_shapes(size, poisson_ratio, mesh_size, contact_spacing, free_modes):
     free_modes : int
         Free modes of vibration, lowest first, that join the constraint shapes; as many as the mesh has or more give
         all modes and no constraint shapes: the full mesh.
-
-    Returns
-    -------
-    Shapes
 
     Notes
     -----

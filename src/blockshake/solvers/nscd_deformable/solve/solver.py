@@ -23,7 +23,7 @@ _SLOW = 0.1
 
 
 @kernel
-def _shorten_into(problem, contacts, motion, floor, old_impulse, old_u, tolerance):
+def _shorten_into(contacts, motion, floor, old_impulse, old_u, tolerance):
     """Go back along a Newton step to the share of it with the least residual, which is returned."""
     residual = residual_of(contacts, motion.u, floor)
     if residual <= tolerance:
@@ -93,7 +93,7 @@ def solve_contacts_into(problem, contacts, floor, tolerance, max_iterations, mot
                 )
                 if not done:
                     break
-                residual = _shorten_into(problem, contacts, motion, floor, old_impulse, old_u, tolerance)
+                residual = _shorten_into(contacts, motion, floor, old_impulse, old_u, tolerance)
                 fresh = not made and residual > _SLOW * before
                 if residual < best:
                     best = residual
