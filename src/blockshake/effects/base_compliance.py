@@ -9,6 +9,9 @@ from blockshake.effects.places import nowhere
 from blockshake.geometry.rotations import rotation_matrices
 
 _THICKNESS = 0.2  # m, of the body beneath; it is driven, so that its mass does not count
+_WIDER = (
+    1.5  # width of the bed over that of what stands on it: a rocking block's edge stays within its middle
+)
 _GRIP = 2.0  # coefficient of friction towards it: the driven body does not slide on its bed
 
 
@@ -21,44 +24,56 @@ def _act(experiment, values, place):
 
 
 def _bedded(experiment, name, compliance):
-    """The experiment with a driven body beneath another one, which is free now, and a soft layer between the two.
+    """The experiment with a driven bed beneath a body, which is free now, and a soft layer between the two.
 
-    A layer of the compliance c over a plan of the second moment I turns by ``M c / I``.
+    A layer of the compliance c over a plan of the second moment I turns by ``M c / I``. The bed is not wider than
+    keeps the layer pressed: the narrower it is, the less it sinks for the same rotation. It stands as much higher as
+    the layer sinks under the weight, so that everything starts where the structure has it.
     """
     structure = experiment.structure
     index = structure.body_names.index(name)
-    body = structure.file.bodies[index]
+    body, turn = structure.file.bodies[index], rotation_matrices(structure.orientation[index])
     vertices = structure.solids[body.shape].vertices
-    size = np.ptp(vertices, axis=0)
-    down = np.array(
-        [0.0, 0.0, 0.5 * (vertices[:, 2].max() + vertices[:, 2].min()) - 0.5 * (size[2] + _THICKNESS)]
-    )
+    size, bottom = np.ptp(vertices, axis=0), vertices[:, 2].min()
+    carried = ~structure.driven
+    width = float(min(size[0], _WIDER * _extent(structure, carried)))
+    weight = structure.mass[carried | (np.arange(len(carried)) == index)].sum() * -structure.file.gravity[2]
+    layer = compliance * size[1] * width**3 / 12.0
+    sink = weight * layer / (size[1] * width)
+    middle = structure.position[carried, 0].mean() - structure.centroid[index, 0]
+    middle = float(np.clip(middle, 0.5 * (width - size[0]), 0.5 * (size[0] - width)))
+    bed = f"{name}-bed"
     beneath = {
-        "name": f"{name}-bed",
-        "shape": f"{name}-bed",
+        "name": bed,
+        "shape": bed,
         "material": body.material,
         "position": (
-            structure.centroid[index] + rotation_matrices(structure.orientation[index]) @ down
+            structure.centroid[index] + turn @ [middle, 0.0, bottom - 0.5 * _THICKNESS + sink]
         ).tolist(),
         "orientation": list(body.orientation),
         "driven": True,
     }
     mapping = structure.file.model_dump(mode="json")
-    mapping["shapes"][f"{name}-bed"] = {"box": [float(size[0]), float(size[1]), _THICKNESS]}
+    mapping["shapes"][bed] = {"box": [width, float(size[1]), _THICKNESS]}
     mapping["bodies"][index]["driven"] = False
     mapping["bodies"].append(beneath)
     friction = next((one for one in mapping["friction"] if set(one["pair"]) == {body.material}), None)
     if friction is None:
         friction = {"pair": [body.material, body.material], "coefficient": _GRIP}
         mapping["friction"].append(friction)
-    mapping["joints"].append(
-        {
-            "bodies": [f"{name}-bed", name],
-            "friction_factor": _GRIP / friction["coefficient"],
-            "compliance": float(compliance * size[1] * size[0] ** 3 / 12.0),
-        }
-    )
+    joint = {"friction_factor": _GRIP / friction["coefficient"], "compliance": float(layer)}
+    mapping["joints"].append({"bodies": [bed, name], **joint})
     return replace(experiment, structure=structure.with_mapping(mapping))
+
+
+def _extent(structure, chosen):
+    """Extent along x of some bodies at the start [m]."""
+    ends = []
+    for index in np.flatnonzero(chosen):
+        solid = structure.solids[structure.file.bodies[index].shape]
+        along = (solid.vertices @ rotation_matrices(structure.orientation[index]).T)[:, 0]
+        ends += [structure.centroid[index, 0] + along.min(), structure.centroid[index, 0] + along.max()]
+    return max(ends) - min(ends)
 
 
 EFFECT = Effect(

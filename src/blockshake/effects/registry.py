@@ -2,19 +2,17 @@
 
 from blockshake.effects import (
     base_compliance,
-    clock_lag,
     eccentricity,
     impact_restitution,
     joint_compliance,
-    marker_offset,
     rate_weakening_friction,
     reduced_bearing,
-    sensor_gain,
     stopper_contact,
     table_pitch,
     vertical_motion,
     weak_joint,
 )
+from blockshake.effects.sensors import clock_lag, marker_offset, sensor_gain
 from blockshake.errors import InputError
 
 _FILES = (
