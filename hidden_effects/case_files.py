@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
+from outside_forces import OUTSIDE
 from pydantic import Field, model_validator
 
 from blockshake.diagnosis.libraries.plan import result_name
@@ -13,6 +14,7 @@ from blockshake.validation import Strict, validated
 
 ROOT = Path(__file__).parents[1]
 SEEDS = Path(__file__).parent / "seeds.yaml"
+SEEDS_OF_RECORD = Path(__file__).parent / "seeds-of-record.yaml"
 SMALL_SEEDS = Path(__file__).parent / "small-seeds.yaml"
 TRACK_RECORD = ROOT / "data" / "track-record" / "hidden-effects.json"
 PAGE = ROOT / "docs" / "hidden-effects.md"
@@ -30,8 +32,10 @@ class PlannedCase(Strict):
 
     @model_validator(mode="after")
     def _known(self):
-        if self.truth not in ("none", *EFFECTS) or (self.size is None) != (self.truth == "none"):
-            raise ValueError("expected none, or an effect with its size")
+        if self.truth not in ("none", *EFFECTS, *OUTSIDE) or (self.size is not None) != (
+            self.truth in EFFECTS
+        ):
+            raise ValueError("expected none, a cause from outside, or an effect with its size")
         return self
 
 

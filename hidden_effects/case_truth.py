@@ -1,6 +1,7 @@
 """Truth of a case, drawn by its seed: parameters, numerics, table, places, and the effect's size and place."""
 
 import numpy as np
+from outside_forces import OUTSIDE, draw_outside
 from scipy.interpolate import CubicSpline
 from scipy.signal import lfilter
 
@@ -19,21 +20,25 @@ _STIFFNESS = {"ls_dem.normal_stiffness": 2.16e10, "ls_dem.shear_stiffness": 9.0e
 _EFFECT, _PARAMETERS, _NUMERICS, _TABLE, _PLACES = range(5)  # streams of the seed
 
 
-def true_effect(name, size, structure, seed):
+def true_effect(name, size, structure, tests, seed):
     """Name, values, place and size in units of the visible one, of the effect in a case; None where there is none.
 
     Parameters
     ----------
     name : str
-        Of the registry, or ``none``.
+        Of the registry, of `OUTSIDE`, or ``none``.
     size : str
         Key of `SIZES`; what the prior does not hold of it is not drawn.
     structure : Structure
+    tests : int
+        Their number.
     seed : int
     """
     if name == NONE:
         return None
     generator = np.random.default_rng([seed, _EFFECT])
+    if name in OUTSIDE:
+        return draw_outside(name, structure, tests, generator)
     first, *others = EFFECTS[name].parameters
     step = first.visible - first.null
     end = first.upper if step > 0.0 else first.lower

@@ -4,6 +4,8 @@ A diagnosis that recognises its own formula proves nothing. Parameters and place
 can be held against them; what they do differs. None of these calls the registry's own equations.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.signal import lfilter
@@ -151,6 +153,30 @@ def _joint_compliance(experiment, values, place):
     return experiment.with_parameters(**changed)
 
 
+def _base_compliance(experiment, values, place):
+    structure = experiment.structure
+    (index,) = np.flatnonzero(structure.driven)
+    slab = structure.file.bodies[index]
+    length, depth, height = structure.file.shapes[slab.shape].box
+    layer = values["compliance"] * depth * length**3 / 12.0
+    sink = float(structure.mass.sum()) * 9.81 * layer / (length * depth)
+    mapping = structure.file.model_dump(mode="json")
+    mapping["shapes"]["table"] = {"box": [length, depth, 0.1]}
+    mapping["bodies"][index]["driven"] = False
+    place = structure.centroid[index] + [0.0, 0.0, sink - 0.5 * height - 0.05]
+    mapping["bodies"].append(
+        {
+            "name": "table",
+            "shape": "table",
+            "material": slab.material,
+            "position": place.tolist(),
+            "driven": True,
+        }
+    )
+    mapping["joints"].append({"bodies": ["table", slab.name], "friction_factor": 3.0, "compliance": layer})
+    return replace(experiment, structure=structure.with_mapping(mapping))
+
+
 # by name: what the form does to the solver beside the experiment
 FORM_NUMERICS = {"impact-restitution": {"ls_dem.shear_damping_ratio": 0.02}}
 # by name: what it does, and the change of an experiment
@@ -172,6 +198,7 @@ FORMS = {
         "a tenth of the drop lost at any rate, the rest over 1.3 times the scale", _rate_weakening_friction
     ),
     "joint-compliance": ("a fifth of the compliance in the neighbouring joints too", _joint_compliance),
+    "base-compliance": ("a soft layer under the whole slab, whose vertical play counts too", _base_compliance),
 }  # fmt: skip
 
 

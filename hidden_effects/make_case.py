@@ -24,6 +24,7 @@ from case_truth import (
     true_table,
 )
 from effect_forms import FORM_NUMERICS, FORMS, distort
+from outside_forces import OUTSIDE
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
@@ -57,7 +58,8 @@ def name_of_test(motion, scale):
 
 def made_by():
     """Digest of every source that makes a case."""
-    own = [(HERE / name).read_bytes() for name in ("effect_forms.py", "case_noise.py", "case_truth.py")]
+    names = ("effect_forms.py", "outside_forces.py", "case_noise.py", "case_truth.py")
+    own = [(HERE / name).read_bytes() for name in names]
     return content_digest(
         *own,
         Path(__file__).read_bytes(),
@@ -74,9 +76,9 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True):
     seed : int
         Of everything that is drawn.
     name : str
-        Effect of the registry, or ``none``.
+        Effect of the registry, cause from `OUTSIDE`, or ``none``.
     size : str
-        ``small`` or ``large``; of no meaning without an effect.
+        ``small`` or ``large``; of no meaning without an effect of the registry.
     folder, truth_folder : Path
     sealed : bool
         Whether there are sealed tests too, on which a gain can be measured.
@@ -86,7 +88,7 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True):
     (folder / "README").unlink(missing_ok=True)
     structure = load_structure(STRUCTURE)
     shutil.copyfile(STRUCTURE, folder / "structure.yaml")
-    effect = true_effect(name, size, structure, seed)
+    effect = true_effect(name, size, structure, len(plan), seed)
     parameters, wider = true_parameters(structure, seed)
     physical, own = part_parameters(parameters)
     model, time_step, numerics = true_numerics(seed)
@@ -98,7 +100,9 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True):
             Instruments(marker_noise=0.0, accelerometer_noise=0.0),
         )  # fmt: skip
         solver = own | numerics
-        if effect is not None:
+        if name in OUTSIDE:
+            experiment = OUTSIDE[name].act(experiment, effect, number)
+        elif effect is not None:
             experiment = FORMS[name][1](experiment, effect["values"], effect["place"])
             solver |= FORM_NUMERICS.get(name, {})
         settings = VirtualCampaign(
@@ -108,7 +112,7 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True):
             experiment.structure, solver, None, experiment.motion, settings,
             true_places(structure, seed, number), DURATION, seed,
         )  # fmt: skip
-        happened[name_of_test(motion, scale)] = _happened(test, run)
+        happened[name_of_test(motion, scale)] = _happened(test, run, structure)
         if effect is not None:
             markers = [str(marker) for marker in test["marker"].values]
             test["marker_displacement"].values[:] = distort(
@@ -119,8 +123,8 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True):
         write_dataset(folder / f"{name_of_test(motion, scale)}.nc", test, DECIMALS)
     write_text(folder / "campaign.yaml", _campaign_yaml(plan))
     truth = {
-        "truth": name, "size_class": None if effect is None else size, "effect": effect,
-        "form": None if effect is None else FORMS[name][0], "seed": seed, "model": model, "time_step": time_step,
+        "truth": name, "size_class": size if name in FORMS else None, "effect": effect,
+        "form": _words(name), "seed": seed, "model": model, "time_step": time_step,
         "numerics": numerics, "parameters": parameters, "wider": wider, "table": table, "noise": noise,
         "tests": happened, "made_by": made_by(),
     }  # fmt: skip
@@ -133,11 +137,18 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True):
     )
 
 
-def _happened(test, run):
+def _words(name):
+    """Form of what is hidden."""
+    if name in OUTSIDE:
+        return OUTSIDE[name].words
+    return FORMS[name][0] if name in FORMS else None
+
+
+def _happened(test, run, structure):
     """How a test ended, and how far the upper marker of each block went against the slab's to either side [m]."""
     moved = test["marker_displacement"].sel(axis="x")
     drift = moved - moved.sel(marker="slab-face", drop=True)
-    blocks = [body for body in map(str, run["body"].values) if body != "slab"]
+    blocks = [body.name for body in structure.file.bodies if not body.driven]
     return {
         "status": run.attrs["status"],
         "end_time": float(run.attrs["end_time"]),
@@ -171,7 +182,7 @@ def main(arguments):
     """Make one case, as the command line says."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seed", type=int, required=True)
-    parser.add_argument("--case", choices=[NONE, *EFFECTS], required=True)
+    parser.add_argument("--case", choices=[NONE, *EFFECTS, *OUTSIDE], required=True)
     parser.add_argument("--size", choices=list(SIZES), default="large")
     parser.add_argument("--output", type=Path, required=True)
     parser.add_argument("--truth", type=Path, required=True)

@@ -16,6 +16,7 @@ from case_noise import ACCELEROMETER_NOISE, MARKER_NOISE, add_noise, true_noise
 from case_truth import SIZES, follow, true_effect, true_numerics, true_parameters, true_table
 from effect_forms import FORM_NUMERICS, FORMS, distort
 from make_case import STRUCTURE
+from outside_forces import OUTSIDE
 
 from blockshake.diagnosis.libraries.null_model import MODELS, draw_nominal
 from blockshake.dynamics.load_motion import load_motion
@@ -28,7 +29,7 @@ from blockshake.study.check import check_file
 
 PROGRAMS = Path(make_case.__file__).parent
 SRC = PROGRAMS.parent / "src" / "blockshake"
-MAKER = ("make_case", "effect_forms", "case_noise", "case_truth")
+MAKER = ("make_case", "effect_forms", "outside_forces", "case_noise", "case_truth")
 
 
 @pytest.fixture
@@ -58,7 +59,7 @@ def test_the_same_seed_gives_the_same_bytes(short, tmp_path):
     assert committed in files[0]["campaign/README"].decode()
 
 
-@pytest.mark.parametrize("name", ["none", *EFFECTS])
+@pytest.mark.parametrize("name", ["none", *EFFECTS, *OUTSIDE])
 def test_a_campaign_of_every_class_is_in_order_and_says_nothing(name, short, tmp_path):
     folder = _make(tmp_path, 30, name)
     check_file(folder / "campaign")
@@ -102,8 +103,8 @@ def test_the_maker_loads_nothing_of_the_diagnosis():
 def test_sizes_are_as_planned_and_within_the_priors():
     structure, plan = load_structure(STRUCTURE), load_plan()
     for case in plan.cases:
-        effect = true_effect(case.truth, case.size, structure, case.seed)
-        if effect is None:
+        effect = true_effect(case.truth, case.size, structure, 3, case.seed)
+        if case.truth not in EFFECTS:
             continue
         low, high = SIZES[case.size]
         assert low <= abs(effect["size"]) <= high
