@@ -116,6 +116,7 @@ def test_clean_campaigns_seldom_break_a_law():
         ),
         ("table-pitch", {"table.pitch": 4e-4}),
         ("table-pitch", {"table.pitch": -4e-4}),
+        ("base-compliance", {"table.compliance": 2e-9}),
         ("eccentricity", {"joint1.lever.bias": 0.03, "unexplained.mean": -0.006}),
     ],
 )
@@ -160,8 +161,8 @@ def test_a_force_that_no_law_asks_for_is_dropped():
     assert judged(force("pulse", start=3.0)).outside is None
 
 
-def test_a_soft_base_is_broken_and_belongs_to_no_effect():
-    found = judged(**{"table.compliance": 2e-9})
+def test_a_base_that_turns_against_its_moment_is_broken_and_belongs_to_no_effect():
+    found = judged(**{"table.compliance": -2e-9})
     assert [one.name for one in found.broken] == ["table.compliance"]
     assert found.isolated == ()
 

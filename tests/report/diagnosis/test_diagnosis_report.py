@@ -117,7 +117,7 @@ def test_none_says_which_sizes_are_excluded(pages):
     assert "pitch of the table beyond ±0.270 mrad per m/s²" in text
     assert "joint of low friction below 0.662" in text
     assert "soft joint beyond" not in text  # no size of it would have been seen
-    assert "8 of 9" in text
+    assert "9 of 10" in text
 
 
 def test_reasons_of_effects_that_are_struck_out_stand_in_words(pages):
