@@ -173,7 +173,9 @@ def _base_compliance(experiment, values, place):
             "driven": True,
         }
     )
-    mapping["joints"].append({"bodies": ["table", slab.name], "friction_factor": 3.0, "compliance": layer})
+    # rough enough that nothing slides on it
+    mapping["friction"].append({"pair": [slab.material, slab.material], "coefficient": 3.0})
+    mapping["joints"].append({"bodies": ["table", slab.name], "compliance": layer})
     return replace(experiment, structure=structure.with_mapping(mapping))
 
 

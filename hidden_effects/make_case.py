@@ -110,7 +110,7 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True):
         )
         test, run = shake(
             experiment.structure, solver, None, experiment.motion, settings,
-            true_places(structure, seed, number), DURATION, seed,
+            true_places(structure, seed, number), DURATION, seed, structure,
         )  # fmt: skip
         happened[name_of_test(motion, scale)] = _happened(test, run, structure)
         if effect is not None:

@@ -294,6 +294,7 @@ def measure_gain(folder, files):
     """
     from blockshake.diagnosis.gain.campaign_gain import campaign_gain
     from blockshake.diagnosis.gain.sensor_gain import sensors_gain
+    from blockshake.diagnosis.inference.decision import Decision, load_result
     from blockshake.diagnosis.inference.library_scores import load_tables
     from blockshake.diagnosis.verdict.frozen import check_frozen
     from blockshake.measurement.campaigns.campaign import load_campaign
@@ -307,7 +308,9 @@ def measure_gain(folder, files):
     if not files.extended:
         return sensors_gain(campaign, readings, load_parity(files.parity).findings)
     runs = {one.attrs["model"]: one for one in map(xr.load_dataset, files.extended)}
-    return campaign_gain(campaign, readings, load_tables(files.libraries), runs)
+    laws = load_result(Decision, files.decision).laws
+    broken = [one.name for one in laws.broken] if laws else []
+    return campaign_gain(campaign, readings, load_tables(files.libraries), runs, broken)
 
 
 def conclude(folder, effort, files):
@@ -344,7 +347,7 @@ def conclude(folder, effort, files):
     channels = parity.channels["channel"].values.tolist()
     judged = Judged(where(misfit), misfit.sizes["test"])
     return conclude(
-        decision, parity.findings, channels, judged, runs, measured.caveats, effort, size, measured.gain, scores,
+        decision, parity.findings, channels, judged, runs, measured.caveats, effort, size, measured, scores,
     )  # fmt: skip
 
 

@@ -6,10 +6,11 @@ from scipy.spatial.transform import Rotation
 def placed(structure, places):
     """Start poses of the free bodies: ``bodies.NAME.position`` and ``bodies.NAME.orientation`` of the structure.
 
-    ``places`` (n_bodies, 3): off the structure file, along x and y [m], turned about z [rad]; driven bodies stay.
+    ``places`` (n_bodies, 3): off the structure file, along x and y [m], turned about z [rad]. Driven bodies stay, and
+    so do those behind the last place, which an effect has added.
     """
     poses = {}
-    for body, (along_x, along_y, turn) in zip(structure.file.bodies, places, strict=True):
+    for body, (along_x, along_y, turn) in zip(structure.file.bodies, places, strict=False):
         if body.driven:
             continue
         x, y, z = body.position

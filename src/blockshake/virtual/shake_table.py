@@ -17,7 +17,7 @@ _STILL = 1e-3  # m/s; a block slower than this against the slab is at rest
 _SINE_ROWS = 1000  # a second
 
 
-def shake(structure, parameters, effect, motion, settings, places, duration, seed):
+def shake(structure, parameters, effect, motion, settings, places, duration, seed, surveyed=None):
     """Readings of one test.
 
     Parameters
@@ -36,6 +36,8 @@ def shake(structure, parameters, effect, motion, settings, places, duration, see
         [s]
     seed : int
         Of noise and survey.
+    surveyed : Structure, optional
+        The one that the survey knows, where the blocks stand on bodies that it does not.
 
     Returns
     -------
@@ -58,7 +60,7 @@ def shake(structure, parameters, effect, motion, settings, places, duration, see
         time_step=settings.time_step, duration=longer, output_rate=RATE,
     )  # fmt: skip
     test = observe(run, experiment.structure, experiment.instruments, seed)
-    _add_survey(test, structure, places, settings.survey_noise, seed)
+    _add_survey(test, surveyed or structure, places, settings.survey_noise, seed)
     end = duration + 0.5 / RATE
     test = test.isel(time=test["time"].to_numpy() < end)
     if "time_acc" in test.coords:

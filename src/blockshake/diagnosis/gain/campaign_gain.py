@@ -8,6 +8,7 @@ from blockshake.diagnosis.gain.consequence import consequence
 from blockshake.diagnosis.gain.discrepancy import Condition, fit_discrepancy, members_with_discrepancy
 from blockshake.diagnosis.gain.extended_runs import EXTENDED, RECALIBRATED
 from blockshake.diagnosis.gain.gain import CampaignGain, gain_of_verdict, gain_on
+from blockshake.diagnosis.gain.law_gain import law_contrast, law_gain
 from blockshake.diagnosis.gain.sealed_prediction import tamed_test
 from blockshake.diagnosis.inference.library_scores import runs_of
 from blockshake.diagnosis.libraries.candidates import NOMINAL
@@ -22,7 +23,7 @@ _KINDS = (NOMINAL, RECALIBRATED, EXTENDED)
 _OF_PARAMETERS = ("prior", "posterior", "narrowing", "skill", "chance", "informed", "held")
 
 
-def campaign_gain(campaign, readings, tables, runs):
+def campaign_gain(campaign, readings, tables, runs, broken):
     """Gain on the sealed tests against three rivals, and the consequence of the extension for the user.
 
     Parameters
@@ -34,12 +35,14 @@ def campaign_gain(campaign, readings, tables, runs):
         By open test and solver: features of the library.
     runs : dict of str to xarray.Dataset
         By solver: from `extended_runs`.
+    broken : sequence of str
+        Laws of the joints that the open tests break.
 
     Returns
     -------
     CampaignGain
-        ``scores`` from `gain_on`; and along ``model`` and ``parameter`` what the open tests tell of the nominal
-        parameters, as of `Recalibration.informed`, NaN and false of a parameter that a solver has not.
+        ``scores`` from `gain_on` and `law_gain`; and along ``model`` and ``parameter`` what the open tests tell of
+        the nominal parameters, as of `Recalibration.informed`, NaN and false of a parameter that a solver has not.
         ``consequences`` from `consequence`, along ``test``; and ``drift_history(kind, quantile, time, body)`` of the
         ensembles with ``drift_measured(time, body)`` [m].
     """
@@ -52,22 +55,24 @@ def campaign_gain(campaign, readings, tables, runs):
         measured.append(test.measured)
         members.append(np.concatenate(list(test.members[NOMINAL].values())))
     discrepancy = fit_discrepancy(conditions, names, measured, members)
-    tests, consequences = [], []
+    tests, of_laws, consequences = [], {}, []
     sealed = _sealed_readings(campaign, float(next(iter(runs.values()))["time"][-1]))
     for name in map(str, sealed["test"].values):
         reading = reading_of(sealed, name)
         ensembles = {kind: {model: _runs(one, kind, name) for model, one in runs.items()} for kind in _KINDS}
         test = tamed_test(name, reading, ensembles)
+        of_laws[name] = reading, ensembles
         test.members[DISCREPANCY] = {
             model: members_with_discrepancy(discrepancy, _condition(campaign, name), test.features, one)
             for model, one in test.members[NOMINAL].items()
         }
         tests.append(test)
         consequences.append(consequence(reading, ensembles).merge(_histories(reading, ensembles)))
-    scores = gain_on(tests)
+    scores, laws = gain_on(tests), law_gain(of_laws, broken)
+    summary = gain_of_verdict(scores, sum(one.sizes["run"] for one in runs.values()))
     return CampaignGain(
-        gain_of_verdict(scores, sum(one.sizes["run"] for one in runs.values())),
-        scores.merge(_parameters(runs)),
+        summary.model_copy(update={"laws": law_contrast(laws)}),
+        scores.merge(laws).merge(_parameters(runs)),
         xr.concat(consequences, dim="test", join="outer").assign_coords(test=[test.name for test in tests]),
     )
 

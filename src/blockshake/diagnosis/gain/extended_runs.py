@@ -82,7 +82,8 @@ def extended_runs(plan, model, extended, known, features, store, source, progres
     Returns
     -------
     xarray.Dataset
-        Along ``run``: ``value(run, feature)`` and ``drift(run, time, body)`` as from `read_off`; coordinates ``kind``,
+        Along ``run``: ``value(run, feature)``, ``drift(run, time, body)`` and ``law_value(run, law)`` as from
+        `read_off`; coordinates ``kind``,
         ``test``, ``draw``, ``status``. Along ``parameter``: what the tests tell of the nominal parameters without the
         cause, as of `Recalibration.informed`.
     """
@@ -102,7 +103,7 @@ def extended_runs(plan, model, extended, known, features, store, source, progres
             reading, how = kept_reading(planned, draw, effects, store, source)
             status = reading["status"].item()
             labels = {"kind": kind, "test": name, "draw": number, "status": status}
-            one = reading[["value", "drift"]].expand_dims("run")
+            one = reading[["value", "drift", "law_value"]].reset_coords(drop=True).expand_dims("run")
             parts.append(one.assign_coords({label: ("run", [value]) for label, value in labels.items()}))
             progress(f"{name} {model} {kind} {len(parts)}/{total} {how}: {status}")
     runs = xr.concat(parts, dim="run", coords="minimal", compat="override", join="outer", data_vars="minimal")

@@ -136,16 +136,18 @@ def gain_of_verdict(gained, runs):
                 f"nothing to gain on the sealed tests against the {rival} model: it scores within noise"
             )
         else:
-            lower, upper = min(lower, estimate), max(upper, estimate)
-            contrasts[rival] = Contrast(
-                **{name: float(np.clip(value, -1.0, 1.0)) for name, value in
-                   (("estimate", estimate), ("lower", lower), ("upper", upper))}
-            )  # fmt: skip
+            contrasts[rival] = contrast(estimate, lower, upper)
     if gained.sizes["test"] == 1:
         caveats.append("one sealed test: the gain's interval holds no scatter from test to test")
     if not gained["confirmed"] and float(gained["fall"].sel(rival=RECALIBRATED)) > 0.0:
         caveats.append("solver-dependent: one solver by itself shows less than half of the gain")
     return MeasuredGain(gain=Gain(**contrasts), caveats=caveats, runs=runs)
+
+
+def contrast(estimate, lower, upper):
+    """Gain with its interval, cut off at -1 and 1; an interval of few draws may miss its estimate."""
+    values = {"estimate": estimate, "lower": min(lower, estimate), "upper": max(upper, estimate)}
+    return Contrast(**{name: float(np.clip(value, -1.0, 1.0)) for name, value in values.items()})
 
 
 def _replicates(known, cells, models, n_tests, in_family):

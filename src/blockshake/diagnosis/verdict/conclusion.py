@@ -16,7 +16,9 @@ class Judged(NamedTuple):
     tests: int
 
 
-def conclude(decision, findings, channels, judged, runs, caveats, effort, size=None, gain=None, scores=None):
+def conclude(
+    decision, findings, channels, judged, runs, caveats, effort, size=None, measured=None, scores=None
+):
     """`Verdict` of a campaign.
 
     Parameters
@@ -35,7 +37,7 @@ def conclude(decision, findings, channels, judged, runs, caveats, effort, size=N
         One of `EFFORTS`.
     size : CauseSize, optional
         Of the first cause: better known than in the decision.
-    gain : Gain, optional
+    measured : MeasuredGain, optional
     scores : xarray.Dataset, optional
         From `gain_on`, where a physical cause's gain was measured.
 
@@ -47,9 +49,10 @@ def conclude(decision, findings, channels, judged, runs, caveats, effort, size=N
     """
     sensors = sensor_causes(findings, channels)
     kind, causes = decision.decision, [*sensors, *decision.causes]
+    gain, law_gain = (measured.gain, measured.laws) if measured else (None, None)
     caveats = [*caveats]
     if sensors and kind == "unknown":
-        causes, gain = [], None
+        causes, gain, law_gain = [], None, None
         caveats.append(f"sensor faults were found and taken out: {', '.join(sensors)}")
     elif sensors:
         kind = "named" if len(causes) == 1 else "combination"
@@ -86,6 +89,7 @@ def conclude(decision, findings, channels, judged, runs, caveats, effort, size=N
         excluded_above=_excluded(decision, causes),
         next_test=_next_test(kind, causes),
         gain=gain,
+        law_gain=law_gain,
         runs=runs,
         caveats=caveats,
         laws=[

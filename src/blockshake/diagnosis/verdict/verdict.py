@@ -45,9 +45,10 @@ class Gain(Strict):
 
 
 class MeasuredGain(Strict):
-    """The file ``gain.json``: gain on the sealed tests, caveats, and simulated tests that it took."""
+    """The file ``gain.json``: gain on the sealed tests, on responses and laws, caveats, and simulated tests."""
 
     gain: Gain | None
+    laws: Contrast | None = None
     caveats: tuple[str, ...]
     runs: int
 
@@ -86,6 +87,10 @@ class Verdict(Strict):
     )
     next_test: str | None = Field(None, description="the measurement that would decide")
     gain: Gain | None = Field(None, description="none before the sealed tests are opened")
+    law_gain: Contrast | None = Field(
+        None,
+        description="against the recalibrated model, on the laws of the joints that the open tests break",
+    )
     runs: int = Field(ge=0, description="simulated tests")
     caveats: tuple[str, ...] = ()
     laws: tuple[BrokenLaw, ...] = Field((), description="laws of the joints that the tests break")
