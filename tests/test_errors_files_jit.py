@@ -206,6 +206,10 @@ def test_an_edit_in_an_imported_module_changes_what_a_cached_kernel_computes(tmp
     )
     assert _half_turn(root, cache) == (1.0, 0)
     assert _half_turn(root, cache) == (1.0, 1)
+    copied = tmp_path / "copy"
+    shutil.copytree(root, copied)
+    # a copy of the same sources compiles nothing, wherever it is
+    assert _half_turn(copied, cache) == (1.0, 1)
     rotations = root / "blockshake" / "geometry" / "rotations.py"
     text = rotations.read_text()
     edited = text.replace("np.sin(0.5 * angle) / angle", "-np.sin(0.5 * angle) / angle", 1)

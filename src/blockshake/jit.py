@@ -7,6 +7,9 @@ of them compiles anew, and an unchanged package never does.
 Nor is that cache safe where several processes compile at once, as Snakemake's jobs and the tests' workers do: two that
 save different signatures of a kernel take the same file name, and the index of one then leads to the machine code
 of the other. Saving is therefore done one at a time.
+
+Nor does that cache know a module by its name: a copy of a checkout, or a file whose time changes, would compile all
+anew. Here a kernel's place is its module's name; the digest says whether the sources are the same.
 """
 
 import fcntl
@@ -14,7 +17,7 @@ import os
 from pathlib import Path
 
 import numba
-from numba.core.caching import IndexDataCacheFile
+from numba.core.caching import CacheImpl, IndexDataCacheFile, _CacheLocator
 from numba.core.compiler_lock import global_compiler_lock
 
 from blockshake.files import source_digest
@@ -36,6 +39,33 @@ def _save_alone(self, key, data):
 
 
 IndexDataCacheFile.save = _save_alone
+
+
+class _ByModule(_CacheLocator):
+    """Place of a kernel of this package in the cache: the folder of its module."""
+
+    def __init__(self, module):
+        self._path = CACHE_FOLDER / module
+
+    def get_cache_path(self):
+        """Folder of the module's kernels."""
+        return str(self._path)
+
+    def get_source_stamp(self):
+        """Stamp that every copy of the same sources has."""
+        return SOURCE_DIGEST
+
+    def get_disambiguator(self):
+        """Part of a file's name: no kernel's name stands twice in a module, and its lines may move."""
+        return "kernel"
+
+    @classmethod
+    def from_function(cls, py_func, py_file):
+        """Locator of a kernel of this package; none of any other, which Numba's own locators serve."""
+        return cls(py_func.__module__) if py_func.__module__.startswith("blockshake.") else None
+
+
+CacheImpl._locator_classes.insert(0, _ByModule)
 
 kernel = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=False)
 inline_kernel = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=False, inline="always")

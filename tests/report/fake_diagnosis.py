@@ -20,6 +20,7 @@ from fake_findings import (
 from blockshake.diagnosis.features.reading import HISTORIES
 from blockshake.diagnosis.gain.consequence import consequence
 from blockshake.diagnosis.gain.gain import gain_of_verdict, gain_on
+from blockshake.diagnosis.gain.law_gain import law_contrast
 from blockshake.diagnosis.inference.decision import CauseSize, write_result
 from blockshake.diagnosis.misfit.misfit import misfit, where
 from blockshake.diagnosis.verdict.conclusion import Judged, conclude
@@ -31,6 +32,25 @@ from blockshake.geometry.structure import load_structure
 STRUCTURE = "configuration-1"
 _TIME = np.arange(151) / 25.0
 _PEAKS = ("top.displacement.peak+", "top.displacement.peak-")
+
+
+def gain_on_laws():
+    """A law that one sealed test breaks before the extension and keeps after it, as from `law_gain`."""
+    kinds = ["nominal", "recalibrated", "extended"]
+    return xr.Dataset(
+        {
+            "law_distance": (("law_kind", "law_cell"), [[-9.1], [-8.7], [0.6]]),
+            "law_gain": ("law_rival", [0.99, 0.98]),
+            "law_gain_lower": ("law_rival", [0.9, 0.88]),
+            "law_gain_upper": ("law_rival", [1.0, 1.0]),
+        },
+        {
+            "law_kind": kinds,
+            "law_rival": kinds[:2],
+            "cell_test": ("law_cell", ["sealed-1"]),
+            "cell_law": ("law_cell", ["table.pitch"]),
+        },
+    )
 
 
 class FakeDiagnosis:
@@ -74,16 +94,16 @@ class FakeDiagnosis:
         summary = MeasuredGain(gain=None, caveats=caveats, runs=1260)
         gain = consequences = xr.Dataset()
         if gained:
-            gain = gain_on(sealed_tests(0.9 if gaining else 0.0))
-            summary = gain_of_verdict(gain, 1260)
-            gain = gain.merge(informed())
+            gain, laws = gain_on(sealed_tests(0.9 if gaining else 0.0)), gain_on_laws()
+            summary = gain_of_verdict(gain, 1260).model_copy(update={"laws": law_contrast(laws)})
+            gain = gain.merge(laws).merge(informed())
             consequences = self._consequences()
         write_dataset(self.results / "gain.nc", gain)
         write_dataset(self.results / "consequences.nc", consequences)
         write_result(self.results / "gain.json", summary)
         self.verdict = conclude(
             self.decision, findings, (), Judged(where(found), len(OPEN)), 1260, summary.caveats, effort,
-            gain=summary.gain, scores=gain,
+            measured=summary, scores=gain,
         )  # fmt: skip
         assert isinstance(self.verdict, Verdict)
         write_verdict(self.results / "verdict.json", self.verdict)

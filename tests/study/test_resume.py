@@ -21,7 +21,7 @@ from blockshake.solvers.checkpoint import Checkpoint
 from blockshake.study.ensembles.batch import simulate_samples
 
 # seconds of motion that take some seconds of wall time, whatever the model
-LONG = {"ls-dem": 25.0, "nscd-rigid": 100.0, "nscd-elastic": 10.0, "nscd-viscoelastic": 10.0}
+LONG = {"ls-dem": 12.0, "nscd-rigid": 40.0, "nscd-elastic": 6.0, "nscd-viscoelastic": 6.0}
 # CPU s from an interrupt to the end of the process: a piece of at most half a second, and saving
 MOST_WORK = 2.0
 ARRAYS = (

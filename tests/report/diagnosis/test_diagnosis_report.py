@@ -136,6 +136,13 @@ def test_gain_table_has_the_scores_of_the_file(found, documents):
         assert float(extended[test]) == pytest.approx(own, rel=5e-3)
 
 
+def test_laws_of_sealed_tests_stand_before_and_after(documents):
+    section = next(one for one in documents["named"].sections if one.key == "gain")
+    (table,) = (block for block in section.blocks if block.kind == "table" and block.header[1:2] == ("Law",))
+    assert table.rows == (("sealed-1", "table.pitch", "-9.1", "-8.7", "0.60"),)
+    assert "recalibrated: 0.98 (0.88 to 1)" in table.caption
+
+
 def test_what_the_tests_tell_of_nominal_parameters_is_told_from_what_they_do_not(found, documents):
     (table,) = (
         block for section in documents["named"].sections for block in section.blocks

@@ -87,10 +87,6 @@ class Verdict(Strict):
     )
     next_test: str | None = Field(None, description="the measurement that would decide")
     gain: Gain | None = Field(None, description="none before the sealed tests are opened")
-    law_gain: Contrast | None = Field(
-        None,
-        description="against the recalibrated model, on the laws of the joints that the open tests break",
-    )
     runs: int = Field(ge=0, description="simulated tests")
     caveats: tuple[str, ...] = ()
     laws: tuple[BrokenLaw, ...] = Field((), description="laws of the joints that the tests break")
@@ -101,6 +97,10 @@ class Verdict(Strict):
         description="rung of the ladder of words: how strong a statement is made"
     )
     missing: tuple[str, ...] = Field((), description="what a probable cause lacks to be called established")
+    law_gain: Contrast | None = Field(
+        None,
+        description="against the recalibrated model, on the laws of the joints that the open tests break",
+    )
 
     @model_validator(mode="after")
     def _consistent(self):
