@@ -11,6 +11,7 @@ from blockshake.errors import InputError
 from blockshake.report.document.html import write_html
 from blockshake.report.document.pdf import write_pdf
 from blockshake.report.document.wording import number
+from blockshake.report.study import closing_sections
 from blockshake.report.study.closing_sections import checks
 from blockshake.report.study.content import load_content
 from blockshake.report.study.convergence_section import convergence as annex
@@ -132,6 +133,13 @@ def test_figures_of_motion_computation_and_cost(text):
     assert "3.50e-06" in text  # residual of NSCD
     simulated = 10 * 2.0
     assert f"{simulated:.0f} {CPU_TIME:.1f} 50 {CPU_TIME / simulated:.2f}" in text
+
+
+def test_a_model_without_words_of_its_own_has_its_figures(fake, monkeypatch):
+    monkeypatch.setattr(closing_sections, "_COMPUTATION", {})
+    made = checks(load_content(fake.study, fake.results, fake.benchmarks))
+    titles = [block.caption for block in made.blocks if block.kind == "table"]
+    assert [f"{label}: figures" in " ".join(titles) for label in ("LS-DEM", "NSCD rigid")] == [True, True]
 
 
 def test_origin_holds_configuration_digests_and_seed(text):

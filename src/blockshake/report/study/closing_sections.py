@@ -25,9 +25,10 @@ def checks(content):
         ),
         energy_table(content),
     ]
-    for model, text in _COMPUTATION.items():
+    for model in dict.fromkeys([*_COMPUTATION, *content.study["models"]]):
         if model in content.study["models"]:
-            blocks += [Text(text), computation_table(content, model)]
+            words = [Text(_COMPUTATION[model])] if model in _COMPUTATION else []
+            blocks += [*words, computation_table(content, model)]
     return Section("Completion, energy and computation", "checks", tuple(blocks))
 
 

@@ -142,9 +142,7 @@ def energy_table(content):
 def computation_table(content, model):
     """Figures of a solver's computation; figures that none of its runs holds are left out."""
     by_case = {case.name: case.responses[model].samples for case in content.cases.values()}
-    wanted = [
-        entry for entry in _NUMERICS[model] if any(f"numerics_{entry[0]}" in one for one in by_case.values())
-    ]
+    wanted = [entry for entry in _FIGURES if any(f"numerics_{entry[0]}" in one for one in by_case.values())]
     rows = []
     for case, samples in by_case.items():
         cells = (
@@ -158,7 +156,8 @@ def computation_table(content, model):
     )  # fmt: skip
 
 
-_NSCD = (
+# of any solver; each writes those that it has
+_FIGURES = (
     ("steps", "Steps of a run", 1.0, np.max),
     ("mean_iterations", "Iterations a step, median of the runs' means", 1.0, np.median),
     ("max_iterations", "Most iterations", 1.0, np.max),
@@ -166,18 +165,10 @@ _NSCD = (
     ("max_residual", "Largest relative residual", 1.0, np.max),
     ("fraction_above_1e-4", "Largest share of steps above 1e-4 [%]", 100.0, np.max),
     ("max_penetration", "Deepest penetration [mm]", 1e3, np.max),
+    ("energy_lost_to_scheme", "Most energy lost to the scheme [J]", 1.0, np.max),
+    ("settling_steps", "Most settling steps before a run", 1.0, np.max),
+    ("list_searches", "Most searches for near pairs", 1.0, np.max),
 )
-_DEFORMABLE = (*_NSCD, ("energy_lost_to_scheme", "Most energy lost to the scheme [J]", 1.0, np.max))
-_NUMERICS = {
-    "nscd-rigid": _NSCD,
-    "nscd-elastic": _DEFORMABLE,
-    "nscd-viscoelastic": _DEFORMABLE,
-    "ls-dem": (
-        ("steps", "Steps of a run", 1.0, np.max),
-        ("settling_steps", "Most settling steps before a run", 1.0, np.max),
-        ("list_searches", "Most searches for near pairs", 1.0, np.max),
-    ),
-}  # fmt: skip
 
 
 def timings_table(content):
