@@ -1,4 +1,4 @@
-"""The one table of solvers: a model is one row, and nothing else in the package lists them."""
+"""The one table of solvers: a model is one row. The report alone adds words to some, docs/adding-a-solver.md."""
 
 import importlib
 import re

@@ -140,7 +140,7 @@ def test_laws_of_sealed_tests_stand_before_and_after(documents):
     section = next(one for one in documents["named"].sections if one.key == "gain")
     (table,) = (block for block in section.blocks if block.kind == "table" and block.header[1:2] == ("Law",))
     assert table.rows == (("sealed-1", "table.pitch", "-9.1", "-8.7", "0.60"),)
-    assert "recalibrated: 0.98 (0.88 to 1)" in table.caption
+    assert "recalibrated: 0.980 (0.880 to 1)" in table.caption
 
 
 def test_what_the_tests_tell_of_nominal_parameters_is_told_from_what_they_do_not(found, documents):
