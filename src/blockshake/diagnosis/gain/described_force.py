@@ -52,11 +52,8 @@ def as_parameters(outside, amplitude, structure):
     """
     name, tests = outside.bodies[0], list(outside.tests.values())
     body = structure.body_names.index(name)
-    above = structure.mass_offset[body] + rotation_matrices(structure.orientation[body]).T @ [
-        0.0,
-        0.0,
-        outside.height,
-    ]
+    turn = rotation_matrices(structure.orientation[body])
+    above = structure.mass_offset[body] + outside.height * turn[2]
     place = {"body": name, "position": above.tolist()}
     if outside.law == "spring":
         stop = {
