@@ -1,4 +1,4 @@
-"""Signature of every effect in the laws: the law that it breaks, and those that it may break on the way.
+"""Signatures of effects in the laws: the law that each breaks, and those that it may break on the way.
 
 The table is a matrix of structured residuals (Gertler 1998; Frisk, Krysander and Jung 2017): an effect is isolated
 if it accounts for all laws that are broken, and its own law is.

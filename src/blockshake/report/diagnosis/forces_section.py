@@ -1,4 +1,4 @@
-"""Joint forces of a diagnosis: forces that the joints transmitted, broken laws, and a force from outside."""
+"""Joint forces of a diagnosis: forces that the joints transmitted, broken laws, and a force from outside in words."""
 
 import numpy as np
 
@@ -20,7 +20,7 @@ _MOST_LAWS = 12  # rows of the table
 
 
 def forces_section(found):
-    """Levers, unexplained force, broken laws and the force from outside."""
+    """Levers, unexplained force and broken laws."""
     if not found.forces.sizes:
         return Section("Joint forces", "forces", (Text("The sensors of these tests give no joint forces."),))
     blocks = [Text(_summary(found))]
@@ -44,8 +44,6 @@ def forces_section(found):
     )
     if found.decision.laws:
         blocks.append(_table(found))
-    if found.verdict.outside:
-        blocks.append(Text(_outside(found.verdict.outside)))
     return Section("Joint forces", "forces", tuple(blocks))
 
 
@@ -80,7 +78,8 @@ def _table(found):
     )
 
 
-def _outside(outside):
+def described(outside):
+    """The force from outside that would explain the broken laws, in a sentence: where, when, how large, its rivals."""
     bodies = " or ".join(outside.bodies)
     unit, factor = ("kN", 1e-3) if outside.unit == "N" else (f"k{outside.unit}", 1e-3)
     size = (
@@ -103,5 +102,5 @@ def _outside(outside):
     return (
         f"A force from outside would explain the broken laws: on {bodies}, here {line}, "
         f"{FORCE_LAWS[outside.law]}, {size}{direction} (90 % interval over the tests). {'; '.join(when)}. The "
-        f"next best laws are worse by (information criterion): {'; '.join(rivals)}."
+        f"next best forms are worse by (information criterion): {'; '.join(rivals)}."
     )

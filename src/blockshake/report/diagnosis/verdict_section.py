@@ -3,6 +3,7 @@
 from blockshake.diagnosis.misfit.ranking import strongest_test
 from blockshake.report.diagnosis.box import Box
 from blockshake.report.diagnosis.figures.drift import plot_extended_drift, plot_nominal_drift
+from blockshake.report.diagnosis.forces_section import described
 from blockshake.report.diagnosis.verdict import drift_change, excluded, facts, statement
 from blockshake.report.document.blocks import Figure, Items, Section, Text
 from blockshake.report.document.drawing import svg_of
@@ -21,6 +22,8 @@ def verdict_section(found):
             )
         )
     items = []
+    if found.verdict.outside:
+        items.append(described(found.verdict.outside))
     if found.verdict.missing:
         items.append(f"Not called established because {'; '.join(found.verdict.missing)}.")
     if found.sensor_causes:
