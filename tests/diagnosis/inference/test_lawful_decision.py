@@ -74,3 +74,22 @@ def test_an_isolated_effect_is_where_its_law_is_broken():
 def test_features_keep_the_parameters_that_they_found():
     decision = made_up_decision("named", ("table-pitch",))
     assert with_laws(decision, findings(), PLACES).parameters == decision.parameters
+
+
+def test_a_stop_that_one_test_shows_is_no_surer_than_its_form():
+    stop = PUSH.model_copy(
+        update={
+            "law": "spring", "amplitude": 6e6, "lower": 5.99e6, "upper": 6.01e6, "unit": "N/m",
+            "tests": {"one": {"gap": 0.0285, "side": 1.0}},
+        }
+    )  # fmt: skip
+    places = PLACES | {"stopper-contact@block-2-+x": {"body": "block-2", "axis": "+x"}}
+    decision = made_up_decision("none")
+    decision = decision.model_copy(
+        update={"places": decision.places | {"stopper-contact": "stopper-contact@block-2-+x"}}
+    )
+    given = findings((SOFT,), ("stopper-contact",)).model_copy(update={"outside_of_stop": stop})
+    found = with_laws(decision, given, places)
+    gap, stiffness = (found.parameters["stopper-contact"][name] for name in ("gap", "stiffness"))
+    assert (gap.lower, gap.upper) == pytest.approx((0.0285 - 1.645e-3, 0.0285 + 1.645e-3))
+    assert stiffness.upper - stiffness.lower == pytest.approx(2.0 * 1.645 * 0.15 * 6e6)

@@ -9,6 +9,8 @@ from blockshake.diagnosis.libraries.candidates import effect_of
 from blockshake.effects.registry import EFFECTS
 
 _NORMAL_90 = 1.645
+_FORM = 0.15  # standard deviation of a stop's stiffness by the form of its law, as share of it
+_GAP_ERROR = 1e-3  # m, standard deviation of a fitted gap: steps of the search, and the form of the law
 # parameter of an effect that its own law reads directly
 _DIRECT = {"table-pitch": "coefficient", "base-compliance": "compliance", "reduced-bearing": "inset"}
 
@@ -126,8 +128,13 @@ def _parameters(effect, decision, findings):
     if effect == STOP and findings.outside_of_stop is not None:
         outside = findings.outside_of_stop
         gaps = np.array([test["gap"] for test in outside.tests.values()])
-        known["stiffness"] = _estimate(outside.amplitude, outside.lower, outside.upper, "N/m")
-        half = _NORMAL_90 * float(gaps.std() / np.sqrt(len(gaps)))
+        # one test shows no scatter: a fit is never surer than the form of its law
+        least = _NORMAL_90 * _FORM * abs(outside.amplitude)
+        half = max(0.5 * (outside.upper - outside.lower), least)
+        known["stiffness"] = _estimate(
+            outside.amplitude, outside.amplitude - half, outside.amplitude + half, "N/m"
+        )
+        half = _NORMAL_90 * float(np.hypot(gaps.std() / np.sqrt(len(gaps)), _GAP_ERROR))
         known["gap"] = _estimate(
             float(gaps.mean()), float(gaps.mean()) - half, float(gaps.mean()) + half, "m"
         )
