@@ -1,4 +1,4 @@
-"""The driven body rocks on what carries it: a slab on grout or a table that gives under the overturning moment."""
+"""The first driven body rocks on what carries it: a slab on grout or a table that gives under the overturning moment."""
 
 from dataclasses import replace
 
@@ -16,14 +16,13 @@ _GRIP = 2.0  # coefficient of friction towards it: the driven body does not slid
 
 
 def _act(experiment, values, place):
-    if values["compliance"] == 0.0:
+    driven = np.flatnonzero(experiment.structure.driven)
+    if values["compliance"] == 0.0 or not len(driven):
         return experiment
-    for name in [body.name for body in experiment.structure.file.bodies if body.driven]:
-        experiment = _bedded(experiment, name, values["compliance"])
-    return experiment
+    return _bedded(experiment, int(driven[0]), values["compliance"])
 
 
-def _bedded(experiment, name, compliance):
+def _bedded(experiment, index, compliance):
     """The experiment with a driven bed beneath a body, which is free now, and a soft layer between the two.
 
     A layer of the compliance c over a plan of the second moment I turns by ``M c / I``. The bed is not wider than
@@ -31,7 +30,6 @@ def _bedded(experiment, name, compliance):
     the layer sinks under the weight, so that everything starts where the structure has it.
     """
     structure = experiment.structure
-    index = structure.body_names.index(name)
     body, turn = structure.file.bodies[index], rotation_matrices(structure.orientation[index])
     vertices = structure.solids[body.shape].vertices
     size, bottom = np.ptp(vertices, axis=0), vertices[:, 2].min()
@@ -42,7 +40,7 @@ def _bedded(experiment, name, compliance):
     sink = weight * layer / (size[1] * width)
     middle = structure.position[carried, 0].mean() - structure.centroid[index, 0]
     middle = float(np.clip(middle, 0.5 * (width - size[0]), 0.5 * (size[0] - width)))
-    bed = f"{name}-bed"
+    bed = f"{body.name}-bed"
     beneath = {
         "name": bed,
         "shape": bed,
@@ -62,7 +60,7 @@ def _bedded(experiment, name, compliance):
         friction = {"pair": [body.material, body.material], "coefficient": _GRIP}
         mapping["friction"].append(friction)
     joint = {"friction_factor": _GRIP / friction["coefficient"], "compliance": float(layer)}
-    mapping["joints"].append({"bodies": [bed, name], **joint})
+    mapping["joints"].append({"bodies": [bed, body.name], **joint})
     return replace(experiment, structure=structure.with_mapping(mapping))
 
 

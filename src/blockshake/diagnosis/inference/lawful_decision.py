@@ -3,13 +3,12 @@
 import numpy as np
 
 from blockshake.diagnosis.inference.decision import ParameterEstimate
-from blockshake.diagnosis.laws.judged_laws import accounts_for, law_that_holds, own_laws
+from blockshake.diagnosis.laws.judged_laws import FORM, accounts_for, law_that_holds, own_laws
 from blockshake.diagnosis.laws.signatures import STOP
 from blockshake.diagnosis.libraries.candidates import effect_of
 from blockshake.effects.registry import EFFECTS
 
 _NORMAL_90 = 1.645
-_FORM = 0.15  # standard deviation of a stop's stiffness by the form of its law, as share of it
 _GAP_ERROR = 1e-3  # m, standard deviation of a fitted gap: steps of the search, and the form of the law
 # parameter of an effect that its own law reads directly
 _DIRECT = {"table-pitch": "coefficient", "base-compliance": "compliance", "reduced-bearing": "inset"}
@@ -129,7 +128,7 @@ def _parameters(effect, decision, findings):
         outside = findings.outside_of_stop
         gaps = np.array([test["gap"] for test in outside.tests.values()])
         # one test shows no scatter: a fit is never surer than the form of its law
-        least = _NORMAL_90 * _FORM * abs(outside.amplitude)
+        least = _NORMAL_90 * FORM * abs(outside.amplitude)
         half = max(0.5 * (outside.upper - outside.lower), least)
         known["stiffness"] = _estimate(
             outside.amplitude, outside.amplitude - half, outside.amplitude + half, "N/m"

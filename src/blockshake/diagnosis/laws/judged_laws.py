@@ -15,7 +15,7 @@ _HOLDS = 3.0
 _LEAST_GAP = 2e-3  # m, of a stop
 _FREEDOM = 10  # of the tail, for null distributions of some ten to twenty draws
 _ALIKE = 4.0  # standard deviations that sizes of one cause may differ by from test to test
-_FORM = 0.15  # share of a size by which tests may differ in what a law's form leaves out
+FORM = 0.15  # share of a size by which tests may differ in what a law's form leaves out
 
 
 def judge_laws(measured, draws, outside):
@@ -190,7 +190,7 @@ def _alike(law):
     own = own - np.array(list(law.expected.values()))
     sigma = np.abs(own) / np.maximum(np.abs(list(law.departures.values())), 1e-9)
     if np.abs(own).max() > 0.0:
-        sigma = np.hypot(sigma, _FORM * np.abs(own).max())
+        sigma = np.hypot(sigma, FORM * np.abs(own).max())
     return bool((np.abs(own - law.value) < _ALIKE * sigma).all())
 
 
