@@ -1,4 +1,4 @@
-"""The first driven body rocks on what carries it: a slab on grout or a table that gives under the overturning moment."""
+"""The first driven body rocks on what carries it: a slab on grout, or a table that gives under overturning moment."""
 
 from dataclasses import replace
 
