@@ -26,6 +26,7 @@ class PlannedCase(Strict):
 
     name: str
     seed: Seed
+    structure: str = "two-blocks"
     truth: str
     size: Literal["small", "large"] | None = None
     sealed: bool = Field(False, description="whether it has sealed tests, on which a gain is measured")
@@ -42,6 +43,9 @@ class PlannedCase(Strict):
 class PlanFile(Strict):
     """The file ``seeds.yaml``."""
 
+    efforts: dict[str, Literal["quick", "standard", "deep"]] = Field(
+        {"two-blocks": "standard"}, description="by structure: effort of the diagnosis of its cases"
+    )
     cases: tuple[PlannedCase, ...]
     removed: tuple[str, ...] = Field(
         description="cases that are diagnosed again without their effect among the candidates"
@@ -54,12 +58,15 @@ class Plan:
 
     Attributes
     ----------
+    efforts : dict of str to str
+        By structure.
     cases : tuple of PlannedCase
     removed : tuple of str
     digest : str
         Of the file.
     """
 
+    efforts: dict
     cases: tuple
     removed: tuple
     digest: str
@@ -68,7 +75,7 @@ class Plan:
 def load_plan(path=SEEDS):
     """The plan of the long tests."""
     file = validated(PlanFile, load_yaml(path), path)
-    return Plan(file.cases, file.removed, file_digest(path))
+    return Plan(file.efforts, file.cases, file.removed, file_digest(path))
 
 
 def campaign_of(results, name):

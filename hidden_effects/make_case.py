@@ -39,7 +39,7 @@ from blockshake.virtual.settings import VirtualCampaign
 from blockshake.virtual.shake_table import shake
 
 HERE = Path(__file__).parent
-STRUCTURE = HERE / "two-blocks.yaml"
+STRUCTURES = HERE / "structures"
 DURATION = 6.0  # s
 # the same in every case: libraries of simulated tests depend on structure and motions alone
 PLAN = (
@@ -56,6 +56,11 @@ def name_of_test(motion, scale):
     return f"{motion}-{round(100 * scale):03d}"
 
 
+def structure_file(name):
+    """File of the structure of a name, such as ``two-blocks``."""
+    return STRUCTURES / f"{name}.yaml"
+
+
 def made_by():
     """Digest of every source that makes a case."""
     names = ("effect_forms.py", "outside_forces.py", "case_noise.py", "case_truth.py")
@@ -63,12 +68,12 @@ def made_by():
     return content_digest(
         *own,
         Path(__file__).read_bytes(),
-        STRUCTURE.read_bytes(),
+        *(path.read_bytes() for path in sorted(STRUCTURES.glob("*.yaml"))),
         source_digest(*module_sources("virtual/generate.py", *MODELS)),
     )
 
 
-def make_case(seed, name, size, folder, truth_folder, sealed=True):
+def make_case(seed, name, size, folder, truth_folder, sealed=True, structure_name="two-blocks"):
     """Write the campaign, then its truth, then the README that commits to the truth.
 
     Parameters
@@ -82,12 +87,14 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True):
     folder, truth_folder : Path
     sealed : bool
         Whether there are sealed tests too, on which a gain can be measured.
+    structure_name : str
+        File of `STRUCTURES`, without its suffix.
     """
     plan = [test for test in PLAN if sealed or test[2] != "sealed"]
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "README").unlink(missing_ok=True)
-    structure = load_structure(STRUCTURE)
-    shutil.copyfile(STRUCTURE, folder / "structure.yaml")
+    structure = load_structure(structure_file(structure_name))
+    shutil.copyfile(structure_file(structure_name), folder / "structure.yaml")
     effect = true_effect(name, size, structure, len(plan), seed)
     parameters, wider = true_parameters(structure, seed)
     physical, own = part_parameters(parameters)
@@ -121,10 +128,11 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True):
         test = add_noise(test, noise, seed, number)
         test.attrs |= {"motion": motion, "motion_scale": scale}
         write_dataset(folder / f"{name_of_test(motion, scale)}.nc", test, DECIMALS)
-    write_text(folder / "campaign.yaml", _campaign_yaml(plan))
+    write_text(folder / "campaign.yaml", _campaign_yaml(plan, structure_name))
     truth = {
         "truth": name, "size_class": size if name in FORMS else None, "effect": effect,
-        "form": _words(name), "seed": seed, "model": model, "time_step": time_step,
+        "form": _words(name), "seed": seed, "structure": structure_name,
+        "sealed": sealed, "model": model, "time_step": time_step,
         "numerics": numerics, "parameters": parameters, "wider": wider, "table": table, "noise": noise,
         "tests": happened, "made_by": made_by(),
     }  # fmt: skip
@@ -162,9 +170,9 @@ def _happened(test, run, structure):
     }
 
 
-def _campaign_yaml(plan):
+def _campaign_yaml(plan, structure_name):
     mapping = {
-        "name": "two blocks on a virtual table",
+        "name": f"{structure_name} on a virtual table",
         "structure": "structure.yaml",
         "sensors": {"marker_noise": MARKER_NOISE, "accelerometer_noise": ACCELEROMETER_NOISE},
         "tests": [
@@ -184,13 +192,18 @@ def main(arguments):
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--case", choices=[NONE, *EFFECTS, *OUTSIDE], required=True)
     parser.add_argument("--size", choices=list(SIZES), default="large")
+    parser.add_argument(
+        "--structure", choices=sorted(path.stem for path in STRUCTURES.glob("*.yaml")), default="two-blocks"
+    )
     parser.add_argument("--output", type=Path, required=True)
     parser.add_argument("--truth", type=Path, required=True)
     parser.add_argument(
         "--no-sealed", dest="sealed", action="store_false", help="no tests to measure a gain on"
     )
     asked = parser.parse_args(arguments)
-    make_case(asked.seed, asked.case, asked.size, asked.output, asked.truth, asked.sealed)
+    make_case(
+        asked.seed, asked.case, asked.size, asked.output, asked.truth, asked.sealed, asked.structure
+    )  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -67,7 +67,8 @@ def make_cases(plan, results, cores, log):
         sealed = [] if case.sealed else ["--no-sealed"]
         command = [
             sys.executable, str(HERE / "make_case.py"), "--seed", str(case.seed), "--case", case.truth, *size, *sealed,
-            "--output", str(campaign_of(results, case.name)), "--truth", str(truth_of(results, case.name)),
+            "--structure", case.structure, "--output", str(campaign_of(results, case.name)),
+            "--truth", str(truth_of(results, case.name)),
         ]  # fmt: skip
         subprocess.run(command, env=ENVIRONMENT, check=True)
         log("made", case=case.name, seconds=round(time.monotonic() - begin, 1))
@@ -82,9 +83,8 @@ def _is_made(case, results, maker):
     if not truth.is_file() or not (campaign_of(results, case.name) / "README").is_file():
         return False
     told = json.loads(truth.read_text())
-    return (told["made_by"], told["seed"], told["truth"], told["size_class"]) == (
-        maker, case.seed, case.truth, case.size
-    )  # fmt: skip
+    made = told["made_by"], told["seed"], told["structure"], told["truth"], told["size_class"]
+    return made == (maker, case.seed, case.structure, case.truth, case.size)
 
 
 def diagnose(names, results, effort, cores, without, log, target="verdicts"):
@@ -128,24 +128,20 @@ def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, default=ROOT / "results" / "hidden-effects")
     parser.add_argument("--cores", type=int, default=os.cpu_count())
-    parser.add_argument("--effort", default="standard", choices=["quick", "standard", "deep"])
     asked = parser.parse_args(arguments)
     plan, log = load_plan(), Log(asked.output / "log.jsonl")
-    log("started", cores=asked.cores, effort=asked.effort, seeds=plan.digest)
+    log("started", cores=asked.cores, seeds=plan.digest)
     make_cases(plan, asked.output, asked.cores, log)
-    diagnose([case.name for case in plan.cases], asked.output, asked.effort, asked.cores, None, log)
-    truths = {case.name: case.truth for case in plan.cases}
+    for structure, effort in plan.efforts.items():
+        names = [case.name for case in plan.cases if case.structure == structure]
+        diagnose(names, asked.output, effort, asked.cores, None, log)
+    cases = {case.name: case for case in plan.cases}
     for name in plan.removed:
-        diagnose([name], asked.output, asked.effort, asked.cores, truths[name], log)
-    scorer = [
-        sys.executable,
-        str(HERE / "score.py"),
-        "--results",
-        str(asked.output),
-        "--effort",
-        asked.effort,
-    ]
-    subprocess.run(scorer, env=ENVIRONMENT, check=True)
+        effort = plan.efforts[cases[name].structure]
+        diagnose([name], asked.output, effort, asked.cores, cases[name].truth, log)
+    subprocess.run(
+        [sys.executable, str(HERE / "score.py"), "--results", str(asked.output)], env=ENVIRONMENT, check=True
+    )
     log("scored")
 
 

@@ -1,6 +1,6 @@
 """Score of verdicts against the truth: the answers that were right, how often, and how sure that is.
 
-``python hidden_effects/score.py --results results/hidden-effects --effort standard`` reads the truth of every
+``python hidden_effects/score.py --results results/hidden-effects`` reads the truth of every
 case of the plan and the verdict on it, writes the track record and the tables of its page, and prints them. Nothing
 else opens a truth.
 """
@@ -47,7 +47,7 @@ def _truth(results, name):
     return json.loads(path.read_text())
 
 
-def make_track_record(scored, effort, seeds):
+def make_track_record(scored, efforts, seeds):
     """Track record of scored cases, of today, this machine and these sources."""
     commit = subprocess.run(
         ["git", "describe", "--always", "--dirty", "--abbrev=12"],
@@ -60,7 +60,7 @@ def make_track_record(scored, effort, seeds):
         date=datetime.date.today().isoformat(),
         commit=commit.stdout.strip() or "not under version control",
         machine=f"{os.cpu_count()} cores",
-        effort=effort,
+        efforts=efforts,
         seeds=seeds,
         **figures(scored),
     )
@@ -70,12 +70,11 @@ def main(arguments):
     """Score a finished run of the plan, as the command line says."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--results", type=Path, required=True, help="folder of the cases and their verdicts")
-    parser.add_argument("--effort", default="standard")
     parser.add_argument("--track-record", type=Path, default=TRACK_RECORD)
     parser.add_argument("--page", type=Path, default=PAGE)
     asked = parser.parse_args(arguments)
     plan = load_plan()
-    record = make_track_record(score_plan(plan, asked.results), asked.effort, plan.digest)
+    record = make_track_record(score_plan(plan, asked.results), plan.efforts, plan.digest)
     write_track_record(asked.track_record, record)
     write_text(asked.page, with_tables(asked.page.read_text(encoding="utf-8"), record))
     sys.stdout.write(as_markdown(record) + "\n")

@@ -24,7 +24,7 @@ class Scored:
     ----------
     name : str
     truth : dict
-        ``truth``, ``size_class``, ``effect``, ``seed``.
+        ``truth``, ``size_class``, ``effect``, ``seed``, ``sealed``, ``tests``.
     verdict : Verdict
     removed : bool
         The truth was taken out of the candidates.
@@ -122,12 +122,27 @@ def figures(scored):
         "size_covered": _share("the 90 % interval of its size holds the truth where it is rightly named", sizes, 0.85),
         "others_covered": _share("the same of its other parameters", others),
     }  # fmt: skip
-    gains = {"right": _gains(right), "clean": _gains(clean)}
+    extended = [
+        case
+        for case in scored
+        if case.truth["sealed"] and (len(case.verdict.causes) == 1 or case.verdict.outside)
+    ]
+    shares["gain_given"] = _share(
+        "a gain with its interval is given where one cause is named, or described, and tests are sealed",
+        [case.verdict.gain is not None for case in extended], 0.95,
+    )  # fmt: skip
     medians = {
         "gain_named": _median(
-            "gain on sealed tests where it is rightly named", gains["right"], 0.6, "at least"
+            "gain on the responses of sealed tests where it is rightly named", _gains(right), 0.6
         ),
-        "gain_clean": _median("gain on sealed tests where there is none", gains["clean"], 0.05, "at most"),
+        "gain_laws_named": _median(
+            "gain on the laws of sealed tests where it is rightly named", _law_gains(right), 0.8
+        ),
+        "gain_described": _median(
+            "gain on the responses of sealed tests where a force from outside is described", _gains(described)
+        ),
+        "gain_laws_described": _median("the same on their laws", _law_gains(described)),
+        "gain_clean": _median("gain on sealed tests where there is none", _gains(clean), 0.05, "at most"),
         "set_size_large": _median(
             "number of causes at the larger size where an effect is called",
             [len(case.verdict.causes) for case in large if case.verdict.causes],
@@ -202,6 +217,10 @@ def _covered(case):
 
 def _gains(cases):
     return [case.verdict.gain.recalibrated.estimate for case in cases if case.verdict.gain is not None]
+
+
+def _law_gains(cases):
+    return [case.verdict.law_gain.estimate for case in cases if case.verdict.law_gain is not None]
 
 
 def _confusion(scored):

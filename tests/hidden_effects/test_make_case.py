@@ -15,7 +15,7 @@ from case_files import load_plan
 from case_noise import ACCELEROMETER_NOISE, MARKER_NOISE, add_noise, true_noise
 from case_truth import SIZES, follow, true_effect, true_numerics, true_parameters, true_table
 from effect_forms import FORM_NUMERICS, FORMS, distort
-from make_case import STRUCTURE
+from make_case import structure_file
 from outside_forces import OUTSIDE
 
 from blockshake.diagnosis.libraries.null_model import MODELS, draw_nominal
@@ -27,6 +27,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.instruments import Instruments
 from blockshake.study.check import check_file
 
+STRUCTURE = structure_file("two-blocks")
 PROGRAMS = Path(make_case.__file__).parent
 SRC = PROGRAMS.parent / "src" / "blockshake"
 MAKER = ("make_case", "effect_forms", "outside_forces", "case_noise", "case_truth")

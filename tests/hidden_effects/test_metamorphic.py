@@ -9,7 +9,7 @@ import shutil
 import numpy as np
 import pytest
 import yaml
-from make_case import DURATION, STRUCTURE
+from make_case import DURATION, structure_file
 from mirror import mirrored_effect, mirrored_features, mirrored_structure, mirrored_test
 
 from blockshake.diagnosis.features.reading import read_off
@@ -83,6 +83,7 @@ def test_a_faulty_marker_is_the_same_one_in_mirrored_readings(open_tests, two_bl
     assert plain.findings[0].estimate[0] == pytest.approx(0.04, abs=0.01)
 
 
+STRUCTURE = structure_file("two-blocks")
 EFFECTS_WITH_A_SIDE = {
     "none": None,
     "eccentricity": {"name": "eccentricity", "values": {"offset": 0.08}, "place": {"body": "block-1"}},

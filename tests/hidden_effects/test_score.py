@@ -7,7 +7,7 @@ import pytest
 import score
 from case_files import PAGE, SEEDS_OF_RECORD, SMALL_SEEDS, TRACK_RECORD, load_plan, truth_of
 from case_truth import true_effect
-from make_case import STRUCTURE
+from make_case import structure_file
 from outside_forces import OUTSIDE
 from score import make_track_record
 from score_figures import Scored, figures
@@ -22,15 +22,24 @@ from blockshake.files import write_json
 from blockshake.geometry.structure import load_structure
 
 PLAN = load_plan()
-TWO_BLOCKS = load_structure(STRUCTURE)
+STRUCTURES = {name: load_structure(structure_file(name)) for name in PLAN.efforts}
 TESTS = ("one", "two", "three")
 GAIN = {"estimate": 0.7, "lower": 0.5, "upper": 0.9}
+LAW_GAIN = {"estimate": 0.9, "lower": 0.8, "upper": 1.0}
+# effects that are hidden in structures other than two blocks
+ELSEWHERE = (
+    "table-pitch", "vertical-motion", "stopper-contact", "reduced-bearing", "eccentricity", "weak-joint",
+    "joint-compliance", "base-compliance",
+)  # fmt: skip
 
 
 def _truth(case):
-    effect = true_effect(case.truth, case.size, TWO_BLOCKS, len(TESTS), case.seed)
+    effect = true_effect(case.truth, case.size, STRUCTURES[case.structure], len(TESTS), case.seed)
     tests = dict.fromkeys(TESTS)
-    return {"truth": case.truth, "size_class": case.size, "effect": effect, "seed": case.seed, "tests": tests}
+    return {
+        "truth": case.truth, "size_class": case.size, "effect": effect, "seed": case.seed, "tests": tests,
+        "sealed": case.sealed,
+    }  # fmt: skip
 
 
 def _verdict(decision, causes=(), **keys):
@@ -51,7 +60,10 @@ def _perfect(truth):
         return _verdict("none", gain=dict.fromkeys(("recalibrated", "nominal", "discrepancy"), nothing))
     name, values, place = truth["truth"], truth["effect"]["values"], truth["effect"]["place"]
     if name in OUTSIDE:
-        return _verdict("unknown", outside=_described(truth))
+        return _verdict(
+            "unknown", outside=_described(truth), law_gain=LAW_GAIN,
+            gain=dict.fromkeys(("recalibrated", "nominal", "discrepancy"), GAIN),
+        )  # fmt: skip
     parameters = {
         item.name: {
             "estimate": values[item.name], "lower": values[item.name], "upper": values[item.name], "unit": item.unit,
@@ -60,7 +72,7 @@ def _perfect(truth):
     }  # fmt: skip
     return _verdict(
         "named", [name], parameters={name: parameters}, location={name: place} if place else {},
-        gain=dict.fromkeys(("recalibrated", "nominal", "discrepancy"), GAIN),
+        gain=dict.fromkeys(("recalibrated", "nominal", "discrepancy"), GAIN), law_gain=LAW_GAIN,
     )  # fmt: skip
 
 
@@ -81,13 +93,17 @@ def perfect():
 
 
 def test_the_plan_is_what_the_docs_say():
-    wanted = {("none", None): 60} | {(name, None): 4 for name in OUTSIDE}
-    wanted |= {(name, size): 3 for name in EFFECTS for size in ("small", "large")}
+    wanted = {("two-blocks", "none", None): 60} | {("two-blocks", name, None): 4 for name in OUTSIDE}
+    wanted |= {("two-blocks", name, size): 3 for name in EFFECTS for size in ("small", "large")}
+    for structure in set(PLAN.efforts) - {"two-blocks"}:
+        wanted |= {(structure, "none", None): 4} | {(structure, name, "large"): 1 for name in ELSEWHERE}
+        wanted |= {(structure, name, None): 1 for name in ("outside-push", "outside-blow", "outside-rope")}
     counted = {}
     for case in PLAN.cases:
-        counted[case.truth, case.size] = counted.get((case.truth, case.size), 0) + 1
+        kind = (case.structure, case.truth, case.size)
+        counted[kind] = counted.get(kind, 0) + 1
     assert counted == wanted
-    assert len({case.seed for case in PLAN.cases}) == len({case.name for case in PLAN.cases}) == 162
+    assert len({case.seed for case in PLAN.cases}) == len({case.name for case in PLAN.cases}) == 207
     large = {case.name: case.truth for case in PLAN.cases if case.size == "large"}
     assert [large[name] for name in PLAN.removed] == list(EFFECTS)
 
@@ -102,32 +118,39 @@ def test_perfect_verdicts_score_full(perfect):
     assert found["medians"]["gain_named"].estimate == 0.7
     assert found["medians"]["gain_clean"].estimate == 0.0
     assert all(median.met in (True, None) for median in found["medians"].values())
-    assert sum(row.answers.right for row in found["confusion"]) == 78
+    assert found["medians"]["gain_laws_named"].estimate == 0.9
+    assert sum(row.answers.right for row in found["confusion"]) == sum(
+        case.truth in EFFECTS for case in PLAN.cases
+    )
 
 
 def test_shuffled_truths_score_chance(perfect):
-    """Thirteen effects, six cases each: a name given to a truth drawn from all is right in one of thirteen."""
+    """A name given to a truth drawn from all is right as often as two cases have the same truth."""
     known = [case for case in perfect if case.truth["truth"] in EFFECTS and not case.removed]
+    count = len(known)
+    own = [sum(case.truth["truth"] == name for case in known) for name in EFFECTS]
+    chance = sum(number**2 for number in own) / count**2
     generator = np.random.default_rng(1)
     shares = []
     for _ in range(40):
-        order = generator.permutation(len(known))
+        order = generator.permutation(count)
         shuffled = [
             Scored(case.name, known[at].truth, case.verdict) for case, at in zip(known, order, strict=True)
         ]
         found = figures(shuffled)["shares"]
-        shares.append(found["truth_in_set"].hits / 78)
-        assert found["confidently_wrong"].hits == 78 - found["truth_in_set"].hits
-    # one share has a standard deviation of nearly sqrt(p (1 - p) / 78)
-    assert abs(np.mean(shares) - 1.0 / 13.0) < 4.0 * np.sqrt(12.0 / 169.0 / 78.0 / 40.0)
+        shares.append(found["truth_in_set"].hits / count)
+        assert found["confidently_wrong"].hits == count - found["truth_in_set"].hits
+    # one share has a standard deviation of nearly sqrt(p (1 - p) / count)
+    assert abs(np.mean(shares) - chance) < 4.0 * np.sqrt(chance * (1.0 - chance) / count / 40.0)
 
 
 def test_always_none_is_never_wrong_and_finds_nothing(perfect):
     silent = [Scored(case.name, case.truth, _verdict("none"), case.removed) for case in perfect]
     found = figures(silent)["shares"]
     assert found["false_alarms"].hits == found["confidently_wrong"].hits == 0
-    # 0 of 60: 1 - 0.025^(1/60)
-    assert found["false_alarms"].upper == pytest.approx(1.0 - 0.025 ** (1.0 / 60.0))
+    # 0 of n: 1 - 0.025^(1/n)
+    assert found["false_alarms"].n == 72
+    assert found["false_alarms"].upper == pytest.approx(1.0 - 0.025 ** (1.0 / 72.0))
     assert found["truth_in_set"].met is False
     assert found["unknown_recall"].met is False
 
@@ -135,7 +158,7 @@ def test_always_none_is_never_wrong_and_finds_nothing(perfect):
 def _case(verdict, truth="eccentricity", place=None, size="large", removed=False):
     place = place or {"body": "block-1"}
     effect = {"name": truth, "values": {"offset": -0.08}, "place": place}
-    told = {"truth": truth, "size_class": size, "effect": effect, "seed": 1}
+    told = {"truth": truth, "size_class": size, "effect": effect, "seed": 1, "sealed": False}
     return Scored("case", told, verdict, removed)
 
 
@@ -192,7 +215,7 @@ def test_intervals_of_medians_are_order_statistics(perfect):
 
 
 def test_the_track_record_comes_back_from_its_file(perfect, tmp_path):
-    track_record = make_track_record(perfect, "standard", PLAN.digest)
+    track_record = make_track_record(perfect, PLAN.efforts, PLAN.digest)
     write_track_record(tmp_path / "track-record.json", track_record)
     assert load_track_record(tmp_path / "track-record.json") == track_record
     page = with_tables(f"before\n{BEGIN}\nold\n{END}\nafter\n", track_record)
@@ -242,7 +265,7 @@ def test_scoring_goes_from_the_files_of_a_run_to_track_record_and_page(tmp_path,
     ],
 )
 def test_a_track_record_that_contradicts_itself_is_refused(perfect, tmp_path, change, key):
-    told = make_track_record(perfect, "standard", PLAN.digest).model_dump(mode="json")
+    told = make_track_record(perfect, PLAN.efforts, PLAN.digest).model_dump(mode="json")
     change(told)
     (tmp_path / "track-record.json").write_text(json.dumps(told))
     with pytest.raises(InputError) as error:

@@ -116,12 +116,17 @@ class TrackRecord(Strict):
     date: str = Field(description="day of the scoring, year-month-day")
     commit: str = Field(description="of the sources that were tried")
     machine: str
-    effort: str
+    efforts: dict[str, str] = Field(description="by structure: effort of the diagnosis of its cases")
     seeds: str = Field(description="digest of the list of seeds, fixed before the run")
     shares: dict[str, Share]
     medians: dict[str, Median]
     confusion: tuple[Row, ...]
     cases: tuple[JudgedCase, ...]
+
+    @property
+    def effort(self):
+        """Efforts by structure in words."""
+        return ", ".join(f"{effort} of {structure}" for structure, effort in self.efforts.items())
 
     @model_validator(mode="after")
     def _consistent(self):

@@ -34,10 +34,10 @@ def track_record_section(found):
             "structure they are an indication."
         )
     ]
-    if record.effort != found.effort:
+    if found.effort not in record.efforts.values():
         blocks.append(
             Text(
-                f"The track record is of the effort {record.effort}; this diagnosis was made with {found.effort}.",
+                f"The track record holds no diagnosis of the effort {found.effort}, with which this one was made.",
                 strong=True,
             )
         )
