@@ -62,7 +62,7 @@ def _parser():
     command.set_defaults(run=_sample)
 
     command = commands.add_parser("calibrate-stiffness", help="contact stiffness from wave speed, to a JSON")
-    command.add_argument("--structure", default="configuration-2", metavar="NAME|FILE", help="a single tower")
+    command.add_argument("--structure", required=True, metavar="NAME|FILE", help="whose blocks are tested")
     _add_settings(command)
     command.add_argument("--output", required=True, metavar="STIFFNESS.json")
     command.set_defaults(run=_calibrate_stiffness)

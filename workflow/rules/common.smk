@@ -118,7 +118,7 @@ def campaign_kernels(wildcards):
 def stiffness_file(wildcards):
     """Calibrated stiffness of the samples, for the models that have any: an edit of LS-DEM reruns no NSCD."""
     return (
-        f"results/{wildcards.study}/stiffness.csv"
+        f"results/{wildcards.study}/stiffness/{wildcards.case}.csv"
         if SOLVERS[wildcards.model].calibrated
         else []
     )

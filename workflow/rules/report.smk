@@ -15,8 +15,10 @@ rule make_report:
         ),
         design=f"results/{STUDY}/design.csv",
         design_summary=f"results/{STUDY}/design.json",
-        stiffness=f"results/{STUDY}/stiffness.csv",
-        waves=f"results/{STUDY}/waves.nc",
+        stiffness=expand(
+            "results/{study}/stiffness/{case}.csv", study=STUDY, case=CASES
+        ),
+        waves=expand("results/{study}/waves/{case}.nc", study=STUDY, case=CASES),
         convergence=(
             f"results/{STUDY}/convergence.csv" if config.get("convergence") else []
         ),

@@ -15,9 +15,11 @@ from blockshake.report.study import closing_sections
 from blockshake.report.study.closing_sections import checks
 from blockshake.report.study.content import load_content
 from blockshake.report.study.convergence_section import convergence as annex
+from blockshake.report.study.opening_sections import stiffness
 from blockshake.report.study.report import compose, make_report
 from blockshake.study.convergence.table import load_convergence
 from blockshake.study.peer_record import load_peer_record
+from blockshake.study.sampling.latin_hypercube import load_design
 
 
 @pytest.fixture(scope="module")
@@ -299,3 +301,16 @@ def test_a_window_that_ends_with_the_motion_has_no_remark(fake):
     for motion in content.motions.values():
         motion.attrs["duration"] = 2.0
     assert not [one for one in texts(compose(content)) if one.startswith("The window ends")]
+
+
+def test_cases_of_unlike_blocks_have_their_own_stiffness(tmp_path):
+    study = FakeStudy(tmp_path)
+    assert [one.cases for one in load_content(study.study, study.results, study.benchmarks).calibrated] == [
+        ("configuration-1", "configuration-4")
+    ]
+    table = load_design(study.results / "stiffness" / "configuration-4.csv")
+    study.write_stiffness("configuration-4", 2.0 * table)
+    apart = load_content(study.study, study.results, study.benchmarks)
+    assert [one.cases for one in apart.calibrated] == [("configuration-1",), ("configuration-4",)]
+    captions = " ".join(getattr(block, "caption", "") for block in stiffness(apart).blocks)
+    assert "10 samples; configuration-4 (after" in captions

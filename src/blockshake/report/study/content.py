@@ -84,6 +84,15 @@ class ReportedCase:
 
 
 @dataclass(frozen=True)
+class Calibrated:
+    """Contact stiffness of the samples, one row each, and wave tests behind it, of cases whose blocks are alike."""
+
+    cases: tuple
+    stiffness: pd.DataFrame
+    waves: xr.Dataset
+
+
+@dataclass(frozen=True)
 class Content:
     """The study's results.
 
@@ -94,11 +103,13 @@ class Content:
     cases : dict of str to ReportedCase
     motions : dict of str to xarray.Dataset
         From `describe_motion`, by name.
-    design, stiffness : pandas.DataFrame
+    design : pandas.DataFrame
         One row a sample.
     design_summary : dict
     distributions : dict of str to Lognormal
-    waves, definitions : xarray.Dataset
+    calibrated : tuple of Calibrated
+        Every case in one of them.
+    definitions : xarray.Dataset
     friction : dict of str to dict
         Friction calibrations by case; empty where the study asks for none.
     convergence : pandas.DataFrame or None
@@ -116,10 +127,9 @@ class Content:
     cases: dict
     motions: dict
     design: pd.DataFrame
-    stiffness: pd.DataFrame
     design_summary: dict
     distributions: dict
-    waves: xr.Dataset
+    calibrated: tuple
     definitions: xr.Dataset
     friction: dict
     convergence: pd.DataFrame | None
@@ -158,7 +168,8 @@ def load_content(study, results, benchmarks):
     motions = {}
     for named in [*(case["motion"] for case in cases.values()), *study["ladder"]["motions"]]:
         motions[Path(named).stem] = load_results(results / "motions" / f"{Path(named).stem}.nc")
-    design, stiffness = results / "design.csv", results / "stiffness.csv"
+    design = results / "design.csv"
+    stiffness = [results / "stiffness" / f"{name}.csv" for name in cases]
     inputs = [
         named_file(f"{kind}s", case[kind]) for kind in ("structure", "motion") for case in cases.values()
     ]
@@ -168,10 +179,9 @@ def load_content(study, results, benchmarks):
         cases=loaded,
         motions=motions,
         design=load_design(design),
-        stiffness=load_design(stiffness),
         design_summary=load_json(results / "design.json"),
         distributions=load_distributions(study["ensemble"].get("distributions"), study["name"]),
-        waves=load_results(results / "waves.nc"),
+        calibrated=_calibrated(results, cases),
         definitions=load_results(results / "stiffness-definitions.nc"),
         friction={
             name: load_json(results / "friction" / f"{name}.json")
@@ -185,7 +195,7 @@ def load_content(study, results, benchmarks):
         ),
         digests={
             "configuration of the study": content_digest(study),
-            **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, stiffness, PEER_RECORD]},
+            **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, *stiffness, PEER_RECORD]},
         },
         versions=software_versions(_PACKAGES),
     )  # fmt: skip
@@ -215,6 +225,20 @@ def _case(study, results, name, settings):
         marker_noise=campaign.sensors.marker_noise,
         responses=responses,
     )
+
+
+def _calibrated(results, names):
+    """Stiffness of the cases, those of equal tables and waves together."""
+    groups = []
+    for name in names:
+        stiffness = load_design(results / "stiffness" / f"{name}.csv")
+        waves = load_results(results / "waves" / f"{name}.nc")
+        alike = [one for one in groups if one[1].equals(stiffness) and one[2].equals(waves)]
+        if alike:
+            alike[0][0].append(name)
+        else:
+            groups.append(([name], stiffness, waves))
+    return tuple(Calibrated(tuple(cases), stiffness, waves) for cases, stiffness, waves in groups)
 
 
 def _shown(path):
