@@ -105,6 +105,58 @@ def test_what_is_wrong_is_named(mapping, path, value, line):
     assert "\n" not in str(error.value)
 
 
+NEEDED = {
+    "name": "mine",
+    "description": "mine",
+    "models": {"nscd-rigid": {"time_step": 1e-3}},
+    "cases": [{"structure": "configuration-2", "motion": "alkion", "scale": 1.0, "duration": 2.0}],
+    "ensemble": {"size": 10, "seed": 1},
+}
+
+
+def test_nothing_more_is_needed():
+    config = check_config(copy.deepcopy(NEEDED), "mine.yaml")
+    assert config.cases[0].measured is None
+    assert config.friction_calibration is None
+    assert config.ladder.motions == ()
+
+
+@pytest.mark.parametrize("key", NEEDED)
+def test_less_is_not_enough(key):
+    mapping = {name: value for name, value in NEEDED.items() if name != key}
+    with pytest.raises(InputError, match=f"^mine.yaml: {key}: missing key$"):
+        check_config(mapping, "mine.yaml")
+
+
+def test_all_wrong_keys_are_named_at_once_with_the_nearest_known_one():
+    mapping = copy.deepcopy(NEEDED)
+    mapping["modles"] = mapping.pop("models")
+    mapping["cases"][0]["duraton"] = mapping["cases"][0].pop("duration")
+    mapping["friction_calibration"] = {
+        "cases": ["configuration-2"],
+        "variables": ["x"],
+        "finnest": 0.1,
+        "zzz": 1,
+    }
+    with pytest.raises(InputError) as error:
+        check_config(mapping, "mine.yaml")
+    assert str(error.value).removeprefix("mine.yaml: ").split("; ") == [
+        "models: missing key",
+        "cases.0.duration: missing key",
+        "cases.0.duraton: unknown key, did you mean duration?",
+        "friction_calibration.finnest: unknown key, did you mean finest?",
+        "friction_calibration.zzz: unknown key",
+        "modles: unknown key, did you mean models?",
+    ]
+
+
+def test_friction_is_calibrated_against_a_measured_test_alone(mapping):
+    mapping["cases"][0]["measured"] = None
+    line = "friction_calibration.cases: expected cases with a measured test, not configuration-1"
+    with pytest.raises(InputError, match=line):
+        check_config(mapping, "study.yaml")
+
+
 def test_check_says_what_a_good_file_is(monkeypatch):
     monkeypatch.chdir(ROOT)
     assert "3 blocks of 22091 kg" in check_file("configuration-1")

@@ -200,6 +200,17 @@ def test_bad_configuration_ends_in_one_line_and_exit_2(tmp_path, change, line):
     assert not (tmp_path / "results").exists()
 
 
+def test_study_without_measured_tests_compares_with_none(tmp_path):
+    checkout = Checkout(tmp_path)
+    config = {key: checkout.config[key] for key in ("name", "description", "models", "cases", "ensemble")}
+    del config["cases"][0]["measured"]
+    checkout.write_config(config)
+    planned = checkout.jobs()
+    assert "make_envelope" in planned
+    assert not {"compare_with_measurement", "calibrate_friction"} & set(planned)
+    assert "climb_ladder" in checkout.jobs("ladder")
+
+
 def test_study_without_convergence_plans_none(tmp_path):
     assert "study_convergence" in Checkout(tmp_path / "with").jobs()
     assert "study_convergence" not in Checkout(tmp_path / "without", convergence=None).jobs()

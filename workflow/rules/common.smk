@@ -146,8 +146,11 @@ NULL_MODELS = [name for name, model in SOLVERS.items() if model.perturbation]
 STUDY = config["name"]
 MODELS = list(config["models"])
 CASES = {Path(case["structure"]).stem: case for case in config["cases"]}
+MEASURED = [name for name, case in CASES.items() if case["measured"]]
 FRICTION_SEARCH = config.get("friction_calibration") or {}
-LADDER_MOTIONS = config["ladder"]["motions"]
+LADDER_MOTIONS = config["ladder"]["motions"] or list(
+    dict.fromkeys(case["motion"] for case in config["cases"])
+)
 MOTIONS = {
     Path(motion).stem: motion
     for motion in [*(case["motion"] for case in CASES.values()), *LADDER_MOTIONS]

@@ -4,7 +4,7 @@ rule make_report:
         structures=[
             definition("structures", case["structure"]) for case in CASES.values()
         ],
-        campaigns=[campaign_files(case) for case in CASES],
+        campaigns=[campaign_files(case) for case in MEASURED],
         peer="data/peers/lmgc90.nc",
         templates=expand(
             "src/blockshake/report/document/templates/{name}",
@@ -39,7 +39,7 @@ rule make_report:
             "results/{study}/comparisons/{model}/{case}.nc",
             study=STUDY,
             model=MODELS,
-            case=CASES,
+            case=MEASURED,
         ),
         friction=expand(
             "results/{study}/friction/{case}.json",
@@ -60,7 +60,7 @@ rule make_report:
     conda:
         "../envs/blockshake.yaml"
     params:
-        study=config,
+        study=CHECKED.model_dump(mode="json"),
         results="results/{study}",
         benchmarks="benchmarks/{study}",
         source=source_of("make_report"),

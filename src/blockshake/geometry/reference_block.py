@@ -51,6 +51,11 @@ def reference_block(structure):
     return ReferenceBlock(body, sizes[body])
 
 
+def half_width(structure):
+    """Half of the smaller width of the reference block [m]: a block that slid so far loses its support."""
+    return 0.5 * float(reference_block(structure).size[:2].min())
+
+
 def _upright_size(structure, body):
     """Edge lengths of the box around a shape, the axis that is nearest to the vertical last [m]."""
     name = structure.file.bodies[body].shape

@@ -9,7 +9,7 @@ import yaml
 
 from blockshake.diagnosis.libraries.null_model import draw_nominal
 from blockshake.errors import InputError
-from blockshake.geometry.reference_block import reference_block
+from blockshake.geometry.reference_block import half_width, reference_block
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.parameter_table import parameter_table
 from blockshake.simulation.simulate import simulate
@@ -171,6 +171,11 @@ def test_reference_block_is_of_the_heaviest_material_and_its_usual_height(own):
     table, last = file["bodies"][0], {**file["bodies"][4], "position": [0.0, 0.0, 0.4]}
     alone = load_structure(own("granite", 1.6, bodies=[table, last], markers=[]))
     np.testing.assert_allclose(reference_block(alone).size, [2.4, 1.6, 0.8])
+
+
+def test_half_width_is_of_the_thickness(own):
+    assert half_width(load_structure("configuration-3")) == 0.4
+    assert half_width(load_structure(own("granite", 0.2))) == 0.05
 
 
 def test_a_structure_of_driven_bodies_has_no_blocks(own):

@@ -9,6 +9,7 @@ import xarray as xr
 from blockshake.files import content_digest, file_digest, load_json, named_file
 from blockshake.geometry.structure import Structure, load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.sensors import markers
 from blockshake.report.document.origin import software_versions
 from blockshake.report.document.results import load_results
 from blockshake.study.convergence.table import load_convergence
@@ -24,12 +25,12 @@ _PACKAGES = ("numpy", "scipy", "numba", "xarray", "pandas", "snakemake", "matplo
 
 @dataclass(frozen=True)
 class Response:
-    """Results of one case by one model: envelope, figures of the samples, coverage of the measured curves, and
-    sensitivity to the random variables."""
+    """Results of one case by one model: envelope, figures of the samples, coverage of the measured curves where there
+    are any, and sensitivity to the random variables."""
 
     envelope: xr.Dataset
     samples: xr.Dataset
-    comparison: xr.Dataset
+    comparison: xr.Dataset | None
     sensitivity: xr.Dataset
 
 
@@ -45,14 +46,14 @@ class ReportedCase:
     structure : Structure
     motion : str
         Name of its motion in `Content.motions`.
-    measured : xarray.Dataset
-        From `measured_curves`.
-    test_file : Path
+    measured : xarray.Dataset or None
+        From `measured_curves`; none where the case is compared with no test.
+    test_file : Path or None
         File of the measured test.
     synthetic : bool
         The measured test is a virtual one.
     marker_noise : float
-        Standard deviation of the measured markers [m].
+        Standard deviation of the measured markers, or of the optical system's [m].
     responses : dict of str to Response
         By model.
     """
@@ -61,8 +62,8 @@ class ReportedCase:
     settings: dict
     structure: Structure
     motion: str
-    measured: xr.Dataset
-    test_file: Path
+    measured: xr.Dataset | None
+    test_file: Path | None
     synthetic: bool
     marker_noise: float
     responses: dict
@@ -173,7 +174,7 @@ def load_content(study, results, benchmarks):
     inputs = [
         named_file(f"{kind}s", case[kind]) for kind in ("structure", "motion") for case in cases.values()
     ]
-    tests = [case.test_file for case in loaded.values()]
+    tests = [case.test_file for case in loaded.values() if case.test_file]
     return Content(
         study=study,
         cases=loaded,
@@ -202,27 +203,34 @@ def load_content(study, results, benchmarks):
 
 
 def _case(study, results, name, settings):
+    named = settings.get("measured")
+
+    def found(kind, model):
+        return load_results(results / kind / model / f"{name}.nc")
+
     responses = {
         model: Response(
-            *(
-                load_results(results / kind / model / f"{name}.nc")
-                for kind in ("envelopes", "samples", "comparisons", "sensitivities")
-            )
+            found("envelopes", model),
+            found("samples", model),
+            found("comparisons", model) if named else None,
+            found("sensitivities", model),
         )
         for model in study["models"]
     }
-    campaign = load_campaign(settings["measured"]["campaign"])
-    test = load_test(campaign, settings["measured"]["test"])
+    test = campaign = None
+    if named:
+        campaign = load_campaign(named["campaign"])
+        test = load_test(campaign, named["test"])
     slab_marker = next(iter(responses.values())).envelope.attrs["slab_marker"]
     return ReportedCase(
         name=name,
         settings=settings,
         structure=load_structure(settings["structure"]),
         motion=Path(settings["motion"]).stem,
-        measured=measured_curves(test, slab_marker, settings["duration"]),
-        test_file=campaign.folder / campaign.tests[settings["measured"]["test"]].file,
-        synthetic=bool(test.attrs.get("synthetic", 0)),
-        marker_noise=campaign.sensors.marker_noise,
+        measured=measured_curves(test, slab_marker, settings["duration"]) if named else None,
+        test_file=campaign.folder / campaign.tests[named["test"]].file if named else None,
+        synthetic=bool(test.attrs.get("synthetic", 0)) if named else False,
+        marker_noise=campaign.sensors.marker_noise if named else markers.NOISE,
         responses=responses,
     )
 
