@@ -214,7 +214,7 @@ def _generate_campaign(options):
 
 
 def _diagnose(options):
-    from blockshake.diagnose import diagnose
+    from blockshake.run_diagnosis import diagnose
 
     try:
         verdict = diagnose(options.campaign, options.output, options.effort, options.cores)

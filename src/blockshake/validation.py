@@ -45,7 +45,7 @@ def validated(schema, mapping, where, prefix=""):
     try:
         return schema.model_validate(mapping)
     except ValidationError as error:
-        found = error.errors()
+        found = [one for one in error.errors() if one["type"] != "default_factory_not_called"]
     # a list is counted without its entries at fault
     places = [one["loc"] for one in found]
     found = [

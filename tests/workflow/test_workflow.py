@@ -1,5 +1,6 @@
 """The workflow as a user meets it: small studies in a copy of the checkout, run by Snakemake itself."""
 
+import html
 import os
 import re
 import shutil
@@ -83,6 +84,18 @@ def finished(tmp_path_factory):
 def test_study_ends_with_its_reports(finished):
     assert (finished.folder / "reports" / "small.html").stat().st_size > 0
     assert (finished.folder / "reports" / "small.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_printed_configuration_plans_the_same_study(finished):
+    page = (finished.folder / "reports" / "small.html").read_text()
+    listings = [html.unescape(text) for text in re.findall("<pre>(.*?)</pre>", page, flags=re.DOTALL)]
+    (printed,) = [text for text in listings if text.startswith("name: small")]
+    before = finished.config
+    try:
+        finished.write_config(yaml.safe_load(printed))
+        assert finished.jobs() == {}
+    finally:
+        finished.write_config(before)
 
 
 def test_convergence_study_leaves_its_table_and_says_what_each_run_cost(finished):

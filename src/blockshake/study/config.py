@@ -183,8 +183,12 @@ def _check_parameters(model, settings, key, where):
 def _check_measured(case, where, key):
     """The test a case is compared with: of its structure, motion and scale, and not sealed."""
     campaign = load_campaign(case.measured.campaign)
-    if Path(campaign.structure).stem != case.name:
-        raise InputError(where, f"{key}.campaign", f"expected a campaign of {case.name}")
+    if not load_structure(campaign.structure).same_as(load_structure(case.structure)):
+        raise InputError(
+            where,
+            f"{key}.campaign",
+            f"expected a campaign of the structure {case.name}, not another one's content",
+        )
     open_tests = [name for name, test in campaign.tests.items() if test.role != "sealed"]
     if case.measured.test not in open_tests:
         raise InputError(where, f"{key}.test", f"expected a test that is not sealed: {', '.join(open_tests)}")
