@@ -5,9 +5,9 @@ rule make_report:
             definition("structures", case["structure"]) for case in CASES.values()
         ],
         campaigns=[campaign_files(case) for case in MEASURED],
-        peer="data/peers/lmgc90.nc",
+        peer=beside(HOME / "data" / "peers" / "lmgc90.nc"),
         templates=expand(
-            "src/blockshake/report/document/templates/{name}",
+            beside(PACKAGE / "report" / "document" / "templates" / "{name}"),
             name=["report.html.j2", "report.typ"],
         ),
         motions=expand(

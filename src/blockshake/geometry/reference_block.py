@@ -6,6 +6,7 @@ import numpy as np
 
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.geometry.structure import load_structure
 
 _SAME_HEIGHT = 6  # decimals of a metre
 
@@ -52,8 +53,11 @@ def reference_block(structure):
 
 
 def half_width(structure):
-    """Half of the smaller width of the reference block [m]: a block that slid so far loses its support."""
-    return 0.5 * float(reference_block(structure).size[:2].min())
+    """Half of the smaller width of the reference block [m]: a block that slid so far loses its support.
+
+    ``structure``: as of `load_structure`.
+    """
+    return 0.5 * float(reference_block(load_structure(structure)).size[:2].min())
 
 
 def _upright_size(structure, body):
