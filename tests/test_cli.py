@@ -116,7 +116,7 @@ def test_python_m_runs_the_command_line():
     assert ended.stderr.startswith("blockshake: ")
 
 
-@pytest.mark.parametrize("output", ["", ".", "file/run.nc"])
+@pytest.mark.parametrize("output", ["", ".", "file/run.nc", "run.csv"])
 def test_output_that_cannot_be_written_is_bad_input_before_anything_runs(
     output, capsys, tmp_path, monkeypatch
 ):

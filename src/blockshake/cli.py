@@ -145,6 +145,8 @@ def _settings(options):
 
 def _simulate(options):
     check_output(options.output)
+    if Path(options.output).suffix != ".nc":
+        raise InputError("--output", options.output, "expected a netCDF file, RUN.nc")
     from blockshake.dynamics.load_motion import load_motion
     from blockshake.dynamics.system import FINISHED
     from blockshake.simulation.simulate import simulate

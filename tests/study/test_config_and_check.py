@@ -3,12 +3,15 @@
 import copy
 
 import pytest
+import yaml
 
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, load_yaml
+from blockshake.geometry.structure import load_structure
 from blockshake.study.check import check_file
 from blockshake.study.config import check_config, load_config
 from blockshake.study.sampling.distributions import TABLE_2
+from blockshake.study.structure_remarks import structure_remarks
 
 ROOT = PACKAGE.parents[1]
 
@@ -170,3 +173,36 @@ def test_check_refuses_other_yaml(tmp_path, text):
     (tmp_path / "x.yaml").write_text(text)
     with pytest.raises(InputError, match=r"x\.yaml"):
         check_file(str(tmp_path / "x.yaml"))
+
+
+@pytest.mark.parametrize(
+    ("changes", "remark"),
+    [
+        ({"bodies.slab.driven": False}, "remark: no body is driven"),
+        (
+            {"bodies.block-3.position": [0.0, 0.0, 4.7]},
+            "remark: block-3 touches nothing that stands on a driven",
+        ),
+        ({"materials.concrete.density": 2.4}, "remark: block-1 weighs 7.36 kg, 2.4 kg/m3: expected kg/m3"),
+    ],
+)
+def test_check_remarks_what_was_hardly_meant(changes, remark):
+    structure = load_structure("configuration-1", changes)
+    assert any(f"remark: {line}".startswith(remark) for line in structure_remarks(structure))
+
+
+def test_check_remarks_a_structure_in_millimetres(tmp_path):
+    file = load_yaml(ROOT / "config" / "structures" / "configuration-1.yaml")
+    for shape in file["shapes"].values():
+        shape["box"] = [1e3 * edge for edge in shape["box"]]
+    for item in [*file["bodies"], *file["markers"], *file["accelerometers"]]:
+        item["position"] = [1e3 * place for place in item["position"]]
+    (tmp_path / "mm.yaml").write_text(yaml.safe_dump(file))
+    assert "block-1 is 2.4e+03 m long and weighs 7.37e+12 kg: expected m" in check_file(
+        str(tmp_path / "mm.yaml")
+    )
+
+
+@pytest.mark.parametrize("number", [1, 2, 3, 4])
+def test_shipped_structures_have_no_remarks(number):
+    assert structure_remarks(load_structure(f"configuration-{number}")) == []
