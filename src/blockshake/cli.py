@@ -29,7 +29,7 @@ def main(arguments=None):
         print(f"blockshake: {error}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt as interrupt:
-        print(f"blockshake: {interrupt or 'interrupted'}", file=sys.stderr)
+        print(f"blockshake: {str(interrupt) or 'interrupted'}", file=sys.stderr)
         return INTERRUPTED
 
 
