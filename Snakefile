@@ -50,7 +50,8 @@ for case in CASES:
             expand(
                 "results/{study}/{kind}/{model}/{case}.nc",
                 study=STUDY,
-                kind=["envelopes", "comparisons", "sensitivities"],
+                kind=["envelopes", "sensitivities"]
+                + (["comparisons"] if case in MEASURED else []),
                 model=MODELS,
                 case=case,
             ),

@@ -116,7 +116,7 @@ def test_python_m_runs_the_command_line():
     assert ended.stderr.startswith("blockshake: ")
 
 
-@pytest.mark.parametrize("output", ["", ".", "file/run.nc"])
+@pytest.mark.parametrize("output", ["", ".", "file/run.nc", "run.csv"])
 def test_output_that_cannot_be_written_is_bad_input_before_anything_runs(
     output, capsys, tmp_path, monkeypatch
 ):
@@ -137,3 +137,12 @@ def test_step_too_large_to_trust_is_a_numerical_failure(tmp_path, capsys):
     )  # fmt: skip
     assert code == 3
     assert xr.load_dataset(tmp_path / "run.nc").attrs["status"] in ("not-converged", "diverged")
+
+
+def test_an_interrupt_before_a_run_has_begun_is_said_too(monkeypatch, capsys):
+    def interrupted(file):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("blockshake.study.check.check_file", interrupted)
+    assert main(["check", "configuration-1"]) == 130
+    assert capsys.readouterr().err == "blockshake: interrupted\n"

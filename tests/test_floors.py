@@ -19,7 +19,7 @@ FLOORS = [
     ["study"],
     ["diagnosis", "virtual"],
     ["report"],
-    ["diagnose"],
+    ["run_diagnosis"],
     ["cli"],
 ]
 ROOMS_OF_DIAGNOSIS = [

@@ -16,7 +16,7 @@ _HOMES = {
     "draw_samples": "blockshake.study.sampling.latin_hypercube",
     "calibrate_stiffness": "blockshake.study.stiffness.wave_speed",
     "load_campaign": "blockshake.measurement.campaigns.campaign",
-    "diagnose": "blockshake.diagnose",
+    "diagnose": "blockshake.run_diagnosis",
     "InputError": "blockshake.errors",
 }
 __all__ = list(_HOMES)

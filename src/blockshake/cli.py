@@ -29,7 +29,7 @@ def main(arguments=None):
         print(f"blockshake: {error}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt as interrupt:
-        print(f"blockshake: {interrupt or 'interrupted'}", file=sys.stderr)
+        print(f"blockshake: {str(interrupt) or 'interrupted'}", file=sys.stderr)
         return INTERRUPTED
 
 
@@ -62,7 +62,7 @@ def _parser():
     command.set_defaults(run=_sample)
 
     command = commands.add_parser("calibrate-stiffness", help="contact stiffness from wave speed, to a JSON")
-    command.add_argument("--structure", default="configuration-2", metavar="NAME|FILE", help="a single tower")
+    command.add_argument("--structure", required=True, metavar="NAME|FILE", help="whose blocks are tested")
     _add_settings(command)
     command.add_argument("--output", required=True, metavar="STIFFNESS.json")
     command.set_defaults(run=_calibrate_stiffness)
@@ -145,6 +145,8 @@ def _settings(options):
 
 def _simulate(options):
     check_output(options.output)
+    if Path(options.output).suffix != ".nc":
+        raise InputError("--output", options.output, "expected a netCDF file, RUN.nc")
     from blockshake.dynamics.load_motion import load_motion
     from blockshake.dynamics.system import FINISHED
     from blockshake.simulation.simulate import simulate
@@ -214,7 +216,7 @@ def _generate_campaign(options):
 
 
 def _diagnose(options):
-    from blockshake.diagnose import diagnose
+    from blockshake.run_diagnosis import diagnose
 
     try:
         verdict = diagnose(options.campaign, options.output, options.effort, options.cores)

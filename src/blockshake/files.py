@@ -15,7 +15,9 @@ import yaml
 from blockshake.errors import InputError
 
 PACKAGE = Path(__file__).parent
-_SHIPPED = PACKAGE.parents[1] / "config"
+_INSTALLED = PACKAGE / "shipped"
+# what ships beside the package: a checkout's own folders, or the copy of them in an installed package
+HOME = _INSTALLED if _INSTALLED.is_dir() else PACKAGE.parents[1]
 _NO_NUMBER = -(2**31)  # stands for NaN in packed variables
 
 
@@ -118,12 +120,12 @@ def named_file(kind, name):
 
 def shipped(kind, name):
     """Path of a file that ships with the program, such as ``shipped("structures", "configuration-1")``."""
-    return _SHIPPED / kind / f"{name}.yaml"
+    return HOME / "config" / kind / f"{name}.yaml"
 
 
 def shipped_names(kind):
     """Names of the files of one kind that ship with the program, sorted."""
-    return sorted(path.stem for path in (_SHIPPED / kind).glob("*.yaml"))
+    return sorted(path.stem for path in (HOME / "config" / kind).glob("*.yaml"))
 
 
 def check_output(path):

@@ -5,10 +5,10 @@ Nothing is listed by hand: a script's sources are the files that it imports, dir
 
 import ast
 import functools
-from pathlib import Path
 
-PACKAGE = Path(__file__).parent
-_SCRIPTS = PACKAGE.parents[1] / "workflow" / "scripts"
+from blockshake.files import HOME, PACKAGE
+
+_SCRIPTS = HOME / "workflow" / "scripts"
 # These name things, write logs, or decide what is in the names of the files made: they compute nothing.
 _COMPUTE_NOTHING = (
     "jit.py",

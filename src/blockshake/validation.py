@@ -1,6 +1,8 @@
-"""Checking a mapping against its schema, with pydantic's first complaint worded as one line."""
+"""Checking a mapping against its schema, with pydantic's complaints worded as one line."""
 
-from typing import Annotated
+import difflib
+import types
+from typing import Annotated, Union, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -37,20 +39,74 @@ def validated(schema, mapping, where, prefix=""):
     Raises
     ------
     InputError
-        Names the key (an entry of a list by its ``name`` where it has one) and what was expected.
+        Names all keys that are unknown, with the nearest known one, or missing, and the first wrong value with what was
+        expected, in one line; an entry of a list by its ``name`` where it has one.
     """
     try:
         return schema.model_validate(mapping)
     except ValidationError as error:
-        first = error.errors()[0]
-    key = ".".join(([prefix] if prefix else []) + _words(first["loc"], mapping))
-    if first["type"] == "extra_forbidden":
-        raise InputError(where, key, "unknown key")
-    if first["type"] == "missing":
-        raise InputError(where, key, "missing key")
-    message = first["msg"].removeprefix("Value error, ")
-    found = "" if isinstance(first["input"], dict) else f", not {first['input']!r}"
-    raise InputError(where, key, f"{message[0].lower()}{message[1:]}{found}")
+        found = [one for one in error.errors() if one["type"] != "default_factory_not_called"]
+    # a list is counted without its entries at fault
+    places = [one["loc"] for one in found]
+    found = [
+        one for one in found if not any(one["loc"] == place[: len(one["loc"])] != place for place in places)
+    ]
+    wrong_values = [one for one in found if not _is_of_key(one)]
+    shown = [one for one in found if _is_of_key(one) or one is wrong_values[0]]
+    faults = [(_key(one["loc"], mapping, prefix), _in_words(one, schema)) for one in shown]
+    if len(faults) == 1:
+        raise InputError(where, *faults[0])
+    raise InputError(where, "", "; ".join(f"{key}: {said}" for key, said in faults))
+
+
+def _is_of_key(error):
+    return error["type"] in ("missing", "extra_forbidden")
+
+
+def _in_words(error, schema):
+    """One fault in words, without its key."""
+    if error["type"] == "missing":
+        return "missing key"
+    if error["type"] == "extra_forbidden":
+        *place, name = error["loc"]
+        near = difflib.get_close_matches(str(name), _known_keys(schema, place), n=1)
+        return f"unknown key, did you mean {near[0]}?" if near else "unknown key"
+    message = error["msg"].removeprefix("Value error, ")
+    found = "" if isinstance(error["input"], dict) else f", not {error['input']!r}"
+    return f"{message[0].lower()}{message[1:]}{found}"
+
+
+def _known_keys(schema, location):
+    """Keys that a schema knows at a place."""
+    kinds = [schema]
+    for part in location:
+        kinds = [inner for kind in kinds for inner in _inside(kind, part)]
+    return [name for kind in kinds if _is_schema(kind) for name in kind.model_fields]
+
+
+def _inside(kind, part):
+    """Kinds of values under a part of a key."""
+    if _is_schema(kind):
+        return _alternatives(kind.model_fields[part].annotation) if part in kind.model_fields else []
+    arguments = get_args(kind)
+    if not arguments:
+        return []
+    return _alternatives(arguments[-1] if get_origin(kind) is dict else arguments[0])
+
+
+def _alternatives(annotation):
+    """Kinds that an annotation allows."""
+    if get_origin(annotation) in (Union, types.UnionType):
+        return [inner for one in get_args(annotation) for inner in _alternatives(one)]
+    return [annotation]
+
+
+def _is_schema(kind):
+    return isinstance(kind, type) and issubclass(kind, BaseModel)
+
+
+def _key(location, mapping, prefix):
+    return ".".join(([prefix] if prefix else []) + _words(location, mapping))
 
 
 def _words(location, mapping):

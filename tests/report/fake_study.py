@@ -61,7 +61,6 @@ class FakeStudy:
         for place, name in enumerate(("basso-tirreno", "alkion")):
             write_dataset(self.results / "motions" / f"{name}.nc", motion(name, place))
         self._write_design()
-        write_dataset(self.results / "waves.nc", waves())
         write_convergence(self.results / "convergence.csv", convergence_table())
         write_dataset(self.results / "stiffness-definitions.nc", definitions())
         for case in self.study["cases"]:
@@ -78,7 +77,12 @@ class FakeStudy:
         )
         write_text(self.results / "design.csv", self.design.to_csv(index=False))
         write_json(self.results / "design.json", design.summary())
-        write_text(self.results / "stiffness.csv", stiffness.to_csv(index=False))
+        for case in self.study["cases"]:
+            self.write_stiffness(case["structure"], stiffness)
+
+    def write_stiffness(self, case, stiffness):
+        write_text(self.results / "stiffness" / f"{case}.csv", stiffness.to_csv(index=False))
+        write_dataset(self.results / "waves" / f"{case}.nc", waves())
 
     def _write_case(self, case):
         name = case["structure"]

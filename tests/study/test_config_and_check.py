@@ -3,12 +3,15 @@
 import copy
 
 import pytest
+import yaml
 
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, load_yaml
+from blockshake.geometry.structure import load_structure
 from blockshake.study.check import check_file
 from blockshake.study.config import check_config, load_config
 from blockshake.study.sampling.distributions import TABLE_2
+from blockshake.study.structure_remarks import structure_remarks
 
 ROOT = PACKAGE.parents[1]
 
@@ -105,6 +108,58 @@ def test_what_is_wrong_is_named(mapping, path, value, line):
     assert "\n" not in str(error.value)
 
 
+NEEDED = {
+    "name": "mine",
+    "description": "mine",
+    "models": {"nscd-rigid": {"time_step": 1e-3}},
+    "cases": [{"structure": "configuration-2", "motion": "alkion", "scale": 1.0, "duration": 2.0}],
+    "ensemble": {"size": 10, "seed": 1},
+}
+
+
+def test_nothing_more_is_needed():
+    config = check_config(copy.deepcopy(NEEDED), "mine.yaml")
+    assert config.cases[0].measured is None
+    assert config.friction_calibration is None
+    assert config.ladder.motions == ()
+
+
+@pytest.mark.parametrize("key", NEEDED)
+def test_less_is_not_enough(key):
+    mapping = {name: value for name, value in NEEDED.items() if name != key}
+    with pytest.raises(InputError, match=f"^mine.yaml: {key}: missing key$"):
+        check_config(mapping, "mine.yaml")
+
+
+def test_all_wrong_keys_are_named_at_once_with_the_nearest_known_one():
+    mapping = copy.deepcopy(NEEDED)
+    mapping["modles"] = mapping.pop("models")
+    mapping["cases"][0]["duraton"] = mapping["cases"][0].pop("duration")
+    mapping["friction_calibration"] = {
+        "cases": ["configuration-2"],
+        "variables": ["x"],
+        "finnest": 0.1,
+        "zzz": 1,
+    }
+    with pytest.raises(InputError) as error:
+        check_config(mapping, "mine.yaml")
+    assert str(error.value).removeprefix("mine.yaml: ").split("; ") == [
+        "models: missing key",
+        "cases.0.duration: missing key",
+        "cases.0.duraton: unknown key, did you mean duration?",
+        "friction_calibration.finnest: unknown key, did you mean finest?",
+        "friction_calibration.zzz: unknown key",
+        "modles: unknown key, did you mean models?",
+    ]
+
+
+def test_friction_is_calibrated_against_a_measured_test_alone(mapping):
+    mapping["cases"][0]["measured"] = None
+    line = "friction_calibration.cases: expected cases with a measured test, not configuration-1"
+    with pytest.raises(InputError, match=line):
+        check_config(mapping, "study.yaml")
+
+
 def test_check_says_what_a_good_file_is(monkeypatch):
     monkeypatch.chdir(ROOT)
     assert "3 blocks of 22091 kg" in check_file("configuration-1")
@@ -118,3 +173,36 @@ def test_check_refuses_other_yaml(tmp_path, text):
     (tmp_path / "x.yaml").write_text(text)
     with pytest.raises(InputError, match=r"x\.yaml"):
         check_file(str(tmp_path / "x.yaml"))
+
+
+@pytest.mark.parametrize(
+    ("changes", "remark"),
+    [
+        ({"bodies.slab.driven": False}, "remark: no body is driven"),
+        (
+            {"bodies.block-3.position": [0.0, 0.0, 4.7]},
+            "remark: block-3 touches nothing that stands on a driven",
+        ),
+        ({"materials.concrete.density": 2.4}, "remark: block-1 weighs 7.36 kg, 2.4 kg/m3: expected kg/m3"),
+    ],
+)
+def test_check_remarks_what_was_hardly_meant(changes, remark):
+    structure = load_structure("configuration-1", changes)
+    assert any(f"remark: {line}".startswith(remark) for line in structure_remarks(structure))
+
+
+def test_check_remarks_a_structure_in_millimetres(tmp_path):
+    file = load_yaml(ROOT / "config" / "structures" / "configuration-1.yaml")
+    for shape in file["shapes"].values():
+        shape["box"] = [1e3 * edge for edge in shape["box"]]
+    for item in [*file["bodies"], *file["markers"], *file["accelerometers"]]:
+        item["position"] = [1e3 * place for place in item["position"]]
+    (tmp_path / "mm.yaml").write_text(yaml.safe_dump(file))
+    assert "block-1 is 2.4e+03 m long and weighs 7.37e+12 kg: expected m" in check_file(
+        str(tmp_path / "mm.yaml")
+    )
+
+
+@pytest.mark.parametrize("number", [1, 2, 3, 4])
+def test_shipped_structures_have_no_remarks(number):
+    assert structure_remarks(load_structure(f"configuration-{number}")) == []

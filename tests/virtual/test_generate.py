@@ -12,6 +12,7 @@ from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.checks.campaign_check import campaign_lines
+from blockshake.study.config import check_config
 from blockshake.virtual import generate
 from blockshake.virtual.settings import Hidden, VirtualCampaign, load_settings
 from blockshake.virtual.truth import hidden_effect
@@ -217,3 +218,42 @@ def test_wrong_settings_are_one_line(changed, message, tmp_path):
         load_settings(path)
     assert str(error.value).startswith(f"{path}: {message}")
     assert "\n" not in str(error.value)
+
+
+OWN = """
+name: own
+materials: {stone: {density: 2700.0, youngs_modulus: 5.0e+10, poisson_ratio: 0.25}}
+shapes: {table: {box: [2.0, 2.0, 0.1]}, block: {box: [0.5, 1.0, 0.8]}}
+bodies:
+  - {name: table, shape: table, material: stone, position: [0.0, 0.0, -0.05], driven: true}
+  - {name: block, shape: block, material: stone, position: [0.0, 0.0, 0.4]}
+friction: [{pair: [stone, stone], coefficient: 0.6}]
+markers:
+  - {name: T1, body: table, position: [0.0, 0.0, 0.05]}
+  - {name: B1, body: block, position: [0.25, 0.0, 0.0]}
+"""
+
+
+def test_a_study_of_an_own_structure_accepts_its_campaign(tmp_path, stiffness):
+    """Structures are the same by content: the campaign has a copy under another name."""
+    own, other = tmp_path / "own.yaml", tmp_path / "other.yaml"
+    own.write_text(OWN)
+    other.write_text(OWN.replace("0.5, 1.0, 0.8", "0.4, 1.0, 0.8"))
+    settings = VirtualCampaign(
+        **SETTINGS | {"motions": ["alkion"], "hidden": {"effect": "none"}, "duration": 0.3}
+    )
+    generate.generate_campaign(settings, str(own), tmp_path / "c", tmp_path / "truth", "one", print)
+    measured = {"campaign": str(tmp_path / "c"), "test": "alkion-100"}
+    study = {
+        "name": "own",
+        "description": "own",
+        "models": {"nscd-rigid": {"time_step": 1e-3}},
+        "cases": [
+            {"structure": str(own), "motion": "alkion", "scale": 1.0, "duration": 0.3, "measured": measured}
+        ],
+        "ensemble": {"size": 10, "seed": 1},
+    }
+    assert check_config(study, "own.yaml").cases[0].measured.test == "alkion-100"
+    study["cases"][0]["structure"] = str(other)
+    with pytest.raises(InputError, match="expected a campaign of the structure other"):
+        check_config(study, "own.yaml")

@@ -1,5 +1,6 @@
 """The workflow as a user meets it: small studies in a copy of the checkout, run by Snakemake itself."""
 
+import html
 import os
 import re
 import shutil
@@ -83,6 +84,18 @@ def finished(tmp_path_factory):
 def test_study_ends_with_its_reports(finished):
     assert (finished.folder / "reports" / "small.html").stat().st_size > 0
     assert (finished.folder / "reports" / "small.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_printed_configuration_plans_the_same_study(finished):
+    page = (finished.folder / "reports" / "small.html").read_text()
+    listings = [html.unescape(text) for text in re.findall("<pre>(.*?)</pre>", page, flags=re.DOTALL)]
+    (printed,) = [text for text in listings if text.startswith("name: small")]
+    before = finished.config
+    try:
+        finished.write_config(yaml.safe_load(printed))
+        assert finished.jobs() == {}
+    finally:
+        finished.write_config(before)
 
 
 def test_convergence_study_leaves_its_table_and_says_what_each_run_cost(finished):
@@ -198,6 +211,17 @@ def test_bad_configuration_ends_in_one_line_and_exit_2(tmp_path, change, line):
     assert line in said[0]
     assert "Traceback" not in answer.stderr
     assert not (tmp_path / "results").exists()
+
+
+def test_study_without_measured_tests_compares_with_none(tmp_path):
+    checkout = Checkout(tmp_path)
+    config = {key: checkout.config[key] for key in ("name", "description", "models", "cases", "ensemble")}
+    del config["cases"][0]["measured"]
+    checkout.write_config(config)
+    planned = checkout.jobs()
+    assert "make_envelope" in planned
+    assert not {"compare_with_measurement", "calibrate_friction"} & set(planned)
+    assert "climb_ladder" in checkout.jobs("ladder")
 
 
 def test_study_without_convergence_plans_none(tmp_path):

@@ -4,7 +4,7 @@ rule make_virtual_campaign:
     It is made here and copied there by hand, so that an edit of a solver does not move the data.
     """
     input:
-        settings="config/virtual-campaign.yaml",
+        settings=beside(HOME / "config" / "virtual-campaign.yaml"),
         structure=lambda wildcards: definition("structures", wildcards.structure),
         kernels=campaign_kernels,
     output:

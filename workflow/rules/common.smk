@@ -4,10 +4,13 @@ import os
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(workflow.basedir, "src")))
-# scripts find the checkout's package in any environment; one thread a job, BLAS included
+# scripts find the package around the workflow, a checkout's or an installed one, in any environment
+ABOVE = Path(workflow.basedir, "src")
+ABOVE = ABOVE if ABOVE.is_dir() else Path(workflow.basedir).parents[1]
+sys.path.insert(0, str(ABOVE))
+# one thread a job, BLAS included
 os.environ.update(
-    PYTHONPATH=str(Path(workflow.basedir, "src")),
+    PYTHONPATH=str(ABOVE),
     OMP_NUM_THREADS="1",
     OPENBLAS_NUM_THREADS="1",
     MKL_NUM_THREADS="1",
@@ -15,7 +18,7 @@ os.environ.update(
 )
 
 from blockshake.errors import InputError
-from blockshake.files import source_digest
+from blockshake.files import HOME, PACKAGE, shipped, source_digest
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.simulation.models import MODELS as SOLVERS
 from blockshake.sources import kernel_sources, script_sources
@@ -58,8 +61,14 @@ def with_numbers(value):
 
 def definition(kind, name):
     """Path of a structure or motion: a shipped one by its name, else the file named."""
-    shipped = Path("config", kind, f"{name}.yaml")
-    return str(shipped if shipped.exists() else name)
+    path = shipped(kind, name)
+    return beside(path) if path.exists() else name
+
+
+def beside(path):
+    """Path of a file that ships with the program: from the current folder where it lies in it."""
+    path = Path(path)
+    return str(path.relative_to(Path.cwd()) if Path.cwd() in path.parents else path)
 
 
 def campaign_files(case):
@@ -112,13 +121,13 @@ def campaign_kernels(wildcards):
     """Mark that the kernels of the virtual campaign's model are compiled."""
     from blockshake.virtual.settings import load_settings
 
-    return kernels(load_settings("config/virtual-campaign.yaml").model)
+    return kernels(load_settings(HOME / "config" / "virtual-campaign.yaml").model)
 
 
 def stiffness_file(wildcards):
     """Calibrated stiffness of the samples, for the models that have any: an edit of LS-DEM reruns no NSCD."""
     return (
-        f"results/{wildcards.study}/stiffness.csv"
+        f"results/{wildcards.study}/stiffness/{wildcards.case}.csv"
         if SOLVERS[wildcards.model].calibrated
         else []
     )
@@ -146,8 +155,11 @@ NULL_MODELS = [name for name, model in SOLVERS.items() if model.perturbation]
 STUDY = config["name"]
 MODELS = list(config["models"])
 CASES = {Path(case["structure"]).stem: case for case in config["cases"]}
+MEASURED = [name for name, case in CASES.items() if case["measured"]]
 FRICTION_SEARCH = config.get("friction_calibration") or {}
-LADDER_MOTIONS = config["ladder"]["motions"]
+LADDER_MOTIONS = config["ladder"]["motions"] or list(
+    dict.fromkeys(case["motion"] for case in config["cases"])
+)
 MOTIONS = {
     Path(motion).stem: motion
     for motion in [*(case["motion"] for case in CASES.values()), *LADDER_MOTIONS]

@@ -29,9 +29,8 @@ else:
     CAMPAIGNS = by_name(
         config.get("campaigns", config["diagnosis"]["campaigns"]), WITHOUT
     )
-TRACK_RECORD = (
-    "data/track-record/hidden-effects.json"  # how often the procedure was right
-)
+# how often the procedure was right
+TRACK_RECORD = beside(HOME / "data" / "track-record" / "hidden-effects.json")
 LIBRARY_SOURCE = source_of("simulate_library", *NULL_MODELS)
 CALIBRATION_SOURCE = source_of("calibrate_decision")
 

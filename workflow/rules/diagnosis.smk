@@ -293,7 +293,7 @@ rule make_diagnosis_report:
             for name in library_names(wildcards.campaign)
         ],
         templates=expand(
-            "src/blockshake/report/document/templates/{name}",
+            beside(PACKAGE / "report" / "document" / "templates" / "{name}"),
             name=["report.html.j2", "report.typ"],
         ),
         track_record=[TRACK_RECORD] if Path(TRACK_RECORD).exists() else [],

@@ -2,6 +2,9 @@ rule make_envelope:
     """Bounds and quantiles over the samples, and what each sample came to."""
     input:
         batches=batch_files,
+        structure=lambda wildcards: definition(
+            "structures", CASES[wildcards.case]["structure"]
+        ),
     output:
         envelope="results/{study}/envelopes/{model}/{case}.nc",
         samples="results/{study}/samples/{model}/{case}.nc",
@@ -10,6 +13,7 @@ rule make_envelope:
     conda:
         "../envs/blockshake.yaml"
     params:
+        structure=lambda wildcards: CASES[wildcards.case]["structure"],
         largest_drift=lookup(dpath="ladder/largest_drift", within=config),
         source=source_of("make_envelope"),
     script:

@@ -5,7 +5,6 @@ rule calibrate_friction:
             "structures", CASES[wildcards.case]["structure"]
         ),
         motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
-        tower="config/structures/configuration-2.yaml",
         campaign=lambda wildcards: campaign_files(wildcards.case),
         kernels=lambda wildcards: kernels(FRICTION_SEARCH["model"]),
     output:

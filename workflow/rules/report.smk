@@ -4,10 +4,10 @@ rule make_report:
         structures=[
             definition("structures", case["structure"]) for case in CASES.values()
         ],
-        campaigns=[campaign_files(case) for case in CASES],
-        peer="data/peers/lmgc90.nc",
+        campaigns=[campaign_files(case) for case in MEASURED],
+        peer=beside(HOME / "data" / "peers" / "lmgc90.nc"),
         templates=expand(
-            "src/blockshake/report/document/templates/{name}",
+            beside(PACKAGE / "report" / "document" / "templates" / "{name}"),
             name=["report.html.j2", "report.typ"],
         ),
         motions=expand(
@@ -15,8 +15,10 @@ rule make_report:
         ),
         design=f"results/{STUDY}/design.csv",
         design_summary=f"results/{STUDY}/design.json",
-        stiffness=f"results/{STUDY}/stiffness.csv",
-        waves=f"results/{STUDY}/waves.nc",
+        stiffness=expand(
+            "results/{study}/stiffness/{case}.csv", study=STUDY, case=CASES
+        ),
+        waves=expand("results/{study}/waves/{case}.nc", study=STUDY, case=CASES),
         convergence=(
             f"results/{STUDY}/convergence.csv" if config.get("convergence") else []
         ),
@@ -37,7 +39,7 @@ rule make_report:
             "results/{study}/comparisons/{model}/{case}.nc",
             study=STUDY,
             model=MODELS,
-            case=CASES,
+            case=MEASURED,
         ),
         friction=expand(
             "results/{study}/friction/{case}.json",
@@ -58,7 +60,7 @@ rule make_report:
     conda:
         "../envs/blockshake.yaml"
     params:
-        study=config,
+        study=CHECKED.model_dump(mode="json"),
         results="results/{study}",
         benchmarks="benchmarks/{study}",
         source=source_of("make_report"),

@@ -65,6 +65,7 @@ rule climb_ladder:
         "../envs/blockshake.yaml"
     params:
         cases=[case for case in CASES.values()],
+        motions=LADDER_MOTIONS,
         ladder=lookup(dpath="ladder", within=config),
         time_step=time_step_of("ls-dem"),
         source=source_of("climb_ladder", "ls-dem"),

@@ -1,19 +1,22 @@
 rule calibrate_stiffness:
-    """Contact stiffness of every sample from the wave speed in a tower of four blocks."""
+    """Contact stiffness of every sample of a case from the wave speed in a tower of four of its blocks."""
     input:
         design="results/{study}/design.csv",
-        tower="config/structures/configuration-2.yaml",
+        structure=lambda wildcards: definition(
+            "structures", CASES[wildcards.case]["structure"]
+        ),
         kernels=kernels("ls-dem"),
     output:
-        stiffness="results/{study}/stiffness.csv",
-        waves="results/{study}/waves.nc",
+        stiffness="results/{study}/stiffness/{case}.csv",
+        waves="results/{study}/waves/{case}.nc",
     log:
-        "logs/{study}/calibrate_stiffness.log",
+        "logs/{study}/calibrate_stiffness/{case}.log",
     benchmark:
-        "benchmarks/{study}/calibrate_stiffness.jsonl"
+        "benchmarks/{study}/calibrate_stiffness/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
+        structure=lambda wildcards: CASES[wildcards.case]["structure"],
         linked=lookup(dpath="ensemble/linked", within=config),
         source=source_of("calibrate_stiffness"),
     script:
@@ -23,7 +26,6 @@ rule calibrate_stiffness:
 rule compare_definitions:
     """Contact stiffness by the definition of a wave's arrival and by damping, and the peak of a stack with each."""
     input:
-        tower="config/structures/configuration-2.yaml",
         structure=definition("structures", config["cases"][0]["structure"]),
         motion=definition("motions", config["cases"][0]["motion"]),
         kernels=kernels("ls-dem"),

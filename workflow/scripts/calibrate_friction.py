@@ -4,5 +4,5 @@ from blockshake.study.friction.search import calibrate_case
 
 with logging_to(snakemake.log[0]) as say:
     of = snakemake.params
-    found = calibrate_case(of.case, of.measured, of.given, of.store, snakemake.input.tower, say)
+    found = calibrate_case(of.case, of.measured, of.given, of.store, say)
     write_json(snakemake.output[0], found)

@@ -5,7 +5,6 @@ from blockshake.study.stiffness.wave_speed import calibrate_design, wave_tests
 
 with logging_to(snakemake.log[0]):
     design = load_design(snakemake.input.design)
-    write_design(
-        snakemake.output.stiffness, calibrate_design(snakemake.input.tower, design, snakemake.params.linked)
-    )
-    write_dataset(snakemake.output.waves, wave_tests(snakemake.input.tower))
+    structure = snakemake.params.structure
+    write_design(snakemake.output.stiffness, calibrate_design(structure, design, snakemake.params.linked))
+    write_dataset(snakemake.output.waves, wave_tests(structure))

@@ -5,4 +5,6 @@ from blockshake.study.ensembles.ladder import climb_ladders
 
 with logging_to(snakemake.log[0]) as say:
     of = snakemake.params
-    write_json(snakemake.output[0], climb_ladders(of.cases, of.time_step, Ladder(**of.ladder), say))
+    write_json(
+        snakemake.output[0], climb_ladders(of.cases, of.motions, of.time_step, Ladder(**of.ladder), say)
+    )

@@ -6,7 +6,5 @@ LONGEST = 6.0  # s; the first strong swings
 
 with logging_to(snakemake.log[0]):
     case = snakemake.params.case
-    compared = compare_definitions(
-        snakemake.input.tower, case, snakemake.params.time_step, min(case["duration"], LONGEST)
-    )
+    compared = compare_definitions(case, snakemake.params.time_step, min(case["duration"], LONGEST))
     write_dataset(snakemake.output[0], compared)

@@ -130,6 +130,16 @@ class Structure:
         known = {name: (shape, self.solids[name]) for name, shape in self.file.shapes.items()}
         return build_structure(mapping, self.source, self.folder, known)
 
+    def same_as(self, other):
+        """Whether another structure has the same content, whatever both and their files are called."""
+        mine, others = (
+            one.file.model_dump(exclude={"name": True, "description": True, "shapes": {"__all__": {"mesh"}}})
+            for one in (self, other)
+        )
+        return mine == others and all(
+            np.array_equal(solid.vertices, other.solids[name].vertices) for name, solid in self.solids.items()
+        )
+
     def solid(self, body):
         """Solid of the body with this index, about its mass centre."""
         one = self.file.bodies[body]

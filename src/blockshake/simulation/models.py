@@ -70,6 +70,8 @@ class Model:
         ``module:class`` of its numerical parameters.
     calibrated : tuple of str
         Those of them that a wave test gives from the material, as its contact stiffness.
+    own_stiffness : str or None
+        ``module:function`` that gives them for a structure about which nothing is said: ``(structure)`` to a dict.
     without_effect : tuple of str
         Properties of a material that the model has no use for.
     perturbation : Perturbation or None
@@ -87,6 +89,7 @@ class Model:
     driver: str
     parameters: str
     calibrated: tuple[str, ...] = ()
+    own_stiffness: str | None = None
     without_effect: tuple[str, ...] = ()
     perturbation: Perturbation | None = None
 
@@ -104,10 +107,16 @@ class Model:
         """Dotted names of the contact stiffness that a wave test gives; empty where the model has none."""
         return tuple(f"{self.prefix}.{name}" for name in self.calibrated)
 
+    def stiffness_of(self, structure):
+        """Contact stiffness of a structure about which nothing is said, by dotted name; empty without any."""
+        own = _named(self.own_stiffness)(structure) if self.own_stiffness else {}
+        return {f"{self.prefix}.{name}": value for name, value in own.items()}
+
     @property
     def modules(self):
-        """Names of the modules that the driver and the parameters are in."""
-        return tuple(name.partition(":")[0] for name in (self.driver, self.parameters))
+        """Names of the modules that the driver, the parameters and the stiffness are in."""
+        named = (self.driver, self.parameters, self.own_stiffness)
+        return tuple(name.partition(":")[0] for name in named if name)
 
     def numerical_parameters(self):
         """Default, unit, meaning and source of every numerical parameter, by dotted name."""
@@ -131,6 +140,7 @@ MODELS = {
             driver="blockshake.solvers.ls_dem.driver:simulate_ls_dem",
             parameters="blockshake.solvers.ls_dem.parameters:LsDemParameters",
             calibrated=("normal_stiffness", "shear_stiffness"),
+            own_stiffness="blockshake.solvers.ls_dem.own_stiffness:own_stiffness",
             without_effect=("viscous_modulus",),  # rigid blocks
             # the layout of the nodes, and the restitution that stands for damping
             perturbation=Perturbation(

@@ -13,23 +13,25 @@ def parameter_table(structure=None):
     Parameters
     ----------
     structure : str or path, optional
-        Whose materials, pairs and bodies are listed one by one; the first shipped one by default.
+        Whose materials, pairs and bodies are listed one by one, with its contact stiffness; the first shipped one by
+        default.
 
     Returns
     -------
     list of tuple of 5 str
     """
-    file = load_structure(structure or shipped_names("structures")[0]).file
-    rows = []
+    loaded = load_structure(structure or shipped_names("structures")[0])
+    file, rows = loaded.file, []
     for quantity in PHYSICAL:
         for name, value in _instances(quantity.name, file):
             rows.append((name, quantity.unit, _shown(value), quantity.meaning, quantity.source))
-    numerical = {}
+    numerical, own = {}, {}
     for model in MODELS.values():
         # some models share their parameters
         numerical |= model.numerical_parameters()
+        own |= model.stiffness_of(loaded)
     for name, (default, unit, meaning, source) in numerical.items():
-        rows.append((name, unit, _shown(default), meaning, source))
+        rows.append((name, unit, _shown(own.get(name, default)), meaning, source))
     return rows
 
 

@@ -50,7 +50,8 @@ def simulate(
     model : str
         One of `blockshake.simulation.models.MODELS`.
     parameters : dict of str to value, optional
-        By dotted name, physical and numerical; those of the other solver are ignored.
+        By dotted name, physical and numerical; those of the other solver are ignored. A contact stiffness that is
+        not given goes with the material and the height of the structure's blocks.
     time_step : float, optional
         [s]; the model's own by default.
     duration : float, optional
@@ -73,8 +74,9 @@ def simulate(
         Unknown model or parameter, or a structure that is wrong.
     """
     solver = model_of(model)
-    physical, numerical = split_parameters(parameters or {}, model)
+    physical, _ = split_parameters(parameters or {}, model)
     built = load_structure(structure, physical)
+    numerical = split_parameters(solver.stiffness_of(built) | (parameters or {}), model)[1]
     motion = motion if isinstance(motion, GroundMotion) else load_motion(motion)
     _check_start(built, motion)
     time_step = solver.time_step if time_step is None else time_step

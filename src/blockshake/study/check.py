@@ -10,10 +10,11 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.study.config import load_config
+from blockshake.study.structure_remarks import structure_remarks
 
 
 def check_file(source):
-    """Kind and size of a good file, in one line; of a campaign one line for every test, and its inconsistencies.
+    """Kind and size of a good file, in one line, and remarks; of a campaign one line for every test too.
 
     Parameters
     ----------
@@ -48,7 +49,8 @@ def check_file(source):
 def _structure_line(source):
     structure = load_structure(source)
     free = int((~structure.driven).sum())
-    return f"a structure of {free} blocks of {structure.mass[~structure.driven].sum():.0f} kg in all"
+    line = f"a structure of {free} blocks of {structure.mass[~structure.driven].sum():.0f} kg in all"
+    return "\n".join([line, *(f"  remark: {remark}" for remark in structure_remarks(structure))])
 
 
 def _campaign_line(folder):

@@ -71,7 +71,7 @@ class StudyCase(Strict):
     scale: Positive = Field(description="multiplies the motion [1]")
     duration: Positive = Field(description="simulated time [s]")
     samples: dict[ModelName, int] = Field({}, description="fewer samples than the ensemble's, by model")
-    measured: Measured
+    measured: Measured | None = Field(None, description="none: compared with no test")
 
     @property
     def name(self):
@@ -82,12 +82,14 @@ class StudyCase(Strict):
 class Ladder(Strict):
     """The intensities that are climbed to find each case's scale."""
 
-    motions: tuple[str, ...]
-    first: Positive = Field(description="scale of the first test [1]")
-    increment: Positive = Field(description="[1]")
-    highest: Positive = Field(description="where the ladder ends [1]")
-    largest_drift: Positive = Field(
-        description="displacement of a block relative to the slab that counts as a potential collapse [m]"
+    motions: tuple[str, ...] = Field((), description="those of the cases by default")
+    first: Positive = Field(0.5, description="scale of the first test [1]")
+    increment: Positive = Field(0.25, description="[1]")
+    highest: Positive = Field(4.0, description="where the ladder ends [1]")
+    largest_drift: Positive | None = Field(
+        None,
+        description="displacement of a block relative to the slab that counts as a potential collapse, by default half "
+        "of the smaller width of the structure's blocks [m]",
     )
 
 
@@ -108,7 +110,7 @@ class StudyConfig(Strict):
     models: dict[ModelName, ModelSettings] = Field(min_length=1)
     cases: tuple[StudyCase, ...] = Field(min_length=1)
     ensemble: Ensemble
-    ladder: Ladder
+    ladder: Ladder = Ladder()
     friction_calibration: FrictionSearch | None = None
     convergence: Convergence | None = Field(None, description="none: no study of the numerical parameters")
     diagnosis: Diagnosis = Field(Diagnosis(), description="none: no campaign is diagnosed")
@@ -152,7 +154,8 @@ def check_config(mapping, where):
                 )
         load_structure(case.structure)
         load_motion(case.motion, case.scale)
-        _check_measured(case, where, f"{key}.measured")
+        if case.measured is not None:
+            _check_measured(case, where, f"{key}.measured")
     for target, source in config.ensemble.linked.items():
         if source not in config.ensemble.distributions:
             raise InputError(
@@ -180,8 +183,12 @@ def _check_parameters(model, settings, key, where):
 def _check_measured(case, where, key):
     """The test a case is compared with: of its structure, motion and scale, and not sealed."""
     campaign = load_campaign(case.measured.campaign)
-    if Path(campaign.structure).stem != case.name:
-        raise InputError(where, f"{key}.campaign", f"expected a campaign of {case.name}")
+    if not load_structure(campaign.structure).same_as(load_structure(case.structure)):
+        raise InputError(
+            where,
+            f"{key}.campaign",
+            f"expected a campaign of the structure {case.name}, not another one's content",
+        )
     open_tests = [name for name, test in campaign.tests.items() if test.role != "sealed"]
     if case.measured.test not in open_tests:
         raise InputError(where, f"{key}.test", f"expected a test that is not sealed: {', '.join(open_tests)}")
@@ -211,6 +218,11 @@ def _check_friction_search(config, where):
                 raise InputError(
                     where, f"friction_calibration.{kind}", f"expected one of {', '.join(known)}, not {name}"
                 )
+    for name in search.cases:
+        if config.case(name).measured is None:
+            raise InputError(
+                where, "friction_calibration.cases", f"expected cases with a measured test, not {name}"
+            )
     if search.model not in config.models:
         raise InputError(
             where, "friction_calibration.model", f"expected a model of the study, not {search.model}"

@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 
 from blockshake.errors import InputError
-from blockshake.files import PACKAGE
+from blockshake.files import HOME
 
-PEER_RECORD = PACKAGE.parents[1] / "data" / "peers" / "lmgc90.nc"
+PEER_RECORD = HOME / "data" / "peers" / "lmgc90.nc"
 TARGET, GOAL = 3.0, 10.0  # times faster than LMGC90
 PROGRAMS = ("blockshake", "LMGC90")
 

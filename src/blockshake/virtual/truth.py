@@ -5,30 +5,25 @@ import pandas as pd
 
 from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
-from blockshake.geometry.structure import load_structure
-from blockshake.study.sampling.distributions import LINKED, draw_true_parameters
-from blockshake.study.sampling.sample_parameters import sample_parameters
+from blockshake.study.sampling.distributions import LINKED, TABLE_2, draw_true_parameters
+from blockshake.study.sampling.sample_parameters import own_value, sample_parameters
 from blockshake.study.stiffness.wave_speed import calibrate_stiffness, stiffness_parameters
 
-_TOWER = "configuration-2"  # of whose blocks the wave speed is matched
 _EFFECT, _PLACE, _VALUES = range(3)  # streams of the seed
 _SIZES = (0.5, 1.5)  # of the visible size
 
 
 def true_parameters(structure, seed):
-    """Parameters of the tested `Structure`, drawn independently from Table 2, with their contact stiffness.
+    """Parameters of the tested `Structure`, drawn independently about its own values, with their contact stiffness.
 
     Returns
     -------
     dict of str to float
-        By dotted name; those the structure has not are left out.
+        By dotted name: those of Table 2, with its scatter, that the structure has, and that are not 0 there.
     """
-    drawn = draw_true_parameters(seed)
-    tower = load_structure(_TOWER)
-    drawn |= stiffness_parameters(
-        calibrate_stiffness(tower, sample_parameters(pd.Series(drawn), tower, LINKED))
-    )
-    return sample_parameters(pd.Series(drawn), structure, LINKED)
+    own = {name: value for name in TABLE_2 if (value := own_value(structure, name)) > 0.0}
+    drawn = sample_parameters(pd.Series(draw_true_parameters(seed, own)), structure, LINKED)
+    return drawn | stiffness_parameters(calibrate_stiffness(structure, drawn))
 
 
 def hidden_effect(hidden, structure, seed):

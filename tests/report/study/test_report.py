@@ -8,6 +8,7 @@ from fake_study import COLLAPSE_REASON, CPU_TIME, MODELS, FakeStudy
 from page import CLAIMS, Page
 
 from blockshake.errors import InputError
+from blockshake.report.document.blocks import Table
 from blockshake.report.document.html import write_html
 from blockshake.report.document.pdf import write_pdf
 from blockshake.report.document.wording import number
@@ -15,9 +16,11 @@ from blockshake.report.study import closing_sections
 from blockshake.report.study.closing_sections import checks
 from blockshake.report.study.content import load_content
 from blockshake.report.study.convergence_section import convergence as annex
+from blockshake.report.study.opening_sections import stiffness
 from blockshake.report.study.report import compose, make_report
 from blockshake.study.convergence.table import load_convergence
 from blockshake.study.peer_record import load_peer_record
+from blockshake.study.sampling.latin_hypercube import load_design
 
 
 @pytest.fixture(scope="module")
@@ -299,3 +302,24 @@ def test_a_window_that_ends_with_the_motion_has_no_remark(fake):
     for motion in content.motions.values():
         motion.attrs["duration"] = 2.0
     assert not [one for one in texts(compose(content)) if one.startswith("The window ends")]
+
+
+def test_study_without_measured_tests_tells_of_its_samples_alone(fake):
+    study = {**fake.study, "cases": [{**case, "measured": None} for case in fake.study["cases"]]}
+    document = compose(load_content(study, fake.results, fake.benchmarks))
+    tables = [block for section in document.sections for block in section.blocks if isinstance(block, Table)]
+    said = " ".join([table.caption + " ".join(table.header) for table in tables])
+    assert "Peak displacement of the top block" in said
+    assert "virtual test" not in said
+
+
+def test_cases_of_unlike_blocks_have_their_own_stiffness(tmp_path):
+    study = FakeStudy(tmp_path)
+    together = load_content(study.study, study.results, study.benchmarks)
+    assert [one.cases for one in together.calibrated] == [("configuration-1", "configuration-4")]
+    table = load_design(study.results / "stiffness" / "configuration-4.csv")
+    study.write_stiffness("configuration-4", 2.0 * table)
+    apart = load_content(study.study, study.results, study.benchmarks)
+    assert [one.cases for one in apart.calibrated] == [("configuration-1",), ("configuration-4",)]
+    captions = " ".join(getattr(block, "caption", "") for block in stiffness(apart).blocks)
+    assert "10 samples; configuration-4 (after" in captions

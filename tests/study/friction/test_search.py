@@ -57,7 +57,7 @@ def search(tmp_path, read_with_noise):
         )
         return calibrate_friction(
             case,
-            {"model": "nscd-rigid", "time_step": 1e-3, "output_rate": 200.0, "tower": None},
+            {"model": "nscd-rigid", "time_step": 1e-3, "output_rate": 200.0},
             {"distributions": DISTRIBUTIONS, "seed": 1, "linked": {}},
             SEARCH | changes,
             read_with_noise(true, NOISE, 5),

@@ -109,9 +109,10 @@ def test_units_follow_the_property():
 
 
 def test_true_parameters_are_independent_draws_of_table_2():
-    assert draw_true_parameters(7) == draw_true_parameters(7)
-    assert draw_true_parameters(7) != draw_true_parameters(8)
-    draws = np.array([list(draw_true_parameters(seed).values()) for seed in range(2000)])
+    means = {name: variable.mean for name, variable in TABLE_2.items()}
+    assert draw_true_parameters(7, means) == draw_true_parameters(7, means)
+    assert draw_true_parameters(7, means) != draw_true_parameters(8, means)
+    draws = np.array([list(draw_true_parameters(seed, means).values()) for seed in range(2000)])
     logs = np.array([variable.log_deviation for variable in TABLE_2.values()])
     medians = np.array([variable.median for variable in TABLE_2.values()])
     scores = np.log(draws / medians) / logs
@@ -119,3 +120,11 @@ def test_true_parameters_are_independent_draws_of_table_2():
     assert np.abs(scores.mean(axis=0)).max() < 4 * 0.0224
     assert np.abs(scores.std(axis=0) - 1.0).max() < 4 * 0.0158
     assert np.abs(np.corrcoef(scores, rowvar=False) - np.eye(9)).max() < 4.5 * 0.0224
+
+
+def test_true_parameters_scatter_about_the_means_given_and_leave_the_others_out():
+    name = "materials.concrete.youngs_modulus"
+    usual = draw_true_parameters(7, {name: TABLE_2[name].mean})
+    assert draw_true_parameters(7, {name: 2.0 * TABLE_2[name].mean}) == {
+        name: pytest.approx(2.0 * usual[name])
+    }

@@ -73,10 +73,10 @@ def draw_nominal(structure, model, number):
     Notes
     -----
     Parameters are drawn independently with the scatter of Table 2 of Zhou et al. (2023) about the values of the
-    structure file; contact stiffness goes with Young's modulus, as in a wave test. The discretisation is uncertain
-    too, since no measurement says which one is right: each model's `Perturbation` has its parameters. A diagnosis with
-    one fixed discretisation calls every other one an effect; so does one with white noise alone, once readings have a
-    memory, gaps and outliers.
+    structure file; contact stiffness goes with Young's modulus, about that of the structure's own blocks. The
+    discretisation is uncertain too, since no measurement says which one is right: each model's `Perturbation` has its
+    parameters. A diagnosis with one fixed discretisation calls every other one an effect; so does one with white noise
+    alone, once readings have a memory, gaps and outliers.
     """
     generator = np.random.default_rng([number, model_of(model).perturbation.stream])
     file = structure.file
@@ -94,7 +94,7 @@ def draw_nominal(structure, model, number):
     softer = scattered(1.0, _MODULUS)
     for name, material in file.materials.items():
         drawn[f"materials.{name}.youngs_modulus"] = material.youngs_modulus * softer
-    numerics, time_step = _perturbed(generator, model_of(model), softer, file)
+    numerics, time_step = _perturbed(generator, model_of(model), softer, structure)
     places = np.zeros((len(file.bodies), 3))
     free = np.array([not body.driven for body in file.bodies])
     places[free] = generator.normal(0.0, [_PLACE_SPREAD, _PLACE_SPREAD, _YAW_SPREAD], (free.sum(), 3))
@@ -115,10 +115,10 @@ def draw_nominal(structure, model, number):
     )
 
 
-def _perturbed(generator, model, softer, file):
+def _perturbed(generator, model, softer, structure):
     """Numerical parameters and time step [s] of a nominal model, drawn in the order of the table of models."""
     usual = {name: default for name, (default, *_) in model.numerical_parameters().items()}
-    usual["restitution"] = file.restitution
+    usual |= {"restitution": structure.file.restitution, **model.stiffness_of(structure)}
     numerics = {name: usual[name] * softer for name in model.stiffness} | model.perturbation.fixed
     for one in model.perturbation.uncertain:
         drawn = float(generator.uniform(one.lower, one.upper))

@@ -57,6 +57,17 @@ def marker_bodies(structure, names):
     return [bodies[str(name)] for name in names]
 
 
+def block_markers(structure):
+    """One marker a block, body to marker: the one named ``BODY-face``, or the first where no block has such a one."""
+    free = {body.name for body in structure.file.bodies if not body.driven}
+    markers = [marker for marker in structure.file.markers if marker.body in free]
+    faces = [marker for marker in markers if marker.name.endswith("-face")]
+    chosen = {}
+    for marker in faces or markers:
+        chosen.setdefault(marker.body, marker.name)
+    return chosen
+
+
 def driven_marker(structure):
     """Name of the first marker on a driven body: the paper's slab marker.
 

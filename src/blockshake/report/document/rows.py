@@ -2,28 +2,12 @@
 
 import numpy as np
 
+from blockshake.measurement.sensors.markers import block_markers
+
 
 def face_markers(structure):
-    """One marker a block, from the top block down.
-
-    Parameters
-    ----------
-    structure : Structure
-
-    Returns
-    -------
-    dict of str to str
-        Body to marker: the one named ``BODY-face``; where no body has one, the first of each free body that has any.
-    """
-    free = {body.name for body in structure.file.bodies if not body.driven}
-    chosen = {}
-    for marker in structure.file.markers:
-        if marker.body in free and marker.name.endswith("-face"):
-            chosen.setdefault(marker.body, marker.name)
-    if not chosen:
-        for marker in structure.file.markers:
-            if marker.body in free:
-                chosen.setdefault(marker.body, marker.name)
+    """One marker a block, from the top block down: body to marker, as of `block_markers`."""
+    chosen = block_markers(structure)
     height = dict(zip(structure.body_names, structure.position[:, 2], strict=True))
     return dict(sorted(chosen.items(), key=lambda item: -round(height[item[0]], 3)))
 

@@ -86,6 +86,7 @@ def origin(content):
             ]
             for case in content.cases.values()
             for model, one in case.responses.items()
+            if one.comparison is not None
         },
     }
     configuration = yaml.safe_dump(

@@ -9,6 +9,7 @@ import xarray as xr
 from blockshake.files import content_digest, file_digest, load_json, named_file
 from blockshake.geometry.structure import Structure, load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.sensors import markers
 from blockshake.report.document.origin import software_versions
 from blockshake.report.document.results import load_results
 from blockshake.study.convergence.table import load_convergence
@@ -24,12 +25,12 @@ _PACKAGES = ("numpy", "scipy", "numba", "xarray", "pandas", "snakemake", "matplo
 
 @dataclass(frozen=True)
 class Response:
-    """Results of one case by one model: envelope, figures of the samples, coverage of the measured curves, and
-    sensitivity to the random variables."""
+    """Results of one case by one model: envelope, figures of the samples, coverage of the measured curves where there
+    are any, and sensitivity to the random variables."""
 
     envelope: xr.Dataset
     samples: xr.Dataset
-    comparison: xr.Dataset
+    comparison: xr.Dataset | None
     sensitivity: xr.Dataset
 
 
@@ -45,14 +46,14 @@ class ReportedCase:
     structure : Structure
     motion : str
         Name of its motion in `Content.motions`.
-    measured : xarray.Dataset
-        From `measured_curves`.
-    test_file : Path
+    measured : xarray.Dataset or None
+        From `measured_curves`; none where the case is compared with no test.
+    test_file : Path or None
         File of the measured test.
     synthetic : bool
         The measured test is a virtual one.
     marker_noise : float
-        Standard deviation of the measured markers [m].
+        Standard deviation of the measured markers, or of the optical system's [m].
     responses : dict of str to Response
         By model.
     """
@@ -61,8 +62,8 @@ class ReportedCase:
     settings: dict
     structure: Structure
     motion: str
-    measured: xr.Dataset
-    test_file: Path
+    measured: xr.Dataset | None
+    test_file: Path | None
     synthetic: bool
     marker_noise: float
     responses: dict
@@ -84,6 +85,15 @@ class ReportedCase:
 
 
 @dataclass(frozen=True)
+class Calibrated:
+    """Contact stiffness of the samples, one row each, and wave tests behind it, of cases whose blocks are alike."""
+
+    cases: tuple
+    stiffness: pd.DataFrame
+    waves: xr.Dataset
+
+
+@dataclass(frozen=True)
 class Content:
     """The study's results.
 
@@ -94,11 +104,13 @@ class Content:
     cases : dict of str to ReportedCase
     motions : dict of str to xarray.Dataset
         From `describe_motion`, by name.
-    design, stiffness : pandas.DataFrame
+    design : pandas.DataFrame
         One row a sample.
     design_summary : dict
     distributions : dict of str to Lognormal
-    waves, definitions : xarray.Dataset
+    calibrated : tuple of Calibrated
+        Every case in one of them.
+    definitions : xarray.Dataset
     friction : dict of str to dict
         Friction calibrations by case; empty where the study asks for none.
     convergence : pandas.DataFrame or None
@@ -116,10 +128,9 @@ class Content:
     cases: dict
     motions: dict
     design: pd.DataFrame
-    stiffness: pd.DataFrame
     design_summary: dict
     distributions: dict
-    waves: xr.Dataset
+    calibrated: tuple
     definitions: xr.Dataset
     friction: dict
     convergence: pd.DataFrame | None
@@ -158,20 +169,20 @@ def load_content(study, results, benchmarks):
     motions = {}
     for named in [*(case["motion"] for case in cases.values()), *study["ladder"]["motions"]]:
         motions[Path(named).stem] = load_results(results / "motions" / f"{Path(named).stem}.nc")
-    design, stiffness = results / "design.csv", results / "stiffness.csv"
+    design = results / "design.csv"
+    stiffness = [results / "stiffness" / f"{name}.csv" for name in cases]
     inputs = [
         named_file(f"{kind}s", case[kind]) for kind in ("structure", "motion") for case in cases.values()
     ]
-    tests = [case.test_file for case in loaded.values()]
+    tests = [case.test_file for case in loaded.values() if case.test_file]
     return Content(
         study=study,
         cases=loaded,
         motions=motions,
         design=load_design(design),
-        stiffness=load_design(stiffness),
         design_summary=load_json(results / "design.json"),
         distributions=load_distributions(study["ensemble"].get("distributions"), study["name"]),
-        waves=load_results(results / "waves.nc"),
+        calibrated=_calibrated(results, cases),
         definitions=load_results(results / "stiffness-definitions.nc"),
         friction={
             name: load_json(results / "friction" / f"{name}.json")
@@ -185,36 +196,57 @@ def load_content(study, results, benchmarks):
         ),
         digests={
             "configuration of the study": content_digest(study),
-            **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, stiffness, PEER_RECORD]},
+            **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, *stiffness, PEER_RECORD]},
         },
         versions=software_versions(_PACKAGES),
     )  # fmt: skip
 
 
 def _case(study, results, name, settings):
+    named = settings.get("measured")
+
+    def found(kind, model):
+        return load_results(results / kind / model / f"{name}.nc")
+
     responses = {
         model: Response(
-            *(
-                load_results(results / kind / model / f"{name}.nc")
-                for kind in ("envelopes", "samples", "comparisons", "sensitivities")
-            )
+            found("envelopes", model),
+            found("samples", model),
+            found("comparisons", model) if named else None,
+            found("sensitivities", model),
         )
         for model in study["models"]
     }
-    campaign = load_campaign(settings["measured"]["campaign"])
-    test = load_test(campaign, settings["measured"]["test"])
+    test = campaign = None
+    if named:
+        campaign = load_campaign(named["campaign"])
+        test = load_test(campaign, named["test"])
     slab_marker = next(iter(responses.values())).envelope.attrs["slab_marker"]
     return ReportedCase(
         name=name,
         settings=settings,
         structure=load_structure(settings["structure"]),
         motion=Path(settings["motion"]).stem,
-        measured=measured_curves(test, slab_marker, settings["duration"]),
-        test_file=campaign.folder / campaign.tests[settings["measured"]["test"]].file,
-        synthetic=bool(test.attrs.get("synthetic", 0)),
-        marker_noise=campaign.sensors.marker_noise,
+        measured=measured_curves(test, slab_marker, settings["duration"]) if named else None,
+        test_file=campaign.folder / campaign.tests[named["test"]].file if named else None,
+        synthetic=bool(test.attrs.get("synthetic", 0)) if named else False,
+        marker_noise=campaign.sensors.marker_noise if named else markers.NOISE,
         responses=responses,
     )
+
+
+def _calibrated(results, names):
+    """Stiffness of the cases, those of equal tables and waves together."""
+    groups = []
+    for name in names:
+        stiffness = load_design(results / "stiffness" / f"{name}.csv")
+        waves = load_results(results / "waves" / f"{name}.nc")
+        alike = [one for one in groups if one[1].equals(stiffness) and one[2].equals(waves)]
+        if alike:
+            alike[0][0].append(name)
+        else:
+            groups.append(([name], stiffness, waves))
+    return tuple(Calibrated(tuple(cases), stiffness, waves) for cases, stiffness, waves in groups)
 
 
 def _shown(path):

@@ -112,8 +112,8 @@ def samples_table(content):
     )  # fmt: skip
 
 
-def waves_table(waves):
-    """Wave speed reached against its target at nominal parameters."""
+def waves_table(waves, of):
+    """Wave speed reached against its target at nominal parameters; ``of``: more words for the caption."""
     rows = []
     for direction in waves["direction"].values:
         one = waves.sel(direction=direction)
@@ -122,6 +122,6 @@ def waves_table(waves):
             f"{1e6 * speed_deviation(waves, direction):.0f}", quantity(float(one["stiffness"]), "N/m3", 4),
         ))  # fmt: skip
     return Table(
-        "Effective wave speed at the calibrated stiffness, nominal parameters.",
+        f"Effective wave speed at the calibrated stiffness, nominal parameters{of}.",
         ("Direction", "Target [m/s]", "Reached [m/s]", "Difference [ppm]", "Stiffness"), tuple(rows), "lrrrr",
     )  # fmt: skip

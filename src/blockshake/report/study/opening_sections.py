@@ -180,25 +180,28 @@ def _without_use(content):
 
 
 def stiffness(content):
-    """Waves, their speed, and the stiffness of every sample."""
-    definition = content.waves.attrs["definition"]
-    blocks = (
+    """Waves, their speed, and the stiffness of every sample, for each kind of blocks."""
+    waves = content.calibrated[0].waves
+    blocks = [
         Text(
             "The contact stiffness of LS-DEM follows for every sample from the speed of waves in a tower of "
-            f"{content.waves.sizes['block']} blocks, matched to that of the material of the sample (Zhou et al. 2023, "
-            f"Eqs. 7 and 8). Definition: {definition}."
-        ),
-        Figure(
-            "Displacement of the blocks of the tower after a step of velocity of "
-            f"{given(1e3 * content.waves.attrs['step_velocity'])} mm/s at its base, nominal parameters; "
-            "dots: arrivals (after the paper's Fig. 9).",
-            svg_of(plot_waves, content.waves),
-        ),
-        waves_table(content.waves),
-        Figure(
-            f"Stiffness per area of the {len(content.stiffness)} samples (after the paper's Fig. 10).",
-            svg_of(plot_stiffness, content.stiffness),
-        ),
-        *definition_blocks(content.definitions),
-    )
-    return Section("Contact stiffness", "stiffness", blocks)
+            f"{waves.sizes['block']} of the structure's blocks, matched to that of the material of the sample (Zhou et "
+            f"al. 2023, Eqs. 7 and 8). Definition: {waves.attrs['definition']}."
+        )
+    ]
+    for calibrated in content.calibrated:
+        of = f"; {', '.join(calibrated.cases)}" if len(content.calibrated) > 1 else ""
+        blocks += [
+            Figure(
+                "Displacement of the blocks of the tower after a step of velocity of "
+                f"{given(1e3 * calibrated.waves.attrs['step_velocity'])} mm/s at its base, nominal parameters{of}; "
+                "dots: arrivals (after the paper's Fig. 9).",
+                svg_of(plot_waves, calibrated.waves),
+            ),
+            waves_table(calibrated.waves, of),
+            Figure(
+                f"Stiffness per area of the {len(calibrated.stiffness)} samples{of} (after the paper's Fig. 10).",
+                svg_of(plot_stiffness, calibrated.stiffness),
+            ),
+        ]
+    return Section("Contact stiffness", "stiffness", (*blocks, *definition_blocks(content.definitions)))

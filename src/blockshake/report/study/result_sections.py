@@ -33,7 +33,6 @@ def _response(case, motion):
     markers = face_markers(case.structure)
     main = main_bodies(case.structure, markers)
     envelopes = {model: one.envelope for model, one in case.responses.items()}
-    word = case.curve_word if case.synthetic else "measured curve"
     paper = (
         f" (after the paper's Fig. {_PAPER_FIGURES[case.name]})"
         if case.name in _PAPER_FIGURES and case.settings["structure"] == case.name
@@ -49,19 +48,27 @@ def _response(case, motion):
     return [
         Heading(case.title, f"response-{case.name}"),
         Text(
-            f"{case.motion}, scale {given(case.settings['scale'])}, first {given(case.settings['duration'])} s. "
-            f"Marker noise of the {word}: {given(1e3 * case.marker_noise)} mm (standard deviation)."
+            f"{case.motion}, scale {given(case.settings['scale'])}, first {given(case.settings['duration'])} s."
+            + _noise(case)
         ),
         *_early_end(case, motion),
         *_gaps(case),
         *_lines(case, markers.values()),
         figure(main, "inertial", f"{case.name}: displacement in the inertial frame{paper}{some}."),
         peaks_table(case),
-        coverage_table(case),
+        *([] if case.measured is None else [coverage_table(case)]),
         figure(
             list(markers), "slab", f"{case.name}: displacement relative to the slab's marker, every block."
         ),
     ]
+
+
+def _noise(case):
+    """Marker noise in words, with the curve that has it."""
+    if case.measured is None:
+        return " No measured test is compared with the samples."
+    word = case.curve_word if case.synthetic else "measured curve"
+    return f" Marker noise of the {word}: {given(1e3 * case.marker_noise)} mm (standard deviation)."
 
 
 def _early_end(case, motion):

@@ -24,6 +24,7 @@ _QUANTILES = " / ".join(f"{100 * one:.0f}" for one in SHOWN_QUANTILES) + " %"
 
 def top_block_table(content):
     """Peak of the top block relative to the slab by every model beside the measured one."""
+    compared = [case for case in content.cases.values() if case.measured is not None]
     rows = []
     for case in content.cases.values():
         body, marker = next(iter(face_markers(case.structure).items()))
@@ -32,7 +33,7 @@ def top_block_table(content):
             (
                 case.name,
                 body,
-                _measured(case, "peak", at),
+                *([_measured(case, "peak", at)] if compared else []),
                 *(
                     f"{quantile_range(one.envelope['peak'].sel(**at), millimetres)} "
                     f"(n = {int(one.envelope.attrs['counted'])})"
@@ -41,15 +42,15 @@ def top_block_table(content):
             )
         )
     models = content.study["models"]
-    words = " or ".join(sorted({case.curve_word for case in content.cases.values()}))
+    words = " or ".join(sorted({case.curve_word for case in compared}))
     header = (
-        "Case", "Top block", f"{words[0].upper()}{words[1:]} [mm]",
+        "Case", "Top block", *([f"{words[0].upper()}{words[1:]} [mm]"] if compared else []),
         *(f"{model_label(model)}, {_QUANTILES} [mm]" for model in models),
     )  # fmt: skip
     return Table(
         "Peak displacement of the top block along x relative to the slab: quantiles over the n samples that "
         "completed or collapsed.",
-        header, tuple(rows), "llr" + "r" * len(models),
+        header, tuple(rows), "ll" + "r" * (len(header) - 2),
     )  # fmt: skip
 
 
@@ -60,7 +61,7 @@ def peaks_table(case):
         at = {"frame": "slab", "marker": marker}
         cells = []
         for variable in ("peak", "residual"):
-            cells.append(_measured(case, variable, at))
+            cells += [] if case.measured is None else [_measured(case, variable, at)]
             cells += [
                 quantile_range(one.envelope[variable].sel(**at), millimetres)
                 for one in case.responses.values()
@@ -69,7 +70,7 @@ def peaks_table(case):
     header = ["Block"]
     for variable in ("Peak", "Residual"):
         header += [
-            f"{variable}, {case.curve_word}",
+            *([] if case.measured is None else [f"{variable}, {case.curve_word}"]),
             *(f"{variable}, {model_label(one)}" for one in case.responses),
         ]
     return Table(
@@ -193,6 +194,6 @@ def _timing(case, model, cost):
 
 
 def _measured(case, variable, at):
-    if at["marker"] not in case.measured["marker"].values:
+    if case.measured is None or at["marker"] not in case.measured["marker"].values:
         return MISSING
     return millimetres(case.measured[variable].sel(**at))

@@ -6,6 +6,7 @@ import numpy as np
 
 from blockshake.dynamics.friction import FrictionLaws, assemble_friction
 from blockshake.dynamics.joint_layers import joint_compliance
+from blockshake.geometry.reference_block import reference_body
 from blockshake.jit import inline_kernel
 
 
@@ -44,19 +45,15 @@ def damping_ratio(restitution):
 def assemble_interfaces(structure, parameters):
     """Contact parameters of a structure.
 
-    The stiffness given holds between bodies of the reference material, the one of which the free bodies have
-    most mass, whatever their order. A material's own stiffness goes with its Young's (shear) modulus, and two
-    sides act in series, so that like on like has the stiffness of its material.
+    The stiffness given holds between bodies of the material of `reference_body`. A material's own stiffness goes
+    with its Young's (shear) modulus, and two sides act in series, so that like on like has the stiffness of its
+    material.
     """
     file = structure.file
     materials = [file.materials[body.material] for body in file.bodies]
     young = np.array([material.youngs_modulus for material in materials])
     shear = young / (2.0 + 2.0 * np.array([material.poisson_ratio for material in materials]))
-    names = [body.material for body in file.bodies]
-    weight = {name: 0.0 for name in sorted(names)}
-    for name, mass, driven in zip(names, structure.mass, structure.driven, strict=True):
-        weight[name] += 0.0 if driven else mass
-    reference = names.index(max(weight, key=weight.get))
+    reference = reference_body(structure)
     return Interfaces(
         k_n=parameters.normal_stiffness * young / young[reference],
         k_s=parameters.shear_stiffness * shear / shear[reference],

@@ -12,13 +12,13 @@ class LsDemParameters(Strict):
 
     normal_stiffness: Positive = Field(
         2.16e10,
-        description="normal stiffness of an interface per area [N/m3]; default E/h of a 1.6 m block, "
-        "Zhou et al. (2023), Eq. (7), at Table 2's means",
+        description="normal stiffness of an interface per area, in proportion to E/h of the structure's blocks where "
+        "nothing is said [N/m3]; E/h of a 1.6 m block, Zhou et al. (2023), Eq. (7), at Table 2's means",
     )
     shear_stiffness: Positive = Field(
         9.0e9,
-        description="shear stiffness of an interface per area [N/m3]; default G/h of a 1.6 m block, "
-        "Zhou et al. (2023), Eq. (8), at Table 2's means",
+        description="shear stiffness of an interface per area, in proportion to G/h of the structure's blocks where "
+        "nothing is said [N/m3]; G/h of a 1.6 m block, Zhou et al. (2023), Eq. (8), at Table 2's means",
     )
     node_spacing: Positive = Field(
         0.2, description="aimed distance of surface nodes [m]; Zhou et al. (2023), section LS-DEM"

@@ -6,6 +6,7 @@ import pandas as pd
 
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import model_of
+from blockshake.solvers.ls_dem.own_stiffness import own_stiffness
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.study.convergence.runs import rocking_block, shaken_stack
 from blockshake.study.convergence.table import COLUMNS, EXACT, OBSERVABLES
@@ -38,8 +39,8 @@ def study_convergence(settings, progress):
     Rocking is sensitive: a difference that is no larger than the floor says nothing of the parameter.
     """
     structure = load_structure(settings.structure)
-
-    usual = LsDemParameters()
+    stiffness = own_stiffness(structure)
+    usual = LsDemParameters(**stiffness)
 
     def observe(said, numerical=usual, time_step=_TIME_STEP, strength=1.0):
         started = time.process_time()
@@ -51,7 +52,7 @@ def study_convergence(settings, progress):
 
     def vary(name, values, **others):
         return {
-            value: observe(f"{name} {value:g} m", LsDemParameters(**{name: value}, **others))
+            value: observe(f"{name} {value:g} m", LsDemParameters(**stiffness, **{name: value}, **others))
             for value in sorted(values)
         }
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.system import Status
+from blockshake.geometry.reference_block import half_width
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.simulate import simulate
 
@@ -18,7 +19,8 @@ def climb_ladder(structure, motion, model, time_step, duration, ladder):
     time_step, duration : float
         [s]
     ladder : Ladder
-        First scale, increment, highest scale and the drift that counts as a potential collapse.
+        First scale, increment, highest scale and the drift that counts as a potential collapse: that of `half_width`
+        where it says none.
 
     Returns
     -------
@@ -32,6 +34,7 @@ def climb_ladder(structure, motion, model, time_step, duration, ladder):
     Zhou et al. (2023), section Case Study: first test at 50 %, increments of about 25 %.
     """
     loaded, rungs = load_structure(structure), []
+    largest_drift = ladder.largest_drift or half_width(loaded)
     count = int(np.floor((ladder.highest - ladder.first) / ladder.increment + 1e-9)) + 1
     for scale in ladder.first + ladder.increment * np.arange(count):
         run = simulate(
@@ -50,7 +53,7 @@ def climb_ladder(structure, motion, model, time_step, duration, ladder):
                 "status": run.attrs["status"],
                 "reason": run.attrs["reason"],
                 "peak": float(drift),
-                "passed": run.attrs["status"] == Status.COMPLETED and float(drift) <= ladder.largest_drift,
+                "passed": run.attrs["status"] == Status.COMPLETED and float(drift) <= largest_drift,
             }
         )
         if not rungs[-1]["passed"]:
@@ -58,15 +61,15 @@ def climb_ladder(structure, motion, model, time_step, duration, ladder):
     return rungs
 
 
-def climb_ladders(cases, time_step, ladder, progress):
+def climb_ladders(cases, motions, time_step, ladder, progress):
     """Climb the ladder of every case with every motion by LS-DEM, as `climb_ladder`: rungs by structure and motion.
 
-    ``cases``: ``structure`` and ``duration`` [s] of the configuration's; ``time_step`` [s]; ``progress`` is called with
-    a line of text after each ladder.
+    ``cases``: ``structure`` and ``duration`` [s] of the configuration's; ``motions``: names or files; ``time_step``
+    [s]; ``progress`` is called with a line of text after each ladder.
     """
     found = {case["structure"]: {} for case in cases}
     for case in cases:
-        for motion in ladder.motions:
+        for motion in motions:
             rungs = climb_ladder(case["structure"], motion, "ls-dem", time_step, case["duration"], ladder)
             found[case["structure"]][motion] = rungs
             passed = [rung["scale"] for rung in rungs if rung["passed"]]

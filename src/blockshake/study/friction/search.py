@@ -18,7 +18,7 @@ from blockshake.study.stiffness.wave_speed import calibrate_design
 _UNLIKELY = 0.05  # chance of a whole curve at or below which an ensemble does not fit
 
 
-def calibrate_case(case, named, given, store, tower, progress):
+def calibrate_case(case, named, given, store, progress):
     """Friction calibration of one case of a configuration.
 
     Parameters
@@ -31,8 +31,6 @@ def calibrate_case(case, named, given, store, tower, progress):
         Entries ``search``, ``models``, ``ensemble`` and ``output_rate`` of the configuration.
     store : str or path
         Of finished samples, shared with the study's batches.
-    tower : str
-        Structure that gives the stiffness of LS-DEM's samples.
     progress : callable
 
     Returns
@@ -44,7 +42,7 @@ def calibrate_case(case, named, given, store, tower, progress):
     model = search["model"]
     campaign = load_campaign(named["campaign"])
     measured = load_test(campaign, named["test"])
-    settings = {"model": model, **given["models"][model], "output_rate": given["output_rate"], "tower": tower}
+    settings = {"model": model, **given["models"][model], "output_rate": given["output_rate"]}
     drawn_from = {
         "distributions": load_distributions(ensemble["distributions"], "ensemble"),
         "seed": ensemble["seed"],
@@ -66,8 +64,7 @@ def calibrate_friction(case, run_settings, ensemble, search, measured, marker_no
     case : dict
         As for `simulate_samples`.
     run_settings : dict
-        ``model``, its ``time_step`` [s] and ``parameters``, ``output_rate`` [Hz], and ``tower``, the structure that
-        gives the stiffness of LS-DEM's samples.
+        ``model``, its ``time_step`` [s] and ``parameters``, ``output_rate`` [Hz].
     ensemble : dict
         ``distributions``, ``seed``, ``linked``.
     search : dict
@@ -95,8 +92,10 @@ def calibrate_friction(case, run_settings, ensemble, search, measured, marker_no
     )
     designs = [one.values for one in drawn]
     if model_of(run_settings["model"]).calibrated:
-        tower = run_settings["tower"]
-        designs = [pd.concat([design, calibrate_design(tower, design, linked)], axis=1) for design in designs]
+        structure = case["structure"]
+        designs = [
+            pd.concat([design, calibrate_design(structure, design, linked)], axis=1) for design in designs
+        ]
     beside = {}
 
     def evaluate(mean):

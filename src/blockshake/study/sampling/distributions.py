@@ -147,11 +147,19 @@ def parameter_unit(name):
     raise InputError("design", name, "expected a friction coefficient, a material's property or a stiffness")
 
 
-def draw_true_parameters(seed):
-    """One independent draw of every variable of Table 2 by dotted name, SI: the hidden truth of a virtual test."""
+def draw_true_parameters(seed, means):
+    """One independent draw of variables of Table 2 by dotted name, SI: the hidden truth of a virtual test.
+
+    Parameters
+    ----------
+    seed : int
+    means : dict of str to float
+        Mean of every variable that is drawn; the coefficients of variation are Table 2's.
+    """
     bits = np.random.PCG64(np.random.SeedSequence(seed, spawn_key=(1,))).random_raw(len(TABLE_2))
     chances = ((bits >> np.uint64(11)) + 0.5) * 2.0**-53
     return {
-        name: float(distribution.quantile(chance))
+        name: float(Lognormal(mean=means[name], cov=distribution.cov).quantile(chance))
         for (name, distribution), chance in zip(TABLE_2.items(), chances, strict=True)
+        if name in means
     }

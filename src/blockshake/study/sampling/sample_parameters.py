@@ -20,6 +20,15 @@ def has_parameter(structure, name):
     return _has(name.split("."), structure.file.materials, pairs)
 
 
+def own_value(structure, name):
+    """Value in a structure of the coefficient or the material's property of a dotted name; 0 where it has none."""
+    kind, *parts = name.split(".")
+    if kind == "friction":
+        same = [entry for entry in structure.file.friction if sorted(entry.pair) == sorted(parts)]
+        return same[0].coefficient if same else 0.0
+    return getattr(structure.file.materials.get(parts[0]), parts[1], 0.0)
+
+
 def _has(parts, materials, pairs):
     if parts[0] == "materials":
         return parts[1] in materials

@@ -6,10 +6,12 @@ import xarray as xr
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.system import Status
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.sensors.markers import driven_marker
+from blockshake.measurement.sensors.markers import block_markers, driven_marker
 from blockshake.simulation.simulate import simulate
+from blockshake.solvers.ls_dem.own_stiffness import own_stiffness
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.study.described import describe
+from blockshake.study.stiffness.tower import tower_of
 from blockshake.study.stiffness.wave_speed import target_wave_speeds
 from blockshake.study.stiffness.wave_step import AXES, STEP_VELOCITY, crossing, send_step
 
@@ -80,15 +82,13 @@ def _vertex(times, values, place):
     return float(times[place] + 0.5 * (before - after) / (before - 2.0 * at + after) * (times[1] - times[0]))
 
 
-def compare_definitions(tower, case, time_step, duration):
+def compare_definitions(case, time_step, duration):
     """Stiffness by definition and damping, and the top block's peak with each.
 
     Parameters
     ----------
-    tower : str or path
-        A single tower, for the wave tests.
     case : dict
-        ``structure``, ``motion`` and ``scale`` of what is then shaken.
+        ``structure``, of whose blocks the tower of the wave tests is, ``motion`` and ``scale`` of what is then shaken.
     time_step, duration : float
         Of that run [s].
 
@@ -108,10 +108,11 @@ def compare_definitions(tower, case, time_step, duration):
     In a chain of masses and springs every time goes with sqrt(m / K), dashpots included, whose ratio to critical is
     kept: one test at any stiffness gives K for all definitions, and a second confirms it.
     """
-    rows = {restitution: _stiffness(tower, restitution) for restitution in RESTITUTIONS}
+    structure = load_structure(case["structure"])
+    rows = {restitution: _stiffness(structure, restitution) for restitution in RESTITUTIONS}
     study = rows[_NOMINAL[1]].sel(definition=_NOMINAL[0])["stiffness"]
     for restitution, row in rows.items():
-        row["wave_speed"] = _speeds_at(tower, restitution, study)
+        row["wave_speed"] = _speeds_at(structure, restitution, study)
         for name, used in (("top_peak", restitution), ("top_peak_same_damping", _NOMINAL[1])):
             peaks = [
                 _top_peak(case, time_step, duration, used, row["stiffness"].sel(definition=one))
@@ -119,7 +120,7 @@ def compare_definitions(tower, case, time_step, duration):
             ]
             row[name] = ("definition", peaks)
     result = xr.concat(rows.values(), dim=xr.Variable("restitution", list(rows)))
-    result = result.merge(_free_rotations(tower, study))
+    result = result.merge(_free_rotations(structure, study))
     return _described(result, case, duration)
 
 
@@ -130,23 +131,23 @@ def _parameters(stiffness):
     )
 
 
-def _read(structure, parameters, direction):
+def _read(tower, parameters, direction):
     """Wave speed by every definition, from one test [m/s]."""
-    test = send_step(structure, parameters, direction)
+    test = send_step(tower, parameters, direction)
     return np.array([test.height / travel_time(test.time, test.velocity, one) for one in DEFINITIONS])
 
 
-def _stiffness(tower, restitution):
-    structure = load_structure(tower, {"restitution": restitution})
-    targets = target_wave_speeds(structure)
+def _stiffness(structure, restitution):
+    tower = tower_of(structure.with_parameters({"restitution": restitution}))
+    targets = target_wave_speeds(tower)
     stiffness, ratio = (np.full((len(AXES), len(DEFINITIONS)), np.nan) for _ in range(2))
     for row, direction in enumerate(AXES):
-        start = LsDemParameters()
-        found = _read(structure, start, direction)
+        start = LsDemParameters(**own_stiffness(structure))
+        found = _read(tower, start, direction)
         stiffness[row] = getattr(start, f"{direction}_stiffness") * (targets[direction] / found) ** 2
         for column in np.flatnonzero(np.isfinite(stiffness[row])):
             confirmed = start.model_copy(update={f"{direction}_stiffness": float(stiffness[row, column])})
-            ratio[row, column] = _read(structure, confirmed, direction)[column] / targets[direction]
+            ratio[row, column] = _read(tower, confirmed, direction)[column] / targets[direction]
     pair = ("direction", "definition")
     return xr.Dataset(
         {
@@ -158,9 +159,9 @@ def _stiffness(tower, restitution):
     )
 
 
-def _speeds_at(tower, restitution, stiffness):
-    structure = load_structure(tower, {"restitution": restitution})
-    speeds = [_read(structure, _parameters(stiffness), direction) for direction in AXES]
+def _speeds_at(structure, restitution, stiffness):
+    tower = tower_of(structure.with_parameters({"restitution": restitution}))
+    speeds = [_read(tower, _parameters(stiffness), direction) for direction in AXES]
     return ("direction", "definition"), np.array(speeds)
 
 
@@ -175,24 +176,22 @@ def _top_peak(case, time_step, duration, restitution, stiffness):
     run = simulate(structure, motion, "ls-dem", parameters, time_step, duration, accelerometers=False)
     if run.attrs["status"] != Status.COMPLETED:
         return np.nan
-    highest = structure.body_names[int(np.argmax(structure.position[:, 2]))]
-    along = run["marker_displacement"].sel(axis="x")
-    marker = next(
-        one.name for one in structure.file.markers if one.body == highest and one.name.endswith("-face")
-    )
+    height = dict(zip(structure.body_names, structure.position[:, 2], strict=True))
+    markers = block_markers(structure)
+    along, marker = run["marker_displacement"].sel(axis="x"), markers[max(markers, key=height.get)]
     return float(np.abs(along.sel(marker=marker) - along.sel(marker=driven_marker(structure))).max())
 
 
-def _free_rotations(tower, stiffness):
+def _free_rotations(structure, stiffness):
     """Speed of a horizontal step where blocks may turn, beside that where they may not."""
-    structure = load_structure(tower)
+    tower = tower_of(structure)
     speeds = {True: [], False: []}
     for factor in FREE_FACTORS:
         parameters = _parameters(stiffness)
         parameters = parameters.model_copy(update={"shear_stiffness": factor * parameters.shear_stiffness})
         for blocked, found in speeds.items():
             passages = 3.0 if blocked else _FREE_PASSAGES * np.sqrt(factor)
-            test = send_step(structure, parameters, "shear", passages, blocked)
+            test = send_step(tower, parameters, "shear", passages, blocked)
             found.append(test.height / travel_time(test.time, test.velocity, _NOMINAL[0]))
     return xr.Dataset(
         {"blocked_speed": ("factor", speeds[True]), "free_speed": ("factor", speeds[False])},

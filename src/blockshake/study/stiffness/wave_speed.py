@@ -10,6 +10,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import model_of
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.study.sampling.sample_parameters import sample_parameters
+from blockshake.study.stiffness.tower import tower_of
 from blockshake.study.stiffness.wave_step import (
     AXES,
     STEP_VELOCITY,
@@ -60,8 +61,9 @@ def target_wave_speeds(structure):
     dict of str to float
         ``normal``: sqrt(E / rho); ``shear``: sqrt(G / rho) with G = E / (2 (1 + nu)).
     """
-    material = structure.file.materials[structure.file.bodies[tower_blocks(structure)[0]].material]
-    young, density = material.youngs_modulus, material.density
+    block = structure.file.bodies[tower_blocks(structure)[0]]
+    material = structure.file.materials[block.material]
+    young, density = material.youngs_modulus, block.density or material.density
     return {
         "normal": float(np.sqrt(young / density)),
         "shear": float(np.sqrt(young / (2.0 + 2.0 * material.poisson_ratio) / density)),
@@ -95,13 +97,13 @@ def measure_wave_speed(structure, parameters, direction):
     return WaveTest(test, arrival, float(test.height / (arrival[-1] - arrival[0])))
 
 
-def calibrate_stiffness(structure="configuration-2", parameters=None):
+def calibrate_stiffness(structure, parameters=None):
     """Normal and shear stiffness whose effective wave speeds are those of the blocks' material.
 
     Parameters
     ----------
     structure : Structure, str or path
-        A single tower; the paper's has four blocks.
+        Of whose blocks `tower_of` makes the tower that is tested.
     parameters : dict of str to value, optional
         Physical parameters by dotted name.
 
@@ -114,14 +116,14 @@ def calibrate_stiffness(structure="configuration-2", parameters=None):
     Raises
     ------
     InputError
-        As `measure_wave_speed`.
+        As `tower_of` and `measure_wave_speed`.
 
     Notes
     -----
     In a chain whose joints neither open nor slip every speed goes with the square root of the stiffness, but for the
     damping and the time step; so the search multiplies by the square of the speed ratio and is over in a few rounds.
     """
-    tower = load_structure(structure, parameters)
+    tower = tower_of(load_structure(structure, parameters))
     targets = target_wave_speeds(tower)
     blocks = tower_blocks(tower)
     pitch = float(np.diff(tower.position[blocks, 2]).mean())
@@ -148,14 +150,14 @@ def calibrate_stiffness(structure="configuration-2", parameters=None):
 
 
 def calibrate_design(structure, design, linked):
-    """Stiffness of a tower for every sample of a design, with the same index.
+    """Stiffness of a structure for every sample of a design, with the same index.
 
     ``linked``: parameters that take another's sampled value. Columns ``ls_dem.normal_stiffness`` and
     ``ls_dem.shear_stiffness`` [N/m3].
     """
-    tower = load_structure(structure)
+    loaded = load_structure(structure)
     found = [
-        stiffness_parameters(calibrate_stiffness(tower, sample_parameters(row, tower, linked)))
+        stiffness_parameters(calibrate_stiffness(loaded, sample_parameters(row, loaded, linked)))
         for _, row in design.iterrows()
     ]
     return pd.DataFrame(found, index=design.index)
@@ -173,7 +175,7 @@ def speed_deviation(waves, direction):
 
 
 def wave_tests(structure):
-    """Histories of the step tests of a tower at the stiffness calibrated for its nominal parameters.
+    """Histories of the step tests of a structure's tower at the stiffness calibrated for its nominal parameters.
 
     Parameters
     ----------
@@ -186,8 +188,8 @@ def wave_tests(structure):
         block)`` [s]; ``stiffness`` [N/m3], ``wave_speed`` and ``target_wave_speed(direction)`` [m/s]; NaN after the
         shorter test's end. Attribute ``definition``.
     """
-    tower = load_structure(structure)
-    calibrated = calibrate_stiffness(tower)
+    loaded = load_structure(structure)
+    tower, calibrated = tower_of(loaded), calibrate_stiffness(loaded)
     numerical = LsDemParameters(**{name: calibrated[name] for name in _LS_DEM.calibrated})
     blocks = [tower.body_names[body] for body in tower_blocks(tower)]
     tests = []

@@ -12,7 +12,8 @@ from blockshake.solvers.ls_dem.driver import simulate_ls_dem
 
 STEP_VELOCITY = 1e-3  # m/s; a larger step would open or slip the joints and measure something else
 AXES = {"normal": ("z", 2), "shear": ("x", 0)}
-_TIME_STEP = model_of("ls-dem").time_step  # s
+_TIME_STEP = model_of("ls-dem").time_step  # s; shorter where a wave passes a block in fewer steps than these
+_STEPS_A_BLOCK = 20
 
 
 class StepTest(NamedTuple):
@@ -60,10 +61,12 @@ def send_step(structure, parameters, direction, passages=3.0, rotations_blocked=
     stiffness = parameters.normal_stiffness if direction == "normal" else parameters.shear_stiffness
     density = structure.mass[blocks[0]] / structure.solid(blocks[0]).properties.volume
     duration = passages * (height + pitch) / np.sqrt(stiffness * pitch / density)
-    times = np.arange(0.0, duration, _TIME_STEP)
+    young = structure.file.materials[structure.file.bodies[blocks[0]].material].youngs_modulus
+    time_step = min(_TIME_STEP, pitch * np.sqrt(density / young) / _STEPS_A_BLOCK)
+    times = np.arange(0.0, duration, time_step)
     step = ground_motion("velocity step", [0.0, 2.0 * duration], {channel: [STEP_VELOCITY] * 2}, "velocity")
     blocked = direction == "shear" and rotations_blocked
-    run = simulate_ls_dem(structure, step, parameters, times, _TIME_STEP, rotations_blocked=blocked)
+    run = simulate_ls_dem(structure, step, parameters, times, time_step, rotations_blocked=blocked)
     if run.status != Status.COMPLETED:
         raise no_passage(structure, direction, f"; {run.reason}")
     moved = run.position[:, blocks, axis] - run.position[0, blocks, axis]

@@ -17,7 +17,7 @@ def plot_displacements(envelopes, measured, markers, labels, frame, synthetic):
     ----------
     envelopes : dict of str to xarray.Dataset
         By model, from `envelope`.
-    measured : xarray.Dataset
+    measured : xarray.Dataset or None
         ``displacement(frame, time, marker)`` [m], along x.
     markers, labels : list of str
         From the top row down: markers, and what the rows are called.
@@ -38,7 +38,7 @@ def plot_displacements(envelopes, measured, markers, labels, frame, synthetic):
         for axes, marker in zip(column, markers, strict=True):
             at = {"frame": frame, "marker": marker}
             _draw_ensemble(axes, envelope.sel(axis="x", **at))
-            if marker in measured["marker"].values:
+            if measured is not None and marker in measured["marker"].values:
                 axes.plot(measured["time"], 1e3 * measured["displacement"].sel(**at), **_MEASURED)
         counted, samples = (int(envelope.attrs[name]) for name in ("counted", "samples"))
         column[0].set_title(f"{model_label(model)}, {counted} of {samples} samples")
@@ -47,7 +47,8 @@ def plot_displacements(envelopes, measured, markers, labels, frame, synthetic):
     for axes, label in zip(panels[:, 0], labels, strict=True):
         axes.set_ylabel(f"{label}\n[mm]")
     figure.align_ylabels(panels[:, 0])
-    _add_legend(figure, synthetic)
+    word = "virtual test (synthetic)" if synthetic else "measured"
+    _add_legend(figure, {} if measured is None else {word: Line2D([], [], **_MEASURED)})
     return figure
 
 
@@ -67,11 +68,11 @@ def _draw_ensemble(axes, envelope):
         )
 
 
-def _add_legend(figure, synthetic):
+def _add_legend(figure, more):
     entries = {
         "smallest to largest": Patch(facecolor=LIGHT_GREY, edgecolor="none"),
         "bounds": Line2D([], [], color=RED, linewidth=0.8),
         "5 to 95 % of the samples": Patch(facecolor=GREY, edgecolor="none"),
-        "virtual test (synthetic)" if synthetic else "measured": Line2D([], [], **_MEASURED),
+        **more,
     }
     figure.legend(entries.values(), entries.keys(), loc="outside upper center", ncols=len(entries))

@@ -5,6 +5,7 @@ import shutil
 import pytest
 
 from blockshake.cli import main
+from blockshake.errors import InputError
 from blockshake.files import PACKAGE
 
 CAMPAIGN = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-1"
@@ -77,3 +78,15 @@ def test_bad_arguments(capsys, arguments, message):
     error = capsys.readouterr().err
     assert message in error
     assert error.count("\n") == 1
+
+
+def test_functions_of_the_package_are_no_modules(tmp_path):
+    """A module of a function's name takes its place as soon as the module is imported."""
+    import blockshake
+
+    for name in blockshake.__all__:
+        assert not list(PACKAGE.glob(f"{name}.py")), name
+    from blockshake import diagnose
+
+    with pytest.raises(InputError, match="nowhere"):
+        diagnose("nowhere", tmp_path)

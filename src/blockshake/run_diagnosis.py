@@ -6,10 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from blockshake.errors import InputError
-from blockshake.files import PACKAGE, check_output
+from blockshake.files import HOME, PACKAGE, check_output
 
-_CHECKOUT = PACKAGE.parents[1]
 _KEPT = ("verdict.json", "decision.json", "parity.json", "misfit.nc", "evidence.nc", "forces.nc")
 _OF_GAIN = ("gain.nc", "consequences.nc")  # where a cause was found and there are sealed tests
 
@@ -17,8 +15,9 @@ _OF_GAIN = ("gain.nc", "consequences.nc")  # where a cause was found and there a
 def diagnose(campaign, output, effort="standard", cores=None):
     """Show what simulations of measured tests get wrong, name the cause, extend the model and measure the gain.
 
-    Simulates by the workflow's rules, in the checkout's ``results``: a run that was stopped goes on where it was, and
-    a second campaign of the same structure and motions finds their libraries there.
+    Simulates by the workflow's rules, in ``results`` of the checkout or, of an installed package, of the current
+    folder: a run that was stopped goes on where it was, and a second campaign of the same structure and motions finds
+    their libraries there.
 
     Parameters
     ----------
@@ -38,7 +37,7 @@ def diagnose(campaign, output, effort="standard", cores=None):
     Raises
     ------
     InputError
-        A campaign that cannot be diagnosed, or no checkout with its workflow around the package.
+        A campaign that cannot be diagnosed.
     RuntimeError
         The workflow stopped; its messages were printed.
     """
@@ -47,13 +46,12 @@ def diagnose(campaign, output, effort="standard", cores=None):
 
     plan_diagnosis(campaign, effort)
     check_output(Path(output) / "verdict.json")
-    snakefile = _CHECKOUT / "Snakefile"
-    if not snakefile.is_file():
-        raise InputError(snakefile, "", "expected the workflow; install the package from its checkout")
+    work = Path.cwd() if HOME.is_relative_to(PACKAGE) else HOME
     folder = Path(campaign).resolve()
     command = [
         sys.executable, "-m", "snakemake", "diagnose", "--cores", str(cores or os.cpu_count()),
-        "--snakefile", str(snakefile), "--directory", str(_CHECKOUT),
+        "--snakefile", str(HOME / "Snakefile"), "--directory", str(work),
+        "--configfile", str(HOME / "config" / "diagnosis.yaml"),
         "--config", f"campaign={folder}", f"effort={effort}",
     ]  # fmt: skip
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
@@ -61,10 +59,10 @@ def diagnose(campaign, output, effort="standard", cores=None):
     if subprocess.run(command, env={**os.environ, "PATH": path}, check=False).returncode:
         raise RuntimeError("the workflow stopped: its messages are above")
     name = result_name(folder)
-    results = _CHECKOUT / "results" / "diagnosis" / name
+    results = work / "results" / "diagnosis" / name
     kept = _KEPT if load_verdict(results / "verdict.json").gain is None else (*_KEPT, *_OF_GAIN)
     found = [results / file for file in kept]
-    found += [_CHECKOUT / "reports" / f"diagnosis-{name}.{kind}" for kind in ("html", "pdf")]
+    found += [work / "reports" / f"diagnosis-{name}.{kind}" for kind in ("html", "pdf")]
     Path(output).mkdir(parents=True, exist_ok=True)
     for file in _OF_GAIN:  # of an earlier diagnosis, where this one has none
         (Path(output) / file).unlink(missing_ok=True)

@@ -1,0 +1,79 @@
+"""An installed package holds all that ships with the program, and works in any folder."""
+
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from blockshake.files import PACKAGE
+
+ROOT = PACKAGE.parents[1]
+COPIED = (
+    "Snakefile",
+    "LICENSE",
+    "README.md",
+    "config",
+    "data",
+    "pyproject.toml",
+    "setup.py",
+    "src",
+    "workflow",
+)
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
+    """Folder of an installed package, made from a copy of the checkout."""
+    checkout, site = tmp_path_factory.mktemp("checkout"), tmp_path_factory.mktemp("site")
+    for name in COPIED:
+        copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copyfile
+        copy(ROOT / name, checkout / name)
+    command = [
+        "-m",
+        "pip",
+        "install",
+        "--quiet",
+        "--no-deps",
+        "--no-build-isolation",
+        "--target",
+        site,
+        checkout,
+    ]
+    subprocess.run([sys.executable, *command], check=True)
+    shutil.rmtree(checkout)
+    return site
+
+
+@pytest.fixture
+def run(installed, tmp_path):
+    """Run a module of Python with the installed package in an empty folder."""
+
+    def started(*arguments):
+        return subprocess.run(
+            [sys.executable, "-m", *map(str, arguments)],
+            cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(installed)}, capture_output=True, text=True,
+            timeout=600, check=False,
+        )  # fmt: skip
+
+    return started
+
+
+def test_commands_find_what_is_shipped(run, tmp_path):
+    assert "3 blocks" in run("blockshake", "check", "configuration-1", "alkion").stdout
+    assert run("blockshake", "sample", "--size", 10, "--output", "design.csv").returncode == 0
+    assert run("blockshake", "parameters").returncode == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["design.csv"]
+
+
+def test_a_diagnosis_is_planned_in_the_current_folder(run, installed, tmp_path):
+    shutil.copytree(ROOT / "data" / "virtual-campaign" / "configuration-1", tmp_path / "campaign")
+    shipped = installed / "blockshake" / "shipped"
+    answer = run(
+        "snakemake", "-n", "diagnose", "--cores", 1, "--snakefile", shipped / "Snakefile",
+        "--configfile", shipped / "config" / "diagnosis.yaml", "--config", "campaign=campaign", "effort=quick",
+    )  # fmt: skip
+    assert answer.returncode == 0, answer.stderr
+    assert "simulate_library" in answer.stdout
+    assert str(ROOT) not in answer.stdout
