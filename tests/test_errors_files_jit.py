@@ -184,7 +184,7 @@ _ASK = """
 import numpy as np
 from blockshake.dynamics.free_motion import drift_into
 position, orientation, spin = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
-drift_into(np.eye(3), spin, np.array([0.0, 0.0, np.pi]), spin.copy(), 1.0, position, orientation, spin)
+drift_into(np.eye(3), spin, np.array([0.0, 0.0, np.pi]), spin.copy(), 1.0, position, orientation)
 print(orientation[3], sum(drift_into.stats.cache_hits.values()))
 """
 

@@ -67,8 +67,14 @@ class _ByModule(_CacheLocator):
 
 CacheImpl._locator_classes.insert(0, _ByModule)
 
-kernel = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=False)
-inline_kernel = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=False, inline="always")
+_OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": False}
+kernel = numba.njit(**_OPTIONS, _nrt=True)
+inline_kernel = numba.njit(**_OPTIONS, inline="always")
+# For what runs at every step. It allocates nothing and returns no array, so that it need not count who holds which
+# array: an atomic instruction each time that one is taken up or laid down. Numba refuses an allocation in it, and in
+# the kernels that it calls unless they say, as those above do, that they count. Its code is copied to where it is
+# called, because the tables of a run are hundreds of arguments, which a call would pass one by one.
+borrowing_kernel = numba.njit(**_OPTIONS, _nrt=False, forceinline=True)
 
 
 def compiling():

@@ -16,12 +16,12 @@ def _tumble(dt):
     n = round(DURATION / dt)
     inverse = np.diag(1.0 / INERTIA)
     position, orientation = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])
-    momentum, spin, half = INERTIA * SPIN, np.empty(3), np.empty(3)
+    momentum, spin = INERTIA * SPIN, np.empty(3)
     quaternions, spins = np.empty((n + 1, 4)), np.empty((n + 1, 3))
     for step in range(n + 1):
         spin_into(inverse, orientation, momentum, spin)
         quaternions[step], spins[step] = orientation, spin
-        drift_into(inverse, np.array([1.0, 2.0, 3.0]), momentum, spin, dt, position, orientation, half)
+        drift_into(inverse, np.array([1.0, 2.0, 3.0]), momentum, spin, dt, position, orientation)
     assert position == pytest.approx((n + 1) * dt * np.array([1.0, 2.0, 3.0]), rel=1e-12)
     body = Rotation.from_quat(quaternions, scalar_first=True).inv().apply(spins)
     return np.arange(n + 1) * dt, body, quaternions
@@ -81,11 +81,11 @@ def test_quaternions_stay_unit_and_continuous():
 def test_a_turn_about_a_principal_axis_is_exact():
     """The mean angular velocity of each step is the constant one: no error but rounding."""
     inverse = np.diag(1.0 / INERTIA)
-    orientation, spin, half = np.array([1.0, 0.0, 0.0, 0.0]), np.empty(3), np.empty(3)
+    orientation, spin = np.array([1.0, 0.0, 0.0, 0.0]), np.empty(3)
     momentum = np.array([0.0, 0.0, 3.0 * 1.5])
     for _ in range(1000):
         spin_into(inverse, orientation, momentum, spin)
-        drift_into(inverse, np.zeros(3), momentum, spin, 1e-3, np.zeros(3), orientation, half)
+        drift_into(inverse, np.zeros(3), momentum, spin, 1e-3, np.zeros(3), orientation)
     np.testing.assert_allclose(orientation, [np.cos(0.75), 0.0, 0.0, np.sin(0.75)], atol=1e-13)
 
 

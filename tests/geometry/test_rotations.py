@@ -48,3 +48,12 @@ def test_the_quaternion_keeps_its_sign_through_full_turns():
         before = q.copy()
         rotate_into(q, np.array([0.0, 0.05, 0.0]), q)
         assert q @ before > 0.9
+
+
+def test_a_tiny_turn_has_the_cosine_of_the_library_to_the_last_bit():
+    """The first component of the unit quaternion turned: the cosine of half the angle over the norm."""
+    for angle in 10.0 ** np.random.default_rng(0).uniform(-12.0, -4.0, 2000):
+        q = np.array([1.0, 0.0, 0.0, 0.0])
+        rotate_into(q, np.array([angle, 0.0, 0.0]), q)
+        c, s = np.cos(0.5 * angle), (0.5 - angle * angle / 48.0) * angle
+        assert q[0] == c / np.sqrt(c * c + s * s)

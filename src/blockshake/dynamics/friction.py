@@ -67,8 +67,11 @@ def friction_coefficient(laws, a, b, slip_rate, slip):
     """
     first, second, law = laws.material[a], laws.material[b], laws.law
     mu = law[first, second, COEFFICIENT]
-    mu *= 1.0 - law[first, second, RATE_DROP] * (1.0 - np.exp(-slip_rate / law[first, second, RATE_SCALE]))
-    mu *= 1.0 - law[first, second, SLIP_DROP] * (1.0 - np.exp(-slip / law[first, second, SLIP_SCALE]))
+    rate_drop, slip_drop = law[first, second, RATE_DROP], law[first, second, SLIP_DROP]
+    if rate_drop > 0.0:
+        mu *= 1.0 - rate_drop * (1.0 - np.exp(-slip_rate / law[first, second, RATE_SCALE]))
+    if slip_drop > 0.0:
+        mu *= 1.0 - slip_drop * (1.0 - np.exp(-slip / law[first, second, SLIP_SCALE]))
     for own in range(laws.factor.size):
         if (laws.joint[own, 0] == a and laws.joint[own, 1] == b) or (
             laws.joint[own, 0] == b and laws.joint[own, 1] == a

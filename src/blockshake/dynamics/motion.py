@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicSpline, PPoly
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel
 
 CHANNELS = ("x", "y", "z", "pitch_y")
 PITCH = CHANNELS.index("pitch_y")
@@ -132,7 +132,7 @@ def rest_table():
     return MotionTable(np.array([0.0, 1.0]), np.zeros((1, 4, 4)))
 
 
-@kernel
+@borrowing_kernel
 def find_segment(breaks, t, segment):
     """Index of the segment that holds ``t``, searched from the last one found.
 
@@ -145,7 +145,7 @@ def find_segment(breaks, t, segment):
     return segment
 
 
-@kernel
+@borrowing_kernel
 def ground_state_into(table, segment, t, displacement, velocity):
     """Ground displacement and velocity at one time, written into two arrays.
 

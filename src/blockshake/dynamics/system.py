@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.motion import PITCH
-from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
-from blockshake.jit import kernel
+from blockshake.geometry.rotations import rotation_matrix_into, turned
+from blockshake.jit import borrowing_kernel, kernel
 
 ENERGY_TERMS = (
     "kinetic",
@@ -160,7 +160,7 @@ def _assemble_stoppers(structure):
     )
 
 
-@kernel
+@borrowing_kernel
 def place_driven_into(bodies, displacement, velocity, state):
     """Put every driven body where the ground motion has it, with its velocity.
 
@@ -173,8 +173,6 @@ def place_driven_into(bodies, displacement, velocity, state):
         Position, orientation and velocities of the driven bodies are overwritten; pitch turns
         each about its moving mass centre, positive leaning the top to +x.
     """
-    pitch = np.zeros(3)
-    pitch[1] = displacement[PITCH]
     for body in range(bodies.mass.size):
         if bodies.driven[body]:
             for axis in range(3):
@@ -182,7 +180,8 @@ def place_driven_into(bodies, displacement, velocity, state):
                 state.velocity[body, axis] = velocity[axis]
                 state.angular_velocity[body, axis] = 0.0
             state.angular_velocity[body, 1] = velocity[PITCH]
-            rotate_into(bodies.home_orientation[body], pitch, state.orientation[body])
+            home, q = bodies.home_orientation[body], state.orientation[body]
+            q[0], q[1], q[2], q[3] = turned(home[0], home[1], home[2], home[3], 0.0, displacement[PITCH], 0.0)
 
 
 @kernel
@@ -204,7 +203,7 @@ def kinetic_energy(bodies, velocity, angular_velocity, orientation):
     return energy
 
 
-@kernel
+@borrowing_kernel
 def potential_energy(bodies, position):
     """Potential energy in gravity of the bodies that are not driven, zero at the origin [J]."""
     energy = 0.0

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, inline_kernel
 
 
-@kernel
+@borrowing_kernel
 def rotation_matrix_into(q, R):
     """Rotation matrix of a unit quaternion, written into ``R``.
 
@@ -28,7 +28,26 @@ def rotation_matrix_into(q, R):
     R[2, 2] = 1.0 - 2.0 * (x * x + y * y)
 
 
-@kernel
+@inline_kernel
+def turned(w, x, y, z, rx, ry, rz):
+    """Unit quaternion ``w, x, y, z`` turned further by a world-frame rotation vector ``rx, ry, rz`` [rad]."""
+    angle = np.sqrt(rx * rx + ry * ry + rz * rz)
+    square = angle * angle
+    if angle < 1e-4:
+        # the series near zero, exact to the last bit: sin(a/2)/a would be 0/0, and the cosine takes long
+        c, s = 1.0 - (square / 8.0 - square * square / 384.0), 0.5 - square / 48.0
+    else:
+        c, s = np.cos(0.5 * angle), np.sin(0.5 * angle) / angle
+    ax, ay, az = s * rx, s * ry, s * rz
+    nw = c * w - ax * x - ay * y - az * z
+    nx = c * x + ax * w + ay * z - az * y
+    ny = c * y + ay * w + az * x - ax * z
+    nz = c * z + az * w + ax * y - ay * x
+    norm = np.sqrt(nw * nw + nx * nx + ny * ny + nz * nz)
+    return nw / norm, nx / norm, ny / norm, nz / norm
+
+
+@borrowing_kernel
 def rotate_into(q, rotation, out):
     """Quaternion ``q`` turned further by a world-frame rotation vector, written into ``out``.
 
@@ -41,19 +60,7 @@ def rotate_into(q, rotation, out):
     out : float64 array, shape (4,)
         Overwritten with the unit quaternion after, same sign branch as ``q``; may be ``q``.
     """
-    rx, ry, rz = rotation[0], rotation[1], rotation[2]
-    angle = np.sqrt(rx * rx + ry * ry + rz * rz)
-    c = np.cos(0.5 * angle)
-    # sin(a/2)/a by its series near zero, where the quotient is 0/0
-    s = 0.5 - angle * angle / 48.0 if angle < 1e-4 else np.sin(0.5 * angle) / angle
-    ax, ay, az = s * rx, s * ry, s * rz
-    w, x, y, z = q[0], q[1], q[2], q[3]
-    nw = c * w - ax * x - ay * y - az * z
-    nx = c * x + ax * w + ay * z - az * y
-    ny = c * y + ay * w + az * x - ax * z
-    nz = c * z + az * w + ax * y - ay * x
-    norm = np.sqrt(nw * nw + nx * nx + ny * ny + nz * nz)
-    out[0], out[1], out[2], out[3] = nw / norm, nx / norm, ny / norm, nz / norm
+    out[0], out[1], out[2], out[3] = turned(q[0], q[1], q[2], q[3], rotation[0], rotation[1], rotation[2])
 
 
 def rotation_matrices(q):

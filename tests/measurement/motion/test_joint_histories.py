@@ -28,6 +28,15 @@ def run():
     return moved_run(BASE, rocking=[0.0, ANGLE], slips=[SLIP])
 
 
+def test_a_body_that_is_asked_for_alone_has_the_pose_that_it_has_among_all(run):
+    test, driven = seen(run), STRUCTURE.driven
+    alone, among = (body_poses(test, STRUCTURE, 1e-4, asked) for asked in (driven, None))
+    for part in ("position", "rotation"):
+        np.testing.assert_array_equal(getattr(alone, part)[:, driven], getattr(among, part)[:, driven])
+        assert np.isnan(getattr(alone, part)[:, ~driven]).all()
+    np.testing.assert_array_equal(alone.covariance[driven], among.covariance[driven])
+
+
 def test_prescribed_joints_come_back(run):
     """Kinematics: a turn by theta about the edge at b opens the centre by b sin and shifts it by b (1 - cos)."""
     found = joint_histories(seen(run), STRUCTURE, SENSORS, BASE)

@@ -38,8 +38,8 @@ class BodyPoses:
     known: list
 
 
-def body_poses(test, structure, marker_noise):
-    """`BodyPoses` of all bodies from the markers of a test.
+def body_poses(test, structure, marker_noise, asked=None):
+    """`BodyPoses` of bodies from the markers of a test.
 
     Parameters
     ----------
@@ -48,6 +48,8 @@ def body_poses(test, structure, marker_noise):
     structure : Structure
     marker_noise : float
         Standard deviation of a reading along an axis [m].
+    asked : bool array, shape (n_bodies,), optional
+        Bodies whose markers are read, the others count as without; all by default.
 
     Notes
     -----
@@ -73,7 +75,7 @@ def body_poses(test, structure, marker_noise):
     rotation = np.full((n_times, n_bodies, 3, 3), np.nan)
     covariance = np.full((n_bodies, 6, 6), np.nan)
     known = [NOTHING] * n_bodies
-    for body in np.unique(bodies):
+    for body in np.unique(bodies if asked is None else bodies[asked[bodies]]):
         mine = np.flatnonzero(bodies == body)
         known[body], fit = _best_fit(
             arms[mine], readings[:, mine], start[body], structure.driven[body], marker_noise

@@ -11,7 +11,7 @@ def reconstruct_base(test, structure, sensors):
 
     See `smoothed_base`.
     """
-    poses = body_poses(test, structure, sensors.marker_noise)
+    poses = body_poses(test, structure, sensors.marker_noise, asked=structure.driven)
     body = driven_body(structure, poses)
     moved = poses.position[:, body, 0]
     moved = moved - moved[np.isfinite(moved)][0]

@@ -6,9 +6,7 @@ from blockshake.solvers.external_forces import external_wrenches_into
 
 @kernel
 def external_loads_into(bodies, forces, state, time, external, loads):
-    """Add external forces to ``loads``; ``external`` (n_bodies, 6) is overwritten if there are any."""
-    if forces.body.size == 0:
-        return
+    """Add external forces to ``loads``; ``external`` (n_bodies, 6) is overwritten."""
     external_wrenches_into(bodies, forces, state, time, 0.0, external)
     for body in range(external.shape[0]):
         for axis in range(3):

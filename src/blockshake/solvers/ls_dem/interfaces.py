@@ -102,7 +102,7 @@ def dashpot_coefficient(interfaces, a, b, ratio, stiffness, area):
     alike however many nodes carry it. Literally, each node has the dashpot ``2 zeta sqrt(m k_node)`` of
     its own stiffness, half of the interface's, and of the whole mass.
     """
-    if area == 0.0:
+    if area == 0.0 or ratio == 0.0:
         return 0.0
     mass = 1.0 / (interfaces.inverse_mass[a] + interfaces.inverse_mass[b])
     if interfaces.per_node == 1.0:

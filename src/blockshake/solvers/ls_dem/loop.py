@@ -18,7 +18,7 @@ from blockshake.dynamics.system import (
     potential_energy,
 )
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.ls_dem.contact.candidates import find_candidates, lists_expired
 from blockshake.solvers.ls_dem.contact.contact_forces import (
     SPRING_ENERGY,
@@ -29,6 +29,7 @@ from blockshake.solvers.ls_dem.contact.contact_forces import (
     contact_forces_into,
     no_loads,
 )
+from blockshake.solvers.ls_dem.contact.relative_pose import keep_poses
 from blockshake.solvers.ls_dem.external_loads import external_loads_into, external_power
 from blockshake.solvers.ls_dem.progress import (
     DASHPOT_HEAT,
@@ -40,6 +41,9 @@ from blockshake.solvers.ls_dem.progress import (
 from blockshake.solvers.ls_dem.stoppers import stopper_forces_into
 from blockshake.solvers.record import with_room
 from blockshake.solvers.status import COLLAPSED, COMPLETED, DIVERGED, NEXT_RECORD, PAUSED, SPEED_LIMIT, STEP
+
+# Code of `_advance` beside those of a run: a node outside the lists may touch by now
+_LISTS_EXPIRED = -1
 
 
 @kernel
@@ -98,66 +102,136 @@ def integrate(
     closes but for the error of the scheme.
     """
     n_bodies = bodies.mass.size
-    state, poses = progress.state, progress.poses
     loads, record = no_loads(n_bodies, joints), with_room(record, joints.slip.size)
     now, velocity = np.zeros(4), np.zeros(4)
-    workspace, external = np.zeros(3), np.zeros((n_bodies, 6))
+    turn, external = np.zeros(3), np.zeros((n_bodies, 6))
     start = ground.coefficients[0, :, 0].copy()
     start[PITCH] = 0.0
+    searched = False
+    while True:
+        code, culprit = _advance(
+            bodies, surfaces, interfaces, stoppers, forces, ground, supported, drop_limit, skin, dt, n_steps, pause,
+            times, progress, candidates, record, searched, start, now, velocity, turn, external, loads,
+        )  # fmt: skip
+        if code != _LISTS_EXPIRED:
+            return code, culprit, candidates, joints, record
+        candidates, joints = find_candidates(
+            surfaces, bodies.driven, progress.poses, progress.state.orientation, skin, candidates, joints
+        )
+        loads = no_loads(n_bodies, joints)
+        progress.clock[SEARCHES] += 1
+        record = with_room(record, joints.slip.size)
+        searched = True
+
+
+@borrowing_kernel
+def _advance(
+    bodies,
+    surfaces,
+    interfaces,
+    stoppers,
+    forces,
+    ground,
+    supported,
+    drop_limit,
+    skin,
+    dt,
+    n_steps,
+    pause,
+    times,
+    progress,
+    candidates,
+    record,
+    searched,
+    start,
+    now,
+    velocity,
+    turn,
+    external,
+    loads,
+):
+    """Steps until the lists expire, or the run ends or pauses.
+
+    Parameters
+    ----------
+    bodies, ..., record
+        As in `integrate`.
+    searched : bool
+        Whether the lists were made for the poses of the next step.
+    start : float64 array, shape (4,)
+        Ground displacement before the first step, without pitch [m].
+    now, velocity : float64 arrays, shape (4,)
+        Workspace: ground displacement and pitch since then, and their rates.
+    turn, external : float64 arrays, shape (3,) and (n_bodies, 6)
+        Workspace of the record; external forces and moments, zero where there are none [N, N m].
+    loads : Loads
+        Workspace of the forces.
+
+    Returns
+    -------
+    code, culprit : int
+        As in `integrate`, or `_LISTS_EXPIRED` before the forces of a step.
+    """
+    state, poses, clock, audit = progress.state, progress.poses, progress.clock, progress.audit
     segment = 0
-    while progress.clock[STEP] <= n_steps:
-        step = progress.clock[STEP]
+    while clock[STEP] <= n_steps:
+        step = clock[STEP]
         if step == pause:
-            return PAUSED, -1, candidates, joints, record
+            return PAUSED, -1
         t = step * dt
         segment = find_segment(ground.breaks, t, segment)
         ground_state_into(ground, segment, t, now, velocity)
-        now -= start
+        for channel in range(now.size):
+            now[channel] -= start[channel]
         place_driven_into(bodies, now, velocity, state)
-        for body in range(n_bodies):
+        for body in range(bodies.mass.size):
             rotation_matrix_into(state.orientation[body], poses.rotation[body])
         if step == 0:
-            progress.ground[:] = now
-            poses.position_before[:] = state.position
-            poses.rotation_before[:] = poses.rotation
-
-        if step == 0 or lists_expired(
-            candidates, surfaces, bodies.driven, state.position, state.orientation, skin
+            _copy_into(now, progress.ground)
+            keep_poses(poses)
+        if not searched and (
+            step == 0
+            or lists_expired(candidates, surfaces, bodies.driven, state.position, state.orientation, skin)
         ):
-            candidates, joints = find_candidates(
-                surfaces, bodies.driven, poses, state.orientation, skin, candidates, joints
-            )
-            loads = no_loads(n_bodies, joints)
-            progress.clock[SEARCHES] += 1
-            record = with_room(record, joints.slip.size)
+            return _LISTS_EXPIRED, -1
+        searched = False
+
         clear_loads(bodies, loads)
         # the first force sees no motion before it: the springs of the start hold as they are
         contact_forces_into(candidates, surfaces, interfaces, poses, dt if step > 0 else 0.0, loads)
-        poses.position_before[:] = state.position
-        poses.rotation_before[:] = poses.rotation
-        loads.energy[SPRING_ENERGY] += stopper_forces_into(bodies, stoppers, state, loads)
-        external_loads_into(bodies, forces, state, t, external, loads)
+        keep_poses(poses)
+        if stoppers.body.size > 0:
+            loads.energy[SPRING_ENERGY] += stopper_forces_into(bodies, stoppers, state, loads)
+        if forces.body.size > 0:
+            external_loads_into(bodies, forces, state, t, external, loads)
         _account_into(bodies, loads, now, progress)
 
         _kick(bodies, loads, dt, step > 0, progress)
-        loads.energy[STEP_EXTERNAL_WORK] = dt * external_power(external, state)
-        # the first kick is half a step's
-        progress.audit[INPUT_WORK] += loads.energy[STEP_EXTERNAL_WORK] * (1.0 if step > 0 else 0.5)
+        if forces.body.size > 0:
+            loads.energy[STEP_EXTERNAL_WORK] = dt * external_power(external, state)
+            # the first kick is half a step's
+            audit[INPUT_WORK] += loads.energy[STEP_EXTERNAL_WORK] * (1.0 if step > 0 else 0.5)
         if _has_diverged(state.velocity):
-            return DIVERGED, -1, candidates, joints, record
-        while progress.clock[NEXT_RECORD] < times.size and times[progress.clock[NEXT_RECORD]] < t + 0.5 * dt:
-            row = progress.clock[NEXT_RECORD]
-            _record_into(bodies, loads, times[row] - t, dt, progress, workspace, row, record)
-            progress.clock[NEXT_RECORD] += 1
+            return DIVERGED, -1
+        while clock[NEXT_RECORD] < times.size and times[clock[NEXT_RECORD]] < t + 0.5 * dt:
+            row = clock[NEXT_RECORD]
+            _record_into(bodies, loads, times[row] - t, dt, progress, turn, row, record)
+            clock[NEXT_RECORD] += 1
             collapsed = find_collapsed(bodies, state, supported, drop_limit)
             if collapsed >= 0:
-                return COLLAPSED, collapsed, candidates, joints, record
-        _drift(bodies, dt, workspace, progress)
-        progress.clock[STEP] += 1
-    return COMPLETED, -1, candidates, joints, record
+                return COLLAPSED, collapsed
+        _drift(bodies, dt, progress)
+        clock[STEP] += 1
+    return COMPLETED, -1
 
 
-@kernel
+@borrowing_kernel
+def _copy_into(given, out):
+    for entry in range(given.size):
+        out[entry] = given[entry]
+
+
+@borrowing_kernel
 def _account_into(bodies, loads, now, progress):
     """Heat of the step, and work of the driven bodies: their mean force since the step before times their motion."""
     audit, ground = progress.audit, progress.ground
@@ -178,10 +252,10 @@ def _account_into(bodies, loads, now, progress):
                 )
                 progress.driven_force[body, axis] = loads.force[body, axis]
                 progress.driven_moment[body, axis] = loads.moment[body, axis]
-    ground[:] = now
+    _copy_into(now, ground)
 
 
-@kernel
+@borrowing_kernel
 def _kick(bodies, loads, dt, under_way, progress):
     """Newton-Euler equations: momenta from half a step before to half a step after; the first is half a kick."""
     state, half_velocity, momentum = progress.state, progress.half_velocity, progress.half_momentum
@@ -204,15 +278,15 @@ def _kick(bodies, loads, dt, under_way, progress):
             momentum[body, axis] += 0.5 * dt * loads.moment[body, axis]
 
 
-@kernel
-def _drift(bodies, dt, spin, progress):
+@borrowing_kernel
+def _drift(bodies, dt, progress):
     """Poses a step on."""
     state = progress.state
     for body in range(bodies.mass.size):
         if not bodies.driven[body]:
             drift_into(
                 bodies.inverse_inertia[body], progress.half_velocity[body], progress.half_momentum[body],
-                state.angular_velocity[body], dt, state.position[body], state.orientation[body], spin,
+                state.angular_velocity[body], dt, state.position[body], state.orientation[body],
             )  # fmt: skip
 
 
@@ -241,7 +315,7 @@ def _record_into(bodies, loads, offset, dt, progress, turn, row, record):
     record.joint_force[row, : loads.joints.slip.size] = loads.joints.force
 
 
-@kernel
+@borrowing_kernel
 def _has_diverged(velocity):
     """Whether a velocity is beyond the limit or no number."""
     for body in range(velocity.shape[0]):

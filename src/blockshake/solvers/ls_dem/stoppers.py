@@ -14,8 +14,6 @@ def stopper_forces_into(bodies, stoppers, state, loads):
     ``stiffness * c`` and the first driven body with the opposite.
     """
     energy = 0.0
-    if stoppers.body.size == 0:
-        return energy
     driven = np.argmax(bodies.driven)
     reach, arm, toward = np.empty(3), np.empty(3), np.empty(3)
     for stopper in range(stoppers.body.size):

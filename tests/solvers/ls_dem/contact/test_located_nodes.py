@@ -41,7 +41,7 @@ def test_packets_give_the_bits_of_single_places(surfaces):
     R[1] = np.eye(3)
     area = locate_nodes_into(
         packets, 0, N_PACKETS, surfaces.half, surfaces.chamfer, surfaces.lattice, surfaces.values, shape,
-        R, d, 1, np.empty(LANES),
+        R, d, 1,
     )  # fmt: skip
     expected = _level_sets(surfaces, shape, points)
     np.testing.assert_array_equal(rows[:, PHI // LANES].ravel(), expected)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrix_into
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
 from blockshake.solvers.ls_dem.contact.packets import (
     AREA,
@@ -56,24 +56,22 @@ def empty_candidates(n_bodies):
     )  # fmt: skip
 
 
-@kernel
+@borrowing_kernel
 def lists_expired(candidates, surfaces, driven, position, orientation, skin):
     """Whether a node outside the lists could touch by now.
 
     A node is in a list when the level set there was below ``skin`` times its steepest slope, so that nothing is missed
     while no two bodies together have moved, with respect to the first driven body, by more than ``skin``.
     """
-    shift = np.zeros(3)
-    for body in range(driven.size):
-        if driven[body]:
-            for axis in range(3):
-                shift[axis] = position[body, axis] - candidates.position[body, axis]
-            break
+    base = 0
+    while base < driven.size and not driven[base]:
+        base += 1
     most, second = 0.0, 0.0
     for body in range(driven.size):
         squared = 0.0
         for axis in range(3):
-            moved = position[body, axis] - candidates.position[body, axis] - shift[axis]
+            shift = position[base, axis] - candidates.position[base, axis] if base < driven.size else 0.0
+            moved = position[body, axis] - candidates.position[body, axis] - shift
             squared += moved * moved
         dot = 0.0
         for part in range(4):
@@ -190,7 +188,7 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
     position, rotation = poses.position, poses.rotation
     pairs = find_pairs(surfaces, driven, position, orientation, skin)
     n_sides = 2 * pairs.shape[0]
-    R, d, lanes = np.empty((2, 3, 3)), np.empty((2, 3)), np.empty(LANES)
+    R, d = np.empty((2, 3, 3)), np.empty((2, 3))
     found, count = np.empty(1024, np.int64), np.zeros(n_sides + 1, np.int64)
     for side in range(n_sides):
         owner, other = pairs[side // 2, side % 2], pairs[side // 2, 1 - side % 2]
@@ -223,7 +221,7 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
         locate_nodes_into(
             packets, first[side], first[side + 1],
             surfaces.half, surfaces.chamfer, surfaces.lattice, surfaces.values, surfaces.shape[other],
-            R, d, 0, lanes,
+            R, d, 0,
         )  # fmt: skip
     joint = np.full(pairs.shape[0], -1, np.int64)
     new = Candidates(pairs, joint, first, node, packets, position.copy(), orientation.copy())

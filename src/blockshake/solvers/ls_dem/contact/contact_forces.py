@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.friction import friction_asymmetry, friction_coefficient
-from blockshake.jit import inline_kernel, kernel
+from blockshake.jit import borrowing_kernel, inline_kernel, kernel
 from blockshake.solvers.ls_dem.contact.contact_law import Law
 from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
 from blockshake.solvers.ls_dem.contact.packets import LANES, N_SUMS, SUM_DAMPED, SUM_HELD, SUM_SLID
@@ -22,26 +22,41 @@ _RATE_TIME = (
 )
 
 
+class Workspace(NamedTuple):
+    """Arrays that an evaluation overwrites, by pair or by side of a pair.
+
+    ``R`` (2, 3, 3), ``d`` (2, 3): see `relative_pose_into`; ``lanes`` (N_SUMS * LANES,), ``sums`` (N_SUMS,): see
+    `side_forces_into`.
+    """
+
+    R: np.ndarray
+    d: np.ndarray
+    lanes: np.ndarray
+    sums: np.ndarray
+
+
 class Loads(NamedTuple):
     """Result of a force evaluation, overwritten by it.
 
     ``force``, ``moment`` (n_bodies, 3) on each body [N, N m], world frame, about its mass centre;
-    ``energy`` (N_ENERGIES,) [J]; ``joints``: forces and slips of the pairs.
+    ``energy`` (N_ENERGIES,) [J]; ``joints``: forces and slips of the pairs; ``workspace``: of the evaluation.
     """
 
     force: np.ndarray
     moment: np.ndarray
     energy: np.ndarray
     joints: Joints
+    workspace: Workspace
 
 
 @kernel
 def no_loads(n_bodies, joints):
     """Loads before the first evaluation."""
-    return Loads(np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)), np.zeros(N_ENERGIES), joints)
+    workspace = Workspace(np.empty((2, 3, 3)), np.empty((2, 3)), np.empty(N_SUMS * LANES), np.empty(N_SUMS))
+    return Loads(np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)), np.zeros(N_ENERGIES), joints, workspace)
 
 
-@kernel
+@borrowing_kernel
 def clear_loads(bodies, loads):
     """Start a force evaluation: gravity on every free body, nothing else."""
     loads.moment[:] = 0.0
@@ -52,7 +67,7 @@ def clear_loads(bodies, loads):
             loads.force[body, axis] = 0.0 if bodies.driven[body] else bodies.mass[body] * bodies.gravity[axis]
 
 
-@kernel
+@borrowing_kernel
 def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
     """Contact forces between all near pairs, added to ``loads``.
 
@@ -73,8 +88,7 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
     Each body's nodes are checked against the other's level set; each side carries half of the interface's stiffness, so
     that a face on a face has it once. The area in touch is the mean of what the two sides find.
     """
-    R, d = np.empty((2, 3, 3)), np.empty((2, 3))
-    lanes, sums = np.empty(N_SUMS * LANES), np.empty(N_SUMS)
+    R, d, lanes, sums = loads.workspace
     pairs, bounds, packets = candidates.pairs, candidates.first, candidates.packets
     shapes, half, chamfer = surfaces.shape, surfaces.half, surfaces.chamfer
     lattice, values, offset = surfaces.lattice, surfaces.values, surfaces.offset
@@ -92,7 +106,7 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
             relative_pose_into(position, rotation, offset, owner, other, side, R, d)
             area += 0.5 * locate_nodes_into(
                 packets, bounds[2 * pair + side], bounds[2 * pair + side + 1],
-                half, chamfer, lattice, values, shapes[other], R, d, side, lanes,
+                half, chamfer, lattice, values, shapes[other], R, d, side,
             )  # fmt: skip
         k_n, k_s = normal_stiffness(interfaces, a, b), in_series(interfaces.k_s, a, b)
         gamma_n = dashpot_coefficient(interfaces, a, b, interfaces.damping_ratio, k_n, area)
@@ -123,7 +137,7 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
         _slip_into(loads.joints, joint, mu, heat, dt)
 
 
-@kernel
+@borrowing_kernel
 def _share_into(owner, other, side, rotation, offset, d, sums, force, moment, joint, joint_force):
     """Add the summed force of a side to both bodies and to the joint, whose second body owns side 1."""
     sign = 1.0 if side == 1 else -1.0
@@ -155,9 +169,11 @@ def _slip_into(joints, joint, mu, heat, dt):
     squared = fx * fx + fy * fy + fz * fz
     if squared > 0.0:
         joints.touched[joint] = True
-    # of a contact that slides as a whole, the part of the force that is friction
-    limit = mu * np.sqrt(squared / (1.0 + mu * mu))
-    slip = max(heat, 0.0) / limit if limit > 0.0 else 0.0
+    slip = 0.0
+    if heat > 0.0:
+        # of a contact that slides as a whole, the part of the force that is friction
+        limit = mu * np.sqrt(squared / (1.0 + mu * mu))
+        slip = heat / limit if limit > 0.0 else 0.0
     joints.slip[joint] += slip
     if dt > 0.0:
         joints.slip_rate[joint] += (slip / dt - joints.slip_rate[joint]) * dt / (_RATE_TIME + dt)

@@ -2,10 +2,13 @@
 
 from blockshake.geometry.level_set import box_distance
 from blockshake.geometry.trilinear import corner_values, interpolate, locate
-from blockshake.jit import inline_kernel, kernel
+from blockshake.jit import borrowing_kernel, inline_kernel
 from blockshake.solvers.ls_dem.contact.packets import (
     AREA,
+    BUSY,
     CORNERS,
+    HELD,
+    INSIDE,
     LANES,
     MOVED_X,
     MOVED_Y,
@@ -21,7 +24,6 @@ from blockshake.solvers.ls_dem.contact.packets import (
     POINT_Y,
     POINT_Z,
     SLOPE,
-    sum_lanes,
 )
 from blockshake.solvers.ls_dem.surfaces import (
     COUNT_X,
@@ -35,23 +37,21 @@ from blockshake.solvers.ls_dem.surfaces import (
 )
 
 
-@kernel
-def locate_nodes_into(packets, first, last, half, chamfer, lattice, values, shape, R, d, side, lanes):
+@borrowing_kernel
+def locate_nodes_into(packets, first, last, half, chamfer, lattice, values, shape, R, d, side):
     """Locate the nodes of one side.
 
     Parameters
     ----------
     packets : float64 array, shape (n_packets, PACKET)
-        Place, change of place, level-set value and normal are overwritten; by a sampled level set the
-        slope and the forces too.
+        Place, change of place, level-set value, area inside, normal and whether a packet is busy are
+        overwritten; by a sampled level set the slope and the forces too.
     first, last : int
         Packets of this side.
     half, chamfer, lattice, values, shape : as in `Surfaces`, int
         Shape whose level set is read.
     R, d, side : float64 arrays, shape (2, 3, 3) and (2, 3), int
         Pose of the owner in the other's frame, from `relative_pose_into`.
-    lanes : float64 array, shape (at least LANES,)
-        Workspace.
 
     Returns
     -------
@@ -67,11 +67,23 @@ def locate_nodes_into(packets, first, last, half, chamfer, lattice, values, shap
         _locate_in_box_into(packets, first, last, half, chamfer, shape, R, d, side)
     else:
         _locate_in_lattice_into(packets, first, last, lattice, values, shape, R, d, side)
-    lanes[:LANES] = 0.0
+    return _area_inside(packets, first, last)
+
+
+@borrowing_kernel
+def _area_inside(packets, first, last):
+    """Area of the nodes that lie inside [m2], added up lane by lane, then as `sum_lanes` does."""
+    a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for packet in range(first, last):
-        for lane in range(LANES):
-            lanes[lane] += packets[packet, AREA + lane] if packets[packet, PHI + lane] < 0.0 else 0.0
-    return sum_lanes(lanes, 0)
+        a += packets[packet, INSIDE]
+        b += packets[packet, INSIDE + 1]
+        c += packets[packet, INSIDE + 2]
+        d += packets[packet, INSIDE + 3]
+        e += packets[packet, INSIDE + 4]
+        f += packets[packet, INSIDE + 5]
+        g += packets[packet, INSIDE + 6]
+        h += packets[packet, INSIDE + 7]
+    return ((a + b) + (c + d)) + ((e + f) + (g + h))
 
 
 @inline_kernel
@@ -101,12 +113,13 @@ def _follow(packets, packet, lane, pose):
     return x, y, z
 
 
-@kernel
+@borrowing_kernel
 def _locate_in_box_into(packets, first, last, half, chamfer, shape, R, d, side):
     """Places, level-set values and normals by the exact distance."""
     a, b, c, leg = half[shape, 0], half[shape, 1], half[shape, 2], chamfer[shape]
     pose = _pose(R, d, side)
     for packet in range(first, last):
+        busy = False
         for lane in range(LANES):
             x, y, z = _follow(packets, packet, lane, pose)
             phi, nx, ny, nz = box_distance(x, y, z, a, b, c, leg)
@@ -114,9 +127,13 @@ def _locate_in_box_into(packets, first, last, half, chamfer, shape, R, d, side):
             packets[packet, NORMAL_X + lane] = nx
             packets[packet, NORMAL_Y + lane] = ny
             packets[packet, NORMAL_Z + lane] = nz
+            area = packets[packet, AREA + lane]
+            packets[packet, INSIDE + lane] = area if phi < 0.0 else 0.0
+            busy |= (phi < 0.0) | (packets[packet, HELD + lane] != 0.0)
+        packets[packet, BUSY] = busy
 
 
-@kernel
+@borrowing_kernel
 def _locate_in_lattice_into(packets, first, last, lattice, values, shape, R, d, side):
     """Places, level-set values and normals by trilinear interpolation, with the bits of `grid_distance`.
 
@@ -148,6 +165,7 @@ def _locate_in_lattice_into(packets, first, last, lattice, values, shape, R, d, 
                 packets[packet, CORNERS + 6 * LANES + lane],
                 packets[packet, CORNERS + 7 * LANES + lane],
             ) = corner_values(values, packets[packet, CORNERS + lane], n_y, n_z)
+        busy = False
         for lane in range(LANES):
             phi, nx, ny, nz, slope = interpolate(
                 packets[packet, CORNERS + lane], packets[packet, CORNERS + LANES + lane],
@@ -162,3 +180,7 @@ def _locate_in_lattice_into(packets, first, last, lattice, values, shape, R, d, 
             packets[packet, NORMAL_X + lane] = nx
             packets[packet, NORMAL_Y + lane] = ny
             packets[packet, NORMAL_Z + lane] = nz
+            area = packets[packet, AREA + lane]
+            packets[packet, INSIDE + lane] = area if phi < 0.0 else 0.0
+            busy |= (phi < 0.0) | (packets[packet, HELD + lane] != 0.0)
+        packets[packet, BUSY] = busy

@@ -14,6 +14,7 @@ LANES = 8
     MOVED_X, MOVED_Y, MOVED_Z,  # change of the place in the last step [m]
     PHI,  # level-set value there [m]
     NORMAL_X, NORMAL_Y, NORMAL_Z,  # outward normal there, in the other body's frame
+    INSIDE,  # area of the node if it lies inside, else zero [m2]
     SLOPE,  # length of the level set's gradient there: 1, but near the edges of a sampled one
     CLOSED,  # change of the place along the normal in the last step [m]
     STRETCH_X, STRETCH_Y, STRETCH_Z,  # of the shear spring, in the other body's frame [m]
@@ -21,10 +22,11 @@ LANES = 8
     MOMENT_X, MOMENT_Y, MOMENT_Z,  # about the same origin, other's frame [N m]
     SLID, DAMPED,  # friction heat and dashpot heat of the step [J]
     HELD,  # energy in the springs [J]; not zero where one is stretched
+    BUSY,  # lane 0: not zero where a node lies inside or its spring is stretched
     PACKET,
-) = range(0, 30 * LANES, LANES)  # fmt: skip
+) = range(0, 32 * LANES, LANES)  # fmt: skip
 # Quantities that a side adds up are those from FORCE_X on: force, moment, then these.
-N_SUMS = (PACKET - FORCE_X) // LANES
+N_SUMS = (BUSY - FORCE_X) // LANES
 SUM_SLID, SUM_DAMPED, SUM_HELD = 6, 7, 8
 # Where a sampled level set puts the values at the eight corners of a cell meanwhile; the forces come after.
 CORNERS = FORCE_X

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel
 
 
 class Poses(NamedTuple):
@@ -20,13 +20,21 @@ class Poses(NamedTuple):
     rotation_before: np.ndarray
 
 
-@kernel
+@borrowing_kernel
+def keep_poses(poses):
+    """Make the poses now those of the step before."""
+    for body in range(poses.position.shape[0]):
+        for i in range(3):
+            poses.position_before[body, i] = poses.position[body, i]
+            for j in range(3):
+                poses.rotation_before[body, i, j] = poses.rotation[body, i, j]
+
+
+@borrowing_kernel
 def relative_pose_into(position, rotation, offset, owner, other, side, R, d):
     """Pose of ``owner`` in the frame of the shape of ``other``, whose origin is the shape's centroid.
 
     Its axes ``R[side]`` (3, 3) and its mass centre ``d[side]`` (3,); ``offset`` as in `Surfaces`.
-    Whole arrays and an index are passed, and no tuples of arrays, because their counting of references
-    costs more than what is done with them here.
     """
     for i in range(3):
         for j in range(3):

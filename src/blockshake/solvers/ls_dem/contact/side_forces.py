@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel
 from blockshake.solvers.ls_dem.contact.contact_law import node_force
 from blockshake.solvers.ls_dem.contact.packets import (
     AREA,
+    BUSY,
     CLOSED,
     DAMPED,
     DAMPING_WEIGHT,
@@ -37,7 +38,7 @@ from blockshake.solvers.ls_dem.contact.packets import (
 )
 
 
-@kernel
+@borrowing_kernel
 def side_forces_into(packets, first, last, law, gamma_s, lanes, sums):
     """Forces of the nodes of one side, summed.
 
@@ -62,11 +63,7 @@ def side_forces_into(packets, first, last, law, gamma_s, lanes, sums):
     """
     lanes[:] = 0.0
     for packet in range(first, last):
-        idle = True
-        for lane in range(LANES):
-            if packets[packet, PHI + lane] < 0.0 or packets[packet, HELD + lane] != 0.0:
-                idle = False
-        if idle:
+        if packets[packet, BUSY] == 0.0:
             for lane in range(LANES):
                 packets[packet, CLOSED + lane] = (
                     packets[packet, MOVED_X + lane] * packets[packet, NORMAL_X + lane]
@@ -105,7 +102,7 @@ def side_forces_into(packets, first, last, law, gamma_s, lanes, sums):
         sums[quantity] = sum_lanes(lanes, quantity * LANES)
 
 
-@kernel
+@borrowing_kernel
 def _add_shear_dashpots_into(packets, packet, gamma_rate, law):
     """Dashpots beside the shear springs of one packet's nodes, as long as these do not slide.
 
