@@ -20,7 +20,7 @@ from blockshake.files import PACKAGE, write_dataset, write_json
 TINY = efforts.Effort(runs=1000, tests=2, nominal_draws=10, own_draws=2, further_draws=2, members=2, twins=2)
 SOLVERS = ("ls-dem", "nscd-rigid")
 PITCH = {"name": "table-pitch", "values": {"coefficient": 1.2e-3, "frequency": 18.0}, "place": {}}
-STRUCTURE = PACKAGE.parents[1] / "hidden_effects" / "two-blocks.yaml"
+STRUCTURE = PACKAGE.parents[1] / "hidden_effects" / "structures" / "two-blocks.yaml"
 
 PUSH = OutsideForce(
     bodies=("block-2",), law="constant", scores={"constant": 0.0}, amplitude=-2e3, lower=-2.2e3, upper=-1.8e3,

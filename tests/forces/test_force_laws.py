@@ -30,6 +30,9 @@ def history(force, seed=0):
         told=np.ones(len(TIME), dtype=bool),
         distance=np.zeros(len(TIME)),
         edge=np.zeros(len(TIME)),
+        lower=np.full(len(TIME), -np.inf),
+        upper=np.full(len(TIME), np.inf),
+        by_lever=np.zeros(len(TIME)),
         displacement=MOVED,
         velocity=RATE,
     )

@@ -10,7 +10,7 @@ from blockshake.files import PACKAGE, write_dataset
 from blockshake.forces.sight import sight_lines
 from blockshake.measurement.campaigns.campaign import load_campaign
 
-STRUCTURE = PACKAGE.parents[1] / "hidden_effects" / "two-blocks.yaml"
+STRUCTURE = PACKAGE.parents[1] / "hidden_effects" / "structures" / "two-blocks.yaml"
 
 
 @pytest.fixture

@@ -85,26 +85,23 @@ def transmitted_forces(structure, faces, motion, required):
         if above is not None:
             chosen.append(face)
             carried.append(above)
-    forces, moments, covariances = [], [], []
+    n_times = len(motion.time)
+    wrench, scatters = np.zeros((n_times, len(chosen), 6)), np.zeros((n_times, len(chosen), 6, 6))
     scatter = _covariance(required.information)
-    for face, above in zip(chosen, carried, strict=True):
+    for joint, (face, above) in enumerate(zip(chosen, carried, strict=True)):
         turn = motion.rotation[:, face.upper]
         middle = motion.position[:, face.upper] + turn @ face.on_upper
         start = np.einsum("tij,jk->tik", turn, _axes_on_body(structure, face))
-        total, covariance = np.zeros((len(middle), 6)), np.zeros((len(middle), 6, 6))
+        total, covariance = np.zeros((n_times, 6)), np.zeros((n_times, 6, 6))
         for body in above:
             shift = _moved_by(motion.position[:, body] - middle)
             total += np.einsum("tij,tj->ti", shift, required.wrench[:, body])
             covariance += shift @ scatter[:, body] @ np.swapaxes(shift, -1, -2)
-        axes = np.zeros((len(middle), 6, 6))
+        axes = np.zeros((n_times, 6, 6))
         axes[:, :3, :3] = axes[:, 3:, 3:] = start
-        total = np.einsum("tji,tj->ti", axes, total)
-        forces.append(total[:, :3])
-        moments.append(total[:, 3:])
-        covariances.append(np.swapaxes(axes, -1, -2) @ covariance @ axes)
-    return TransmittedForces(
-        chosen, carried, np.stack(forces, axis=1), np.stack(moments, axis=1), np.stack(covariances, axis=1)
-    )
+        wrench[:, joint] = np.einsum("tji,tj->ti", axes, total)
+        scatters[:, joint] = np.swapaxes(axes, -1, -2) @ covariance @ axes
+    return TransmittedForces(chosen, carried, wrench[..., :3], wrench[..., 3:], scatters)
 
 
 def _cut_off(structure, faces, cut):

@@ -1,12 +1,13 @@
 """Laws that a force from outside may follow, fitted to its history."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 _GRID = 40  # values that are tried of a time or a gap
 _LONGEST_PULSE = 0.5  # s
-_EDGE = 8e-3  # m, at most: how far the numerics of a model place an edge from the geometric one
+_EDGE = 15e-3  # m, at most: how far the numerics of a model place an edge from the geometric one
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,7 @@ class FittedLaw:
     parameters : dict of str to float
         Start and end [s], gap [m] and side.
     chi_square : float
-        Sum of squares left, in variances of the history.
+        Sum of squares left, in variances of the history; where the force is not told, of what is beyond its ends.
     information : float
         Bayesian information criterion: ``chi_square + k ln n`` (Schwarz 1978).
     """
@@ -33,6 +34,16 @@ class FittedLaw:
     parameters: dict
     chi_square: float
     information: float
+
+
+class _Readings(NamedTuple):
+    """History at the known instants: the force where it is told, its ends elsewhere, and its standard deviation."""
+
+    told: np.ndarray
+    force: np.ndarray
+    error: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
 
 
 def fit_laws(time, push):
@@ -50,29 +61,32 @@ def fit_laws(time, push):
         Empty where nothing is told.
     """
     told = push.told
+    bounded = ~told & np.isfinite(push.lower + push.error + push.displacement + push.velocity)
     if not told.any():
         return []
-    error = push.error[told]
-    force = _without_edges(push.force[told], push.edge[told])
-    t, u, v = time[told], push.displacement[told], push.velocity[told]
-    fits = [_fitted("none", np.zeros_like(force), force, error, {}, 0)]
-    fits.append(_fitted("steady", np.ones_like(force), force, error, {}, 1))
-    fits.append(_best("constant", _steps(t), force, error, 2))
-    fits.append(_best("pulse", _pulses(t), force, error, 3))
-    fits.append(_best("spring", _springs(u), force, error, 2))
-    fits.append(_fitted("damper", v, force, error, {}, 1))
-    fits.append(_fitted("proportional", u, force, error, {}, 1))
+    shift = _edge_shift(push.force[told], push.edge[told])
+    known = told | bounded
+    readings = _Readings(
+        told[known], push.force[known] - shift * push.edge[known], push.error[known],
+        push.lower[known] - shift * push.by_lever[known], push.upper[known] + shift * push.by_lever[known],
+    )  # fmt: skip
+    t, u, v = time[known], push.displacement[known], push.velocity[known]
+    fits = [_fitted("none", np.zeros_like(t), readings, {}, 0)]
+    fits.append(_fitted("steady", np.ones_like(t), readings, {}, 1))
+    fits.append(_best("constant", _steps(t), readings, 2))
+    fits.append(_best("pulse", _pulses(t, t[readings.told]), readings, 3))
+    fits.append(_best("spring", _springs(u), readings, 2))
+    fits.append(_fitted("damper", v, readings, {}, 1))
+    fits.append(_fitted("proportional", u, readings, {}, 1))
     return sorted((one for one in fits if one is not None), key=lambda one: one.information)
 
 
-def _without_edges(force, edge):
-    """A history less what an edge that lies elsewhere, the same for both sides, would seem to push."""
+def _edge_shift(force, edge):
+    """How far further out the edges seem to lie than they are, the same to both sides [m]."""
     # the median is not moved by the force that is looked for
     turned = edge != 0.0
-    if not turned.any():
-        return force
-    shift = np.median(force[turned] / edge[turned])
-    return force - np.clip(shift, -_EDGE, _EDGE) * edge
+    shift = np.median(force[turned] / edge[turned]) if turned.any() else 0.0
+    return float(np.clip(shift, -_EDGE, _EDGE))
 
 
 def _steps(t):
@@ -80,8 +94,8 @@ def _steps(t):
         yield (t >= start).astype(float), {"start": float(start)}
 
 
-def _pulses(t):
-    for start in np.unique(t):
+def _pulses(t, starts):
+    for start in np.unique(starts):
         for length in np.geomspace(0.03, _LONGEST_PULSE, 6):
             yield (
                 ((t >= start) & (t < start + length)).astype(float),
@@ -99,21 +113,24 @@ def _springs(u):
             yield -side * np.maximum(side * u - gap, 0.0), {"gap": float(gap), "side": side}
 
 
-def _best(name, shapes, force, error, count):
-    fits = [_fitted(name, shape, force, error, parameters, count) for shape, parameters in shapes]
+def _best(name, shapes, readings, count):
+    fits = [_fitted(name, shape, readings, parameters, count) for shape, parameters in shapes]
     fits = [one for one in fits if one is not None]
     return min(fits, key=lambda one: one.chi_square) if fits else None
 
 
-def _fitted(name, shape, force, error, parameters, count):
-    """Amplitude by weighted least squares, or None where the shape is zero throughout."""
-    weight = error**-2
-    square = float(weight @ shape**2)
+def _fitted(name, shape, readings, parameters, count):
+    """Amplitude by weighted least squares where the force is told, or None where the shape is zero there."""
+    told, weight = readings.told, readings.error**-2
+    own = np.where(told, shape, 0.0)
+    square = float(weight @ own**2)
     if square == 0.0 and name != "none":
         return None
-    amplitude = float(weight @ (shape * force)) / square if square > 0.0 else 0.0
-    left = float(weight @ (force - amplitude * shape) ** 2)
+    amplitude = float(weight @ (own * readings.force)) / square if square > 0.0 else 0.0
+    force = amplitude * shape
+    beyond = np.maximum(np.maximum(readings.lower - force, force - readings.upper), 0.0)
+    left = float(weight @ np.where(told, readings.force - force, beyond) ** 2)
     return FittedLaw(
         name, amplitude, square**-0.5 if square > 0.0 else np.nan, parameters, left,
-        left + count * np.log(len(force)),
+        left + count * np.log(np.count_nonzero(told)),
     )  # fmt: skip

@@ -26,6 +26,11 @@ class PushHistory:
         What it leaves unexplained, in standard deviations [1].
     edge : float64 array, shape (n_times,)
         Force by which the joint's edge would seem to lie a metre further out [N/m]: edges are known to millimetres.
+    lower, upper : float64 arrays, shape (n_times,)
+        Ends between which the force leaves the resultant of the lowest joint beneath on its face [N]; without ends
+        where the joint's forces are not known.
+    by_lever : float64 array, shape (n_times,)
+        Force that moves that resultant by a metre [N/m].
     displacement, velocity : float64 arrays, shape (n_times,)
         Of the body against the table along x [m, m/s].
     """
@@ -37,6 +42,9 @@ class PushHistory:
     told: np.ndarray
     distance: np.ndarray
     edge: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    by_lever: np.ndarray
     displacement: np.ndarray
     velocity: np.ndarray
 
@@ -62,13 +70,15 @@ def push_history(forces, body, height=0.0):
     Notes
     -----
     A force that the contacts can take up without moving leaves no trace: the history is told only where a joint below
-    the body bears on an edge or slips.
+    the body bears on an edge or slips. At all other times the force has ends: a resultant beyond an edge would turn the
+    joint.
     """
     motion = forces.motion
     least = least_force(forces.structure, forces.faces, motion, forces.joints, forces.required, body, height)
     n_times = len(motion.time)
     error, turned = np.full(n_times, np.inf), np.zeros(n_times, dtype=bool)
     edge, slips = np.zeros(n_times), np.zeros(n_times, dtype=bool)
+    lowest = None
     for place, face in enumerate(forces.transmitted.faces):
         if body not in forces.transmitted.carried[place]:
             continue
@@ -76,8 +86,10 @@ def push_history(forces, body, height=0.0):
         middle = motion.position[:, face.upper] + motion.rotation[:, face.upper] @ face.on_upper
         arm = motion.position[:, body, 2] + height - middle[:, 2]
         side = forces.joints.side[:, joint]
-        here = (side != 0) & forces.joints.steady & ~turned
+        on_one_edge = ~forces.joints.bears[:, joint, 0].all(axis=-1)
+        here = (side != 0) & forces.joints.steady & on_one_edge & ~turned
         by_lever = forces.transmitted.normal[:, place] / arm
+        lowest = (by_lever, forces.transmitted.lever[:, place], face.half_width) if lowest is None else lowest
         # the lowest joint that is turned tells the force best; before any is, the lowest joint's error stands
         first = here | ~np.isfinite(error)
         error = np.where(first, forces.transmitted.lever_error[:, place] * by_lever, error)
@@ -88,6 +100,11 @@ def push_history(forces, body, height=0.0):
         )
     known = np.isfinite(least.distance) & np.isfinite(error)
     told = known & (turned | slips | (np.abs(least.push) > _SURE * error))
+    by_lever, lever, half_width = lowest or (np.zeros(n_times), np.zeros(n_times), np.inf)
+    ends = [
+        np.where(known & (by_lever > 0.0), by_lever * (end - lever), np.copysign(np.inf, end))
+        for end in (-half_width, half_width)
+    ]
     driven = int(np.flatnonzero(forces.structure.driven)[0])
     moved = motion.position[:, body, 0] - motion.position[:, driven, 0]
     rest = np.nanmean(moved[forces.still]) if forces.still.any() else 0.0
@@ -99,6 +116,9 @@ def push_history(forces, body, height=0.0):
         told=told,
         distance=least.distance,
         edge=edge,
+        lower=ends[0],
+        upper=ends[1],
+        by_lever=by_lever,
         displacement=moved - rest,
         velocity=motion.velocity[:, body, 0] - motion.velocity[:, driven, 0],
     )
