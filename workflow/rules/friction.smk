@@ -6,6 +6,7 @@ rule calibrate_friction:
         ),
         motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
         tower="config/structures/configuration-2.yaml",
+        base="results/{study}/inputs/{case}.nc",
         campaign=lambda wildcards: campaign_files(wildcards.case),
         kernels=lambda wildcards: kernels(FRICTION_SEARCH["model"]),
     output:

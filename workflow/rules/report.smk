@@ -17,6 +17,7 @@ rule make_report:
         design_summary=f"results/{STUDY}/design.json",
         stiffness=f"results/{STUDY}/stiffness.csv",
         waves=f"results/{STUDY}/waves.nc",
+        bases=expand("results/{study}/inputs/{case}.nc", study=STUDY, case=CASES),
         convergence=(
             f"results/{STUDY}/convergence.csv" if config.get("convergence") else []
         ),

@@ -1,8 +1,10 @@
+import xarray as xr
+
 from blockshake.files import write_json
 from blockshake.log import logging_to
 from blockshake.study.friction.search import calibrate_case
 
 with logging_to(snakemake.log[0]) as say:
-    of = snakemake.params
-    found = calibrate_case(of.case, of.measured, of.given, of.store, snakemake.input.tower, say)
+    of, base = snakemake.params, xr.load_dataset(snakemake.input.base)
+    found = calibrate_case(of.case, of.measured, base, of.given, of.store, snakemake.input.tower, say)
     write_json(snakemake.output[0], found)

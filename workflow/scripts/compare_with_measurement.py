@@ -1,7 +1,10 @@
+import xarray as xr
+
 from blockshake.files import write_dataset
 from blockshake.log import logging_to
 from blockshake.study.ensembles.coverage import coverage_of_case
 
 with logging_to(snakemake.log[0]):
-    compared = coverage_of_case(snakemake.params.measured, snakemake.input.batches)
+    base = xr.load_dataset(snakemake.input.base)
+    compared = coverage_of_case(snakemake.params.measured, base, snakemake.input.batches)
     write_dataset(snakemake.output[0], compared)

@@ -11,6 +11,7 @@ from blockshake.report.study.result_tables import (
     failures_table,
     timings_table,
 )
+from blockshake.study.ensembles.case_input import COMMANDED
 
 
 def checks(content):
@@ -137,10 +138,15 @@ def limits(content):
         )
     items += [
         "Friction is Coulomb's, with one coefficient a pair of materials, constant in time, place and rate.",
-        f"Random are {', '.join(parameter_label(name) for name in content.distributions)}. Sizes, places, the "
-        "condition of the joints and the input motion are taken as known.",
+        f"Random are {', '.join(parameter_label(name) for name in content.distributions)}. Sizes, places and the "
+        "condition of the joints are taken as known.",
         "Structures have no imperfections; responses are shown along x only.",
     ]
+    commanded = [case.name for case in cases if case.settings["input"] == COMMANDED]
+    if commanded:
+        items.append(
+            f"The models of {', '.join(commanded)} are driven by the commanded motion, not by that of the slab."
+        )
     if content.convergence is None:
         items.append("The convergence with time step and discretisation is not shown.")
     else:

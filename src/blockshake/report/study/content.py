@@ -8,10 +8,11 @@ import xarray as xr
 
 from blockshake.files import content_digest, file_digest, load_json, named_file
 from blockshake.geometry.structure import Structure, load_structure
-from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.report.document.origin import software_versions
 from blockshake.report.document.results import load_results
 from blockshake.study.convergence.table import load_convergence
+from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.measured import measured_curves
 from blockshake.study.ensembles.timing import read_timings
 from blockshake.study.peer_record import PEER_RECORD, load_peer_record
@@ -45,6 +46,8 @@ class ReportedCase:
     structure : Structure
     motion : str
         Name of its motion in `Content.motions`.
+    base : xarray.Dataset
+        The slab's measured motion, from `measured_input`.
     measured : xarray.Dataset
         From `measured_curves`.
     test_file : Path
@@ -61,6 +64,7 @@ class ReportedCase:
     settings: dict
     structure: Structure
     motion: str
+    base: xr.Dataset
     measured: xr.Dataset
     test_file: Path
     synthetic: bool
@@ -202,17 +206,19 @@ def _case(study, results, name, settings):
         for model in study["models"]
     }
     campaign = load_campaign(settings["measured"]["campaign"])
-    test = load_test(campaign, settings["measured"]["test"])
+    base = load_results(results / "inputs" / f"{name}.nc")
+    test, marker_noise = measured_on_clock(settings["measured"], base)
     slab_marker = next(iter(responses.values())).envelope.attrs["slab_marker"]
     return ReportedCase(
         name=name,
         settings=settings,
         structure=load_structure(settings["structure"]),
         motion=Path(settings["motion"]).stem,
+        base=base,
         measured=measured_curves(test, slab_marker, settings["duration"]),
         test_file=campaign.folder / campaign.tests[settings["measured"]["test"]].file,
         synthetic=bool(test.attrs.get("synthetic", 0)),
-        marker_noise=campaign.sensors.marker_noise,
+        marker_noise=marker_noise,
         responses=responses,
     )
 

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.study.described import describe
+from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.ensemble import join_batches, relative_to_slab
 from blockshake.study.ensembles.envelope import over_samples
 from blockshake.study.ensembles.measured import compared_curves
@@ -31,14 +31,13 @@ class Band(NamedTuple):
     upper: np.ndarray
 
 
-def coverage_of_case(named, batches):
+def coverage_of_case(named, base, batches):
     """`coverage` of the test that a case is compared with, ``named`` by ``campaign``, a folder, and ``test``.
 
-    ``batches``: files of the case's samples.
+    ``base``: from `measured_input`; ``batches``: files of the case's samples.
     """
-    campaign = load_campaign(named["campaign"])
-    measured = load_test(campaign, named["test"])
-    return coverage(measured, join_batches(batches), campaign.sensors.marker_noise)
+    measured, marker_noise = measured_on_clock(named, base)
+    return coverage(measured, join_batches(batches), marker_noise)
 
 
 def coverage(measured, ensemble, marker_noise, seed=0):
@@ -48,7 +47,7 @@ def coverage(measured, ensemble, marker_noise, seed=0):
     ----------
     measured : xarray.Dataset
         ``marker_displacement(time, marker, axis)`` [m], inertial frame, relative to the first
-        reading; NaN is a gap. Its first times are the ensemble's, as far as both go.
+        reading; NaN is a gap. Its clock is the ensemble's.
     ensemble : xarray.Dataset
         From `gather_ensemble`; only completed and collapsed samples count.
     marker_noise : float
@@ -69,7 +68,7 @@ def coverage(measured, ensemble, marker_noise, seed=0):
     Raises
     ------
     InputError
-        Fewer than three members, no marker in common, or other times.
+        Fewer than three members, no marker or no time in common.
 
     Notes
     -----

@@ -55,7 +55,7 @@ def mean_score(ensemble, measured, marker_noise, seed):
     Raises
     ------
     InputError
-        Fewer than two samples finished, no marker in common, or other times.
+        Fewer than two samples finished, no marker or no time in common.
     """
     compared = compared_curves(measured, ensemble, marker_noise, seed, fewest=2)
     return float(np.nanmean(crps(compared.readings, compared.measured.to_numpy())))
