@@ -128,8 +128,9 @@ def limits(content):
             "The measured curves are virtual tests (synthetic), made by a model of this program: the comparison "
             "exercises the method and cannot show errors of the models."
         )
-    if any(content.motions[case.motion].attrs.get("synthetic") for case in cases):
-        items.append("The motions are synthetic stand-ins for records that may not be redistributed.")
+    synthetic = sorted({case.motion for case in cases if content.motions[case.motion].attrs.get("synthetic")})
+    if synthetic:
+        items.append(f"Synthetic, and no recorded motions: {', '.join(synthetic)}.")
     rigid = [model_label(model) for model in content.study["models"] if model in _RIGID]
     if rigid:
         items.append(

@@ -119,9 +119,7 @@ def calibrate_friction(
         )
         return scores
 
-    found = search_mean(
-        evaluate, search["lowest"], search["highest"], search["step"], search["finest"], marker_noise
-    )
+    found = search_mean(evaluate, search["lowest"], search["highest"], search["step"], search["finest"])
     say(found.answer)
     return found, pd.DataFrame(beside).T.rename_axis("mean").sort_index()
 
