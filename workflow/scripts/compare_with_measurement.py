@@ -1,10 +1,8 @@
-import xarray as xr
-
 from blockshake.files import write_dataset
 from blockshake.log import logging_to
 from blockshake.study.ensembles.coverage import coverage_of_case
 
 with logging_to(snakemake.log[0]):
-    base = xr.load_dataset(snakemake.input.base)
-    compared = coverage_of_case(snakemake.params.measured, base, snakemake.input.batches)
+    given = snakemake.input
+    compared = coverage_of_case(snakemake.params.measured, given.base, given.batches)
     write_dataset(snakemake.output[0], compared)

@@ -1,5 +1,3 @@
-import xarray as xr
-
 from blockshake.files import write_dataset
 from blockshake.log import logging_to
 from blockshake.study.ensembles.batch import DECIMALS, batch_rows, simulate_samples
@@ -10,6 +8,5 @@ with logging_to(snakemake.log[0]) as say:
     of, given, model = snakemake.params, snakemake.input, snakemake.wildcards.model
     rows = batch_rows(snakemake.wildcards.batch, given.design, given.stiffness)
     run = of.settings, of.output_rate, rows, of.linked, of.store, of.source, say
-    motions = driving_motions(of.case, xr.load_dataset(given.base) if given.base else None, of.seed)
-    finished = simulate_samples(of.case, motions, model, *run)
+    finished = simulate_samples(of.case, driving_motions(of.case, given.base, of.seed), model, *run)
     write_dataset(snakemake.output[0], join_batches(finished), DECIMALS)

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+import xarray as xr
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
@@ -61,9 +62,12 @@ def check_record(length, duration, where, key):
 
 
 def measured_on_clock(named, base):
-    """Readings of the test of `measured_input` with time 0 where the input starts, and the markers' noise [m]."""
+    """Readings of the test of `measured_input` with time 0 where the input starts, and the markers' noise [m].
+
+    ``base``: from `measured_input`, or its file.
+    """
     campaign = load_campaign(named["campaign"])
-    return on_its_clock(load_test(campaign, named["test"]), base), campaign.sensors.marker_noise
+    return on_its_clock(load_test(campaign, named["test"]), _loaded(base)), campaign.sensors.marker_noise
 
 
 def driving_motions(case, base, seed):
@@ -73,8 +77,8 @@ def driving_motions(case, base, seed):
     ----------
     case : dict
         As for `measured_input`.
-    base : xarray.Dataset or None
-        From `measured_input`; not used where the input is commanded.
+    base : xarray.Dataset, path or None
+        From `measured_input`, or its file; not used where the input is commanded.
     seed : int
         Of the design: a sample of another design has another draw of the measured motion.
 
@@ -85,6 +89,7 @@ def driving_motions(case, base, seed):
     if case["input"] == COMMANDED:
         commanded = load_motion(case["motion"], case["scale"])
         return lambda sample: commanded
+    base = _loaded(base)
     identity = Path(case["structure"]).stem, Path(case["motion"]).stem, case["scale"], seed
     attributes = {"source": f"measured motion of the slab, {base.attrs['test']}", "scale": case["scale"]}
     attributes |= {"synthetic": bool(base.attrs["synthetic"])}
@@ -95,6 +100,10 @@ def driving_motions(case, base, seed):
         return base_as_motion(base, moved, f"{base.attrs['test']}, measured", attributes)
 
     return drawn
+
+
+def _loaded(base):
+    return base if isinstance(base, xr.Dataset) else xr.load_dataset(base)
 
 
 def _against(base, command, duration):

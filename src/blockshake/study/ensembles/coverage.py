@@ -40,7 +40,7 @@ class Band(NamedTuple):
 def coverage_of_case(named, base, batches):
     """`coverage` of the test that a case is compared with, ``named`` by ``campaign``, a folder, and ``test``.
 
-    ``base``: from `measured_input`; ``batches``: files of the case's samples.
+    ``base``: file from `measured_input`; ``batches``: files of the case's samples.
     """
     measured, marker_noise = measured_on_clock(named, base)
     return coverage(measured, join_batches(batches), marker_noise)

@@ -27,8 +27,8 @@ def calibrate_case(case, named, base, given, store, tower, progress):
         As for `measured_input`.
     named : dict
         Entries ``campaign``, a folder, and ``test``: the measured test.
-    base : xarray.Dataset
-        From `measured_input`.
+    base : path
+        File from `measured_input`.
     given : dict
         Entries ``search``, ``models``, ``ensemble`` and ``output_rate`` of the configuration.
     store : str or path
