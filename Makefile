@@ -9,7 +9,7 @@ READY := $(VENV)/ready
 PEERS := .venv-peers
 SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 
-.PHONY: study quick paper test test-slow test-hidden-few test-hidden bench peers setup lint lock clean
+.PHONY: study quick paper test test-slow test-hidden-few test-hidden bench figures-of-docs peers setup lint lock clean
 
 study: setup
 	@$(BIN)/blockshake check config/study.yaml
@@ -44,6 +44,10 @@ test-hidden: setup
 # how fast the solvers are on this machine, for maintainers: minutes on a machine that does nothing else
 bench: setup
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/bench.py
+
+# the figures in docs/ that the program makes, written to their pages: minutes
+figures-of-docs: setup
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/figures_of_docs.py
 
 # other people's programs, under their own licences, in an environment of their own; nothing else needs it
 peers: $(PEERS)/ready

@@ -11,6 +11,7 @@ from blockshake.simulation.models import MODELS
 from blockshake.sources import compiled_sources, kernel_sources, module_sources, script_sources
 
 SCRIPTS = sorted(path.stem for path in (PACKAGE.parents[1] / "workflow" / "scripts").glob("*.py"))
+RULES = ("diagnosed", "diagnosis")
 FOLDERS = {"ls-dem": "solvers/ls_dem/", "nscd-rigid": "solvers/nscd/"}
 
 
@@ -74,6 +75,18 @@ def test_a_library_watches_the_sizes_of_its_candidates_and_one_step():
     listed = script_sources("simulate_library")
     assert "diagnosis/libraries/candidates.py" in listed
     assert [one for one in listed if "steps.py" in one] == ["diagnosis/steps.py:simulate_library"]
+
+
+@pytest.mark.parametrize(("model", "other"), [("ls-dem", "nscd-rigid"), ("nscd-rigid", "ls-dem")])
+def test_a_library_of_one_solver_does_not_watch_the_driver_of_the_other(model, other):
+    own, unwatched = (kernel_sources(one) for one in (model, other))
+    listed = script_sources("simulate_library", model)
+    assert set(own) <= set(listed)
+    assert not {one for one in unwatched if one.endswith("driver.py")} & set(listed)
+    # the rules name the solver, and the libraries' names none
+    rules = [(PACKAGE.parents[1] / "workflow" / "rules" / f"{name}.smk").read_text() for name in RULES]
+    assert 'source_of("simulate_library", wildcards.solver)' in rules[0]
+    assert rules[1].count("source=solver_source") == 3
 
 
 def test_every_module_with_kernels_is_in_the_cache_digest():

@@ -56,6 +56,7 @@ def found(tmp_path_factory):
 def _diagnose(folder, campaign):
     effects, config = plan.considered(), {"diagnosed": [campaign], "diagnosis_effort": "tiny"}
     made_by = folder / "store", "source", _silent
+    shared = "shared"
     path = {
         name: str(folder / f"{name}.json")
         for name in ("parity", "decision", "frozen", "size", "frozen-size", "cases")
@@ -65,11 +66,11 @@ def _diagnose(folder, campaign):
     write_dataset(path["forces"], measured.forces)
     write_json(path["parity"], measured.parity.as_json())
     planned = plan.plan_diagnosis(campaign, "tiny")
-    names = [planned.library(test, "source") for test in planned.tests]
+    names = [planned.library(test, shared) for test in planned.tests]
     libraries, histories, further = [], [], []
     for name in names:
         for solver in SOLVERS:
-            features, moved = steps.simulate_library(name, solver, config, *made_by)
+            features, moved = steps.simulate_library(name, solver, config, shared, *made_by)
             for kind, files, dataset in (("", libraries, features), ("-histories", histories, moved)):
                 files.append(str(folder / f"{name}-{solver}{kind}.nc"))
                 write_dataset(files[-1], dataset)
@@ -86,7 +87,7 @@ def _diagnose(folder, campaign):
     for name in names:
         for solver in SOLVERS:
             features = steps.simulate_cause(
-                name, solver, decided.decision.first_key, TINY.further_draws, config, *made_by
+                name, solver, decided.decision.first_key, TINY.further_draws, config, shared, *made_by
             )
             further.append(str(folder / f"{name}-{solver}-further.nc"))
             write_dataset(further[-1], features)
@@ -106,7 +107,7 @@ def _diagnose(folder, campaign):
     return SimpleNamespace(
         campaign=campaign, files=files, measured=measured, decided=decided, sized=sized, gained=gained,
         verdict=steps.conclude(campaign, "tiny", files),
-        horizon=steps.predict_twins(names[0], histories[:2], config, "source", _silent),
+        horizon=steps.predict_twins(names[0], histories[:2], config, shared, _silent),
     )  # fmt: skip
 
 

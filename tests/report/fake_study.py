@@ -12,6 +12,7 @@ from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.marker_noise import noisy_reading
 from blockshake.study.convergence.table import COLUMNS, EXACT, OBSERVABLES, write_convergence
+from blockshake.study.ensembles.case_input import measured_input
 from blockshake.study.ensembles.coverage import coverage
 from blockshake.study.ensembles.ensemble import gather_ensemble, sample_figures
 from blockshake.study.ensembles.envelope import envelope
@@ -45,6 +46,7 @@ class FakeStudy:
                     "duration": duration,
                     "samples": {"nscd-rigid": 6} if name == "configuration-4" else {},
                     "measured": {"campaign": str(self.folder / "campaigns" / name), "test": "virtual"},
+                    "input": "measured",
                 }
                 for name in names
             ],
@@ -99,6 +101,7 @@ class FakeStudy:
             f"name: fake\nstructure: {name}\n"
             "tests:\n  - {name: virtual, file: virtual.nc, motion: basso-tirreno, scale: 2.0, role: fit}\n",
         )
+        write_dataset(self.results / "inputs" / f"{name}.nc", measured_input(case, case["measured"]))
         for model in MODELS:
             count = case["samples"].get(model, self.size)
             runs = [self.run(structure, model, 0.8 + 0.4 * sample / count) for sample in range(count)]

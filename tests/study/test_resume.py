@@ -14,6 +14,7 @@ import psutil
 import pytest
 import xarray as xr
 
+from blockshake.dynamics.load_motion import load_motion
 from blockshake.simulation.models import MODELS
 from blockshake.simulation.simulate import simulate
 from blockshake.solvers import pieces
@@ -111,14 +112,14 @@ class CutShortError(Exception):
 @pytest.mark.parametrize("model", sorted(MODELS))
 def test_a_killed_sample_goes_on_in_the_store(model, tmp_path, monkeypatch):
     """The second attempt starts from the checkpoint beside where the sample goes, and leaves none behind."""
-    case = {"structure": "configuration-1", "motion": "alkion", "scale": 1.0, "duration": 1.0}
+    case = {"structure": "configuration-1", "duration": 1.0}
+    motion = load_motion("alkion")
     rows = pd.DataFrame({"friction.concrete.concrete": [0.6]}, index=[3])
     step = 5e-5 if model == "ls-dem" else 1e-3
 
     def attempt(store):
-        return simulate_samples(
-            case, model, {"time_step": step}, 50.0, rows, {}, store, "source", lambda line: None
-        )
+        given = {"time_step": step}, 50.0, rows, {}, store, "source"
+        return simulate_samples(case, lambda sample: motion, model, *given, lambda line: None)
 
     (whole,) = attempt(tmp_path / "whole")
 

@@ -10,13 +10,20 @@ from blockshake.dynamics.system import FINISHED
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.markers import driven_marker
 from blockshake.study.ensembles.batch import simulate_samples
+from blockshake.study.ensembles.case_input import driving_motions
 from blockshake.study.ensembles.ensemble import join_batches, relative_to_slab
 from blockshake.study.sampling.distributions import LINKED
 from blockshake.study.sampling.latin_hypercube import draw_samples
 from blockshake.study.stiffness.wave_speed import calibrate_design
 
 SIZE, SEED = 50, 1  # of the study's design
-CASE = {"structure": "configuration-1", "motion": "basso-tirreno", "scale": 2.25, "duration": 12.0}
+CASE = {
+    "structure": "configuration-1",
+    "motion": "basso-tirreno",
+    "scale": 2.25,
+    "duration": 12.0,
+    "input": "commanded",
+}
 STEPS = (5e-5, 1e-5)  # s
 QUANTILES = (0.05, 0.5, 0.95)
 RESAMPLES = 2000
@@ -28,7 +35,10 @@ _log = logging.getLogger(__name__)
 def simulated(step, rows, linked, store):
     """Drift of the top block's marker at one time step [m], shape (sample, time)."""
     structure = load_structure(CASE["structure"])
-    files = simulate_samples(CASE, "ls-dem", {"time_step": step}, 200.0, rows, linked, store, "", _log.info)
+    motions = driving_motions(CASE, None, SEED)
+    files = simulate_samples(
+        CASE, motions, "ls-dem", {"time_step": step}, 200.0, rows, linked, store, "", _log.info
+    )
     ensemble = join_batches(files)
     assert np.isin(ensemble["status"], FINISHED).all()
     drift = relative_to_slab(ensemble["marker_displacement"], driven_marker(structure))

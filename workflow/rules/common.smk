@@ -133,6 +133,13 @@ def stiffness_file(wildcards):
     )
 
 
+def base_file(wildcards):
+    """The slab's measured motion, for the cases that it drives."""
+    if CASES[wildcards.case]["input"] == "commanded":
+        return []
+    return f"results/{wildcards.study}/inputs/{wildcards.case}.nc"
+
+
 def time_step_of(model):
     """Time step of a model [s]: the study's, or the model's own where it is not in the study."""
     return config["models"].get(model, {}).get("time_step", SOLVERS[model].time_step)
@@ -142,7 +149,7 @@ def case_definition(wildcards):
     """Keys of a case in the configuration that its runs depend on."""
     return {
         key: CASES[wildcards.case][key]
-        for key in ("structure", "motion", "scale", "duration")
+        for key in ("structure", "motion", "scale", "duration", "input")
     }
 
 

@@ -31,11 +31,16 @@ else:
     )
 # how often the procedure was right
 TRACK_RECORD = beside(HOME / "data" / "track-record" / "hidden-effects.json")
-LIBRARY_SOURCE = source_of("simulate_library", *NULL_MODELS)
+LIBRARY_SOURCE = source_of("simulate_library")  # of what both solvers share
 CALIBRATION_SOURCE = source_of("calibrate_decision")
 
 
 config["diagnosed"], config["diagnosis_effort"] = list(CAMPAIGNS.values()), EFFORT
+
+
+def solver_source(wildcards):
+    """Digest of all that a solver's simulated tests follow from: an edit of one solver reruns no other's."""
+    return source_of("simulate_library", wildcards.solver)
 
 
 @cache

@@ -48,7 +48,8 @@ rule simulate_library:
         mem_mb=2000,
         runtime=480,
     params:
-        source=LIBRARY_SOURCE,
+        shared=LIBRARY_SOURCE,
+        source=solver_source,
         store="results/store/diagnosis",
     script:
         "../scripts/simulate_library.py"
@@ -138,7 +139,8 @@ rule simulate_cause:
         mem_mb=2000,
         runtime=480,
     params:
-        source=LIBRARY_SOURCE,
+        shared=LIBRARY_SOURCE,
+        source=solver_source,
         store="results/store/diagnosis",
         further_draws=lambda wildcards: further_draws(),
     script:
@@ -195,7 +197,7 @@ rule extend_model:
         effort=EFFORT,
         effects=lambda wildcards: considered_effects(),
         store="results/store/diagnosis",
-        source=LIBRARY_SOURCE,
+        source=solver_source,
         judged_by=source_of("extend_model"),
     script:
         "../scripts/extend_model.py"
@@ -263,7 +265,7 @@ rule predict_twins:
     conda:
         "../envs/blockshake.yaml"
     params:
-        library=LIBRARY_SOURCE,
+        shared=LIBRARY_SOURCE,
         source=source_of("predict_twins", *NULL_MODELS),
     script:
         "../scripts/predict_twins.py"

@@ -24,6 +24,7 @@ rule compare_with_measurement:
     """Coverage of the measured curves by the ensemble's bounds, with its leave-one-out reference."""
     input:
         batches=batch_files,
+        base="results/{study}/inputs/{case}.nc",
         campaign=lambda wildcards: campaign_files(wildcards.case),
     output:
         "results/{study}/comparisons/{model}/{case}.nc",

@@ -5,6 +5,7 @@ rule calibrate_friction:
             "structures", CASES[wildcards.case]["structure"]
         ),
         motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
+        base="results/{study}/inputs/{case}.nc",
         campaign=lambda wildcards: campaign_files(wildcards.case),
         kernels=lambda wildcards: kernels(FRICTION_SEARCH["model"]),
     output:

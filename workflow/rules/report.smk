@@ -19,6 +19,7 @@ rule make_report:
             "results/{study}/stiffness/{case}.csv", study=STUDY, case=CASES
         ),
         waves=expand("results/{study}/waves/{case}.nc", study=STUDY, case=CASES),
+        bases=expand("results/{study}/inputs/{case}.nc", study=STUDY, case=MEASURED),
         convergence=(
             f"results/{STUDY}/convergence.csv" if config.get("convergence") else []
         ),

@@ -23,6 +23,7 @@ rule simulate_batch:
             "structures", CASES[wildcards.case]["structure"]
         ),
         motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
+        base=base_file,
         design="results/{study}/design.csv",
         stiffness=stiffness_file,
         kernels=lambda wildcards: kernels(wildcards.model),
@@ -43,6 +44,7 @@ rule simulate_batch:
         settings=lookup(dpath="models/{model}", within=config),
         output_rate=lookup(dpath="output_rate", within=config),
         linked=lookup(dpath="ensemble/linked", within=config),
+        seed=lookup(dpath="ensemble/seed", within=config),
         store="results/store",
         source=lambda wildcards: source_of("simulate_batch", wildcards.model),
     script:

@@ -3,6 +3,6 @@ from blockshake.log import logging_to
 from blockshake.study.friction.search import calibrate_case
 
 with logging_to(snakemake.log[0]) as say:
-    of = snakemake.params
-    found = calibrate_case(of.case, of.measured, of.given, of.store, say)
+    of, base = snakemake.params, snakemake.input.base
+    found = calibrate_case(of.case, of.measured, base, of.given, of.store, say)
     write_json(snakemake.output[0], found)

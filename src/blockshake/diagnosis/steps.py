@@ -50,7 +50,7 @@ def read_measured(folder, effort, without):
     )
 
 
-def simulate_library(name, solver, config, store, source, progress):
+def simulate_library(name, solver, config, shared, store, source, progress):
     """Simulate one open test by one solver: nominal draws, and draws with every candidate effect.
 
     Parameters
@@ -60,8 +60,10 @@ def simulate_library(name, solver, config, store, source, progress):
     solver : str
     config : dict
         Entries ``diagnosed``, folders of campaigns, and ``diagnosis_effort``.
+    shared : str
+        Digest of the sources that both solvers share, which is in the library's name.
     store, source, progress
-        As of `library`.
+        As of `library`; ``source`` is the solver's own.
 
     Returns
     -------
@@ -71,7 +73,7 @@ def simulate_library(name, solver, config, store, source, progress):
     from blockshake.diagnosis.libraries.library import library
     from blockshake.diagnosis.libraries.plan import plan_of_library
 
-    plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], source)
+    plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], shared)
     draws = plan.effort.nominal_draws, plan.own_draws
     return library(plan.tests[test], solver, plan.candidates, *draws, store, source, progress)
 
@@ -166,7 +168,7 @@ def decide(folder, effects, files):
     )
 
 
-def simulate_cause(name, solver, key, further_draws, config, store, source, progress):
+def simulate_cause(name, solver, key, further_draws, config, shared, store, source, progress):
     """Simulate more draws with one candidate than a library has.
 
     Parameters
@@ -175,7 +177,7 @@ def simulate_cause(name, solver, key, further_draws, config, store, source, prog
         Of the candidate.
     further_draws : int
         Draws beyond the library's.
-    name, solver, config, store, source, progress
+    name, solver, config, shared, store, source, progress
         As of `simulate_library`.
 
     Returns
@@ -186,7 +188,7 @@ def simulate_cause(name, solver, key, further_draws, config, store, source, prog
     from blockshake.diagnosis.libraries.library import library
     from blockshake.diagnosis.libraries.plan import plan_of_library
 
-    plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], source)
+    plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], shared)
     (candidate,) = (one for one in plan.candidates if one.key == key)
     draws = plan.own_draws + further_draws
     return library(plan.tests[test], solver, [candidate], draws, draws, store, source, progress)[0]
@@ -351,15 +353,15 @@ def conclude(folder, effort, files):
     )  # fmt: skip
 
 
-def predict_twins(name, histories, config, source, progress):
+def predict_twins(name, histories, config, shared, progress):
     """Measure how long a test can be predicted, by all solvers.
 
     Parameters
     ----------
     histories : sequence of str
         Files from `simulate_library`, by solver.
-    name, config, source, progress
-        As of `simulate_library`; ``source`` is that of the library.
+    name, config, shared, progress
+        As of `simulate_library`.
 
     Returns
     -------
@@ -369,6 +371,6 @@ def predict_twins(name, histories, config, source, progress):
     from blockshake.diagnosis.libraries.plan import plan_of_library
     from blockshake.diagnosis.misfit.predictability import predictability_of
 
-    plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], source)
+    plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], shared)
     nominal = {one.attrs["model"]: one for one in map(xr.load_dataset, histories)}
     return predictability_of(plan.tests[test], plan.effort.twins, nominal, progress)

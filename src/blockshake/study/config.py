@@ -3,16 +3,17 @@
 from pathlib import Path
 from typing import Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field, field_validator, model_validator
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaigns.campaign import load_campaign
+from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import ModelName, split_parameters
 from blockshake.study.convergence.settings import Convergence
+from blockshake.study.ensembles.case_input import COMMANDED, MEASURED, check_record
 from blockshake.study.friction.settings import FrictionSearch
 from blockshake.study.sampling.correlation_target import load_correlation
 from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, load_distributions
@@ -72,6 +73,23 @@ class StudyCase(Strict):
     duration: Positive = Field(description="simulated time [s]")
     samples: dict[ModelName, int] = Field({}, description="fewer samples than the ensemble's, by model")
     measured: Measured | None = Field(None, description="none: compared with no test")
+    input: Literal[MEASURED, COMMANDED] = Field(
+        description="motion that drives the models: the slab's in the measured test, or the commanded one; by default "
+        "the measured one where there is any",
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_input(cls, given):
+        if not isinstance(given, dict) or "input" in given:
+            return given
+        return given | {"input": MEASURED if given.get("measured") else COMMANDED}
+
+    @model_validator(mode="after")
+    def _has_input(self):
+        if self.input == MEASURED and self.measured is None:
+            raise ValueError(f"expected input: {COMMANDED}, as there is no measured test")
+        return self
 
     @property
     def name(self):
@@ -199,6 +217,9 @@ def _check_measured(case, where, key):
             f"{key}.test",
             f"expected one of {case.motion} at {case.scale:g}, not {test.motion} at {test.scale:g}",
         )
+    if case.input == MEASURED:
+        time = load_test(campaign, case.measured.test)["time"].to_numpy()
+        check_record(time[-1] - time[0], case.duration, where, f"{key.removesuffix('measured')}duration")
 
 
 def _check_friction_search(config, where):

@@ -11,6 +11,7 @@ from blockshake.files import load_yaml
 from blockshake.measurement.sensors.instruments import Instruments
 from blockshake.simulation.models import ModelName
 from blockshake.validation import Finite, NotNegative, Positive, Strict, validated
+from blockshake.virtual.table import Table
 
 
 class Intensities(Strict):
@@ -62,6 +63,7 @@ class VirtualCampaign(Strict):
     motions: tuple[str, ...] = Field(("alkion", "basso-tirreno"), min_length=1)
     intensities: Intensities = Intensities()
     sine: Sine | None = None
+    table: Table = Table()
     restored: bool = Field(
         True, description="the stack is put back before a test; otherwise it starts as the last left it"
     )

@@ -11,6 +11,7 @@ from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import part_parameters
 from blockshake.simulation.placement import placed
 from blockshake.simulation.simulate import simulate
+from blockshake.virtual.table import followed
 
 _REST = 10.0  # s that a stack which is not put back is given after the motion's end
 _STILL = 1e-3  # m/s; a block slower than this against the slab is at rest
@@ -48,7 +49,7 @@ def shake(structure, parameters, effect, motion, settings, places, duration, see
     """
     physical, numerics = part_parameters(parameters | settings.numerics)
     standing = structure.with_parameters(physical | placed(structure, places))
-    experiment = Experiment(standing, motion, settings.instruments)
+    experiment = followed(Experiment(standing, motion, settings.instruments), settings.table)
     if effect is not None:
         experiment = with_effect(experiment, **effect)
     # a clock that is ahead shows what comes after the end; what is not put back must come to rest first

@@ -116,7 +116,8 @@ def test_coverage_never_stands_alone(fake, text):
     reference = " / ".join(f"{100 * float(one):.1f}" for one in compared["reference"])
     width = f"{1e3 * float(compared['band_width']):.1f}"
     chance = number(float(compared["curve_probability"]), 2)
-    assert f"{100 * float(compared['coverage']):.1f} {reference} {chance} {width}" in text
+    distance = number(float(compared["distance"]), 2)
+    assert f"{100 * float(compared['coverage']):.1f} {reference} {distance} {chance} {width}" in text
 
 
 def test_samples_that_did_not_complete_are_listed_with_their_reason(text):

@@ -86,10 +86,24 @@ def test_what_cannot_be_compared_is_refused(make_run, gather):
     run = make_run(0.02)
     with pytest.raises(InputError, match="at least 3"):
         coverage(run, ensemble.isel(sample=slice(2)), NOISE)
-    with pytest.raises(InputError, match="output times"):
-        coverage(run.assign_coords(time=run["time"] + 0.001), ensemble, NOISE)
+    with pytest.raises(InputError, match="measured times within the ensemble's"):
+        coverage(run.assign_coords(time=run["time"] + 100.0), ensemble, NOISE)
     with pytest.raises(InputError, match="measured marker"):
         coverage(run.assign_coords(marker=["a", "b"]), ensemble, NOISE)
+
+
+def test_a_miss_is_seen_where_the_band_is_thinner_than_the_noise(make_run, gather, read_with_noise):
+    """Members within 1 nm and noise of 0.1 mm: all coverages are alike, whatever is compared."""
+    ensemble = gather([make_run(0.02 + 1e-10 * place) for place in range(30)])
+    near, far = (
+        coverage(read_with_noise(make_run(level), NOISE, 7), ensemble, NOISE) for level in (0.02, 0.144)
+    )
+    near, far = near.sel(marker="block-1-face"), far.sel(marker="block-1-face")
+    assert float(near["coverage"]) < 0.05
+    assert float(near["curve_probability"]) > 0.1
+    assert float(near["distance"]) == pytest.approx(1.0, abs=0.6)
+    assert float(far["curve_probability"]) == pytest.approx(1.0 / 31.0)
+    assert float(far["distance"]) == pytest.approx(0.124 / (np.sqrt(2.0) * NOISE), rel=0.02)
 
 
 def test_the_chance_of_a_whole_curve_is_calibrated(make_run, gather):

@@ -9,7 +9,6 @@ from blockshake.study.friction.search import friction_summary
 from blockshake.study.sampling.distributions import TABLE_2
 from blockshake.study.sampling.latin_hypercube import draw_samples
 
-NOISE = 1e-4
 N_REPLICATES = 4
 
 
@@ -30,7 +29,7 @@ def _parabola(truth, spread, floor=0.02, flat_above=np.inf):
 @pytest.mark.parametrize("truth", [0.42, 0.5, 0.63])
 def test_a_valley_gives_an_interval_around_its_bottom(truth):
     evaluate, asked = _parabola(truth, 2e-5)
-    found = search_mean(evaluate, 0.3, 0.8, 0.1, 0.0125, NOISE)
+    found = search_mean(evaluate, 0.3, 0.8, 0.1, 0.0125)
     assert found.lower < truth < found.upper
     assert found.upper - found.lower < 0.1
     assert found.answer == f"between {found.lower:g} and {found.upper:g}"
@@ -40,15 +39,13 @@ def test_a_valley_gives_an_interval_around_its_bottom(truth):
 
 
 def test_more_scatter_gives_a_wider_interval():
-    narrow, wide = (
-        search_mean(_parabola(0.5, spread)[0], 0.3, 0.8, 0.1, 0.0125, NOISE) for spread in (1e-5, 1e-3)
-    )
+    narrow, wide = (search_mean(_parabola(0.5, spread)[0], 0.3, 0.8, 0.1, 0.0125) for spread in (1e-5, 1e-3))
     assert wide.upper - wide.lower > narrow.upper - narrow.lower
 
 
 def test_a_shelf_is_not_informed_above_its_edge():
     """A block rocks before it slides where friction exceeds b/h (Shenton 1996): no data inform it above that."""
-    found = search_mean(_parabola(0.75, 1e-6, flat_above=0.5)[0], 0.3, 0.8, 0.1, 0.0125, NOISE)
+    found = search_mean(_parabola(0.75, 1e-6, flat_above=0.5)[0], 0.3, 0.8, 0.1, 0.0125)
     assert np.isnan(found.upper)
     first = found.table.index[found.table["accepted"]][0]
     assert found.answer == f"not informed above {first:g}"
@@ -57,7 +54,7 @@ def test_a_shelf_is_not_informed_above_its_edge():
 
 
 def test_scores_that_are_all_alike_inform_of_nothing():
-    found = search_mean(lambda mean: np.full(3, 0.01) + 1e-8 * mean, 0.3, 0.8, 0.1, 0.01, NOISE)
+    found = search_mean(lambda mean: np.full(3, 0.01) + 1e-8 * mean, 0.3, 0.8, 0.1, 0.01)
     assert found.answer == "not informed between 0.3 and 0.8"
     assert found.table["accepted"].all()
     assert len(found.table) == 6
@@ -65,13 +62,18 @@ def test_scores_that_are_all_alike_inform_of_nothing():
 
 def test_a_refused_mean_between_accepted_ones_is_accepted():
     scores = {0.3: [2e-2, 2.1e-2], 0.4: [1e-2, 1.001e-2], 0.5: [1.1e-2, 1.101e-2], 0.6: [1e-2, 1.001e-2]}
-    found = weigh_means({mean: np.array(values) for mean, values in scores.items()}, NOISE)
+    found = weigh_means({mean: np.array(values) for mean, values in scores.items()})
     assert found.table["accepted"].tolist() == [False, True, True, True]
+
+
+def test_replicates_that_agree_refuse_nothing_by_micrometres():
+    scores = {0.3: np.full(3, 39.005e-3), 0.4: np.full(3, 39.0e-3), 0.5: np.full(3, 41.0e-3)}
+    assert weigh_means(scores).table["accepted"].tolist() == [True, True, False]
 
 
 def test_one_replicate_tells_nothing():
     with pytest.raises(InputError, match="expected at least two, not 1"):
-        weigh_means({0.3: np.array([1.0])}, NOISE)
+        weigh_means({0.3: np.array([1.0])})
 
 
 def test_another_mean_keeps_variation_and_pairing():
@@ -89,7 +91,7 @@ def test_another_mean_keeps_variation_and_pairing():
 )
 def test_where_no_mean_fits_nothing_is_said_of_friction(chance, answer):
     scores = {0.3: [2e-2, 2.1e-2], 0.4: [1e-2, 1.001e-2], 0.5: [1e-2, 1.002e-2]}
-    found = weigh_means({mean: np.array(values) for mean, values in scores.items()}, NOISE)
+    found = weigh_means({mean: np.array(values) for mean, values in scores.items()})
     beside = pd.DataFrame({"chance": chance, "coverage": 0.5}, index=found.table.index)
     made = friction_summary(found, beside, {"size": 50}, xr.Dataset())
     assert made["answer"].startswith(answer)

@@ -45,6 +45,7 @@ def search(tmp_path, read_with_noise):
             "motion": str(tmp_path / "motion.csv"),
             "scale": 1.0,
             "duration": 2.0,
+            "input": "commanded",
         }
         # the truth by the other solver: not the simulator that looks for it
         true = simulate(
@@ -57,6 +58,7 @@ def search(tmp_path, read_with_noise):
         )
         return calibrate_friction(
             case,
+            None,
             {"model": "nscd-rigid", "time_step": 1e-3, "output_rate": 200.0},
             {"distributions": DISTRIBUTIONS, "seed": 1, "linked": {}},
             SEARCH | changes,

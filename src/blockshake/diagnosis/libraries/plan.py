@@ -116,7 +116,7 @@ class Plan:
         return ["no gain was measured: an extension is not simulated at quick effort"]
 
     def library(self, test, source):
-        """Name of the library of a test: equal content, equal name."""
+        """Name of the library of a test: equal content and sources that both solvers share, equal name."""
         return content_digest(self.tests[test].digest(), self.effort.nominal_draws, self.own_draws, source)
 
     def calibration(self, source):

@@ -1,6 +1,7 @@
 """The base's motion from what was measured of it: differentiated as in the paper, or smoothed, with its uncertainty."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -46,6 +47,55 @@ class BaseMotion:
     accelerometer_offset: float
 
 
+class BaseReadings(NamedTuple):
+    """Readings by both systems of one coordinate of the base, at all times of either; NaN where one read nothing.
+
+    ``time``, ``marker``, ``reading``: float64 (n_times,), displacement since the first reading and acceleration with a
+    constant offset [s, m, m/s2]; ``marker_noise``, ``reading_noise``: standard deviations [m, m/s2]. A rotation is
+    read alike, in rad for m.
+    """
+
+    time: np.ndarray
+    marker: np.ndarray
+    marker_noise: float
+    reading: np.ndarray
+    reading_noise: float
+
+
+class Smoothed(NamedTuple):
+    """States of all times, float64 (n_times, N_STATES), their covariances, and the log-likelihood of the readings."""
+
+    mean: np.ndarray
+    covariance: np.ndarray
+    likelihood: float
+
+
+def first_variances(marker_noise):
+    """Variances of the state before the first reading, whose own error is in all displacements, (N_STATES,)."""
+    return np.array([marker_noise**2, 1e-12, _ACCELERATION_SPREAD**2, _OFFSET_SPREAD**2])
+
+
+def smooth_readings(readings, density):
+    """`Smoothed` of `BaseReadings` for a density of the white jerk [m2/s5]; the base starts at rest."""
+    n_times = len(readings.time)
+    mean, covariance = np.empty((n_times, N_STATES)), np.empty((n_times, N_STATES, N_STATES))
+    mean[0], covariance[0] = 0.0, np.diag(first_variances(readings.marker_noise))
+    likelihood = smooth(
+        readings.time, readings.marker, readings.marker_noise**2, readings.reading, readings.reading_noise**2,
+        density, mean, covariance,
+    )  # fmt: skip
+    return Smoothed(mean, covariance, likelihood)
+
+
+def likeliest_density(readings, decades=_DENSITIES):
+    """Density of the white jerk at which `BaseReadings` are likeliest, between two powers of ten [m2/s5]."""
+    best = minimize_scalar(
+        lambda exponent: -smooth_readings(readings, 10.0**exponent).likelihood,
+        bounds=decades, method="bounded", options={"xatol": 0.05},
+    )  # fmt: skip
+    return 10.0**best.x
+
+
 def smoothed_base(time, marker, marker_noise, time_acc=None, accelerometer=None, accelerometer_noise=None):
     """Motion smoothed over all readings of a marker and, where there is one, an accelerometer.
 
@@ -81,18 +131,11 @@ def smoothed_base(time, marker, marker_noise, time_acc=None, accelerometer=None,
         time_acc, accelerometer, accelerometer_noise = np.empty(0), np.empty(0), 1.0
     elif not (accelerometer_noise and accelerometer_noise > 0.0):
         raise InputError("base motion", "accelerometer_noise", "expected a positive number")
-    every, of_marker, of_reading = _together(time, marker, np.asarray(time_acc), np.asarray(accelerometer))
-    mean, covariance = np.empty((len(every), N_STATES)), np.empty((len(every), N_STATES, N_STATES))
-
-    def run(exponent):
-        mean[0] = 0.0
-        covariance[0] = np.diag([marker_noise**2, 1e-12, _ACCELERATION_SPREAD**2, _OFFSET_SPREAD**2])
-        return -smooth(
-            every, of_marker, marker_noise**2, of_reading, accelerometer_noise**2, 10.0**exponent, mean, covariance
-        )  # fmt: skip
-
-    best = minimize_scalar(run, bounds=_DENSITIES, method="bounded", options={"xatol": 0.05})
-    run(best.x)
+    readings = together(
+        time, marker, marker_noise, np.asarray(time_acc), np.asarray(accelerometer), accelerometer_noise
+    )
+    every = readings.time
+    mean, covariance, _ = smooth_readings(readings, likeliest_density(readings))
     there = np.searchsorted(every, time - _SAME_TIME)
     errors = np.sqrt(np.maximum(np.diagonal(covariance[there], axis1=1, axis2=2), 0.0))
     return BaseMotion(
@@ -115,8 +158,8 @@ def _check(time, marker, marker_noise):
         raise InputError("base motion", "marker_noise", f"expected a positive number, not {marker_noise}")
 
 
-def _together(time, marker, time_acc, accelerometer):
-    """All times of both systems, and what each read then; NaN where it read nothing."""
+def together(time, marker, marker_noise, time_acc, accelerometer, accelerometer_noise):
+    """`BaseReadings` of both systems, each with its own times; empty arrays where there is no accelerometer."""
     every = np.unique(np.concatenate([time, time_acc]))
     every = every[np.concatenate([[True], np.diff(every) > _SAME_TIME])]
     read = []
@@ -124,4 +167,4 @@ def _together(time, marker, time_acc, accelerometer):
         row = np.full(len(every), np.nan)
         row[np.searchsorted(every, own - _SAME_TIME)] = values
         read.append(row)
-    return every, *read
+    return BaseReadings(every, read[0], marker_noise, read[1], accelerometer_noise)

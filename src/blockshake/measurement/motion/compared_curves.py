@@ -8,12 +8,13 @@ _SAME_TIME = 1e-6  # s
 
 
 def curves_along_x(measured, members):
-    """Displacement along x of the markers that both have, inertial frame, as far as both go.
+    """Displacement along x of the markers that both have, inertial frame, at the measured times that both span.
 
     Parameters
     ----------
     measured : xarray.Dataset
-        ``marker_displacement(time, marker, axis)`` [m], relative to the first reading.
+        ``marker_displacement(time, marker, axis)`` [m], relative to the first reading; at any times of the members'
+        clock.
     members : xarray.Dataset
         From `gather_ensemble`.
 
@@ -25,23 +26,49 @@ def curves_along_x(measured, members):
     Raises
     ------
     InputError
-        No marker in common, or other times.
+        No marker in common, or fewer than two times.
     """
     markers = [name for name in measured["marker"].values if name in members["marker"].values]
     if not markers:
         raise InputError("coverage", "marker", "expected a measured marker that the simulation has too")
-    n_times = common_times(measured["time"].to_numpy(), members["time"].to_numpy())
-    return _along_x(measured, markers, n_times), _along_x(members, markers, n_times)
+    time = members["time"].to_numpy()
+    asked = measured["time"].to_numpy()
+    inside = (asked >= time[0] - _SAME_TIME) & (asked <= time[-1] + _SAME_TIME)
+    if inside.sum() < 2:
+        raise InputError("curves", "time", "expected measured times within the ensemble's")
+    read, curves = _along_x(measured, markers).isel(time=inside), _along_x(members, markers)
+    values = at_times(curves.to_numpy(), time, asked[inside])
+    other = {name: one for name, one in curves.coords.items() if "time" not in one.dims}
+    return read, read.expand_dims(sample=members.sizes["sample"]).copy(data=values).assign_coords(other)
 
 
-def common_times(measured, simulated):
-    """Number of leading times that both have; InputError where they differ by more than 1 microsecond."""
-    n_times = min(len(measured), len(simulated))
-    if n_times == 0 or np.abs(measured[:n_times] - simulated[:n_times]).max() > _SAME_TIME:
-        raise InputError("curves", "time", "expected measured times that are the ensemble's output times")
-    return n_times
+def at_times(curves, time, asked):
+    """Curves at other times, each by the cubic through the four values around it.
+
+    Parameters
+    ----------
+    curves : float64 array, shape (n_curves, n_times, n_markers)
+        NaN, as after the end of a run, spreads to what it is needed for.
+    time : float64 array, shape (n_times,)
+        Uniform; at least four [s].
+    asked : float64 array, shape (n_asked,)
+        Within ``time`` [s].
+    """
+    place = (asked - time[0]) / (time[1] - time[0])
+    nearest = np.rint(place).astype(int)
+    if np.abs(place - nearest).max() * (time[1] - time[0]) < _SAME_TIME:
+        return curves[:, nearest]
+    first = np.clip(np.floor(place).astype(int) - 1, 0, len(time) - 4)
+    found = np.zeros((len(curves), len(asked), curves.shape[2]))
+    for node in range(4):
+        weight = np.ones(len(asked))
+        for other in range(4):
+            if other != node:
+                weight *= (place - first - other) / (node - other)
+        found += weight[:, None] * curves[:, first + node]
+    return found
 
 
-def _along_x(dataset, markers, n_times):
+def _along_x(dataset, markers):
     chosen = dataset["marker_displacement"].sel(axis="x", marker=markers, drop=True)
-    return chosen.isel(time=slice(n_times)).transpose(..., "time", "marker")
+    return chosen.transpose(..., "time", "marker")

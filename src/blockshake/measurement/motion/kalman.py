@@ -8,6 +8,38 @@ from blockshake.jit import kernel
 DISPLACEMENT, VELOCITY, ACCELERATION, OFFSET, N_STATES = 0, 1, 2, 3, 4
 
 
+# Cholesky factor of the covariance of integrated white jerk over a unit step, density one
+_UNIT_STEP = np.linalg.cholesky(
+    np.array([[1 / 20, 1 / 8, 1 / 6], [1 / 8, 1 / 3, 1 / 2], [1 / 6, 1 / 2, 1.0]])
+)
+
+
+@kernel
+def walk_into(time, jerk_density, normals, states):
+    """A motion that white jerk makes, drawn with the numbers given.
+
+    Parameters
+    ----------
+    time : float64 array, shape (n_times,)
+        Increasing [s].
+    jerk_density : float
+        [m2/s5]
+    normals : float64 array, shape (n_times, 3)
+        Independent standard normal numbers; the first row is not used.
+    states : float64 array, shape (n_times, N_STATES)
+        First row: the first state. The others are overwritten.
+    """
+    F = np.eye(N_STATES)
+    for k in range(1, time.size):
+        step = time[k] - time[k - 1]
+        _transition_into(step, F)
+        states[k] = F @ states[k - 1]
+        for i in range(3):
+            scale = np.sqrt(jerk_density) * step ** (2.5 - i)
+            for j in range(i + 1):
+                states[k, i] += scale * _UNIT_STEP[i, j] * normals[k, j]
+
+
 @kernel
 def smooth(time, marker, marker_variance, reading, reading_variance, jerk_density, mean, covariance):
     """Smooth one axis over all its readings.

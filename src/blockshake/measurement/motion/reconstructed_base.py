@@ -1,9 +1,7 @@
-"""The base's motion in a test: the input of its simulations and what their features are held against."""
-
-import numpy as np
+"""The base's motion in a test: what the features of simulated and measured tests are held against."""
 
 from blockshake.measurement.motion.base_motion import smoothed_base
-from blockshake.measurement.motion.body_poses import body_poses, driven_body
+from blockshake.measurement.motion.base_readings import base_accelerometer, base_coordinates
 
 
 def reconstruct_base(test, structure, sensors):
@@ -11,21 +9,11 @@ def reconstruct_base(test, structure, sensors):
 
     See `smoothed_base`.
     """
-    poses = body_poses(test, structure, sensors.marker_noise, asked=structure.driven)
-    body = driven_body(structure, poses)
-    moved = poses.position[:, body, 0]
-    moved = moved - moved[np.isfinite(moved)][0]
-    noise = np.sqrt(poses.covariance[body, 0, 0])
-    channels = [str(name) for name in test["channel"].values] if "accelerometer" in test else []
-    own = [
-        f"{sensor.name}-x"
-        for sensor in structure.file.accelerometers
-        if sensor.body == structure.body_names[body] and f"{sensor.name}-x" in channels
-    ]
-    time = test["time"].to_numpy()
-    if not own:
-        return smoothed_base(time, moved, noise)
-    readings = test["accelerometer"].transpose("time_acc", "channel").to_numpy()[:, channels.index(own[0])]
-    return smoothed_base(
-        time, moved, noise, test["time_acc"].to_numpy(), readings, sensors.accelerometer_noise
+    values, noise = base_coordinates(test, structure, sensors)
+    read = test["time"].to_numpy(), values[:, 0], noise[0]
+    channel = base_accelerometer(test, structure, "x")
+    return (
+        smoothed_base(*read)
+        if channel is None
+        else smoothed_base(*read, *channel, sensors.accelerometer_noise)
     )

@@ -51,7 +51,10 @@ def _not_tested(found):
         "Sizes and intervals are calibrated over the library's sizes together, not at each size.",
     ]
     if motions:
-        items.append(f"Commanded motions: {'; '.join(motions)}.")
+        items.append(
+            "Commanded motions, which drive the simulated tests in place of the measured motion of the table: "
+            f"{'; '.join(motions)}."
+        )
     if removed:
         items.insert(2, f"Taken out of the candidates on purpose: {', '.join(removed)}.")
     if not found.horizon:

@@ -11,6 +11,7 @@ from blockshake.report.study.result_tables import (
     failures_table,
     timings_table,
 )
+from blockshake.study.ensembles.case_input import COMMANDED
 
 
 def checks(content):
@@ -128,8 +129,9 @@ def limits(content):
             "The measured curves are virtual tests (synthetic), made by a model of this program: the comparison "
             "exercises the method and cannot show errors of the models."
         )
-    if any(content.motions[case.motion].attrs.get("synthetic") for case in cases):
-        items.append("The motions are synthetic stand-ins for records that may not be redistributed.")
+    synthetic = sorted({case.motion for case in cases if content.motions[case.motion].attrs.get("synthetic")})
+    if synthetic:
+        items.append(f"Synthetic, and no recorded motions: {', '.join(synthetic)}.")
     rigid = [model_label(model) for model in content.study["models"] if model in _RIGID]
     if rigid:
         items.append(
@@ -138,10 +140,15 @@ def limits(content):
         )
     items += [
         "Friction is Coulomb's, with one coefficient a pair of materials, constant in time, place and rate.",
-        f"Random are {', '.join(parameter_label(name) for name in content.distributions)}. Sizes, places, the "
-        "condition of the joints and the input motion are taken as known.",
+        f"Random are {', '.join(parameter_label(name) for name in content.distributions)}. Sizes, places and the "
+        "condition of the joints are taken as known.",
         "Structures have no imperfections; responses are shown along x only.",
     ]
+    commanded = [case.name for case in cases if case.settings["input"] == COMMANDED]
+    if commanded:
+        items.append(
+            f"The models of {', '.join(commanded)} are driven by the commanded motion, not by that of the slab."
+        )
     if content.convergence is None:
         items.append("The convergence with time step and discretisation is not shown.")
     else:

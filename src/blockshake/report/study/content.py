@@ -8,11 +8,12 @@ import xarray as xr
 
 from blockshake.files import content_digest, file_digest, load_json, named_file
 from blockshake.geometry.structure import Structure, load_structure
-from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.sensors import markers
 from blockshake.report.document.origin import software_versions
 from blockshake.report.document.results import load_results
 from blockshake.study.convergence.table import load_convergence
+from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.measured import measured_curves
 from blockshake.study.ensembles.timing import read_timings
 from blockshake.study.peer_record import PEER_RECORD, load_peer_record
@@ -46,8 +47,10 @@ class ReportedCase:
     structure : Structure
     motion : str
         Name of its motion in `Content.motions`.
+    base : xarray.Dataset or None
+        The slab's measured motion, from `measured_input`; none where the case is compared with no test.
     measured : xarray.Dataset or None
-        From `measured_curves`; none where the case is compared with no test.
+        From `measured_curves`; none likewise.
     test_file : Path or None
         File of the measured test.
     synthetic : bool
@@ -62,6 +65,7 @@ class ReportedCase:
     settings: dict
     structure: Structure
     motion: str
+    base: xr.Dataset | None
     measured: xr.Dataset | None
     test_file: Path | None
     synthetic: bool
@@ -217,20 +221,23 @@ def _case(study, results, name, settings):
         )
         for model in study["models"]
     }
-    test = campaign = None
+    base = campaign = test = None
+    marker_noise = markers.NOISE
     if named:
         campaign = load_campaign(named["campaign"])
-        test = load_test(campaign, named["test"])
+        base = load_results(results / "inputs" / f"{name}.nc")
+        test, marker_noise = measured_on_clock(named, base)
     slab_marker = next(iter(responses.values())).envelope.attrs["slab_marker"]
     return ReportedCase(
         name=name,
         settings=settings,
         structure=load_structure(settings["structure"]),
         motion=Path(settings["motion"]).stem,
+        base=base,
         measured=measured_curves(test, slab_marker, settings["duration"]) if named else None,
         test_file=campaign.folder / campaign.tests[named["test"]].file if named else None,
         synthetic=bool(test.attrs.get("synthetic", 0)) if named else False,
-        marker_noise=campaign.sensors.marker_noise if named else markers.NOISE,
+        marker_noise=marker_noise,
         responses=responses,
     )
 

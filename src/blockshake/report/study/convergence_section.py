@@ -48,7 +48,7 @@ def convergence(content):
             "Differences below one part in 1e8 are not drawn.",
             svg_of(plot_convergence, table),
         ),
-        _numbers(table),
+        numbers_table(table),
     ]
     return Section(f"Annex: numerical parameters of {model_label('ls-dem')}", "convergence", tuple(blocks))
 
@@ -78,7 +78,8 @@ def _word(observable):
     return _COLUMNS[observable][0].partition(" [")[0].lower()
 
 
-def _numbers(table):
+def numbers_table(table):
+    """Values of every setting, and the floor."""
     rows = []
     for (parameter, setting), group in table.groupby(["parameter", "setting"], sort=False):
         word, unit = PARAMETERS[parameter]

@@ -6,6 +6,7 @@ from blockshake.report.document.wording import (
     CUBED,
     SQUARED,
     given,
+    millimetres,
     model_label,
     number,
     parameter_label,
@@ -90,6 +91,34 @@ def motions_table(motions):
         "Motions at 100 %: peak ground acceleration, velocity and displacement along x, Arias intensity and "
         "durations.",
         ("Motion", "Kind", *(label for label, _, _ in shown)), tuple(rows), "ll" + "r" * len(shown),
+    )  # fmt: skip
+
+
+def bases_table(content):
+    """The slab's motion in the tests that the cases are compared with, beside what was commanded."""
+    rows = []
+    for case in content.cases.values():
+        base = case.base
+        if base is None:
+            continue
+        moved = base.sel(channel="pitch_y")["displacement"]
+        errors = [
+            float(base.sel(channel="x")[f"{name}_error"].median()) for name in ("displacement", "velocity")
+        ]
+        rows.append((
+            case.name, base.attrs["test"], case.settings["input"], number(1e3 * base.attrs["start"]),
+            number(base.attrs["gain"], 4), millimetres(base.attrs["departure"]),
+            number(1e3 * float(abs(moved).max())), number(1e3 * errors[0]), number(1e3 * errors[1]),
+        ))  # fmt: skip
+    return Table(
+        "Motion of the slab in the tests, as its sensors read it: when the command starts on the clock of the test, "
+        "displacement along x over the command and root mean square of what departs from the command, largest pitch, "
+        "and standard deviations of the smoothed displacement and velocity along x (medians over the record).",
+        (
+            "Case", "Test", "The models are driven by the motion", "Start [ms]", "Gain", "Departure [mm]",
+            "Pitch [mrad]", "Error [mm]", "Error [mm/s]",
+        ),
+        tuple(rows), "lllrrrrrr",
     )  # fmt: skip
 
 

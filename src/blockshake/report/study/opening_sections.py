@@ -11,6 +11,7 @@ from blockshake.report.study.figures.samples import plot_correlation, plot_sampl
 from blockshake.report.study.figures.stiffness import plot_stiffness, plot_waves
 from blockshake.report.study.figures.structure import plot_structure, structure_width
 from blockshake.report.study.input_tables import (
+    bases_table,
     bodies_table,
     cases_table,
     motions_table,
@@ -133,6 +134,7 @@ def motions(content):
             svg_of(plot_spectra, data),
         ),
         motions_table(content.motions),
+        *([bases_table(content)] if any(case.base is not None for case in content.cases.values()) else []),
     ]
     return Section("Ground motions", "motions", tuple(blocks))
 

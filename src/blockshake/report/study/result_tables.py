@@ -92,20 +92,21 @@ def coverage_table(case):
             peak = case.measured["peak"].sel(frame="slab", marker=marker)
             rows.append((
                 body, model_label(model), percent(at["coverage"]), quantile_range(at["reference"], percent),
-                number(float(at["curve_probability"]), 2), millimetres(at["band_width"]),
-                percent(relative_width(at, peak)),
+                number(float(at["distance"]), 2), number(float(at["curve_probability"]), 2),
+                millimetres(at["band_width"]), percent(relative_width(at, peak)),
             ))  # fmt: skip
     word = "virtual test" if case.synthetic else "measured curve"
     return Table(
         f"{case.name}: share of the time that the {word} lies within the bounds (inertial frame), beside the share of "
         "each sample in the bounds of the others (leave one out, read with the noise of the markers), quantiles "
-        f"{_QUANTILES}, and the chance of a coverage as low for one more sample; mean width of the band, in mm and "
+        f"{_QUANTILES}; root mean square distance of the {word} from the samples, in standard deviations of noise and "
+        "spread, and the chance of a distance as large for one more sample; mean width of the band, in mm and "
         f"relative to the peak of the {word} relative to the slab.",
         (
-            "Block", "Model", f"Coverage of the {word} [%]", "Reference, leave one out [%]", "Chance",
+            "Block", "Model", f"Coverage of the {word} [%]", "Reference, leave one out [%]", "Distance", "Chance",
             "Band width [mm]", "Band width over peak [%]",
         ),
-        tuple(rows), "llrrrrr",
+        tuple(rows), "llrrrrrr",
     )  # fmt: skip
 
 

@@ -5,7 +5,6 @@ from pathlib import Path
 import pandas as pd
 import xarray as xr
 
-from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import content_digest, write_dataset
 from blockshake.geometry.structure import load_structure
@@ -18,13 +17,15 @@ from blockshake.study.sampling.sample_parameters import sample_parameters
 DECIMALS = {"m": 7}  # digits kept in histories: 0.1 um, a thousandth of a marker's noise
 
 
-def simulate_samples(case, model, settings, output_rate, rows, linked, store, source, progress):
+def simulate_samples(case, motions, model, settings, output_rate, rows, linked, store, source, progress):
     """Ensembles of one sample each, simulated where the store has not got them.
 
     Parameters
     ----------
     case : dict
-        ``structure``, ``motion``, ``scale`` and ``duration`` [s] of a case of the configuration.
+        ``structure`` and ``duration`` [s] of a case of the configuration.
+    motions : callable
+        From `driving_motions`.
     model : str
     settings : dict
         The model's: ``time_step`` [s], and optionally ``parameters`` of the solver that all samples share, by
@@ -48,10 +49,10 @@ def simulate_samples(case, model, settings, output_rate, rows, linked, store, so
     list of Path
         Files in the store, in the order of ``rows``: what `gather_ensemble` keeps of a run.
     """
-    motion = load_motion(case["motion"], case["scale"])
     structure = load_structure(case["structure"])
     finished = []
     for sample, row in rows.iterrows():
+        motion = motions(sample)
         parameters = settings.get("parameters", {}) | sample_parameters(row, structure, linked)
         key = content_digest(
             source, model, structure.file.model_dump(), *(part.tobytes() for part in motion.table),

@@ -5,8 +5,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.study.described import describe
+from blockshake.study.ensembles.case_input import measured_on_clock
+from blockshake.study.ensembles.distance import distances
 from blockshake.study.ensembles.ensemble import join_batches, relative_to_slab
 from blockshake.study.ensembles.envelope import over_samples
 from blockshake.study.ensembles.measured import compared_curves
@@ -17,7 +18,12 @@ _DESCRIBED = {
     "coverage": ("fraction of the time that the measured curve is within the bounds", "1"),
     "reference": ("the same of the members, each in the bounds of the others", "1"),
     "member_coverage": ("fraction of the time that a member is within the bounds of the others", "1"),
-    "curve_probability": ("chance of a coverage as low if the measured curve were one of the members", "1"),
+    "distance": (
+        "root mean square distance from the members, in standard deviations of noise and spread",
+        "1",
+    ),
+    "member_distance": ("the same of a member from the others", "1"),
+    "curve_probability": ("chance of a distance as large if the measured curve were one of the members", "1"),
     "band_width": ("upper minus lower bound, mean over time", "m"),
     "measured_peak": ("largest absolute measured displacement along x relative to the slab", "m"),
     "quantile": ("probability of a smaller value", "1"),
@@ -31,14 +37,13 @@ class Band(NamedTuple):
     upper: np.ndarray
 
 
-def coverage_of_case(named, batches):
+def coverage_of_case(named, base, batches):
     """`coverage` of the test that a case is compared with, ``named`` by ``campaign``, a folder, and ``test``.
 
-    ``batches``: files of the case's samples.
+    ``base``: file from `measured_input`; ``batches``: files of the case's samples.
     """
-    campaign = load_campaign(named["campaign"])
-    measured = load_test(campaign, named["test"])
-    return coverage(measured, join_batches(batches), campaign.sensors.marker_noise)
+    measured, marker_noise = measured_on_clock(named, base)
+    return coverage(measured, join_batches(batches), marker_noise)
 
 
 def coverage(measured, ensemble, marker_noise, seed=0):
@@ -48,7 +53,7 @@ def coverage(measured, ensemble, marker_noise, seed=0):
     ----------
     measured : xarray.Dataset
         ``marker_displacement(time, marker, axis)`` [m], inertial frame, relative to the first
-        reading; NaN is a gap. Its first times are the ensemble's, as far as both go.
+        reading; NaN is a gap. Its clock is the ensemble's.
     ensemble : xarray.Dataset
         From `gather_ensemble`; only completed and collapsed samples count.
     marker_noise : float
@@ -61,15 +66,16 @@ def coverage(measured, ensemble, marker_noise, seed=0):
     xarray.Dataset
         Along the markers that both have, displacement along x, inertial frame: ``coverage(marker)`` of the measured
         curve in the bounds of all members; ``member_coverage(sample, marker)`` of each member, read with the same
-        noise, in the bounds of the others; its ``reference(quantile, marker)``; ``curve_probability(marker)``, the rank
-        of the measured curve's coverage among the members', from 1 / (n + 1) to 1; ``band_width(marker)`` [m], mean
+        noise, in the bounds of the others; its ``reference(quantile, marker)``; ``distance(marker)`` of the measured
+        curve and ``member_distance(sample, marker)`` as of `distances`; ``curve_probability(marker)``, the rank of the
+        measured curve's distance among the members', from 1 / (n + 1) to 1; ``band_width(marker)`` [m], mean
         over time; and ``measured_peak(marker)`` [m], largest absolute displacement relative to the slab's marker, to
         hold the width against.
 
     Raises
     ------
     InputError
-        Fewer than three members, no marker in common, or other times.
+        Fewer than three members, no marker or no time in common.
 
     Notes
     -----
@@ -77,7 +83,8 @@ def coverage(measured, ensemble, marker_noise, seed=0):
     then, for stretches as long as the motion's correlation. The reference, leave-one-out over
     the members, carries that correlation. Its bounds come from one member less than the measured
     curve's, which makes it a little lower: cautious, as 1 / n. A noise-free reference would fail every
-    measured curve wherever the band is thinner than the noise.
+    measured curve wherever the band is thinner than the noise. There coverage says nothing at all, of any curve, and
+    the distance decides.
     """
     read, members, curves, readings = compared_curves(measured, ensemble, marker_noise, seed, _FEWEST_MEMBERS)
     markers = list(read["marker"].values)
@@ -91,15 +98,19 @@ def coverage(measured, ensemble, marker_noise, seed=0):
         list(REFERENCE_QUANTILES), dims="quantile", coords={"quantile": list(REFERENCE_QUANTILES)}
     )
     inside = share_inside(read.to_numpy(), lower, upper)
+    *members_away, away = distances(np.concatenate([readings, read.to_numpy()[None]]), curves, marker_noise)
+    member_distance = by_member.copy(data=np.array(members_away))
     width = np.nanmean(upper - lower, axis=0)
     result = xr.Dataset(
         {
             "coverage": ("marker", inside),
             "reference": over_samples(by_member, probabilities),
             "member_coverage": by_member,
-            "curve_probability": (by_member <= xr.DataArray(inside, dims="marker"))
+            "distance": ("marker", away),
+            "member_distance": member_distance,
+            "curve_probability": (member_distance >= xr.DataArray(away, dims="marker"))
             .sum("sample")
-            .pipe(lambda lower: (1.0 + lower) / (1.0 + len(member_coverage))),
+            .pipe(lambda beyond: (1.0 + beyond) / (1.0 + len(member_coverage))),
             "band_width": ("marker", width),
             "measured_peak": ("marker", _measured_peak(measured, members.attrs["slab_marker"], markers)),
         },

@@ -39,7 +39,7 @@ def compared_curves(measured, ensemble, marker_noise, seed, fewest):
     ----------
     measured : xarray.Dataset
         ``marker_displacement(time, marker, axis)`` [m], inertial frame, relative to the first reading; NaN is a
-        gap. Its first times are the ensemble's, as far as both go.
+        gap. Its clock is the ensemble's, its times need not be.
     ensemble : xarray.Dataset
         From `gather_ensemble`.
     marker_noise : float
@@ -52,7 +52,7 @@ def compared_curves(measured, ensemble, marker_noise, seed, fewest):
     Raises
     ------
     InputError
-        Fewer members, no marker in common, or other times.
+        Fewer members, no marker or no time in common.
     """
     members = counted_samples(ensemble)
     if members.sizes["sample"] < fewest:

@@ -11,7 +11,7 @@ from blockshake.study.ensembles.scores import crps
 from blockshake.study.friction.replicates import replicate_error
 
 LEVEL = 0.95  # of the one-sided test by which a mean is refused
-_NO_DIFFERENCE = 0.01  # of the marker noise: a difference of scores below it is none
+_NO_DIFFERENCE = 0.01  # of the best score: a difference below it is none
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def mean_score(ensemble, measured, marker_noise, seed):
     Raises
     ------
     InputError
-        Fewer than two samples finished, no marker in common, or other times.
+        Fewer than two samples finished, no marker or no time in common.
     """
     compared = compared_curves(measured, ensemble, marker_noise, seed, fewest=2)
     return float(np.nanmean(crps(compared.readings, compared.measured.to_numpy())))
@@ -69,7 +69,7 @@ def with_mean(design, distributions, variables, mean):
     return scaled
 
 
-def search_mean(evaluate, lowest, highest, step, finest, marker_noise):
+def search_mean(evaluate, lowest, highest, step, finest):
     """Candidate means on an even grid, then ever finer where accepted ones end and refused ones begin.
 
     Parameters
@@ -80,8 +80,6 @@ def search_mean(evaluate, lowest, highest, step, finest, marker_noise):
     lowest, highest, step, finest : float
         Range of the means, distance of the first candidates, and how near the ends of the accepted range are
         located [1].
-    marker_noise : float
-        [m]
 
     Returns
     -------
@@ -90,7 +88,7 @@ def search_mean(evaluate, lowest, highest, step, finest, marker_noise):
     count = round((highest - lowest) / step)
     scores = {round(mean, 6): evaluate(round(mean, 6)) for mean in np.linspace(lowest, highest, count + 1)}
     while True:
-        found = weigh_means(scores, marker_noise)
+        found = weigh_means(scores)
         means = found.table.index.to_numpy()
         accepted = found.table["accepted"].to_numpy()
         edges = np.flatnonzero(accepted[1:] != accepted[:-1])
@@ -104,27 +102,26 @@ def search_mean(evaluate, lowest, highest, step, finest, marker_noise):
         scores |= {mean: evaluate(mean) for mean in new}
 
 
-def weigh_means(scores, marker_noise):
+def weigh_means(scores):
     """Answer of replicated scores on the candidates.
 
     Parameters
     ----------
     scores : dict of float to float64 array, shape (n_replicates,)
         By mean, at least two replicates [m].
-    marker_noise : float
-        [m]
 
     Notes
     -----
     A mean is refused when its score exceeds that of the best by more than chance: a one-sided t test of the
-    paired differences over the replicated designs, at 95 %. The best is itself chosen from the scores, which
-    makes the test a little too ready to refuse.
+    paired differences over the replicated designs, at 95 %, and by more than a hundredth of the best score: replicates
+    that happen to agree prove nothing of micrometres in a misfit of centimetres. The best is itself chosen from the
+    scores, which makes the test a little too ready to refuse.
     """
     means = np.array(sorted(scores))
     values = np.array([scores[mean] for mean in means])
     best = int(values.mean(axis=1).argmin())
     excess, _, error = replicate_error((values - values[best]).T)
-    limit = student.ppf(LEVEL, values.shape[1] - 1) * error + _NO_DIFFERENCE * marker_noise
+    limit = student.ppf(LEVEL, values.shape[1] - 1) * error + _NO_DIFFERENCE * values[best].mean()
     accepted = excess <= limit
     # what lies between two accepted means is not told from them
     first, last = np.flatnonzero(accepted)[[0, -1]]

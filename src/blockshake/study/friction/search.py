@@ -4,29 +4,31 @@ import numpy as np
 import pandas as pd
 
 from blockshake.files import source_digest
-from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.simulation.models import model_of
 from blockshake.sources import script_sources
 from blockshake.study.ensembles.batch import simulate_samples
+from blockshake.study.ensembles.case_input import driving_motions, measured_on_clock
 from blockshake.study.ensembles.coverage import coverage
 from blockshake.study.ensembles.ensemble import join_batches
 from blockshake.study.friction.calibration import mean_score, search_mean, with_mean
-from blockshake.study.friction.replicates import replicated_designs
+from blockshake.study.friction.replicates import replicate_seed, replicated_designs
 from blockshake.study.sampling.distributions import load_distributions
 from blockshake.study.stiffness.wave_speed import calibrate_design
 
 _UNLIKELY = 0.05  # chance of a whole curve at or below which an ensemble does not fit
 
 
-def calibrate_case(case, named, given, store, progress):
+def calibrate_case(case, named, base, given, store, progress):
     """Friction calibration of one case of a configuration.
 
     Parameters
     ----------
     case : dict
-        As for `simulate_samples`.
+        As for `measured_input`.
     named : dict
         Entries ``campaign``, a folder, and ``test``: the measured test.
+    base : path
+        File from `measured_input`.
     given : dict
         Entries ``search``, ``models``, ``ensemble`` and ``output_rate`` of the configuration.
     store : str or path
@@ -40,8 +42,7 @@ def calibrate_case(case, named, given, store, progress):
     """
     search, ensemble = given["search"], given["ensemble"]
     model = search["model"]
-    campaign = load_campaign(named["campaign"])
-    measured = load_test(campaign, named["test"])
+    measured, noise = measured_on_clock(named, base)
     settings = {"model": model, **given["models"][model], "output_rate": given["output_rate"]}
     drawn_from = {
         "distributions": load_distributions(ensemble["distributions"], "ensemble"),
@@ -49,20 +50,20 @@ def calibrate_case(case, named, given, store, progress):
         "linked": ensemble["linked"],
     }
     source = source_digest(*script_sources("simulate_batch", model))
-    noise = campaign.sensors.marker_noise
     found, beside = calibrate_friction(
-        case, settings, drawn_from, search, measured, noise, store, source, progress
+        case, base, settings, drawn_from, search, measured, noise, store, source, progress
     )
     return friction_summary(found, beside, search, measured)
 
 
-def calibrate_friction(case, run_settings, ensemble, search, measured, marker_noise, store, source, say):
+def calibrate_friction(
+    case, base, run_settings, ensemble, search, measured, marker_noise, store, source, say
+):
     """Search the mean coefficient of friction of a case.
 
     Parameters
     ----------
-    case : dict
-        As for `simulate_samples`.
+    case, base : as for `driving_motions`
     run_settings : dict
         ``model``, its ``time_step`` [s] and ``parameters``, ``output_rate`` [Hz].
     ensemble : dict
@@ -70,7 +71,7 @@ def calibrate_friction(case, run_settings, ensemble, search, measured, marker_no
     search : dict
         ``variables``, ``lowest``, ``highest``, ``step``, ``finest`` [1]; ``size`` of an ensemble, ``replicates``.
     measured : xarray.Dataset
-        The measured test.
+        The measured test, on the clock of the input.
     marker_noise : float
         [m]
     store, source : as for `simulate_samples`
@@ -96,6 +97,8 @@ def calibrate_friction(case, run_settings, ensemble, search, measured, marker_no
         designs = [
             pd.concat([design, calibrate_design(structure, design, linked)], axis=1) for design in designs
         ]
+    seeds = [replicate_seed(ensemble["seed"], place) for place in range(1, len(designs) + 1)]
+    motions = [driving_motions(case, base, seed) for seed in seeds]
     beside = {}
 
     def evaluate(mean):
@@ -103,7 +106,7 @@ def calibrate_friction(case, run_settings, ensemble, search, measured, marker_no
         for index, design in enumerate(designs):
             rows = with_mean(design, distributions, search["variables"], mean)
             finished = simulate_samples(
-                case, run_settings["model"], run_settings, run_settings["output_rate"],
+                case, motions[index], run_settings["model"], run_settings, run_settings["output_rate"],
                 rows, linked, store, source, lambda line: None,
             )  # fmt: skip
             members = join_batches(finished)
@@ -115,9 +118,7 @@ def calibrate_friction(case, run_settings, ensemble, search, measured, marker_no
         )
         return scores
 
-    found = search_mean(
-        evaluate, search["lowest"], search["highest"], search["step"], search["finest"], marker_noise
-    )
+    found = search_mean(evaluate, search["lowest"], search["highest"], search["step"], search["finest"])
     say(found.answer)
     return found, pd.DataFrame(beside).T.rename_axis("mean").sort_index()
 

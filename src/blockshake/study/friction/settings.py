@@ -1,5 +1,6 @@
 """Settings of the friction calibration in a configuration."""
 
+import numpy as np
 from pydantic import Field
 
 from blockshake.simulation.models import ModelName
@@ -21,3 +22,10 @@ class FrictionSearch(Strict):
     finest: Positive = Field(0.025, description="how near the ends of the accepted range are located [1]")
     size: int = Field(50, ge=SMALLEST_SIZE, description="samples of an ensemble [1]")
     replicates: int = Field(3, ge=2, description="independent designs, for error bars [1]")
+
+    @property
+    def runs(self):
+        """Simulated samples of a case at most: the first candidates, and halves at both ends of what is accepted."""
+        first = round((self.highest - self.lowest) / self.step) + 1
+        halves = max(0, int(np.ceil(np.log2(self.step / self.finest) - 1e-9)))
+        return (first + 2 * halves) * self.size * self.replicates

@@ -1,0 +1,215 @@
+"""The base's motion in a test as the input of a simulation: what is known of it, and draws from that."""
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import CubicSpline
+from scipy.optimize import minimize_scalar
+
+from blockshake.dynamics.motion import CHANNELS, PITCH, ground_motion
+from blockshake.measurement.campaigns.command_clock import command_start
+from blockshake.measurement.motion.base_motion import (
+    BaseReadings,
+    first_variances,
+    likeliest_density,
+    smooth_readings,
+    together,
+)
+from blockshake.measurement.motion.base_readings import base_accelerometer, base_coordinates
+from blockshake.measurement.motion.kalman import ACCELERATION, DISPLACEMENT, OFFSET, VELOCITY, walk_into
+from blockshake.measurement.motion.outliers import without_outliers
+
+_DENSITIES = np.arange(
+    -14.0, 8.1, 2.0
+)  # decimal logarithms of the jerk's, tried first; the lowest is a rest [m2/s5]
+_LARGEST_LAG = 0.05  # s, between the clocks of the two systems
+_LAG_STEP = 0.005  # s, of the lags that are tried first
+_SAME_TIME = 1e-7  # s
+_LONG_NAMES = {
+    "marker": "displacement of the slab's mass centre since the first reading, or its pitch, as the markers read it",
+    "reading": "acceleration as the accelerometer reads it, gravity's part taken out",
+    "displacement": "smoothed displacement or pitch",
+    "velocity": "its rate",
+    "displacement_error": "standard deviation of the smoothed displacement or pitch",
+    "velocity_error": "standard deviation of its rate",
+}
+
+
+def measure_base(test, structure, sensors, command):
+    """Motion of the driven body in a test, with all that its draws are made from.
+
+    Parameters
+    ----------
+    test : xarray.Dataset
+        As in a campaign's test file.
+    structure : Structure
+    sensors : Sensors
+    command : GroundMotion
+        That the table was told; it tells where time 0 of a simulation lies.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``time``, that of the markers and of the accelerometer together, and ``channel`` (x, y, z, pitch_y; the
+        mass centre's displacement since the first reading [m], and the pitch [rad]): the readings ``marker`` and
+        ``reading``, and ``displacement``, ``velocity`` and their ``_error``, smoothed. By channel ``marker_noise``,
+        ``reading_noise`` and ``jerk_density``. ``of_markers`` is 1 at the markers' times. Attributes: ``start`` of the
+        command on the test's clock [s], or of the record where that starts later; ``follows``, 1 where the table
+        follows the command, else the record's start is taken; ``accelerometer_lag``, which the accelerometer's times
+        were moved by [s]; ``end`` of the record [s].
+
+    Notes
+    -----
+    Each coordinate is smoothed by itself as in `smoothed_base`; the accelerometer is that along x, moved onto the
+    markers' clock by the lag of the largest likelihood. A pitch that the markers do not tell is none. The
+    accelerometer's arm above the mass centre, and the correlation between coordinates, are left out.
+    """
+    test = without_outliers(test, structure)
+    time = test["time"].to_numpy()
+    values, noise = base_coordinates(test, structure, sensors)
+    none = np.empty(0)
+    parts = [
+        together(time, column, sigma, none, none, 1.0) for column, sigma in zip(values.T, noise, strict=True)
+    ]
+    densities = [_density(part) if part.marker_noise > 0.0 else 0.0 for part in parts]
+    lag = 0.0
+    channel = base_accelerometer(test, structure, "x")
+    if channel is not None:
+        pitch = (
+            smooth_readings(parts[PITCH], densities[PITCH]).mean
+            if densities[PITCH]
+            else np.zeros((len(time), 4))
+        )
+        weight = -structure.file.gravity[2] * np.interp(channel.time, time, pitch[:, DISPLACEMENT])
+        read = time, values[:, 0], noise[0]
+        level = channel.values + weight, sensors.accelerometer_noise
+        lag = _accelerometer_lag(read, channel.time, level, densities[0])
+        parts[0] = together(*read, channel.time + lag, *level)
+        densities[0] = _density(parts[0])
+    base = _gathered(time, parts, densities)
+    moved = np.interp(time, base["time"], base["displacement"].sel(channel="x"))
+    start = command_start(time, moved, command)
+    base.attrs = {
+        "Conventions": "CF-1.11",
+        "title": "measured motion of the slab",
+        "start": float(time[0] if start is None else max(start, time[0])),
+        "end": float(time[-1]),
+        "follows": int(start is not None),
+        "accelerometer_lag": float(lag),
+    }
+    return base
+
+
+def draw_base(base, generator):
+    """One motion that the readings allow: displacement at the markers' times, (n_times, 4) [m, rad].
+
+    Parameters
+    ----------
+    base : xarray.Dataset
+        From `measure_base`.
+    generator : numpy.random.Generator
+        Advanced.
+
+    Notes
+    -----
+    Durbin and Koopman (2002), A simple and efficient simulation smoother, Biometrika 89: a motion is drawn from the
+    process before any reading, read with noise at the same times and smoothed; its error is added to the smoothed
+    readings, which has the covariance of the posterior over all times together.
+    """
+    there = base["of_markers"].to_numpy() == 1
+    drawn = np.zeros((there.sum(), len(CHANNELS)))
+    for index, readings in enumerate(_readings(base)):
+        density = float(base["jerk_density"][index])
+        if density == 0.0:
+            continue
+        own = base.isel(channel=index)
+        count = len(readings.time)
+        states = np.empty((count, 4))
+        states[0] = generator.normal(size=4) * np.sqrt(first_variances(readings.marker_noise))
+        walk_into(readings.time, density, generator.normal(size=(count, 3)), states)
+        marker = states[:, DISPLACEMENT] + readings.marker_noise * generator.normal(size=count)
+        level = states[:, ACCELERATION] + states[:, OFFSET]
+        level += readings.reading_noise * generator.normal(size=count)
+        seen = readings._replace(
+            marker=np.where(np.isfinite(readings.marker), marker, np.nan),
+            reading=np.where(np.isfinite(readings.reading), level, np.nan),
+        )
+        error = (states - smooth_readings(seen, density).mean)[:, DISPLACEMENT]
+        at = np.searchsorted(readings.time, base["time"].to_numpy()[there] - _SAME_TIME)
+        drawn[:, index] = own["displacement"].to_numpy()[there] + error[at]
+    return drawn
+
+
+def base_as_motion(base, displacement, name, attributes):
+    """`GroundMotion` from the base's ``displacement`` (n_times, 4) at the markers' times; time 0 is the start."""
+    time = base["time"].to_numpy()[base["of_markers"].to_numpy() == 1] - base.attrs["start"]
+    rows = np.concatenate([[0.0], time[time > _SAME_TIME]])
+    values = CubicSpline(time, displacement)(rows)
+    columns = dict(zip(CHANNELS, (values - values[0]).T, strict=True))
+    return ground_motion(name, rows, columns, "displacement", attributes)
+
+
+def on_its_clock(test, base):
+    """The test with time 0 where the base's motion starts as an input; earlier readings are left out."""
+    time = test["time"].to_numpy() - base.attrs["start"]
+    return test.assign_coords(time=("time", time, test["time"].attrs)).isel(time=time > -_SAME_TIME)
+
+
+def _density(readings):
+    """Likeliest density, searched about the best of a coarse row: a weak pitch has a second, lower summit at rest."""
+    tried = [smooth_readings(readings, 10.0**exponent).likelihood for exponent in _DENSITIES]
+    best = _DENSITIES[int(np.argmax(tried))]
+    return likeliest_density(readings, (best - 2.0, best + 2.0))
+
+
+def _accelerometer_lag(read, time_acc, level, density):
+    """By how much the accelerometer's times are moved onto the markers' clock: the likeliest lag [s]."""
+
+    def unlikely(lag):
+        return -smooth_readings(together(*read, time_acc + lag, *level), density).likelihood
+
+    count = round(_LARGEST_LAG / _LAG_STEP)
+    lags = _LAG_STEP * np.arange(-count, count + 1)
+    best = lags[int(np.argmin([unlikely(lag) for lag in lags]))]
+    ends = best - _LAG_STEP, best + _LAG_STEP
+    return minimize_scalar(unlikely, bounds=ends, method="bounded", options={"xatol": 1e-5}).x
+
+
+def _gathered(marker_time, parts, densities):
+    """Readings and smoothed states of all coordinates at the times of any."""
+    time = parts[0].time
+    shape = len(time), len(parts)
+    columns = {name: np.full(shape, np.nan) for name in _LONG_NAMES}
+    for index, (part, density) in enumerate(zip(parts, densities, strict=True)):
+        at = np.searchsorted(time, part.time - _SAME_TIME)
+        columns["marker"][at, index], columns["reading"][at, index] = part.marker, part.reading
+        if density == 0.0:
+            for name in ("displacement", "velocity", "displacement_error", "velocity_error"):
+                columns[name][:, index] = 0.0
+            continue
+        mean, covariance, _ = smooth_readings(part, density)
+        for state, name in ((DISPLACEMENT, "displacement"), (VELOCITY, "velocity")):
+            columns[name][at, index] = mean[:, state]
+            columns[f"{name}_error"][at, index] = np.sqrt(np.maximum(covariance[:, state, state], 0.0))
+    of_markers = np.zeros(len(time), dtype=np.int8)
+    of_markers[np.searchsorted(time, marker_time - _SAME_TIME)] = 1
+    return xr.Dataset(
+        {name: (("time", "channel"), values, {"long_name": _LONG_NAMES[name]}) for name, values in columns.items()}
+        | {
+            "of_markers": ("time", of_markers),
+            "marker_noise": ("channel", [part.marker_noise for part in parts]),
+            "reading_noise": ("channel", [part.reading_noise for part in parts]),
+            "jerk_density": ("channel", densities),
+        },
+        {"time": ("time", time, {"units": "s"}), "channel": list(CHANNELS)},
+    )  # fmt: skip
+
+
+def _readings(base):
+    """`BaseReadings` of every coordinate, those of coordinates without accelerometer at the markers' times alone."""
+    for index in range(base.sizes["channel"]):
+        own = base.isel(channel=index)
+        kept = (own["of_markers"].to_numpy() == 1) | np.isfinite(own["reading"].to_numpy())
+        yield BaseReadings(
+            *(own[name].to_numpy()[kept] for name in ("time", "marker")), float(own["marker_noise"]),
+            own["reading"].to_numpy()[kept], float(own["reading_noise"]),
+        )  # fmt: skip

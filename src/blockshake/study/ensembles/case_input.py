@@ -1,0 +1,118 @@
+"""The motion that drives the models of a case: the measured motion of the slab, or the commanded one."""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.errors import InputError
+from blockshake.files import content_digest
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.campaigns.commanded_motion import follow
+from blockshake.measurement.motion.measured_base import base_as_motion, draw_base, measure_base, on_its_clock
+
+MEASURED, COMMANDED = "measured", "commanded"
+_SHORT = 0.05  # s, by which a record may end before the simulated window
+
+
+def measured_input(case, named):
+    """The slab's motion in the test that a case is compared with.
+
+    Parameters
+    ----------
+    case : dict
+        ``structure``, ``motion``, ``scale``, ``duration`` [s] and ``input`` of a case of the configuration.
+    named : dict
+        Entries ``campaign``, a folder, and ``test``.
+
+    Returns
+    -------
+    xarray.Dataset
+        From `measure_base`, and the attributes ``test``, ``synthetic``, ``gain``, the regression of the slab's
+        displacement along x on the command in the simulated window [1], and ``departure``, the root mean square of
+        their difference [m]; both NaN where the slab does not follow.
+
+    Raises
+    ------
+    InputError
+        A record that ends before the simulated window, where it is the input.
+    """
+    campaign = load_campaign(named["campaign"])
+    test = load_test(campaign, named["test"])
+    command = load_motion(case["motion"], case["scale"])
+    base = measure_base(test, load_structure(campaign.structure), campaign.sensors, command)
+    length = base.attrs["end"] - base.attrs["start"]
+    if case["input"] == MEASURED:
+        check_record(length, case["duration"], named["test"], "duration")
+    base.attrs |= {"test": named["test"], "synthetic": int(test.attrs.get("synthetic", 0))}
+    base.attrs |= dict(zip(("gain", "departure"), _against(base, command, case["duration"]), strict=True))
+    return base
+
+
+def check_record(length, duration, where, key):
+    """Refuse a simulated window [s] beyond the record, of some length [s], of the motion that drives it."""
+    if length < duration - _SHORT:
+        raise InputError(
+            where,
+            key,
+            f"expected at most {length:.4g} s, the record of the slab's motion, or input: {COMMANDED}",
+        )
+
+
+def measured_on_clock(named, base):
+    """Readings of the test of `measured_input` with time 0 where the input starts, and the markers' noise [m].
+
+    ``base``: from `measured_input`, or its file.
+    """
+    campaign = load_campaign(named["campaign"])
+    return on_its_clock(load_test(campaign, named["test"]), _loaded(base)), campaign.sensors.marker_noise
+
+
+def driving_motions(case, base, seed):
+    """Function that gives the `GroundMotion` of a sample by its number.
+
+    Parameters
+    ----------
+    case : dict
+        As for `measured_input`.
+    base : xarray.Dataset, path or None
+        From `measured_input`, or its file; not used where the input is commanded.
+    seed : int
+        Of the design: a sample of another design has another draw of the measured motion.
+
+    Notes
+    -----
+    A draw depends on structure, motion, scale, seed and sample: it is the same for all models and in any order.
+    """
+    if case["input"] == COMMANDED:
+        commanded = load_motion(case["motion"], case["scale"])
+        return lambda sample: commanded
+    base = _loaded(base)
+    identity = Path(case["structure"]).stem, Path(case["motion"]).stem, case["scale"], seed
+    attributes = {"source": f"measured motion of the slab, {base.attrs['test']}", "scale": case["scale"]}
+    attributes |= {"synthetic": bool(base.attrs["synthetic"])}
+
+    def drawn(sample):
+        digest = content_digest("base", *identity, int(sample))
+        moved = draw_base(base, np.random.default_rng(int(digest, 16)))
+        return base_as_motion(base, moved, f"{base.attrs['test']}, measured", attributes)
+
+    return drawn
+
+
+def _loaded(base):
+    return base if isinstance(base, xr.Dataset) else xr.load_dataset(base)
+
+
+def _against(base, command, duration):
+    """Gain and departure of the slab against the command."""
+    time = base["time"].to_numpy() - base.attrs["start"]
+    inside = (time >= 0.0) & (time <= duration)
+    moved = base["displacement"].transpose("time", "channel").to_numpy()[inside, :3]
+    told = command.evaluate(time[inside])[:, 0]
+    followed = follow(moved, told, 0.0)
+    if followed is None or not base.attrs["follows"]:
+        return np.nan, np.nan
+    return float(followed.share[0]), float(np.std(moved[:, 0] - told))
