@@ -18,8 +18,11 @@ def as_markdown(record):
     str
     """
     lines = [
-        f"{record.date}, sources {record.commit}, {record.machine}, effort {record.effort}, seeds {record.seeds}: "
-        f"{len(record.cases)} cases.",
+        f"{record.date}, sources {record.commit}, {record.machine}, seeds {record.seeds}: {len(record.cases)} cases.",
+        "",
+        "Effort by structure:",
+        "",
+        *(f"- {structure}: {effort}" for structure, effort in record.efforts.items()),
         "",
         "| figure | share | of | 95 % interval | goal | |",
         "|---|---|---|---|---|---|",

@@ -1,5 +1,7 @@
 """Histories that follow one law are told from all others."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -68,3 +70,16 @@ def test_a_history_that_tells_nothing_has_no_law():
     nothing = history(FORCES["constant"])
     nothing.told[:] = False
     assert fit_laws(TIME, nothing) == []
+
+
+def test_times_at_which_the_force_is_bounded_alone_tell_its_start():
+    """Nothing is turned before 6 s; a joint that stays closed until 4 s would have turned under the later force."""
+    whole = history(FORCES["constant"])
+    told = TIME > 6.0
+    unbounded = replace(whole, told=told)
+    assert fit_laws(TIME, unbounded)[0].name == "steady"
+    lower = np.where(TIME < 4.0, -500.0, -4000.0)
+    best = fit_laws(TIME, replace(unbounded, lower=lower, upper=np.full(len(TIME), 4000.0)))[0]
+    assert best.name == "constant"
+    assert best.parameters["start"] == pytest.approx(4.0, abs=0.26)
+    assert best.amplitude == pytest.approx(-2200.0, rel=0.02)

@@ -230,3 +230,19 @@ def test_a_constant_push_is_found_with_its_start_and_size(sensors):
     assert best.name == "constant"
     assert best.amplitude == pytest.approx(push, rel=0.1)
     assert best.parameters["start"] == pytest.approx(start, abs=0.1)
+
+
+def test_an_impact_just_beyond_the_end_of_a_record_leaves_no_unexplained_force(sensors):
+    """The other edge bears within the kernel's reach of the last instant, though no reading shows it."""
+    structure = stack(1)
+
+    def swinging(t):
+        return 0.02 * np.sin(np.pi * (t - 2.0)) if t > 2.0 else 0.0
+
+    test = readings(structure, rocking(shaken(0.0), swinging))
+    cut = test.isel(time=test["time"] < 3.005, time_acc=test["time_acc"] < 3.005)
+    forces = joint_forces(cut, structure, sensors)
+    late = forces.motion.time > 2.9
+    assert (forces.joints.side[late, 0] == 1).all()
+    weight = structure.mass[1] * GRAVITY
+    assert np.nanmax(np.abs(forces.least.wrench[late, 1, 0])) < 0.01 * weight

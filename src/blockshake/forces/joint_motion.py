@@ -71,10 +71,14 @@ def joint_motion(structure, faces, motion, still, width):
     changed = np.zeros(len(side), dtype=bool)
     changed[1:] = (side[1:] != side[:-1]).any(axis=1)
     near = np.ones((2 * reach + 1, 1), dtype=bool)
-    bears = [[binary_dilation(tangent * sign >= 0, near) for sign in (-1, 1)] for tangent in (side, across)]
+    # beyond the ends of a record any edge may bear: an impact there is felt within the kernel's reach
+    bears = [
+        [binary_dilation(tangent * sign >= 0, near, border_value=1) for sign in (-1, 1)]
+        for tangent in (side, across)
+    ]
     return JointMotion(
         one["rotation"], one["rotation_error"], one["slip_rate"], one["slip_rate_error"],
-        side, across, ~binary_dilation(changed, iterations=calm), np.moveaxis(np.array(bears), (0, 1), (2, 3)),
+        side, across, ~binary_dilation(changed, iterations=calm, border_value=1), np.moveaxis(np.array(bears), (0, 1), (2, 3)),
     )  # fmt: skip
 
 

@@ -1,9 +1,9 @@
 """The configuration of a study: every key, its type and its limits, checked before the first job."""
 
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, StringConstraints, field_validator, model_validator
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
@@ -122,7 +122,7 @@ class StudyConfig(Strict):
     """The whole file."""
 
     name: str = Field(pattern=r"^[a-z0-9-]+$", description="names the folder of results and the report")
-    description: str
+    description: Annotated[str, StringConstraints(strip_whitespace=True)]
     output_rate: Positive = Field(RATE, description="of the histories [Hz]")
     samples_per_job: int = Field(10, ge=1, description="samples in one job [1]")
     models: dict[ModelName, ModelSettings] = Field(min_length=1)

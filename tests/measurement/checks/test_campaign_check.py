@@ -15,7 +15,7 @@ from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.virtual.settings import Sine
 from blockshake.virtual.shake_table import swelling_sine
 
-SHARED = Path(os.environ.get("BLOCKSHAKE_SHARED", Path(__file__).parents[3] / "shared"))
+SHARED = Path(os.environ.get("BLOCKSHAKE_SHARED", Path(__file__).parents[4] / "shared"))
 BLOCKS = [place for place, name in enumerate(MARKERS) if not name.startswith("slab")]
 
 

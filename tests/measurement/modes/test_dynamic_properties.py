@@ -14,7 +14,7 @@ from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.modes.dynamic_properties import modes_from_noise
 from blockshake.measurement.sensors.accelerometers import low_pass
 
-SHARED = Path(os.environ.get("BLOCKSHAKE_SHARED", Path(__file__).parents[3] / "shared"))
+SHARED = Path(os.environ.get("BLOCKSHAKE_SHARED", Path(__file__).parents[4] / "shared"))
 DURATION = 30.0
 # Frequencies are asked for within 0.5 % and within 3.5 stated errors: of some 20 figures in these tests one would miss
 # 3.5 sigma in a hundred seeds.

@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.diagnosis.inference.decision import ParameterEstimate
-from blockshake.diagnosis.laws.judged_laws import FORM, accounts_for, law_that_holds, own_laws
+from blockshake.diagnosis.laws.judged_laws import FORM, accounts_for, law_that_holds, leans_to, own_laws
 from blockshake.diagnosis.laws.signatures import STOP
 from blockshake.diagnosis.libraries.candidates import effect_of
 from blockshake.effects.registry import EFFECTS
@@ -32,8 +32,9 @@ def with_laws(decision, findings, places_of):
     Notes
     -----
     An effect is isolated if its own law is broken and it accounts for all laws that are: the cause, at the joint whose
-    law is broken. An effect whose own law was told at its place and holds is struck out, and so is one that does not
-    account for the broken laws. The features of whole tests decide among the effects that are left. Where laws are
+    law is broken. An effect whose own law was told at its place and holds is struck out, and so is one towards which no
+    law leans, and one that does not account for the broken laws. The features of whole tests decide among the effects
+    that are left. Where laws are
     broken and no effect is left, the cause is unknown, and is described.
     """
     isolated = [effect for effect in findings.isolated if effect in decision.places]
@@ -84,6 +85,8 @@ def _reasons(effect, place, findings):
     law = law_that_holds(effect, place, findings)
     if law:
         yield f"its law holds: {law} is as in the nominal model"
+    elif findings.laws and not leans_to(effect, place, findings):
+        yield "no law departs its way"
     if (findings.broken or findings.outside) and not accounts_for(effect, findings):
         yield "it does not account for the laws that are broken"
 

@@ -12,6 +12,7 @@ _BROKEN_ONCE = 7.0  # standard deviations, in one test
 _BROKEN = 5.0  # of the sum over all tests, in its standard deviation
 _ODD = 4.0  # of a law in a test whose readings ask for a force from outside
 _HOLDS = 3.0
+_LEANS = 2.0  # of the sum over all tests, towards an effect
 _LEAST_GAP = 2e-3  # m, of a stop
 _FREEDOM = 10  # of the tail, for null distributions of some ten to twenty draws
 _ALIKE = 4.0  # standard deviations that sizes of one cause may differ by from test to test
@@ -74,7 +75,8 @@ def accounts_for(effect, findings):
     Returns
     -------
     bool
-        A contact with a stop accounts for a force from outside that comes and goes, and for no other.
+        A contact with a stop accounts for a force from outside that comes and goes, and for no other. No effect accounts
+        for a law of its own that is broken unlike in the tests.
     """
     if effect == STOP:
         kinds, forces = OF_A_STOP, ("spring", "pulse")
@@ -83,6 +85,8 @@ def accounts_for(effect, findings):
     else:
         kinds, forces = OF_ANY, ()
     if findings.outside and findings.outside.law not in forces:
+        return False
+    if effect in SIGNATURES and not all(_alike(one) for one in own_laws(effect, findings.laws) if one.broken):
         return False
     return all(kind_of(one.name) in kinds for one in findings.broken)
 
@@ -110,6 +114,30 @@ def law_that_holds(effect, place, findings):
     return told[0].name
 
 
+def leans_to(effect, place, findings):
+    """Whether an effect's own law departs its way at a place, if only a little.
+
+    Parameters
+    ----------
+    effect : str
+    place : dict
+        As in `law_that_holds`.
+    findings : LawFindings
+
+    Returns
+    -------
+    bool
+        True for an effect that has no law of its own. A stop has the force that it exerts.
+    """
+    if effect == STOP:
+        return (findings.outside or findings.outside_of_stop) is not None
+    if effect not in SIGNATURES:
+        return True
+    sign = SIGNATURES[effect].sign
+    sums = [_sum(list(one.departures.values())) for one in own_laws(effect, findings.laws) if _at(place, one)]
+    return any((sign * one if sign else abs(one)) > _LEANS for one in sums)
+
+
 def _at(place, law):
     """Whether a law tells of a place; of one that is nowhere in particular every law does."""
     if "joint" in place:
@@ -135,8 +163,15 @@ def _law(name, by_test, joint, beneath):
         measured={test: value for test, (value, _, _) in by_test.items()},
         expected={test: null.mean for test, (_, _, null) in by_test.items()},
         departures={test: float(one / sigma) for test, (one, sigma) in rows.items()},
-        broken=bool(np.abs(away / spread).max() > _BROKEN_ONCE or abs(_sum(away / spread)) > _BROKEN),
+        broken=_is_broken(name, away / spread),
     )
+
+
+def _is_broken(name, departures):
+    """Whether departures from a law are too large, in one test or over all."""
+    if law_of(name).least:
+        departures = np.maximum(departures, 0.0)
+    return bool(np.abs(departures).max() > _BROKEN_ONCE or abs(_sum(departures)) > _BROKEN)
 
 
 def _sum(departures):
@@ -146,6 +181,7 @@ def _sum(departures):
 
 def _largest(law):
     own = np.array(list(law.departures.values()))
+    own = np.maximum(own, 0.0) if law_of(law.name).least else own
     return max(np.abs(own).max(), abs(_sum(own)))
 
 
@@ -185,13 +221,20 @@ def _isolates(effect, laws):
 
 
 def _alike(law):
-    """Whether the tests agree on the size of a departure."""
+    """Whether the tests agree on the size of a departure: each with the mean of the others."""
     own = np.array([tamed(law.name, value) for value in law.measured.values()])
     own = own - np.array(list(law.expected.values()))
     sigma = np.abs(own) / np.maximum(np.abs(list(law.departures.values())), 1e-9)
-    if np.abs(own).max() > 0.0:
-        sigma = np.hypot(sigma, FORM * np.abs(own).max())
-    return bool((np.abs(own - law.value) < _ALIKE * sigma).all())
+    sigma = np.hypot(sigma, FORM * np.abs(own))
+    for test in range(len(own)):
+        others = np.arange(len(own)) != test
+        if not others.any():
+            continue
+        weight = sigma[others] ** -2
+        apart = own[test] - weight @ own[others] / weight.sum()
+        if abs(apart) > _ALIKE * np.hypot(sigma[test], weight.sum() ** -0.5):
+            return False
+    return True
 
 
 def _chance(laws):
