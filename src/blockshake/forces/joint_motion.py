@@ -76,9 +76,10 @@ def joint_motion(structure, faces, motion, still, width):
         [binary_dilation(tangent * sign >= 0, near, border_value=1) for sign in (-1, 1)]
         for tangent in (side, across)
     ]
+    steady = ~binary_dilation(changed, iterations=calm, border_value=1)
     return JointMotion(
         one["rotation"], one["rotation_error"], one["slip_rate"], one["slip_rate_error"],
-        side, across, ~binary_dilation(changed, iterations=calm, border_value=1), np.moveaxis(np.array(bears), (0, 1), (2, 3)),
+        side, across, steady, np.moveaxis(np.array(bears), (0, 1), (2, 3)),
     )  # fmt: skip
 
 

@@ -93,3 +93,18 @@ def test_a_stop_that_one_test_shows_is_no_surer_than_its_form():
     gap, stiffness = (found.parameters["stopper-contact"][name] for name in ("gap", "stiffness"))
     assert (gap.lower, gap.upper) == pytest.approx((0.0285 - 1.645e-3, 0.0285 + 1.645e-3))
     assert stiffness.upper - stiffness.lower == pytest.approx(2.0 * 1.645 * 0.15 * 6e6)
+
+
+def test_an_effect_that_no_law_leans_to_is_struck_out():
+    own = PITCH.model_copy(
+        update={
+            "name": "joint1.friction.loss", "unit": "1", "joint": "slab-block-1", "broken": False,
+            "departures": {"one": 3.1, "two": -2.9},
+        }
+    )  # fmt: skip
+    found = with_laws(made_up_decision("named", ("weak-joint",)), findings((own,)), PLACES)
+    assert (found.decision, found.causes) == ("none", ())
+    assert found.struck_out["weak-joint"][0] == "no law departs its way"
+    leaning = own.model_copy(update={"departures": {"one": 3.1, "two": 1.2}})
+    kept = with_laws(made_up_decision("named", ("weak-joint",)), findings((leaning,)), PLACES)
+    assert kept.causes == ("weak-joint",)

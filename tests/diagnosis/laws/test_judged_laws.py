@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from blockshake.diagnosis.laws.findings import OutsideForce
-from blockshake.diagnosis.laws.judged_laws import judge_laws, law_that_holds
+from blockshake.diagnosis.laws.judged_laws import accounts_for, judge_laws, law_that_holds, leans_to
 from blockshake.diagnosis.laws.null_laws import null_laws, tamed
 
 TESTS = ("one", "two", "three")
@@ -173,3 +173,34 @@ def test_laws_that_no_draw_tells_keep_their_usual_value():
     assert "joint1.impact.ringing" not in nulls
     assert nulls["joint1.lever.bias"].mean == 0.0
     assert nulls["joint1.lever.stray"].mean == pytest.approx(tamed("joint1.lever.stray", 1.0))
+
+
+def test_a_distance_that_is_small_breaks_nothing():
+    """Blocks that slide in place of rocking leave less unexplained than nominal draws that rock."""
+    found = judged(**{"unexplained.largest": 1e-6, "joint1.lever.stray": 1e-3})
+    assert found.broken == ()
+    assert found.p > 0.01
+
+
+def test_an_edge_that_broke_between_two_tests_is_no_reduced_bearing():
+    by_test = {"one": {"joint1.lever.short": 0.065}, "two": {"joint1.lever.short": 0.012}}
+    found = judged(by_test=by_test)
+    assert [one.name for one in found.broken] == ["joint1.lever.short"]
+    assert found.isolated == ()
+    assert not accounts_for("reduced-bearing", found)
+
+
+@pytest.mark.parametrize(("short", "leans"), [(0.005, False), (0.012, True), (-0.01, False)])
+def test_a_law_leans_to_its_effect_or_not(short, leans):
+    found = judged(**{"joint1.lever.short": short})
+    assert leans_to("reduced-bearing", {}, found) is leans
+
+
+def test_effects_without_a_law_and_structures_without_levers_are_left_to_the_features():
+    found = judged()
+    assert leans_to("vertical-motion", {}, found)
+    assert not leans_to("stopper-contact", {"body": "block-2"}, found)
+    # its friction was not told, as nothing slipped
+    assert not leans_to("weak-joint", {"joint": ["slab", "block-1"]}, found)
+    bridged = found.model_copy(update={"laws": tuple(one for one in found.laws if not one.joint)})
+    assert leans_to("weak-joint", {"joint": ["slab", "block-1"]}, bridged)

@@ -75,8 +75,8 @@ def accounts_for(effect, findings):
     Returns
     -------
     bool
-        A contact with a stop accounts for a force from outside that comes and goes, and for no other. No effect accounts
-        for a law of its own that is broken unlike in the tests.
+        A contact with a stop accounts for a force from outside that comes and goes, and for no other. No effect
+        accounts for a law of its own that is broken unlike in the tests.
     """
     if effect == STOP:
         kinds, forces = OF_A_STOP, ("spring", "pulse")
@@ -127,11 +127,12 @@ def leans_to(effect, place, findings):
     Returns
     -------
     bool
-        True for an effect that has no law of its own. A stop has the force that it exerts.
+        True for an effect that has no law of its own, and where no joint's law is told, as under a block that bridges
+        two walls. A stop has the force that it exerts.
     """
     if effect == STOP:
         return (findings.outside or findings.outside_of_stop) is not None
-    if effect not in SIGNATURES:
+    if effect not in SIGNATURES or not any(one.joint for one in findings.laws):
         return True
     sign = SIGNATURES[effect].sign
     sums = [_sum(list(one.departures.values())) for one in own_laws(effect, findings.laws) if _at(place, one)]
