@@ -182,6 +182,11 @@ def test_a_distance_that_is_small_breaks_nothing():
     assert found.p > 0.01
 
 
+def test_the_pitch_that_every_table_has_breaks_nothing():
+    assert judged(**{"table.pitch": 2.5e-5}).broken == ()
+    assert judged(**{"table.pitch": 3e-4}).isolated == ("table-pitch",)
+
+
 def test_an_edge_that_broke_between_two_tests_is_no_reduced_bearing():
     by_test = {"one": {"joint1.lever.short": 0.065}, "two": {"joint1.lever.short": 0.012}}
     found = judged(by_test=by_test)

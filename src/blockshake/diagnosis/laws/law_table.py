@@ -68,8 +68,9 @@ OF_JOINTS = {
 }  # fmt: skip
 
 OF_TESTS = {
+    # a table's own pitch of some 1e-5 rad s2/m moves no lever by a millimetre
     "table.pitch": Law(
-        "rad s2/m", 1e-5, 0.0, 1.0, "rotation of the table by its acceleration, beside its moment",
+        "rad s2/m", 4e-5, 0.0, 1.0, "rotation of the table by its acceleration, beside its moment",
         "Conte and Trombetti (2000)",
     ),
     "table.compliance": Law(
