@@ -70,6 +70,8 @@ def test_numerical_failure_keeps_what_was_computed(tmp_path, capsys):
           "friction.wood.wood=1", "--output", "x.nc"], "friction.wood.wood"),
         (["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "ls-dem", "--duration", "-1",
           "--output", "x.nc"], "--duration: expected a positive number"),
+        (["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "nscd-rigid", "--time-step",
+          "0.5", "--output", "x.nc"], "--time-step: expected at most 0.01 s"),
     ],
 )  # fmt: skip
 def test_bad_input_is_one_line_and_exit_2(arguments, line, capsys, tmp_path, monkeypatch):

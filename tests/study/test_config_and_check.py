@@ -2,14 +2,17 @@
 
 import copy
 
+import numpy as np
 import pytest
 import yaml
 
+from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, load_yaml
 from blockshake.geometry.structure import load_structure
 from blockshake.study.check import check_file
 from blockshake.study.config import check_config, load_config
+from blockshake.study.motion_remarks import motion_remarks
 from blockshake.study.sampling.distributions import TABLE_2
 from blockshake.study.structure_remarks import structure_remarks
 
@@ -164,7 +167,8 @@ def test_check_says_what_a_good_file_is(monkeypatch):
     monkeypatch.chdir(ROOT)
     assert "3 blocks of 22091 kg" in check_file("configuration-1")
     assert "9 blocks" in check_file("config/structures/configuration-3.yaml")
-    assert "a motion of 25 s, given as acceleration" in check_file("alkion")
+    assert "3 of 0.8 x 2.4 x 1.6 m, 7364 kg, height over width 2" in check_file("configuration-1")
+    assert "a motion of 25 s, given as acceleration; peaks along x: " in check_file("alkion")
     assert "a study of 4 cases by ls-dem and nscd-rigid, 50 samples" in check_file("config/study.yaml")
 
 
@@ -206,3 +210,29 @@ def test_check_remarks_a_structure_in_millimetres(tmp_path):
 @pytest.mark.parametrize("number", [1, 2, 3, 4])
 def test_shipped_structures_have_no_remarks(number):
     assert structure_remarks(load_structure(f"configuration-{number}")) == []
+
+
+def motion_file(folder, acceleration):
+    time = np.arange(0.0, 20.0, 0.01)
+    rows = "\n".join(f"{t:.2f},{value:.6g}" for t, value in zip(time, acceleration(time), strict=True))
+    path = folder / "motion.csv"
+    path.write_text(f"time_s,acceleration_x\n{rows}\n")
+    return str(path)
+
+
+@pytest.mark.parametrize(
+    ("scale", "offset", "remark"),
+    [
+        (0.3, 0.0, "the peak acceleration is 0.031 g: expected m/s2, not g"),
+        (300.0, 0.0, "the peak acceleration is 31 g: expected m/s2, not cm/s2"),
+        (3.0, 0.1, "an offset of the acceleration?"),
+    ],
+)
+def test_check_remarks_a_motion_in_other_units_or_with_an_offset(tmp_path, scale, offset, remark):
+    file = motion_file(tmp_path, lambda t: scale * np.sin(2.0 * np.pi * t) + offset)
+    assert remark in check_file(file)
+
+
+@pytest.mark.parametrize("name", ["alkion", "basso-tirreno"])
+def test_shipped_motions_have_no_remarks(name):
+    assert motion_remarks(load_motion(name)) == []

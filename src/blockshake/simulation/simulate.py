@@ -25,6 +25,7 @@ from blockshake.simulation.run_dataset import (
 )
 from blockshake.sources import module_sources
 
+_LONGEST_STEP = 0.01  # s
 _WORST_RESIDUAL = 0.05  # a run whose energy audit misses more is not to be trusted
 
 
@@ -85,6 +86,10 @@ def simulate(
     for name, value in (("time step", time_step), ("duration", duration), ("output rate", output_rate)):
         if not (np.isfinite(value) and value > 0.0):
             raise InputError(f"--{name.replace(' ', '-')}", "", f"expected a positive number, not {value}")
+    if time_step > _LONGEST_STEP:
+        raise InputError(
+            "--time-step", "", f"expected at most {_LONGEST_STEP:g} s, not {time_step:g}: impacts last less"
+        )
     coarse = np.arange(int(np.floor(duration * output_rate + 1e-9)) + 1) / output_rate
     fine = np.empty(0)
     if accelerometers and built.file.accelerometers:

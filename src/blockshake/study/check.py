@@ -10,11 +10,12 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.study.config import load_config
-from blockshake.study.structure_remarks import structure_remarks
+from blockshake.study.motion_remarks import motion_line, motion_remarks
+from blockshake.study.structure_remarks import structure_lines, structure_remarks
 
 
 def check_file(source):
-    """Kind and size of a good file, in one line, and remarks; of a campaign one line for every test too.
+    """Content of a good file as it was understood, line by line, and remarks.
 
     Parameters
     ----------
@@ -43,14 +44,16 @@ def check_file(source):
                 source, "", "expected a structure (bodies), a study (cases) or a synthetic motion (synthetic)"
             )
     motion = load_motion(source)
-    return f"a motion of {motion.duration:g} s, given as {motion.kind}"
+    return _with_remarks([motion_line(motion)], motion_remarks(motion))
 
 
 def _structure_line(source):
     structure = load_structure(source)
-    free = int((~structure.driven).sum())
-    line = f"a structure of {free} blocks of {structure.mass[~structure.driven].sum():.0f} kg in all"
-    return "\n".join([line, *(f"  remark: {remark}" for remark in structure_remarks(structure))])
+    return _with_remarks(structure_lines(structure), structure_remarks(structure))
+
+
+def _with_remarks(lines, remarks):
+    return "\n".join([*lines, *(f"  remark: {remark}" for remark in remarks)])
 
 
 def _campaign_line(folder):

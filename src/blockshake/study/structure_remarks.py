@@ -1,9 +1,35 @@
-"""Remarks on a structure that is well formed, but perhaps not what was meant."""
+"""Content of a structure as it was understood, and remarks where that is perhaps not what was meant."""
+
+from collections import Counter
 
 import numpy as np
 
+from blockshake.geometry.rotations import rotation_matrices
+
 _LIGHTEST, _HEAVIEST = 100.0, 25000.0  # kg/m3; no block is of less or more
 _LARGEST = 50.0  # m, of an edge
+
+
+def structure_lines(structure):
+    """Blocks, their mass, size and slenderness, and the joints of a `Structure`; a list of str."""
+    free = np.flatnonzero(~structure.driven)
+    alike = Counter(_block_words(structure, body) for body in free)
+    joints = np.count_nonzero(np.triu(structure.touching))
+    return [
+        f"a structure of {len(free)} blocks of {structure.mass[free].sum():.0f} kg in all, and {joints} joints",
+        *(f"  {count} of {words}" for words, count in alike.items()),
+    ]
+
+
+def _block_words(structure, body):
+    """Size, mass and slenderness of a block as it stands."""
+    solid = structure.solid(body)
+    turned = solid.vertices @ rotation_matrices(structure.orientation[body]).T
+    length, depth, height = np.ptp(turned, axis=0)
+    return (
+        f"{length:.3g} x {depth:.3g} x {height:.3g} m, {structure.mass[body]:.0f} kg, "
+        f"height over width {height / min(length, depth):.2g}"
+    )
 
 
 def structure_remarks(structure):
