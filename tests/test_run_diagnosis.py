@@ -34,6 +34,14 @@ BAD = {
         lambda text: text.replace("structure: configuration-1", "structure: configuration-3"),
         "expected markers of the structure",
     ),
+    "readings without noise": (
+        lambda text: (
+            text + "\nsensors: {marker_noise: 0.0, accelerometer_noise: 0.05}\n"
+            if "sensors:" not in text
+            else text.replace(text[text.index("sensors:") :].splitlines()[0], "sensors: {marker_noise: 0.0}")
+        ),
+        "sensors.marker_noise: input should be greater than 0",
+    ),
     "a motion nobody has": (
         lambda text: text.replace("motion: alkion,", "motion: nothing,"),
         "expected a shipped motion",
@@ -49,6 +57,14 @@ def test_a_campaign_that_cannot_be_diagnosed(tmp_path, capsys, case):
     error = capsys.readouterr().err
     assert message in error
     assert error.count("\n") == 1
+    assert not output.exists()
+
+
+@pytest.mark.parametrize("cores", [0, -3])
+def test_a_number_of_cores_that_is_none(tmp_path, capsys, cores):
+    output = tmp_path / "output"
+    assert main(["diagnose", str(CAMPAIGN), "--output", str(output), "--cores", str(cores)]) == 2
+    assert capsys.readouterr().err.count(f"expected a whole number from 1, not {cores}") == 1
     assert not output.exists()
 
 
