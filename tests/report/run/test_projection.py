@@ -1,6 +1,9 @@
+import dataclasses
+
 import numpy as np
 import pytest
 
+from blockshake.geometry.structure import load_structure
 from blockshake.report.run.projection import VIEWS, Scene
 
 
@@ -31,6 +34,14 @@ def test_what_is_nearer_comes_later_and_the_driven_body_first(make_structure):
     assert order == [0, 2, 1]
 
 
+def test_a_wide_block_on_two_walls_hides_their_tops():
+    structure = load_structure("configuration-3")
+    _, order, _ = Scene(structure, "3d").faces(structure.position, structure.orientation)
+    last = {structure.body_names[body]: place for place, body in enumerate(order)}
+    assert last["slab"] < last["wall-a-1"]
+    assert last["wall-a-4"] < last["wall-b-4"] < last["top"]
+
+
 def test_a_box_shows_three_faces_in_parallel_projection(make_structure):
     structure = make_structure([{"name": "a", "shape": "cube", "position": [0.0, 0.0, 0.5]}])
     _, bodies, light = Scene(structure, "3d").faces(structure.position, structure.orientation)
@@ -44,3 +55,14 @@ def test_the_extent_holds_every_pose(leaning_run):
     np.testing.assert_allclose(low, [-1.5, -0.2], atol=1e-12)
     assert high[0] == pytest.approx(1.6)  # the slab, 0.1 m on
     assert 3.2 < high[1] < 3.2 + 0.8 * 0.05
+
+
+def test_a_shape_that_is_not_convex_is_seen_by_its_triangles(make_structure):
+    structure = make_structure([{"name": "a", "shape": "cube", "position": [0.0, 0.0, 0.5]}])
+    solids = {**structure.solids, "cube": dataclasses.replace(structure.solids["cube"], polyhedron=None)}
+    structure = dataclasses.replace(structure, solids=solids)
+    outlines, bodies, _ = Scene(structure, "front").faces(structure.position, structure.orientation)
+    assert bodies == [0, 1, 1]
+    front = np.concatenate(outlines[1:])
+    assert len(front) == 6
+    np.testing.assert_allclose([front.min(axis=0), front.max(axis=0)], [[-0.5, 0.0], [0.5, 1.0]], atol=1e-12)

@@ -1,9 +1,6 @@
 import numpy as np
 import pytest
-from PIL import Image
 
-from blockshake.errors import InputError
-from blockshake.report.document.drawing import save_picture
 from blockshake.report.run.figure import plot_run, run_title
 from blockshake.report.run.structure_picture import plot_understood
 from blockshake.simulation.run_histories import run_histories
@@ -97,17 +94,3 @@ def test_a_structure_is_shown_with_names_and_joints(tower):
     np.testing.assert_allclose(joints.get_ydata(), np.arange(12.0), atol=1e-9)
     assert joints.get_label() == "12 joints found"
     assert figure.get_suptitle() == "test: 12 blocks"
-
-
-def test_a_picture_has_the_format_of_its_suffix_and_the_same_bytes(tower, tmp_path):
-    for suffix, begins in ((".png", b"\x89PNG"), (".svg", b"<?xml"), (".pdf", b"%PDF")):
-        for name in ("a", "b"):
-            save_picture(tmp_path / f"{name}{suffix}", plot_understood, tower)
-        content = (tmp_path / f"a{suffix}").read_bytes()
-        assert content.startswith(begins)
-        assert content == (tmp_path / f"b{suffix}").read_bytes()
-    with Image.open(tmp_path / "a.png") as picture:
-        assert min(picture.size) > 400
-        assert np.asarray(picture.convert("L")).std() > 10.0
-    with pytest.raises(InputError, match=r"expected a picture's suffix: \.png, \.pdf, \.svg"):
-        save_picture(tmp_path / "a.jpg", plot_understood, tower)

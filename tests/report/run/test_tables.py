@@ -13,7 +13,7 @@ def tables(leaning_run, tmp_path_factory):
     run, structure = leaning_run
     path = tmp_path_factory.mktemp("tables") / "run.csv"
     files = write_tables(path, run, run_histories(run, structure))
-    return {file.name: pd.read_csv(file, float_precision="round_trip") for file in files}
+    return {file.name: pd.read_csv(file) for file in files}
 
 
 def test_there_is_a_table_a_kind_of_thing_and_none_without_rows(tables):

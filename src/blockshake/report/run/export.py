@@ -13,7 +13,7 @@ FORMATS = {".csv": "tables", ".vtkhdf": "ParaView", ".glb": "glTF"}
 
 def check_export(path):
     """Refuse a path that cannot be written, or whose suffix is none of `FORMATS`, with `InputError`."""
-    if Path(path).suffix not in FORMATS:
+    if Path(path).suffix.lower() not in FORMATS:
         known = ", ".join(f"{suffix} ({name})" for suffix, name in FORMATS.items())
         raise InputError(path, "", f"expected one of the suffixes {known}")
     check_output(path)
@@ -25,7 +25,7 @@ def export_run(path, run, histories, structure):
     ``run``, ``histories`` and ``structure`` are from `load_run` and `run_histories`.
     """
     check_export(path)
-    suffix = Path(path).suffix
+    suffix = Path(path).suffix.lower()
     if suffix == ".csv":
         return write_tables(path, run, histories)
     if suffix == ".vtkhdf":

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from matplotlib import colormaps
 
 from blockshake.dynamics.system import ENERGY_TERMS
 from blockshake.report.document.drawing import (
@@ -156,12 +157,12 @@ def _draw_map(figure, axes, key, panel):
     names = values[panel.kind].values.tolist()
     largest = float(np.abs(values).max())
     low, high = panel.limits or (-largest, largest)
+    colors = colormaps[_EITHER_SIGN if low < 0.0 else _ONE_SIGN].with_extremes(bad=LIGHT_GREY)
     image = axes.imshow(
         values, origin="lower", aspect="auto", vmin=low, vmax=high if high > low else low + 1.0,
-        cmap=_EITHER_SIGN if low < 0.0 else _ONE_SIGN, interpolation="nearest",
+        cmap=colors, interpolation="nearest",
         extent=(float(values["time"][0]), float(values["time"][-1]), 0.0, len(names)),
     )  # fmt: skip
-    image.cmap.set_bad(LIGHT_GREY)
     axes.grid(visible=False)
     places = np.arange(0, len(names), -(-len(names) // _MOST_NAMES))
     axes.set_yticks(places + 0.5, labels=[names[place] for place in places], fontsize=5.0)

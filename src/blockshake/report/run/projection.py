@@ -3,6 +3,7 @@
 import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.motion.contact_normals import parting_normal
 
 
 def _turned(azimuth, elevation):
@@ -21,6 +22,7 @@ VIEWS = {
 }
 _LIGHT = np.array([-0.35, 0.45, 0.82])  # from the left, above and behind the eye, in axes of the view
 _DARKEST = 0.62
+_ALONG = 1e-6  # of a normal towards the eye: a face seen edge on hides nothing
 
 
 class Scene:
@@ -70,15 +72,39 @@ class Scene:
         """
         turns = self._axes @ rotation_matrices(orientation)
         places = self.seen(position)
-        order = sorted(range(len(places)), key=lambda body: (not self._driven[body], places[body, 2]))
+        corners = [
+            solid.vertices @ turn.T + place
+            for solid, turn, place in zip(self._solids, turns, places, strict=True)
+        ]
         outlines, bodies, light = [], [], []
-        for body in order:
-            corners = self._solids[body].vertices @ turns[body].T + places[body]
-            for outline, normal in self._visible(self._solids[body], corners, turns[body]):
+        for body in self._farthest_first(places, corners, turns):
+            for outline, normal in self._visible(self._solids[body], corners[body], turns[body]):
                 outlines.append(outline)
                 bodies.append(body)
                 light.append(_DARKEST + (1.0 - _DARKEST) * max(0.0, float(normal @ _LIGHT)))
         return outlines, bodies, light
+
+    def _farthest_first(self, places, corners, turns):
+        """Bodies in an order in which none hides one after it, where there is such an order.
+
+        Of two convex bodies whose outlines overlap, the one on the eye's side of the face that parts them is nearer.
+        """
+        left = sorted(range(len(places)), key=lambda body: (not self._driven[body], places[body, 2]))
+        low, high = (np.array([end(own[:, :2], axis=0) for own in corners]) for end in (np.min, np.max))
+        overlap = ((low[:, None] < high) & (low < high[:, None])).all(axis=2)
+        farther = {body: set() for body in left}
+        for a, b in np.argwhere(np.triu(overlap, 1)).tolist():
+            towards = parting_normal(
+                self._solids[a], corners[a], turns[a], self._solids[b], corners[b], turns[b]
+            )[2]
+            if abs(towards) > _ALONG:  # no number where a body is not convex
+                farther[b if towards > 0.0 else a].add(a if towards > 0.0 else b)
+        order = []
+        while left:
+            following = next((body for body in left if not farther[body] & set(left)), left[0])
+            left.remove(following)
+            order.append(following)
+        return order
 
     def _visible(self, solid, corners, turn):
         """Outlines of the faces that look to the eye, with their unit normals, farther ones first."""
