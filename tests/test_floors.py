@@ -31,7 +31,7 @@ ROOMS_OF_DIAGNOSIS = [
     ["gain"],
     ["steps"],
 ]
-ROOMS_OF_REPORT = [["document"], ["study", "diagnosis"]]
+ROOMS_OF_REPORT = [["document"], ["study", "diagnosis", "run"]]
 MOST_MODULES = 15
 
 
