@@ -6,7 +6,8 @@ rule make_report:
         ],
         campaigns=[campaign_files(case) for case in MEASURED],
         shipped=[
-            definition("structures", f"configuration-{place}") for place in (1, 2, 3, 4)
+            definition("structures", f"configuration-{place}")
+            for place in (1, 2, 3, 4)
         ]
         + [beside(HOME / "config" / f"{name}.yaml") for name in ("study", "paper")],
         peer=beside(HOME / "data" / "peers" / "lmgc90.nc"),

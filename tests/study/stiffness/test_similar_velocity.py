@@ -30,7 +30,7 @@ def waves(shares, target=4000.0):
 
 def test_equal_slopes_give_the_lag_of_the_arrivals_at_any_tolerance():
     found = read_at_similar_velocity(waves([1.0, 1.0, 1.0])).sel(direction="normal")
-    assert found["tolerance"].values.tolist() == list(TOLERANCES)
+    assert found["within"].values.tolist() == list(TOLERANCES)
     assert found["time"].values == pytest.approx(2e-3)
     assert found["wave_speed"].values == pytest.approx(4000.0)
     assert found["stiffness_ratio"].values == pytest.approx(1.0)
@@ -43,7 +43,7 @@ def test_stiffness_goes_with_the_square_of_the_speeds():
 
 def test_slopes_that_stay_apart_are_read_where_the_tolerance_lets_them():
     found = read_at_similar_velocity(waves([1.0, 1.0, 0.85])).sel(direction="normal")
-    assert np.isnan(found["wave_speed"].sel(tolerance=0.1))
+    assert np.isnan(found["wave_speed"].sel(within=0.1))
     # the lowest block is 1 um ahead when the highest sets out; the lag is that of the mean slope
     lag = 1e-6 / (STEP * np.mean([1.0, 1.0, 0.85]))
-    assert float(found["wave_speed"].sel(tolerance=0.2)) == pytest.approx(HEIGHT / lag, rel=1e-6)
+    assert float(found["wave_speed"].sel(within=0.2)) == pytest.approx(HEIGHT / lag, rel=1e-6)

@@ -17,7 +17,7 @@ def read_at_similar_velocity(waves):
     Returns
     -------
     xarray.Dataset
-        Over (direction, tolerance): ``time`` of that instant [s]; ``wave_speed`` [m/s]; ``stiffness_ratio`` [1],
+        Over (direction, within): ``time`` of that instant [s]; ``wave_speed`` [m/s]; ``stiffness_ratio`` [1],
         stiffness that gives the target speed by this reading over that of the study. NaN where the blocks never move
         so much alike while the test lasts.
 
@@ -30,7 +30,7 @@ def read_at_similar_velocity(waves):
     """
     step = waves.attrs["step_velocity"]
     readings = [_read(waves.sel(direction=one), step) for one in waves["direction"].values]
-    shape = ("direction", "tolerance")
+    shape = ("direction", "within")
     time, speed = (np.array(values) for values in zip(*readings, strict=True))
     target = waves["target_wave_speed"].to_numpy()[:, None]
     return xr.Dataset(
@@ -39,7 +39,7 @@ def read_at_similar_velocity(waves):
             "wave_speed": (shape, speed),
             "stiffness_ratio": (shape, (target / speed) ** 2),
         },
-        coords={"direction": waves["direction"].values, "tolerance": list(TOLERANCES)},
+        coords={"direction": waves["direction"].values, "within": list(TOLERANCES)},
     )
 
 

@@ -55,7 +55,7 @@ def similar_velocity(content):
         at = [one.sel(direction=direction)["stiffness_ratio"] for one in readings]
         ratios = np.concatenate([one.values[np.isfinite(one.values)] for one in at])
         never = sorted(
-            {float(one["tolerance"][place]) for one in at for place in np.flatnonzero(np.isnan(one.values))}
+            {float(one["within"][place]) for one in at for place in np.flatnonzero(np.isnan(one.values))}
         )
         words = f"{direction} {min(ratios):.2f} to {max(ratios):.2f}" if len(ratios) else f"{direction} none"
         if never:
