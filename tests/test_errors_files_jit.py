@@ -18,7 +18,6 @@ from blockshake.files import (
     load_yaml,
     parse_yaml,
     replacing,
-    source_digest,
     write_dataset,
     write_json,
     write_text,
@@ -129,51 +128,6 @@ def test_the_content_digest_tells_values_apart_and_not_the_order_of_keys():
     assert len(different) == 5
     assert content_digest("ab", "c") != content_digest("a", "bc")
     assert len(content_digest(1)) == 12
-
-
-def _clear():
-    """Forget the digests of sources: these change while a test runs, as they never do under a program."""
-    source_digest.cache_clear()
-    files._syntax.cache_clear()
-
-
-@pytest.fixture
-def package(tmp_path, monkeypatch):
-    monkeypatch.setattr(files, "PACKAGE", tmp_path)
-    (tmp_path / "part").mkdir()
-    (tmp_path / "part" / "a.py").write_text(
-        '"""Doc."""\n\n\ndef f(x):\n    """Add one."""\n    return x + 1\n'
-    )
-    (tmp_path / "b.py").write_text("B = 2\n")
-    _clear()
-    yield tmp_path
-    _clear()
-
-
-def _digests():
-    _clear()
-    return source_digest(), source_digest("part"), source_digest("b.py")
-
-
-def test_the_source_digest_ignores_explanations(package):
-    before = _digests()
-    (package / "part" / "a.py").write_text(
-        '"""Other."""\n# why\ndef f( x ):\n    """Add\n    1."""\n\n    return x+1  # one\n'
-    )
-    assert _digests() == before
-
-
-def test_the_source_digest_follows_code_of_the_parts_named(package):
-    whole, part, b = _digests()
-    (package / "part" / "a.py").write_text(
-        '"""Doc."""\n\n\ndef f(x):\n    """Add one."""\n    return x + 2\n'
-    )
-    new_whole, new_part, new_b = _digests()
-    assert new_whole != whole
-    assert new_part != part
-    assert new_b == b
-    (package / "part" / "a.py").rename(package / "part" / "c.py")
-    assert _digests()[1] != new_part  # a moved module is another program
 
 
 def test_the_kernel_cache_is_named_after_the_sources():

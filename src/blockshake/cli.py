@@ -198,8 +198,7 @@ def _convert_motion(options):
 
 
 def _generate_campaign(options):
-    from blockshake.files import source_digest
-    from blockshake.sources import module_sources
+    from blockshake.sources import module_sources, source_digest
     from blockshake.virtual.generate import generate_campaign
     from blockshake.virtual.settings import load_settings
 

@@ -1,8 +1,6 @@
-"""Reading and writing files: strict YAML, atomic writes, digests of sources and contents."""
+"""Reading and writing files: strict YAML, atomic writes, digests of contents."""
 
-import ast
 import contextlib
-import functools
 import hashlib
 import json
 import os
@@ -214,51 +212,3 @@ def content_digest(*values):
 def file_digest(path):
     """Twelve hexadecimal digits that identify a file's bytes."""
     return content_digest(Path(path).read_bytes())
-
-
-@functools.cache
-def source_digest(*packages):
-    """Twelve hexadecimal digits that identify what the sources compute.
-
-    Parameters
-    ----------
-    *packages : str
-        Folders, modules or functions of blockshake, such as ``"geometry"``, ``"files.py"`` or
-        ``"diagnosis/steps.py:decide"``; none means the whole package.
-
-    Notes
-    -----
-    Comments, docstrings and layout do not count: the digest is of the syntax trees, so that a
-    better explanation reruns no simulation.
-    """
-    digest = hashlib.sha256()
-    for package in packages or (".",):
-        path, _, function = package.partition(":")
-        path = PACKAGE / path
-        for source in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
-            digest.update(str(source.relative_to(PACKAGE)).encode())
-            digest.update(_syntax(source, function))
-    return digest.hexdigest()[:12]
-
-
-@functools.cache
-def _syntax(source, function):
-    """Digest of the syntax tree of a file, or of its top and one of its functions: many packages share a file."""
-    tree = _without_docstrings(ast.parse(source.read_text(encoding="utf-8")))
-    if function:
-        tree.body = [node for node in tree.body if getattr(node, "name", function) == function]
-    return hashlib.sha256(ast.dump(tree).encode()).digest()
-
-
-def _without_docstrings(tree):
-    for node in ast.walk(tree):
-        body = getattr(node, "body", None)
-        if (
-            isinstance(body, list)
-            and body
-            and isinstance(body[0], ast.Expr)
-            and isinstance(body[0].value, ast.Constant)
-            and isinstance(body[0].value.value, str)
-        ):
-            del body[0]
-    return tree

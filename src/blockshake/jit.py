@@ -20,8 +20,7 @@ import numba
 from numba.core.caching import CacheImpl, IndexDataCacheFile, _CacheLocator
 from numba.core.compiler_lock import global_compiler_lock
 
-from blockshake.files import source_digest
-from blockshake.sources import compiled_sources
+from blockshake.sources import compiled_sources, source_digest
 
 SOURCE_DIGEST = source_digest(*compiled_sources())
 CACHE_FOLDER = Path(os.environ.get("BLOCKSHAKE_CACHE", Path.home() / ".cache" / "blockshake")) / SOURCE_DIGEST

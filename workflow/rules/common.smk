@@ -18,10 +18,10 @@ os.environ.update(
 )
 
 from blockshake.errors import InputError
-from blockshake.files import HOME, PACKAGE, shipped, source_digest
+from blockshake.files import HOME, PACKAGE, shipped
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.simulation.models import MODELS as SOLVERS
-from blockshake.sources import kernel_sources, script_sources
+from blockshake.sources import kernel_sources, script_sources, source_digest
 from blockshake.study.config import StudyConfig, check_config
 from blockshake.validation import validated
 

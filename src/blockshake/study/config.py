@@ -159,6 +159,8 @@ def check_config(mapping, where):
     names = [case.name for case in config.cases]
     for model, settings in config.models.items():
         _check_parameters(model, settings, f"models.{model}.parameters", where)
+    for motion in dict.fromkeys([*(case.motion for case in config.cases), *config.ladder.motions]):
+        load_motion(motion)
     for index, case in enumerate(config.cases):
         key = f"cases.{index}"
         if names.count(case.name) > 1:
@@ -171,7 +173,6 @@ def check_config(mapping, where):
                     f"expected {SMALLEST_SIZE} to {config.ensemble.size}, not {count}",
                 )
         load_structure(case.structure)
-        load_motion(case.motion, case.scale)
         if case.measured is not None:
             _check_measured(case, where, f"{key}.measured")
     for target, source in config.ensemble.linked.items():
@@ -182,8 +183,6 @@ def check_config(mapping, where):
     _check_friction_search(config, where)
     if config.ensemble.correlation is not None:
         load_correlation(config.ensemble.correlation)
-    for motion in config.ladder.motions:
-        load_motion(motion)
     if config.convergence is not None:
         load_structure(config.convergence.structure)
     for folder in config.diagnosis.campaigns:

@@ -3,9 +3,8 @@
 import numpy as np
 import pandas as pd
 
-from blockshake.files import source_digest
 from blockshake.simulation.models import model_of
-from blockshake.sources import script_sources
+from blockshake.sources import script_sources, source_digest
 from blockshake.study.ensembles.batch import simulate_samples
 from blockshake.study.ensembles.case_input import driving_motions, measured_on_clock
 from blockshake.study.ensembles.coverage import coverage, is_likely
