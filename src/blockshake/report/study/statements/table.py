@@ -156,7 +156,7 @@ STATEMENTS = {
         ),
         Statement(
             _CASE_STUDY, "Tests start at 50 % and rise by about 25 % until a structure may collapse.",
-            specimens.ladder, "results/{study}/ladder.json",
+            specimens.ladder, _ENVELOPE,
         ),
         Statement(
             _CASE_STUDY, "A specimen that is out of place is restored before the next level.",
