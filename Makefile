@@ -45,7 +45,7 @@ test-hidden: setup
 bench: setup
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/bench.py
 
-# the figures in docs/ that the program makes, written to their pages: minutes
+# the figures in docs/ that the program makes, written to their pages: minutes; findings on the paper after a study
 figures-of-docs: setup
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/figures_of_docs.py
 

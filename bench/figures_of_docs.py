@@ -1,21 +1,23 @@
 """Figures in the pages of docs/, written anew by the program: `make figures-of-docs`, or some of them by name.
 
 A page holds the figures between `<!-- figures: NAME -->` and `<!-- end of figures -->`. All else is left
-alone.
+alone. The findings on the paper are those of the default study, and stay where `make study` has not been run.
 """
 
 import re
 import sys
+import textwrap
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 from blockshake.dynamics.load_motion import load_motion
-from blockshake.files import write_text
+from blockshake.files import load_json, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.report.document.wording import number
 from blockshake.report.study.convergence_section import numbers_table
+from blockshake.report.study.statements.section import DEPARTURES_HEADER, HEADER, count_words, departures
 from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.simulate import simulate
 from blockshake.study.config import load_config
@@ -37,6 +39,7 @@ _CHANGES = {
     "friction 0.25": dict.fromkeys(_CONCRETE, 0.25),
     "friction 0.12": dict.fromkeys(_CONCRETE, 0.12),
 }
+STUDY = Path("results/study/the-paper.json")
 _STEPS = {"nscd-rigid": 1e-3, "ls-dem": 5e-5}  # s
 LITERAL = DOCS.parent / "config" / "literal.yaml"
 _FINE_IMPACTS = {"nscd.impact_parts": 20}  # as in config/study.yaml
@@ -92,6 +95,28 @@ def single_changes():
     return markdown(("change", *heads), rows)
 
 
+def statements():
+    """Findings of the default study on the statements of the paper; None where the study has not been run."""
+    if not STUDY.is_file():
+        return None
+    found = load_json(STUDY)
+    cases, models = "; ".join(found["cases"]), ", ".join(found["models"])
+    words = (
+        f"Study `{found['study']}` (blockshake {found['version']}): {found['description']}. "
+        f"{found['samples']} samples; {models}; {cases}. {count_words(found['findings'])}"
+    )
+    lines = textwrap.wrap(words, 100, break_on_hyphens=False)
+    for heading, rows in found["findings"].items():
+        shown = [(*row[:-1], f"`{row[-1]}`") for row in rows]
+        lines += ["", f"### {heading}", "", markdown(HEADER, shown)]
+    return "\n".join(lines)
+
+
+def departure_table():
+    """Departures from the paper, from the program's own constants."""
+    return markdown(DEPARTURES_HEADER, departures())
+
+
 def published_settings():
     """Peak, end and energy audit of configuration 1 by the settings of `LITERAL`, one at a time and together."""
     structure, motion = load_structure("configuration-1"), load_motion("basso-tirreno", 2.0)
@@ -129,6 +154,8 @@ MAKERS = {
     "convergence": convergence,
     "slenderness": slenderness,
     "single-changes": single_changes,
+    "statements": statements,
+    "departures": departure_table,
     "published-settings": published_settings,
 }
 
@@ -149,10 +176,15 @@ def main(names):
     """Make the figures of these names, all where none is given, and write them to their pages."""
     for page in sorted(DOCS.rglob("*.md")):
         for name, old in blocks(page).items():
-            if name in (names or MAKERS):
-                text = page.read_text(encoding="utf-8")
-                write_text(page, text.replace(BLOCK.format(name, old), BLOCK.format(name, MAKERS[name]())))
-                sys.stdout.write(f"{page.name}: {name}\n")
+            if name not in (names or MAKERS):
+                continue
+            made = MAKERS[name]()
+            if made is None:
+                sys.stdout.write(f"{page.name}: {name} stays, there is no {STUDY}\n")
+                continue
+            text = page.read_text(encoding="utf-8")
+            write_text(page, text.replace(BLOCK.format(name, old), BLOCK.format(name, made)))
+            sys.stdout.write(f"{page.name}: {name}\n")
 
 
 if __name__ == "__main__":
