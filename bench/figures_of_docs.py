@@ -6,6 +6,7 @@ alone.
 
 import re
 import sys
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -40,7 +41,8 @@ _STEPS = {"nscd-rigid": 1e-3, "ls-dem": 5e-5}  # s
 
 def convergence():
     """Table of LS-DEM's numerical parameters."""
-    found = study_convergence(Convergence(structure="configuration-1"), lambda line: None)
+    with tempfile.TemporaryDirectory() as store:
+        found = study_convergence(Convergence(structure="configuration-1"), store, "", lambda line: None)
     table = numbers_table(found)
     return markdown(table.header, table.rows)
 

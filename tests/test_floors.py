@@ -10,7 +10,7 @@ from blockshake.files import PACKAGE
 FLOORS = [
     ["errors"],
     ["files", "quantities"],
-    ["validation", "log", "sources"],
+    ["validation", "log", "sources", "store"],
     ["jit"],
     ["geometry"],
     ["dynamics"],
