@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from blockshake.files import HOME, PACKAGE, check_output
+from blockshake.working_folder import hold
 
 _KEPT = ("verdict.json", "decision.json", "parity.json", "misfit.nc", "evidence.nc", "forces.nc")
 _OF_GAIN = ("gain.nc", "consequences.nc")  # where a cause was found and there are sealed tests
@@ -37,7 +38,7 @@ def diagnose(campaign, output, effort="standard", cores=None):
     Raises
     ------
     InputError
-        A campaign that cannot be diagnosed.
+        A campaign that cannot be diagnosed, or another command works in the folder of the results.
     RuntimeError
         The workflow stopped; its messages were printed.
     """
@@ -45,8 +46,9 @@ def diagnose(campaign, output, effort="standard", cores=None):
     from blockshake.diagnosis.verdict.verdict import load_verdict
 
     plan_diagnosis(campaign, effort)
-    check_output(Path(output) / "verdict.json")
     work = Path.cwd() if HOME.is_relative_to(PACKAGE) else HOME
+    os.close(hold(work))  # the workflow holds it again
+    check_output(Path(output) / "verdict.json")
     folder = Path(campaign).resolve()
     command = [
         sys.executable, "-m", "snakemake", "diagnose", "--cores", str(cores or os.cpu_count()),
