@@ -12,6 +12,7 @@ import yaml
 from checkout import LIMIT, SNAKEMAKE, Checkout
 
 from blockshake.files import PACKAGE
+from blockshake.working_folder import hold
 
 ROOT = PACKAGE.parents[1]
 
@@ -131,6 +132,21 @@ def test_killed_study_loses_no_finished_sample(tmp_path):
     assert answer.stdout.count(", kept:") == len(finished)
     assert answer.stdout.count(", simulated:") == 20 - len(finished)
     assert {name: (store / name).stat().st_mtime_ns for name in finished} == finished
+
+
+@pytest.mark.parametrize("target", ["ladder", "diagnose"])
+def test_a_second_command_is_refused_and_touches_nothing(target, tmp_path):
+    checkout = Checkout(tmp_path)
+    campaign = ["--config", "campaign=data/virtual-campaign/configuration-1"] * (target == "diagnose")
+    held = hold(tmp_path)
+    answer = checkout.snakemake(target, *campaign)
+    os.close(held)
+    assert answer.returncode == 2
+    said = [text for text in answer.stderr.splitlines() if text.startswith("blockshake:")]
+    assert len(said) == 1
+    assert "expected a folder in which no other study or diagnosis runs" in said[0]
+    assert not (tmp_path / "results").exists()
+    assert not (tmp_path / "logs").exists()
 
 
 @pytest.mark.parametrize(
