@@ -6,6 +6,7 @@ alone. The findings on the paper are those of the default study, and stay where 
 
 import re
 import sys
+import tempfile
 import textwrap
 from pathlib import Path
 
@@ -48,7 +49,8 @@ _GRID = "ls_dem.level_set", "ls_dem.grid_spacing"  # mean nothing without each o
 
 def convergence():
     """Table of LS-DEM's numerical parameters."""
-    found = study_convergence(Convergence(structure="configuration-1"), lambda line: None)
+    with tempfile.TemporaryDirectory() as store:
+        found = study_convergence(Convergence(structure="configuration-1"), store, "", lambda line: None)
     table = numbers_table(found)
     return markdown(table.header, table.rows)
 

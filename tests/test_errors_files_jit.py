@@ -2,7 +2,6 @@ import os
 import shutil
 import subprocess
 import sys
-import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import pytest
 import xarray as xr
 from numba.core.caching import IndexDataCacheFile
 
-from blockshake import files
+from blockshake import files, jit
 from blockshake.errors import InputError
 from blockshake.files import (
     content_digest,
@@ -189,17 +188,29 @@ def test_packed_variables_keep_their_digits_and_their_gaps(tmp_path):
     xr.testing.assert_identical(xr.load_dataset(tmp_path / "b.nc"), read)
 
 
-def test_kernels_that_are_saved_at_the_same_time_do_not_take_each_other_s_place(tmp_path, monkeypatch):
-    """Two signatures of a kernel, whose index is read by both before either writes it."""
-    reads = IndexDataCacheFile._load_index
+def _cache(folder, stamp="stamp"):
+    return IndexDataCacheFile(str(folder), "kernel", stamp)
 
-    def slow(self):
-        index = reads(self)
-        time.sleep(0.2)
-        return index
 
-    monkeypatch.setattr(IndexDataCacheFile, "_load_index", slow)
-    caches = [IndexDataCacheFile(str(tmp_path), "kernel", "stamp") for _ in range(2)]
-    with ThreadPoolExecutor(2) as pool:
-        list(pool.map(lambda number: caches[number].save(f"signature {number}", f"code {number}"), range(2)))
-    assert [caches[0].load(f"signature {number}") for number in range(2)] == ["code 0", "code 1"]
+def test_kernels_that_are_saved_at_the_same_time_do_not_take_each_other_s_place(tmp_path):
+    signatures = [f"signature {number}" for number in range(8)] * 4
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(lambda one: _cache(tmp_path).save(one, f"code of {one}"), signatures))
+    assert [_cache(tmp_path).load(one) for one in signatures] == [f"code of {one}" for one in signatures]
+
+
+def test_a_damaged_or_foreign_kernel_is_compiled_anew(tmp_path):
+    cache = _cache(tmp_path)
+    cache.save("signature", "code")
+    cache.save("another", "other code")
+    kernel, other = (Path(jit._place(cache, key)) for key in ("signature", "another"))
+    whole = kernel.read_bytes()
+    flipped = bytearray(whole)
+    flipped[-3] ^= 1
+    for damaged in (b"", whole[:10], whole[:-1], bytes(flipped), other.read_bytes(), b"a note"):
+        kernel.write_bytes(damaged)
+        assert cache.load("signature") is None
+    cache.save("signature", "code")
+    assert cache.load("signature") == "code"
+    # other sources
+    assert _cache(tmp_path, "edited").load("signature") is None

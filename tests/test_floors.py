@@ -9,8 +9,8 @@ from blockshake.files import PACKAGE
 # From the ground up; what stands on one line knows nothing of its neighbours.
 FLOORS = [
     ["errors"],
-    ["files", "quantities"],
-    ["validation", "log", "sources"],
+    ["files", "quantities", "working_folder"],
+    ["validation", "log", "sources", "store"],
     ["jit"],
     ["geometry"],
     ["dynamics"],

@@ -1,12 +1,15 @@
 """The command's bad input: one clear line, exit 2, nothing half-written."""
 
+import os
 import shutil
 
 import pytest
 
+from blockshake import run_diagnosis
 from blockshake.cli import main
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE
+from blockshake.working_folder import hold
 
 CAMPAIGN = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-1"
 
@@ -94,6 +97,18 @@ def test_bad_arguments(capsys, arguments, message):
     error = capsys.readouterr().err
     assert message in error
     assert error.count("\n") == 1
+
+
+def test_a_diagnosis_beside_another_command_is_refused_and_touches_nothing(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(run_diagnosis, "HOME", tmp_path)
+    held = hold(tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    assert main(["diagnose", str(CAMPAIGN), "--output", str(tmp_path / "output")]) == 2
+    os.close(held)
+    error = capsys.readouterr().err
+    assert "expected a folder in which no other study or diagnosis runs" in error
+    assert error.count("\n") == 1
+    assert sorted(tmp_path.rglob("*")) == before
 
 
 def test_functions_of_the_package_are_no_modules(tmp_path):

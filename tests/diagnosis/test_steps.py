@@ -1,5 +1,6 @@
 """The way of a diagnosis, step by step, on a campaign of two blocks that a formula simulates."""
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,6 +9,7 @@ import xarray as xr
 from tiny_campaign import TESTS, prescribed_run, write_campaign
 
 from blockshake.diagnosis import steps
+from blockshake.diagnosis.inference import calibration
 from blockshake.diagnosis.inference.calibration import write_cases
 from blockshake.diagnosis.inference.decision import write_result
 from blockshake.diagnosis.laws.findings import LawFindings, OutsideForce
@@ -74,7 +76,7 @@ def _diagnose(folder, campaign):
             for kind, files, dataset in (("", libraries, features), ("-histories", histories, moved)):
                 files.append(str(folder / f"{name}-{solver}{kind}.nc"))
                 write_dataset(files[-1], dataset)
-    write_cases(path["cases"], steps.calibrate_decision(libraries, effects, _silent))
+    write_cases(path["cases"], steps.calibrate_decision(libraries, effects, *made_by))
     files = SimpleNamespace(
         readings=path["readings"], forces=path["forces"], libraries=libraries, histories=histories,
         calibration=path["cases"],
@@ -114,6 +116,32 @@ def _diagnose(folder, campaign):
 def test_open_tests_are_read_off_with_sound_sensors(found):
     assert found.measured.parity.findings == ()
     assert found.measured.readings["test"].values.tolist() == ["one-100", "two-100"]
+
+
+def test_a_killed_calibration_judges_each_draw_once(found, tmp_path, monkeypatch):
+    judged, judge = [], calibration._cases_of_draw
+
+    def counted(library, model, draw):
+        if len(judged) == limit:
+            raise KeyboardInterrupt
+        judged.append((model, draw))
+        return judge(library, model, draw)
+
+    def attempt(source="source"):
+        given = found.files.libraries, plan.considered(), tmp_path / "store", source
+        write_cases(tmp_path / "cases.json", steps.calibrate_decision(*given, _silent))
+
+    monkeypatch.setattr(calibration, "_cases_of_draw", counted)
+    limit = 7
+    with pytest.raises(KeyboardInterrupt):
+        attempt()
+    limit = None
+    attempt()
+    draws = len(SOLVERS) * TINY.nominal_draws
+    assert len(set(judged)) == len(judged) == draws
+    assert (tmp_path / "cases.json").read_bytes() == Path(found.files.calibration).read_bytes()
+    attempt("edited")
+    assert len(judged) == 2 * draws
 
 
 def test_the_cause_is_named_with_its_size(found):

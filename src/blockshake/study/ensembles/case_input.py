@@ -12,6 +12,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.campaigns.commanded_motion import follow
 from blockshake.measurement.motion.measured_base import base_as_motion, draw_base, measure_base, on_its_clock
+from blockshake.store import load_made
 
 MEASURED, COMMANDED = "measured", "commanded"
 _SHORT = 0.05  # s, by which a record may end before the simulated window
@@ -103,7 +104,7 @@ def driving_motions(case, base, seed):
 
 
 def _loaded(base):
-    return base if isinstance(base, xr.Dataset) else xr.load_dataset(base)
+    return base if isinstance(base, xr.Dataset) else load_made(base)
 
 
 def _against(base, command, duration):

@@ -90,9 +90,10 @@ def calibrate_friction(
     )
     designs = [one.values for one in drawn]
     if model_of(run_settings["model"]).calibrated:
-        structure = case["structure"]
+        given = linked, store, source_digest(*script_sources("calibrate_stiffness"))
         designs = [
-            pd.concat([design, calibrate_design(structure, design, linked)], axis=1) for design in designs
+            pd.concat([design, calibrate_design(case["structure"], design, *given)], axis=1)
+            for design in designs
         ]
     seeds = [replicate_seed(ensemble["seed"], place) for place in range(1, len(designs) + 1)]
     motions = [driving_motions(case, base, seed) for seed in seeds]
