@@ -11,6 +11,7 @@ SHIPPED = (
     "Snakefile",
     "config/structures",
     "config/motions",
+    "config/templates",
     "config/diagnosis.yaml",
     "config/virtual-campaign.yaml",
     "workflow",

@@ -11,6 +11,7 @@ FLOORS = [
     ["errors"],
     ["files", "quantities", "working_folder"],
     ["validation", "log", "sources", "store"],
+    ["tables"],
     ["jit"],
     ["geometry"],
     ["dynamics"],
@@ -19,7 +20,7 @@ FLOORS = [
     ["study"],
     ["diagnosis", "virtual"],
     ["report"],
-    ["run_diagnosis"],
+    ["run_diagnosis", "own_files"],
     ["cli"],
 ]
 ROOMS_OF_DIAGNOSIS = [

@@ -8,6 +8,7 @@ from pathlib import Path
 from blockshake import __version__
 from blockshake.errors import InputError
 from blockshake.files import check_output, parse_yaml, write_dataset, write_json
+from blockshake.own_files.commands import add_data_commands
 from blockshake.simulation.models import MODELS
 
 BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 2, 3, 130
@@ -97,10 +98,7 @@ def _parser():
     command.add_argument("--output", required=True, metavar="STIFFNESS.json")
     command.set_defaults(run=_calibrate_stiffness)
 
-    command = commands.add_parser("convert-motion", help="a record of another format, to the project's CSV")
-    command.add_argument("file", metavar="FILE")
-    command.add_argument("--output", required=True, metavar="MOTION.csv")
-    command.set_defaults(run=_convert_motion)
+    add_data_commands(commands)
 
     command = commands.add_parser(
         "generate-campaign", help="synthetic tests on a virtual shake table, to a folder"
@@ -264,14 +262,6 @@ def _calibrate_stiffness(options):
     from blockshake.study.stiffness.wave_speed import calibrate_stiffness
 
     write_json(options.output, calibrate_stiffness(options.structure, _settings(options)))
-
-
-def _convert_motion(options):
-    check_output(options.output)
-    from blockshake.dynamics.load_motion import load_motion
-    from blockshake.dynamics.records.contract_csv import write_motion_csv
-
-    write_motion_csv(load_motion(options.file), options.output)
 
 
 def _generate_campaign(options):

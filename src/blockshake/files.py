@@ -5,6 +5,7 @@ import hashlib
 import json
 import os
 import re
+import shutil
 import tempfile
 from pathlib import Path
 
@@ -78,11 +79,23 @@ def read_text(path):
         The file is missing or is not text.
     """
     try:
-        return Path(path).read_text(encoding="utf-8")
-    except OSError as error:
-        raise InputError(path, "", f"expected a readable file; {error.strerror.lower()}") from None
+        return read_bytes(path).decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError:
         raise InputError(path, "", "expected a text file; its bytes are not UTF-8") from None
+
+
+def read_bytes(path):
+    """Bytes of a file that a user named.
+
+    Raises
+    ------
+    InputError
+        The file is missing.
+    """
+    try:
+        return Path(path).read_bytes()
+    except OSError as error:
+        raise InputError(path, "", f"expected a readable file; {error.strerror.lower()}") from None
 
 
 def load_json(path):
@@ -164,6 +177,28 @@ def replacing(path):
         raise
 
 
+@contextlib.contextmanager
+def replacing_folder(folder):
+    """Temporary folder beside ``folder`` that takes its place when the block ends well; else nothing is left.
+
+    Raises
+    ------
+    InputError
+        There is a file, or a folder with content, in its place.
+    """
+    folder = Path(folder)
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise InputError(folder, "", "expected a new or an empty folder; nothing is overwritten")
+    check_output(folder / "file" if folder.exists() else folder)
+    made = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+    try:
+        yield made
+        made.chmod(0o777 & ~_umask())
+        made.replace(folder)
+    finally:
+        shutil.rmtree(made, ignore_errors=True)
+
+
 def _umask():
     mask = os.umask(0)
     os.umask(mask)
@@ -197,7 +232,7 @@ def write_dataset(path, dataset, decimals=None):
                     "dtype": "int32", "scale_factor": 10.0 ** -decimals[unit], "_FillValue": _NO_NUMBER,
                 }  # fmt: skip
     with replacing(path) as temporary:
-        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
+        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding, unlimited_dims=[])
 
 
 def content_digest(*values):

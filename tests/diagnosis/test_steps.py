@@ -1,5 +1,6 @@
 """The way of a diagnosis, step by step, on a campaign of two blocks that a formula simulates."""
 
+from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -38,8 +39,14 @@ def _silent(line):
 def found(tmp_path_factory):
     """Results of every step and the files that the next ones read."""
     folder = tmp_path_factory.mktemp("tiny")
-    campaign = folder / "campaign"
-    write_campaign(campaign, STRUCTURE, PITCH)
+    write_campaign(folder / "campaign", STRUCTURE, PITCH)
+    with _two_effects_and_a_formula():
+        yield _diagnose(folder, str(folder / "campaign"))
+
+
+@contextmanager
+def _two_effects_and_a_formula():
+    """The tiny effort, two candidates, and a solver that is a formula."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(efforts.EFFORTS, "tiny", TINY)
         patch.setattr(designed_test, "simulate", prescribed_run)
@@ -52,7 +59,7 @@ def found(tmp_path_factory):
                 one for one in everywhere(built) if one.effect in ("table-pitch", "vertical-motion")
             ],
         )
-        yield _diagnose(folder, str(campaign))
+        yield
 
 
 def _diagnose(folder, campaign):
@@ -218,3 +225,31 @@ def test_a_force_that_the_laws_describe_extends_the_model(found, tmp_path):
 def test_readings_of_the_library_are_those_of_the_campaign(found):
     features = xr.load_dataset(found.files.libraries[0])
     assert set(features["feature"].values) == set(found.measured.readings["feature"].values)
+
+
+def _leave(campaign, axes, names):
+    """Leave readings of these axes alone in all tests of a campaign, of markers whose names end so."""
+    for path in campaign.glob("*.nc"):
+        test = xr.load_dataset(path)
+        moved = test["marker_displacement"].where(test["axis"].isin(list(axes)))
+        kept = [name for name in test["marker"].values if str(name).endswith(names)]
+        write_dataset(path, test.assign(marker_displacement=moved).sel(marker=kept))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("axes", "names", "curve"), [("xz", "", "joint1.opening"), ("x", "face", "block-2.drift")]
+)
+def test_a_camera_and_transducers_along_x_are_diagnosed_too(axes, names, curve, tmp_path):
+    """Nothing that was not measured enters: no curve, no residual, no force; the verdict is one of its words."""
+    write_campaign(tmp_path / "campaign", STRUCTURE, PITCH)
+    _leave(tmp_path / "campaign", axes, names)
+    with _two_effects_and_a_formula():
+        found = _diagnose(tmp_path, str(tmp_path / "campaign"))
+    assert f"one-100.{curve}" in found.decided.misfit["curve"].values
+    assert not found.measured.forces.data_vars
+    residual = found.decided.misfit["residual"]
+    assert residual.notnull().any() == ("z" in axes)
+    assert not any("lateral" in name for name in found.measured.readings["feature"].values.tolist())
+    assert found.verdict.decision in ("none", "named", "ambiguous", "combination", "unknown")
+    assert np.isfinite(found.gained.scores["fall"]).all()

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field, StringConstraints, field_validator, model_validator
+from pydantic import ConfigDict, Field, StringConstraints, field_validator, model_validator
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
@@ -64,8 +64,15 @@ class Measured(Strict):
     test: str = Field(description="name of the test in it")
 
 
+def _input_is_optional(schema):
+    """Take ``input``, whose default follows from ``measured``, off the keys that a JSON schema requires."""
+    schema["required"].remove("input")
+
+
 class StudyCase(Strict):
     """One structure under one motion."""
+
+    model_config = ConfigDict(json_schema_extra=_input_is_optional)
 
     structure: str = Field(description="shipped name or file")
     motion: str = Field(description="shipped name or file")

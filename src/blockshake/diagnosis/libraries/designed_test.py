@@ -43,6 +43,8 @@ class PlannedTest:
         Whose noise is read.
     markers, channels : tuple of str
         That were read.
+    unread : tuple of (str, str)
+        Marker and axis of the directions that were not measured.
     """
 
     structure: Structure
@@ -51,6 +53,7 @@ class PlannedTest:
     sensors: Sensors
     markers: tuple[str, ...]
     channels: tuple[str, ...]
+    unread: tuple[tuple[str, str], ...] = ()
 
     def digest(self):
         """Of the content: equal for equal tests, whatever their files are called."""
@@ -61,6 +64,7 @@ class PlannedTest:
             self.sensors.model_dump(),
             self.markers,
             self.channels,
+            self.unread,
         )
 
 
@@ -108,6 +112,8 @@ def simulated_test(planned, draw, effects=()):
     test = observe(run, experiment.structure, experiment.instruments, draw.seed).sel(
         marker=list(planned.markers)
     )
+    for marker, axis in planned.unread:
+        test["marker_displacement"].loc[{"marker": marker, "axis": axis}] = np.nan
     if "accelerometer" in test:
         test = test.sel(channel=list(planned.channels)) if planned.channels else test.drop_dims("channel")
     return SimulatedTest(test, run.attrs["status"])

@@ -227,14 +227,13 @@ def _case(study, results, name, settings):
         campaign = load_campaign(named["campaign"])
         base = load_made(results / "inputs" / f"{name}.nc")
         test, marker_noise = measured_on_clock(named, base)
-    slab_marker = next(iter(responses.values())).envelope.attrs["slab_marker"]
     return ReportedCase(
         name=name,
         settings=settings,
         structure=load_structure(settings["structure"]),
         motion=Path(settings["motion"]).stem,
         base=base,
-        measured=measured_curves(test, slab_marker, settings["duration"]) if named else None,
+        measured=measured_curves(test, test.attrs["slab_marker"], settings["duration"]) if named else None,
         test_file=campaign.folder / campaign.tests[named["test"]].file if named else None,
         synthetic=bool(test.attrs.get("synthetic", 0)) if named else False,
         marker_noise=marker_noise,

@@ -192,6 +192,7 @@ def members_inside(curves, readings):
 
 def _measured_peak(measured, slab_marker, markers):
     displacement = measured["marker_displacement"].sel(axis="x", drop=True)
+    slab_marker = measured.attrs.get("slab_marker", slab_marker)
     if slab_marker not in displacement["marker"].values:
         return np.full(len(markers), np.nan)
     relative = relative_to_slab(displacement, slab_marker).sel(marker=markers)
