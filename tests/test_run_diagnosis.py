@@ -37,14 +37,6 @@ BAD = {
         lambda text: text.replace("structure: configuration-1", "structure: configuration-3"),
         "expected markers of the structure",
     ),
-    "readings without noise": (
-        lambda text: (
-            text + "\nsensors: {marker_noise: 0.0, accelerometer_noise: 0.05}\n"
-            if "sensors:" not in text
-            else text.replace(text[text.index("sensors:") :].splitlines()[0], "sensors: {marker_noise: 0.0}")
-        ),
-        "sensors.marker_noise: input should be greater than 0",
-    ),
     "a motion nobody has": (
         lambda text: text.replace("motion: alkion,", "motion: nothing,"),
         "expected a shipped motion",

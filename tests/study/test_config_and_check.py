@@ -202,6 +202,11 @@ def test_check_refuses_other_yaml(tmp_path, text):
             {"bodies.block-3.position": [0.0, 0.0, 4.7]},
             "remark: block-3 touches nothing that stands on a driven",
         ),
+        ({"gravity": [0.0, 0.0, 9.81]}, "remark: gravity is 9.81 m/s2 along z: it does not press"),
+        (
+            {"materials.concrete.youngs_modulus": 34.5},
+            "remark: concrete has a Young's modulus of 34.5 Pa: expected Pa",
+        ),
         ({"materials.concrete.density": 2.4}, "remark: block-1 weighs 7.36 kg, 2.4 kg/m3: expected kg/m3"),
     ],
 )
@@ -227,11 +232,11 @@ def test_shipped_structures_have_no_remarks(number):
     assert structure_remarks(load_structure(f"configuration-{number}")) == []
 
 
-def motion_file(folder, acceleration):
+def motion_file(folder, values, column="acceleration_x", clock=1.0):
     time = np.arange(0.0, 20.0, 0.01)
-    rows = "\n".join(f"{t:.2f},{value:.6g}" for t, value in zip(time, acceleration(time), strict=True))
+    rows = "\n".join(f"{clock * t:.2f},{value:.6g}" for t, value in zip(time, values(time), strict=True))
     path = folder / "motion.csv"
-    path.write_text(f"time_s,acceleration_x\n{rows}\n")
+    path.write_text(f"time_s,{column}\n{rows}\n")
     return str(path)
 
 
@@ -239,13 +244,29 @@ def motion_file(folder, acceleration):
     ("scale", "offset", "remark"),
     [
         (0.3, 0.0, "the peak acceleration is 0.031 g: expected m/s2, not g"),
-        (300.0, 0.0, "the peak acceleration is 31 g: expected m/s2, not cm/s2"),
+        (300.0, 0.0, "the peak acceleration is 31 g: expected m/s2, not cm/s2 or mm/s2"),
         (3.0, 0.1, "an offset of the acceleration?"),
+        (0.0, 0.0, "nothing moves"),
     ],
 )
 def test_check_remarks_a_motion_in_other_units_or_with_an_offset(tmp_path, scale, offset, remark):
     file = motion_file(tmp_path, lambda t: scale * np.sin(2.0 * np.pi * t) + offset)
     assert remark in check_file(file)
+
+
+@pytest.mark.parametrize(
+    ("column", "size", "clock", "remark"),
+    [
+        ("acceleration_y", 900.0, 1.0, "g: expected m/s2, not cm/s2 or mm/s2"),
+        ("displacement_x", 80.0, 1.0, "expected m, not mm"),
+        ("displacement_z", 0.08, 1.0, ""),
+        ("acceleration_x", 3.0, 1000.0, "the motion lasts 19990 s: expected s, not ms"),
+    ],
+)
+def test_check_remarks_any_direction_kind_and_clock(tmp_path, column, size, clock, remark):
+    file = motion_file(tmp_path, lambda t: size * np.sin(2.0 * np.pi * t) * np.exp(-t), column, clock)
+    said = check_file(file)
+    assert remark in said if remark else "remark" not in said
 
 
 @pytest.mark.parametrize("name", ["alkion", "basso-tirreno"])

@@ -3,11 +3,18 @@
 import numpy as np
 
 from blockshake.dynamics.intensity import motion_figures
+from blockshake.dynamics.motion import PITCH
+from blockshake.dynamics.response_spectrum import acceleration_segments
 
 _GRAVITY = 9.81  # m/s2
 _WEAKEST, _STRONGEST = 0.5, 30.0  # m/s2, of peak accelerations that move blocks and that were ever recorded
 _FARTHEST = 1.0  # m, of a shake table or of the ground
+_STEEPEST = 0.05  # rad, of a table
 _FASTEST_END = 0.05  # m/s
+_LONGEST = 600.0  # s, of a test or of an earthquake
+# by kind of motion: its unit, and smaller ones that are perhaps meant
+_UNITS = {"acceleration": "m/s2", "velocity": "m/s", "displacement": "m"}
+_SMALLER = {"acceleration": "cm/s2 or mm/s2", "velocity": "cm/s or mm/s", "displacement": "mm"}
 
 
 def motion_line(motion):
@@ -22,15 +29,26 @@ def motion_line(motion):
 
 def motion_remarks(motion):
     """One sentence for everything about a `GroundMotion` that looks like a slip of the pen; a list of str."""
-    peaks, remarks = motion_figures(motion), []
-    peak, moved = peaks["peak_acceleration"], peaks["peak_displacement"]
-    if 0.0 < peak < _WEAKEST:
-        remarks.append(f"the peak acceleration is {peak / _GRAVITY:.2g} g: expected m/s2, not g")
+    remarks = []
+    ends = [end for axis in "xyz" for end in acceleration_segments(motion, axis)[1:]]
+    peak = float(max(np.abs(end).max() for end in ends))
+    place = motion.evaluate(motion.table.breaks) - motion.evaluate(motion.table.breaks[:1])
+    moved, pitched = float(np.abs(place[:, :PITCH]).max()), float(np.abs(place[:, PITCH]).max())
+    strength = f"the peak acceleration is {peak / _GRAVITY:.2g} g"
+    if peak == 0.0 and pitched == 0.0:
+        remarks.append("nothing moves")
+    elif 0.0 < peak < _WEAKEST:
+        meant = "expected m/s2, not g" if motion.kind == "acceleration" else "it moves no block"
+        remarks.append(f"{strength}: {meant}")
     if peak > _STRONGEST:
-        remarks.append(f"the peak acceleration is {peak / _GRAVITY:.2g} g: expected m/s2, not cm/s2")
-    end = float(np.abs(motion.evaluate(motion.table.breaks[-1:], derivative=1)[0, :3]).max())
-    if end > _FASTEST_END:
-        remarks.append(f"the ground still moves at {end:.2g} m/s at the end: an offset of the acceleration?")
+        remarks.append(f"{strength}: expected {_UNITS[motion.kind]}, not {_SMALLER[motion.kind]}")
+    end = float(np.abs(motion.evaluate(motion.table.breaks[-1:], derivative=1)[0, :PITCH]).max())
+    if end > _FASTEST_END and peak <= _STRONGEST:
+        remarks.append(f"the ground still moves at {end:.2g} m/s at the end: an offset of the {motion.kind}?")
     if moved > _FARTHEST:
         remarks.append(f"the ground moves by {moved:.3g} m")
+    if pitched > _STEEPEST:
+        remarks.append(f"the table pitches by {pitched:.2g} rad")
+    if motion.duration > _LONGEST:
+        remarks.append(f"the motion lasts {motion.duration:.0f} s: expected s, not ms")
     return remarks

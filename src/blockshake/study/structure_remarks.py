@@ -8,6 +8,7 @@ from blockshake.geometry.rotations import rotation_matrices
 
 _LIGHTEST, _HEAVIEST = 100.0, 25000.0  # kg/m3; no block is of less or more
 _LARGEST = 50.0  # m, of an edge
+_SOFTEST = 1e7  # Pa, of rubber; no block is softer
 
 
 def structure_lines(structure):
@@ -15,10 +16,15 @@ def structure_lines(structure):
     free = np.flatnonzero(~structure.driven)
     alike = Counter(_block_words(structure, body) for body in free)
     joints = np.count_nonzero(np.triu(structure.touching))
+    weight = f"{structure.mass[free].sum():.0f} kg in all"
     return [
-        f"a structure of {len(free)} blocks of {structure.mass[free].sum():.0f} kg in all, and {joints} joints",
+        f"a structure of {_counted(len(free), 'block')} of {weight}, and {_counted(joints, 'joint')}",
         *(f"  {count} of {words}" for words, count in alike.items()),
     ]
+
+
+def _counted(number, name):
+    return f"{number} {name}{'' if number == 1 else 's'}"
 
 
 def _block_words(structure, body):
@@ -37,6 +43,15 @@ def structure_remarks(structure):
     remarks = []
     if not structure.driven.any():
         remarks.append("no body is driven: no ground motion acts")
+    if structure.driven.all():
+        remarks.append("all bodies are driven: nothing can move by itself")
+    if structure.file.gravity[2] >= 0.0:
+        remarks.append(
+            f"gravity is {structure.file.gravity[2]:g} m/s2 along z: it does not press blocks down"
+        )
+    for name, material in structure.file.materials.items():
+        if material.youngs_modulus < _SOFTEST:
+            remarks.append(f"{name} has a Young's modulus of {material.youngs_modulus:.3g} Pa: expected Pa")
     held = _held_up(structure)
     for body in np.flatnonzero(~held):
         remarks.append(
