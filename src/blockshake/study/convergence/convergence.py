@@ -12,7 +12,8 @@ from blockshake.study.convergence.runs import rocking_block, shaken_stack
 from blockshake.study.convergence.table import COLUMNS, EXACT, OBSERVABLES
 
 NUDGE = 1e-6  # share by which kick and ground acceleration are larger in the run that the floor comes from
-_TIME_STEP = model_of("ls-dem").time_step  # s; the others are varied from it
+_MODEL = "ls-dem"
+_TIME_STEP = model_of(_MODEL).time_step  # s; the others are varied from it
 
 
 def study_convergence(settings, progress):
@@ -44,7 +45,7 @@ def study_convergence(settings, progress):
 
     def observe(said, numerical=usual, time_step=_TIME_STEP, strength=1.0):
         started = time.process_time()
-        read = rocking_block(structure, numerical, time_step, strength) | shaken_stack(
+        read = rocking_block(structure, _MODEL, numerical, time_step, strength) | shaken_stack(
             structure, numerical, time_step, strength * settings.acceleration, settings.frequency, settings.duration
         )  # fmt: skip
         progress(f"{said}: {time.process_time() - started:.2f} CPU s")
