@@ -76,8 +76,8 @@ def test_pairs_beyond_chance_are_counted(content):
     assert "of all 6 pairs of models are farther apart" in case_words(case)
     case.differences["distance_chance"][:] = 1.0
     assert "of none of 6 pairs of models are farther apart" in case_words(case)
-    case.differences["distance"][:] = np.nan
-    assert case_words(case).endswith("too few samples to tell the ensembles of any two models apart.")
+    case.differences["distance_chance"][:] = np.nan
+    assert "x 2: too few samples to tell the ensembles of any two models apart." in case_words(case)
 
 
 def test_impacts_of_equal_blocks_are_said_once(content):
@@ -110,6 +110,7 @@ def test_the_ranking_is_computed_where_tests_are_real(content):
     for case in content.cases.values():
         case.differences.attrs["synthetic"] = 0
         case.differences["score_difference_interval"][:] = limits
+        case.differences["counted"][:] = 6
     best, poor = ranking(models(content))
     assert "best: not met. Of 8 comparisons of two models 0 bear it out, 2 contradict it" in best
     assert "configurations 3 and 4: not met." in poor

@@ -80,6 +80,14 @@ def test_shifted_samples_are_beyond_the_level_of_chance():
     assert ensemble_distance(differences, *groups) > 2.0 * chance_distance(differences, *groups, generator)
 
 
+def test_few_members_have_no_level_of_chance():
+    """Of 20 divisions of six into halves two are the given one; of 84 of nine into three and six, one is."""
+    generator, values = np.random.default_rng(SEED), constant(np.arange(9.0))
+    differences = mean_differences(values, values)[..., 0]
+    assert np.isnan(chance_distance(differences, np.arange(3), np.arange(3, 6), generator))
+    assert np.isfinite(chance_distance(differences, np.arange(3), np.arange(3, 9), generator))
+
+
 def test_width_is_the_mean_difference_of_two_and_does_not_grow_with_their_number():
     values = np.array([0.0, 1.0, 5.0])
     width = mean_width(mean_differences(constant(values), constant(values))[..., 0], np.ones((1, 3)))

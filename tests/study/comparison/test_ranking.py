@@ -8,6 +8,7 @@ from blockshake.simulation.models import MODELS
 from blockshake.study.comparison.ranking import (
     CLAIMS,
     ELASTIC,
+    FEWEST_JUDGED,
     MET,
     NOT_MET,
     OPEN,
@@ -21,14 +22,17 @@ AS_PUBLISHED = {VISCOELASTIC: 1.0, RIGID: 2.0, ELASTIC: 3.0}  # mm
 CASES = [f"configuration-{place}" for place in (1, 2, 3, 4)]
 
 
-def scored(scores, half_width=0.1, synthetic=0):
+def scored(scores, half_width=0.1, synthetic=0, samples=FEWEST_JUDGED):
     """A comparison whose scores have intervals of a half width."""
     models = list(scores)
     values = np.array([scores[model] for model in models])
     difference = values[None, :] - values[:, None]
     limits = np.stack([difference - half_width, difference + half_width])
     return xr.Dataset(
-        {"score_difference_interval": (("bound", "model", "other"), limits)},
+        {
+            "score_difference_interval": (("bound", "model", "other"), limits),
+            "counted": ("model", [samples] * len(models)),
+        },
         {"bound": ["lower", "upper"], "model": models, "other": models},
         {"synthetic": synthetic},
     )
@@ -69,6 +73,11 @@ def test_models_and_configurations_that_did_not_run_are_counted():
     assert (found.answer, found.borne_out, found.unknown) == (OPEN, 4, 4)
     without[CASES[0]] = scored(AS_PUBLISHED | {VISCOELASTIC: np.nan})
     assert judge(BEST, without).unknown == 4
+
+
+def test_few_samples_judge_nothing():
+    found = judge(BEST, {case: scored(AS_PUBLISHED, samples=FEWEST_JUDGED - 1) for case in CASES})
+    assert (found.answer, found.unknown) == (OPEN, 8)
 
 
 def test_synthetic_tests_leave_the_answer_open_and_the_scores_said():

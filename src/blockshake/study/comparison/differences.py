@@ -3,6 +3,8 @@
 All are means of the differences between two curves, so that the pairs are compared once for all of them.
 """
 
+from math import comb
+
 import numpy as np
 
 from blockshake.study.ensembles.intervals import CONFIDENCE, sample_quantiles
@@ -63,9 +65,14 @@ def ensemble_distance(differences, own, other):
 def chance_distance(differences, own, other, generator):
     """Distance that 95 of 100 random divisions of all members into ensembles of these sizes stay below.
 
-    Arguments as of `ensemble_distance`. A sample that both models ran makes the ensembles more alike than the division
+    Arguments as of `ensemble_distance`. NaN where the members are so few that a twentieth of their divisions or more
+    are as far apart as the farthest. A sample that both models ran makes the ensembles more alike than the division
     takes them to be, so that a distance beyond this level is rarer by chance than stated.
     """
+    # the same two groups come twice where they are of one size
+    alike = (1 + (len(own) == len(other))) / comb(len(own) + len(other), len(own))
+    if alike >= 1.0 - CONFIDENCE:
+        return np.nan
     pooled, size = np.concatenate([own, other]), len(own)
     drawn = []
     for _ in range(_DRAWS):

@@ -6,6 +6,9 @@ import numpy as np
 
 RIGID, ELASTIC, VISCOELASTIC = "nscd-rigid", "nscd-elastic", "nscd-viscoelastic"
 MET, NOT_MET, OPEN = "met", "not met", "cannot be judged"
+FEWEST_JUDGED = (
+    6  # samples; order statistics reach 95 % with so many, and a bootstrap of fewer holds far less
+)
 _ALL = tuple(f"configuration-{place}" for place in (1, 2, 3, 4))
 
 
@@ -47,7 +50,7 @@ class Judgement(NamedTuple):
         The same by the scores alone, whatever the tests are.
     borne_out, contradicted, untold, unknown : int
         Orders of the claim whose models the scores tell apart as it says, the other way round, or not; and those
-        without a score, because a model has too few samples, or a case is not there.
+        of a model with fewer than `FEWEST_JUDGED` samples, or of a case that is not there.
     synthetic : bool
         A test is synthetic.
     """
@@ -92,6 +95,8 @@ def judge(claim, comparisons):
 def _told(comparison, better, worse):
     """Name of the count that an order of two models goes to."""
     if comparison is None or not {better, worse} <= set(comparison["model"].values):
+        return "unknown"
+    if (comparison["counted"].sel(model=[better, worse]) < FEWEST_JUDGED).any():
         return "unknown"
     at = comparison["score_difference_interval"].sel(model=better, other=worse)
     lower, upper = (float(at.sel(bound=one)) for one in ("lower", "upper"))

@@ -79,7 +79,7 @@ def pairs_table(content):
             rows.append((
                 case.name, f"{model_label(own)} and {model_label(other)}", in_millimetres(at["distance"]),
                 in_millimetres(at["distance_chance"]), _with_limits(at, "history_difference", in_millimetres),
-                str(int(at["common"])), " / ".join(map(in_millimetres, floors)), _seconds(at["parting_time"]),
+                str(int(at["common"])), " / ".join(map(in_millimetres, floors)), _seconds(at["parting_time"], case),
             ))  # fmt: skip
     return Table(
         "Pairs of models. Distance: of the ensembles; chance: the distance that 95 of 100 random divisions of the same "
@@ -105,7 +105,7 @@ def numerics_table(content):
             rows.append((
                 case.name, given(case.settings["scale"]), model_label(model),
                 *(in_millimetres(at["floor"].sel(twin=one)) for one in ("nudged", "half-step")),
-                *(_seconds(at["horizon"].sel(twin=one)) for one in ("nudged", "half-step")),
+                *(_seconds(at["horizon"].sel(twin=one), case) for one in ("nudged", "half-step")),
                 *ratios, number(found["housner_ratio"]),
             ))  # fmt: skip
     return Table(
@@ -154,6 +154,6 @@ def in_millimetres(value):
     return number(1e3 * value, 2)
 
 
-def _seconds(value):
-    """A time at which something parts [s], in print."""
-    return "beyond the window" if np.isposinf(float(value)) else number(value)
+def _seconds(value, case):
+    """A time at which something parts [s]; nothing that parts within the window of a case is beyond its end."""
+    return f"> {given(case.settings['duration'])}" if np.isposinf(float(value)) else number(value)

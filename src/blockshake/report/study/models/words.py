@@ -13,7 +13,7 @@ from blockshake.report.document.wording import (
 )
 from blockshake.report.study.models.tables import in_millimetres, larger_floor
 from blockshake.simulation.models import MODELS
-from blockshake.study.comparison.ranking import MET, NOT_MET
+from blockshake.study.comparison.ranking import FEWEST_JUDGED, MET, NOT_MET
 
 
 def case_words(case):
@@ -26,15 +26,16 @@ def case_words(case):
         if np.isfinite(found["distance"].sel(model=pair[0], other=pair[1]))
     }
     words = f"{case.name}, {case.motion} x {given(case.settings['scale'])}: "
-    if not known:
-        return words + "too few samples to tell the ensembles of any two models apart."
-    beyond = sum(
-        distance > float(found["distance_chance"].sel(model=own, other=other))
-        for (own, other), distance in known.items()
-    )
-    words += f"the ensembles of {share_words(beyond, len(known))} pairs of models are farther apart than by chance."
-    if len(known) < len(pairs):
-        words += f" {len(pairs) - len(known)} further pairs have too few samples."
+    chance = {pair: float(found["distance_chance"].sel(model=pair[0], other=pair[1])) for pair in known}
+    judged = [pair for pair in known if np.isfinite(chance[pair])]
+    if judged:
+        beyond = sum(known[pair] > chance[pair] for pair in judged)
+        share = share_words(beyond, len(judged))
+        words += f"the ensembles of {share} pairs of models are farther apart than by chance."
+        if len(judged) < len(pairs):
+            words += f" {len(pairs) - len(judged)} further pairs have too few samples to tell."
+    else:
+        words += "too few samples to tell the ensembles of any two models apart."
     if len(known) > 1:
         (near, least), (far, most) = (pick(known.items(), key=lambda one: one[1]) for pick in (min, max))
         words += (
@@ -107,7 +108,7 @@ def ranking_words(judgement):
     counts = (
         f"of {len(claim.orders)} comparisons of two models {judgement.borne_out} bear it out, "
         f"{judgement.contradicted} contradict it, {judgement.untold} are not told apart by the intervals of their "
-        f"scores, and {judgement.unknown} have no score"
+        f"scores, and {judgement.unknown} are of fewer than {FEWEST_JUDGED} samples or of cases that were not run"
     )
     said = f"Zhou et al. (2023) state that {claim.words}: {judgement.answer}."
     if judgement.synthetic:
