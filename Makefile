@@ -9,7 +9,7 @@ READY := $(VENV)/ready
 PEERS := .venv-peers
 SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 
-.PHONY: study quick paper test test-slow test-hidden-few test-hidden bench figures-of-docs peers setup lint lock clean
+.PHONY: study quick paper test test-slow test-faults test-hidden-few test-hidden bench figures-of-docs peers setup lint lock clean
 
 study: setup
 	@$(BIN)/blockshake check config/study.yaml
@@ -28,10 +28,15 @@ paper: setup
 	@echo "The report: $(CURDIR)/reports/paper.html and paper.pdf"
 
 test: setup
-	$(BIN)/pytest -m "not slow and not hidden_effects" --numprocesses $(CORES) --dist loadfile
+	$(BIN)/pytest -m "not slow and not hidden_effects and not faults" --numprocesses $(CORES) --dist loadfile
 
 test-slow: setup
 	$(BIN)/pytest -m slow
+
+# a small study killed at MOMENTS moments, and damaged: tens of minutes; prints what was done and what was lost
+MOMENTS ?= 20
+test-faults: setup
+	PATH="$(CURDIR)/$(BIN):$$PATH" BLOCKSHAKE_MOMENTS=$(MOMENTS) $(BIN)/pytest -m faults
 
 # five campaigns with and without a hidden effect, diagnosed by the ordinary rules: minutes
 test-hidden-few: setup
@@ -45,7 +50,7 @@ test-hidden: setup
 bench: setup
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/bench.py
 
-# the figures in docs/ that the program makes, written to their pages: minutes
+# the figures in docs/ that the program makes, written to their pages: minutes; findings on the paper after a study
 figures-of-docs: setup
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/figures_of_docs.py
 

@@ -1,22 +1,27 @@
 """Figures in the pages of docs/, written anew by the program: `make figures-of-docs`, or some of them by name.
 
 A page holds the figures between `<!-- figures: NAME -->` and `<!-- end of figures -->`. All else is left
-alone.
+alone. The findings on the paper are those of the default study, and stay where `make study` has not been run.
 """
 
 import re
 import sys
+import tempfile
+import textwrap
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 from blockshake.dynamics.load_motion import load_motion
-from blockshake.files import write_text
+from blockshake.files import load_json, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.report.document.wording import number
 from blockshake.report.study.convergence_section import numbers_table
+from blockshake.report.study.statements.section import DEPARTURES_HEADER, HEADER, count_words, departures
+from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.simulate import simulate
+from blockshake.study.config import load_config
 from blockshake.study.convergence.convergence import study_convergence
 from blockshake.study.convergence.settings import Convergence
 from blockshake.study.sampling.distributions import LINKED, TABLE_2
@@ -35,12 +40,17 @@ _CHANGES = {
     "friction 0.25": dict.fromkeys(_CONCRETE, 0.25),
     "friction 0.12": dict.fromkeys(_CONCRETE, 0.12),
 }
+STUDY = Path("results/study/the-paper.json")
 _STEPS = {"nscd-rigid": 1e-3, "ls-dem": 5e-5}  # s
+LITERAL = DOCS.parent / "config" / "literal.yaml"
+_FINE_IMPACTS = {"nscd.impact_parts": 20}  # as in config/study.yaml
+_GRID = "ls_dem.level_set", "ls_dem.grid_spacing"  # mean nothing without each other
 
 
 def convergence():
     """Table of LS-DEM's numerical parameters."""
-    found = study_convergence(Convergence(structure="configuration-1"), lambda line: None)
+    with tempfile.TemporaryDirectory() as store:
+        found = study_convergence(Convergence(structure="configuration-1"), store, "", lambda line: None)
     table = numbers_table(found)
     return markdown(table.header, table.rows)
 
@@ -72,10 +82,7 @@ def single_changes():
         run = simulate(
             structure, motion, model, parameters, time_step=_STEPS[model], duration=12.0, accelerometers=False
         )
-        along = run["marker_displacement"].sel(axis="x")
-        return along["time"].to_numpy(), (
-            along.sel(marker="block-3-face") - along.sel(marker="slab-face")
-        ).to_numpy()
+        return run["time"].to_numpy(), _top_drift(run)
 
     usual = {model: drift({}, model) for model in _STEPS}
     rows = []
@@ -90,7 +97,69 @@ def single_changes():
     return markdown(("change", *heads), rows)
 
 
-MAKERS = {"convergence": convergence, "slenderness": slenderness, "single-changes": single_changes}
+def statements():
+    """Findings of the default study on the statements of the paper; None where the study has not been run."""
+    if not STUDY.is_file():
+        return None
+    found = load_json(STUDY)
+    cases, models = "; ".join(found["cases"]), ", ".join(found["models"])
+    words = (
+        f"Study `{found['study']}` (blockshake {found['version']}): {found['description']}. "
+        f"{found['samples']} samples; {models}; {cases}. {count_words(found['findings'])}"
+    )
+    lines = textwrap.wrap(words, 100, break_on_hyphens=False)
+    for heading, rows in found["findings"].items():
+        shown = [(*row[:-1], f"`{row[-1]}`") for row in rows]
+        lines += ["", f"### {heading}", "", markdown(HEADER, shown)]
+    return "\n".join(lines)
+
+
+def departure_table():
+    """Departures from the paper, from the program's own constants."""
+    return markdown(DEPARTURES_HEADER, departures())
+
+
+def published_settings():
+    """Peak, end and energy audit of configuration 1 by the settings of `LITERAL`, one at a time and together."""
+    structure, motion = load_structure("configuration-1"), load_motion("basso-tirreno", 2.0)
+    printed = load_config(LITERAL).models
+    rows = []
+    for model, usual in (("ls-dem", {}), ("nscd-rigid", _FINE_IMPACTS)):
+        settings = {name: value for name, value in printed[model].parameters.items() if name not in _GRID}
+        grid = {name: value for name, value in printed[model].parameters.items() if name in _GRID}
+        choices = [("defaults", usual), *([(_words(grid), grid)] if grid else [])]
+        choices += [(_words({name: value}), usual | {name: value}) for name, value in settings.items()]
+        choices.append(("all of them", usual | settings | grid))
+        for words, parameters in choices:
+            run = simulate(
+                structure, motion, model, parameters, time_step=printed[model].time_step, duration=10.0,
+                accelerometers=False,
+            )  # fmt: skip
+            drift = 1e3 * _top_drift(run)
+            residual = 100.0 * energy_residual(run["energy"].to_numpy())
+            rows.append((model, words, f"{np.abs(drift).max():.1f}", f"{drift[-1]:.1f}", number(residual, 2)))
+    heads = "model", "settings", "peak drift [mm]", "drift at 10 s [mm]", "energy not explained [%]"
+    return markdown(heads, rows)
+
+
+def _top_drift(run):
+    """Displacement of the top block of configuration 1 relative to the slab along x [m]."""
+    along = run["marker_displacement"].sel(axis="x")
+    return (along.sel(marker="block-3-face") - along.sel(marker="slab-face")).to_numpy()
+
+
+def _words(parameters):
+    return ", ".join(f"`{name}: {str(value).lower()}`" for name, value in parameters.items())
+
+
+MAKERS = {
+    "convergence": convergence,
+    "slenderness": slenderness,
+    "single-changes": single_changes,
+    "statements": statements,
+    "departures": departure_table,
+    "published-settings": published_settings,
+}
 
 
 def markdown(header, rows):
@@ -109,10 +178,15 @@ def main(names):
     """Make the figures of these names, all where none is given, and write them to their pages."""
     for page in sorted(DOCS.rglob("*.md")):
         for name, old in blocks(page).items():
-            if name in (names or MAKERS):
-                text = page.read_text(encoding="utf-8")
-                write_text(page, text.replace(BLOCK.format(name, old), BLOCK.format(name, MAKERS[name]())))
-                sys.stdout.write(f"{page.name}: {name}\n")
+            if name not in (names or MAKERS):
+                continue
+            made = MAKERS[name]()
+            if made is None:
+                sys.stdout.write(f"{page.name}: {name} stays, there is no {STUDY}\n")
+                continue
+            text = page.read_text(encoding="utf-8")
+            write_text(page, text.replace(BLOCK.format(name, old), BLOCK.format(name, made)))
+            sys.stdout.write(f"{page.name}: {name}\n")
 
 
 if __name__ == "__main__":

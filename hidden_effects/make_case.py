@@ -29,11 +29,11 @@ from outside_forces import OUTSIDE
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import EFFECTS
-from blockshake.files import content_digest, source_digest, write_dataset, write_json, write_text
+from blockshake.files import content_digest, write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.instruments import Instruments
 from blockshake.simulation.models import MODELS, part_parameters
-from blockshake.sources import module_sources
+from blockshake.sources import module_sources, source_digest
 from blockshake.virtual.generate import DECIMALS
 from blockshake.virtual.settings import VirtualCampaign
 from blockshake.virtual.shake_table import shake

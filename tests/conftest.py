@@ -3,7 +3,10 @@ import copy
 import numpy as np
 import pytest
 
+from blockshake.dynamics.system import Status, Trajectory
+from blockshake.files import write_dataset
 from blockshake.geometry.structure import build_structure
+from blockshake.simulation.run_dataset import run_dataset
 from blockshake.solvers.ls_dem.driver import simulate_ls_dem
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 
@@ -53,6 +56,51 @@ def run_ls_dem():
         return simulate_ls_dem(structure, motion, LsDemParameters(**parameters), times, time_step)
 
     return run
+
+
+@pytest.fixture(scope="session")
+def leaning_run(make_structure):
+    """A run made by hand, and its structure: on a slab that moves at 0.1 m/s, the upper of two blocks tips slowly.
+
+    The upper block turns at 0.05 rad/s about the edge of its face at x = 0.38 m. Forces and energy are made up.
+    """
+    lower = {"name": "lower", "shape": "block", "position": [0.0, 0.0, 0.8]}
+    upper = {"name": "upper", "shape": "block", "position": [0.0, 0.0, 2.4]}
+    markers = [{"name": "top", "body": "upper", "position": [0.0, -1.2, 0.8]}]
+    structure = make_structure([lower, upper], markers=markers)
+    time = np.arange(41) / 40.0
+    angle, zero = 0.05 * time, np.zeros_like(time)
+    position = np.tile(structure.position, (len(time), 1, 1))
+    position[:, 2, 0] += 0.38 - 0.38 * np.cos(angle) + 0.8 * np.sin(angle)
+    position[:, 2, 2] += 0.38 * np.sin(angle) + 0.8 * np.cos(angle) - 0.8
+    position[..., 0] += 0.1 * time[:, None]
+    orientation = np.tile(structure.orientation, (len(time), 1, 1))
+    orientation[:, 2] = np.stack([np.cos(angle / 2), zero, np.sin(angle / 2), zero], axis=1)
+    turning = np.zeros_like(position)
+    turning[:, 2, 1] = 0.05
+    force = np.zeros((len(time), 2, 3))
+    force[:, 0], force[:, 1] = [3e3, -4e3, 2e4], [0.0, 0.0, 100.0]
+    energy = np.zeros((len(time), 7))
+    energy[:, 0], energy[:, 1] = 5.0 * time**2, 1000.0 + 10.0 * time
+    energy[:, 3], energy[:, 6] = time, 5.0 * time**2 + 11.5 * time
+    trajectory = Trajectory(
+        time, position, orientation, np.gradient(position, time, axis=0), turning, energy,
+        np.array([[0, 1], [1, 2]]), force, Status.COMPLETED, "", 1.0, {},
+    )  # fmt: skip
+    run = run_dataset(structure, trajectory, np.arange(len(time)))
+    run.attrs = {
+        "structure_file": structure.file.model_dump_json(), "structure": "test", "motion": "push", "motion_scale": 0.5,
+        "motion_synthetic": 1, "model": "ls-dem", "status": "completed", "reason": "", "energy_residual": 0.043,
+    }  # fmt: skip
+    return run, structure
+
+
+@pytest.fixture(scope="session")
+def leaning_file(leaning_run, tmp_path_factory):
+    """The file of `leaning_run`."""
+    path = tmp_path_factory.mktemp("leaning") / "run.nc"
+    write_dataset(path, leaning_run[0])
+    return path
 
 
 @pytest.fixture(scope="session")

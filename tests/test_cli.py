@@ -148,3 +148,49 @@ def test_an_interrupt_before_a_run_has_begun_is_said_too(monkeypatch, capsys):
     monkeypatch.setattr("blockshake.study.check.check_file", interrupted)
     assert main(["check", "configuration-1"]) == 130
     assert capsys.readouterr().err == "blockshake: interrupted\n"
+
+
+def test_a_run_is_plotted_animated_and_exported(leaning_file, tmp_path, capsys):
+    for command, output in (
+        ("plot", "a.svg"),
+        ("animate", "a.gif"),
+        ("export", "a.glb"),
+        ("export", "a.csv"),
+    ):
+        assert main([command, str(leaning_file), "--output", str(tmp_path / output)]) == 0
+    said = capsys.readouterr().out.split()
+    assert {path.name for path in tmp_path.iterdir()} == {path.rsplit("/", 1)[1] for path in said}
+    assert str(tmp_path / "a-joints.csv") in said
+
+
+def test_check_draws_the_structure(tmp_path):
+    assert main(["check", "configuration-1", "--picture", str(tmp_path / "a.png")]) == 0
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["plot", "RUN", "--output", "a.jpg"], "a.jpg: expected a picture's suffix"),
+        (["animate", "RUN", "--output", "a.avi"], "a.avi: expected a suffix of moving pictures"),
+        (["animate", "RUN", "--output", "a.gif", "--speed", "-1"], "--speed: expected a positive number"),
+        (["export", "RUN", "--output", "a.vtu"], "a.vtu: expected one of the suffixes"),
+        (["export", "RUN", "--output", "file/a.csv"], "file/a.csv: expected a folder to write to"),
+        (["plot", "file", "--output", "a.png"], "file: expected a readable netCDF file"),
+        (["plot", "none.nc"], "none.nc: expected a run file"),
+        (
+            ["check", "configuration-1", "configuration-2", "--picture", "a.png"],
+            "--picture: expected one structure",
+        ),
+        (["check", "alkion", "--picture", "a.png"], "alkion"),
+    ],
+)
+def test_a_picture_or_export_that_cannot_be_made_leaves_nothing(
+    arguments, line, leaning_file, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").write_text("")
+    assert main([str(leaning_file) if word == "RUN" else word for word in arguments]) == 2
+    (said,) = capsys.readouterr().err.splitlines()
+    assert line in said
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]

@@ -2,7 +2,6 @@ import os
 import shutil
 import subprocess
 import sys
-import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -11,14 +10,13 @@ import pytest
 import xarray as xr
 from numba.core.caching import IndexDataCacheFile
 
-from blockshake import files
+from blockshake import files, jit
 from blockshake.errors import InputError
 from blockshake.files import (
     content_digest,
     load_yaml,
     parse_yaml,
     replacing,
-    source_digest,
     write_dataset,
     write_json,
     write_text,
@@ -131,51 +129,6 @@ def test_the_content_digest_tells_values_apart_and_not_the_order_of_keys():
     assert len(content_digest(1)) == 12
 
 
-def _clear():
-    """Forget the digests of sources: these change while a test runs, as they never do under a program."""
-    source_digest.cache_clear()
-    files._syntax.cache_clear()
-
-
-@pytest.fixture
-def package(tmp_path, monkeypatch):
-    monkeypatch.setattr(files, "PACKAGE", tmp_path)
-    (tmp_path / "part").mkdir()
-    (tmp_path / "part" / "a.py").write_text(
-        '"""Doc."""\n\n\ndef f(x):\n    """Add one."""\n    return x + 1\n'
-    )
-    (tmp_path / "b.py").write_text("B = 2\n")
-    _clear()
-    yield tmp_path
-    _clear()
-
-
-def _digests():
-    _clear()
-    return source_digest(), source_digest("part"), source_digest("b.py")
-
-
-def test_the_source_digest_ignores_explanations(package):
-    before = _digests()
-    (package / "part" / "a.py").write_text(
-        '"""Other."""\n# why\ndef f( x ):\n    """Add\n    1."""\n\n    return x+1  # one\n'
-    )
-    assert _digests() == before
-
-
-def test_the_source_digest_follows_code_of_the_parts_named(package):
-    whole, part, b = _digests()
-    (package / "part" / "a.py").write_text(
-        '"""Doc."""\n\n\ndef f(x):\n    """Add one."""\n    return x + 2\n'
-    )
-    new_whole, new_part, new_b = _digests()
-    assert new_whole != whole
-    assert new_part != part
-    assert new_b == b
-    (package / "part" / "a.py").rename(package / "part" / "c.py")
-    assert _digests()[1] != new_part  # a moved module is another program
-
-
 def test_the_kernel_cache_is_named_after_the_sources():
     assert CACHE_FOLDER.name == SOURCE_DIGEST
 
@@ -235,17 +188,29 @@ def test_packed_variables_keep_their_digits_and_their_gaps(tmp_path):
     xr.testing.assert_identical(xr.load_dataset(tmp_path / "b.nc"), read)
 
 
-def test_kernels_that_are_saved_at_the_same_time_do_not_take_each_other_s_place(tmp_path, monkeypatch):
-    """Two signatures of a kernel, whose index is read by both before either writes it."""
-    reads = IndexDataCacheFile._load_index
+def _cache(folder, stamp="stamp"):
+    return IndexDataCacheFile(str(folder), "kernel", stamp)
 
-    def slow(self):
-        index = reads(self)
-        time.sleep(0.2)
-        return index
 
-    monkeypatch.setattr(IndexDataCacheFile, "_load_index", slow)
-    caches = [IndexDataCacheFile(str(tmp_path), "kernel", "stamp") for _ in range(2)]
-    with ThreadPoolExecutor(2) as pool:
-        list(pool.map(lambda number: caches[number].save(f"signature {number}", f"code {number}"), range(2)))
-    assert [caches[0].load(f"signature {number}") for number in range(2)] == ["code 0", "code 1"]
+def test_kernels_that_are_saved_at_the_same_time_do_not_take_each_other_s_place(tmp_path):
+    signatures = [f"signature {number}" for number in range(8)] * 4
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(lambda one: _cache(tmp_path).save(one, f"code of {one}"), signatures))
+    assert [_cache(tmp_path).load(one) for one in signatures] == [f"code of {one}" for one in signatures]
+
+
+def test_a_damaged_or_foreign_kernel_is_compiled_anew(tmp_path):
+    cache = _cache(tmp_path)
+    cache.save("signature", "code")
+    cache.save("another", "other code")
+    kernel, other = (Path(jit._place(cache, key)) for key in ("signature", "another"))
+    whole = kernel.read_bytes()
+    flipped = bytearray(whole)
+    flipped[-3] ^= 1
+    for damaged in (b"", whole[:10], whole[:-1], bytes(flipped), other.read_bytes(), b"a note"):
+        kernel.write_bytes(damaged)
+        assert cache.load("signature") is None
+    cache.save("signature", "code")
+    assert cache.load("signature") == "code"
+    # other sources
+    assert _cache(tmp_path, "edited").load("signature") is None

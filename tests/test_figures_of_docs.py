@@ -5,6 +5,11 @@ from pathlib import Path
 
 import pytest
 
+from blockshake.report.study.statements.section import HEADER, count_words
+from blockshake.report.study.statements.specimens import heights, tallest
+from blockshake.report.study.statements.statement import Verdict
+from blockshake.report.study.statements.table import STATEMENTS
+
 ROOT = Path(__file__).parents[1]
 
 
@@ -25,6 +30,36 @@ def test_every_figure_has_its_maker_and_its_page(figures):
 def test_a_page_holds_the_figures_of_today(figures):
     page = ROOT / "docs" / "friction-calibration.md"
     assert figures.blocks(page)["slenderness"] == figures.slenderness()
+
+
+def test_departures_from_the_paper_are_those_of_today(figures):
+    page = ROOT / "docs" / "the-paper.md"
+    assert figures.blocks(page)["departures"] == figures.departure_table()
+
+
+def test_findings_on_the_paper_are_on_the_statements_of_today(figures):
+    page = figures.blocks(ROOT / "docs" / "the-paper.md")["statements"]
+    rows = [line.strip("| ").split(" | ") for line in page.splitlines() if line.startswith("| ")]
+    rows = [row for row in rows if row[0] not in (HEADER[0], "---")]
+    stated = [(one.place, one.claim) for statements in STATEMENTS.values() for one in statements]
+    assert [(row[0], row[1]) for row in rows] == stated
+    assert {row[2] for row in rows} == set(Verdict)
+    assert count_words({"all": rows}) in " ".join(page.split())
+    found = {row[1]: (row[2], row[3]) for row in rows}
+    for judge in (heights, tallest):  # they hang on no study
+        (claim,) = [one.claim for all_of in STATEMENTS.values() for one in all_of if one.judge is judge]
+        assert found[claim] == judge(None)
+    speed = f"normal {(3.45e10 / 2400.0) ** 0.5:.0f} m/s"  # Eq. (7) at the means of Table 2
+    assert sum(speed in words for _, words in found.values()) == 1
+
+
+def test_findings_stay_where_no_study_was_run(figures, monkeypatch, tmp_path, capsys):
+    (tmp_path / "page.md").write_text(figures.BLOCK.format("statements", "old"))
+    monkeypatch.setattr(figures, "DOCS", tmp_path)
+    monkeypatch.setattr(figures, "STUDY", tmp_path / "none.json")
+    figures.main([])
+    assert (tmp_path / "page.md").read_text() == figures.BLOCK.format("statements", "old")
+    assert "statements stays" in capsys.readouterr().out
 
 
 def test_only_the_figures_are_written(figures, monkeypatch, tmp_path):

@@ -9,8 +9,9 @@ from blockshake.files import PACKAGE
 # From the ground up; what stands on one line knows nothing of its neighbours.
 FLOORS = [
     ["errors"],
-    ["files", "quantities"],
-    ["validation", "log", "sources"],
+    ["files", "quantities", "working_folder"],
+    ["validation", "log", "sources", "store"],
+    ["tables"],
     ["jit"],
     ["geometry"],
     ["dynamics"],
@@ -19,7 +20,7 @@ FLOORS = [
     ["study"],
     ["diagnosis", "virtual"],
     ["report"],
-    ["run_diagnosis"],
+    ["run_diagnosis", "own_files"],
     ["cli"],
 ]
 ROOMS_OF_DIAGNOSIS = [
@@ -31,7 +32,7 @@ ROOMS_OF_DIAGNOSIS = [
     ["gain"],
     ["steps"],
 ]
-ROOMS_OF_REPORT = [["document"], ["study", "diagnosis"]]
+ROOMS_OF_REPORT = [["document"], ["study", "diagnosis", "run"]]
 MOST_MODULES = 15
 
 

@@ -1,12 +1,15 @@
 """The command's bad input: one clear line, exit 2, nothing half-written."""
 
+import os
 import shutil
 
 import pytest
 
+from blockshake import run_diagnosis
 from blockshake.cli import main
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE
+from blockshake.working_folder import hold
 
 CAMPAIGN = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-1"
 
@@ -34,6 +37,14 @@ BAD = {
         lambda text: text.replace("structure: configuration-1", "structure: configuration-3"),
         "expected markers of the structure",
     ),
+    "readings without noise": (
+        lambda text: (
+            text + "\nsensors: {marker_noise: 0.0, accelerometer_noise: 0.05}\n"
+            if "sensors:" not in text
+            else text.replace(text[text.index("sensors:") :].splitlines()[0], "sensors: {marker_noise: 0.0}")
+        ),
+        "sensors.marker_noise: input should be greater than 0",
+    ),
     "a motion nobody has": (
         lambda text: text.replace("motion: alkion,", "motion: nothing,"),
         "expected a shipped motion",
@@ -49,6 +60,14 @@ def test_a_campaign_that_cannot_be_diagnosed(tmp_path, capsys, case):
     error = capsys.readouterr().err
     assert message in error
     assert error.count("\n") == 1
+    assert not output.exists()
+
+
+@pytest.mark.parametrize("cores", [0, -3])
+def test_a_number_of_cores_that_is_none(tmp_path, capsys, cores):
+    output = tmp_path / "output"
+    assert main(["diagnose", str(CAMPAIGN), "--output", str(output), "--cores", str(cores)]) == 2
+    assert capsys.readouterr().err.count(f"expected a whole number from 1, not {cores}") == 1
     assert not output.exists()
 
 
@@ -78,6 +97,18 @@ def test_bad_arguments(capsys, arguments, message):
     error = capsys.readouterr().err
     assert message in error
     assert error.count("\n") == 1
+
+
+def test_a_diagnosis_beside_another_command_is_refused_and_touches_nothing(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(run_diagnosis, "HOME", tmp_path)
+    held = hold(tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    assert main(["diagnose", str(CAMPAIGN), "--output", str(tmp_path / "output")]) == 2
+    os.close(held)
+    error = capsys.readouterr().err
+    assert "expected a folder in which no other study or diagnosis runs" in error
+    assert error.count("\n") == 1
+    assert sorted(tmp_path.rglob("*")) == before
 
 
 def test_functions_of_the_package_are_no_modules(tmp_path):

@@ -6,9 +6,10 @@ import sys
 
 import pytest
 
-from blockshake.files import PACKAGE, source_digest
+from blockshake import sources
+from blockshake.files import PACKAGE
 from blockshake.simulation.models import MODELS
-from blockshake.sources import compiled_sources, kernel_sources, module_sources, script_sources
+from blockshake.sources import compiled_sources, kernel_sources, module_sources, script_sources, source_digest
 
 SCRIPTS = sorted(path.stem for path in (PACKAGE.parents[1] / "workflow" / "scripts").glob("*.py"))
 RULES = ("diagnosed", "diagnosis")
@@ -99,3 +100,47 @@ def test_models_name_modules_that_exist():
     named = [module for model in MODELS.values() for module in model.modules]
     assert len(named) >= len(MODELS)
     assert [module for module in named if importlib.util.find_spec(module) is None] == []
+
+
+@pytest.fixture
+def package(tmp_path, monkeypatch):
+    monkeypatch.setattr(sources, "PACKAGE", tmp_path)
+    (tmp_path / "part").mkdir()
+    (tmp_path / "part" / "a.py").write_text(
+        '"""Doc."""\n\n\ndef f(x):\n    """Add one."""\n    return x + 1\n\n\ndef g():\n    return 2\n'
+    )
+    _forget()
+    yield tmp_path
+    _forget()
+
+
+def _forget():
+    """Forget the digests of sources: these change while a test runs, as they never do under a program."""
+    source_digest.cache_clear()
+    sources._read.cache_clear()
+
+
+def _digests():
+    _forget()
+    return source_digest("part/a.py"), source_digest("part/a.py:f"), source_digest("part/a.py:g")
+
+
+def test_the_source_digest_ignores_explanations(package):
+    before = _digests()
+    (package / "part" / "a.py").write_text(
+        '"""Other."""\n# why\ndef f( x ):\n    """Add\n    1."""\n\n    return x+1  # one\n'
+        'def g():\n    "Two."\n    return 2\n'
+    )
+    assert _digests() == before
+
+
+def test_the_source_digest_follows_the_code_that_is_named(package):
+    whole, f, g = _digests()
+    text = (package / "part" / "a.py").read_text()
+    (package / "part" / "a.py").write_text(text.replace("x + 1", "x + 2"))
+    new_whole, new_f, new_g = _digests()
+    assert new_whole != whole
+    assert new_f != f
+    assert new_g == g
+    (package / "part" / "a.py").rename(package / "part" / "c.py")
+    assert source_digest("part/c.py") != new_whole  # a moved module is another program

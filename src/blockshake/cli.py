@@ -8,6 +8,7 @@ from pathlib import Path
 from blockshake import __version__
 from blockshake.errors import InputError
 from blockshake.files import check_output, parse_yaml, write_dataset, write_json
+from blockshake.own_files.commands import add_data_commands
 from blockshake.simulation.models import MODELS
 
 BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 2, 3, 130
@@ -52,6 +53,36 @@ def _parser():
     command.add_argument("--output", required=True, metavar="RUN.nc")
     command.set_defaults(run=_simulate)
 
+    command = commands.add_parser(
+        "plot", help="drift, joint forces, uplift and energy of a run, as a picture"
+    )
+    _add_run(command)
+    command.add_argument("--output", metavar="FILE", help=".png, .pdf or .svg (default RUN.png)")
+    command.set_defaults(run=_plot)
+
+    command = commands.add_parser("animate", help="the blocks of a run in motion, as GIF or MP4")
+    _add_run(command)
+    command.add_argument("--output", metavar="FILE", help=".gif, or .mp4 with ffmpeg (default RUN.gif)")
+    command.add_argument("--view", default="front", metavar="front|side|3d", help="default front")
+    command.add_argument(
+        "--magnification",
+        type=float,
+        default=1.0,
+        metavar="N",
+        help="of the motion against the base (default 1)",
+    )
+    command.add_argument(
+        "--speed", type=float, default=1.0, metavar="N", help="1 is real time (default), 0.1 ten times slower"
+    )
+    command.set_defaults(run=_animate)
+
+    command = commands.add_parser("export", help="a run as CSV tables, for ParaView, or as glTF with motion")
+    _add_run(command)
+    command.add_argument(
+        "--output", required=True, metavar="FILE", help=".csv, .vtkhdf or .glb: the suffix is the format"
+    )
+    command.set_defaults(run=_export)
+
     command = commands.add_parser("sample", help="a Latin hypercube of Table 2, to a CSV")
     command.add_argument("--size", type=int, default=50)
     command.add_argument("--seed", type=int, default=1)
@@ -67,10 +98,7 @@ def _parser():
     command.add_argument("--output", required=True, metavar="STIFFNESS.json")
     command.set_defaults(run=_calibrate_stiffness)
 
-    command = commands.add_parser("convert-motion", help="a record of another format, to the project's CSV")
-    command.add_argument("file", metavar="FILE")
-    command.add_argument("--output", required=True, metavar="MOTION.csv")
-    command.set_defaults(run=_convert_motion)
+    add_data_commands(commands)
 
     command = commands.add_parser(
         "generate-campaign", help="synthetic tests on a virtual shake table, to a folder"
@@ -105,6 +133,7 @@ def _parser():
 
     command = commands.add_parser("check", help="say what is wrong with structure, motion or study files")
     command.add_argument("files", nargs="+", metavar="FILE")
+    command.add_argument("--picture", metavar="PICTURE", help="of one structure: .png, .pdf or .svg")
     command.set_defaults(run=_check)
 
     command = commands.add_parser(
@@ -133,6 +162,13 @@ def _add_settings(command):
     )  # fmt: skip
 
 
+def _add_run(command):
+    command.add_argument("file", metavar="RUN.nc", help="from `blockshake simulate`")
+    command.add_argument(
+        "--meshes", metavar="DIR", help="of the structure's mesh files (default: the run file's folder)"
+    )
+
+
 def _settings(options):
     settings = {}
     for setting in options.settings:
@@ -151,9 +187,7 @@ def _simulate(options):
     from blockshake.dynamics.system import FINISHED
     from blockshake.simulation.simulate import simulate
 
-    logging.basicConfig(format="blockshake: %(message)s")
-    logging.getLogger("blockshake").setLevel(logging.INFO)
-
+    _show_progress()
     run = simulate(
         options.structure,
         load_motion(options.motion, options.scale),
@@ -169,6 +203,47 @@ def _simulate(options):
         return 0
     print(f"blockshake: {run.attrs['status']}: {run.attrs['reason']}", file=sys.stderr)
     return NUMERICAL_FAILURE
+
+
+def _show_progress():
+    logging.basicConfig(format="blockshake: %(message)s")
+    logging.getLogger("blockshake").setLevel(logging.INFO)
+
+
+def _plot(options):
+    output = check_output(options.output or Path(options.file).with_suffix(".png"))
+    from blockshake.report.document.drawing import check_picture, save_picture
+    from blockshake.report.run.figure import plot_run
+    from blockshake.simulation.load_run import load_run
+    from blockshake.simulation.run_histories import run_histories
+
+    check_picture(output)
+    run, structure = load_run(options.file, options.meshes)
+    save_picture(output, plot_run, run, run_histories(run, structure))
+    print(output)
+
+
+def _animate(options):
+    output = check_output(options.output or Path(options.file).with_suffix(".gif"))
+    from blockshake.report.run.animation import animate_run, check_animation
+    from blockshake.simulation.load_run import load_run
+
+    check_animation(output)
+    _show_progress()
+    run, structure = load_run(options.file, options.meshes)
+    animate_run(output, run, structure, options.view, options.magnification, options.speed)
+    print(output)
+
+
+def _export(options):
+    from blockshake.report.run.export import check_export, export_run
+    from blockshake.simulation.load_run import load_run
+    from blockshake.simulation.run_histories import run_histories
+
+    check_export(options.output)
+    run, structure = load_run(options.file, options.meshes)
+    for file in export_run(options.output, run, run_histories(run, structure), structure):
+        print(file)
 
 
 def _sample(options):
@@ -189,17 +264,8 @@ def _calibrate_stiffness(options):
     write_json(options.output, calibrate_stiffness(options.structure, _settings(options)))
 
 
-def _convert_motion(options):
-    check_output(options.output)
-    from blockshake.dynamics.load_motion import load_motion
-    from blockshake.dynamics.records.contract_csv import write_motion_csv
-
-    write_motion_csv(load_motion(options.file), options.output)
-
-
 def _generate_campaign(options):
-    from blockshake.files import source_digest
-    from blockshake.sources import module_sources
+    from blockshake.sources import module_sources, source_digest
     from blockshake.virtual.generate import generate_campaign
     from blockshake.virtual.settings import load_settings
 
@@ -245,6 +311,8 @@ def _modes(options):
 def _check(options):
     from blockshake.study.check import check_file
 
+    if options.picture:
+        _draw_structure(options.files, options.picture)
     wrong = 0
     for file in options.files:
         try:
@@ -253,6 +321,17 @@ def _check(options):
             print(f"blockshake: {error}", file=sys.stderr)
             wrong += 1
     return BAD_INPUT if wrong else 0
+
+
+def _draw_structure(files, picture):
+    from blockshake.geometry.structure import load_structure
+    from blockshake.report.document.drawing import check_picture, save_picture
+    from blockshake.report.run.structure_picture import plot_understood
+
+    check_picture(picture)
+    if len(files) != 1:
+        raise InputError("--picture", "", f"expected one structure, not {len(files)} files")
+    save_picture(picture, plot_understood, load_structure(files[0]))
 
 
 def _estimate(options):

@@ -1,12 +1,11 @@
-"""Reading and writing files: strict YAML, atomic writes, digests of sources and contents."""
+"""Reading and writing files: strict YAML, atomic writes, digests of contents."""
 
-import ast
 import contextlib
-import functools
 import hashlib
 import json
 import os
 import re
+import shutil
 import tempfile
 from pathlib import Path
 
@@ -80,11 +79,23 @@ def read_text(path):
         The file is missing or is not text.
     """
     try:
-        return Path(path).read_text(encoding="utf-8")
-    except OSError as error:
-        raise InputError(path, "", f"expected a readable file; {error.strerror.lower()}") from None
+        return read_bytes(path).decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError:
         raise InputError(path, "", "expected a text file; its bytes are not UTF-8") from None
+
+
+def read_bytes(path):
+    """Bytes of a file that a user named.
+
+    Raises
+    ------
+    InputError
+        The file is missing.
+    """
+    try:
+        return Path(path).read_bytes()
+    except OSError as error:
+        raise InputError(path, "", f"expected a readable file; {error.strerror.lower()}") from None
 
 
 def load_json(path):
@@ -166,6 +177,28 @@ def replacing(path):
         raise
 
 
+@contextlib.contextmanager
+def replacing_folder(folder):
+    """Temporary folder beside ``folder`` that takes its place when the block ends well; else nothing is left.
+
+    Raises
+    ------
+    InputError
+        There is a file, or a folder with content, in its place.
+    """
+    folder = Path(folder)
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise InputError(folder, "", "expected a new or an empty folder; nothing is overwritten")
+    check_output(folder / "file" if folder.exists() else folder)
+    made = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+    try:
+        yield made
+        made.chmod(0o777 & ~_umask())
+        made.replace(folder)
+    finally:
+        shutil.rmtree(made, ignore_errors=True)
+
+
 def _umask():
     mask = os.umask(0)
     os.umask(mask)
@@ -199,7 +232,7 @@ def write_dataset(path, dataset, decimals=None):
                     "dtype": "int32", "scale_factor": 10.0 ** -decimals[unit], "_FillValue": _NO_NUMBER,
                 }  # fmt: skip
     with replacing(path) as temporary:
-        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
+        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding, unlimited_dims=[])
 
 
 def content_digest(*values):
@@ -214,51 +247,3 @@ def content_digest(*values):
 def file_digest(path):
     """Twelve hexadecimal digits that identify a file's bytes."""
     return content_digest(Path(path).read_bytes())
-
-
-@functools.cache
-def source_digest(*packages):
-    """Twelve hexadecimal digits that identify what the sources compute.
-
-    Parameters
-    ----------
-    *packages : str
-        Folders, modules or functions of blockshake, such as ``"geometry"``, ``"files.py"`` or
-        ``"diagnosis/steps.py:decide"``; none means the whole package.
-
-    Notes
-    -----
-    Comments, docstrings and layout do not count: the digest is of the syntax trees, so that a
-    better explanation reruns no simulation.
-    """
-    digest = hashlib.sha256()
-    for package in packages or (".",):
-        path, _, function = package.partition(":")
-        path = PACKAGE / path
-        for source in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
-            digest.update(str(source.relative_to(PACKAGE)).encode())
-            digest.update(_syntax(source, function))
-    return digest.hexdigest()[:12]
-
-
-@functools.cache
-def _syntax(source, function):
-    """Digest of the syntax tree of a file, or of its top and one of its functions: many packages share a file."""
-    tree = _without_docstrings(ast.parse(source.read_text(encoding="utf-8")))
-    if function:
-        tree.body = [node for node in tree.body if getattr(node, "name", function) == function]
-    return hashlib.sha256(ast.dump(tree).encode()).digest()
-
-
-def _without_docstrings(tree):
-    for node in ast.walk(tree):
-        body = getattr(node, "body", None)
-        if (
-            isinstance(body, list)
-            and body
-            and isinstance(body[0], ast.Expr)
-            and isinstance(body[0].value, ast.Constant)
-            and isinstance(body[0].value.value, str)
-        ):
-            del body[0]
-    return tree

@@ -4,41 +4,60 @@ Numba's own cache misses edits in imported modules and freezes globals at compil
 digest of the sources that hold kernels therefore gets a cache folder of its own: an edit in any
 of them compiles anew, and an unchanged package never does.
 
-Nor is that cache safe where several processes compile at once, as Snakemake's jobs and the tests' workers do: two that
-save different signatures of a kernel take the same file name, and the index of one then leads to the machine code
-of the other. Saving is therefore done one at a time.
+Nor is that cache safe where several processes compile at once, as Snakemake's jobs and the tests' workers do, or where
+one is killed: two that save different signatures of a kernel take the same file name, and the index of one then leads
+to the machine code of the other. Nor does it see that a file was cut or altered. Here each signature therefore has a
+file of its own, with a digest of its content; a file that is not whole is compiled anew.
 
 Nor does that cache know a module by its name: a copy of a checkout, or a file whose time changes, would compile all
 anew. Here a kernel's place is its module's name; the digest says whether the sources are the same.
 """
 
-import fcntl
+import hashlib
 import os
+import pickle
 from pathlib import Path
 
 import numba
 from numba.core.caching import CacheImpl, IndexDataCacheFile, _CacheLocator
 from numba.core.compiler_lock import global_compiler_lock
+from numba.core.serialize import dumps
 
-from blockshake.files import source_digest
-from blockshake.sources import compiled_sources
+from blockshake.sources import compiled_sources, source_digest
 
 SOURCE_DIGEST = source_digest(*compiled_sources())
 CACHE_FOLDER = Path(os.environ.get("BLOCKSHAKE_CACHE", Path.home() / ".cache" / "blockshake")) / SOURCE_DIGEST
 numba.config.CACHE_DIR = str(CACHE_FOLDER)
 
-_save_unguarded = IndexDataCacheFile.save
+_SEAL = hashlib.sha256().digest_size  # bytes
 
 
-def _save_alone(self, key, data):
-    """Save a compiled kernel while no other process saves one."""
-    CACHE_FOLDER.mkdir(parents=True, exist_ok=True)
-    with open(CACHE_FOLDER / "lock", "a", encoding="utf-8") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        _save_unguarded(self, key, data)
+def _place(cache, key):
+    """Path of the file of a kernel's signature, machine and version of Numba."""
+    name = hashlib.sha256(repr((cache._version, key)).encode()).hexdigest()[:16]
+    return cache._data_path(f"{cache._index_name.removesuffix('.nbi')}.{name}.nbc")
 
 
-IndexDataCacheFile.save = _save_alone
+def _save(self, key, data):
+    """Save a compiled kernel, whole or not at all."""
+    content = dumps((self._source_stamp, key, data))
+    with self._open_for_write(_place(self, key)) as file:
+        file.write(hashlib.sha256(content).digest() + content)
+
+
+def _load(self, key):
+    """Give a compiled kernel, or None where there is no whole file of it."""
+    try:
+        kept = Path(_place(self, key)).read_bytes()
+    except OSError:
+        return None
+    if hashlib.sha256(kept[_SEAL:]).digest() != kept[:_SEAL]:
+        return None
+    stamp, made_for, data = pickle.loads(kept[_SEAL:])
+    return data if (stamp, made_for) == (self._source_stamp, key) else None
+
+
+IndexDataCacheFile.save, IndexDataCacheFile.load = _save, _load
 
 
 class _ByModule(_CacheLocator):

@@ -8,6 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from blockshake.errors import InputError
+from blockshake.working_folder import end_with_command
 
 _VERSIONS = ("numpy", "numba", "scipy", "xarray")
 
@@ -18,7 +19,9 @@ def logging_to(path):
 
     Yields a function that says one line of progress, in the log and on the terminal. Python warnings and logging go to
     the log; so does the traceback of an error, which is raised on, but for bad input: that ends the job with one line.
+    The job ends with the command that started it.
     """
+    end_with_command()
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     with open(path, "w", encoding="utf-8", buffering=1) as log:
         handler = logging.StreamHandler(log)

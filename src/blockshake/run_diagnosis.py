@@ -6,7 +6,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+from blockshake.errors import InputError
 from blockshake.files import HOME, PACKAGE, check_output
+from blockshake.working_folder import hold
 
 _KEPT = ("verdict.json", "decision.json", "parity.json", "misfit.nc", "evidence.nc", "forces.nc")
 _OF_GAIN = ("gain.nc", "consequences.nc")  # where a cause was found and there are sealed tests
@@ -37,19 +39,23 @@ def diagnose(campaign, output, effort="standard", cores=None):
     Raises
     ------
     InputError
-        A campaign that cannot be diagnosed.
+        A campaign that cannot be diagnosed, a number of cores below 1, or another command works in the folder of the
+        results.
     RuntimeError
         The workflow stopped; its messages were printed.
     """
     from blockshake.diagnosis.libraries.plan import plan_diagnosis, result_name
     from blockshake.diagnosis.verdict.verdict import load_verdict
 
+    if cores is not None and (not isinstance(cores, int) or cores < 1):
+        raise InputError("diagnose", "cores", f"expected a whole number from 1, not {cores!r}")
     plan_diagnosis(campaign, effort)
-    check_output(Path(output) / "verdict.json")
     work = Path.cwd() if HOME.is_relative_to(PACKAGE) else HOME
+    os.close(hold(work))  # the workflow holds it again
+    check_output(Path(output) / "verdict.json")
     folder = Path(campaign).resolve()
     command = [
-        sys.executable, "-m", "snakemake", "diagnose", "--cores", str(cores or os.cpu_count()),
+        sys.executable, "-m", "snakemake", "diagnose", "--cores", str(os.cpu_count() if cores is None else cores),
         "--snakefile", str(HOME / "Snakefile"), "--directory", str(work),
         "--configfile", str(HOME / "config" / "diagnosis.yaml"),
         "--config", f"campaign={folder}", f"effort={effort}",

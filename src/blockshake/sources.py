@@ -5,6 +5,8 @@ Nothing is listed by hand: a script's sources are the files that it imports, dir
 
 import ast
 import functools
+import hashlib
+from typing import NamedTuple
 
 from blockshake.files import HOME, PACKAGE
 
@@ -21,6 +23,7 @@ _COMPUTE_NOTHING = (
 )
 # Of these only the functions that are taken count, each with its own imports.
 _BY_FUNCTION = ("diagnosis/steps.py",)
+_HOLD_STATEMENTS = ast.stmt, ast.ExceptHandler, ast.match_case
 
 
 def script_sources(script, *models):
@@ -36,9 +39,9 @@ def script_sources(script, *models):
     Returns
     -------
     tuple of str
-        Files of the package, and functions of files as ``FILE:FUNCTION``, for `blockshake.files.source_digest`.
+        Files of the package, and functions of files as ``FILE:FUNCTION``, for `source_digest`.
     """
-    return _closure([_SCRIPTS / f"{script}.py", *_modules_of(models)])
+    return _closure([*_read(_SCRIPTS / f"{script}.py").imported, *_modules_of(models)])
 
 
 def kernel_sources(*models):
@@ -48,17 +51,47 @@ def kernel_sources(*models):
 
 def module_sources(module, *models):
     """Sources of what a module computes, given as its path in the package, with the models that it runs."""
-    return _closure([PACKAGE / module, *_modules_of(models)])
+    return _closure([module, *_modules_of(models)])
 
 
 @functools.cache
 def compiled_sources():
     """All files that hold kernels, and what these import: the rest may change without compiling anew."""
     return _closure(
-        path
+        path.relative_to(PACKAGE).as_posix()
         for path in PACKAGE.rglob("*.py")
         if "\nfrom blockshake.jit import" in path.read_text(encoding="utf-8")
     )
+
+
+@functools.cache
+def source_digest(*sources):
+    """Twelve hexadecimal digits that identify what sources compute.
+
+    Parameters
+    ----------
+    *sources : str
+        Files of the package, or functions of files, such as ``"files.py"`` or
+        ``"diagnosis/steps.py:decide"``.
+
+    Notes
+    -----
+    Comments, docstrings and layout do not count: the digest is of the syntax trees, so that a
+    better explanation reruns no simulation.
+    """
+    digest = hashlib.sha256()
+    for source in sources:
+        name, _, function = source.partition(":")
+        digest.update(name.encode())
+        digest.update(_read(PACKAGE / name, function).digest)
+    return digest.hexdigest()[:12]
+
+
+class _Source(NamedTuple):
+    """A file, or its top and one of its functions."""
+
+    digest: bytes  # of its syntax
+    imported: list  # sources that it imports, as `script_sources` names them
 
 
 def _modules_of(models):
@@ -67,42 +100,59 @@ def _modules_of(models):
     return [_file(module) for model in models for module in model_of(model).modules]
 
 
-def _closure(paths):
-    """Names of the files that these import, directly or not, and of these themselves, sorted."""
-    found, left = set(), [(path, None) for path in paths]
+def _closure(sources):
+    """Sources that these import, directly or not, and these themselves, sorted."""
+    found, left = set(), list(sources)
     while left:
-        path, function = left.pop()
-        name = path.relative_to(PACKAGE).as_posix() if path.is_relative_to(PACKAGE) else None
-        mark = f"{name}:{function}" if name in _BY_FUNCTION else name
-        if mark in found or name in _COMPUTE_NOTHING:
+        source = left.pop()
+        if source in found or source in _COMPUTE_NOTHING:
             continue
-        if name is not None and path.name != "__init__.py":
-            found.add(mark)
-        left += _imported(path, function if name in _BY_FUNCTION else None)
-    return tuple(sorted(found))
+        found.add(source)
+        name, _, function = source.partition(":")
+        left += _read(PACKAGE / name, function).imported
+    return tuple(sorted(source for source in found if not source.endswith("__init__.py")))
 
 
 @functools.cache
-def _imported(path, function):
-    """Files that a file imports, or its top and one of its functions, with the name that is taken of each."""
+def _read(path, function=""):
+    """Read a file, or its top and one of its functions."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    if function is None:
-        nodes = list(ast.walk(tree))
-    else:
-        defined = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
-        nodes = [node for node in tree.body if node not in defined]
-        nodes += [node for one in defined if one.name == function for node in ast.walk(one)]
-    found = []
-    for node in nodes:
-        if not isinstance(node, ast.ImportFrom) or not (node.module or "").startswith("blockshake"):
-            continue
-        for alias in node.names:
-            inside = _file(f"{node.module}.{alias.name}")
-            found.append((inside, None) if inside.is_file() else (_file(node.module), alias.name))
-    return found
+    if function:
+        tree.body = [node for node in tree.body if getattr(node, "name", function) == function]
+    imported = []
+    for statement in _statements(tree):
+        _drop_docstring(statement)
+        if isinstance(statement, ast.ImportFrom) and (statement.module or "").startswith("blockshake"):
+            imported += [_imported(statement.module, alias.name) for alias in statement.names]
+    return _Source(hashlib.sha256(ast.dump(tree).encode()).digest(), imported)
+
+
+def _statements(tree):
+    """Statements of a tree at any depth, and what holds them; expressions hold none."""
+    left = [tree]
+    while left:
+        node = left.pop()
+        yield node
+        left += [one for one in ast.iter_child_nodes(node) if isinstance(one, _HOLD_STATEMENTS)]
+
+
+def _drop_docstring(node):
+    body = getattr(node, "body", None)
+    if body and isinstance(body[0], ast.Expr) and isinstance(getattr(body[0].value, "value", None), str):
+        del body[0]
+
+
+def _imported(module, name):
+    """Source that a name of a module comes from."""
+    inside = _file(f"{module}.{name}")
+    if (PACKAGE / inside).is_file():
+        return inside
+    source = _file(module)
+    return f"{source}:{name}" if source in _BY_FUNCTION else source
 
 
 def _file(module):
-    """File of a module or of a package."""
+    """File of a module or of a package, in the package."""
     path = PACKAGE.joinpath(*module.split(".")[1:])
-    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+    path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+    return path.relative_to(PACKAGE).as_posix()

@@ -1,5 +1,7 @@
 """The way of a diagnosis, step by step, on a campaign of two blocks that a formula simulates."""
 
+from contextlib import contextmanager
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,6 +10,7 @@ import xarray as xr
 from tiny_campaign import TESTS, prescribed_run, write_campaign
 
 from blockshake.diagnosis import steps
+from blockshake.diagnosis.inference import calibration
 from blockshake.diagnosis.inference.calibration import write_cases
 from blockshake.diagnosis.inference.decision import write_result
 from blockshake.diagnosis.laws.findings import LawFindings, OutsideForce
@@ -36,8 +39,14 @@ def _silent(line):
 def found(tmp_path_factory):
     """Results of every step and the files that the next ones read."""
     folder = tmp_path_factory.mktemp("tiny")
-    campaign = folder / "campaign"
-    write_campaign(campaign, STRUCTURE, PITCH)
+    write_campaign(folder / "campaign", STRUCTURE, PITCH)
+    with _two_effects_and_a_formula():
+        yield _diagnose(folder, str(folder / "campaign"))
+
+
+@contextmanager
+def _two_effects_and_a_formula():
+    """The tiny effort, two candidates, and a solver that is a formula."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(efforts.EFFORTS, "tiny", TINY)
         patch.setattr(designed_test, "simulate", prescribed_run)
@@ -50,7 +59,7 @@ def found(tmp_path_factory):
                 one for one in everywhere(built) if one.effect in ("table-pitch", "vertical-motion")
             ],
         )
-        yield _diagnose(folder, str(campaign))
+        yield
 
 
 def _diagnose(folder, campaign):
@@ -74,7 +83,7 @@ def _diagnose(folder, campaign):
             for kind, files, dataset in (("", libraries, features), ("-histories", histories, moved)):
                 files.append(str(folder / f"{name}-{solver}{kind}.nc"))
                 write_dataset(files[-1], dataset)
-    write_cases(path["cases"], steps.calibrate_decision(libraries, effects, _silent))
+    write_cases(path["cases"], steps.calibrate_decision(libraries, effects, *made_by))
     files = SimpleNamespace(
         readings=path["readings"], forces=path["forces"], libraries=libraries, histories=histories,
         calibration=path["cases"],
@@ -114,6 +123,32 @@ def _diagnose(folder, campaign):
 def test_open_tests_are_read_off_with_sound_sensors(found):
     assert found.measured.parity.findings == ()
     assert found.measured.readings["test"].values.tolist() == ["one-100", "two-100"]
+
+
+def test_a_killed_calibration_judges_each_draw_once(found, tmp_path, monkeypatch):
+    judged, judge = [], calibration._cases_of_draw
+
+    def counted(library, model, draw):
+        if len(judged) == limit:
+            raise KeyboardInterrupt
+        judged.append((model, draw))
+        return judge(library, model, draw)
+
+    def attempt(source="source"):
+        given = found.files.libraries, plan.considered(), tmp_path / "store", source
+        write_cases(tmp_path / "cases.json", steps.calibrate_decision(*given, _silent))
+
+    monkeypatch.setattr(calibration, "_cases_of_draw", counted)
+    limit = 7
+    with pytest.raises(KeyboardInterrupt):
+        attempt()
+    limit = None
+    attempt()
+    draws = len(SOLVERS) * TINY.nominal_draws
+    assert len(set(judged)) == len(judged) == draws
+    assert (tmp_path / "cases.json").read_bytes() == Path(found.files.calibration).read_bytes()
+    attempt("edited")
+    assert len(judged) == 2 * draws
 
 
 def test_the_cause_is_named_with_its_size(found):
@@ -190,3 +225,31 @@ def test_a_force_that_the_laws_describe_extends_the_model(found, tmp_path):
 def test_readings_of_the_library_are_those_of_the_campaign(found):
     features = xr.load_dataset(found.files.libraries[0])
     assert set(features["feature"].values) == set(found.measured.readings["feature"].values)
+
+
+def _leave(campaign, axes, names):
+    """Leave readings of these axes alone in all tests of a campaign, of markers whose names end so."""
+    for path in campaign.glob("*.nc"):
+        test = xr.load_dataset(path)
+        moved = test["marker_displacement"].where(test["axis"].isin(list(axes)))
+        kept = [name for name in test["marker"].values if str(name).endswith(names)]
+        write_dataset(path, test.assign(marker_displacement=moved).sel(marker=kept))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("axes", "names", "curve"), [("xz", "", "joint1.opening"), ("x", "face", "block-2.drift")]
+)
+def test_a_camera_and_transducers_along_x_are_diagnosed_too(axes, names, curve, tmp_path):
+    """Nothing that was not measured enters: no curve, no residual, no force; the verdict is one of its words."""
+    write_campaign(tmp_path / "campaign", STRUCTURE, PITCH)
+    _leave(tmp_path / "campaign", axes, names)
+    with _two_effects_and_a_formula():
+        found = _diagnose(tmp_path, str(tmp_path / "campaign"))
+    assert f"one-100.{curve}" in found.decided.misfit["curve"].values
+    assert not found.measured.forces.data_vars
+    residual = found.decided.misfit["residual"]
+    assert residual.notnull().any() == ("z" in axes)
+    assert not any("lateral" in name for name in found.measured.readings["feature"].values.tolist())
+    assert found.verdict.decision in ("none", "named", "ambiguous", "combination", "unknown")
+    assert np.isfinite(found.gained.scores["fall"]).all()

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from blockshake.dynamics.motion import ground_motion
+from blockshake.effects.base_compliance import EFFECT
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
+from blockshake.geometry.structure import DEEPEST_OVERLAP, load_structure
 from blockshake.measurement.sensors.instruments import Instruments
 from blockshake.simulation.simulate import simulate
 
@@ -31,3 +33,19 @@ def test_a_static_push_turns_the_base_by_its_moment(model, time_step, within, ma
     turn = 2.0 * run["orientation"].sel(body="slab", quaternion="y").to_numpy()
     # the push starts at once: the base swings, and comes to rest
     assert turn[-20:].mean() == pytest.approx(COMPLIANCE * PUSH * HEIGHT, rel=within)
+
+
+@pytest.mark.parametrize("name", ["configuration-1", "configuration-3", "configuration-4"])
+def test_the_softest_bed_of_a_heavy_wall_sinks_no_farther_than_a_structure_may_overlap(name):
+    experiment = Experiment(load_structure(name), REST, Instruments())
+    softest = EFFECT.parameters[0].upper
+    structure = with_effect(experiment, "base-compliance", {"compliance": softest}, {}).structure
+    slab, bed = structure.body_names[0], structure.body_names[-1]
+    top, bottom = _level(structure, bed, np.max), _level(structure, slab, np.min)
+    assert 0.0 < top - bottom < DEEPEST_OVERLAP
+
+
+def _level(structure, name, of):
+    index = structure.body_names.index(name)
+    vertices = structure.solids[structure.file.bodies[index].shape].vertices
+    return structure.centroid[index, 2] + of(vertices[:, 2])

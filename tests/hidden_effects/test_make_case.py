@@ -190,10 +190,11 @@ def test_noise_is_coloured_with_gaps_and_outliers():
     assert abs((fast[1:] * fast[:-1]).mean() / fast.var() - noise["memory"]) < 0.02
 
 
-def _effect(name):
-    structure = load_structure(STRUCTURE)
+def _effect(name, structure):
     values = {
-        item.name: item.visible if place == 0 else 0.5 * (item.lower + item.upper)
+        item.name: min(SIZES["large"][1] * item.visible, item.upper)
+        if place == 0
+        else 0.5 * (item.lower + item.upper)
         for place, item in enumerate(EFFECTS[name].parameters)
     }
     if name == "vertical-motion":
@@ -202,15 +203,17 @@ def _effect(name):
 
 
 @pytest.mark.parametrize("name", EFFECTS)
-def test_every_effect_has_another_form_than_the_registrys(name):
+@pytest.mark.parametrize("structure", load_plan().efforts)
+def test_every_effect_has_another_form_than_the_registrys(structure, name):
     """Not the registry's experiment, or other readings of it; and one that can be built."""
-    effect = _effect(name)
+    structure = load_structure(structure_file(structure))
+    effect = _effect(name, structure)
     silent = Instruments(marker_noise=0.0, accelerometer_noise=0.0)
-    plain = Experiment(load_structure(STRUCTURE), load_motion("alkion"), silent)
+    plain = Experiment(structure, load_motion("alkion"), silent)
     theirs = with_effect(plain, **effect)
     ours = FORMS[name][1](plain, effect["values"], effect["place"])
     time = np.arange(200) / 200.0
-    names = [marker.name for marker in load_structure(STRUCTURE).file.markers]
+    names = [marker.name for marker in structure.file.markers]
     moved = 0.05 * np.sin(time)[:, None, None] * np.ones((200, len(names), 3))
     same_motion = np.array_equal(ours.motion.table.coefficients, theirs.motion.table.coefficients)
     same = (ours.structure.file, ours.instruments, same_motion) == (

@@ -19,6 +19,9 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
 from blockshake.files import load_yaml
+from blockshake.forces.joint_forces import joint_forces
+from blockshake.forces.outside.force_laws import fit_laws
+from blockshake.forces.outside.push_history import push_history
 from blockshake.geometry.structure import build_structure, load_structure
 from blockshake.measurement.campaigns.campaign import Sensors, load_campaign
 from blockshake.measurement.sensors.instruments import Instruments, observe
@@ -43,6 +46,13 @@ def _by_joint(test, structure):
         (numbers.get(head, head), tail): float(value)
         for (head, _, tail), value in zip(names, read["value"].to_numpy(), strict=True)
     }
+
+
+def _pushed(forces, name):
+    """Force from outside on a block by the laws that its history may follow, and what the history is made of."""
+    push = push_history(forces, forces.structure.body_names.index(name))
+    told = {"told": push.told.sum(), "ends": np.isfinite(push.lower).sum(), "error": np.nanmedian(push.error)}
+    return told | {one.name: one.information for one in fit_laws(forces.motion.time, push)}
 
 
 def _assert_same(found, expected):
@@ -141,6 +151,12 @@ def test_another_order_of_bodies_and_markers_changes_nothing(open_tests, two_blo
     for test in open_tests.values():
         shuffled = test.isel(marker=slice(None, None, -1), channel=slice(None, None, -1))
         _assert_same(_by_joint(shuffled, turned), _by_joint(test, two_blocks))
+        of_file, of_turned = (
+            joint_forces(test, two_blocks, Sensors()),
+            joint_forces(shuffled, turned, Sensors()),
+        )
+        for name in ("block-1", "block-2"):
+            _assert_same(_pushed(of_turned, name), _pushed(of_file, name))
     other = check_parity(open_tests, turned, Sensors())
     np.testing.assert_allclose(other.clock["lag"], parity.clock["lag"], atol=1e-6)
 

@@ -43,10 +43,13 @@ def waves():
     time = np.arange(0.0, 8e-3, 1e-4)
     arrival = np.array([[4e-4, 9e-4], [7e-4, 1.4e-3]])
     displacement = 1e-3 * np.maximum(time[None, :, None] - arrival[:, None, :], 0.0)
-    displacement[0, time > 6e-3] = np.nan
+    velocity = 1e-3 * (time[None, :, None] > arrival[:, None, :])
+    for one in (displacement, velocity):
+        one[0, time > 6e-3] = np.nan
     return xr.Dataset(
         {
             "displacement": (("direction", "time", "block"), displacement),
+            "velocity": (("direction", "time", "block"), velocity),
             "arrival": (("direction", "block"), arrival),
             "stiffness": ("direction", [1.8e10, 0.9e10]),
             "wave_speed": ("direction", [3791.3, 2447.1]),

@@ -70,7 +70,8 @@ class FakeStudy:
                 "seed": 77,
                 "distributions": {name: one.model_dump() for name, one in TABLE_2.items()},
             },
-            "ladder": {"motions": ["alkion", "basso-tirreno"]},
+            "output_rate": 200.0,
+            "ladder": {"motions": ["alkion", "basso-tirreno"], "first": 0.5, "increment": 0.25},
             "friction_calibration": {"cases": ["configuration-1"]},
             "convergence": {"structure": "configuration-1"},
         }

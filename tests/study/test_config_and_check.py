@@ -27,7 +27,7 @@ def mapping(monkeypatch):
     return copy.deepcopy(load_yaml("config/study.yaml"))
 
 
-@pytest.mark.parametrize("study", ["study", "quick", "paper"])
+@pytest.mark.parametrize("study", ["study", "quick", "paper", "literal"])
 def test_shipped_configurations_are_good(study, monkeypatch):
     monkeypatch.chdir(ROOT)
     config = load_config(f"config/{study}.yaml")
@@ -41,6 +41,21 @@ def test_paper_is_the_paper(monkeypatch):
     assert config.models["ls-dem"].time_step == 1e-5
     assert config.models["nscd-rigid"].time_step == 1e-3
     assert all(config.samples(model, case.name) == 50 for model in config.models for case in config.cases)
+
+
+def test_literal_is_as_printed(monkeypatch):
+    """Zhou et al. (2023), sections LS-DEM and NSCD: steps, grid of level sets, Eqs. (2) and (3) without a change."""
+    monkeypatch.chdir(ROOT)
+    models = load_config("config/literal.yaml").models
+    assert models["ls-dem"].time_step == 1e-5
+    assert models["ls-dem"].parameters == {
+        "ls_dem.level_set": "grid",
+        "ls_dem.grid_spacing": 0.02,
+        "ls_dem.damping": "node",
+        "ls_dem.pulling": True,
+    }
+    assert models["nscd-rigid"].time_step == 1e-3
+    assert models["nscd-rigid"].parameters["nscd.impact_parts"] == 1
 
 
 def test_fewer_samples_of_one_model(mapping):

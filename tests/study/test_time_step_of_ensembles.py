@@ -98,7 +98,8 @@ def rms(values):
 def drifts(tmp_path_factory):
     linked = LINKED
     design = draw_samples(SIZE, SEED).values
-    rows = pd.concat([design, calibrate_design("configuration-2", design, linked)], axis=1)
+    stiffness = calibrate_design("configuration-2", design, linked, tmp_path_factory.mktemp("store"), "")
+    rows = pd.concat([design, stiffness], axis=1)
     return [simulated(step, rows, linked, tmp_path_factory.mktemp("store")) for step in STEPS]
 
 

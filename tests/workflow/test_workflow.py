@@ -3,74 +3,18 @@
 import html
 import os
 import re
-import shutil
 import signal
 import subprocess
-import sys
 import time
-from pathlib import Path
 
 import pytest
 import yaml
+from checkout import LIMIT, SNAKEMAKE, Checkout
 
-from blockshake.files import PACKAGE, load_yaml
+from blockshake.files import PACKAGE
+from blockshake.working_folder import hold
 
 ROOT = PACKAGE.parents[1]
-COPIED = ("Snakefile", "config", "data", "profiles", "src", "workflow")
-SNAKEMAKE = Path(sys.executable).with_name("snakemake")
-LIMIT = 1200  # s; against a study that hangs, not a measure of speed: other jobs may share the machine
-
-
-class Checkout:
-    """A copy of the project with a small study of configuration 1."""
-
-    def __init__(self, folder, **changes):
-        self.folder = folder
-        folder.mkdir(parents=True, exist_ok=True)
-        for name in COPIED:
-            source = ROOT / name
-            if source.is_dir():
-                shutil.copytree(
-                    source, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info")
-                )
-            else:
-                shutil.copy(source, folder / name)
-        config = load_yaml(ROOT / "config" / "quick.yaml")
-        config["cases"] = config["cases"][:1]
-        config["cases"][0]["duration"] = 0.05
-        config["convergence"]["duration"] = 0.05
-        config["name"] = "small"
-        self.write_config(config | changes)
-
-    def write_config(self, config):
-        self.config = config
-        (self.folder / "config" / "small.yaml").write_text(yaml.safe_dump(config, sort_keys=False))
-
-    def command(self, *arguments):
-        return [SNAKEMAKE, "--cores", "2", *arguments, "--configfile", "config/small.yaml"]
-
-    def snakemake(self, *arguments):
-        return subprocess.run(
-            self.command(*arguments),
-            cwd=self.folder,
-            capture_output=True,
-            text=True,
-            timeout=LIMIT,
-            check=False,
-        )
-
-    def jobs(self, *arguments):
-        """Rules that a dry run would run, with their number."""
-        answer = self.snakemake("-n", *arguments)
-        assert answer.returncode == 0, answer.stderr
-        return {
-            name: int(count)
-            for name, count in re.findall(r"^(\w[\w-]*) +(\d+)$", answer.stdout, flags=re.MULTILINE)
-        }
-
-    def append(self, source, text):
-        path = self.folder / "src" / "blockshake" / source
-        path.write_text(path.read_text() + text)
 
 
 @pytest.fixture(scope="module")
@@ -105,7 +49,7 @@ def test_convergence_study_leaves_its_table_and_says_what_each_run_cost(finished
         .startswith("parameter,setting")
     )
     said = (finished.folder / "logs" / "small" / "study_convergence.log").read_text()
-    assert said.count("CPU s") == 9
+    assert said.count("CPU s") == 8  # one of the nine settings is the default, which is run once
     assert (finished.folder / "benchmarks" / "small" / "study_convergence.jsonl").exists()
 
 
@@ -183,12 +127,26 @@ def test_killed_study_loses_no_finished_sample(tmp_path):
     running.wait()
     finished = {path.name: path.stat().st_mtime_ns for path in store.glob("[!.]*.nc")}
     assert len(finished) < 20
-    assert checkout.snakemake("--unlock").returncode == 0
     answer = checkout.snakemake("configuration-1")
     assert answer.returncode == 0, answer.stderr
     assert answer.stdout.count(", kept:") == len(finished)
     assert answer.stdout.count(", simulated:") == 20 - len(finished)
     assert {name: (store / name).stat().st_mtime_ns for name in finished} == finished
+
+
+@pytest.mark.parametrize("target", ["ladder", "diagnose"])
+def test_a_second_command_is_refused_and_touches_nothing(target, tmp_path):
+    checkout = Checkout(tmp_path)
+    campaign = ["--config", "campaign=data/virtual-campaign/configuration-1"] * (target == "diagnose")
+    held = hold(tmp_path)
+    answer = checkout.snakemake(target, *campaign)
+    os.close(held)
+    assert answer.returncode == 2
+    said = [text for text in answer.stderr.splitlines() if text.startswith("blockshake:")]
+    assert len(said) == 1
+    assert "expected a folder in which no other study or diagnosis runs" in said[0]
+    assert not (tmp_path / "results").exists()
+    assert not (tmp_path / "logs").exists()
 
 
 @pytest.mark.parametrize(

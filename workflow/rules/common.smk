@@ -18,12 +18,13 @@ os.environ.update(
 )
 
 from blockshake.errors import InputError
-from blockshake.files import HOME, PACKAGE, shipped, source_digest
+from blockshake.files import HOME, PACKAGE, shipped
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.simulation.models import MODELS as SOLVERS
-from blockshake.sources import kernel_sources, script_sources
+from blockshake.sources import kernel_sources, script_sources, source_digest
 from blockshake.study.config import StudyConfig, check_config
 from blockshake.validation import validated
+from blockshake.working_folder import hold, start_jobs
 
 # of a diagnosis, on the command line: they take the place of the study's own
 GIVEN = ("campaign", "campaigns", "effort", "without")
@@ -33,6 +34,15 @@ def refuse(error):
     """End with one line on bad input and exit 2."""
     print(f"blockshake: {error}", file=sys.stderr, flush=True)
     os._exit(2)
+
+
+def hold_folder():
+    """Keep other commands out of the current folder until this one ends, and have its jobs end with it."""
+    try:
+        hold(Path.cwd())
+    except InputError as error:
+        refuse(error)
+    start_jobs()
 
 
 def study_config():
@@ -166,6 +176,10 @@ def case_definition(wildcards):
         key: CASES[wildcards.case][key]
         for key in ("structure", "motion", "scale", "duration", "input")
     }
+
+
+onstart:
+    hold_folder()
 
 
 config.update(with_numbers(config))

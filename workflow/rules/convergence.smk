@@ -15,6 +15,7 @@ rule study_convergence:
         mem_mb=2000,
     params:
         convergence=lookup(dpath="convergence", within=config),
+        store="results/store",
         source=source_of("study_convergence", "ls-dem"),
     script:
         "../scripts/study_convergence.py"

@@ -69,6 +69,8 @@ rule calibrate_decision:
         mem_mb=4000,
     params:
         effects=lambda wildcards: considered_effects(),
+        store="results/store/diagnosis",
+        source=CALIBRATION_SOURCE,
     script:
         "../scripts/calibrate_decision.py"
 

@@ -1,10 +1,15 @@
 rule make_report:
-    """The study as one self-contained page and as a PDF, from the same content."""
+    """The study as one self-contained page and as a PDF, and its findings on the paper, from the same content."""
     input:
         structures=[
             definition("structures", case["structure"]) for case in CASES.values()
         ],
         campaigns=[campaign_files(case) for case in MEASURED],
+        shipped=[
+            definition("structures", f"configuration-{place}")
+            for place in (1, 2, 3, 4)
+        ]
+        + [beside(HOME / "config" / f"{name}.yaml") for name in ("study", "paper")],
         peer=beside(HOME / "data" / "peers" / "lmgc90.nc"),
         templates=expand(
             beside(PACKAGE / "report" / "document" / "templates" / "{name}"),
@@ -59,6 +64,7 @@ rule make_report:
     output:
         html=report("reports/{study}.html", category="Study"),
         pdf=report("reports/{study}.pdf", category="Study"),
+        paper="results/{study}/the-paper.json",
     log:
         "logs/{study}/make_report.log",
     conda:

@@ -105,6 +105,7 @@ rule climb_ladder:
         motions=LADDER_MOTIONS,
         ladder=lookup(dpath="ladder", within=config),
         time_step=time_step_of("ls-dem"),
+        store="results/store",
         source=source_of("climb_ladder", "ls-dem"),
     script:
         "../scripts/climb_ladder.py"

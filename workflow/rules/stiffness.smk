@@ -18,6 +18,7 @@ rule calibrate_stiffness:
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
         linked=lookup(dpath="ensemble/linked", within=config),
+        store="results/store",
         source=source_of("calibrate_stiffness"),
     script:
         "../scripts/calibrate_stiffness.py"
@@ -40,6 +41,7 @@ rule compare_definitions:
     params:
         case=lookup(dpath="cases/0", within=config),
         time_step=time_step_of("ls-dem"),
+        store="results/store",
         source=source_of("compare_definitions", "ls-dem"),
     script:
         "../scripts/compare_definitions.py"

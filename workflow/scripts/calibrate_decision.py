@@ -3,4 +3,6 @@ from blockshake.diagnosis.steps import calibrate_decision
 from blockshake.log import logging_to
 
 with logging_to(snakemake.log[0]) as say:
-    write_cases(snakemake.output[0], calibrate_decision(snakemake.input, snakemake.params.effects, say))
+    of = snakemake.params
+    cases = calibrate_decision(snakemake.input, of.effects, of.store, of.source, say)
+    write_cases(snakemake.output[0], cases)

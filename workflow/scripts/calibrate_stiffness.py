@@ -5,6 +5,7 @@ from blockshake.study.stiffness.wave_speed import calibrate_design, wave_tests
 
 with logging_to(snakemake.log[0]):
     design = load_design(snakemake.input.design)
-    structure = snakemake.params.structure
-    write_design(snakemake.output.stiffness, calibrate_design(structure, design, snakemake.params.linked))
-    write_dataset(snakemake.output.waves, wave_tests(structure))
+    of = snakemake.params
+    found = calibrate_design(of.structure, design, of.linked, of.store, of.source)
+    write_design(snakemake.output.stiffness, found)
+    write_dataset(snakemake.output.waves, wave_tests(of.structure))

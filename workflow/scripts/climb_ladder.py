@@ -5,6 +5,5 @@ from blockshake.study.ensembles.ladder import climb_ladders
 
 with logging_to(snakemake.log[0]) as say:
     of = snakemake.params
-    write_json(
-        snakemake.output[0], climb_ladders(of.cases, of.motions, of.time_step, Ladder(**of.ladder), say)
-    )
+    climbed = of.cases, of.motions, of.time_step, Ladder(**of.ladder)
+    write_json(snakemake.output[0], climb_ladders(*climbed, of.store, of.source, say))

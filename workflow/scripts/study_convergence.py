@@ -4,6 +4,6 @@ from blockshake.study.convergence.settings import Convergence
 from blockshake.study.convergence.table import write_convergence
 
 with logging_to(snakemake.log[0]) as say:
-    write_convergence(
-        snakemake.output[0], study_convergence(Convergence(**snakemake.params.convergence), say)
-    )
+    of = snakemake.params
+    found = study_convergence(Convergence(**of.convergence), of.store, of.source, say)
+    write_convergence(snakemake.output[0], found)

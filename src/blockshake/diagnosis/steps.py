@@ -9,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from blockshake.store import load_made
+
 
 class Measured(NamedTuple):
     """Outcome of the sensors' checks, the open tests read off, and their joint forces, see `measured_forces`."""
@@ -78,7 +80,7 @@ def simulate_library(name, solver, config, shared, store, source, progress):
     return library(plan.tests[test], solver, plan.candidates, *draws, store, source, progress)
 
 
-def calibrate_decision(libraries, effects, progress):
+def calibrate_decision(libraries, effects, store, source, progress):
     """Judge every draw of the libraries by all others.
 
     Parameters
@@ -87,16 +89,28 @@ def calibrate_decision(libraries, effects, progress):
         Files of features, by test and solver.
     effects : sequence of str
         Names of the effects that are considered.
+    store : str or path
+        Folder of judged draws: one that is there is not judged again.
+    source : str
+        Digest of the sources that judge.
     progress : callable
 
     Returns
     -------
     list of ScoredReadings
     """
-    from blockshake.diagnosis.inference.calibration import library_cases
+    from blockshake.diagnosis.inference.calibration import cases_of, library_cases, rows_of
     from blockshake.diagnosis.inference.library_scores import load_tables, score_library
+    from blockshake.files import content_digest, file_digest
+    from blockshake.store import kept_value
 
-    return library_cases(score_library(load_tables(libraries), effects)[0], progress)
+    given = source, [file_digest(path) for path in libraries], list(effects)
+
+    def keep(model, draw, judge):
+        key = content_digest(*given, model, draw)
+        return cases_of(kept_value(store, key, lambda: rows_of(judge())))
+
+    return library_cases(score_library(load_tables(libraries), effects)[0], progress, keep)
 
 
 class Decided(NamedTuple):
@@ -138,7 +152,7 @@ def decide(folder, effects, files):
     from blockshake.geometry.structure import load_structure
     from blockshake.measurement.campaigns.campaign import load_campaign
 
-    measured = xr.load_dataset(files.readings)
+    measured = load_made(files.readings)
     names = [str(name) for name in measured["test"].values]
     library, scales = score_library(load_tables(files.libraries), effects)
     places = {one.key: one.place for one in candidates(load_structure(load_campaign(folder).structure))}
@@ -151,9 +165,7 @@ def decide(folder, effects, files):
             for name, own in zip(names, ensembles, strict=True)
         }
         own = {name: measured.sel(test=name) for name in names}
-        decision = with_laws(
-            decision, judge_laws(own, draws, outside_of(xr.load_dataset(files.forces))), places
-        )
+        decision = with_laws(decision, judge_laws(own, draws, outside_of(load_made(files.forces))), places)
     return Decided(
         decision,
         misfit(measured, dict(zip(names, ensembles, strict=True))),
@@ -224,7 +236,7 @@ def size_cause(files, effects):
 
     check_frozen(files.frozen, files.decision)
     decision, tables = load_result(Decision, files.decision), load_tables(files.libraries)
-    measured = xr.load_dataset(files.readings)
+    measured = load_made(files.readings)
     whole, scales = score_library(tables, effects)
     left = without_second(whole, tamed_readings(scales, measured), decision)
     library, _ = library_of_cause(tables, load_tables(files.further), decision.first_key)
@@ -264,7 +276,7 @@ def extend_model(folder, effort, solver, files, effects, store, source, progress
     check_frozen(files.frozen, files.decision)
     decision, tables = load_result(Decision, files.decision), load_tables(files.libraries)
     library, scales = score_library(tables, effects)
-    features = tamed_readings(scales, xr.load_dataset(files.readings))
+    features = tamed_readings(scales, load_made(files.readings))
     plan = plan_diagnosis(folder, effort)
     if files.posterior:
         posterior, frozen = files.posterior
@@ -306,10 +318,10 @@ def measure_gain(folder, files):
     if files.posterior:
         size, frozen_size = files.posterior
         check_frozen(frozen_size, size)
-    campaign, readings = load_campaign(folder), xr.load_dataset(files.readings)
+    campaign, readings = load_campaign(folder), load_made(files.readings)
     if not files.extended:
         return sensors_gain(campaign, readings, load_parity(files.parity).findings)
-    runs = {one.attrs["model"]: one for one in map(xr.load_dataset, files.extended)}
+    runs = {one.attrs["model"]: one for one in map(load_made, files.extended)}
     laws = load_result(Decision, files.decision).laws
     broken = [one.name for one in laws.broken] if laws else []
     return campaign_gain(campaign, readings, load_tables(files.libraries), runs, broken)
@@ -337,10 +349,10 @@ def conclude(folder, effort, files):
     from blockshake.parity.parity import load_parity
 
     parity, decision = load_parity(files.parity), load_result(Decision, files.decision)
-    misfit, plan = xr.load_dataset(files.misfit), plan_diagnosis(folder, effort)
+    misfit, plan = load_made(files.misfit), plan_diagnosis(folder, effort)
     size = load_result(CauseSize, files.posterior[0]) if files.posterior else None
     if files.gain:
-        measured, scores = load_result(MeasuredGain, files.gain[0]), xr.load_dataset(files.gain[1])
+        measured, scores = load_result(MeasuredGain, files.gain[0]), load_made(files.gain[1])
     else:
         described = decision.decision == "unknown" and decision.laws and decision.laws.outside
         caveats = plan.caveats([*decision.causes, *parity.findings, *([described] if described else [])])
@@ -372,5 +384,5 @@ def predict_twins(name, histories, config, shared, progress):
     from blockshake.diagnosis.misfit.predictability import predictability_of
 
     plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], shared)
-    nominal = {one.attrs["model"]: one for one in map(xr.load_dataset, histories)}
+    nominal = {one.attrs["model"]: one for one in map(load_made, histories)}
     return predictability_of(plan.tests[test], plan.effort.twins, nominal, progress)

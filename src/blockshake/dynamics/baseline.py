@@ -40,6 +40,14 @@ def correct_baseline(acceleration, time_step, corner_frequency=CORNER_FREQUENCY)
     return close_integrals(filtered, time_step)
 
 
+def correction_words(corner_frequency):
+    """The steps of `correct_baseline` in words, for the attributes of a motion."""
+    return (
+        f"mean removed, ends tapered, Butterworth high-pass at {corner_frequency:g} Hz both ways, "
+        "linear acceleration removed for zero end velocity and displacement"
+    )
+
+
 def taper_ends(values):
     """Values under a half-cosine rise and fall over 2 % of their number at each end."""
     count = max(1, round(_TAPERED * len(values)))

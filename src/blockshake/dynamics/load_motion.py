@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.dynamics.baseline import CORNER_FREQUENCY, correct_baseline
+from blockshake.dynamics.baseline import CORNER_FREQUENCY, correct_baseline, correction_words
 from blockshake.dynamics.motion import ground_motion
 from blockshake.dynamics.records.at2 import is_at2, read_at2
 from blockshake.dynamics.records.contract_csv import read_motion_csv
@@ -21,7 +21,7 @@ _RECORD_FORMATS = (
 )
 
 
-def load_motion(source, scale=1.0, correct=True):
+def load_motion(source, scale=1.0, correct=True, corner_frequency=CORNER_FREQUENCY):
     """Ground motion from a shipped name or a file.
 
     Parameters
@@ -33,6 +33,8 @@ def load_motion(source, scale=1.0, correct=True):
         Multiplies every column [1].
     correct : bool
         Baseline correction of record formats; a CSV is never corrected.
+    corner_frequency : float
+        Of that correction's high-pass [Hz].
 
     Returns
     -------
@@ -48,20 +50,20 @@ def load_motion(source, scale=1.0, correct=True):
     """
     if not np.isfinite(scale):
         raise InputError(source, "scale", f"expected a finite number, found {scale}")
-    motion = _read(named_file("motions", source), correct)
+    motion = _read(named_file("motions", source), corner_frequency if correct else None)
     return motion if scale == 1.0 else motion.scaled(scale)
 
 
-def _read(path, correct):
+def _read(path, corner):
     if path.suffix.lower() in (".yaml", ".yml"):
         return synthesise(load_synthetic(path))
     text = read_text(path)
     for recognises, _, read in _RECORD_FORMATS:
         if recognises(text):
-            return _record_motion(read(text, path), path, correct)
+            return _record_motion(read(text, path), path, corner)
     for _, ending, read in _RECORD_FORMATS:
         if path.suffix.lower().startswith(ending):
-            return _record_motion(read(text, path), path, correct)
+            return _record_motion(read(text, path), path, corner)
     if "time_s" in text.partition("\n")[0] or path.suffix.lower() == ".csv":
         return _csv_motion(text, path)
     raise InputError(
@@ -79,14 +81,11 @@ def _csv_motion(text, path):
     return ground_motion(path.stem, time - time[0], columns, kind, attributes)
 
 
-def _record_motion(record, path, correct):
+def _record_motion(record, path, corner):
     acceleration, baseline = record.acceleration, "none"
-    if correct:
-        acceleration = correct_baseline(acceleration, record.time_step)
-        baseline = (
-            f"mean removed, ends tapered, Butterworth high-pass at {CORNER_FREQUENCY:g} Hz both ways, "
-            "linear acceleration removed for zero end velocity and displacement"
-        )
+    if corner is not None:
+        acceleration = correct_baseline(acceleration, record.time_step, corner)
+        baseline = correction_words(corner)
     time = record.time_step * np.arange(len(acceleration))
     attributes = {"source": path.name, "format": record.format, "synthetic": False, "baseline": baseline}
     return ground_motion(

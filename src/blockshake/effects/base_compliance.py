@@ -7,11 +7,13 @@ import numpy as np
 from blockshake.effects.effect import Effect, EffectParameter, Signature
 from blockshake.effects.places import nowhere
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.geometry.structure import DEEPEST_OVERLAP
 
 _THICKNESS = 0.2  # m, of the body beneath; it is driven, so that its mass does not count
 _WIDER = (
     1.5  # width of the bed over that of what stands on it: a rocking block's edge stays within its middle
 )
+_SINK = 0.99 * DEEPEST_OVERLAP
 _GRIP = 2.0  # coefficient of friction towards it: the driven body does not slide on its bed
 
 
@@ -26,16 +28,18 @@ def _bedded(experiment, index, compliance):
     """The experiment with a driven bed beneath a body, which is free now, and a soft layer between the two.
 
     A layer of the compliance c over a plan of the second moment I turns by ``M c / I``. The bed is not wider than
-    keeps the layer pressed: the narrower it is, the less it sinks for the same rotation. It stands as much higher as
-    the layer sinks under the weight, so that everything starts where the structure has it.
+    keeps the layer pressed, nor than lets it sink by what a structure file may start with: the narrower it is, the
+    less it sinks for the same rotation. It stands as much higher as the layer sinks under the weight, so that
+    everything starts where the structure has it.
     """
     structure = experiment.structure
     body, turn = structure.file.bodies[index], rotation_matrices(structure.orientation[index])
     vertices = structure.solids[body.shape].vertices
     size, bottom = np.ptp(vertices, axis=0), vertices[:, 2].min()
     carried = ~structure.driven
-    width = float(min(size[0], _WIDER * _extent(structure, carried)))
     weight = structure.mass[carried | (np.arange(len(carried)) == index)].sum() * -structure.file.gravity[2]
+    pressed = np.sqrt(12.0 * _SINK / (weight * compliance))  # m; wider, it would sink farther
+    width = float(min(size[0], _WIDER * _extent(structure, carried), pressed))
     layer = compliance * size[1] * width**3 / 12.0
     sink = weight * layer / (size[1] * width)
     middle = structure.position[carried, 0].mean() - structure.centroid[index, 0]

@@ -49,14 +49,17 @@ class JointForces:
 
 
 def gives_forces(test, structure, sensors):
-    """Whether forces can be computed: convex shapes, joints, and a rotation read of every free body and the table."""
+    """Whether forces can be computed: convex shapes, joints, and a motion read of every free body and the table.
+
+    That is its rotation, and its displacement along all three directions.
+    """
     if any(solid.polyhedron is None for solid in structure.solids.values()) or not structure.touching.any():
         return False
     first = test.isel(time=slice(0, _ENOUGH))
-    known = body_poses(first, structure, sensors.marker_noise).known
-    return all(
+    poses = body_poses(first, structure, sensors.marker_noise)
+    return poses.told.all() and all(
         one in ((POSE, PLANAR, TRANSLATION) if driven else (POSE, PLANAR))
-        for one, driven in zip(known, structure.driven, strict=True)
+        for one, driven in zip(poses.known, structure.driven, strict=True)
     )
 
 

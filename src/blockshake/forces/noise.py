@@ -4,6 +4,7 @@ import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.body_frame import see_from_body
+from blockshake.measurement.sensors.markers import whole_markers
 
 _FEWEST = 3  # markers on a body, that their residuals show noise
 _LARGEST = 0.95
@@ -21,13 +22,14 @@ def noise_memory(test, structure):
     Returns
     -------
     float
-        Median over the bodies with at least three markers, between 0 and 0.95; 0 where there is none [1].
+        Median over the bodies with at least three markers that measure all directions, between 0 and 0.95; 0
+        where there is none [1].
     """
-    read = [str(name) for name in test["marker"].values]
+    read, whole = [str(name) for name in test["marker"].values], whole_markers(test)
     displacement = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()
     found = []
     for index, body in enumerate(structure.body_names):
-        own = [marker for marker in structure.file.markers if marker.body == body and marker.name in read]
+        own = [marker for marker in structure.file.markers if marker.body == body and marker.name in whole]
         if len(own) < _FEWEST:
             continue
         points, start = structure.arms(own), rotation_matrices(structure.orientation[index])

@@ -3,6 +3,7 @@
 import numpy as np
 
 from blockshake.forces.joint_forces import gives_forces, joint_forces
+from blockshake.geometry.schema import AXES
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
 from blockshake.measurement.motion.body_poses import PLANAR, POSE, body_poses
@@ -54,10 +55,14 @@ def _hindrance(test, structure, sensors):
         return "a shape is not convex"
     if not structure.touching.any():
         return "no bodies touch"
-    known = body_poses(test, structure, sensors.marker_noise).known
+    poses = body_poses(test, structure, sensors.marker_noise)
     unread = [
         name
-        for name, one, driven in zip(structure.body_names, known, structure.driven, strict=True)
+        for name, one, driven in zip(structure.body_names, poses.known, structure.driven, strict=True)
         if one not in (POSE, PLANAR) and not driven
     ]
-    return f"the rotation of {', '.join(unread) or 'the table'} is not read"
+    if unread or poses.told.all():
+        return f"the rotation of {', '.join(unread) or 'the table'} is not read"
+    body = int(np.argmin(poses.told.all(axis=1)))
+    axes = " and ".join(axis for axis, told in zip(AXES, poses.told[body], strict=True) if not told)
+    return f"the displacement of {structure.body_names[body]} along {axes} is not read"

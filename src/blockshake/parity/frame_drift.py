@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.measurement.sensors.markers import marker_bodies
+from blockshake.measurement.sensors.markers import directions_read, marker_bodies
 from blockshake.parity.finding import Finding, chance_within
 from blockshake.parity.marker_equations import record_scale
 
@@ -15,8 +15,8 @@ def frame_drift(structure, tests, marker_noise, level, looked_at):
     """Drifts that all markers of the driven bodies share, of each test: list of Finding.
 
     Across the shaking direction a table does not go anywhere; along it the displacement of the table's control, where
-    there is one, is taken off first, and where there is none x is not judged. A step is no drift: both halves of
-    the record must creep alike.
+    there is one, is taken off first, and where there is none x is not judged. Neither is a direction that is not
+    measured. A step is no drift: both halves of the record must creep alike.
     """
     driven = {body.name for body in structure.file.bodies if body.driven}
     findings = []
@@ -24,12 +24,16 @@ def frame_drift(structure, tests, marker_noise, level, looked_at):
         own = [body in driven for body in marker_bodies(structure, test["marker"].values)]
         time = test["time"].to_numpy()
         values = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()[:, own]
-        mean = (values - np.nanmedian(values, axis=0)).mean(axis=1)
+        read = directions_read(values)
+        centred = values - np.nanmedian(np.where(read, values, 0.0), axis=0)
+        mean = np.where(read, centred, 0.0).sum(axis=1) / np.maximum(read.sum(axis=0), 1)
         table = test["table_displacement"].to_numpy() if "table_displacement" in test else None
         nuisance = [np.ones(len(time))] if table is None else [np.ones(len(time)), table]
         along = mean - (0.0 if table is None else np.column_stack([table, 0.0 * table, 0.0 * table]))
-        axes = [1, 2] if table is None else [0, 1, 2]
-        whole = _slopes(time, along[:, axes], nuisance, np.isfinite(along).all(axis=1))
+        axes = [axis for axis in range(0 if table is not None else 1, 3) if read[:, axis].any()]
+        if not axes:
+            continue
+        whole = _slopes(time, along[:, axes], nuisance, np.isfinite(along[:, axes]).all(axis=1))
         if whole is None:
             continue
         estimate, covariance, freedom, gap, gap_error = whole
@@ -41,8 +45,8 @@ def frame_drift(structure, tests, marker_noise, level, looked_at):
         vector, square = np.zeros(3), np.full((3, 3), 0.0)
         vector[axes] = estimate / length
         square[np.ix_(axes, axes)] = covariance / length**2
-        if 0 not in axes:
-            square[0, 0] = np.inf
+        unseen = [axis for axis in range(3) if axis not in axes]
+        square[unseen, unseen] = np.inf
         findings.append(Finding("sensor-drift", ("optical frame",), "drift", vector, square, p, (name,)))
     return findings
 

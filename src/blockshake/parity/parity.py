@@ -10,6 +10,7 @@ from blockshake.files import load_json
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
+from blockshake.measurement.sensors.markers import whole_markers
 from blockshake.parity.acceleration_parity import channel_pairs
 from blockshake.parity.channel_findings import channel_findings
 from blockshake.parity.finding import Finding
@@ -166,9 +167,9 @@ def check_parity(tests, structure, sensors, level=LEVEL):
 
 
 def _bodies(structure, tests):
-    """`BodyMarkers` of every body that has three markers in all tests."""
+    """`BodyMarkers` of every body that has three markers, with all directions measured, in all tests."""
     bodies = {}
-    shared = set.intersection(*({str(name) for name in test["marker"].values} for test in tests.values()))
+    shared = set.intersection(*(set(whole_markers(test)) for test in tests.values()))
     for index, name in enumerate(structure.body_names):
         own = [marker for marker in structure.file.markers if marker.body == name and marker.name in shared]
         if len(own) < _FEWEST_MARKERS:

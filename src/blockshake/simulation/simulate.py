@@ -9,7 +9,6 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.motion import GroundMotion
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.errors import InputError
-from blockshake.files import source_digest
 from blockshake.geometry.overlap import penetration_depth
 from blockshake.geometry.rotations import rotate_into
 from blockshake.geometry.structure import START_TOLERANCE, load_structure
@@ -23,7 +22,7 @@ from blockshake.simulation.run_dataset import (
     plain_attribute,
     run_dataset,
 )
-from blockshake.sources import module_sources
+from blockshake.sources import module_sources, source_digest
 
 _LONGEST_STEP = 0.01  # s
 _WORST_RESIDUAL = 0.05  # a run whose energy audit misses more is not to be trusted

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field, StringConstraints, field_validator, model_validator
+from pydantic import ConfigDict, Field, StringConstraints, field_validator, model_validator
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
@@ -65,8 +65,15 @@ class Measured(Strict):
     test: str = Field(description="name of the test in it")
 
 
+def _input_is_optional(schema):
+    """Take ``input``, whose default follows from ``measured``, off the keys that a JSON schema requires."""
+    schema["required"].remove("input")
+
+
 class StudyCase(Strict):
     """One structure under one motion."""
+
+    model_config = ConfigDict(json_schema_extra=_input_is_optional)
 
     structure: str = Field(description="shipped name or file")
     motion: str = Field(description="shipped name or file")
@@ -166,6 +173,8 @@ def check_config(mapping, where):
     names = [case.name for case in config.cases]
     for model, settings in config.models.items():
         _check_parameters(model, settings, f"models.{model}.parameters", where)
+    for motion in dict.fromkeys([*(case.motion for case in config.cases), *config.ladder.motions]):
+        load_motion(motion)
     for index, case in enumerate(config.cases):
         key = f"cases.{index}"
         if names.count(case.name) > 1:
@@ -176,7 +185,6 @@ def check_config(mapping, where):
                     where, f"{key}.samples.{model}", f"expected 1 to {config.ensemble.size}, not {count}"
                 )
         load_structure(case.structure)
-        load_motion(case.motion, case.scale)
         if case.measured is not None:
             _check_measured(case, where, f"{key}.measured")
     for target, source in config.ensemble.linked.items():
@@ -187,8 +195,6 @@ def check_config(mapping, where):
     _check_friction_search(config, where)
     if config.ensemble.correlation is not None:
         load_correlation(config.ensemble.correlation)
-    for motion in config.ladder.motions:
-        load_motion(motion)
     if config.convergence is not None:
         load_structure(config.convergence.structure)
     for folder in config.diagnosis.campaigns:

@@ -1,17 +1,20 @@
 """A virtual campaign: ladders of strong tests climbed on the virtual table, written as a laboratory would."""
 
 import json
-import shutil
 from pathlib import Path
 
 import numpy as np
-import yaml
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.records.contract_csv import write_motion_csv
 from blockshake.dynamics.system import Status
-from blockshake.files import content_digest, shipped_names, write_dataset, write_json, write_text
+from blockshake.files import content_digest, write_dataset, write_json
 from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign_folder import (
+    motion_in_folder,
+    structure_in_folder,
+    write_campaign_file,
+)
 from blockshake.measurement.sensors.markers import driven_marker
 from blockshake.study.ensembles.ensemble import relative_to_slab
 from blockshake.virtual.shake_table import final_places, shake, swelling_sine
@@ -45,11 +48,11 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
     """
     folder, truth = Path(folder), Path(truth)
     loaded = load_structure(structure)
-    structure_in_folder = _structure_in_folder(structure, loaded, folder)
+    called_structure = structure_in_folder(structure, loaded, folder)
     table = _Table(settings, loaded, folder, truth, source, progress)
     tests, gentle = [], []
     for motion in settings.motions:
-        called = _motion_in_folder(motion, folder)
+        called = motion_in_folder(motion, folder)
         for scale in _scales(settings.intensities):
             gentle += table.sine(len(tests))
             entry = {
@@ -64,7 +67,9 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
                 table.put_back()
                 break
     entries = [*({**entry, "role": "fit"} for entry in gentle), *with_roles(tests)]
-    write_text(folder / "campaign.yaml", _campaign_yaml(settings, structure_in_folder, entries))
+    noise = settings.instruments
+    sensors = {"marker_noise": noise.marker_noise, "accelerometer_noise": noise.accelerometer_noise}
+    write_campaign_file(folder, _HEADER, settings.name, called_structure, sensors, entries)
     write_json(
         truth / "truth.json",
         {
@@ -173,44 +178,6 @@ class _Table:
         self.places = places
 
 
-def _motion_in_folder(motion, folder):
-    """Name of a motion in the campaign: a shipped name, or the file that is written to the folder."""
-    if motion in shipped_names("motions"):
-        return motion
-    name = f"{Path(motion).stem}.csv"
-    if Path(motion).resolve() != (folder / name).resolve():
-        write_motion_csv(load_motion(motion), folder / name)
-    return name
-
-
-def _structure_in_folder(structure, loaded, folder):
-    """Name of the structure in the campaign: a shipped name, or the file copied to the folder, meshes beside it."""
-    if structure in shipped_names("structures"):
-        return structure
-    meshes = [shape.mesh for shape in loaded.file.shapes.values() if shape.mesh]
-    for name, source in [
-        ("structure.yaml", Path(structure)),
-        *((m, Path(structure).parent / m) for m in meshes),
-    ]:
-        if source.resolve() != (folder / name).resolve():
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(source, folder / name)
-    return "structure.yaml"
-
-
 def _scales(intensities):
     count = int(np.floor((intensities.highest - intensities.first) / intensities.increment + 1e-9)) + 1
     return [float(intensities.first + intensities.increment * step) for step in range(count)]
-
-
-def _campaign_yaml(settings, structure, entries):
-    noise = settings.instruments
-    mapping = {
-        "name": settings.name,
-        "structure": structure,
-        "sensors": {
-            "marker_noise": noise.marker_noise, "accelerometer_noise": noise.accelerometer_noise
-        },
-        "tests": [{key: entry[key] for key in ("name", "file", "motion", "scale", "role")} for entry in entries],
-    }  # fmt: skip
-    return _HEADER + yaml.safe_dump(mapping, sort_keys=False, default_flow_style=None, width=200)

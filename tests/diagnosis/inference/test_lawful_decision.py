@@ -9,7 +9,8 @@ from blockshake.diagnosis.laws.findings import LawFinding, LawFindings, OutsideF
 PLACES = {"table-pitch": {}, "weak-joint@slab-block-1": {"joint": ("slab", "block-1")}}
 PITCH = LawFinding(
     name="table.pitch", unit="rad s2/m", value=3.7, error=0.2, measured={"one": 4.1e-4, "two": 4.3e-4},
-    expected={"one": 0.0, "two": 0.0}, departures={"one": 9.0, "two": 9.0}, broken=True,
+    errors={"one": 1e-5, "two": 1e-5}, expected={"one": 0.0, "two": 0.0}, spreads={"one": 0.33, "two": 0.33},
+    departures={"one": 9.0, "two": 9.0}, together=9.0, broken=True,
 )  # fmt: skip
 SOFT = PITCH.model_copy(update={"name": "table.compliance", "unit": "rad/(N m)"})
 PUSH = OutsideForce(
@@ -20,7 +21,10 @@ PUSH = OutsideForce(
 
 def findings(laws=(), isolated=(), outside=None):
     broken = outside or any(law.broken for law in laws)
-    return LawFindings(laws=laws, isolated=isolated, outside=outside, p=1e-9 if broken else 0.5)
+    readable = tuple(law.name for law in laws)
+    return LawFindings(
+        laws=laws, isolated=isolated, outside=outside, readable=readable, p=1e-9 if broken else 0.5
+    )
 
 
 def test_an_isolated_effect_is_the_cause_with_the_size_that_its_law_reads():
@@ -33,7 +37,9 @@ def test_an_isolated_effect_is_the_cause_with_the_size_that_its_law_reads():
 
 
 def test_an_effect_whose_law_holds_is_struck_out():
-    holds = PITCH.model_copy(update={"broken": False, "departures": {"one": 0.4, "two": -0.2}})
+    holds = PITCH.model_copy(
+        update={"broken": False, "departures": {"one": 0.4, "two": -0.2}, "together": 0.1}
+    )
     found = with_laws(made_up_decision("named", ("table-pitch",)), findings((holds,)), PLACES)
     assert (found.decision, found.causes) == ("none", ())
     law, features = found.struck_out["table-pitch"]
@@ -76,10 +82,10 @@ def test_features_keep_the_parameters_that_they_found():
     assert with_laws(decision, findings(), PLACES).parameters == decision.parameters
 
 
-def test_a_stop_that_one_test_shows_is_no_surer_than_its_form():
+def test_a_stop_has_the_stiffness_of_its_force_and_a_gap_that_is_known_to_a_millimetre():
     stop = PUSH.model_copy(
         update={
-            "law": "spring", "amplitude": 6e6, "lower": 5.99e6, "upper": 6.01e6, "unit": "N/m",
+            "law": "spring", "amplitude": 6e6, "lower": 5e6, "upper": 7e6, "unit": "N/m",
             "tests": {"one": {"gap": 0.0285, "side": 1.0}},
         }
     )  # fmt: skip
@@ -91,20 +97,25 @@ def test_a_stop_that_one_test_shows_is_no_surer_than_its_form():
     given = findings((SOFT,), ("stopper-contact",)).model_copy(update={"outside_of_stop": stop})
     found = with_laws(decision, given, places)
     gap, stiffness = (found.parameters["stopper-contact"][name] for name in ("gap", "stiffness"))
-    assert (gap.lower, gap.upper) == pytest.approx((0.0285 - 1.645e-3, 0.0285 + 1.645e-3))
-    assert stiffness.upper - stiffness.lower == pytest.approx(2.0 * 1.645 * 0.15 * 6e6)
+    assert (gap.lower, gap.upper) == pytest.approx((0.0285 - 1.6449e-3, 0.0285 + 1.6449e-3), rel=1e-5)
+    assert (stiffness.lower, stiffness.estimate, stiffness.upper) == (5e6, 6e6, 7e6)
 
 
 def test_an_effect_that_no_law_leans_to_is_struck_out():
     own = PITCH.model_copy(
         update={
             "name": "joint1.friction.loss", "unit": "1", "joint": "slab-block-1", "broken": False,
-            "departures": {"one": 3.1, "two": -2.9},
+            "departures": {"one": 3.1, "two": -2.9}, "together": 0.1,
         }
     )  # fmt: skip
     found = with_laws(made_up_decision("named", ("weak-joint",)), findings((own,)), PLACES)
     assert (found.decision, found.causes) == ("none", ())
     assert found.struck_out["weak-joint"][0] == "no law departs its way"
-    leaning = own.model_copy(update={"departures": {"one": 3.1, "two": 1.2}})
+    leaning = own.model_copy(update={"departures": {"one": 3.1, "two": 1.2}, "together": 3.04})
     kept = with_laws(made_up_decision("named", ("weak-joint",)), findings((leaning,)), PLACES)
     assert kept.causes == ("weak-joint",)
+    nothing_slipped = findings((own.model_copy(update={"name": "joint1.lever.bias"}),)).model_copy(
+        update={"readable": ("joint1.friction.loss",)}
+    )
+    untold = with_laws(made_up_decision("named", ("weak-joint",)), nothing_slipped, PLACES)
+    assert untold.struck_out["weak-joint"][0] == "its law is not told"

@@ -85,9 +85,14 @@ BAD = {
     "minutes": (_timed("time", lambda t: t / 60.0), "time: expected seconds, with 20 to 10000 readings"),
     "accelerometers' ms": (_timed("time_acc", lambda t: 1e3 * t), "time_acc: expected seconds, with 20 to"),
     "another clock": (_timed("time_acc", lambda t: t + 100.0), "time_acc: expected the clock of time, 0 to 10 s"),
-    "silent channel": (
-        _set("marker_displacement", (slice(None), 3, 1), np.nan), f"{MARKERS[3]}.y: expected readings; all are",
+    "silent marker": (
+        _set("marker_displacement", (slice(None), 3), np.nan), f"{MARKERS[3]}: expected readings; all are",
     ),
+    "no slab along x": (
+        _set("marker_displacement", (slice(None), slice(0, 4), 0), np.nan),
+        f"{MARKERS[0]}.x: expected readings of the driven body along x",
+    ),
+    "another axis": (lambda test: test.assign_coords(axis=["x", "y", "t"]), "axis: expected x, y, z, not x, y, t"),
     "unknown marker": (
         lambda test: test.assign_coords(marker=["mystery", *MARKERS[1:]]), "mystery: expected markers of the structure",
     ),
@@ -131,6 +136,8 @@ GOOD = {
     "a first half second that is lost": _set("marker_displacement", (slice(0, 500), 3), np.nan),
     "an inherited offset": _offset("initial_offset", 0.9),
     "no accelerometers": lambda test: test.drop_dims("time_acc"),
+    "x alone": lambda test: test.sel(axis=["x"]),
+    "one marker without y": _set("marker_displacement", (slice(None), 3, 1), np.nan),
 }
 
 
@@ -201,13 +208,25 @@ def test_a_spreadsheet_of_readings_goes_in(names, tmp_path):
             "line 3: expected cells between commas; unexpected end of data",
         ),
         ("time_s,slab-face\n0,0\n0.1,0\n", "slab-face: expected columns MARKER.x"),
-        ("time_s,slab-face.x\n0,0\n0.01,0\n", "slab-face.y: expected readings; all are missing"),
+        (
+            "time_s,slab-face.x,slab-face.y\n0,0,\n0.01,0,\n",
+            "slab-face.y: expected readings, or no such column",
+        ),
+        ("time_s,slab-face.z\n0,0\n0.01,0\n", "slab-face.x: expected readings of the driven body along x"),
     ],
 )
 def test_bad_tables_get_one_clear_line(text, message, tmp_path):
     path = tmp_path / "t1.csv"
     path.write_text(text)
     _refused(path, message)
+
+
+def test_a_direction_without_a_column_is_missing_and_not_zero(tmp_path):
+    path = tmp_path / "t1.csv"
+    path.write_text("time_s,slab-face.x,block-1-face.x,block-1-face.z\n0,0,0,0\n0.01,0,0.001,0.002\n")
+    read = read_test(path, STRUCTURE)["marker_displacement"]
+    assert read.isel(time=1).values.tolist()[1] == [0.001, pytest.approx(np.nan, nan_ok=True), 0.002]
+    assert read.sel(axis=["y", "z"], marker="slab-face").isnull().all()
 
 
 def test_accelerometers_without_channels_are_refused(tmp_path):

@@ -1,3 +1,4 @@
+import json
 import re
 
 import numpy as np
@@ -8,6 +9,7 @@ from fake_study import COLLAPSE_REASON, CPU_TIME, MODELS, FakeStudy
 from page import CLAIMS, Page
 
 from blockshake.errors import InputError
+from blockshake.files import load_json
 from blockshake.report.document.blocks import Table
 from blockshake.report.document.html import write_html
 from blockshake.report.document.pdf import write_pdf
@@ -18,6 +20,7 @@ from blockshake.report.study.content import load_content
 from blockshake.report.study.convergence_section import convergence as annex
 from blockshake.report.study.opening_sections import stiffness
 from blockshake.report.study.report import compose, make_report
+from blockshake.report.study.statements.section import findings
 from blockshake.study.convergence.table import load_convergence
 from blockshake.study.peer_record import load_peer_record
 from blockshake.study.sampling.latin_hypercube import load_design
@@ -26,7 +29,7 @@ from blockshake.study.sampling.latin_hypercube import load_design
 @pytest.fixture(scope="module")
 def report(fake, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
-    paths = folder / "fake.html", folder / "fake.pdf"
+    paths = folder / "fake.html", folder / "fake.pdf", folder / "the-paper.json"
     make_report(fake.study, fake.results, fake.benchmarks, *paths)
     return paths
 
@@ -76,7 +79,8 @@ def test_style_and_drawings_refer_to_nothing_outside(report, page):
         "Summary", "Structures", "Ground motions", "Samples", "Contact stiffness", "Displacement of the blocks",
         "Models against each other",
         "Causes of the thickness of the envelopes", "Completion, energy and computation", "Timings", "Origin",
-        "Limits of this study", "Annex: numerical parameters of LS-DEM", "Annex: NSCD rigid beside LMGC90",
+        "Limits of this study", "The paper, statement by statement",
+        "Annex: numerical parameters of LS-DEM", "Annex: NSCD rigid beside LMGC90",
     ],
 )  # fmt: skip
 def test_sections_and_contents(text, title):
@@ -181,8 +185,15 @@ def test_same_results_same_bytes(document, report, tmp_path):
     again = tmp_path / "fake.html", tmp_path / "fake.pdf"
     write_html(again[0], document)
     write_pdf(again[1], document)
-    for first, second in zip(report, again, strict=True):
+    for first, second in zip(report, again, strict=False):
         assert first.read_bytes() == second.read_bytes()
+
+
+def test_findings_on_the_paper_are_left_as_values(fake, report):
+    left = load_json(report[2])
+    assert left == json.loads(json.dumps(findings(load_content(fake.study, fake.results, fake.benchmarks))))
+    assert left["study"] == "fake"
+    assert "basso-tirreno at 2" in left["cases"][0]
 
 
 def test_complete_study_says_that_all_completed(fake):
@@ -240,8 +251,9 @@ def test_missing_results_are_named(tmp_path):
     fake = FakeStudy(tmp_path, size=10)
     missing = fake.results / "envelopes" / "ls-dem" / "configuration-1.nc"
     missing.unlink()
+    made = [tmp_path / f"a.{kind}" for kind in ("html", "pdf", "json")]
     with pytest.raises(InputError, match=r"envelopes/ls-dem/configuration-1\.nc"):
-        make_report(fake.study, fake.results, fake.benchmarks, tmp_path / "a.html", tmp_path / "a.pdf")
+        make_report(fake.study, fake.results, fake.benchmarks, *made)
     assert not (tmp_path / "a.html").exists()
 
 

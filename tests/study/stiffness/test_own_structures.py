@@ -124,15 +124,16 @@ def test_parameters_of_a_structure_are_printed_with_its_stiffness(own):
     assert float(shown["ls_dem.normal_stiffness"]) == pytest.approx(2.16e10 * 5.0 / 3.45 * 8.0, rel=1e-5)
 
 
-def test_samples_of_an_own_material_have_their_own_stiffness(own):
+def test_samples_of_an_own_material_have_their_own_stiffness(own, tmp_path):
     design = pd.DataFrame({"materials.granite.youngs_modulus": [4e10, 6e10]})
-    found = calibrate_design(own("granite", 1.6), design, {})
+    found = calibrate_design(own("granite", 1.6), design, {}, tmp_path, "source")
     np.testing.assert_allclose(found.iloc[1] / found.iloc[0], 1.5, rtol=0.01)
 
 
-def test_definitions_are_compared_in_the_own_tower(own):
+def test_definitions_are_compared_in_the_own_tower(own, tmp_path):
     structure = own("granite", 0.2)
-    compared = compare_definitions({"structure": structure, "motion": "alkion", "scale": 1.0}, 1e-5, 0.02)
+    case = {"structure": structure, "motion": "alkion", "scale": 1.0}
+    compared = compare_definitions(case, 1e-5, 0.02, tmp_path, "source")
     by_half = compared["stiffness"].sel(definition="50 %", restitution=0.5, direction="normal")
     assert float(by_half) == pytest.approx(calibrate_stiffness(structure)["normal_stiffness"], rel=0.01)
 

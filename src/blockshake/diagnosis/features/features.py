@@ -24,7 +24,8 @@ def features(histories):
         Along ``feature``: ``value``; ``censored``, bool, where it could not be told and the table's value stands for
         it; ``error``, the standard deviation of a regression's slope under coloured residuals, 0 for the others.
         Coordinates ``unit`` and ``joint``, the joint's name or ``""``. Never NaN. Features are left out whole where
-        the markers cannot tell them (a body with one marker), for measured and simulated tests alike.
+        the markers cannot tell them (a body with one marker, a direction that is not measured), for measured and
+        simulated tests alike.
     """
     phases = find_phases(histories)
     regressors = np.column_stack(
@@ -33,7 +34,7 @@ def features(histories):
     found, joints = {}, []
     for joint, name in enumerate(histories["joint"].values):
         one = histories.isel(joint=joint)
-        if not np.isfinite(one["slip"]).any():
+        if not np.isfinite(one["slip"].sel(tangent="x")).any():
             continue
         onsets = phases.slip_onset[joint], phases.rotation_onset[joint]
         own = joint_features(one, onsets, phases.quiet, regressors) | _spikes(one)
@@ -77,12 +78,15 @@ def _spikes(histories):
 def _base(histories, regressors):
     moved = histories["base_displacement"]
     vertical, lateral = (moved.sel(axis=axis).to_numpy() for axis in "zy")
-    found = {
-        "base.vertical.acceleration": slope(vertical, regressors, 0),
-        "base.vertical.displacement": slope(vertical, regressors, 2),
-        "base.vertical.peak": told(np.abs(known_values(vertical)).max()),
-        "base.lateral.displacement": slope(lateral, regressors, 2),
-    }
+    found = {}
+    if np.isfinite(vertical).any():
+        found |= {
+            "base.vertical.acceleration": slope(vertical, regressors, 0),
+            "base.vertical.displacement": slope(vertical, regressors, 2),
+            "base.vertical.peak": told(np.abs(known_values(vertical)).max()),
+        }
+    if np.isfinite(lateral).any():
+        found["base.lateral.displacement"] = slope(lateral, regressors, 2)
     turned = histories["base_rotation"]
     if np.isfinite(turned).any():
         pitch, yaw = (turned.sel(axis=axis).to_numpy() for axis in "yz")
@@ -95,35 +99,51 @@ def _base(histories, regressors):
 
 
 def _top(histories, phases):
-    """Features of the highest body whose rotation is known, and of the whole test."""
+    """Features of the highest block whose rotation, or else whose motion along x, is known, and of the whole test."""
     time = histories["time"].to_numpy()
     first = min(phases.slip_onset.min(), phases.rotation_onset.min())
     found = {"onset.time": told(first if np.isfinite(first) else None, otherwise=time[-1])}
-    turning = np.isfinite(histories["body_rotation"]).any(("time", "axis")).to_numpy()
-    height = np.where(turning, histories["height"].to_numpy(), -np.inf)
-    if not turning.any():
+    # against itself the table has no noise
+    free = histories["body_displacement_noise"].sel(axis="x").to_numpy() > 0.0
+    moving = free & np.isfinite(histories["body_displacement"].sel(axis="x")).any("time").to_numpy()
+    turning = moving & np.isfinite(histories["body_rotation"].sel(axis="y")).any("time").to_numpy()
+    told_of = turning if turning.any() else moving
+    height = histories["height"].to_numpy()
+    if not told_of.any():
         return found
-    top = histories.isel(body=int(np.argmax(height)))
-    x, y = (known_values(top["body_displacement"].sel(axis=axis).to_numpy()) for axis in "xy")
-    rotation, yaw = (known_values(top["body_rotation"].sel(axis=axis).to_numpy()) for axis in "yz")
+    top = histories.isel(body=int(np.argmax(np.where(told_of, height, -np.inf))))
+    x = known_values(top["body_displacement"].sel(axis="x").to_numpy())
     x_noise = float(top["body_displacement_noise"].sel(axis="x"))
+    found |= {
+        "top.displacement.peak+": told(max(x.max(), 0.0)),
+        "top.displacement.peak-": told(min(x.min(), 0.0)),
+    }
+    for name, values in (
+        ("top.lateral.peak", top["body_displacement"].sel(axis="y")),
+        ("top.yaw.peak", top["body_rotation"].sel(axis="z")),
+    ):
+        if np.isfinite(values).any():
+            found[name] = told(np.abs(known_values(values.to_numpy())).max())
+    if turning.any():
+        found |= _rocking(top, phases, time)
+    levels = band_levels(time, x, x_noise, BANDS)
+    found |= {f"top.band{number}": told(level) for number, level in enumerate(levels, start=1)}
+    return found | _delay(histories, phases, np.where(told_of, height, np.inf), x, x_noise)
+
+
+def _rocking(top, phases, time):
+    """Features of the top block's rotation about y."""
+    rotation = known_values(top["body_rotation"].sel(axis="y").to_numpy())
     noise = float(top["body_rotation_noise"].sel(axis="y"))
     tail = decay(time[phases.after], rotation[phases.after], TURN_NOISE * noise)
     period, half_cycles, decrement = tail if tail else (None, None, None)
     rocked = np.abs(rotation).max() > ONSET_NOISE * noise
-    found |= {
-        "top.displacement.peak+": told(max(x.max(), 0.0)),
-        "top.displacement.peak-": told(min(x.min(), 0.0)),
-        "top.lateral.peak": told(np.abs(y).max()),
-        "top.yaw.peak": told(np.abs(yaw).max()),
+    return {
         "top.swing": told(largest_swing(time, rotation) if rocked else None),
         "top.period": told(period),
         "top.half_cycles": told(half_cycles),
         "top.decrement": told(decrement),
     }
-    levels = band_levels(time, x, x_noise, BANDS)
-    found |= {f"top.band{number}": told(level) for number, level in enumerate(levels, start=1)}
-    return found | _delay(histories, phases, np.where(turning, height, np.inf), x, x_noise)
 
 
 def _delay(histories, phases, height, x, x_noise):

@@ -42,7 +42,7 @@ def joint_features(histories, onsets, quiet, regressors):
     Returns
     -------
     dict of str to (value, censored, error)
-        By the names of `JOINT_FEATURES`.
+        By the names of `JOINT_FEATURES`; without those of the opening where that is not measured.
     """
     time, acceleration = histories["time"].to_numpy(), regressors[:, 0]
     read = [histories["slip"].sel(tangent="x"), histories["rotation"].sel(axis="y"), histories["opening"]]
@@ -73,11 +73,12 @@ def joint_features(histories, onsets, quiet, regressors):
             f"{name}.asymmetry": told((high + low) / (high - low) if moved else None),
         }
     rocking = there & (np.abs(rotation) > ONSET_NOISE * noise[1])
-    for side, sign in (("+", 1.0), ("-", -1.0)):
-        found[f"pivot{side}"] = told(_pivot(sign * rotation, opening, rocking & (sign * rotation > 0.0)))
-    found["slip.rotation"] = told(
-        _leakage(slip - opening * np.tan(0.5 * rotation), rotation, rocking, noise[1])
-    )
+    if np.isfinite(read[2]).any():
+        for side, sign in (("+", 1.0), ("-", -1.0)):
+            found[f"pivot{side}"] = told(_pivot(sign * rotation, opening, rocking & (sign * rotation > 0.0)))
+        found["slip.rotation"] = told(
+            _leakage(slip - opening * np.tan(0.5 * rotation), rotation, rocking, noise[1])
+        )
     threshold = TURN_NOISE * noise[0]
     found["slip.path"] = told(np.abs(steps(slip, threshold)[1]).sum())
     found["slip.growth"] = told(growth(slip, acceleration, threshold))

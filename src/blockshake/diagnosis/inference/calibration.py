@@ -1,6 +1,7 @@
 """Calibration of the scores: every draw of the library is judged in turn as a measurement of known truth."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -50,13 +51,21 @@ class ScoredReadings:
 
 def write_cases(path, cases):
     """Write cases as JSON; JSON has no NaN, so that null stands for it."""
-    rows = [vars(case) | {"missed": None if np.isnan(case.missed) else case.missed} for case in cases]
-    write_json(path, rows)
+    write_json(path, rows_of(cases))
 
 
 def load_cases(path):
     """Cases of a file that `write_cases` wrote."""
-    rows = load_json(path)
+    return cases_of(load_json(path))
+
+
+def rows_of(cases):
+    """Cases as JSON-like mappings; None stands for NaN."""
+    return [vars(case) | {"missed": None if np.isnan(case.missed) else case.missed} for case in cases]
+
+
+def cases_of(rows):
+    """Cases of mappings from `rows_of`."""
     return [
         ScoredReadings(**row | {"missed": np.nan if row["missed"] is None else row["missed"]}) for row in rows
     ]
@@ -84,25 +93,32 @@ def as_case(scores, key="", size=0.0):
     )
 
 
-def library_cases(library, progress=None):
+def library_cases(library, progress=None, keep=None):
     """Every draw of a `ScoreLibrary` in turn as a measurement, itself left out of the library that judges it.
 
-    A list of `ScoredReadings`. ``progress`` is called with a line of text after each draw.
+    A list of `ScoredReadings`. ``progress`` is called with a line of text after each draw. ``keep`` is called with
+    model, draw and a function without arguments that gives the draw's cases, and gives these or the same from before.
     """
     cases = []
     for model in library.models:
-        by_test = [test[model] for test in library.tamed]
-        draws = len(by_test[0]["nominal"])
+        draws = len(library.tamed[0][model]["nominal"])
         for draw in range(draws):
-            scores = library.score([runs["nominal"][draw] for runs in by_test], model, draw)
-            cases.append(as_case(scores, NONE))
-            for key in library.candidates:
-                if draw < len(library.sizes[model][key]):
-                    scores = library.score([runs[key][draw] for runs in by_test], model, draw)
-                    cases.append(as_case(scores, key, float(library.sizes[model][key][draw])))
-            library.forget(model, draw)
+            judge = partial(_cases_of_draw, library, model, draw)
+            cases += keep(model, draw, judge) if keep else judge()
             if progress is not None:
                 progress(f"{model}: draw {draw + 1} of {draws} judged by the others")
+    return cases
+
+
+def _cases_of_draw(library, model, draw):
+    by_test = [test[model] for test in library.tamed]
+    scores = library.score([runs["nominal"][draw] for runs in by_test], model, draw)
+    cases = [as_case(scores, NONE)]
+    for key in library.candidates:
+        if draw < len(library.sizes[model][key]):
+            scores = library.score([runs[key][draw] for runs in by_test], model, draw)
+            cases.append(as_case(scores, key, float(library.sizes[model][key][draw])))
+    library.forget(model, draw)
     return cases
 
 

@@ -3,12 +3,12 @@
 import numpy as np
 
 from blockshake.diagnosis.inference.decision import ParameterEstimate
-from blockshake.diagnosis.laws.judged_laws import FORM, accounts_for, law_that_holds, leans_to, own_laws
-from blockshake.diagnosis.laws.signatures import STOP
+from blockshake.diagnosis.laws.judged_laws import accounts_for, is_told, law_that_holds, leans_to, own_laws
+from blockshake.diagnosis.laws.mean_of_tests import mean_of_tests
+from blockshake.diagnosis.laws.signatures import SIGNATURES, STOP
 from blockshake.diagnosis.libraries.candidates import effect_of
 from blockshake.effects.registry import EFFECTS
 
-_NORMAL_90 = 1.645
 _GAP_ERROR = 1e-3  # m, standard deviation of a fitted gap: steps of the search, and the form of the law
 # parameter of an effect that its own law reads directly
 _DIRECT = {"table-pitch": "coefficient", "base-compliance": "compliance", "reduced-bearing": "inset"}
@@ -34,8 +34,7 @@ def with_laws(decision, findings, places_of):
     An effect is isolated if its own law is broken and it accounts for all laws that are: the cause, at the joint whose
     law is broken. An effect whose own law was told at its place and holds is struck out, and so is one towards which no
     law leans, and one that does not account for the broken laws. The features of whole tests decide among the effects
-    that are left. Where laws are
-    broken and no effect is left, the cause is unknown, and is described.
+    that are left. Where laws are broken and no effect is left, the cause is unknown, and is described.
     """
     isolated = [effect for effect in findings.isolated if effect in decision.places]
     told = bool(findings.broken or findings.outside)
@@ -86,7 +85,8 @@ def _reasons(effect, place, findings):
     if law:
         yield f"its law holds: {law} is as in the nominal model"
     elif findings.laws and not leans_to(effect, place, findings):
-        yield "no law departs its way"
+        told = effect not in SIGNATURES or is_told(effect, place, findings)
+        yield "no law departs its way" if told else "its law is not told"
     if (findings.broken or findings.outside) and not accounts_for(effect, findings):
         yield "it does not account for the laws that are broken"
 
@@ -130,16 +130,9 @@ def _parameters(effect, decision, findings):
     if effect == STOP and findings.outside_of_stop is not None:
         outside = findings.outside_of_stop
         gaps = np.array([test["gap"] for test in outside.tests.values()])
-        # one test shows no scatter: a fit is never surer than the form of its law
-        least = _NORMAL_90 * FORM * abs(outside.amplitude)
-        half = max(0.5 * (outside.upper - outside.lower), least)
-        known["stiffness"] = _estimate(
-            outside.amplitude, outside.amplitude - half, outside.amplitude + half, "N/m"
-        )
-        half = _NORMAL_90 * float(np.hypot(gaps.std() / np.sqrt(len(gaps)), _GAP_ERROR))
-        known["gap"] = _estimate(
-            float(gaps.mean()), float(gaps.mean()) - half, float(gaps.mean()) + half, "m"
-        )
+        known["stiffness"] = _estimate(outside.amplitude, outside.lower, outside.upper, "N/m")
+        mean, half = mean_of_tests(gaps, np.full(len(gaps), _GAP_ERROR), form=0.0)
+        known["gap"] = _estimate(mean, mean - half, mean + half, "m")
     elif effect in _DIRECT:
         known[_DIRECT[effect]] = _read(effect, findings)
     else:
@@ -151,17 +144,13 @@ def _read(effect, findings):
     """Size of an effect from its own law, with an interval from the scatter between tests and the law's error."""
     # the nominal table does not pitch, but nominal blocks do not bear on their very edges
     nominal = float(effect == "reduced-bearing")
-    values = np.array(
-        [
-            value - nominal * law.expected[test]
-            for law in own_laws(effect, findings.laws)
-            if law.broken
-            for test, value in law.measured.items()
-        ]
-    )
-    spread = float(values.std(ddof=1) / np.sqrt(len(values))) if len(values) > 1 else 0.0
-    half = _NORMAL_90 * max(spread, 0.02 * abs(float(values.mean())))
-    mean = float(values.mean())
+    read = [
+        (value - nominal * law.expected[test], law.errors[test])
+        for law in own_laws(effect, findings.laws)
+        if law.broken
+        for test, value in law.measured.items()
+    ]
+    mean, half = mean_of_tests(*np.array(read).T)
     return _estimate(mean, mean - half, mean + half, EFFECTS[effect].parameters[0].unit)
 
 

@@ -3,18 +3,18 @@
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from blockshake.diagnosis.features.tamed_features import feature_scale
 from blockshake.diagnosis.inference.candidate_scores import ScoreLibrary
 from blockshake.diagnosis.libraries.candidates import NOMINAL, effect_of
+from blockshake.store import load_made
 
 
 def load_tables(paths):
     """Datasets of `library` by test and solver, a list of mappings, from files ordered by test and then by solver."""
     tables = []
     for path in paths:
-        table = xr.load_dataset(path)
+        table = load_made(path)
         if not tables or table.attrs["model"] in tables[-1]:
             tables.append({})
         tables[-1][table.attrs["model"]] = table

@@ -15,12 +15,14 @@ class LawFinding(Strict):
         Whether the joint carries all free bodies.
     value, error : float
         Mean departure from the nominal model over the tests that tell it, and its standard error, on the law's scale.
-    measured : dict of str to float
-        By test: the value that was read, in its unit.
-    expected : dict of str to float
-        By test: mean over nominal draws, on the law's scale, as of `tamed`.
+    measured, errors : dict of str to float
+        By test: the value that was read and its standard error, in its unit.
+    expected, spreads : dict of str to float
+        By test: mean and standard deviation of nominal draws, on the law's scale, as of `tamed`.
     departures : dict of str to float
         By test: departure in standard deviations.
+    together : float
+        Sum of the departures in its own standard deviation, with what the tests share.
     broken : bool
     """
 
@@ -31,8 +33,11 @@ class LawFinding(Strict):
     value: float
     error: float
     measured: dict[str, float]
+    errors: dict[str, float]
     expected: dict[str, float]
+    spreads: dict[str, float]
     departures: dict[str, float]
+    together: float
     broken: bool
 
 
@@ -81,15 +86,18 @@ class LawFindings(Strict):
         Where no effect of the registry accounts for the broken laws and a force from outside does.
     outside_of_stop : OutsideForce or None
         Force of the stop, where a contact with a stop is isolated.
+    readable : tuple of str
+        Laws that have a null distribution in some test, whether a measured test tells them or not.
     p : float
-        Chance of departures as large as the largest by the nominal model, at most: the number of laws times the chance
-        of one (Bonferroni) [1].
+        Chance of departures as large as the largest by the nominal model, at most: their number times the chance of one
+        (Bonferroni) [1].
     """
 
     laws: tuple[LawFinding, ...]
     isolated: tuple[str, ...]
     outside: OutsideForce | None
     outside_of_stop: OutsideForce | None = None
+    readable: tuple[str, ...] = ()
     p: float
 
     @property

@@ -3,6 +3,7 @@
 import numpy as np
 
 from blockshake.diagnosis.laws.findings import OutsideForce
+from blockshake.diagnosis.laws.mean_of_tests import mean_of_tests
 from blockshake.forces.outside.force_laws import fit_laws
 from blockshake.forces.outside.push_history import push_history
 from blockshake.geometry.rotations import rotation_matrices
@@ -18,7 +19,6 @@ _UNITS = {
 _SHOWN = 25.0  # by how much a law's information must beat that of no force, for a test to show it
 _AGREES = 3.0  # factor of the least unexplained distance that blocks agree within
 _NOISE = 1.0  # squared distance of an instant that is explained
-_NORMAL_90 = 1.645
 
 
 def outside_force(forces):
@@ -53,10 +53,7 @@ def outside_force(forces):
     law, scores, tests = shown[best]
     amplitudes = np.array([one.amplitude for one in tests.values()])
     errors = np.array([one.error for one in tests.values()])
-    weight = errors**-2
-    mean = float(weight @ amplitudes / weight.sum())
-    scatter = float(amplitudes.std(ddof=1) / np.sqrt(len(amplitudes))) if len(amplitudes) > 1 else 0.0
-    half = _NORMAL_90 * float(np.hypot(weight.sum() ** -0.5, scatter))
+    mean, half = mean_of_tests(amplitudes, errors)
     names = structure.body_names
     return OutsideForce(
         bodies=tuple(dict.fromkeys(names[body] for body, _ in [best, *order])),

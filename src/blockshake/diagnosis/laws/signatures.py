@@ -6,6 +6,8 @@ if it accounts for all laws that are broken, and its own law is.
 
 from typing import NamedTuple
 
+from blockshake.effects.registry import EFFECTS
+
 OUTSIDE = ("lever.bias", "lever.step", "lever.short", "lever.slope", "lever.stray", "unexplained.rms",
            "unexplained.largest", "unexplained.mean")  # fmt: skip
 _IMPACTS = ("impact.kept", "impact.ringing")
@@ -22,43 +24,51 @@ class Signature(NamedTuple):
         Of the departure; 0 for either.
     others : tuple of str
         Kinds of laws that it may break too.
-    excludes : bool
-        Whether the effect at its visible size surely breaks its own law where that is told at its place: if the law
-        holds there, the effect is excluded.
+    excludes : float
+        Departure of its own law, in the law's unit, that the effect at its visible size makes where that is told at its
+        place: if the law is told better than that and holds there, the effect is excluded. 0: no departure is sure.
     """
 
     own: str
     sign: int
     others: tuple
-    excludes: bool = False
+    excludes: float = 0.0
 
 
 STOP, ECCENTRIC = "stopper-contact", "eccentricity"  # told by the law of the force that would explain them
 OF_A_STOP = (*OUTSIDE, *_IMPACTS, "closed.compliance")
 OF_ANY = _IMPACTS  # whatever acts on the blocks lets them meet at other velocities
 
+
+def _visible(effect, share=1.0):
+    """Share of an effect's visible size that its own law departs by."""
+    first = EFFECTS[effect].parameters[0]
+    return share * abs(first.visible - first.null)
+
+
 SIGNATURES = {
     "table-pitch": Signature(
         "table.pitch", 0,
         ("lever.short", "lever.slope", "unexplained.rms", "unexplained.largest", "closed.compliance", *_IMPACTS),
-        excludes=True,
+        excludes=_visible("table-pitch"),
     ),
     "base-compliance": Signature(
         "table.compliance", 1,
         ("lever.short", "lever.slope", "unexplained.rms", "unexplained.largest", "closed.compliance", *_IMPACTS),
-        excludes=True,
+        excludes=_visible("base-compliance"),
     ),
     "reduced-bearing": Signature(
         "lever.short", 1,
         ("lever.slope", "lever.stray", "unexplained.rms", "unexplained.largest", "closed.compliance", *_IMPACTS),
-        excludes=True,
+        excludes=_visible("reduced-bearing"),
     ),
     "eccentricity": Signature(
         "lever.bias", 0, ("unexplained.rms", "unexplained.largest", "unexplained.mean", *_IMPACTS),
-        excludes=True,
+        excludes=_visible("eccentricity", 1.0 / 3.0),  # one of three blocks that a joint carries
     ),
     "weak-joint": Signature(
-        "friction.loss", 1, ("friction.rate", "closed.compliance", "lever.stray", *_IMPACTS), excludes=True
+        "friction.loss", 1, ("friction.rate", "closed.compliance", "lever.stray", *_IMPACTS),
+        excludes=_visible("weak-joint", 0.6),  # times the coefficient of friction
     ),
     "rate-weakening-friction": Signature(
         "friction.rate", -1, ("friction.loss", "closed.compliance", "lever.stray", *_IMPACTS)

@@ -13,7 +13,7 @@ from blockshake.diagnosis.features.reading import HISTORIES, read_off
 from blockshake.dynamics.motion import GroundMotion
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
-from blockshake.files import content_digest, write_dataset
+from blockshake.files import content_digest
 from blockshake.geometry.structure import Structure
 from blockshake.measurement.campaigns.campaign import Sensors
 from blockshake.measurement.sensors.instruments import Instruments, observe
@@ -21,6 +21,8 @@ from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import part_parameters
 from blockshake.simulation.placement import placed
 from blockshake.simulation.simulate import simulate
+from blockshake.simulation.structure_digest import structure_digest
+from blockshake.store import keep_dataset, kept
 
 _SLOW = 0.04  # s, standard deviation of a Gaussian that is some 0.1 s wide at half its height
 
@@ -41,6 +43,8 @@ class PlannedTest:
         Whose noise is read.
     markers, channels : tuple of str
         That were read.
+    unread : tuple of (str, str)
+        Marker and axis of the directions that were not measured.
     """
 
     structure: Structure
@@ -49,17 +53,18 @@ class PlannedTest:
     sensors: Sensors
     markers: tuple[str, ...]
     channels: tuple[str, ...]
+    unread: tuple[tuple[str, str], ...] = ()
 
     def digest(self):
         """Of the content: equal for equal tests, whatever their files are called."""
         return content_digest(
-            self.structure.file.model_dump(mode="json"),
-            *(solid.vertices.tobytes() for solid in self.structure.solids.values()),
+            structure_digest(self.structure),
             *(part.tobytes() for part in self.motion.table),
             self.duration,
             self.sensors.model_dump(),
             self.markers,
             self.channels,
+            self.unread,
         )
 
 
@@ -107,6 +112,8 @@ def simulated_test(planned, draw, effects=()):
     test = observe(run, experiment.structure, experiment.instruments, draw.seed).sel(
         marker=list(planned.markers)
     )
+    for marker, axis in planned.unread:
+        test["marker_displacement"].loc[{"marker": marker, "axis": axis}] = np.nan
     if "accelerometer" in test:
         test = test.sel(channel=list(planned.channels)) if planned.channels else test.drop_dims("channel")
     return SimulatedTest(test, run.attrs["status"])
@@ -143,11 +150,11 @@ def kept_reading(planned, draw, effects, store, source, histories=True):
         draw.noise, draw.places.tobytes(), draw.seed, list(effects), histories,
     )  # fmt: skip
     path = Path(store) / f"{key}.nc"
-    if path.exists():
+    if kept(path):
         return KeptReading(xr.load_dataset(path), "kept")
     test, status = simulated_test(planned, draw, effects)
     reading = read_off(test, planned.structure, planned.sensors, laws=histories).assign(status=status)
     if not histories:
         reading = reading.drop_vars([*HISTORIES, "acceleration", "phase"]).drop_vars(["time", "body"])
-    write_dataset(path, reading)
+    keep_dataset(path, reading)
     return KeptReading(reading, "simulated")

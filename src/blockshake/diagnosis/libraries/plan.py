@@ -17,6 +17,7 @@ from blockshake.files import PACKAGE, content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Campaign, load_campaign, load_test
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
+from blockshake.measurement.sensors.markers import unread_directions
 
 _CHECKOUT = PACKAGE.parents[1].resolve()
 
@@ -43,6 +44,7 @@ def planned_test(campaign, name, structure):
         sensors=campaign.sensors,
         markers=tuple(map(str, test["marker"].values)),
         channels=tuple(map(str, test["channel"].values)) if "accelerometer" in test else (),
+        unread=tuple(unread_directions(test)),
     )
 
 
@@ -55,6 +57,7 @@ def planned_sealed(campaign, name, like):
         sensors=campaign.sensors,
         markers=like.markers,
         channels=like.channels,
+        unread=like.unread,
     )
 
 

@@ -11,7 +11,8 @@ def joint_curves(histories, test):
     """Slip along x, rotation about y and opening of every joint as curves (n_times,) or (n_draws, n_times), by name.
 
     ``histories`` from `read_off`, of an ensemble along ``draw``. ``TEST.jointJ.slip`` and so on, so that the curves of
-    several tests can be joined; joints that nobody can know are left out.
+    several tests can be joined; joints that nobody can know are left out. Where that is all of them, as with one
+    marker a block, ``TEST.BODY.drift`` of every block stands for them.
     """
     found = {}
     for joint in range(histories.sizes["joint"]):
@@ -19,6 +20,12 @@ def joint_curves(histories, test):
             one = histories[name].isel(joint=joint).transpose(..., "time").to_numpy().astype(float)
             if np.isfinite(one).any():
                 found[f"{test}.joint{joint + 1}.{name}"] = one
+    if found:
+        return found
+    for name in histories["body"].values:
+        one = histories["drift"].sel(body=name).transpose(..., "time").to_numpy().astype(float)
+        if (np.abs(one) > 0.0).any():  # the table does not drift against itself
+            found[f"{test}.{name}.drift"] = one
     return found
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.diagnosis.features.measured_readings import reading_of
+from blockshake.diagnosis.features.reading import HISTORIES
 from blockshake.diagnosis.misfit.curve_scores import curve_scores, joint_curves
 from blockshake.diagnosis.misfit.residual_atlas import code_word, residual_atlas
 from blockshake.diagnosis.misfit.whole_curve import whole_curve_probability
@@ -36,7 +37,7 @@ def misfit(readings, ensembles):
     names = [str(name) for name in readings["test"].values]
     for name in names:
         reading = reading_of(readings, name)
-        members = xr.concat(ensembles[name], dim="draw", join="outer").sel(
+        members = xr.concat([one[list(HISTORIES)] for one in ensembles[name]], dim="draw", join="outer").sel(
             time=reading["time"], method="nearest", tolerance=1e-3
         )
         members = members.assign_coords(time=reading["time"], draw=np.arange(members.sizes["draw"]))

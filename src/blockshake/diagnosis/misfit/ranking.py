@@ -25,7 +25,7 @@ class WorstCurves(NamedTuple):
 
 def worst_joints(misfit, most):
     """Joints with the largest residuals of a `misfit`, at most so many, from the lowest up."""
-    residual = np.abs(misfit["residual"]).max(("test", "phase", "quantity", "side")).to_numpy()
+    residual = np.abs(misfit["residual"]).max(("test", "phase", "quantity", "side")).fillna(0.0).to_numpy()
     chosen = np.sort(np.argsort(-residual, kind="stable")[:most])
     return [str(misfit["joint"].values[place]) for place in chosen]
 

@@ -58,8 +58,8 @@ def residual_atlas(measured, members):
         Over (joint, phase, quantity, side): ``measured``, root mean square over the phase of the part to that side,
         ``mean`` and ``sd`` over the members [m, rad], ``residual`` = (measured - mean) / (sd sqrt(1 + 1 / n)) [1];
         positive: the measured joint moved farther than simulated. ``limit``: magnitude that any cell exceeds in 5 of
-        100 cases where nothing is missing. 0 where the phase has no time or nobody can know. Attribute ``intensity``:
-        peak acceleration of the base [m/s2].
+        100 cases where nothing is missing. NaN where the phase has no time or nobody can know. Attribute
+        ``intensity``: peak acceleration of the base [m/s2].
 
     Notes
     -----
@@ -72,13 +72,13 @@ def residual_atlas(measured, members):
     count = len(others)
     mean, spread = others.mean(axis=0), others.std(axis=0, ddof=1)
     known = np.isfinite(own) & (spread > 0.0)
-    residual = np.where(known, own - mean, 0.0) / np.where(known, spread * np.sqrt(1.0 + 1.0 / count), 1.0)
+    residual = (own - mean) / np.where(known, spread * np.sqrt(1.0 + 1.0 / count), np.nan)
     dims = ("joint", "phase", "quantity", "side")
     return xr.Dataset(
         {
-            "measured": (dims, np.nan_to_num(own)),
-            "mean": (dims, np.nan_to_num(mean)),
-            "sd": (dims, np.nan_to_num(spread)),
+            "measured": (dims, own),
+            "mean": (dims, mean),
+            "sd": (dims, spread),
             "residual": (dims, residual),
             "limit": ((), _limit(int(known.sum()), count)),
         },
@@ -122,7 +122,7 @@ def code_word(atlases):
     here = [abs(part.sel(phase=phase)) for part in beyond]
     test = int(np.argmax([float(part.max()) for part in here]))
     joint, quantity, side = np.unravel_index(int(here[test].values.argmax()), here[test].shape)
-    residual = atlases[test]["residual"].sel(phase=phase).isel(quantity=quantity)
+    residual = atlases[test]["residual"].fillna(0.0).sel(phase=phase).isel(quantity=quantity)
     pair = residual.isel(joint=joint).to_numpy()
     sided = abs(pair[0] - pair[1]) > _ONE_SIDED * np.abs(pair).sum()
     cells = [atlas.sel(phase=phase).isel(joint=joint, quantity=quantity, side=side) for atlas in atlases]

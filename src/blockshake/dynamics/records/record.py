@@ -5,25 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from blockshake.errors import InputError
-
-STANDARD_GRAVITY = 9.80665  # m/s2, ISO 80000-3; the g of record files
-
-_ACCELERATION_UNITS = {
-    "m/s^2": 1.0,
-    "m/s2": 1.0,
-    "m/s/s": 1.0,
-    "m/sec2": 1.0,
-    "m/sec^2": 1.0,
-    "m/sec/sec": 1.0,
-    "cm/s^2": 0.01,
-    "cm/s2": 0.01,
-    "cm/s/s": 0.01,
-    "cm/sec2": 0.01,
-    "cm/sec^2": 0.01,
-    "cm/sec/sec": 0.01,
-    "gal": 0.01,
-    "g": STANDARD_GRAVITY,
-}
+from blockshake.tables.units import unit_size
 
 
 @dataclass(frozen=True)
@@ -56,12 +38,7 @@ def acceleration_unit(text, where, key):
     InputError
         The unit is not one of cm/s2, m/s2 and g, in any usual spelling.
     """
-    unit = text.strip().lower().replace(" ", "")
-    if unit not in _ACCELERATION_UNITS:
-        raise InputError(
-            where, key, f"expected a unit of acceleration (cm/s^2, m/s^2 or g), found '{text.strip()}'"
-        )
-    return _ACCELERATION_UNITS[unit]
+    return float(unit_size("acceleration", text, where, key))
 
 
 def positive_number(text, where, key, kind=float):

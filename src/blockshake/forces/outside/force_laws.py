@@ -1,13 +1,16 @@
 """Laws that a force from outside may follow, fitted to its history."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
-_GRID = 40  # values that are tried of a time or a gap
+_GRID = 40  # gaps that are tried
+_STEP = 0.05  # s, between the starts that are tried
+_WITHIN_90 = 2.71  # chi-square of one degree of freedom that nine of ten values stay below
 _LONGEST_PULSE = 0.5  # s
-_EDGE = 15e-3  # m, at most: how far the numerics of a model place an edge from the geometric one
+_FEWEST = 5  # instants on a side that tell its edge
+_EDGE = 5e-3  # m: how far edges are known, where readings tell no better
 
 
 @dataclass(frozen=True)
@@ -21,7 +24,8 @@ class FittedLaw:
     amplitude, error : float
         Of the law and its standard deviation: a force [N]; of a spring [N/m], of a damper [N s/m].
     parameters : dict of str to float
-        Start and end [s], gap [m] and side.
+        Start and end [s], gap [m] and side; ``earliest`` and ``latest``, of a constant force, are the ends of the
+        starts that 90 % of such histories agree with, and the start is in their middle.
     chi_square : float
         Sum of squares left, in variances of the history; where the force is not told, of what is beyond its ends.
     information : float
@@ -67,13 +71,13 @@ def fit_laws(time, push):
     shift = _edge_shift(push.force[told], push.edge[told])
     known = told | bounded
     readings = _Readings(
-        told[known], push.force[known] - shift * push.edge[known], push.error[known],
+        told[known], push.force[known] + shift * push.edge[known], push.error[known],
         push.lower[known] - shift * push.by_lever[known], push.upper[known] + shift * push.by_lever[known],
     )  # fmt: skip
     t, u, v = time[known], push.displacement[known], push.velocity[known]
     fits = [_fitted("none", np.zeros_like(t), readings, {}, 0)]
     fits.append(_fitted("steady", np.ones_like(t), readings, {}, 1))
-    fits.append(_best("constant", _steps(t), readings, 2))
+    fits.append(_stepped(t, readings))
     fits.append(_best("pulse", _pulses(t, t[readings.told]), readings, 3))
     fits.append(_best("spring", _springs(u), readings, 2))
     fits.append(_fitted("damper", v, readings, {}, 1))
@@ -82,16 +86,33 @@ def fit_laws(time, push):
 
 
 def _edge_shift(force, edge):
-    """How far further out the edges seem to lie than they are, the same to both sides [m]."""
-    # the median is not moved by the force that is looked for
-    turned = edge != 0.0
-    shift = np.median(force[turned] / edge[turned]) if turned.any() else 0.0
-    return float(np.clip(shift, -_EDGE, _EDGE))
+    """How far further out the edges lie than the structure has them, the same to both sides [m].
+
+    An edge further out takes up the force ``shift * edge``, which the history lacks. A force that is looked for shows
+    with one sign on one side and the other on the other: the mean of the two sides is free of it. A block that turned
+    to one side alone tells its edge no better than it is known.
+    """
+    sides = [force[side * edge > 0.0] / edge[side * edge > 0.0] for side in (1.0, -1.0)]
+    middle = [-float(np.median(own)) for own in sides if len(own) >= _FEWEST]
+    if len(middle) == 2:
+        return 0.5 * (middle[0] + middle[1])
+    return float(np.clip(middle[0], -_EDGE, _EDGE)) if middle else 0.0
 
 
-def _steps(t):
-    for start in np.linspace(t[0], t[-1], _GRID, endpoint=False):
-        yield (t >= start).astype(float), {"start": float(start)}
+def _stepped(t, readings):
+    """Force that is constant from an instant on; between two instants that tell, every start is as good."""
+    starts = np.arange(t[0], t[-1], _STEP)
+    fits = [
+        _fitted("constant", (t >= one).astype(float), readings, {"start": float(one)}, 2) for one in starts
+    ]
+    fits = [one for one in fits if one is not None]
+    if not fits:
+        return None
+    least = min(one.chi_square for one in fits)
+    near = [one for one in fits if one.chi_square <= least + _WITHIN_90]
+    earliest, latest = near[0].parameters["start"], near[-1].parameters["start"]
+    middle = min(near, key=lambda one: abs(one.parameters["start"] - 0.5 * (earliest + latest)))
+    return replace(middle, parameters={**middle.parameters, "earliest": earliest, "latest": latest})
 
 
 def _pulses(t, starts):

@@ -25,7 +25,7 @@ class PushHistory:
     distance : float64 array, shape (n_times,)
         What it leaves unexplained, in standard deviations [1].
     edge : float64 array, shape (n_times,)
-        Force by which the joint's edge would seem to lie a metre further out [N/m]: edges are known to millimetres.
+        Force that an edge a metre further out takes up [N/m]: edges are known to millimetres.
     lower, upper : float64 arrays, shape (n_times,)
         Ends between which the force leaves the resultant of the lowest joint beneath on its face [N]; without ends
         where the joint's forces are not known.
@@ -79,9 +79,10 @@ def push_history(forces, body, height=0.0):
     error, turned = np.full(n_times, np.inf), np.zeros(n_times, dtype=bool)
     edge, slips = np.zeros(n_times), np.zeros(n_times, dtype=bool)
     lowest = None
-    for place, face in enumerate(forces.transmitted.faces):
-        if body not in forces.transmitted.carried[place]:
-            continue
+    carried = forces.transmitted.carried
+    beneath = [place for place in range(len(carried)) if body in carried[place]]
+    for place in sorted(beneath, key=lambda place: -len(carried[place])):
+        face = forces.transmitted.faces[place]
         joint = forces.faces.index(face)
         middle = motion.position[:, face.upper] + motion.rotation[:, face.upper] @ face.on_upper
         arm = motion.position[:, body, 2] + height - middle[:, 2]

@@ -11,7 +11,7 @@ from blockshake.files import load_yaml
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.recorded_test import read_test
 from blockshake.measurement.sensors import accelerometers, markers
-from blockshake.validation import Finite, NotNegative, Strict, validated
+from blockshake.validation import Finite, Positive, Strict, validated
 
 
 def _not_zero(value):
@@ -26,8 +26,8 @@ Scale = Annotated[Finite, AfterValidator(_not_zero)]
 class Sensors(Strict):
     """Standard deviations of the readings."""
 
-    marker_noise: NotNegative = Field(markers.NOISE, description="[m]")
-    accelerometer_noise: NotNegative = Field(accelerometers.NOISE, description="[m/s2]")
+    marker_noise: Positive = Field(markers.NOISE, description="[m]")
+    accelerometer_noise: Positive = Field(accelerometers.NOISE, description="[m/s2]")
 
 
 class MeasuredTest(Strict):

@@ -23,7 +23,7 @@ class Followed:
     Attributes
     ----------
     share, correlation : float64 arrays, shape (3,)
-        Slope and correlation of x, y and z against the command along x [1].
+        Slope and correlation of x, y and z against the command along x [1]; NaN along an axis that is not measured.
     """
 
     share: np.ndarray
@@ -36,13 +36,14 @@ def follow(slab, target, noise):
     Parameters
     ----------
     slab : float64 array, shape (n_times, 3)
-        Mean displacement of the slab's markers [m]; gaps are NaN.
+        Mean displacement of the slab's markers [m]; gaps are NaN, as is an axis that is not measured.
     target : float64 array, shape (n_times,)
         Commanded displacement along x [m].
     noise : float
         Standard deviation of the slab's mean [m].
     """
-    known = np.isfinite(slab).all(axis=1)
+    measured = np.isfinite(slab).any(axis=0)
+    known = np.isfinite(slab[:, measured]).all(axis=1)
     spread = np.std(target[known]) if known.sum() > 2 else 0.0
     if spread <= _SEEN * noise or spread == 0.0:
         return None
@@ -51,6 +52,7 @@ def follow(slab, target, noise):
     common = moved.T @ centred
     size = np.sqrt((moved**2).sum(axis=0) * (centred @ centred))
     correlation = np.divide(common, size, out=np.zeros(3), where=size > 0.0)
+    correlation[~measured] = np.nan
     return Followed(common / (centred @ centred), correlation)
 
 
@@ -61,7 +63,7 @@ def check_followed(followed, path):
     ------
     InputError
     """
-    share, correlation = followed.share, followed.correlation
+    share, correlation = np.nan_to_num(followed.share), np.nan_to_num(followed.correlation)
     other = 1 + int(np.abs(correlation[1:]).argmax())
     if abs(correlation[0]) < _RELATED < abs(correlation[other]) and abs(share[other]) > _FOLLOWED[0] / 2.0:
         raise InputError(
@@ -106,7 +108,7 @@ def length_remarks(time, commanded):
 
 def driven_axis_remarks(slab):
     """A remark where the slab of a test whose command is not at hand moves most along another axis than x."""
-    spread = np.nanstd(slab, axis=0)
+    spread = np.nanstd(np.where(np.isfinite(slab).any(axis=0), slab, 0.0), axis=0)
     other = 1 + int(spread[1:].argmax())
     if spread[other] > _ONE_AXIS * spread[0]:
         return [f"the table moves along {'xyz'[other]}, not along x"]

@@ -52,8 +52,8 @@ def _check_marker_places(test, structure, path):
     own = {marker.name: place for marker, place in zip(structure.file.markers, places, strict=True)}
     nominal = np.array([own[str(name)] for name in test["marker"].values])
     read = test["marker_initial_position"].transpose("marker", "axis").to_numpy()
-    known = np.isfinite(read).all(axis=1)
-    away = np.linalg.norm(read - nominal, axis=1)[known]
+    known = np.isfinite(read).any(axis=1)
+    away = np.linalg.norm(np.nan_to_num(read - nominal), axis=1)[known]
     if not len(away) or away.max() < _PLACE:
         return
     for order in ((1, 0, 2), (2, 1, 0), (0, 2, 1), (1, 2, 0), (2, 0, 1)):

@@ -85,7 +85,7 @@ def read_tables(path):
     Raises
     ------
     InputError
-        A table without times or readings, a cell that is no number, a column that names no marker and axis.
+        A table without times or readings, a cell that is no number, a column that is empty or names no marker and axis.
     """
     time, columns = _table(path)
     markers = list(dict.fromkeys(name.rpartition(".")[0] for name in columns))
@@ -94,6 +94,8 @@ def read_tables(path):
         marker, _, axis = name.rpartition(".")
         if axis not in AXES or not marker:
             raise InputError(path, name, "expected columns MARKER.x, MARKER.y, MARKER.z")
+        if np.isnan(column).all():
+            raise InputError(path, name, "expected readings, or no such column; all are missing")
         values[:, markers.index(marker), AXES.index(axis)] = column
     variables = {"marker_displacement": (("time", "marker", "axis"), values, {"units": "m"})}
     coordinates = {"time": time, "marker": markers, "axis": list(AXES)}

@@ -30,24 +30,33 @@ def read_test(path, structure):
     ----------
     path : str or path
         A netCDF file, or ``NAME.csv`` with columns ``time_s`` and ``MARKER.AXIS`` [m]; beside it may lie
-        ``NAME-acc.csv`` with ``time_s`` and one column a channel [m/s2]. An empty cell is a gap.
+        ``NAME-acc.csv`` with ``time_s`` and one column a channel [m/s2]. An empty cell is a gap. A direction without a
+        column, or without any reading in a netCDF file, was not measured.
     structure : Structure
         Whose markers and accelerometers are read.
 
     Returns
     -------
     xarray.Dataset
-        Variables of docs/campaigns.md, float64; the file is never changed.
+        Variables of docs/campaigns.md, float64; NaN along a direction that was not measured. The file is never
+        changed.
 
     Raises
     ------
     InputError
         Not readable; times that do not increase or are not in seconds; unknown or doubled markers, channels or
-        bodies; no marker on the driven body; a channel without any reading; axes that are swapped; another unit;
+        bodies; no marker on the driven body that measures x; a marker or channel without any reading; axes that are
+        swapped; another unit;
         readings that are infinite or not since the first.
     """
     path = Path(path)
-    test = read_tables(path) if path.suffix.lower() == ".csv" else read_netcdf(path)
+    return checked_test(
+        read_tables(path) if path.suffix.lower() == ".csv" else read_netcdf(path), structure, path
+    )
+
+
+def checked_test(test, structure, path):
+    """Readings of one test as a file has them, checked as by `read_test`; an error names ``path``."""
     for name in ("time", "time_acc"):
         if name in test.coords:
             _check_times(test[name].to_numpy(), path, name)
@@ -80,9 +89,10 @@ def _check_times(time, path, name):
 
 
 def _ordered_axes(test, path):
-    if sorted(map(str, test["axis"].values)) != list(AXES):
-        raise InputError(path, "axis", f"expected x, y, z, not {', '.join(map(str, test['axis'].values))}")
-    return test.sel(axis=list(AXES))
+    read = [str(name) for name in test["axis"].values]
+    if not set(read) <= set(AXES) or len(set(read)) < len(read):
+        raise InputError(path, "axis", f"expected x, y, z, not {', '.join(read)}")
+    return test.reindex(axis=list(AXES))
 
 
 def _check_markers(test, structure, path):
@@ -94,10 +104,15 @@ def _check_markers(test, structure, path):
         if read.count(name) > 1:
             raise InputError(path, name, "expected every marker once")
     driven = {body.name for body in structure.file.bodies if body.driven}
-    if not any(bodies[name] in driven for name in read):
-        wanted = [name for name, body in bodies.items() if body in driven]
+    wanted = [name for name, body in bodies.items() if body in driven]
+    own = [name for name in read if name in wanted]
+    if not own:
         raise InputError(
             path, "marker", f"expected a marker of the driven body, which is the input: {' or '.join(wanted)}"
+        )
+    if not test["marker_displacement"].sel(marker=own, axis="x").notnull().any():
+        raise InputError(
+            path, f"{own[0]}.x", "expected readings of the driven body along x, the direction of shaking"
         )
 
 
@@ -130,13 +145,10 @@ def _check_readings(test, path):
         if np.isinf(variable.to_numpy()).any():
             raise InputError(path, name, "expected finite readings, and nothing or NaN in a gap")
     displacement = test["marker_displacement"]
-    silent = displacement.isnull().all("time").to_numpy()
+    silent = displacement.isnull().all(("time", "axis")).to_numpy()
     if silent.any():
-        marker, axis = np.argwhere(silent)[0]
         raise InputError(
-            path,
-            f"{displacement['marker'].values[marker]}.{AXES[axis]}",
-            "expected readings; all are missing",
+            path, str(displacement["marker"].values[np.argmax(silent)]), "expected readings; all are missing"
         )
     if (
         "accelerometer" in test

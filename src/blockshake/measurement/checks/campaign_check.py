@@ -21,7 +21,7 @@ from blockshake.measurement.checks.quiet_noise import (
     marker_remarks,
 )
 from blockshake.measurement.checks.slab_accelerometer import clock_remarks
-from blockshake.measurement.sensors.markers import marker_bodies
+from blockshake.measurement.sensors.markers import directions_read, marker_bodies, unread_directions
 
 _QUIET = 0.5  # s at most that are taken as the quiet start
 _QUIET_PART = 0.02  # of the commanded peak displacement: the record is quiet until the command reaches it
@@ -92,8 +92,11 @@ class _Described:
         self.facts += [
             f"{time[-1] - time[0]:.4g} s at {rate:.4g} Hz",
             f"{test.sizes['marker']} markers on {len(bodies)} bodies",
-            f"{100.0 * np.isnan(self.readings).mean():.2g} % gaps",
+            f"{100.0 * np.isnan(self.readings[:, directions_read(self.readings)]).mean():.2g} % gaps",
         ]
+        unread = unread_directions(test)
+        if unread:
+            self.facts.append(_unread_words(unread, test.sizes["marker"]))
         if "accelerometer" in test:
             rate_acc = 1.0 / np.median(np.diff(test["time_acc"].to_numpy()))
             self.facts.append(f"{test.sizes['channel']} accelerometer channels at {rate_acc:.4g} Hz")
@@ -190,6 +193,19 @@ class _Described:
                 self.slab_noise,
                 self.path,
             )
+
+
+def _unread_words(unread, n_markers):
+    """Directions that are not measured, by markers in words."""
+    by_axes = {}
+    for marker in dict.fromkeys(marker for marker, _ in unread):
+        axes = " and ".join(axis for one, axis in unread if one == marker)
+        by_axes.setdefault(axes, []).append(marker)
+    words = [
+        f"{axes} of {'all markers' if len(names) == n_markers else ', '.join(names)}"
+        for axes, names in by_axes.items()
+    ]
+    return f"not measured: {'; '.join(words)}"
 
 
 def _mean(readings):

@@ -17,7 +17,7 @@ def carried_remarks(time, readings, names, slab, noise):
     time : float64 array, shape (n_times,)
         [s]
     readings : float64 array, shape (n_times, n_markers, 3)
-        Of markers on blocks [m]; gaps are NaN.
+        Of markers on blocks [m]; gaps are NaN, as is a direction that a marker does not measure.
     names : list of str, length n_markers
     slab : float64 array, shape (n_times, 3)
         Mean displacement of the slab's markers [m].
@@ -30,13 +30,17 @@ def carried_remarks(time, readings, names, slab, noise):
     wrong = []
     if low.sum() >= _FEWEST and _LOW_PART * largest > _SEEN * noise:
         for place, name in enumerate(names):
-            known = low & np.isfinite(readings[:, place]).all(axis=1) & np.isfinite(slab[:, 0])
+            read = np.isfinite(readings[:, place]).any(axis=0)
+            known = low & np.isfinite(readings[:, place, read]).all(axis=1) & np.isfinite(slab[:, 0])
             base = slab[known, 0] - slab[known, 0].mean() if known.sum() >= _FEWEST else np.zeros(1)
-            if not base.any():
+            if not base.any() or not read[0]:
                 continue
             share = base @ readings[known, place] / (base @ base)
             if not _CARRIED[0] < share[0] < _CARRIED[1]:
-                wrong.append(f"{name} moves by {share[0]:.2f}, {share[1]:.2f}, {share[2]:.2f}")
+                along = ", ".join(
+                    f"{one:.2f}" if told else "unknown" for one, told in zip(share, read, strict=True)
+                )
+                wrong.append(f"{name} moves by {along}")
     remarks = []
     if wrong:
         more = f", and {len(wrong) - 1} more markers likewise" if len(wrong) > 1 else ""
@@ -44,8 +48,11 @@ def carried_remarks(time, readings, names, slab, noise):
             f"{wrong[0]} (x, y, z) of the slab's x while that is below {1e3 * _LOW_PART * largest:.2g} mm, "
             f"expected near 1, 0, 0{more}"
         )
-    spread = [np.sqrt(np.nanmean(readings[..., axis] ** 2)) for axis in range(3)] if names else [0.0] * 3
-    if spread[1] > max(_SIDEWAYS * spread[2], _SEEN * noise):
+    spread = [
+        np.sqrt(np.mean(part[np.isfinite(part)] ** 2 if np.isfinite(part).any() else 0.0))
+        for part in np.moveaxis(readings, -1, 0)
+    ]
+    if np.isfinite(readings[..., 2]).any() and spread[1] > max(_SIDEWAYS * spread[2], _SEEN * noise):
         remarks.append(
             f"the blocks move by {1e3 * spread[1]:.2g} mm along y and {1e3 * spread[2]:.2g} mm along z (rms): "
             "are y and z swapped?"

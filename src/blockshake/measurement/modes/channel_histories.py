@@ -7,7 +7,7 @@ from scipy.interpolate import CubicSpline
 
 from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES
-from blockshake.measurement.sensors.markers import marker_bodies
+from blockshake.measurement.sensors.markers import directions_read, marker_bodies
 
 LONGEST_GAP = 10  # readings; across more a spline no longer knows what the blocks did
 _EVEN = 0.01  # of the step, by which times may be uneven
@@ -49,8 +49,11 @@ def marker_histories(test, structure):
     markers = [str(name) for name in displacement["marker"].values]
     bodies = marker_bodies(structure, markers)
     names = [(marker, axis) for marker in markers for axis in AXES]
-    values = displacement.sel(axis=list(AXES)).to_numpy().astype(float).reshape(len(test["time"]), -1)
-    return _whole(test["time"].to_numpy(), values, names, np.repeat(_driven(structure, bodies), 3), "marker")
+    values = displacement.sel(axis=list(AXES)).to_numpy().astype(float)
+    read = directions_read(values).ravel()  # a direction that is not measured is no channel
+    names = [name for name, kept in zip(names, read, strict=True) if kept]
+    driven = np.repeat(_driven(structure, bodies), 3)[read]
+    return _whole(test["time"].to_numpy(), values.reshape(len(values), -1)[:, read], names, driven, "marker")
 
 
 def accelerometer_histories(test, structure):

@@ -27,9 +27,10 @@ def base_coordinates(test, structure, sensors):
     Returns
     -------
     values : float64 array, shape (n_times, 4)
-        x, y, z [m] and pitch [rad]; NaN is a gap; a pitch that the markers do not tell is 0.
+        x, y, z [m] and pitch [rad]; NaN is a gap, or a direction that is not measured; a pitch that the markers do
+        not tell is 0.
     noise : float64 array, shape (4,)
-        Standard deviations [m, rad]; 0 of a pitch that is not told.
+        Standard deviations [m, rad]; 0 of what is not told.
     """
     poses = body_poses(test, structure, sensors.marker_noise, asked=structure.driven)
     body = driven_body(structure, poses)
@@ -41,6 +42,8 @@ def base_coordinates(test, structure, sensors):
     noise = np.sqrt(np.diag(poses.covariance[body])[[0, 1, 2, 4]])
     if poses.known[body] == TRANSLATION:
         pitch, noise[3] = np.zeros(len(pitch)), 0.0
+    untold = ~poses.told[body]
+    moved[:, untold], noise[:3][untold] = np.nan, 0.0
     return np.column_stack([moved, pitch]), noise
 
 

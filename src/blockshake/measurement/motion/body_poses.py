@@ -8,9 +8,10 @@ from scipy.spatial.transform import Rotation
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.rigid_pose import fit_poses
-from blockshake.measurement.sensors.markers import marker_position
+from blockshake.measurement.sensors.markers import directions_read, marker_position
 
 _TABLE_ROLL = 1e-4  # rad, standard deviation of a driven body's rotation about x before anything is read
+_ROUNDS = 6  # of a turn by its sine: the error falls by the turn itself in each
 POSE, PLANAR, TRANSLATION, NOTHING = "pose", "planar", "translation", "nothing"
 
 
@@ -21,21 +22,26 @@ class BodyPoses:
     Attributes
     ----------
     position : float64 array, shape (n_times, n_bodies, 3)
-        Of the mass centres, inertial frame [m]; NaN where unknown.
+        Of the mass centres, inertial frame [m]; NaN where unknown. Along a direction that is not told, that of the
+        structure file, so that the other directions can be computed with.
     rotation : float64 array, shape (n_times, n_bodies, 3, 3)
         Body to world; NaN where unknown.
     covariance : float64 array, shape (n_bodies, 6, 6)
         Scatter by the readings' noise of position [m] and small rotation, world frame [rad], mean over the known times;
         NaN where unknown.
     known : list of str, length n_bodies
-        ``pose``; ``planar``: two markers, or several on a line, roll and yaw taken as none; ``translation``: one
-        marker, rotation unknown, of a driven body taken as none; ``nothing``: no marker.
+        ``pose``; ``planar``: two markers, or several on a line or without readings along y, roll and yaw taken as none;
+        ``translation``: one marker, or several whose readings do not tell a turn, rotation unknown, of a driven body
+        taken as none; ``nothing``: no marker.
+    told : bool array, shape (n_bodies, 3)
+        Whether the position along x, y and z is read.
     """
 
     position: np.ndarray
     rotation: np.ndarray
     covariance: np.ndarray
     known: list
+    told: np.ndarray
 
 
 def body_poses(test, structure, marker_noise, asked=None):
@@ -57,6 +63,10 @@ def body_poses(test, structure, marker_noise, asked=None):
     offset times the rotation, in simulated readings as in measured ones. A driven body's rotation about x, the axis of
     shaking, is taken as none within 0.1 mrad: where its markers are nearly on a line along x, as on one
     face of the slab, their noise would else turn it by milliradians and open every joint on it.
+
+    Markers that do not measure all three directions enter where those that do give no pose: with x and z as a planar
+    motion, with x alone at two heights or more as a pitch and a displacement along x, else as a displacement along each
+    direction that is read.
     """
     displacement = test["marker_displacement"].transpose("time", "marker", "axis")
     read = [str(name) for name in displacement["marker"].values]
@@ -67,23 +77,26 @@ def body_poses(test, structure, marker_noise, asked=None):
     places = marker_position(structure, structure.position, structure.orientation)
     own = np.array([names.index(name) for name in read])
     arms = structure.arms(structure.file.markers)[own]
-    readings = places[own] + displacement.to_numpy()
+    moved = displacement.to_numpy()
+    measured = directions_read(moved)
+    readings = places[own] + np.where(measured, moved, 0.0)
     bodies = structure.carriers(structure.file.markers)[own]
     start = rotation_matrices(structure.orientation)
     n_times, n_bodies = len(readings), len(structure.mass)
     position = np.full((n_times, n_bodies, 3), np.nan)
     rotation = np.full((n_times, n_bodies, 3, 3), np.nan)
     covariance = np.full((n_bodies, 6, 6), np.nan)
-    known = [NOTHING] * n_bodies
+    known, told = [NOTHING] * n_bodies, np.zeros((n_bodies, 3), dtype=bool)
     for body in np.unique(bodies if asked is None else bodies[asked[bodies]]):
         mine = np.flatnonzero(bodies == body)
-        known[body], fit = _best_fit(
-            arms[mine], readings[:, mine], start[body], structure.driven[body], marker_noise
+        known[body], told[body], fit = _best_fit(
+            arms[mine], readings[:, mine], measured[mine], start[body], structure.driven[body], marker_noise
         )
         if structure.driven[body] and known[body] == POSE:
             fit = _hardly_rolling(*fit, start[body])
         position[:, body], rotation[:, body], covariance[body] = fit
-    return BodyPoses(position, rotation, covariance, known)
+        position[:, body, ~told[body]] = structure.position[body, ~told[body]]
+    return BodyPoses(position, rotation, covariance, known, told)
 
 
 def driven_body(structure, poses):
@@ -94,23 +107,38 @@ def driven_body(structure, poses):
     raise InputError("body poses", "marker", "expected a marker of the driven body")
 
 
-def _best_fit(points, readings, start, driven, noise):
-    """The fullest pose that the markers allow: what is known, and position, rotation, mean covariance."""
-    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+def _best_fit(points, readings, measured, start, driven, noise):
+    """The fullest pose that the markers allow: what is known, told directions, and position, rotation, covariance."""
+    whole = measured.all(axis=1)
+    spread = (
+        np.linalg.svd(points[whole] - points[whole].mean(axis=0), compute_uv=False) if whole.any() else ()
+    )
     arms = points @ start.T
-    if len(points) > 2 and spread[1] > 1e-3 * spread[0]:
-        found = fit_poses(points, readings, noise)
+    if whole.sum() > 2 and spread[1] > 1e-3 * spread[0]:
+        found = fit_poses(points[whole], readings[:, whole], noise)
         fitted = np.isfinite(found.position[:, 0])
         mean = found.covariance[fitted].mean(axis=0) if fitted.any() else np.full((6, 6), np.nan)
-        return POSE, (found.position, found.rotation, mean)
-    planar = arms[:, [0, 2]] - arms[:, [0, 2]].mean(axis=0)
-    if (planar**2).sum() > 1e-4:
-        return PLANAR, _planar_fit(arms, planar, readings, start, noise)
-    covariance = np.zeros((6, 6))
-    covariance[:3, :3] = np.eye(3) * noise**2 / len(points)
+        return POSE, True, (found.position, found.rotation, mean)
+    for axes, turned in (((0, 2), _turn_in_plane), ((0,), _turn_of_upright)):
+        own = measured[:, axes].all(axis=1)
+        planar = arms[own][:, [0, 2]]
+        planar = planar - planar.mean(axis=0) if own.any() else planar
+        if (planar[:, 2 - len(axes) :] ** 2).sum() > 1e-4:
+            told = measured[own].all(axis=0)
+            return PLANAR, told, _planar_fit(arms[own], planar, readings[:, own], start, noise, turned)
+    return TRANSLATION, measured.any(axis=0), _displacement(arms, readings, measured, start, driven, noise)
+
+
+def _displacement(arms, readings, measured, start, driven, noise):
+    """Displacement along each direction by the markers that read it; the rotation is that of a driven body alone."""
+    position, covariance = np.zeros((len(readings), 3)), np.zeros((6, 6))
+    for axis in range(3):
+        own = measured[:, axis]
+        if own.any():
+            position[:, axis] = readings[:, own, axis].mean(axis=1) - arms[own, axis].mean()
+            covariance[axis, axis] = noise**2 / own.sum()
     turn = start if driven else np.full((3, 3), np.nan)
-    position = readings.mean(axis=1) - arms.mean(axis=0)
-    return TRANSLATION, (position, np.tile(turn, (len(readings), 1, 1)), covariance)
+    return position, np.tile(turn, (len(readings), 1, 1)), covariance
 
 
 def _hardly_rolling(position, rotation, covariance, start):
@@ -129,24 +157,39 @@ def _hardly_rolling(position, rotation, covariance, start):
     )
 
 
-def _planar_fit(arms, planar, readings, start, noise):
+def _planar_fit(arms, planar, readings, start, noise, turned):
     """Least squares over displacement and a turn about y from the start; ``arms`` at the start, world frame [m]."""
     middle = readings.mean(axis=1)
-    away = readings[..., [0, 2]] - middle[:, None, [0, 2]]
-    x, z = planar.T
-    # about y: x' = c x + s z, z' = c z - s x
-    angle = np.arctan2(
-        (away[..., 0] * z - away[..., 1] * x).sum(axis=1), (away[..., 0] * x + away[..., 1] * z).sum(axis=1)
-    )
+    angle, angle_variance = turned(planar, readings[..., [0, 2]] - middle[:, None, [0, 2]], noise)
     vectors = np.zeros((len(angle), 3))
     vectors[:, 1] = np.where(np.isfinite(angle), angle, 0.0)
     turn = Rotation.from_rotvec(vectors).as_matrix()
     turn[~np.isfinite(angle)] = np.nan
     position = middle - turn @ arms.mean(axis=0)
-    angle_variance = noise**2 / (planar**2).sum()
     lever = np.array([-arms[:, 2].mean(), 0.0, arms[:, 0].mean()])  # of the centre about the markers' middle
     covariance = np.zeros((6, 6))
     covariance[:3, :3] = np.eye(3) * noise**2 / len(arms) + np.outer(lever, lever) * angle_variance
     covariance[:3, 4] = covariance[4, :3] = lever * angle_variance
     covariance[4, 4] = angle_variance
     return position, turn @ start, covariance
+
+
+def _turn_in_plane(planar, away, noise):
+    """Turn about y from readings along x and z, (n_times,) [rad], and its variance; both about the markers' middle."""
+    x, z = planar.T
+    # about y: x' = c x + s z, z' = c z - s x
+    angle = np.arctan2(
+        (away[..., 0] * z - away[..., 1] * x).sum(axis=1), (away[..., 0] * x + away[..., 1] * z).sum(axis=1)
+    )
+    return angle, noise**2 / (planar**2).sum()
+
+
+def _turn_of_upright(planar, away, noise):
+    """The same from readings along x alone, of markers at several heights."""
+    x, z = planar.T
+    sine = np.zeros(len(away))
+    for _ in range(_ROUNDS):
+        # x' - c x = s z, with the cosine of the last round
+        cosine = np.sqrt(1.0 - sine**2)
+        sine = np.clip(((away[..., 0] - cosine[:, None] * x) * z).sum(axis=1) / (z**2).sum(), -1.0, 1.0)
+    return np.arcsin(sine), noise**2 / (z**2).sum()

@@ -41,6 +41,8 @@ def joint_histories(test, structure, sensors, base):
     Markers count from their mean while the base was still (its displacement within five standard deviations, at most
     1 s), not from the first reading alone, whose error would shift everything. NaN where a body was not read; a
     joint of a body whose rotation nobody can know is NaN throughout, and of a planar one the rotations about x and z.
+    A direction that the markers of a body do not measure is NaN, of that body and of its joints; the others are found
+    as if nothing moved along it, which errs by the products of small motions.
     With markers on a line a yaw of the table shows as a slip: it cannot be told from one.
     """
     time = test["time"].to_numpy()
@@ -60,11 +62,13 @@ def joint_histories(test, structure, sensors, base):
         body_rotation=(("time", "body", "axis"), turned, {"units": "rad"}),
     )  # fmt: skip
     whole = np.array([known == POSE for known in poses.known])
-    known_joints = whole[find_joints(structure)[0]].all(axis=1)
+    pairs = find_joints(structure)[0]
+    known_joints = whole[pairs].all(axis=1)
     histories["base_rotation"][:] = np.where(whole[driven], histories["base_rotation"], np.nan)
     # what a planar pose takes as none is not known
     for name, told in (("rotation", known_joints), ("body_rotation", whole & whole[driven])):
         histories[name][..., [0, 2]] = np.where(told[:, None], histories[name][..., [0, 2]], np.nan)
+    _leave_unmeasured(histories, poses.told, driven, pairs)
     for name in ("displacement", "velocity", "acceleration"):
         histories[name] = ("time", getattr(base, name)[: len(time)])
     histories = histories.assign(_noise(structure, poses, driven, 1.0 + 1.0 / max(still.sum(), 1)))
@@ -87,6 +91,18 @@ def joint_histories(test, structure, sensors, base):
         time=("time", time, {"units": "s"}), body=structure.body_names, known=("body", poses.known),
         height=("body", structure.position[:, 2]),
     )  # fmt: skip
+
+
+def _leave_unmeasured(histories, told, driven, pairs):
+    """Make displacements missing along directions that the bodies' markers do not tell; ``told`` (n_bodies, 3)."""
+    of_joints = told[pairs].all(axis=1)
+    for name, known in (
+        ("slip", of_joints[:, :2]),
+        ("opening", of_joints[:, 2]),
+        ("base_displacement", told[driven]),
+        ("body_displacement", told & told[driven]),
+    ):
+        histories[name][:] = np.where(known, histories[name], np.nan)
 
 
 def _from_rest(test, still):

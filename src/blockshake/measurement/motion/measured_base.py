@@ -55,13 +55,14 @@ def measure_base(test, structure, sensors, command):
         ``reading_noise`` and ``jerk_density``. ``of_markers`` is 1 at the markers' times. Attributes: ``start`` of the
         command on the test's clock [s], or of the record where that starts later; ``follows``, 1 where the table
         follows the command, else the record's start is taken; ``accelerometer_lag``, which the accelerometer's times
-        were moved by [s]; ``end`` of the record [s].
+        were moved by [s]; ``end`` of the record [s]; ``unread``, the axes that no marker of the body measures.
 
     Notes
     -----
     Each coordinate is smoothed by itself as in `smoothed_base`; the accelerometer is that along x, moved onto the
-    markers' clock by the lag of the largest likelihood. A pitch that the markers do not tell is none. The
-    accelerometer's arm above the mass centre, and the correlation between coordinates, are left out.
+    markers' clock by the lag of the largest likelihood. A pitch that the markers do not tell is none. An axis that no
+    marker measures has no reading and no error (NaN), and moves as commanded where the table follows the command, else
+    not at all. The accelerometer's arm above the mass centre, and the correlation between coordinates, are left out.
     """
     test = without_outliers(test, structure)
     time = test["time"].to_numpy()
@@ -86,6 +87,7 @@ def measure_base(test, structure, sensors, command):
         parts[0] = together(*read, channel.time + lag, *level)
         densities[0] = _density(parts[0])
     base = _gathered(time, parts, densities)
+    unread = [CHANNELS[axis] for axis in np.flatnonzero(np.isnan(values[:, :3]).all(axis=0))]
     moved = np.interp(time, base["time"], base["displacement"].sel(channel="x"))
     start = command_start(time, moved, command)
     base.attrs = {
@@ -95,8 +97,22 @@ def measure_base(test, structure, sensors, command):
         "end": float(time[-1]),
         "follows": int(start is not None),
         "accelerometer_lag": float(lag),
+        "unread": "".join(unread),
     }
+    for axis in unread:
+        _move_as_told(base, axis, command)
     return base
+
+
+def _move_as_told(base, axis, command):
+    """Give an axis that nothing measures the commanded motion, or rest, and errors that nobody knows."""
+    at = {"channel": axis}
+    for derivative, name in enumerate(("displacement", "velocity")):
+        if base.attrs["follows"]:
+            told = command.evaluate(base["time"].to_numpy() - base.attrs["start"], derivative)
+            told = told - command.evaluate(np.zeros(1)) * (derivative == 0)
+            base[name].loc[at] = told[:, CHANNELS.index(axis)]
+        base[f"{name}_error"].loc[at] = np.nan
 
 
 def draw_base(base, generator):
@@ -119,9 +135,10 @@ def draw_base(base, generator):
     drawn = np.zeros((there.sum(), len(CHANNELS)))
     for index, readings in enumerate(_readings(base)):
         density = float(base["jerk_density"][index])
-        if density == 0.0:
-            continue
         own = base.isel(channel=index)
+        if density == 0.0:
+            drawn[:, index] = own["displacement"].to_numpy()[there]
+            continue
         count = len(readings.time)
         states = np.empty((count, 4))
         states[0] = generator.normal(size=4) * np.sqrt(first_variances(readings.marker_noise))

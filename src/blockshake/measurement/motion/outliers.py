@@ -4,12 +4,13 @@ import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.body_frame import outlying, see_from_body
+from blockshake.measurement.sensors.markers import whole_markers
 
 _FEWEST = 3  # markers of a body, that one of them can be told to be wrong
 
 
 def without_outliers(test, structure):
-    """The test with lone wrong readings of markers as gaps, on bodies with at least three markers.
+    """The test with lone wrong readings of markers as gaps, on bodies with three markers that measure all directions.
 
     Parameters
     ----------
@@ -21,11 +22,11 @@ def without_outliers(test, structure):
     -------
     xarray.Dataset
     """
-    read = [str(name) for name in test["marker"].values]
+    read, whole = [str(name) for name in test["marker"].values], whole_markers(test)
     displacement = test["marker_displacement"].transpose("time", "marker", "axis")
     values = displacement.to_numpy().copy()
     for index, body in enumerate(structure.body_names):
-        own = [marker for marker in structure.file.markers if marker.body == body and marker.name in read]
+        own = [marker for marker in structure.file.markers if marker.body == body and marker.name in whole]
         if len(own) < _FEWEST:
             continue
         columns = [read.index(marker.name) for marker in own]

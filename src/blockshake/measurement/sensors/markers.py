@@ -51,6 +51,33 @@ def marker_displacement(structure, position, orientation):
     return places - places[:1]
 
 
+def directions_read(displacement):
+    """Directions that each marker of a test measures, bool (n_markers, 3).
+
+    Parameters
+    ----------
+    displacement : float64 array, shape (n_times, n_markers, 3)
+        Of a test or a part of one [m]; NaN is a gap. A direction without any reading was not measured; a marker without
+        any reading is lost for the moment, and counts as measured.
+    """
+    read = np.isfinite(displacement).any(axis=0)
+    return read | ~read.any(axis=1, keepdims=True)
+
+
+def unread_directions(test):
+    """Directions that a test does not measure: list of (marker, axis)."""
+    displacement = test["marker_displacement"].transpose("time", "marker", "axis")
+    unread = ~directions_read(displacement.to_numpy())
+    names, axes = displacement["marker"].values, displacement["axis"].values
+    return [(str(names[marker]), str(axes[axis])) for marker, axis in np.argwhere(unread)]
+
+
+def whole_markers(test):
+    """Names of the markers of a test that measure all three directions, list of str."""
+    partial = {marker for marker, _ in unread_directions(test)}
+    return [name for name in map(str, test["marker"].values) if name not in partial]
+
+
 def marker_bodies(structure, names):
     """Names of the bodies that carry these markers, list of str."""
     bodies = {marker.name: marker.body for marker in structure.file.markers}
@@ -68,8 +95,8 @@ def block_markers(structure):
     return chosen
 
 
-def driven_marker(structure):
-    """Name of the first marker on a driven body: the paper's slab marker.
+def driven_marker(structure, names=None):
+    """Name of the first marker on a driven body, among ``names`` where given: the paper's slab marker.
 
     Raises
     ------
@@ -78,6 +105,6 @@ def driven_marker(structure):
     """
     driven = {body.name for body in structure.file.bodies if body.driven}
     for marker in structure.file.markers:
-        if marker.body in driven:
+        if marker.body in driven and (names is None or marker.name in names):
             return marker.name
     raise InputError(structure.source, "markers", "expected a marker on a driven body")

@@ -17,7 +17,7 @@ from blockshake.measurement.campaigns.campaign import Campaign, load_campaign, l
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 from blockshake.parity.parity import Parity, load_parity
 from blockshake.report.document.origin import software_versions
-from blockshake.report.document.results import load_results
+from blockshake.store import load_made
 
 _PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "xarray", "snakemake", "matplotlib", "typst")
 _RESULTS = (
@@ -147,7 +147,7 @@ def load_diagnosed(campaign, results, effort, track_record, horizons=()):
     """
     results, campaign, track_record = Path(results), load_campaign(campaign), Path(track_record)
     structure = load_structure(campaign.structure)
-    readings = load_results(results / "measured.nc")
+    readings = load_made(results / "measured.nc")
     names = [str(name) for name in readings["test"].values]
     files = [campaign.folder / "campaign.yaml"]
     files += [campaign.folder / campaign.tests[name].file for name in names]
@@ -170,16 +170,15 @@ def load_diagnosed(campaign, results, effort, track_record, horizons=()):
         if measured
         else [caveat for caveat in verdict.caveats if "no gain was measured" in caveat],
         readings=readings,
-        forces=load_results(results / "forces.nc"),
-        misfit=load_results(results / "misfit.nc"),
-        evidence=load_results(results / "evidence.nc"),
-        gain=load_results(results / "gain.nc") if measured and physical else None,
-        consequences=load_results(results / "consequences.nc") if measured and physical else None,
+        forces=load_made(results / "forces.nc"),
+        misfit=load_made(results / "misfit.nc"),
+        evidence=load_made(results / "evidence.nc"),
+        gain=load_made(results / "gain.nc") if measured and physical else None,
+        consequences=load_made(results / "consequences.nc") if measured and physical else None,
         size=load_result(CauseSize, results / _OF_SIZE) if sized else None,
-        sensor_gain=load_results(results / "gain.nc") if measured and not physical else None,
+        sensor_gain=load_made(results / "gain.nc") if measured and not physical else None,
         horizon={
-            name: float(load_results(path)["horizon"].min())
-            for name, path in zip(names, horizons, strict=False)
+            name: float(load_made(path)["horizon"].min()) for name, path in zip(names, horizons, strict=False)
         },
         structure=structure.file.name,
         motions=_motions(campaign),

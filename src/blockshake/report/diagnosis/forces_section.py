@@ -90,6 +90,8 @@ def described(outside):
     when = []
     for test, values in outside.tests.items():
         words = [f"{name} {number(values[name], 3)} s" for name in ("start", "end") if name in values]
+        if "earliest" in values:
+            words[0] += f" ({number(values['earliest'], 3)} to {number(values['latest'], 3)} s)"
         words += [f"gap {number(1e3 * values['gap'], 3)} mm"] if "gap" in values else []
         when.append(f"{test}: {', '.join(words) if words else 'throughout'}")
     line = (

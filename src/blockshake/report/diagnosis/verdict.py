@@ -106,7 +106,9 @@ def _size_fact(found):
             "sizes in the table of candidates",
         )
     residual = np.abs(found.misfit["residual"]).max(("joint", "phase", "quantity", "side"))
-    test = int(residual.to_numpy().argmax())
+    if not residual.notnull().any():
+        return "Largest residual of any joint", "not known", "the markers tell the motion of no joint"
+    test = int(residual.fillna(0.0).to_numpy().argmax())
     return (
         "Largest residual of any joint",
         f"{number(residual[test])} standard deviations",

@@ -35,13 +35,15 @@ class Heading:
 class Table:
     """Rows of text under a header.
 
-    ``align`` has one letter a column, l or r; ``number`` counts the tables of the document.
+    ``align`` has one letter a column, l or r; ``number`` counts the tables of the document. ``widths``, of columns that
+    hold sentences, are shares of the width in print; such a table may run over pages.
     """
 
     caption: str
     header: tuple
     rows: tuple
     align: str
+    widths: tuple = ()
     number: int = 0
     kind: str = field(default="table", init=False)
 

@@ -1,11 +1,14 @@
-"""How figures look and become SVG: one style, one palette, the same bytes for the same content."""
+"""How figures look and become SVG or a picture file: one style, one palette, the same bytes for the same content."""
 
 import io
 import re
+from pathlib import Path
 
 import matplotlib
 from matplotlib.figure import Figure
 
+from blockshake.errors import InputError
+from blockshake.files import replacing
 from blockshake.report.document.blocks import PAGE_WIDTH
 
 # Okabe and Ito's palette with Tol's red in place of vermilion, told apart by colour-blind readers
@@ -13,7 +16,7 @@ BLACK, ORANGE, BLUE, GREEN, RED = "#000000", "#e69f00", "#0072b2", "#009e73", "#
 SKY, PURPLE = "#56b4e9", "#cc79a7"
 LIGHT_GREY, GREY, DARK_GREY = "#e2e2e2", "#b8b8b8", "#555555"
 _INCH = 0.0254  # m
-_STYLE = {
+STYLE = {
     "font.family": "DejaVu Sans",
     "font.size": 7.5,
     "axes.titlesize": 8.0,
@@ -37,6 +40,9 @@ _STYLE = {
 }
 # none of matplotlib's own remarks: no date, no links
 _NO_METADATA = {"Date": None, "Creator": None, "Format": None, "Type": None}
+# formats of picture files by suffix, with the same of theirs
+_PICTURES = {".png": {}, ".pdf": {"CreationDate": None}, ".svg": _NO_METADATA}
+_RESOLUTION = 200  # dots an inch, of a PNG
 
 
 def new_figure(height, width=PAGE_WIDTH):
@@ -44,9 +50,25 @@ def new_figure(height, width=PAGE_WIDTH):
     return Figure(figsize=(width / _INCH, height / _INCH), layout="constrained")
 
 
+def check_picture(path):
+    """Refuse a path whose suffix is no format of pictures, with `InputError`."""
+    if Path(path).suffix.lower() not in _PICTURES:
+        raise InputError(path, "", f"expected a picture's suffix: {', '.join(_PICTURES)}")
+
+
+def save_picture(path, plot, *arguments, **named):
+    """Write the matplotlib figure that ``plot(...)`` returns as PNG, PDF or SVG, by the suffix, atomically."""
+    check_picture(path)
+    with matplotlib.rc_context(STYLE), replacing(path) as temporary:
+        kind = Path(path).suffix.lower()
+        plot(*arguments, **named).savefig(
+            temporary, format=kind[1:], dpi=_RESOLUTION, metadata=_PICTURES[kind]
+        )
+
+
 def svg_of(plot, *arguments, **named):
     """SVG text, in the report's style, of the matplotlib figure that ``plot(...)`` returns."""
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = plot(*arguments, **named)
         with io.StringIO() as text:
             figure.savefig(text, format="svg", metadata=_NO_METADATA)

@@ -11,7 +11,7 @@ from blockshake.geometry.structure import Structure, load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.sensors import markers
 from blockshake.report.document.origin import software_versions
-from blockshake.report.document.results import load_results
+from blockshake.store import load_made
 from blockshake.study.convergence.table import load_convergence
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.measured import measured_curves
@@ -175,7 +175,7 @@ def load_content(study, results, benchmarks):
     loaded = {name: _case(study, results, name, settings) for name, settings in cases.items()}
     motions = {}
     for named in [*(case["motion"] for case in cases.values()), *study["ladder"]["motions"]]:
-        motions[Path(named).stem] = load_results(results / "motions" / f"{Path(named).stem}.nc")
+        motions[Path(named).stem] = load_made(results / "motions" / f"{Path(named).stem}.nc")
     design = results / "design.csv"
     stiffness = [results / "stiffness" / f"{name}.csv" for name in cases]
     inputs = [
@@ -190,7 +190,7 @@ def load_content(study, results, benchmarks):
         design_summary=load_json(results / "design.json"),
         distributions=load_distributions(study["ensemble"].get("distributions"), study["name"]),
         calibrated=_calibrated(results, cases),
-        definitions=load_results(results / "stiffness-definitions.nc"),
+        definitions=load_made(results / "stiffness-definitions.nc"),
         friction={
             name: load_json(results / "friction" / f"{name}.json")
             for name in (study.get("friction_calibration") or {}).get("cases", ())
@@ -213,7 +213,7 @@ def _case(study, results, name, settings):
     named = settings.get("measured")
 
     def found(kind, model):
-        return load_results(results / kind / model / f"{name}.nc")
+        return load_made(results / kind / model / f"{name}.nc")
 
     responses = {
         model: Response(
@@ -228,21 +228,20 @@ def _case(study, results, name, settings):
     marker_noise = markers.NOISE
     if named:
         campaign = load_campaign(named["campaign"])
-        base = load_results(results / "inputs" / f"{name}.nc")
+        base = load_made(results / "inputs" / f"{name}.nc")
         test, marker_noise = measured_on_clock(named, base)
-    slab_marker = next(iter(responses.values())).envelope.attrs["slab_marker"]
     return ReportedCase(
         name=name,
         settings=settings,
         structure=load_structure(settings["structure"]),
         motion=Path(settings["motion"]).stem,
         base=base,
-        measured=measured_curves(test, slab_marker, settings["duration"]) if named else None,
+        measured=measured_curves(test, test.attrs["slab_marker"], settings["duration"]) if named else None,
         test_file=campaign.folder / campaign.tests[named["test"]].file if named else None,
         synthetic=bool(test.attrs.get("synthetic", 0)) if named else False,
         marker_noise=marker_noise,
         responses=responses,
-        differences=load_results(results / "differences" / f"{name}.nc"),
+        differences=load_made(results / "differences" / f"{name}.nc"),
     )
 
 
@@ -251,7 +250,7 @@ def _calibrated(results, names):
     groups = []
     for name in names:
         stiffness = load_design(results / "stiffness" / f"{name}.csv")
-        waves = load_results(results / "waves" / f"{name}.nc")
+        waves = load_made(results / "waves" / f"{name}.nc")
         alike = [one for one in groups if one[1].equals(stiffness) and one[2].equals(waves)]
         if alike:
             alike[0][0].append(name)

@@ -113,13 +113,25 @@ def bases_table(content):
     return Table(
         "Motion of the slab in the tests, as its sensors read it: when the command starts on the clock of the test, "
         "displacement along x over the command and root mean square of what departs from the command, largest pitch, "
-        "and standard deviations of the smoothed displacement and velocity along x (medians over the record).",
+        "and standard deviations of the smoothed displacement and velocity along x (medians over the record)."
+        + _unread_words(content),
         (
             "Case", "Test", "The models are driven by the motion", "Start [ms]", "Gain", "Departure [mm]",
             "Pitch [mrad]", "Error [mm]", "Error [mm/s]",
         ),
         tuple(rows), "lllrrrrrr",
     )  # fmt: skip
+
+
+def _unread_words(content):
+    """A sentence for each case whose slab was not measured along every axis."""
+    bases = {case.name: case.base.attrs for case in content.cases.values() if case.base is not None}
+    return "".join(
+        f" {name}: no marker measures the slab along {' and '.join(base['unread'])}, where it "
+        + ("moves as commanded." if base["follows"] else "is taken to be at rest.")
+        for name, base in bases.items()
+        if base.get("unread")
+    )
 
 
 def samples_table(content):

@@ -1,5 +1,6 @@
 """The report of a study: one page and one PDF from the same content."""
 
+from blockshake.files import write_json
 from blockshake.report.document.blocks import Document, numbered
 from blockshake.report.document.html import write_html
 from blockshake.report.document.pdf import write_pdf
@@ -12,6 +13,7 @@ from blockshake.report.study.opening_sections import motions, samples, stiffness
 from blockshake.report.study.peer_section import peer
 from blockshake.report.study.result_sections import responses
 from blockshake.report.study.sensitivity.section import sensitivities
+from blockshake.report.study.statements.section import findings, statements
 
 _SECTIONS = (
     summary,
@@ -23,6 +25,7 @@ _SECTIONS = (
     models,
     sensitivities,
     friction,
+    statements,
     checks,
     timings,
     limits,
@@ -32,7 +35,7 @@ _SECTIONS = (
 )
 
 
-def make_report(study, results, benchmarks, html, pdf):
+def make_report(study, results, benchmarks, html, pdf, paper):
     """Write the report of a finished study.
 
     Parameters
@@ -43,15 +46,19 @@ def make_report(study, results, benchmarks, html, pdf):
         Folders of its results and of its jobs' benchmarks.
     html, pdf : str or path
         To write, each whole or not at all. Same results, same bytes.
+    paper : str or path
+        JSON of the findings on the statements of the paper, to write likewise.
 
     Raises
     ------
     InputError
         A results file is missing or holds something else.
     """
-    document = compose(load_content(study, results, benchmarks))
+    content = load_content(study, results, benchmarks)
+    document = compose(content)
     write_html(html, document)
     write_pdf(pdf, document)
+    write_json(paper, findings(content))
 
 
 def compose(content):

@@ -32,7 +32,7 @@ CLAIMS = (
         tuple((case, VISCOELASTIC, other) for case in _ALL for other in (RIGID, ELASTIC)),
     ),
     Claim(
-        "the elastic model is poor for configurations 3 and 4",
+        "the elastic model is poor for configurations 3 and 4, here taken as worse than the two others",
         tuple((case, other, ELASTIC) for case in _ALL[2:] for other in (RIGID, VISCOELASTIC)),
     ),
 )

@@ -6,10 +6,12 @@ import pandas as pd
 import xarray as xr
 
 from blockshake.errors import InputError
-from blockshake.files import content_digest, write_dataset
+from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.markers import driven_marker
 from blockshake.simulation.simulate import simulate
+from blockshake.simulation.structure_digest import structure_digest
+from blockshake.store import keep_dataset, kept
 from blockshake.study.ensembles.ensemble import gather_ensemble
 from blockshake.study.sampling.latin_hypercube import load_design
 from blockshake.study.sampling.sample_parameters import sample_parameters
@@ -55,19 +57,18 @@ def simulate_samples(case, motions, model, settings, output_rate, rows, linked, 
         motion = motions(sample)
         parameters = settings.get("parameters", {}) | sample_parameters(row, structure, linked)
         key = content_digest(
-            source, model, structure.file.model_dump(), *(part.tobytes() for part in motion.table),
+            source, model, structure_digest(structure), *(part.tobytes() for part in motion.table),
             case["duration"], output_rate, settings["time_step"], parameters, int(sample), row.to_dict(),
-            *(solid.vertices.tobytes() for solid in structure.solids.values()),
         )  # fmt: skip
         path = Path(store) / f"{key}.nc"
         how = "kept"
-        if not path.exists():
+        if not kept(path):
             run = simulate(
                 structure, motion, model, parameters,
                 time_step=settings["time_step"], duration=case["duration"], output_rate=output_rate,
                 accelerometers=False, checkpoint=path.with_suffix(".checkpoint"),
             )  # fmt: skip
-            write_dataset(path, gather_ensemble([run], [sample], rows, driven_marker(structure)), DECIMALS)
+            keep_dataset(path, gather_ensemble([run], [sample], rows, driven_marker(structure)), DECIMALS)
             how = "simulated"
         outcome = sample_outcome(path)
         progress(f"{structure.file.name} {model} sample {sample}, {how}: {outcome}")

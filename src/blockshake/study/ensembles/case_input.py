@@ -12,6 +12,8 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.campaigns.commanded_motion import follow
 from blockshake.measurement.motion.measured_base import base_as_motion, draw_base, measure_base, on_its_clock
+from blockshake.measurement.sensors.markers import driven_marker, unread_directions
+from blockshake.store import load_made
 
 MEASURED, COMMANDED = "measured", "commanded"
 _SHORT = 0.05  # s, by which a record may end before the simulated window
@@ -64,10 +66,16 @@ def check_record(length, duration, where, key):
 def measured_on_clock(named, base):
     """Readings of the test of `measured_input` with time 0 where the input starts, and the markers' noise [m].
 
-    ``base``: from `measured_input`, or its file.
+    ``base``: from `measured_input`, or its file. Markers that do not measure x are left out; the attribute
+    ``slab_marker`` is the first of a driven body that does.
     """
     campaign = load_campaign(named["campaign"])
-    return on_its_clock(load_test(campaign, named["test"]), _loaded(base)), campaign.sensors.marker_noise
+    test = load_test(campaign, named["test"])
+    unread = {marker for marker, axis in unread_directions(test) if axis == "x"}
+    test = test.sel(marker=[name for name in test["marker"].values if name not in unread])
+    slab_marker = driven_marker(load_structure(campaign.structure), test["marker"].values)
+    test = test.assign_attrs(slab_marker=slab_marker)
+    return on_its_clock(test, _loaded(base)), campaign.sensors.marker_noise
 
 
 def driving_motions(case, base, seed):
@@ -103,7 +111,7 @@ def driving_motions(case, base, seed):
 
 
 def _loaded(base):
-    return base if isinstance(base, xr.Dataset) else xr.load_dataset(base)
+    return base if isinstance(base, xr.Dataset) else load_made(base)
 
 
 def _against(base, command, duration):

@@ -14,6 +14,7 @@ from blockshake.study.ensembles.measured import compared_curves
 
 REFERENCE_QUANTILES = (0.05, 0.5, 0.95)
 _FEWEST_MEMBERS = 3
+_UNLIKELY = 0.05  # chance of a whole curve at or below which an ensemble does not fit
 _DESCRIBED = {
     "coverage": ("fraction of the time that the measured curve is within the bounds", "1"),
     "reference": ("the same of the members, each in the bounds of the others", "1"),
@@ -139,6 +140,15 @@ def coverage(measured, ensemble, marker_noise, seed=0):
     return result
 
 
+def is_likely(chance, members):
+    """Whether a curve of some chance [1] may be one of the ensemble: beyond 5 %, and the lowest that its members tell.
+
+    >>> is_likely(0.09, 50), is_likely(1.0 / 11.0, 10)
+    (True, False)
+    """
+    return bool(chance > max(_UNLIKELY, 1.0 / (1.0 + members)))
+
+
 def relative_width(comparison, peak):
     """Mean width of the band of a `coverage` over the peak of the measured curve [1].
 
@@ -193,6 +203,7 @@ def members_inside(curves, readings):
 
 def _measured_peak(measured, slab_marker, markers):
     displacement = measured["marker_displacement"].sel(axis="x", drop=True)
+    slab_marker = measured.attrs.get("slab_marker", slab_marker)
     if slab_marker not in displacement["marker"].values:
         return np.full(len(markers), np.nan)
     relative = relative_to_slab(displacement, slab_marker).sel(marker=markers)

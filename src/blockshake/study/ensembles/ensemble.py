@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.errors import InputError
+from blockshake.store import load_made
 from blockshake.study.sampling.distributions import parameter_unit
 
 RESIDUAL_WINDOW = 0.5  # s at the end of a run, averaged for the residual so that rocking on is evened out
@@ -57,7 +58,7 @@ def gather_ensemble(runs, samples, parameters, slab_marker):
             raise InputError("ensemble", f"sample {sample}", "expected a row of the design")
     pieces, attributes = [], []
     for run, sample in zip(runs, samples, strict=True):
-        run = run if isinstance(run, xr.Dataset) else xr.load_dataset(run)
+        run = run if isinstance(run, xr.Dataset) else load_made(run)
         piece = _piece(run)
         if pieces:
             _check_alike(piece, pieces[0], sample)
@@ -99,7 +100,7 @@ def join_batches(batches):
     InputError
         No batches, a sample in two of them, or times, markers, bodies or parameters that differ.
     """
-    parts = [batch if isinstance(batch, xr.Dataset) else xr.load_dataset(batch) for batch in batches]
+    parts = [batch if isinstance(batch, xr.Dataset) else load_made(batch) for batch in batches]
     samples = [int(sample) for part in parts for sample in part["sample"].values]
     if not samples or len(set(samples)) < len(samples):
         raise InputError("ensemble", "samples", "expected at least one batch, and every sample in one only")

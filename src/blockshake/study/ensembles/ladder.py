@@ -1,15 +1,20 @@
 """The paper's ladder of intensities: 50 %, then 25 % more until a potential collapse."""
 
+from pathlib import Path
+
 import numpy as np
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.system import Status
+from blockshake.files import content_digest
 from blockshake.geometry.reference_block import half_width
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.simulate import simulate
+from blockshake.simulation.structure_digest import structure_digest
+from blockshake.store import kept_value
 
 
-def climb_ladder(structure, motion, model, time_step, duration, ladder):
+def climb_ladder(structure, motion, model, time_step, duration, ladder, store, source):
     """Simulate one structure at growing intensities, each from the restored stack.
 
     Parameters
@@ -21,6 +26,11 @@ def climb_ladder(structure, motion, model, time_step, duration, ladder):
     ladder : Ladder
         First scale, increment, highest scale and the drift that counts as a potential collapse: that of `half_width`
         where it says none.
+    store : str or path
+        Folder of finished rungs: one that is there is not simulated again, and one that was cut short goes on from its
+        checkpoint there.
+    source : str
+        Digest of the sources that compute.
 
     Returns
     -------
@@ -37,40 +47,44 @@ def climb_ladder(structure, motion, model, time_step, duration, ladder):
     largest_drift = ladder.largest_drift or half_width(loaded)
     count = int(np.floor((ladder.highest - ladder.first) / ladder.increment + 1e-9)) + 1
     for scale in ladder.first + ladder.increment * np.arange(count):
-        run = simulate(
-            loaded,
-            load_motion(motion, float(scale)),
-            model,
-            time_step=time_step,
-            duration=duration,
-            accelerometers=False,
-        )
-        moved = run["position"].sel(axis="x") - run["position"].sel(axis="x").isel(time=0)
-        drift = np.abs(moved - moved.isel(body=0)).max()
-        rungs.append(
-            {
-                "scale": float(scale),
-                "status": run.attrs["status"],
-                "reason": run.attrs["reason"],
-                "peak": float(drift),
-                "passed": run.attrs["status"] == Status.COMPLETED and float(drift) <= largest_drift,
-            }
-        )
-        if not rungs[-1]["passed"]:
+        outcome = _rung(loaded, load_motion(motion, float(scale)), model, time_step, duration, store, source)
+        passed = outcome["status"] == Status.COMPLETED and outcome["peak"] <= largest_drift
+        rungs.append({"scale": float(scale), **outcome, "passed": passed})
+        if not passed:
             break
     return rungs
 
 
-def climb_ladders(cases, motions, time_step, ladder, progress):
+def _rung(structure, motion, model, time_step, duration, store, source):
+    """How one run ended, and the largest drift in it [m]; from the store if it was simulated before."""
+    key = content_digest(
+        source, "rung", model, structure_digest(structure), *(part.tobytes() for part in motion.table),
+        time_step, duration,
+    )  # fmt: skip
+
+    def climb():
+        run = simulate(
+            structure, motion, model, time_step=time_step, duration=duration, accelerometers=False,
+            checkpoint=Path(store) / f"{key}.checkpoint",
+        )  # fmt: skip
+        moved = run["position"].sel(axis="x") - run["position"].sel(axis="x").isel(time=0)
+        drift = np.abs(moved - moved.isel(body=0)).max()
+        return {"status": run.attrs["status"], "reason": run.attrs["reason"], "peak": float(drift)}
+
+    return kept_value(store, key, climb)
+
+
+def climb_ladders(cases, motions, time_step, ladder, store, source, progress):
     """Climb the ladder of every case with every motion by LS-DEM, as `climb_ladder`: rungs by structure and motion.
 
     ``cases``: ``structure`` and ``duration`` [s] of the configuration's; ``motions``: names or files; ``time_step``
-    [s]; ``progress`` is called with a line of text after each ladder.
+    [s]; ``store`` and ``source`` as of `climb_ladder`; ``progress`` is called with a line of text after each ladder.
     """
     found = {case["structure"]: {} for case in cases}
     for case in cases:
         for motion in motions:
-            rungs = climb_ladder(case["structure"], motion, "ls-dem", time_step, case["duration"], ladder)
+            run = "ls-dem", time_step, case["duration"], ladder, store, source
+            rungs = climb_ladder(case["structure"], motion, *run)
             found[case["structure"]][motion] = rungs
             passed = [rung["scale"] for rung in rungs if rung["passed"]]
             progress(f"{case['structure']} {motion}: passed {passed}")

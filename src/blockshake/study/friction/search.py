@@ -3,19 +3,16 @@
 import numpy as np
 import pandas as pd
 
-from blockshake.files import source_digest
 from blockshake.simulation.models import model_of
-from blockshake.sources import script_sources
+from blockshake.sources import script_sources, source_digest
 from blockshake.study.ensembles.batch import simulate_samples
 from blockshake.study.ensembles.case_input import driving_motions, measured_on_clock
-from blockshake.study.ensembles.coverage import coverage
+from blockshake.study.ensembles.coverage import coverage, is_likely
 from blockshake.study.ensembles.ensemble import join_batches
 from blockshake.study.friction.calibration import mean_score, search_mean, with_mean
 from blockshake.study.friction.replicates import replicate_seed, replicated_designs
 from blockshake.study.sampling.distributions import load_distributions
 from blockshake.study.stiffness.wave_speed import calibrate_design
-
-_UNLIKELY = 0.05  # chance of a whole curve at or below which an ensemble does not fit
 
 
 def calibrate_case(case, named, base, given, store, progress):
@@ -93,9 +90,10 @@ def calibrate_friction(
     )
     designs = [one.values for one in drawn]
     if model_of(run_settings["model"]).calibrated:
-        structure = case["structure"]
+        given = linked, store, source_digest(*script_sources("calibrate_stiffness"))
         designs = [
-            pd.concat([design, calibrate_design(structure, design, linked)], axis=1) for design in designs
+            pd.concat([design, calibrate_design(case["structure"], design, *given)], axis=1)
+            for design in designs
         ]
     seeds = [replicate_seed(ensemble["seed"], place) for place in range(1, len(designs) + 1)]
     motions = [driving_motions(case, base, seed) for seed in seeds]
@@ -129,7 +127,7 @@ def friction_summary(found, beside, search, measured):
     Where the measured curves are unlike those of the best mean's ensembles too, the differences between means say
     nothing of friction, and the answer is that no mean fits.
     """
-    fits = beside["chance"].loc[found.best] > max(_UNLIKELY, 1.0 / (1.0 + search["size"]))
+    fits = is_likely(beside["chance"].loc[found.best], search["size"])
     return {
         "answer": found.answer if fits else "unknown: no mean fits the measured curves",
         "best": found.best,

@@ -6,9 +6,12 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import model_of
+from blockshake.simulation.structure_digest import structure_digest
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
+from blockshake.store import kept_value
 from blockshake.study.sampling.sample_parameters import sample_parameters
 from blockshake.study.stiffness.tower import tower_of
 from blockshake.study.stiffness.wave_step import (
@@ -149,17 +152,33 @@ def calibrate_stiffness(structure, parameters=None):
     }
 
 
-def calibrate_design(structure, design, linked):
-    """Stiffness of a structure for every sample of a design, with the same index.
+def calibrate_design(structure, design, linked, store, source):
+    """Stiffness of a structure for every sample of a design.
 
-    ``linked``: parameters that take another's sampled value. Columns ``ls_dem.normal_stiffness`` and
-    ``ls_dem.shear_stiffness`` [N/m3].
+    Parameters
+    ----------
+    structure : str or path
+    design : pandas.DataFrame
+        Sampled values, columns the dotted names.
+    linked : dict of str to str
+        Parameters that take another's sampled value.
+    store : str or path
+        Folder of finished samples: one that is there is not calibrated again.
+    source : str
+        Digest of the sources that compute.
+
+    Returns
+    -------
+    pandas.DataFrame
+        With the design's index: ``ls_dem.normal_stiffness`` and ``ls_dem.shear_stiffness`` [N/m3].
     """
     loaded = load_structure(structure)
-    found = [
-        stiffness_parameters(calibrate_stiffness(loaded, sample_parameters(row, loaded, linked)))
-        for _, row in design.iterrows()
-    ]
+    identity, found = structure_digest(loaded), []
+    for _, row in design.iterrows():
+        parameters = sample_parameters(row, loaded, linked)
+        key = content_digest(source, "stiffness", identity, parameters)
+        calibrated = kept_value(store, key, lambda given=parameters: calibrate_stiffness(loaded, given))
+        found.append(stiffness_parameters(calibrated))
     return pd.DataFrame(found, index=design.index)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import Normalize
 
-from blockshake.report.document.drawing import new_figure
+from blockshake.report.document.drawing import LIGHT_GREY, new_figure
 
 _SHOWN = 2.0  # limits at which the colours end
 _COLUMNS = 2
@@ -14,7 +14,8 @@ _COLORS = 31  # so few are drawn as areas
 def plot_atlas(misfit, tests, joints):
     """Figure of the standardised residuals of `misfit`, one panel a test; ``joints`` from the lowest up.
 
-    Red: the joint moved farther than simulated, blue: less far; a number where a residual is beyond its test's limit.
+    Red: the joint moved farther than simulated, blue: less far; grey: not known; a number where a residual is beyond
+    its test's limit.
     """
     columns = min(_COLUMNS, len(tests))
     rows = -(-len(tests) // columns)
@@ -31,6 +32,7 @@ def plot_atlas(misfit, tests, joints):
         own = misfit.sel(test=test, joint=list(reversed(joints)))
         image = own["residual"].transpose("joint", "quantity", "phase", "side").to_numpy()
         image = image.reshape(len(labels), -1)
+        axes.set_facecolor(LIGHT_GREY)
         drawn = axes.pcolormesh(image, cmap=colors, norm=Normalize(-span, span))
         axes.set_ylim(len(labels), 0)
         axes.grid(False)

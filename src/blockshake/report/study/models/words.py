@@ -102,15 +102,18 @@ def impact_words(cases):
     ]
 
 
-def ranking_words(judgement):
-    """A claim of the paper and the answer to it, in sentences."""
-    claim = judgement.claim
-    counts = (
-        f"of {len(claim.orders)} comparisons of two models {judgement.borne_out} bear it out, "
+def order_words(judgement):
+    """How many orders of two models that a claim of the paper makes the scores bear out, and how many not."""
+    return (
+        f"of {len(judgement.claim.orders)} comparisons of two models {judgement.borne_out} bear the statement out, "
         f"{judgement.contradicted} contradict it, {judgement.untold} are not told apart by the intervals of their "
         f"scores, and {judgement.unknown} are of fewer than {FEWEST_JUDGED} samples or of cases that were not run"
     )
-    said = f"Zhou et al. (2023) state that {claim.words}: {judgement.answer}."
+
+
+def ranking_words(judgement):
+    """A claim of the paper and the answer to it, in sentences."""
+    said = f"Zhou et al. (2023) state that {judgement.claim.words}: {judgement.answer}."
     if judgement.synthetic:
         by_scores = {MET: "would be met", NOT_MET: "would not be met"}.get(
             judgement.by_scores, "could not be judged either"
@@ -118,6 +121,6 @@ def ranking_words(judgement):
         return (
             f"{said} The measured curves are synthetic, made by a model of this program: a score tells which model is "
             "nearest to that one, not which describes real blocks. By the scores alone the statement "
-            f"{by_scores}: {counts}."
+            f"{by_scores}: {order_words(judgement)}."
         )
-    return f"{said} {sentence_case(counts)}"
+    return f"{said} {sentence_case(order_words(judgement))}"

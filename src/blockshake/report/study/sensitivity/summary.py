@@ -52,19 +52,23 @@ def _strongest(result, noise):
     return cells
 
 
+def thickness_by_case(content, model):
+    """`Thickness` of every case by a model, by the case's name."""
+    return {
+        case.name: thickness(
+            case.responses[model].sensitivity, markers_by_height(case).values(), (~case.structure.driven).sum(),
+            _shaking(case),
+        )
+        for case in content.cases.values()
+    }  # fmt: skip
+
+
 def paper_discussion(content):
     """The two statements of the paper on thickness: it grows upward, and with the complexity of the structure."""
     cases = content.cases.values()
     told = []
     for model in content.study["models"]:
-        found = {
-            case.name: thickness(
-                case.responses[model].sensitivity, markers_by_height(case).values(),
-                (~case.structure.driven).sum(), _shaking(case),
-            )
-            for case in cases
-        }  # fmt: skip
-        told.append(f"{model_label(model)}: {_growth_words(found)}")
+        told.append(f"{model_label(model)}: {_growth_words(thickness_by_case(content, model))}")
     return [
         Text(
             "Zhou et al. (2023) state that envelopes thicken upward and with the complexity of the structure, here "

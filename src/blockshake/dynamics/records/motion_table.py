@@ -1,0 +1,73 @@
+"""A ground motion from a table of a user: any columns, units and decimal sign."""
+
+from pathlib import Path
+
+import numpy as np
+
+from blockshake.dynamics.baseline import correct_baseline, correction_words
+from blockshake.dynamics.motion import CHANNELS, ground_motion
+from blockshake.errors import InputError
+from blockshake.tables.table_file import read_table
+from blockshake.tables.units import kind_of_unit, unit_size
+
+_UNEVEN = 1e-3  # of the step, by which rows of an even series may be uneven
+
+
+def load_motion_table(source, layout, time, columns, unit, time_unit="s", corner_frequency=None):
+    """`GroundMotion` from columns of a text file or a workbook.
+
+    Parameters
+    ----------
+    source : str or path
+        A file; of a workbook with several sheets ``FILE#SHEET``.
+    layout : TableLayout
+    time : str
+        Name of the column of times.
+    columns : dict of str to str
+        By channel (``x``, ``y``, ``z``) the name of a column.
+    unit : str
+        Of the columns; tells acceleration, velocity and displacement apart.
+    time_unit : str
+    corner_frequency : float, optional
+        Of a baseline correction of accelerations, as of `correct_baseline` [Hz]; none by default.
+
+    Raises
+    ------
+    InputError
+        A missing column, an unknown unit or channel, a cell that is no number, times that do not increase; a correction
+        of other than evenly spaced accelerations.
+    """
+    kind = kind_of_unit(unit, ("acceleration", "velocity", "displacement"), "--unit", unit)
+    table = read_table(source, layout)
+    at = table.column(time, unit_size("time", time_unit, "--time-unit", time_unit))
+    read = {}
+    for channel, name in columns.items():
+        if channel not in CHANNELS[:3]:
+            raise InputError("--column", channel, f"expected {', '.join(CHANNELS[:3])}")
+        read[channel] = table.column(name, unit_size(kind, unit, "--unit", unit))
+    for name, values in ((time, at), *((columns[channel], values) for channel, values in read.items())):
+        if not np.isfinite(values).all():
+            line = table.lines[int(np.argmin(np.isfinite(values)))]
+            raise InputError(table.source, f"line {line}, {name}", "expected a finite number")
+    back = np.flatnonzero(np.diff(at) <= 0.0)
+    if len(at) < 2 or len(back):
+        line = table.lines[back[0] + 1] if len(back) else table.lines[0]
+        raise InputError(table.source, f"line {line}, {time}", "expected times that increase from row to row")
+    baseline = "none"
+    if corner_frequency is not None:
+        step = _even_step(at, kind, table.source)
+        read = {name: correct_baseline(values, step, corner_frequency) for name, values in read.items()}
+        baseline = correction_words(corner_frequency)
+    attributes = {"source": Path(source).name, "format": "table", "synthetic": False, "baseline": baseline}
+    if at[0] != 0.0:
+        attributes["first_time"] = float(at[0])
+    return ground_motion(Path(source).stem, at - at[0], read, kind, attributes)
+
+
+def _even_step(time, kind, source):
+    steps = np.diff(time)
+    if kind != "acceleration" or np.ptp(steps) > _UNEVEN * steps.mean():
+        raise InputError(
+            source, "--baseline", "expected accelerations at even times, which alone can be corrected"
+        )
+    return float(steps.mean())

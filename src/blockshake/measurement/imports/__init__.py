@@ -1,0 +1,1 @@
+"""Measured tests from spreadsheets and text files to campaigns."""

@@ -1,0 +1,91 @@
+"""The map of an import: which column of which file is which reading, in which unit."""
+
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import BeforeValidator, Field
+
+from blockshake.files import load_yaml, shipped_names
+from blockshake.measurement.campaigns.campaign import MeasuredTest, Sensors
+from blockshake.tables.table_file import TableLayout
+from blockshake.validation import NotNegative, Strict, validated
+
+
+class Column(Strict):
+    """A column of a file."""
+
+    column: str = Field(description="its name in the header, or its number where there is none")
+    unit: str | None = Field(None, description="by default that of all columns of its kind")
+    reversed: bool = Field(False, description="positive readings are along the negative axis")
+
+
+def _entry(given):
+    """An entry from a column's name alone."""
+    return {"column": str(given)} if isinstance(given, (str, int)) else given
+
+
+ColumnEntry = Annotated[Column, BeforeValidator(_entry, json_schema_input_type=Column | str | int)]
+
+
+class ImportedTest(MeasuredTest):
+    """One test, as in ``campaign.yaml``; its files are those to be imported."""
+
+    file: str = Field(description="text file or workbook, FILE#SHEET of one with several sheets")
+    accelerometers: str | None = Field(
+        None, description="the same of the accelerometers, where they are in another file or sheet"
+    )
+
+
+class ImportMap(Strict):
+    """The whole map."""
+
+    name: str = Field(description="of the campaign")
+    structure: str = Field(description="shipped name or file")
+    sensors: Sensors = Field(Sensors(), description="standard deviations of the readings")
+    layout: TableLayout = Field(TableLayout(), description="how the files are written")
+    time: ColumnEntry = Field(description="a column's name, or an entry; in s by default")
+    displacement_unit: str = Field(description="m, cm, mm or um")
+    acceleration_unit: str | None = Field(
+        None, description="m/s2, cm/s2 or g; needed where there are channels"
+    )
+    columns: dict[str, ColumnEntry] = Field(
+        min_length=1,
+        description="by MARKER.x and the like, or by accelerometer channel: a column's name, or an entry",
+    )
+    rest: NotNegative = Field(
+        0.0,
+        description="length of the quiet start whose mean reading displacements count from; 0: they do already [s]",
+    )
+    fill_gaps: bool = Field(False, description="rows that the clock lacks become gaps of all readings")
+    tests: tuple[ImportedTest, ...] = Field(min_length=1)
+
+
+def load_map(path):
+    """`ImportMap` from a YAML file; the files that it names are taken from its folder.
+
+    Raises
+    ------
+    InputError
+        Not YAML, an unknown or missing key.
+    """
+    return checked_map(load_yaml(path), path, Path(path).parent)
+
+
+def checked_map(mapping, where, folder):
+    """`ImportMap` from a mapping; files are taken from a folder, ``where`` is named in errors."""
+    found = validated(ImportMap, mapping, where)
+    tests = [
+        one.model_copy(update={
+            "file": str(folder / one.file),
+            "accelerometers": one.accelerometers and str(folder / one.accelerometers),
+            "motion": _beside(one.motion, "motions", folder),
+        })
+        for one in found.tests
+    ]  # fmt: skip
+    structure = _beside(found.structure, "structures", folder)
+    return found.model_copy(update={"tests": tuple(tests), "structure": structure})
+
+
+def _beside(name, kind, folder):
+    """A shipped name as it is, a file from the folder."""
+    return name if name in shipped_names(kind) else str(folder / name)

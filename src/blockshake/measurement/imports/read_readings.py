@@ -1,0 +1,127 @@
+"""Readings of one test from the tables of a user, in SI and as a campaign has them."""
+
+import numpy as np
+import xarray as xr
+
+from blockshake.errors import InputError
+from blockshake.geometry.schema import AXES
+from blockshake.measurement.sensors.accelerometers import accelerometer_channels
+from blockshake.tables.table_file import read_table
+from blockshake.tables.units import unit_size
+
+_GAP = 1.5  # usual steps, beyond which the clock lacks a row
+
+
+def read_readings(test, asked, structure, where):
+    """Readings of one test.
+
+    Parameters
+    ----------
+    test : ImportedTest
+    asked : ImportMap
+    structure : Structure
+        Whose accelerometer channels are told from markers.
+    where : str
+        Map that an error names.
+
+    Returns
+    -------
+    xarray.Dataset
+        As in a campaign's test file, not yet checked against the structure; NaN along directions without a column.
+
+    Raises
+    ------
+    InputError
+        A column that is missing or holds text, an unknown unit, times that go back, a clock with gaps.
+    """
+    channels = [name for name in asked.columns if name in accelerometer_channels(structure)]
+    markers = [name for name in asked.columns if name not in channels]
+    if not markers:
+        raise InputError(where, "columns", "expected a column of a marker, MARKER.x")
+    time, readings = _readings(test.file, markers, asked, "displacement", where)
+    names = list(dict.fromkeys(name.rpartition(".")[0] for name in markers))
+    values = np.full((len(time), len(names), len(AXES)), np.nan)
+    for key, column in zip(markers, readings.T, strict=True):
+        name, _, axis = key.rpartition(".")
+        if axis not in AXES or not name:
+            raise InputError(
+                where, f"columns.{key}", "expected MARKER.x, MARKER.y, MARKER.z or an accelerometer channel"
+            )
+        values[:, names.index(name), AXES.index(axis)] = column - _rest(
+            time, column, asked.rest, test.file, key
+        )
+    variables = {"marker_displacement": (("time", "marker", "axis"), values, {"units": "m"})}
+    coordinates = {"time": ("time", time, {"units": "s"}), "marker": names, "axis": list(AXES)}
+    if channels:
+        source = test.accelerometers or test.file
+        time_acc, read = _readings(source, channels, asked, "acceleration", where)
+        variables["accelerometer"] = (("time_acc", "channel"), read, {"units": "m s-2"})
+        coordinates |= {"time_acc": ("time_acc", time_acc, {"units": "s"}), "channel": channels}
+    return xr.Dataset(variables, coordinates)
+
+
+def _readings(source, names, asked, kind, where):
+    """Times (n_times,) and readings (n_times, n_names) of a table, in SI."""
+    table = read_table(source, asked.layout)
+    time = _clock(table, asked, where)
+    columns = []
+    for name in names:
+        column = asked.columns[name]
+        unit, key = column.unit or getattr(asked, f"{kind}_unit"), f"columns.{name}"
+        if unit is None:
+            raise InputError(where, f"{kind}_unit", f"missing key; {name} needs it")
+        size = unit_size(kind, unit, where, f"{key}.unit" if column.unit else f"{kind}_unit")
+        read = table.column(column.column, -size if column.reversed else size)
+        if np.isnan(read).all():
+            raise InputError(table.source, f"column '{column.column}'", "expected readings; all are missing")
+        columns.append(read + 0.0)  # no minus zero
+    return _with_rows(table, time, np.column_stack(columns), asked)
+
+
+def _clock(table, asked, where):
+    """Times that increase [s]."""
+    name = asked.time.column
+    time = table.column(name, unit_size("time", asked.time.unit or "s", where, "time.unit"))
+    if np.isnan(time).any():
+        line = table.lines[int(np.argmax(np.isnan(time)))]
+        raise InputError(table.source, f"line {line}, {name}", "expected a time")
+    back = np.flatnonzero(np.diff(time) <= 0.0)
+    if len(back):
+        before, after = time[back[0] : back[0] + 2]
+        raise InputError(
+            table.source, f"line {table.lines[back[0] + 1]}, {name}",
+            f"expected times that increase; {after:g} s follows {before:g} s",
+        )  # fmt: skip
+    return time
+
+
+def _with_rows(table, time, readings, asked):
+    """The same with empty rows where the clock lacks some, if that is asked for."""
+    steps = np.diff(time)
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    wide = np.flatnonzero(steps > _GAP * usual)
+    if not len(wide):
+        return time, readings
+    if not asked.fill_gaps:
+        raise InputError(
+            table.source, f"line {table.lines[wide[0] + 1]}, {asked.time.column}",
+            f"expected an even clock; {steps[wide[0]]:.4g} s after {time[wide[0]]:g} s lie between two rows "
+            f"{usual:.4g} s apart elsewhere, {len(wide)} such gaps in all: fill_gaps makes them gaps of the readings",
+        )  # fmt: skip
+    counts = np.ones(len(time), dtype=int)
+    counts[wide] = np.rint(steps[wide] / usual).astype(int)
+    rows = np.concatenate([[0], np.cumsum(counts)[:-1]])
+    places = np.arange(rows[-1] + 1)
+    filled = np.full((len(places), readings.shape[1]), np.nan)
+    filled[rows] = readings
+    return np.interp(places, rows, time), filled
+
+
+def _rest(time, column, length, source, key):
+    """Mean reading of the quiet start."""
+    if length == 0.0:
+        return 0.0
+    own = column[(time <= time[0] + length) & np.isfinite(column)]
+    if not len(own):
+        raise InputError(source, key, f"expected a reading in the first {length:g} s of rest")
+    return own.mean()

@@ -1,0 +1,1 @@
+"""How own data come in: commands, templates to start from, and schemas for editors."""

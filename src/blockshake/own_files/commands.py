@@ -1,0 +1,199 @@
+"""Commands by which own data come in: import-campaign, convert-motion, new and schema."""
+
+import json
+from pathlib import Path
+
+from blockshake.errors import InputError
+from blockshake.files import check_output, write_text
+
+KINDS = ("structure", "study", "campaign")
+CORRECT, NONE = "correct", "none"
+
+
+def add_data_commands(commands):
+    """Add the commands to the parser's."""
+    command = commands.add_parser(
+        "convert-motion", help="a record or a table of another format, to the project's CSV"
+    )
+    command.add_argument("file", metavar="FILE", help="a record, or a table (then with --unit and --column)")
+    command.add_argument(
+        "--unit", metavar="UNIT", help="of a table: m/s2, cm/s2, g, m/s, m, mm, ...; never guessed"
+    )
+    command.add_argument(
+        "--column", action="append", default=[], metavar="AXIS=COLUMN", help="such as x=EW, repeatable"
+    )
+    _add_layout(command)
+    command.add_argument(
+        "--baseline", choices=(CORRECT, NONE), help="default: correct for records, none for tables"
+    )
+    command.add_argument(
+        "--corner-frequency", type=float, metavar="HZ", help="of the correction (default 0.1)"
+    )
+    command.add_argument("--output", required=True, metavar="MOTION.csv")
+    command.set_defaults(run=_convert_motion)
+
+    command = commands.add_parser(
+        "import-campaign", help="measured tests in spreadsheets or CSV files, to a campaign's folder"
+    )
+    command.add_argument(
+        "sources", nargs="+", metavar="MAP.yaml|FILE", help="a map, or one table a test; FILE.xlsx#SHEET"
+    )
+    command.add_argument("--output", required=True, metavar="DIR")
+    for option, words in (
+        ("--structure NAME|FILE", "that was tested"),
+        ("--motion NAME|FILE", "that was commanded"),
+        ("--scale SCALE", "of that motion (default 1)"),
+        ("--role ROLE", "fit, select or sealed (default fit)"),
+        ("--displacement-unit UNIT", "m, cm, mm or um"),
+        ("--acceleration-unit UNIT", "m/s2, cm/s2 or g"),
+        ("--rest S", "quiet start, whose mean displacements count from"),
+    ):
+        command.add_argument(option.split()[0], metavar=option.split()[1], help=words)
+    command.add_argument(
+        "--column", action="append", default=[], metavar="READING=COLUMN",
+        help="such as block-1-face.x=LVDT3 or slab-acc-x=A1, repeatable",
+    )  # fmt: skip
+    command.add_argument("--fill-gaps", action="store_true", help="rows that the clock lacks become gaps")
+    _add_layout(command)
+    command.set_defaults(run=_import_campaign)
+
+    command = commands.add_parser("new", help="a commented template to start an own file from")
+    command.add_argument("kind", choices=KINDS)
+    command.add_argument(
+        "path", metavar="PATH", help="file to write, or folder of a campaign; never overwritten"
+    )
+    command.set_defaults(run=_new)
+
+    command = commands.add_parser("schema", help="JSON schema of a file, for editors")
+    command.add_argument("kind", choices=(*KINDS, "import"))
+    command.add_argument("--output", metavar="SCHEMA.json", help="default: printed")
+    command.set_defaults(run=_schema)
+
+
+def _add_layout(command):
+    command.add_argument("--time", metavar="COLUMN", help="of the times (default time_s)")
+    command.add_argument("--time-unit", metavar="UNIT", help="s (default), ms or min")
+    command.add_argument(
+        "--separator", metavar="CHARACTER", help="between cells (default: as the header shows)"
+    )
+    command.add_argument("--decimal", choices=(".", ","), help="decimal sign (default .)")
+    command.add_argument("--header", type=int, metavar="LINE", help="of the columns' names (default 1)")
+    command.add_argument(
+        "--data", type=int, metavar="LINE", help="first one of numbers (default: below the names)"
+    )
+
+
+_LAYOUT = ("separator", "decimal", "header", "data")
+
+
+def _given(options, names):
+    """Options that were given, by name."""
+    return {name: getattr(options, name) for name in names if getattr(options, name) is not None}
+
+
+def _columns(options):
+    columns = {}
+    for entry in options.column:
+        key, equals, name = entry.partition("=")
+        if not equals or not key or not name:
+            raise InputError("--column", entry, "expected READING=COLUMN")
+        columns[key] = name
+    return columns
+
+
+def _convert_motion(options):
+    check_output(options.output)
+    from blockshake.dynamics.baseline import CORNER_FREQUENCY
+    from blockshake.dynamics.load_motion import load_motion
+    from blockshake.dynamics.records.contract_csv import write_motion_csv
+    from blockshake.dynamics.records.motion_table import load_motion_table
+    from blockshake.tables.table_file import TableLayout
+    from blockshake.validation import validated
+
+    corner = options.corner_frequency or CORNER_FREQUENCY
+    if corner <= 0.0:
+        raise InputError("--corner-frequency", corner, "expected a positive number")
+    given = _given(options, ("unit", "time", "time_unit", *_LAYOUT))
+    columns = _columns(options)
+    if given or columns:
+        for name, value in (("unit", options.unit), ("column", columns)):
+            if not value:
+                raise InputError(
+                    f"--{name}", "", "expected for a table; the unit and the columns are never guessed"
+                )
+        motion = load_motion_table(
+            options.file, validated(TableLayout, _given(options, _LAYOUT), "options"), options.time or "time_s",
+            columns, options.unit, options.time_unit or "s", corner if options.baseline == CORRECT else None,
+        )  # fmt: skip
+    else:
+        motion = load_motion(options.file, correct=options.baseline != NONE, corner_frequency=corner)
+    write_motion_csv(motion, options.output)
+
+
+def _import_campaign(options):
+    from blockshake.measurement.imports.import_campaign import import_campaign
+    from blockshake.measurement.imports.import_map import load_map
+
+    given = _given(
+        options, ("structure", "motion", "scale", "role", "displacement_unit", "acceleration_unit", "rest", "time",
+                  "time_unit", *_LAYOUT),
+    )  # fmt: skip
+    columns, where = _columns(options), options.sources[0]
+    if Path(where).suffix in (".yaml", ".yml"):
+        if len(options.sources) > 1 or given or columns or options.fill_gaps:
+            raise InputError(where, "", "expected the map alone; it says all that options say")
+        asked = load_map(where)
+    else:
+        asked, where = _map_of_options(options, given, columns), "options"
+    print("\n".join(import_campaign(asked, options.output, where)))
+
+
+def _map_of_options(options, given, columns):
+    """`ImportMap` of a call without a map."""
+    from blockshake.files import parse_yaml
+    from blockshake.measurement.imports.import_map import checked_map
+
+    for name in ("structure", "motion", "displacement_unit"):
+        if name not in given:
+            raise InputError(
+                f"--{name.replace('_', '-')}", "", "expected, or a map MAP.yaml as the only source"
+            )
+    numbers = {name: parse_yaml(given[name], f"--{name}") for name in ("scale", "rest") if name in given}
+    tests = [
+        {
+            "name": Path(source.replace("#", "-")).stem, "file": source, "motion": given["motion"],
+            "scale": numbers.get("scale", 1.0), "role": given.get("role", "fit"),
+        }
+        for source in options.sources
+    ]  # fmt: skip
+    mapping = {
+        "name": Path(options.output).name,
+        "layout": _given(options, _LAYOUT),
+        "time": {"column": given.get("time", "time_s"), "unit": given.get("time_unit", "s")},
+        "columns": columns,
+        "fill_gaps": options.fill_gaps,
+        "tests": tests,
+        **{
+            name: given[name]
+            for name in ("structure", "displacement_unit", "acceleration_unit")
+            if name in given
+        },
+        **({"rest": numbers["rest"]} if "rest" in numbers else {}),
+    }
+    return checked_map(mapping, "options", Path())
+
+
+def _new(options):
+    from blockshake.own_files.templates import write_template
+
+    print("\n".join(write_template(options.kind, options.path)))
+
+
+def _schema(options):
+    from blockshake.own_files.json_schemas import file_schema
+
+    text = json.dumps(file_schema(options.kind), indent=2)
+    if options.output:
+        write_text(options.output, text + "\n")
+    else:
+        print(text)

@@ -1,0 +1,110 @@
+"""Statements on the samples and on the calibration of friction."""
+
+import numpy as np
+
+from blockshake.report.document.rows import face_markers
+from blockshake.report.document.wording import given, model_label, number, parameter_label, percent
+from blockshake.report.study.statements.statement import judged, unjudged
+from blockshake.study.sampling.distributions import TABLE_2
+
+SIZE = 50
+LOWEST, HIGHEST = 0.3, 0.8  # range of the mean friction
+OPTIMUM = 0.75  # mean friction of Table 2
+_NO_SEARCH = "This study searches no mean friction."
+_SIDES = {0.0: "is refused", 1.0: "is not refused"}
+_LOW_VARIABILITY = 0.1  # half of an interval over its median
+
+
+def table_2(content):
+    """Distributions of Table 2 and their samples, Fig. 8."""
+    summary, asked = content.design_summary, content.distributions
+    mean = max(abs(summary["mean"][name] / one.mean - 1.0) for name, one in asked.items())
+    short = [1.0 - summary["cov"][name] / one.cov for name, one in asked.items()]
+    other = sorted({name for name in {**asked, **TABLE_2} if asked.get(name) != TABLE_2.get(name)}, key=str)
+    words = (
+        f"Other than in the table: {', '.join(map(parameter_label, other)) or 'none'}. The samples' means are off by "
+        f"{percent(mean)} % at most; their coefficients of variation fall short by {percent(min(short))} to "
+        f"{percent(max(short))} %."
+    )
+    return judged(not other, words)
+
+
+def correlation_control(content):
+    """Correlation of the samples against the target."""
+    summary = content.design_summary
+    error, chance = summary["rms_correlation_error"], 1.0 / np.sqrt(summary["size"] - 1.0)
+    target = "that of the configuration" if content.study["ensemble"].get("correlation") else "none"
+    return judged(
+        error < 0.1 * chance,
+        f"The paper states no correlation; asked for here: {target}. The correlations of the samples miss it by "
+        f"{number(error, 2)} rms and {number(summary['largest_correlation_error'], 2)} at most; pairs at random miss "
+        f"it by {number(chance, 2)}. A tenth of that counts as controlled.",
+    )
+
+
+def size(content):
+    """Number of samples."""
+    counts = {
+        f"{case.name} {one.samples.sizes['sample']}"
+        for case in content.cases.values()
+        for one in case.responses.values()
+        if one.samples.sizes["sample"] != len(content.design)
+    }
+    fewer = f" Fewer: {', '.join(sorted(counts))}." if counts else ""
+    return judged(len(content.design) == SIZE and not counts, f"{len(content.design)} samples.{fewer}")
+
+
+def low_variability(content):
+    """Estimates of small designs that vary little."""
+    told, largest = [], 0.0
+    for case in content.cases.values():
+        top = next(iter(face_markers(case.structure).values()))
+        for model, one in case.responses.items():
+            at = {"frame": "slab", "marker": top, "quantile": 0.5}
+            median, limits = one.envelope["peak"].sel(at), one.envelope["peak_interval"].sel(at)
+            share = float(limits.max() - limits.min()) / (2.0 * float(median))
+            largest = max(largest, share)
+            told.append(f"{case.name}, {model_label(model)} {percent(share)} %")
+    return judged(
+        largest < _LOW_VARIABILITY,
+        "Half of the 95 % bootstrap interval of the median peak at the top, over that median: "
+        f"{'; '.join(told)}. {percent(_LOW_VARIABILITY)} % counts as low.",
+    )
+
+
+def friction_range(content):
+    """Range in which the mean friction is searched."""
+    if not content.friction:
+        return unjudged(_NO_SEARCH)
+    ranges = {(found["lowest"], found["highest"]) for found in content.friction.values()}
+    words = ", ".join(f"{given(low)} to {given(high)}" for low, high in sorted(ranges))
+    return judged(
+        ranges == {(LOWEST, HIGHEST)}, f"The mean is searched from {words}, on a grid that is refined."
+    )
+
+
+def optimum(content):
+    """Mean friction that fits best."""
+    if not content.friction:
+        return unjudged(_NO_SEARCH)
+    told, told_apart, refused, synthetic = [], True, False, []
+    for case, found in content.friction.items():
+        means = found["means"]
+        accepted = float(np.interp(OPTIMUM, means["mean"], np.asarray(means["accepted"], dtype=float)))
+        known = not found["answer"].startswith("unknown")
+        refused = refused or (known and accepted == 0.0)
+        bounded = found["lower"] is not None and found["upper"] is not None
+        told_apart = told_apart and known and bounded and accepted == 1.0
+        synthetic += [case] if found["synthetic"] else []
+        side = _SIDES.get(accepted, "lies between a refused mean and one that is not refused")
+        told.append(
+            f"{case}: the mean is {found['answer']}; lowest score at {given(found['best'])}; {given(OPTIMUM)} {side}"
+        )
+    words = f"{'; '.join(told)}."
+    if synthetic:
+        return unjudged(
+            f"The tests of {', '.join(synthetic)} are synthetic and tell nothing of the specimens. {words}"
+        )
+    if refused:
+        return judged(False, words)
+    return judged(True, words) if told_apart else unjudged(f"The tests do not tell the mean. {words}")

@@ -1,0 +1,155 @@
+"""Statements on nonsmooth contact dynamics."""
+
+import numpy as np
+
+from blockshake.report.document.wording import given, model_label, number, parameter_label
+from blockshake.report.study.statements.statement import judged, missing, setting, unjudged
+from blockshake.simulation.models import MODELS
+from blockshake.study.ensembles.outcomes import numerical_figure
+
+_CONSERVED = 0.01  # of the energy in play: a residual below it counts as none
+DEFORMABLE = ("nscd-elastic", "nscd-viscoelastic")
+_RIGID = "nscd-rigid"
+
+
+def converged(content):
+    """Iteration until convergence in each step."""
+    models = _models(content)
+    if not models:
+        return unjudged("This study has no nonsmooth model.")
+    told, capped = [], 0
+    for model in models:
+        at_cap = sum(_figure(content, model, "numerics_capped_steps", np.sum))
+        worst = max(_figure(content, model, "numerics_max_residual", np.max), default=np.nan)
+        capped += at_cap
+        told.append(
+            f"{model_label(model)}: {at_cap:.0f} steps of all samples stopped at the iteration limit before the "
+            f"tolerance; largest relative residual {number(worst)}."
+        )
+    return judged(capped == 0, " ".join(told))
+
+
+def conserves(content):
+    """Energy without damping."""
+    if absent := missing(content, _RIGID):
+        return unjudged(absent)
+    theta = setting(content, _RIGID, "nscd.theta")
+    residuals = _figure(content, _RIGID, "energy_residual", np.max)
+    if not residuals:
+        return unjudged("The runs of this study have no energy audit.")
+    return judged(
+        max(residuals) < _CONSERVED,
+        f"With theta {given(theta)} and no damping the energy residual is {number(max(residuals))} at most; "
+        f"{given(_CONSERVED)} counts as conserved.",
+    )
+
+
+def shrunk(content):
+    """Contact areas that are drawn in by an amount not stated."""
+    if absent := missing(content, _RIGID):
+        return unjudged(absent)
+    share = setting(content, _RIGID, "nscd.shrink")
+    return unjudged(
+        f"The paper states no amount. The lengths of the areas are drawn in by {given(share)} here."
+    )
+
+
+def mesh_size(content):
+    """Mesh of the deformable blocks."""
+    models = [model for model in DEFORMABLE if model in content.study["models"]]
+    if not models:
+        return unjudged(missing(content, *DEFORMABLE))
+    sizes = {setting(content, model, "nscd_deformable.mesh_size") for model in models}
+    return judged(sizes == {0.2}, f"The edges of the mesh are {', '.join(map(given, sorted(sizes)))} m.")
+
+
+def no_restitution(content):
+    """Impacts without rebound."""
+    if not _models(content):
+        return unjudged("This study has no nonsmooth model.")
+    values = {case.structure.file.nscd_restitution for case in content.cases.values()}
+    words = ", ".join(map(given, sorted(values)))
+    return judged(values == {0.0}, f"Newton's coefficient of restitution is {words}.")
+
+
+def steepness(content):
+    """Contacts of infinite steepness against springs of finite steepness, Fig. 3."""
+    if absent := missing(content, "ls-dem", _RIGID):
+        return unjudged(absent)
+    deepest = max(_figure(content, _RIGID, "numerics_max_penetration", np.max), default=np.nan)
+    if not np.isfinite(deepest):
+        return unjudged("The runs of this study do not say how deep rigid blocks overlap.")
+    sinks = [
+        _sink(content.cases[name].structure, float(calibrated.waves["stiffness"].sel(direction="normal")))
+        for calibrated in content.calibrated
+        for name in calibrated.cases
+        if all(
+            content.cases[name].structure.file.shapes[one.shape].box
+            for one in content.cases[name].structure.file.bodies
+        )
+    ]
+    if not sinks:
+        return unjudged("The structures of this study are not of boxes alone.")
+    return judged(
+        deepest < min(sinks),
+        f"Under its own weight a stack sinks by {number(1e6 * min(sinks))} to {number(1e6 * max(sinks))} micrometres "
+        f"into the springs of its lowest joint; NSCD's deepest penetration is {number(1e6 * deepest)} micrometres.",
+    )
+
+
+def no_modulus(content):
+    """No elastic modulus in the rigid model."""
+    if absent := missing(content, "ls-dem", _RIGID):
+        return unjudged(absent)
+    unused = {model: MODELS[model].without_effect for model in ("ls-dem", _RIGID)}
+    words = "; ".join(
+        f"{model_label(model)} has no use for "
+        + " and ".join(parameter_label(f"materials.the blocks.{name}") for name in names)
+        for model, names in unused.items()
+    )
+    holds = "youngs_modulus" in unused[_RIGID] and "youngs_modulus" not in unused["ls-dem"]
+    return judged(holds, f"{words}.")
+
+
+def dear_steps(content):
+    """Few steps, each of them dear."""
+    if absent := missing(content, "ls-dem", _RIGID):
+        return unjudged(absent)
+    ratios = []
+    for name in content.cases:
+        cost = {one.model: one.cpu_per_simulated for one in content.timings if one.case == name}
+        by_step = {
+            model: cost[model] * content.study["models"][model]["time_step"] for model in ("ls-dem", _RIGID)
+        }
+        ratios.append((name, by_step[_RIGID] / by_step["ls-dem"], cost[_RIGID] / cost["ls-dem"]))
+    if not all(np.isfinite(ratio) for _, *pair in ratios for ratio in pair):
+        return unjudged("Benchmark files of this study's jobs are missing.")
+    told = ", ".join(
+        f"{name} {number(step)} times a step and {number(whole)} times a simulated second"
+        for name, step, whole in ratios
+    )
+    return judged(all(step > 1.0 for _, step, _ in ratios), f"CPU time of NSCD over that of LS-DEM: {told}.")
+
+
+def _models(content):
+    return [model for model in content.study["models"] if model.startswith("nscd")]
+
+
+def _figure(content, model, name, statistic):
+    """A figure of the computation by a model, one for each case that has it."""
+    found = [
+        numerical_figure(case.responses[model].samples, name, statistic) for case in content.cases.values()
+    ]
+    return [one for one in found if np.isfinite(one)]
+
+
+def _sink(structure, stiffness):
+    """Depth to which the weight of the free bodies presses the lowest joints [m]."""
+    free = ~structure.driven
+    lowest = min(structure.centroid[free, 2])
+    area = 0.0
+    for body in (index for index in free.nonzero()[0] if structure.centroid[index, 2] < lowest + 1e-6):
+        shape = structure.file.shapes[structure.file.bodies[body].shape]
+        width, depth = (edge - 2.0 * shape.chamfer for edge in shape.box[:2])
+        area += width * depth
+    return float(structure.mass[free].sum() * abs(structure.file.gravity[2]) / (stiffness * area))

@@ -1,0 +1,87 @@
+"""Section on the statements of the paper, one by one, and the same as values for other pages."""
+
+from blockshake.report.document.blocks import Heading, Section, Table, Text
+from blockshake.report.document.wording import given, model_label
+from blockshake.report.study.statements.departures import DEPARTURES
+from blockshake.report.study.statements.statement import Verdict
+from blockshake.report.study.statements.table import STATEMENTS
+
+HEADER = ("Place", "Statement of the paper", "Verdict", "Finding", "Command")
+DEPARTURES_HEADER = ("Topic", "The paper", "Here", "Reasons")
+
+_WIDTHS, _DEPARTURES_WIDTHS = (6, 9, 5, 17, 9), (4, 10, 18, 10)
+
+
+def judge_statements(content):
+    """Findings of a study on all statements: rows of text under `HEADER`, by heading."""
+    return {
+        heading: tuple(_row(content, one) for one in statements) for heading, statements in STATEMENTS.items()
+    }
+
+
+def _row(content, statement):
+    verdict, words = statement.judge(content)
+    made = statement.target.format(study=content.study["name"], case="CASE")
+    command = made if " " in made else f"snakemake -c2 {made}"
+    return statement.place, statement.claim, str(verdict), words, command
+
+
+def departures():
+    """Departures from the paper: rows of text under `DEPARTURES_HEADER`; they hang on no study."""
+    return tuple((one.topic, one.printed, one.here(), one.page) for one in DEPARTURES)
+
+
+def count_words(rows_by_heading):
+    """How many statements have which verdict, in a sentence."""
+    verdicts = [row[2] for rows in rows_by_heading.values() for row in rows]
+    counts = ", ".join(f"{verdicts.count(one)} {one}" for one in Verdict)
+    return f"Of {len(verdicts)} statements: {counts}."
+
+
+def findings(content):
+    """Findings of a study as JSON-like values: what it is, and the rows of `judge_statements`."""
+    return {
+        "study": content.study["name"],
+        "description": " ".join(content.study["description"].split()),
+        "samples": len(content.design),
+        "cases": [
+            f"{case.name}, {case.motion} at {given(case.settings['scale'])}, {given(case.settings['duration'])} s"
+            for case in content.cases.values()
+        ],
+        "models": [model_label(model) for model in content.study["models"]],
+        "version": content.versions["blockshake"],
+        "findings": {heading: list(map(list, rows)) for heading, rows in judge_statements(content).items()},
+    }
+
+
+def statements(content):
+    """The paper, statement by statement."""
+    rows_by_heading = judge_statements(content)
+    blocks = [
+        Text(
+            "Zhou et al. (2023), statement by statement, in the words of this program. Met: the study at hand finds or "
+            "does the same. Not met: it finds or does something else. Cannot be judged: the study lacks the model, the "
+            "case or the real measurement that the statement hangs on. A synthetic test judges no statement about the "
+            "real specimens. Every finding is computed from the results of this study; the last column has the "
+            "command, in which CASE is a case of the study. The command takes --configfile FILE at its end for another "
+            "study than the default one."
+        ),
+        Text(count_words(rows_by_heading)),
+    ]
+    for heading, rows in rows_by_heading.items():
+        key = heading.lower().replace(" ", "-").replace(",", "")
+        blocks += [
+            Heading(heading, f"paper-{key}"),
+            Table(f"{heading}: findings of this study.", HEADER, rows, "lllll", _WIDTHS),
+        ]
+    blocks += [
+        Heading("Departures from the paper", "paper-departures"),
+        Table(
+            "Choices that differ from the paper, or that it leaves open.",
+            DEPARTURES_HEADER,
+            departures(),
+            "llll",
+            _DEPARTURES_WIDTHS,
+        ),
+    ]
+    return Section("The paper, statement by statement", "paper", tuple(blocks))

@@ -1,0 +1,218 @@
+"""Statements on the specimens, the ground motions, the tests and their instruments."""
+
+from blockshake.dynamics.motion import CHANNELS
+from blockshake.geometry.reference_block import reference_body
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign import load_campaign
+from blockshake.measurement.sensors import accelerometers
+from blockshake.report.document.wording import given, model_label, number, percent, sentence_case
+from blockshake.report.study.statements.statement import against_tests, compared, judged, unjudged
+from blockshake.study.ensembles.case_input import MEASURED
+
+HEIGHTS = {"configuration-1": 4.8, "configuration-2": 6.4, "configuration-3": 7.2, "configuration-4": 7.4}
+TALLEST, MOST_BLOCKS = 7.6, 9  # m and 1, in the text of the section
+PEAKS = {"alkion": 1.176, "basso-tirreno": 1.585}  # m/s2, Table 1
+FIRST_LEVEL, INCREMENT = 0.5, 0.25
+INSTRUMENTS = {"accelerometers": 21, "markers": 101}
+_SAME = 0.005  # relative difference of two printed numbers that are one and the same
+
+
+def alike_blocks(content):
+    """Blocks of one size with one chamfer."""
+    sizes, chamfers = set(), set()
+    for case in content.cases.values():
+        file = case.structure.file
+        material = file.bodies[reference_body(case.structure)].material
+        for body in file.bodies:
+            if not body.driven and body.material == material:
+                shape = file.shapes[body.shape]
+                sizes.add(
+                    " x ".join(map(given, sorted(shape.box))) + " m" if shape.box else f"mesh {shape.mesh}"
+                )
+                chamfers.add(shape.chamfer)
+    words = f"Sizes of the blocks: {', '.join(sorted(sizes))}; chamfers: {', '.join(map(given, sorted(chamfers)))} m."
+    return judged(len(sizes) == 1 and chamfers == {0.02}, words)
+
+
+def heights(content):
+    """Heights in the captions, and the number of blocks."""
+    del content
+    found = {name: _height(load_structure(name)) for name in HEIGHTS}
+    blocks = max(len(_blocks(load_structure(name))) for name in HEIGHTS)
+    told = ", ".join(f"{name} {number(height)} m" for name, height in found.items())
+    holds = all(abs(found[name] / height - 1.0) < _SAME for name, height in HEIGHTS.items())
+    return judged(
+        holds and blocks == MOST_BLOCKS, f"Structure files: {told}; at most {blocks} concrete blocks."
+    )
+
+
+def tallest(content):
+    """Largest height in the text."""
+    del content
+    height = max(_height(load_structure(name)) for name in HEIGHTS)
+    return judged(
+        abs(height / TALLEST - 1.0) < _SAME,
+        f"The tallest structure file has {number(height)} m, {number(abs(TALLEST - height), 2)} m off the text; the "
+        f"caption of Fig. 4 has {given(max(HEIGHTS.values()))} m, and the files follow the captions.",
+    )
+
+
+def _height(structure):
+    """Of the highest point above the lowest free body's foot [m]."""
+    points = [
+        structure.position[body, 2] + structure.solid(body).vertices[:, 2]
+        for body in (~structure.driven).nonzero()[0]
+    ]
+    return float(max(one.max() for one in points) - min(one.min() for one in points))
+
+
+def _blocks(structure):
+    """Free bodies of the material that most of the free mass is of."""
+    bodies = structure.file.bodies
+    material = bodies[reference_body(structure)].material
+    return [body for body in bodies if not body.driven and body.material == material]
+
+
+def stoppers(content):
+    """Retaining systems that do not interfere."""
+    count = sum(len(case.structure.file.stoppers) for case in content.cases.values())
+    return unjudged(
+        f"The structures of this study have {count} stoppers; readings at the real ones would tell whether they "
+        "were touched."
+    )
+
+
+def along_one_axis(content):
+    """A table that shakes along one axis, and a slab that follows it."""
+    cases = compared(content)
+    if not cases:
+        return unjudged("This study has no measured test.")
+    told, largest = [], 0.0
+    for case in cases:
+        moved = abs(case.base["displacement"]).max("time")
+        aside = float(max(moved.sel(channel=one) for one in CHANNELS if one not in ("x", "pitch_y")))
+        share = aside / float(moved.sel(channel="x"))
+        largest = max(largest, share)
+        told.append(
+            f"{case.name} {percent(share)} %, pitch {number(1e3 * moved.sel(channel='pitch_y'))} mrad"
+        )
+    words = f"Displacement of the slab across x or upright, over that along x: {'; '.join(told)}."
+    return against_tests(cases, largest < 0.05, f"{words} 5 % counts as none.")
+
+
+def peaks(content):
+    """Peak ground accelerations of Table 1."""
+    found = {
+        name: content.motions[name].attrs["peak_acceleration"] for name in PEAKS if name in content.motions
+    }
+    if not found:
+        return unjudged("This study has none of the two motions.")
+    synthetic = [name for name in found if content.motions[name].attrs.get("synthetic")]
+    words = ", ".join(f"{name} {number(peak, 4)} m/s2" for name, peak in found.items())
+    words = f"Peak accelerations at 100 %: {words}."
+    if synthetic:
+        words += f" Synthetic, and scaled to those peaks: {', '.join(synthetic)}."
+    holds = all(abs(peak / PEAKS[name] - 1.0) < _SAME for name, peak in found.items())
+    return judged(holds and len(found) == len(PEAKS), words)
+
+
+def records(content):
+    """Histories of Fig. 5."""
+    synthetic = sorted(name for name in content.motions if content.motions[name].attrs.get("synthetic"))
+    if synthetic:
+        return unjudged(
+            f"The histories of {', '.join(synthetic)} are synthetic: the records may not be redistributed."
+        )
+    return unjudged("The paper prints the histories as drawings alone.")
+
+
+def ladder(content):
+    """Levels of the tests, and collapse at the level of the study."""
+    settings = content.study["ladder"]
+    first, increment = settings["first"], settings["increment"]
+    told = []
+    for case in content.cases.values():
+        for model, one in case.responses.items():
+            share, (low, high) = (
+                one.envelope["collapse_probability"], one.envelope["collapse_probability_interval"].values,
+            )  # fmt: skip
+            told.append(
+                f"{case.name} at {given(case.settings['scale'])}, {model_label(model)}: {percent(share)} % "
+                f"[{percent(low)}, {percent(high)}]"
+            )
+    return judged(
+        (first, increment) == (FIRST_LEVEL, INCREMENT),
+        f"The ladder starts at {given(first)} and rises by {given(increment)}. The paper names no level of collapse. "
+        f"Share of the samples that collapse at the level of the study: {'; '.join(told)}.",
+    )
+
+
+def low_tests(content):
+    """Sinusoidal tests of low intensity between the strong ones."""
+    cases = compared(content)
+    if not cases:
+        return unjudged("This study has no measured test.")
+    found = {case.name: [test for test in _tests(case) if test.motion == "sine"] for case in cases}
+    words = ", ".join(f"{name} {len(tests)}" for name, tests in found.items())
+    return judged(all(found.values()), f"Sinusoidal tests in the campaigns: {words}.")
+
+
+def instruments(content):
+    """Numbers of sensors."""
+    counts = {
+        "accelerometers": max(
+            sum(len(sensor.axes) for sensor in case.structure.file.accelerometers)
+            for case in content.cases.values()
+        ),
+        "markers": max(len(case.structure.file.markers) for case in content.cases.values()),
+    }
+    words = ", ".join(f"{name} {counts[name]} of {count}" for name, count in INSTRUMENTS.items())
+    return judged(
+        all(counts[name] >= count for name, count in INSTRUMENTS.items()),
+        f"{sentence_case(f'most channels of a structure file of this study: {words}')} A structure file cannot "
+        "describe a displacement transducer.",
+    )
+
+
+def rates(content):
+    """Rates of the readings and the filter."""
+    output = content.study["output_rate"]
+    words = (
+        f"Accelerometers are read at {given(accelerometers.RATE)} Hz behind a low-pass of "
+        f"{given(accelerometers.CUTOFF)} Hz, markers at {given(output)} Hz."
+    )
+    return judged((accelerometers.RATE, accelerometers.CUTOFF, output) == (512.0, 50.0, 200.0), words)
+
+
+def measured_input(content):
+    """The measured displacement of the slab as the input."""
+    inputs = {case.name: case.settings["input"] for case in content.cases.values()}
+    words = ", ".join(f"{name} by the {kind} motion" for name, kind in inputs.items())
+    return judged(set(inputs.values()) == {MEASURED}, f"The models are driven: {words}.")
+
+
+def strongest_tests(content):
+    """Tests with the largest accelerations."""
+    cases = compared(content)
+    if not cases:
+        return unjudged("This study has no measured test.")
+    told, holds = [], True
+    for case in cases:
+        known = [test for test in _tests(case) if test.motion in content.motions]
+        strongest = max(known, key=lambda test: abs(test.scale) * _peak(content, test.motion))
+        chosen = case.settings["measured"]["test"]
+        own, most = content.peak_acceleration(case), strongest.scale * _peak(content, strongest.motion)
+        holds = holds and own >= (1.0 - _SAME) * most
+        told.append(
+            f"{case.name} {chosen} with {number(own)} m/s2, the strongest of the campaign {strongest.name} "
+            f"({strongest.role}) with {number(most)} m/s2"
+        )
+    return judged(holds, f"Commanded peaks: {'; '.join(told)}.")
+
+
+def _tests(case):
+    return load_campaign(case.settings["measured"]["campaign"]).tests.values()
+
+
+def _peak(content, motion):
+    return content.motions[motion].attrs["peak_acceleration"]

@@ -1,0 +1,79 @@
+"""Reading a run file back: its Dataset, checked, and the structure that it holds."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from blockshake.dynamics.system import ENERGY_TERMS
+from blockshake.errors import InputError
+from blockshake.geometry.schema import AXES, QUATERNION
+from blockshake.geometry.structure import build_structure
+
+_VARIABLES = {
+    "position": ("time", "body", "axis"),
+    "orientation": ("time", "body", "quaternion"),
+    "velocity": ("time", "body", "axis"),
+    "angular_velocity": ("time", "body", "axis"),
+    "marker_displacement": ("time", "marker", "axis"),
+    "energy": ("time", "term"),
+    "joint_force": ("time", "joint", "axis"),
+    "lower": ("joint",),
+    "upper": ("joint",),
+}
+_ATTRIBUTES = ("structure_file", "structure", "motion", "motion_scale", "motion_synthetic", "model")
+_ORDERS = {"axis": AXES, "quaternion": QUATERNION, "term": ENERGY_TERMS}
+
+
+def load_run(path, meshes=None):
+    """Run file of `simulate`, until the time that the run reached, with its structure.
+
+    Parameters
+    ----------
+    path : str or path
+    meshes : str or path, optional
+        Folder of the structure's meshes; that of the run file by default.
+
+    Returns
+    -------
+    run : xarray.Dataset
+        Without the times after an abort.
+    structure : Structure
+        With the parameters of the run.
+
+    Raises
+    ------
+    InputError
+        The file is missing, truncated or no run file, or a mesh of the structure is not found.
+    """
+    if not Path(path).is_file():
+        raise InputError(path, "", "expected a run file of blockshake simulate; there is no such file")
+    try:
+        run = xr.load_dataset(path, engine="netcdf4", decode_times=False)
+    except (OSError, ValueError, RuntimeError) as error:  # a truncated file fails while its values are read
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(path, "", f"expected a readable netCDF file; {reason}") from None
+    for name, dims in _VARIABLES.items():
+        if name not in run.variables or run[name].dims != dims:
+            raise InputError(path, name, f"expected a run file of blockshake simulate, with {name}{dims}")
+    for name in _ATTRIBUTES:
+        if name not in run.attrs:
+            raise InputError(path, name, "expected a run file of blockshake simulate, with this attribute")
+    structure = _structure_of(run, path, Path(path).parent if meshes is None else Path(meshes))
+    for name, order in {**_ORDERS, "body": structure.body_names}.items():
+        if name not in run.coords or run[name].values.tolist() != list(order):
+            raise InputError(path, name, f"expected {', '.join(order)}")
+    reached = np.isfinite(run["position"]).all(("body", "axis"))
+    if not reached.any():
+        raise InputError(path, "position", "expected at least one time that the run reached")
+    run = run.isel(time=np.flatnonzero(reached))
+    return run, structure
+
+
+def _structure_of(run, path, folder):
+    try:
+        mapping = json.loads(run.attrs["structure_file"])
+    except (json.JSONDecodeError, TypeError):
+        raise InputError(path, "structure_file", "expected a structure as JSON") from None
+    return build_structure(mapping, str(path), folder)

@@ -1,0 +1,133 @@
+"""Histories that follow from a run file: drift of the blocks, state of the joints, residual of the energy audit."""
+
+import numpy as np
+import xarray as xr
+
+from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.motion.contact_normals import contact_normals
+from blockshake.measurement.motion.joint_coordinates import find_joints, joint_coordinates
+from blockshake.simulation.energy_residual import unexplained_energy
+
+_LEAST_LOAD = 0.01  # of the upper body's weight: below it the ratio of two small forces tells nothing
+
+
+def run_histories(run, structure):
+    """Histories of a run.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A run file.
+    structure : Structure
+        The run's.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``drift(time, body, axis)``: displacement of the mass centre since the start against the first driven body,
+        in that body's frame; in the inertial frame where no body is driven [m].
+
+        Of every pair that touched, by the face that it had at the start, NaN where it had none or a shape is not
+        convex: ``normal_force(time, joint)``, positive in compression, and ``shear_force`` [N]; ``friction_ratio``,
+        shear over the largest shear that Coulomb's law at rest allows [1], NaN below 1 % of the upper body's weight;
+        ``uplift`` along the normal and ``slip`` along the face, both at the middle of the face [m].
+
+        ``joint_position(time, joint, axis)``: middle of what the bounding boxes of the two have in common, inertial
+        frame [m]. ``residual(time)``: energy that the audit does not explain [J]. Coordinates ``driven(body)``
+        and ``joint``, ``lower-upper``.
+
+    Notes
+    -----
+    The normal turns with the lower body. A block that rocks about its edge is lifted at the middle of its face by half
+    the width times the angle.
+    """
+    position, turns = run["position"].to_numpy(), rotation_matrices(run["orientation"])
+    names = structure.body_names
+    pairs = np.array(
+        [[names.index(name) for name in run[side].values] for side in ("lower", "upper")], dtype=int
+    ).T
+
+    def variable(dims, values, units, long_name):
+        return (dims.split(), values, {"units": units, "long_name": long_name})
+
+    joints = _joint_states(run, structure, pairs, position, turns)
+    return xr.Dataset(
+        {
+            "drift": variable(
+                "time body axis", _drift(structure, position, turns), "m", "displacement against the base"
+            ),
+            "normal_force": variable("time joint", joints["normal_force"], "N", "normal force, compression positive"),
+            "shear_force": variable("time joint", joints["shear_force"], "N", "magnitude of the shear force"),
+            "friction_ratio": variable("time joint", joints["friction_ratio"], "1", "shear over Coulomb's limit"),
+            "uplift": variable("time joint", joints["uplift"], "m", "opening at the middle of the face"),
+            "slip": variable("time joint", joints["slip"], "m", "slip at the middle of the face, magnitude"),
+            "joint_position": variable(
+                "time joint axis", _middles(structure, pairs, position, turns), "m", "middle of the joint"
+            ),
+            "residual": variable("time", unexplained_energy(run["energy"].to_numpy()), "J", "unexplained energy"),
+        },
+        coords={
+            "time": run["time"],
+            "body": run["body"],
+            "driven": ("body", structure.driven),
+            "axis": run["axis"],
+            "joint": [f"{names[lower]}-{names[upper]}" for lower, upper in pairs],
+            "lower": run["lower"],
+            "upper": run["upper"],
+        },
+    )  # fmt: skip
+
+
+def _drift(structure, position, turns):
+    seen = position
+    if structure.driven.any():
+        base = int(np.argmax(structure.driven))
+        seen = np.einsum("tji,tbj->tbi", turns[:, base], position - position[:, base, None])
+        start = rotation_matrices(structure.orientation[base])
+        seen = seen @ start.T  # axes of the world at the start, whatever the base's own are called
+    return seen - seen[:1]
+
+
+def _joint_states(run, structure, pairs, position, turns):
+    """Forces along the faces of the joints and motion across them, by name, float64 arrays (n_times, n_joints)."""
+    found = {
+        name: np.full((len(position), len(pairs)), np.nan)
+        for name in ("normal_force", "shear_force", "friction_ratio", "uplift", "slip")
+    }
+    known = find_joints(structure)[0]
+    if not len(known):
+        return found
+    seen = joint_coordinates(structure, position, turns)
+    moved = np.concatenate([seen["slip"], seen["opening"].to_numpy()[..., None]], axis=-1)
+    normals = contact_normals(structure, known)
+    gravity = np.linalg.norm(structure.file.gravity)
+    rows = {frozenset(pair): row for row, pair in enumerate(known.tolist())}
+    for joint, pair in enumerate(pairs.tolist()):
+        row = rows.get(frozenset(pair))
+        if row is None:
+            continue
+        lower, upper = known[row]
+        own = rotation_matrices(structure.orientation[lower]).T @ normals[row]  # in the lower body's frame
+        across = turns[:, lower] @ own
+        force = run["joint_force"].to_numpy()[:, joint] * (1.0 if pair == [lower, upper] else -1.0)
+        normal = np.einsum("ti,ti->t", force, across)
+        shear = np.linalg.norm(force - normal[:, None] * across, axis=1)
+        limit = structure.friction[lower, upper] * normal
+        told = (normal > _LEAST_LOAD * structure.mass[upper] * gravity) & (limit > 0.0)
+        uplift = moved[:, row] @ own
+        found["normal_force"][:, joint], found["shear_force"][:, joint] = normal, shear
+        found["friction_ratio"][told, joint] = shear[told] / limit[told]
+        found["uplift"][:, joint] = uplift
+        found["slip"][:, joint] = np.linalg.norm(moved[:, row] - uplift[:, None] * own, axis=1)
+    return found
+
+
+def _middles(structure, pairs, position, turns):
+    """Middle of what the bounding boxes of each pair have in common, (n_times, n_joints, 3), inertial frame [m]."""
+    low, high = np.empty_like(position), np.empty_like(position)
+    for body in range(position.shape[1]):
+        corners = np.einsum("tij,vj->tvi", turns[:, body], structure.solid(body).vertices)
+        low[:, body] = position[:, body] + corners.min(axis=1)
+        high[:, body] = position[:, body] + corners.max(axis=1)
+    first, second = pairs.T
+    return 0.5 * (np.maximum(low[:, first], low[:, second]) + np.minimum(high[:, first], high[:, second]))

@@ -1,0 +1,1 @@
+"""Tables of users: cells as written, and units."""

@@ -1,0 +1,224 @@
+"""Spreadsheets of a laboratory become a campaign, to the written digit, or one clear line."""
+
+from decimal import Decimal
+
+import numpy as np
+import openpyxl
+import pytest
+import xarray as xr
+
+from blockshake.cli import main
+from blockshake.files import PACKAGE
+from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+
+SHIPPED = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-1"
+TEST = "basso-tirreno-200"
+LENGTH = 8.0  # s, in which the strongest shaking is
+CHANNELS = ["slab-acc-x", "block-3-acc-x"]
+
+
+@pytest.fixture(scope="module")
+def virtual():
+    """A virtual test, cut, its readings with the digits that a laboratory writes."""
+    test = load_test(load_campaign(SHIPPED), TEST)
+    test = test.sel(time=slice(0.0, LENGTH), time_acc=slice(0.0, LENGTH), channel=CHANNELS)
+    written = {"marker_displacement": "{:.5f}", "accelerometer": "{:.3f}"}
+    return xr.Dataset({
+        name: test[name].copy(data=np.vectorize(lambda one, form=form: float(form.format(one)))(test[name]) + 0.0)
+        for name, form in written.items()
+    })  # fmt: skip
+
+
+def _written(value, size, decimal):
+    """Digits of a number in a unit of a size."""
+    if np.isnan(value):
+        return ""
+    return f"{(Decimal(repr(float(value))) / Decimal(size)).normalize():f}".replace(".", decimal)
+
+
+def _tables(test, decimal="."):
+    """Rows of the markers' table (mm) and of the accelerometers' (cm/s2), as text, the names first."""
+    names = [f"{marker}.{axis}" for marker in test["marker"].values for axis in "xyz"]
+    moved = test["marker_displacement"].to_numpy().reshape(test.sizes["time"], -1)
+    tables = []
+    for time, columns, values, size in (
+        ("time", names, moved, "0.001"),
+        ("time_acc", CHANNELS, test["accelerometer"].to_numpy(), "0.01"),
+    ):
+        rows = [["Zeit", *columns]]
+        for at, row in zip(test[time].values, values, strict=True):
+            rows.append([_written(at, "1", decimal), *(_written(one, size, decimal) for one in row)])
+        tables.append(rows)
+    return tables
+
+
+def _map(folder, test, markers, accelerometers, decimal):
+    names = [f"{marker}.{axis}" for marker in test["marker"].values for axis in "xyz"]
+    columns = "\n".join(f"  {name}: {name}" for name in [*names, *CHANNELS])
+    (folder / "map.yaml").write_text(f"""
+name: round-trip
+structure: configuration-1
+layout: {{decimal: "{decimal}"}}
+time: Zeit
+displacement_unit: mm
+acceleration_unit: cm/s2
+tests:
+  - {{name: t1, file: "{markers}", accelerometers: "{accelerometers}", motion: basso-tirreno, scale: 2.0, role: fit}}
+columns:
+{columns}
+""")
+    return folder / "map.yaml"
+
+
+def _equal_again(virtual, source, folder):
+    assert main(["import-campaign", str(source), "--output", str(folder / "campaign")]) == 0
+    again = load_test(load_campaign(folder / "campaign"), "t1")
+    for name in ("marker_displacement", "accelerometer"):
+        xr.testing.assert_identical(
+            again[name].drop_attrs().rename(None), virtual[name].drop_attrs().rename(None)
+        )
+
+
+def test_a_german_csv_comes_back_to_the_digit(virtual, tmp_path):
+    for name, rows in zip(("m.csv", "a.csv"), _tables(virtual, ","), strict=True):
+        (tmp_path / name).write_text("\n".join(";".join(row) for row in rows), encoding="cp1252")
+    _equal_again(virtual, _map(tmp_path, virtual, "m.csv", "a.csv", ","), tmp_path)
+
+
+def test_a_workbook_comes_back_to_the_digit(virtual, tmp_path):
+    book = openpyxl.Workbook()
+    book.active.title = "Marker"
+    for sheet, (names, *rows) in zip((book.active, book.create_sheet("Acc")), _tables(virtual), strict=True):
+        sheet.append(names)
+        for row in rows:
+            sheet.append([float(cell) if cell else None for cell in row])
+    book.save(tmp_path / "b.xlsx")
+    _equal_again(virtual, _map(tmp_path, virtual, "b.xlsx#Marker", "b.xlsx#Acc", "."), tmp_path)
+
+
+OPTIONS = [
+    "--structure",
+    "configuration-1",
+    "--motion",
+    "alkion",
+    "--displacement-unit",
+    "mm",
+    "--decimal",
+    ",",
+]
+COLUMNS = ["--time", "Zeit", "--column", "slab-face.x=Tisch", "--column", "block-1-face.x=Weg 1"]
+
+
+def _transducers(path, change=lambda rows: rows):
+    """A test of two displacement transducers along x, the second with an offset."""
+    rows = [[f"{step * 0.01:.2f}", "0,1", "57,3"] for step in range(1300)]
+    text = ["Zeit;Tisch;Weg 1", *(";".join(row).replace(".", ",") for row in change(rows))]
+    path.write_text("\n".join(text))
+    return str(path)
+
+
+def test_transducers_along_x_leave_the_other_directions_missing(tmp_path, capsys):
+    source, folder = _transducers(tmp_path / "v1.csv"), tmp_path / "campaign"
+    assert (
+        main(["import-campaign", source, *OPTIONS, *COLUMNS, "--rest", "0.5", "--output", str(folder)]) == 0
+    )
+    assert "not measured: y and z of all markers" in capsys.readouterr().out
+    read = load_test(load_campaign(folder), "v1")["marker_displacement"]
+    assert read.sel(axis=["y", "z"]).isnull().all()
+    assert (abs(read.sel(axis="x")) < 1e-12).all()
+    # nothing of a folder with content is overwritten
+    assert main(["import-campaign", source, *OPTIONS, *COLUMNS, "--output", str(folder)]) == 2
+    assert "nothing is overwritten" in capsys.readouterr().err
+
+
+def _set(row, column, cell):
+    def change(rows):
+        rows[row][column] = cell
+        return rows
+
+    return change
+
+
+def _without(first, last):
+    return lambda rows: rows[:first] + rows[last:]
+
+
+def _same(rows):
+    return rows
+
+
+BAD = {
+    "a column that is not there": (
+        _same, ["--column", "block-2-face.x=Weg 2"], "v1.csv: column 'Weg 2': expected this column once; there are",
+    ),
+    "an unknown unit": (_same, ["--displacement-unit", "inch"], "options: displacement_unit: expected a unit of disp"),
+    "no unit of accelerations": (_same, ["--column", "slab-acc-x=Tisch"], "options: acceleration_unit: missing key"),
+    "times that go back": (_set(50, 0, "0,4"), [], "v1.csv: line 52, Zeit: expected times that increase; 0.4 s"),
+    "no time": (_set(50, 0, ""), [], "v1.csv: line 52, Zeit: expected a time"),
+    "text among numbers": (_set(9, 2, "over"), [], "v1.csv: line 11, Weg 1: expected a number with a decimal comma"),
+    "a gap of the clock": (_without(200, 230), [], "v1.csv: line 202, Zeit: expected an even clock; 0.31 s after 1.99"),
+    "a clock in another unit": (_same, ["--time-unit", "ms"], "v1.csv: time: expected seconds, with 20 to 10000"),
+    "an unknown marker": (_same, ["--column", "mystery.x=Tisch"], "v1.csv: mystery: expected markers of the structure"),
+    "no axis": (_same, ["--column", "block-2-face=Tisch"], "options: columns.block-2-face: expected MARKER.x"),
+    "no rest taken off": (_same, ["--rest", "0"], "v1.csv: block-1-face.x: expected displacements since the first"),
+    "an empty file": (lambda rows: [], [], "v1.csv: expected rows of numbers below the names"),
+    "no separator": (_same, ["--separator", "::"], "v1.csv: separator: expected one character"),
+    "an unknown role": (_same, ["--role", "test"], "options: tests.v1.role: input should be 'fit'"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", BAD)
+def test_faults_get_one_line_and_leave_nothing(what, tmp_path, capsys):
+    change, options, message = BAD[what]
+    folder = tmp_path / "campaigns" / "mine"
+    source = _transducers(tmp_path / "v1.csv", change)
+    call = ["import-campaign", source, *OPTIONS, *COLUMNS, "--rest", "0.5", *options, "--output", str(folder)]
+    assert main(call) == 2
+    said = capsys.readouterr().err
+    assert message in said
+    assert said.count("\n") == 1
+    assert list(tmp_path.rglob("*.nc")) == []
+    assert not folder.exists()
+
+
+def test_rows_that_the_clock_lacks_become_gaps(tmp_path):
+    source, folder = _transducers(tmp_path / "v1.csv", _without(200, 230)), tmp_path / "campaign"
+    call = [
+        "import-campaign",
+        source,
+        *OPTIONS,
+        *COLUMNS,
+        "--rest",
+        "0.5",
+        "--fill-gaps",
+        "--output",
+        str(folder),
+    ]
+    assert main(call) == 0
+    read = load_test(load_campaign(folder), "v1")["marker_displacement"].sel(axis="x")
+    np.testing.assert_allclose(read["time"], 0.01 * np.arange(1300), atol=1e-12)
+    assert read.isnull().all("marker").values.nonzero()[0].tolist() == list(range(200, 230))
+
+
+def test_a_map_may_turn_a_transducer_round(tmp_path):
+    _transducers(tmp_path / "v1.csv", _set(700, 2, "58,3"))
+    (tmp_path / "map.yaml").write_text("""
+name: turned
+structure: configuration-1
+layout: {decimal: ","}
+time: Zeit
+displacement_unit: mm
+rest: 0.5
+columns:
+  slab-face.x: Tisch
+  block-1-face.x: {column: Weg 1, reversed: true}
+tests: [{name: t 1, file: v1.csv, motion: alkion, scale: 1.0, role: fit}]
+""")
+    assert main(["import-campaign", str(tmp_path / "map.yaml"), "--output", str(tmp_path / "c")]) == 0
+    read = load_test(load_campaign(tmp_path / "c"), "t 1")["marker_displacement"]
+    assert read.sel(marker="block-1-face", axis="x").min() == pytest.approx(-1e-3, abs=1e-12)
+    # a map says all
+    assert (
+        main(["import-campaign", str(tmp_path / "map.yaml"), "--rest", "1", "--output", str(tmp_path / "d")])
+        == 2
+    )

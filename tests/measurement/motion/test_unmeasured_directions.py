@@ -1,0 +1,107 @@
+"""Directions that no marker measures are missing, and the others are found without them."""
+
+import numpy as np
+import pytest
+from known_motion import SENSORS, STRUCTURE, TIME, base_motion, bump, moved_run, ramp, seen
+
+from blockshake.diagnosis.features.features import features
+from blockshake.diagnosis.features.reading import read_off
+from blockshake.dynamics.motion import ground_motion
+from blockshake.forces.joint_forces import gives_forces
+from blockshake.measurement.motion.joint_histories import joint_histories
+from blockshake.measurement.motion.measured_base import base_as_motion, draw_base, measure_base
+from blockshake.parity.parity import check_parity
+
+BASE = base_motion()
+ANGLE = bump(TIME, 1.5, 0.6, 0.02)
+SLIP = ramp(TIME, 2.5, 0.2, 0.004)
+_SMALL_PRODUCT = 0.38 * 0.02**2  # m: half a block's width times the square of the largest turn
+
+
+def _measured(test, axes, names=None):
+    """The test with readings of these axes alone, NaN along the others."""
+    test = test if names is None else test.sel(marker=names)
+    return test.assign(marker_displacement=test["marker_displacement"].where(test["axis"].isin(list(axes))))
+
+
+@pytest.fixture(scope="module")
+def run():
+    return moved_run(BASE, rocking=[0.0, ANGLE], slips=[SLIP], vertical=0.2 * BASE.displacement)
+
+
+def _one_a_body():
+    return [f"{name}-a" for name in STRUCTURE.body_names]
+
+
+def test_one_camera_tells_the_joints_in_its_plane(run):
+    found = joint_histories(_measured(seen(run), "xz"), STRUCTURE, SENSORS, BASE)
+    np.testing.assert_allclose(
+        found["rotation"].sel(axis="y").to_numpy().T, [0 * TIME, ANGLE, 0 * TIME], atol=1e-12
+    )
+    np.testing.assert_allclose(found["slip"].sel(tangent="x")[:, 0], SLIP, atol=1e-12)
+    np.testing.assert_allclose(found["opening"][:, 1], 0.38 * np.sin(ANGLE), atol=1e-12)
+    assert np.ptp(found["base_displacement"].sel(axis="z").to_numpy() - 0.2 * BASE.displacement) < 1e-12
+    for name, dim in (("slip", "tangent"), ("base_displacement", "axis"), ("body_displacement", "axis")):
+        assert found[name].sel({dim: "y"}).isnull().all()
+
+
+def test_displacement_transducers_at_two_heights_tell_turns_and_slips(run):
+    found = joint_histories(_measured(seen(run), "x"), STRUCTURE, SENSORS, BASE)
+    np.testing.assert_allclose(
+        found["rotation"].sel(axis="y").to_numpy().T, [0 * TIME, ANGLE, 0 * TIME], atol=1e-10
+    )
+    np.testing.assert_allclose(found["slip"].sel(tangent="x")[:, 0], SLIP, atol=_SMALL_PRODUCT)
+    np.testing.assert_allclose(
+        found["slip"].sel(tangent="x")[:, 1], 0.38 * (1.0 - np.cos(ANGLE)), atol=_SMALL_PRODUCT
+    )
+    assert found["opening"].isnull().all()
+
+
+def test_one_displacement_transducer_a_block_tells_its_drift_alone(run):
+    found = joint_histories(_measured(seen(run), "x", _one_a_body()), STRUCTURE, SENSORS, BASE)
+    np.testing.assert_allclose(found["body_displacement"].sel(body="block-1", axis="x"), SLIP, atol=1e-12)
+    for name in ("slip", "opening", "rotation"):
+        assert found[name].isnull().all()
+
+
+@pytest.mark.parametrize(
+    ("axes", "names", "kinds"),
+    [("xz", None, {"pivot+", "peak", "swing"}), ("x", None, {"swing"}), ("x", _one_a_body(), {"band1"})],
+)
+def test_features_are_those_that_the_markers_tell(run, axes, names, kinds):
+    whole = features(joint_histories(seen(run), STRUCTURE, SENSORS, BASE))
+    own = features(joint_histories(_measured(seen(run), axes, names), STRUCTURE, SENSORS, BASE))
+    assert np.isfinite(own["value"]).all()
+    told = [str(name) for name in own["feature"].values]
+    assert set(told) < set(whole["feature"].values)
+    assert not any("lateral" in name or "yaw" in name for name in told)
+    assert kinds <= {name.rpartition(".")[2] for name in told}
+    assert any("vertical" in name or "pivot" in name for name in told) == ("z" in axes)
+    # a whole test tells the same drift of the top
+    for name in ("top.displacement.peak+", "top.displacement.peak-"):
+        one, other = (float(found["value"].sel(feature=name)) for found in (own, whole))
+        assert one == pytest.approx(other, abs=0.02 * 0.8)
+
+
+@pytest.mark.parametrize(("axes", "names"), [("xz", None), ("x", None), ("x", _one_a_body())])
+def test_a_test_is_read_off_without_what_was_not_measured(run, axes, names):
+    test = _measured(seen(run), axes, names)
+    reading = read_off(test, STRUCTURE, SENSORS)
+    assert reading["drift"].sel(body=STRUCTURE.body_names[-1]).notnull().all()
+    assert reading.sizes["law"] == 0
+    assert not gives_forces(test, STRUCTURE, SENSORS)
+    assert check_parity({"t1": test}, STRUCTURE, SENSORS).findings == ()
+
+
+def test_a_table_is_commanded_along_what_nobody_measured(run):
+    told = {"x": BASE.displacement, "z": 0.2 * BASE.displacement}
+    command = ground_motion("command", TIME, told, "displacement")
+    base = measure_base(_measured(seen(run), "x"), STRUCTURE, SENSORS, command)
+    assert base.attrs["unread"] == "yz"
+    assert base["marker"].sel(channel=["y", "z"]).isnull().all()
+    assert base["displacement_error"].sel(channel=["y", "z"]).isnull().all()
+    motion = base_as_motion(base, draw_base(base, np.random.default_rng(1)), "measured", {})
+    moved = motion.evaluate(TIME - base.attrs["start"])
+    expected = command.evaluate(TIME - base.attrs["start"])
+    np.testing.assert_allclose(moved[:, 1], 0.0, atol=1e-15)
+    np.testing.assert_allclose(moved[:, 2], expected[:, 2], atol=1e-5)

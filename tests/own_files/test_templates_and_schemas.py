@@ -1,0 +1,103 @@
+"""Templates are right as they stand, and schemas for editors accept the shipped files."""
+
+import json
+import subprocess
+import sys
+
+import jsonschema
+import pytest
+
+from blockshake.cli import main
+from blockshake.files import HOME, load_yaml
+from blockshake.own_files.json_schemas import file_schema
+
+SHIPPED = {
+    "structure": [*HOME.glob("config/structures/*.yaml"), HOME / "config/templates/structure.yaml"],
+    "study": [HOME / f"config/{name}.yaml" for name in ("study", "quick", "paper", "templates/study")],
+    "campaign": [
+        *HOME.glob("data/virtual-campaign/*/campaign.yaml"),
+        HOME / "config/templates/campaign.yaml",
+    ],
+}
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"), [("structure", "wall.yaml"), ("study", "My Study.yaml"), ("campaign", "lab")]
+)
+def test_a_template_is_right_as_it_stands(kind, name, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", kind, name]) == 0
+    assert main(["check", name]) == 0
+    said = capsys.readouterr().out
+    assert "remark" not in said
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    assert main(["new", kind, name]) == 2
+    assert "nothing is overwritten" in capsys.readouterr().err
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
+
+
+def test_a_study_is_named_after_its_file(tmp_path):
+    assert main(["new", "study", str(tmp_path / "My Study.yaml")]) == 0
+    assert load_yaml(tmp_path / "My Study.yaml")["name"] == "my-study"
+    assert main(["new", "study", str(tmp_path / "study.txt")]) == 2
+    assert not (tmp_path / "study.txt").exists()
+
+
+@pytest.mark.slow
+def test_the_template_of_a_study_plans_its_jobs(tmp_path):
+    assert main(["new", "study", str(tmp_path / "mine.yaml")]) == 0
+    command = [
+        "-m",
+        "snakemake",
+        "-n",
+        "reports/mine.html",
+        "--cores",
+        "1",
+        "--snakefile",
+        HOME / "Snakefile",
+    ]
+    answer = subprocess.run(
+        [sys.executable, *command, "--configfile", "mine.yaml"],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert answer.returncode == 0, answer.stderr
+    assert "simulate_batch" in answer.stdout
+
+
+def _faults(kind, mapping):
+    # as an editor sees YAML: tuples are lists
+    return list(
+        jsonschema.Draft202012Validator(file_schema(kind)).iter_errors(json.loads(json.dumps(mapping)))
+    )
+
+
+@pytest.mark.parametrize("kind", SHIPPED)
+def test_shipped_files_validate(kind):
+    assert len(SHIPPED[kind]) > 1
+    for path in SHIPPED[kind]:
+        assert _faults(kind, load_yaml(path)) == [], path
+
+
+def test_a_map_validates_with_names_and_entries_of_columns():
+    mapping = {
+        "name": "a", "structure": "b", "time": 1, "displacement_unit": "mm",
+        "columns": {"slab.x": "A", "block.x": {"column": "B", "reversed": True}},
+        "tests": [{"name": "t", "file": "t.csv", "motion": "alkion", "scale": 1.0, "role": "fit"}],
+    }  # fmt: skip
+    assert _faults("import", mapping) == []
+    assert len(_faults("import", mapping | {"columns": {"slab.x": {"colum": "A"}}})) == 1
+
+
+@pytest.mark.parametrize("kind", SHIPPED)
+def test_a_misspelt_key_does_not_validate(kind):
+    mapping = load_yaml(SHIPPED[kind][0])
+    assert _faults(kind, mapping | {"desription": "x"}) != []
+
+
+def test_the_command_writes_a_schema_that_is_one(tmp_path, capsys):
+    for kind in (*SHIPPED, "import"):
+        assert main(["schema", kind, "--output", str(tmp_path / "s.json")]) == 0
+        assert main(["schema", kind]) == 0
+        printed = capsys.readouterr().out
+        assert (tmp_path / "s.json").read_text() == printed
+        jsonschema.Draft202012Validator.check_schema(json.loads(printed))

@@ -1,0 +1,231 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from blockshake.files import shipped
+from blockshake.geometry.structure import load_structure
+from blockshake.report.study.statements import ls_dem, nscd, specimens
+from blockshake.report.study.statements.statement import Verdict, against_tests
+from blockshake.simulation.models import MODELS
+
+MET, NOT_MET, UNJUDGED = Verdict.MET, Verdict.NOT_MET, Verdict.UNJUDGED
+
+
+@pytest.mark.parametrize(
+    ("judge", "model", "values", "verdict", "said"),
+    [
+        (ls_dem.level_set, "ls-dem", {}, NOT_MET, "by its formula"),
+        (ls_dem.level_set, "ls-dem", {"ls_dem.level_set": "grid"}, MET, "0.02 m"),
+        (
+            ls_dem.level_set, "ls-dem", {"ls_dem.level_set": "grid", "ls_dem.grid_spacing": 0.01}, NOT_MET,
+            "0.01 m",
+        ),
+        (ls_dem.node_spacing, "ls-dem", {}, MET, "0.2 m"),
+        (ls_dem.node_spacing, "ls-dem", {"ls_dem.node_spacing": 0.4}, NOT_MET, "0.4 m"),
+        (ls_dem.normal_law, "ls-dem", {}, NOT_MET, "0 times where it outweighs"),
+        (ls_dem.normal_law, "ls-dem", {"ls_dem.pulling": True}, MET, "1 times where it outweighs"),
+        (ls_dem.damping, "ls-dem", {}, NOT_MET, "0.215 for C_res 0.5"),
+        (ls_dem.damping, "ls-dem", {"ls_dem.damping": "node"}, MET, "each node"),
+        (ls_dem.shear_law, "ls-dem", {}, MET, "1 times beyond it"),
+        (ls_dem.shear_law, "ls-dem", {"ls_dem.shear_damping_ratio": 0.3}, NOT_MET, "0.3"),
+        (nscd.shrunk, "nscd-rigid", {"nscd.shrink": 0.02}, UNJUDGED, "0.02"),
+    ],
+)  # fmt: skip
+def test_settings_of_the_study_decide(content, parameters, judge, model, values, verdict, said):
+    parameters(model, **values)
+    found = judge(content)
+    assert found.verdict == verdict
+    assert said in found.words
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.2155, 0.6])
+def test_rebound_without_pull_is_that_of_the_equation_of_motion(ratio):
+    done = solve_ivp(
+        lambda time, state: [state[1], -state[0] - 2.0 * ratio * state[1]],
+        (0.0, 10.0), [0.0, -1.0], events=lambda time, state: state[0] + 2.0 * ratio * state[1], rtol=1e-10, atol=1e-12,
+    )  # fmt: skip
+    # the force is that of a spring and a dashpot; the first zero after the start ends the contact
+    assert ls_dem.rebound_without_pull(ratio) == pytest.approx(done.y_events[0][0][1], rel=1e-6)
+
+
+def test_a_step_is_judged_against_the_limit_of_stability(content):
+    assert ls_dem.stable_step(content).verdict == UNJUDGED
+    for limit, verdict in ((1e-4, MET), (1e-5, NOT_MET)):
+        for case in content.cases.values():
+            samples = case.responses["ls-dem"].samples
+            samples["numerics_stable_time_step"] = ("sample", np.full(samples.sizes["sample"], limit))
+        assert ls_dem.stable_step(content).verdict == verdict
+
+
+def test_a_time_step_is_that_of_the_study(content):
+    assert ls_dem.time_step(content, "ls-dem", 1e-5).verdict == NOT_MET
+    found = ls_dem.time_step(content, "nscd-rigid", 1e-3)
+    assert found.verdict == MET
+    assert "0.001 s" in found.words
+
+
+def test_steps_at_the_iteration_limit_are_counted(content):
+    assert nscd.converged(content).verdict == NOT_MET
+    for case in content.cases.values():
+        case.responses["nscd-rigid"].samples["numerics_capped_steps"][:] = 0
+    found = nscd.converged(content)
+    assert found.verdict == MET
+    assert "3.50e-06" in found.words
+
+
+def test_energy_residual_tells_what_is_conserved(content):
+    assert nscd.conserves(content).verdict == MET
+    content.cases["configuration-1"].responses["nscd-rigid"].samples["energy_residual"][0] = 0.2
+    found = nscd.conserves(content)
+    assert found.verdict == NOT_MET
+    assert "0.200 at most" in found.words
+
+
+def test_mesh_is_judged_where_blocks_deform(content):
+    assert nscd.mesh_size(content).verdict == UNJUDGED
+    for size, verdict in ((0.2, MET), (0.4, NOT_MET)):
+        content.study["models"]["nscd-elastic"] = {"parameters": {"nscd_deformable.mesh_size": size}}
+        assert nscd.mesh_size(content).verdict == verdict
+
+
+def test_restitution_of_rigid_contacts(content):
+    assert nscd.no_restitution(content).verdict == MET
+    case = content.cases["configuration-1"]
+    content.cases["configuration-1"] = replace(
+        case, structure=case.structure.with_parameters({"nscd_restitution": 0.3})
+    )
+    assert nscd.no_restitution(content).verdict == NOT_MET
+
+
+def test_penetration_is_held_against_the_sink_of_the_springs(content):
+    assert nscd.steepness(content).verdict == UNJUDGED
+    for deepest, verdict in ((1e-7, MET), (1e-3, NOT_MET)):
+        for case in content.cases.values():
+            samples = case.responses["nscd-rigid"].samples
+            samples["numerics_max_penetration"] = ("sample", np.full(samples.sizes["sample"], deepest))
+        found = nscd.steepness(content)
+        assert found.verdict == verdict
+    # configuration 1: three blocks of 7364 kg on a flat of 0.76 m x 2.36 m with 18 GN/m3
+    assert f"{1e6 * 3 * 7364 * 9.81 / (1.8e10 * 0.76 * 2.36):.2f} to" in found.words
+
+
+def test_the_models_say_what_they_have_no_use_for(content, monkeypatch):
+    assert nscd.no_modulus(content).verdict == MET
+    monkeypatch.setitem(MODELS, "nscd-rigid", replace(MODELS["nscd-rigid"], without_effect=()))
+    assert nscd.no_modulus(content).verdict == NOT_MET
+
+
+def test_cost_of_a_step(content):
+    found = nscd.dear_steps(content)
+    assert found.verdict == MET
+    assert "configuration-1 20 times a step and 1 times a simulated second" in found.words
+    content.study["models"]["nscd-rigid"]["time_step"] = 1e-6
+    assert nscd.dear_steps(content).verdict == NOT_MET
+
+
+@pytest.mark.parametrize(
+    "judge", [ls_dem.level_set, ls_dem.stable_step, nscd.steepness, nscd.no_modulus, nscd.dear_steps]
+)
+def test_a_model_that_is_not_there_is_named(content, judge):
+    del content.study["models"]["ls-dem"]
+    found = judge(content)
+    assert found.verdict == UNJUDGED
+    assert "no LS-DEM" in found.words
+
+
+def test_blocks_are_alike_only_with_the_chamfer_of_the_paper(content, tmp_path):
+    assert specimens.alike_blocks(content).verdict == MET
+    text = shipped("structures", "configuration-1").read_text()
+    (tmp_path / "other.yaml").write_text(text.replace("chamfer: 0.02", "chamfer: 0.03"))
+    case = content.cases["configuration-1"]
+    content.cases["configuration-1"] = replace(case, structure=load_structure(tmp_path / "other.yaml"))
+    found = specimens.alike_blocks(content)
+    assert found.verdict == NOT_MET
+    assert "0.02, 0.03 m" in found.words
+
+
+def test_heights_are_those_of_the_structure_files(content, monkeypatch):
+    assert specimens.heights(content).verdict == MET
+    found = specimens.tallest(content)
+    assert found.verdict == NOT_MET
+    assert "7.40 m, 0.20 m off" in found.words
+    monkeypatch.setattr(specimens, "TALLEST", 7.4)
+    assert specimens.tallest(content).verdict == MET
+    monkeypatch.setitem(specimens.HEIGHTS, "configuration-2", 6.6)
+    assert specimens.heights(content).verdict == NOT_MET
+
+
+def test_a_synthetic_test_judges_nothing_of_the_specimens(real):
+    assert specimens.along_one_axis(real).verdict == MET
+    moved = real.cases["configuration-4"].base["displacement"]
+    moved.loc[{"channel": "y"}] = 0.5 * moved.sel(channel="x")
+    assert specimens.along_one_axis(real).verdict == NOT_MET
+    cases = [replace(case, synthetic=True) for case in real.cases.values()]
+    for holds, side in ((True, "they bear"), (False, "they do not bear")):
+        found = against_tests(cases, holds, "So much.")
+        assert found.verdict == UNJUDGED
+        assert side in found.words
+        assert found.words.endswith("So much.")
+
+
+def test_motions_are_judged_by_their_peaks(content):
+    assert specimens.peaks(content).verdict == NOT_MET
+    for name, peak in specimens.PEAKS.items():
+        content.motions[name].attrs["peak_acceleration"] = peak
+    found = specimens.peaks(content)
+    assert found.verdict == MET
+    assert "Synthetic" in found.words
+    assert specimens.records(content).verdict == UNJUDGED
+
+
+def test_ladder_is_that_of_the_paper(content):
+    found = specimens.ladder(content)
+    assert found.verdict == MET
+    assert "configuration-4 at 2, NSCD rigid: 20.0 %" in found.words  # 1 of the 5 that count
+    content.study["ladder"]["increment"] = 0.5
+    assert specimens.ladder(content).verdict == NOT_MET
+
+
+def test_low_tests_and_the_strongest_are_those_of_the_campaign(content, tmp_path):
+    assert specimens.low_tests(content).verdict == NOT_MET
+    assert specimens.strongest_tests(content).verdict == MET
+    (tmp_path / "virtual.nc").touch()
+    (tmp_path / "campaign.yaml").write_text(
+        "name: other\nstructure: configuration-1\ntests:\n"
+        "  - {name: virtual, file: virtual.nc, motion: basso-tirreno, scale: 2.0, role: fit}\n"
+        "  - {name: low, file: virtual.nc, motion: sine, scale: 1.0, role: fit}\n"
+        "  - {name: strong, file: virtual.nc, motion: alkion, scale: 3.0, role: sealed}\n"
+    )
+    case = content.cases["configuration-1"]
+    case.settings["measured"] = {"campaign": str(tmp_path), "test": "virtual"}
+    del content.cases["configuration-4"]
+    assert specimens.low_tests(content).verdict == MET
+    found = specimens.strongest_tests(content)
+    assert found.verdict == NOT_MET
+    assert "strong (sealed)" in found.words
+
+
+def test_sensors_are_counted(content, monkeypatch):
+    found = specimens.instruments(content)
+    assert found.verdict == NOT_MET
+    assert "of 101" in found.words
+    monkeypatch.setattr(specimens, "INSTRUMENTS", {"accelerometers": 4, "markers": 4})
+    assert specimens.instruments(content).verdict == MET
+    assert specimens.rates(content).verdict == MET
+    content.study["output_rate"] = 100.0
+    assert specimens.rates(content).verdict == NOT_MET
+
+
+def test_input_is_measured_or_commanded(content):
+    assert specimens.measured_input(content).verdict == MET
+    content.cases["configuration-4"].settings["input"] = "commanded"
+    found = specimens.measured_input(content)
+    assert found.verdict == NOT_MET
+    assert "configuration-4 by the commanded motion" in found.words
+
+
+def test_stoppers_are_counted_and_not_judged(content):
+    assert specimens.stoppers(content) == (UNJUDGED, specimens.stoppers(content).words)
+    assert "0 stoppers" in specimens.stoppers(content).words

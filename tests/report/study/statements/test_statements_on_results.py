@@ -1,0 +1,283 @@
+from dataclasses import replace
+
+import numpy as np
+
+from blockshake.report.study.statements import calibration, envelopes, models, stiffness
+from blockshake.report.study.statements.statement import Verdict
+from blockshake.study.sampling.distributions import Lognormal
+
+MET, NOT_MET, UNJUDGED = Verdict.MET, Verdict.NOT_MET, Verdict.UNJUDGED
+FIRST, FOURTH = "configuration-1", "configuration-4"
+
+
+def test_table_2_and_its_samples(content):
+    found = calibration.table_2(content)
+    assert found.verdict == MET
+    assert "Other than in the table: none" in found.words
+    other = {**content.distributions, "friction.concrete.concrete": Lognormal(mean=0.6, cov=0.1)}
+    found = calibration.table_2(replace(content, distributions=other))
+    assert found.verdict == NOT_MET
+    assert "table: friction, concrete on concrete." in found.words
+    assert "off by 24.9 %" in found.words
+
+
+def test_correlation_is_held_against_pairs_at_random(content):
+    for error, verdict in ((0.02, MET), (0.05, NOT_MET)):  # a tenth of 1/3 for ten samples
+        content.design_summary["rms_correlation_error"] = error
+        found = calibration.correlation_control(content)
+        assert found.verdict == verdict
+        assert "0.33" in found.words
+
+
+def test_number_of_samples(content, monkeypatch):
+    assert calibration.size(content).verdict == NOT_MET
+    assert "configuration-4 6" in calibration.size(content).words
+    monkeypatch.setattr(calibration, "SIZE", 10)
+    content.cases.pop(FOURTH)
+    assert calibration.size(content).verdict == MET
+
+
+def test_variability_is_that_of_the_median_peak(content):
+    for half, verdict in ((0.05, MET), (0.2, NOT_MET)):
+        for case in content.cases.values():
+            for one in case.responses.values():
+                peak = one.envelope["peak"]
+                one.envelope["peak_interval"].loc[{"bound": "lower"}] = (1.0 - half) * peak
+                one.envelope["peak_interval"].loc[{"bound": "upper"}] = (1.0 + half) * peak
+        found = calibration.low_variability(content)
+        assert found.verdict == verdict
+        assert f"configuration-1, LS-DEM {100 * half:.1f} %" in found.words
+
+
+def search(content, **changes):
+    """The content with a friction search of one real test that is changed."""
+    found = {**content.friction[FIRST], "synthetic": 0, **changes}
+    return replace(content, friction={FIRST: found})
+
+
+def test_range_of_the_friction_search(content):
+    assert calibration.friction_range(content).verdict == MET
+    assert calibration.friction_range(search(content, lowest=0.4)).verdict == NOT_MET
+    assert calibration.friction_range(replace(content, friction={})).verdict == UNJUDGED
+
+
+def test_optimum_of_the_friction_search(content):
+    found = calibration.optimum(content)
+    assert found.verdict == UNJUDGED
+    assert "synthetic" in found.words
+    assert "0.75 is not refused" in found.words
+    means = content.friction[FIRST]["means"]
+    refused = {**means, "accepted": [False, True, False, False]}
+    between = {"answer": "between 0.3 and 0.6", "lower": 0.3, "upper": 0.6, "means": refused}
+    assert calibration.optimum(search(content, **between)).verdict == NOT_MET
+    assert calibration.optimum(search(content)).verdict == UNJUDGED  # open upward
+    bounded = {"answer": "between 0.4 and 0.9", "lower": 0.4, "upper": 0.9}
+    assert calibration.optimum(search(content, **bounded)).verdict == MET
+    unknown = {"answer": "unknown: no mean fits the measured curves", "means": refused}
+    assert calibration.optimum(search(content, **unknown)).verdict == UNJUDGED
+    assert calibration.optimum(replace(content, friction={})).verdict == UNJUDGED
+
+
+def calibrated(content, table, waves=None):
+    """The content with other stiffness of the samples, or other wave tests."""
+    one = content.calibrated[0]
+    return replace(content, calibrated=(replace(one, stiffness=table, waves=waves or one.waves),))
+
+
+def test_stiffness_that_is_one_number_times_the_modulus_follows_it(content):
+    modulus = content.design["materials.concrete.youngs_modulus"]
+    table = content.calibrated[0].stiffness.copy()
+    assert stiffness.follow_moduli(content).verdict == MET  # made up without regard to the modulus
+    table["ls_dem.normal_stiffness"], table["ls_dem.shear_stiffness"] = 0.5 * modulus, 0.25 * modulus
+    found = stiffness.follow_moduli(calibrated(content, table))
+    assert found.verdict == NOT_MET
+    assert "k_n / E 0.5000 per m" in found.words
+    assert "k_s / G 0.6000 per m" in found.words  # G is E / 2.4
+    assert "correlation 1.0000" in found.words
+    none = content.design.drop(columns="materials.concrete.youngs_modulus")
+    assert stiffness.follow_moduli(replace(content, design=none)).verdict == UNJUDGED
+
+
+def test_stiffness_of_heavier_blocks(content):
+    modulus, density = (
+        content.design[f"materials.concrete.{name}"] for name in ("youngs_modulus", "density")
+    )
+    for factor, verdict in ((0.5, NOT_MET), (density / 2400.0, MET), (2400.0 / density, NOT_MET)):
+        table = content.calibrated[0].stiffness.assign(**{"ls_dem.normal_stiffness": factor * modulus})
+        assert stiffness.heavier_blocks(calibrated(content, table)).verdict == verdict
+
+
+def test_wave_speeds_are_the_roots_of_the_moduli_over_the_density(content):
+    one = content.calibrated[0]
+    waves = one.waves.copy(deep=True)
+    waves["target_wave_speed"][:] = np.sqrt([3.45e10 / 2400.0, 3.45e10 / 2.4 / 2400.0])
+    waves["wave_speed"][:] = waves["target_wave_speed"]
+    found = stiffness.wave_speeds(calibrated(content, one.stiffness, waves))
+    assert found.verdict == MET
+    assert "normal 3791 m/s" in found.words
+    waves["wave_speed"][1] *= 1.01
+    assert stiffness.wave_speeds(calibrated(content, one.stiffness, waves)).verdict == NOT_MET
+
+
+def test_higher_blocks_follow_later(content):
+    assert stiffness.delayed(content).verdict == MET
+    one = content.calibrated[0]
+    waves = one.waves.copy(deep=True)
+    waves["arrival"][0, 1] = waves["arrival"][0, 0]
+    assert stiffness.delayed(calibrated(content, one.stiffness, waves)).verdict == NOT_MET
+
+
+def test_a_similar_velocity_is_reached_or_not(content):
+    found = stiffness.similar_velocity(content)
+    assert found.verdict == MET
+    assert "normal 1.00 to 1.00" in found.words
+    one = content.calibrated[0]
+    waves = one.waves.copy(deep=True)
+    waves["velocity"][1, :, 1] *= 0.75
+    found = stiffness.similar_velocity(calibrated(content, one.stiffness, waves))
+    assert found.verdict == NOT_MET
+    assert "never within 10.0 or 20.0 %" in found.words
+
+
+def test_restitution_is_not_calibrated(content):
+    found = stiffness.restitution(content)
+    assert found.verdict == UNJUDGED
+    assert "201.3 mm at 0.1, 150.7 mm at 0.5" in found.words
+    case = content.cases[FIRST]
+    content.cases[FIRST] = replace(case, structure=case.structure.with_parameters({"restitution": 0.3}))
+    assert stiffness.restitution(content).verdict == NOT_MET
+    assert "0.50 to 1.00 times over levels" in stiffness.definitions(content).words
+    assert "k_n 15.0 to 22 GN" in stiffness.histograms(content).words
+
+
+def thicken(content, model, tops):
+    """Give the blocks of the cases spreads that grow upward to these at the top [m]."""
+    for name, top in tops.items():
+        case = content.cases[name]
+        height = {marker.name: case.structure.position[case.structure.body_names.index(marker.body), 2]
+                  for marker in case.structure.file.markers}  # fmt: skip
+        spread = case.responses[model].sensitivity["spread"]
+        highest = max(height.values())
+        for marker in spread["marker"].values:
+            spread.loc[{"quantity": "history", "marker": marker}] = top * height[marker] / highest
+
+
+def test_envelopes_thicken_upward_or_not(content):
+    thicken(content, "ls-dem", {FIRST: 0.01, FOURTH: 0.02})
+    found = envelopes.upward(content, "ls-dem")
+    assert found.verdict == MET
+    assert "at scale 2" in found.words
+    assert "configuration-1 2.0, 6.0, 10.0 mm" in found.words
+    thicken(content, "ls-dem", {FOURTH: -0.02})
+    found = envelopes.upward(content, "ls-dem")
+    assert found.verdict == NOT_MET
+    assert "1 of 2 cases" in found.words
+
+
+def test_envelopes_at_the_top_are_compared(content):
+    thicken(content, "ls-dem", {FIRST: 0.01, FOURTH: 0.02})
+    assert envelopes.than_first(content, "ls-dem").verdict == MET
+    thicken(content, "nscd-rigid", {FIRST: 0.02, FOURTH: 0.01})
+    found = envelopes.than_first(content, "nscd-rigid")
+    assert found.verdict == NOT_MET
+    assert "configuration-1 20.0 mm, configuration-4 10.0 mm" in found.words
+    assert envelopes.with_structure(content, ("nscd-rigid",)).verdict == NOT_MET
+    assert envelopes.with_structure(content, ("ls-dem",)).verdict == MET
+    assert "no NSCD elastic" in envelopes.with_structure(content, ("ls-dem", "nscd-elastic")).words
+    assert envelopes.fourth_than_third(content, "ls-dem").verdict == UNJUDGED
+    content.cases[FOURTH].settings["scale"] = 1.25
+    assert envelopes.than_first(content, "ls-dem").verdict == UNJUDGED
+
+
+def test_rocking_and_residuals_by_configuration(content):
+    for turned, verdict in ((0.02, MET), (0.005, NOT_MET)):
+        content.cases[FIRST].responses["ls-dem"].samples["peak_rotation"][:] = 0.01
+        content.cases[FOURTH].responses["ls-dem"].samples["peak_rotation"][:] = turned
+        assert envelopes.rocking(content).verdict == verdict
+    for factor, verdict in ((100.0, MET), (1e-3, NOT_MET)):
+        for one in content.cases[FOURTH].responses.values():
+            one.envelope["residual"] *= factor
+        assert envelopes.residuals(content).verdict == verdict
+    del content.cases[FOURTH]
+    assert envelopes.rocking(content).verdict == UNJUDGED
+    assert envelopes.residuals(content).verdict == UNJUDGED
+
+
+def test_variables_that_matter_are_those_beyond_chance(content):
+    for case in content.cases.values():
+        result = case.responses["ls-dem"].sensitivity
+        result["first_order_chance"][:] = 0.5
+        result["rank_correlation_chance"][:] = 0.5
+        result["first_order"][:] = 0.1
+        result["rank_correlation"][:] = 0.1
+        for name in ("materials.concrete.density", "materials.concrete.youngs_modulus"):
+            result["first_order"].loc[{"parameter": name}] = 0.8
+    found = envelopes.parameters_matter(content)
+    assert found.verdict == NOT_MET
+    assert "Never beyond chance: friction." in found.words
+    result["first_order"].loc[{"parameter": "friction.concrete.concrete"}] = 0.8
+    assert envelopes.parameters_matter(content).verdict == MET
+
+
+def chances(content, values):
+    """Give the measured curves of the cases these chances, by every model."""
+    for name, value in values.items():
+        for one in content.cases[name].responses.values():
+            one.comparison["curve_probability"][:] = value
+
+
+def test_resemblance_hangs_on_measured_curves(content, real):
+    chances(real, {FIRST: 0.5, FOURTH: 0.5})
+    assert models.resemblance(real).verdict == MET
+    chances(real, {FOURTH: 1.0 / 11.0})  # the lowest that ten samples tell
+    assert models.resemblance(real).verdict == NOT_MET
+    real.cases[FIRST] = replace(real.cases[FIRST], synthetic=True)
+    found = models.resemblance(real)
+    assert found.verdict == UNJUDGED
+    assert "do not bear the statement out" in found.words
+
+
+def test_models_that_fit_some_configurations(real):
+    chances(real, {FIRST: 0.5, FOURTH: 0.01})
+    assert models.satisfactory(real, "nscd-rigid", (1,), (4,)).verdict == MET
+    found = models.satisfactory(real, "nscd-rigid", (1, 2, 3, 4))
+    assert found.verdict == NOT_MET
+    assert "fewer than three samples: configuration-2, configuration-3" in found.words
+    assert models.satisfactory(real, "nscd-elastic", (1,)).verdict == UNJUDGED
+
+
+def test_the_best_model_has_the_lowest_score_of_every_test(real):
+    assert models.best_model(real).verdict == UNJUDGED
+    case = real.cases[FIRST]
+    for model in ("nscd-elastic", "nscd-viscoelastic"):
+        real.study["models"][model] = {"time_step": 1e-3}
+    found = case.differences.copy(deep=True)
+    found["counted"][:] = 6
+    for lower, verdict in ((1e-3, MET), (-2e-3, NOT_MET), (-1e-3, UNJUDGED)):
+        for other in ("nscd-rigid", "nscd-elastic"):
+            pair = {"model": "nscd-viscoelastic", "other": other}
+            found["score_difference_interval"].loc[pair] = [lower, lower + 1.5e-3]
+        for place in (1, 2, 3, 4):
+            name = f"configuration-{place}"
+            real.cases[name] = replace(case, name=name, differences=found)
+        assert models.best_model(real).verdict == verdict
+
+
+def test_models_are_alike_where_their_peaks_have_ranges_in_common(content):
+    assert models.alike(content).verdict == MET
+    content.cases[FIRST].responses["nscd-rigid"].envelope["peak"] *= 100.0
+    found = models.alike(content)
+    assert found.verdict == NOT_MET
+    assert "configuration-1 none of 3" in found.words
+
+
+def test_rotations_are_held_against_the_noise_of_two_markers(real):
+    del real.cases[FOURTH]
+    case = real.cases[FIRST]
+    for turned, verdict in ((1e-6, MET), (1e-3, NOT_MET)):
+        for one in case.responses.values():
+            one.samples["peak_rotation"][:] = turned
+        found = models.rotations(real)
+        assert found.verdict == verdict
+    # markers of a face 0.6 m and 1.3 m apart
+    assert f"{1e3 * np.sqrt(2.0) * 1e-4 / np.hypot(0.6, 1.3):.2g}" in found.words

@@ -1,0 +1,111 @@
+"""Tables as users write them: digits stay, faults get one line."""
+
+from decimal import Decimal
+
+import numpy as np
+import openpyxl
+import pytest
+
+from blockshake.errors import InputError
+from blockshake.tables.table_file import TableLayout, read_table
+from blockshake.tables.units import kind_of_unit, unit_size
+
+MM = unit_size("displacement", "mm", "here", "unit")
+
+
+def _column(path, name, size=Decimal(1), **layout):
+    return read_table(path, TableLayout(**layout)).column(name, size).tolist()
+
+
+@pytest.mark.parametrize(
+    ("text", "layout"),
+    [
+        ("t,a b\n0,1.5\n0.1,-2e-3\n", {}),
+        ("t;a b\n0;1,5\n0,1;-2e-3\n", {"decimal": ","}),
+        ("t\ta b\r\n0\t1,5\r\n0,1\t-2e-3\r\n", {"decimal": ","}),
+        ("t|a b\n0|1.5\n\n0.1|-2e-3\n", {}),
+        ("logger 7\nt;a b\ns;mm\n0;1.5\n0.1;-2e-3\n", {"header": 2, "data": 4}),
+        ('"t","a b"\n"0","1,5"\n"0,1","-2e-3"\n', {"separator": ",", "decimal": ","}),
+    ],
+)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+def test_a_text_with_any_separator(text, layout, encoding, tmp_path):
+    (tmp_path / "t.csv").write_bytes(text.replace("a b", "Prüfkörper").encode(encoding))
+    assert _column(tmp_path / "t.csv", "Prüfkörper", **layout) == [1.5, -2e-3]
+
+
+def test_columns_without_names_are_counted(tmp_path):
+    (tmp_path / "t.txt").write_text("  0.0   0.5\n 0.01  0.25\n")
+    assert _column(tmp_path / "t.txt", "2") == [0.5, 0.25]
+
+
+def test_a_number_is_the_nearest_to_its_digits_in_its_unit(tmp_path):
+    """0.9 mm times 1e-3 in binary is one unit in the last place off 0.0009."""
+    (tmp_path / "t.csv").write_text("t,a\n0,0.9\n1,\n2,NaN\n")
+    read = _column(tmp_path / "t.csv", "a", MM)
+    assert read[0] == 0.0009 != 0.9 * 1e-3
+    assert np.isnan(read[1:]).all()
+
+
+def _book(path, **sheets):
+    book = openpyxl.Workbook()
+    book.remove(book.active)
+    for name, rows in sheets.items():
+        sheet = book.create_sheet(name)
+        for row in rows:
+            sheet.append(row)
+    book.save(path)
+    return path
+
+
+def test_a_workbook(tmp_path):
+    one = [["t", "a"], [0.0, 1.1], [0.1, None], [0.2, "2.5"]]
+    path = _book(tmp_path / "b.xlsx", first=one)
+    assert _column(path, "a", MM)[::2] == [0.0011, 0.0025]
+    path = _book(tmp_path / "b.xlsx", first=one, second=[["t", "a"], [0, 7]])
+    assert _column(f"{path}#second", "a") == [7.0]
+
+
+def test_sheets_and_files_that_hold_no_table(tmp_path):
+    path = _book(tmp_path / "b.xlsx", empty=[], one=[["t", "a"]])
+    (tmp_path / "no.xlsx").write_text("t,a\n")
+    for source, message in (
+        (f"{path}#empty", "expected names of columns in line 1, and rows; it is empty"),
+        (f"{path}#one", "expected rows of numbers below the names in line 1; there is none"),
+        (f"{path}#two", "two: expected FILE#SHEET with one of the sheets empty, one"),
+        (path, "expected FILE#SHEET with one of the sheets empty, one"),
+        (tmp_path / "no.xlsx", "expected a workbook"),
+        (tmp_path / "nothing.csv", "expected a readable file"),
+    ):
+        with pytest.raises(InputError, match=message):
+            read_table(source, TableLayout())
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("t,b\n0,1\n", "column 'a': expected this column once; there are t, b"),
+        ("t,a,a\n0,1,1\n", "column 'a': expected this column once; it stands twice"),
+        ("t,a\n0,1\n1,far\n", "line 3, a: expected a number with a decimal point, or nothing, not 'far'"),
+        ("t;a\n0;1,5\n", "line 2, a: expected a number with a decimal point, or nothing, not '1,5'"),
+        ("t,a\n0,1_0\n", "line 2, a: expected a number"),
+        ('t,a\n0,"1\n', "expected cells between ','"),
+    ],
+)
+def test_faults_of_a_table_name_their_place(text, message, tmp_path):
+    (tmp_path / "t.csv").write_text(text)
+    with pytest.raises(InputError, match=r"t\.csv") as error:
+        _column(tmp_path / "t.csv", "a")
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_units_have_their_sizes():
+    for kind, unit, size in (
+        ("displacement", "mm", "0.001"), ("time", "ms", "0.001"), ("acceleration", "g", "9.80665"),
+        ("acceleration", "cm/s2", "0.01"), ("acceleration", "GAL", "0.01"), ("displacement", "\N{MICRO SIGN}m", "1e-6"),
+    ):  # fmt: skip
+        assert unit_size(kind, unit, "here", "unit") == Decimal(size)
+    assert kind_of_unit("cm/s", ("acceleration", "velocity"), "here", "unit") == "velocity"
+    with pytest.raises(InputError, match="expected a unit of displacement"):
+        unit_size("displacement", "inch", "here", "unit")

@@ -1,0 +1,95 @@
+"""A store gives back whole units as they were put there, and never a part of one, or another's."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from blockshake.errors import InputError
+from blockshake.files import write_dataset
+from blockshake.store import keep_dataset, kept, kept_value, load_made
+
+DATASET = xr.Dataset(
+    {"v": ("time", np.linspace(0.0, 1.0, 500) ** 3, {"units": "m"}), "who": ("k", ["a", "bc"])}
+)
+
+
+def _cut(path):
+    path.write_bytes(path.read_bytes()[:-1000])
+
+
+def _emptied(path):
+    path.write_bytes(b"")
+
+
+def _flipped(path):
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+
+
+def _foreign(path):
+    write_dataset(path, DATASET)
+
+
+def _of_another_name(path):
+    keep_dataset(path.with_name("other.nc"), DATASET)
+    path.write_bytes(path.with_name("other.nc").read_bytes())
+
+
+def _a_folder(path):
+    path.unlink()
+    path.mkdir()
+
+
+def test_a_kept_dataset_is_an_ordinary_file(tmp_path):
+    path = tmp_path / "store" / "a.nc"
+    assert not kept(path)
+    keep_dataset(path, DATASET)
+    assert kept(path)
+    xr.testing.assert_identical(xr.load_dataset(path), DATASET)
+    assert list(path.parent.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("damage", [_cut, _emptied, _flipped, _foreign, _of_another_name, _a_folder])
+def test_damage_is_seen(damage, tmp_path):
+    keep_dataset(tmp_path / "a.nc", DATASET)
+    damage(tmp_path / "a.nc")
+    assert not kept(tmp_path / "a.nc")
+
+
+def test_a_value_is_made_once_and_a_damaged_one_anew(tmp_path):
+    made = []
+
+    def make():
+        made.append({"peak": 0.1 + 0.2, "none": float("nan"), "text": "é"})
+        return made[-1]
+
+    first = kept_value(tmp_path / "store", "key", make)
+    assert first["peak"] == 0.1 + 0.2
+    assert np.isnan(first["none"])
+    assert kept_value(tmp_path / "store", "key", make)["text"] == "é"
+    assert len(made) == 1
+    (path,) = (tmp_path / "store").iterdir()
+    for count, damage in enumerate((_cut, _emptied, _flipped), start=2):
+        damage(path)
+        assert kept_value(tmp_path / "store", "key", make)["peak"] == 0.1 + 0.2
+        assert len(made) == count
+        assert kept(path)
+
+
+def test_what_fails_leaves_nothing(tmp_path):
+    with pytest.raises(TypeError):
+        kept_value(tmp_path / "store", "key", lambda: {"a": object()})
+    assert list((tmp_path / "store").iterdir()) == []
+
+
+@pytest.mark.parametrize("damage", [_cut, _emptied, lambda path: path.write_text("time,x"), _a_folder])
+def test_a_damaged_file_of_an_earlier_job_is_one_line(damage, tmp_path):
+    write_dataset(tmp_path / "a.nc", DATASET)
+    xr.testing.assert_identical(load_made(tmp_path / "a.nc"), DATASET)
+    damage(tmp_path / "a.nc")
+    with pytest.raises(
+        InputError, match=r"a\.nc: expected the netCDF file that an earlier job made; delete it"
+    ) as error:
+        load_made(tmp_path / "a.nc")
+    assert "\n" not in str(error.value)

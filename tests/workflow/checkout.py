@@ -1,0 +1,68 @@
+"""A copy of the checkout with a small study, as a user has one."""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import yaml
+
+from blockshake.files import PACKAGE, load_yaml
+
+ROOT = PACKAGE.parents[1]
+COPIED = ("Snakefile", "config", "data", "profiles", "src", "workflow")
+SNAKEMAKE = Path(sys.executable).with_name("snakemake")
+LIMIT = 1200  # s; against a study that hangs, not a measure of speed: other jobs may share the machine
+
+
+class Checkout:
+    """A copy of the project with a small study of configuration 1."""
+
+    def __init__(self, folder, **changes):
+        self.folder = folder
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in COPIED:
+            source = ROOT / name
+            if source.is_dir():
+                shutil.copytree(
+                    source, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info")
+                )
+            else:
+                shutil.copy(source, folder / name)
+        config = load_yaml(ROOT / "config" / "quick.yaml")
+        config["cases"] = config["cases"][:1]
+        config["cases"][0]["duration"] = 0.05
+        config["convergence"]["duration"] = 0.05
+        config["name"] = "small"
+        self.write_config(config | changes)
+
+    def write_config(self, config):
+        self.config = config
+        (self.folder / "config" / "small.yaml").write_text(yaml.safe_dump(config, sort_keys=False))
+
+    def command(self, *arguments):
+        return [SNAKEMAKE, "--cores", "2", *arguments, "--configfile", "config/small.yaml"]
+
+    def snakemake(self, *arguments):
+        return subprocess.run(
+            self.command(*arguments),
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            timeout=LIMIT,
+            check=False,
+        )
+
+    def jobs(self, *arguments):
+        """Rules that a dry run would run, with their number."""
+        answer = self.snakemake("-n", *arguments)
+        assert answer.returncode == 0, answer.stderr
+        return {
+            name: int(count)
+            for name, count in re.findall(r"^(\w[\w-]*) +(\d+)$", answer.stdout, flags=re.MULTILINE)
+        }
+
+    def append(self, source, text):
+        path = self.folder / "src" / "blockshake" / source
+        path.write_text(path.read_text() + text)
