@@ -11,6 +11,9 @@ from fake_inputs import definitions, motion, waves
 from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.marker_noise import noisy_reading
+from blockshake.study.comparison.comparison import compare_models
+from blockshake.study.comparison.differences import FEWEST
+from blockshake.study.comparison.twins import TWINS
 from blockshake.study.convergence.table import COLUMNS, EXACT, OBSERVABLES, write_convergence
 from blockshake.study.ensembles.case_input import measured_input
 from blockshake.study.ensembles.coverage import coverage
@@ -20,14 +23,26 @@ from blockshake.study.sampling.distributions import TABLE_2
 from blockshake.study.sampling.latin_hypercube import draw_samples
 from blockshake.study.sensitivity.sensitivity import sensitivity
 
-MODELS = {"ls-dem": {"time_step": 5e-5}, "nscd-rigid": {"time_step": 1e-3}}
+MODELS = {
+    "ls-dem": {"time_step": 5e-5},
+    "nscd-rigid": {"time_step": 1e-3},
+    "nscd-elastic": {"time_step": 1e-3},
+    "nscd-viscoelastic": {"time_step": 1e-3},
+}
+FEWER = {
+    "configuration-1": {"nscd-elastic": 4, "nscd-viscoelastic": 4},
+    "configuration-4": {"nscd-rigid": 6, "nscd-elastic": 1, "nscd-viscoelastic": 3},
+}
 COLLAPSE_REASON = "wall-b-4 tipped over or dropped at 1.000 s"
 CPU_TIME = 43.21  # s, of every job
+HOUSNER = 0.731
+# of the first sample, and what an impact keeps
+STRENGTH = {"ls-dem": 0.8, "nscd-rigid": 0.82, "nscd-elastic": 0.6, "nscd-viscoelastic": 0.79}
 
 
 class FakeStudy:
-    """Writes the files of a study: configuration-1 complete, configuration-4 with fewer NSCD samples, two of
-    which collapsed or failed."""
+    """Writes the files of a study: configuration-1 complete, configuration-4 with fewer samples by rigid NSCD, two of
+    which collapsed or failed; few by deformable NSCD, and one only by elastic NSCD of configuration-4."""
 
     def __init__(self, folder, size=10, duration=2.0, rate=50.0):
         self.folder, self.size = Path(folder), size
@@ -44,7 +59,7 @@ class FakeStudy:
                     "motion": "basso-tirreno",
                     "scale": 2.0,
                     "duration": duration,
-                    "samples": {"nscd-rigid": 6} if name == "configuration-4" else {},
+                    "samples": FEWER[name],
                     "measured": {"campaign": str(self.folder / "campaigns" / name), "test": "virtual"},
                     "input": "measured",
                 }
@@ -103,13 +118,18 @@ class FakeStudy:
             "tests:\n  - {name: virtual, file: virtual.nc, motion: basso-tirreno, scale: 2.0, role: fit}\n",
         )
         write_dataset(self.results / "inputs" / f"{name}.nc", measured_input(case, case["measured"]))
+        ensembles, twins = {}, {}
         for model in MODELS:
             count = case["samples"].get(model, self.size)
-            runs = [self.run(structure, model, 0.8 + 0.4 * sample / count) for sample in range(count)]
-            if count < self.size:
+            runs = [
+                self.run(structure, model, STRENGTH[model] + 0.4 * sample / count) for sample in range(count)
+            ]
+            if count == 6:
                 end(runs[2], "collapsed", COLLAPSE_REASON, 1.0)
                 end(runs[4], "not-converged", "2.0 % of the steps ended above a residual", self.time[-1])
-            ensemble = gather_ensemble(runs, range(count), self.design, "slab-face")
+            ensemble = ensembles[model] = gather_ensemble(runs, range(count), self.design, "slab-face")
+            if count >= FEWEST:
+                twins[model] = self.twins(structure, model)
             for kind, result in (
                 ("envelopes", envelope(ensemble, 0.4)),
                 ("samples", sample_figures(ensemble)),
@@ -119,6 +139,21 @@ class FakeStudy:
                 write_dataset(self.results / kind / model / f"{name}.nc", result)
             record = self.benchmarks / "simulate_batch" / model / name / f"000-{count - 1:03d}.jsonl"
             write_text(record, json.dumps({"cpu_time": CPU_TIME, "s": 50.0}) + "\n")
+
+        differences = compare_models(ensembles, twins, (test, 1e-4))
+        write_dataset(self.results / "differences" / f"{name}.nc", differences)
+
+    def twins(self, structure, model):
+        """Twins of the first sample that are 1 and 5 % stronger, and an impact ratio."""
+        runs = [self.run(structure, model, factor * STRENGTH[model]) for factor in (1.01, 1.05)]
+        found = xr.concat(
+            [run[["marker_displacement"]] for run in runs], dim="twin", coords="minimal", compat="override"
+        )
+        found = found.assign_coords(twin=list(TWINS), step=["usual", "half"])
+        found["impact_ratio"] = ("step", [STRENGTH[model], STRENGTH[model] + 0.01])
+        found["housner_ratio"] = ((), HOUSNER)
+        found.attrs = {"sample": 0}
+        return found
 
     def run(self, structure, model, strength):
         """A run whose blocks sway the more the higher they stand; peaks are ``strength`` times the height in cm."""

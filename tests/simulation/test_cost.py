@@ -24,7 +24,9 @@ def test_the_search_of_the_mean_friction_is_counted(monkeypatch):
     config = load_config("config/study.yaml")
     search = config.friction_calibration
     assert search.runs == (6 + 2 * 2) * 10 * 3
-    samples = 4 * 50 + 50 + 50 + 20 + 10
+    samples = 4 * 50 + 50 + 50 + 20 + 10 + 2 * (8 + 8 + 8 + 1)
+    twins = 2 * 4 + 2 * 3  # of every model and case but configuration 4 with deformable blocks
+    samples += 3 * twins  # one of them at half the step
     expected = (samples + search.runs) * 10.0 / 3600.0
     assert cost.estimate_hours(config) == pytest.approx(expected)
     without = config.model_copy(update={"friction_calibration": None})

@@ -10,7 +10,9 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, load_yaml
 from blockshake.geometry.structure import load_structure
+from blockshake.simulation.models import MODELS
 from blockshake.study.check import check_file
+from blockshake.study.comparison.differences import FEWEST
 from blockshake.study.config import check_config, load_config
 from blockshake.study.motion_remarks import motion_remarks
 from blockshake.study.sampling.distributions import TABLE_2
@@ -60,6 +62,15 @@ def test_fewer_samples_of_one_model(mapping):
     config = check_config(mapping, "study.yaml")
     assert config.samples("nscd-rigid", "configuration-1") == 50
     assert 10 <= config.samples("nscd-rigid", "configuration-4") <= 50
+    assert config.has_twins("nscd-rigid", "configuration-4")
+
+
+def test_all_models_run_all_cases_of_the_default_study(mapping):
+    config = check_config(mapping, "study.yaml")
+    assert set(config.models) == set(MODELS)
+    few = config.samples("nscd-elastic", "configuration-4")
+    assert few >= 1
+    assert config.has_twins("nscd-elastic", "configuration-4") == (few >= FEWEST)
 
 
 @pytest.mark.parametrize(
@@ -81,8 +92,8 @@ def test_fewer_samples_of_one_model(mapping):
         (("cases", 1, "structure"), "configuration-1", "study.yaml: cases.0: expected every structure once"),
         (
             ("cases", 3, "samples"),
-            {"nscd-rigid": 5},
-            "study.yaml: cases.3.samples.nscd-rigid: expected 10 to 50, not 5",
+            {"nscd-rigid": 0},
+            "study.yaml: cases.3.samples.nscd-rigid: expected 1 to 50, not 0",
         ),
         (
             ("cases", 0, "measured", "test"),
@@ -184,7 +195,10 @@ def test_check_says_what_a_good_file_is(monkeypatch):
     assert "9 blocks" in check_file("config/structures/configuration-3.yaml")
     assert "3 of 0.8 x 2.4 x 1.6 m, 7364 kg, height over width 2" in check_file("configuration-1")
     assert "a motion of 25 s, given as acceleration; peaks along x: " in check_file("alkion")
-    assert "a study of 4 cases by ls-dem and nscd-rigid, 50 samples" in check_file("config/study.yaml")
+    said = check_file("config/study.yaml")
+    assert said.startswith(
+        "a study of 4 cases by ls-dem (50 samples), nscd-rigid (10 to 50 samples), nscd-elastic ("
+    )
 
 
 @pytest.mark.parametrize("text", ["a: 1\n", "- 1\n", "a: [\n"])

@@ -102,15 +102,30 @@ def batches(model, case):
     ]
 
 
-def batch_files(wildcards):
-    """Batch files of a case by a model."""
+def batch_files(wildcards, model=None):
+    """Batch files of a case by a model, of the wildcards if none is named."""
+    model = model or wildcards.model
     return expand(
         "results/{study}/runs/{model}/{case}/{batch}.nc",
         study=wildcards.study,
-        model=wildcards.model,
+        model=model,
         case=wildcards.case,
-        batch=batches(wildcards.model, wildcards.case),
+        batch=batches(model, wildcards.case),
     )
+
+
+def files_of_models(wildcards):
+    """Batch files of a case by every model, and their twins, each under a name of its own for the rule's input."""
+    twins = "results/{study}/twins/{model}/{case}.nc"
+    named = {f"batches {model}": batch_files(wildcards, model) for model in MODELS}
+    named |= {
+        f"twins {model}": twins.format(
+            study=wildcards.study, model=model, case=wildcards.case
+        )
+        for model in MODELS
+        if CHECKED.has_twins(model, wildcards.case)
+    }
+    return named
 
 
 def source_of(script, *models):

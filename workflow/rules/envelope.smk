@@ -59,3 +59,29 @@ rule measure_sensitivity:
         source=source_of("measure_sensitivity"),
     script:
         "../scripts/measure_sensitivity.py"
+
+
+rule compare_models:
+    """Distances of the models' ensembles from each other and from the measured curves, beside the numerics' floor."""
+    input:
+        unpack(files_of_models),
+        base=lambda wildcards: (
+            f"results/{wildcards.study}/inputs/{wildcards.case}.nc"
+            if CASES[wildcards.case]["measured"]
+            else []
+        ),
+        campaign=lambda wildcards: (
+            campaign_files(wildcards.case) if CASES[wildcards.case]["measured"] else []
+        ),
+    output:
+        "results/{study}/differences/{case}.nc",
+    log:
+        "logs/{study}/compare_models/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        models=MODELS,
+        measured=lambda wildcards: CASES[wildcards.case]["measured"],
+        source=source_of("compare_models"),
+    script:
+        "../scripts/compare_models.py"

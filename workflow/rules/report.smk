@@ -47,6 +47,9 @@ rule make_report:
             model=MODELS,
             case=MEASURED,
         ),
+        differences=expand(
+            "results/{study}/differences/{case}.nc", study=STUDY, case=CASES
+        ),
         friction=expand(
             "results/{study}/friction/{case}.json",
             study=STUDY,

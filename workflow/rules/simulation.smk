@@ -51,6 +51,41 @@ rule simulate_batch:
         "../scripts/simulate_batch.py"
 
 
+rule run_twins:
+    """The first sample a little stronger and at half the step, and one block alone: the floor of a model's numerics."""
+    input:
+        structure=lambda wildcards: definition(
+            "structures", CASES[wildcards.case]["structure"]
+        ),
+        motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
+        base=base_file,
+        design="results/{study}/design.csv",
+        stiffness=stiffness_file,
+        kernels=lambda wildcards: kernels(wildcards.model),
+    output:
+        "results/{study}/twins/{model}/{case}.nc",
+    log:
+        "logs/{study}/run_twins/{model}/{case}.log",
+    benchmark:
+        "benchmarks/{study}/run_twins/{model}/{case}.jsonl"
+    conda:
+        "../envs/blockshake.yaml"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=240,
+    params:
+        case=case_definition,
+        settings=lookup(dpath="models/{model}", within=config),
+        output_rate=lookup(dpath="output_rate", within=config),
+        linked=lookup(dpath="ensemble/linked", within=config),
+        seed=lookup(dpath="ensemble/seed", within=config),
+        store="results/store",
+        source=lambda wildcards: source_of("run_twins", wildcards.model),
+    script:
+        "../scripts/run_twins.py"
+
+
 rule climb_ladder:
     """The paper's ladder of intensities with nominal parameters: what the cases' scales were taken from."""
     input:

@@ -24,8 +24,8 @@ def estimate_hours(config):
     Notes
     -----
     Each case is tried with each model until 0.3 s after the first 2 s, with nominal parameters, and again until
-    2 s; the difference is what a second of strong motion costs. Stronger rocking than the trial's costs more. The
-    search of the mean friction counts with as many runs as it may need.
+    2 s; the difference is what a second of strong motion costs. Stronger rocking than the trial's costs more. Twins
+    count as one run and one of twice the steps; the search of the mean friction with as many runs as it may need.
     """
     seconds = 0.0
     for model, settings in config.models.items():
@@ -40,7 +40,7 @@ def estimate_hours(config):
                 )  # fmt: skip
                 spent.append(time.process_time() - started)
             per_second = max((spent[2] - spent[1]) / _TRIAL, (spent[2] - spent[0]) / (_TRIAL_START + _TRIAL))
-            count = config.samples(model, case.name)
+            count = config.samples(model, case.name) + 3 * config.has_twins(model, case.name)
             search = config.friction_calibration
             if search is not None and search.model == model and case.name in search.cases:
                 count += search.runs

@@ -74,6 +74,8 @@ class Model:
         ``module:function`` that gives them for a structure about which nothing is said: ``(structure)`` to a dict.
     without_effect : tuple of str
         Properties of a material that the model has no use for.
+    rigid : bool
+        Its blocks do not deform.
     perturbation : Perturbation or None
         None leaves the model out of the null hypothesis of a diagnosis.
 
@@ -91,6 +93,7 @@ class Model:
     calibrated: tuple[str, ...] = ()
     own_stiffness: str | None = None
     without_effect: tuple[str, ...] = ()
+    rigid: bool = True
     perturbation: Perturbation | None = None
 
     def solve(self, *arguments, **options):
@@ -178,6 +181,7 @@ MODELS = {
             driver="blockshake.solvers.nscd_deformable.driver:simulate_elastic",
             parameters="blockshake.solvers.nscd_deformable.parameters:DeformableParameters",
             without_effect=("viscous_modulus",),
+            rigid=False,
         ),
         Model(
             name="nscd-viscoelastic",
@@ -186,6 +190,7 @@ MODELS = {
             time_step=1e-3,
             driver="blockshake.solvers.nscd_deformable.driver:simulate_viscoelastic",
             parameters="blockshake.solvers.nscd_deformable.parameters:DeformableParameters",
+            rigid=False,
         ),
     )
 }

@@ -62,4 +62,8 @@ def _campaign_line(folder):
 
 def _study_line(source):
     config = load_config(source)
-    return f"a study of {len(config.cases)} cases by {' and '.join(config.models)}, {config.ensemble.size} samples"
+    told = []
+    for model in config.models:
+        counts = sorted({config.samples(model, case.name) for case in config.cases})
+        told.append(f"{model} ({' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))} samples)")
+    return f"a study of {len(config.cases)} cases by {', '.join(told)}"

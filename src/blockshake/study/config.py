@@ -12,6 +12,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import ModelName, split_parameters
+from blockshake.study.comparison.differences import FEWEST
 from blockshake.study.convergence.settings import Convergence
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED, check_record
 from blockshake.study.friction.settings import FrictionSearch
@@ -78,7 +79,9 @@ class StudyCase(Strict):
     motion: str = Field(description="shipped name or file")
     scale: Positive = Field(description="multiplies the motion [1]")
     duration: Positive = Field(description="simulated time [s]")
-    samples: dict[ModelName, int] = Field({}, description="fewer samples than the ensemble's, by model")
+    samples: dict[ModelName, int] = Field(
+        {}, description="fewer samples than the ensemble's, at least 1, by model"
+    )
     measured: Measured | None = Field(None, description="none: compared with no test")
     input: Literal[MEASURED, COMMANDED] = Field(
         description="motion that drives the models: the slab's in the measured test, or the commanded one; by default "
@@ -148,6 +151,10 @@ class StudyConfig(Strict):
         """Number of samples of a case by a model."""
         return min(self.case(case).samples.get(model, self.ensemble.size), self.ensemble.size)
 
+    def has_twins(self, model, case):
+        """Whether the first sample of a case by a model is run again for the floor of the model's numerics."""
+        return self.samples(model, case) >= FEWEST
+
 
 def load_config(path):
     """Configuration from a YAML file, checked with all that it names.
@@ -173,11 +180,9 @@ def check_config(mapping, where):
         if names.count(case.name) > 1:
             raise InputError(where, key, f"expected every structure once; {case.name} stands twice")
         for model, count in case.samples.items():
-            if not SMALLEST_SIZE <= count <= config.ensemble.size:
+            if not 1 <= count <= config.ensemble.size:
                 raise InputError(
-                    where,
-                    f"{key}.samples.{model}",
-                    f"expected {SMALLEST_SIZE} to {config.ensemble.size}, not {count}",
+                    where, f"{key}.samples.{model}", f"expected 1 to {config.ensemble.size}, not {count}"
                 )
         load_structure(case.structure)
         if case.measured is not None:

@@ -77,6 +77,7 @@ def test_style_and_drawings_refer_to_nothing_outside(report, page):
     "title",
     [
         "Summary", "Structures", "Ground motions", "Samples", "Contact stiffness", "Displacement of the blocks",
+        "Models against each other",
         "Causes of the thickness of the envelopes", "Completion, energy and computation", "Timings", "Origin",
         "Limits of this study", "The paper, statement by statement",
         "Annex: numerical parameters of LS-DEM", "Annex: NSCD rigid beside LMGC90",
@@ -89,7 +90,7 @@ def test_sections_and_contents(text, title):
 def test_synthetic_is_said_where_it_shows(report, text):
     assert "The measured curves of configuration-1, configuration-4 are SYNTHETIC" in text
     assert "ground motions are synthetic" in text
-    assert "Peak, virtual test (synthetic)" in text
+    assert "Virtual test (synthetic)" in text
     assert not [claim for claim in CLAIMS if claim in text.lower()]
 
 
@@ -99,7 +100,6 @@ def test_peaks_are_those_of_the_files(fake, text):
         peak = envelope["peak"].sel(frame="slab", marker="top-face")
         shown = " / ".join(f"{1e3 * float(peak.sel(quantile=one)):.1f}" for one in (0.05, 0.5, 0.95))
         assert f"{shown} (n = {envelope.attrs['counted']})" in text
-        assert text.count(shown) >= 2  # in the summary and among the blocks
 
 
 def test_measured_peak_is_that_of_the_simulated_window(fake, tmp_path):
@@ -127,13 +127,16 @@ def test_coverage_never_stands_alone(fake, text):
 def test_samples_that_did_not_complete_are_listed_with_their_reason(text):
     assert f"configuration-4 NSCD rigid 2 collapsed 1 {COLLAPSE_REASON}" in text
     assert "configuration-4 NSCD rigid 4 not-converged" in text
-    assert "36 runs: 34 completed, 1 collapsed, 1 failed" in text
+    assert "48 runs: 46 completed, 1 collapsed, 1 failed" in text
     assert "NSCD rigid: 5 samples contribute until" in text
     assert "the statistics leave out failed samples (1)" in text
 
 
 def test_fewer_samples_of_a_model_are_said_first(text):
-    assert text.index("NSCD rigid ran 6 of the 10 samples on configuration-4") < text.index("Table 1.")
+    told = "NSCD rigid ran 6 of the 10 samples on configuration-4, where a sample cost 7.2 CPU s"
+    assert text.index(told) < text.index("Table 1.")
+    assert "NSCD elastic ran 1 of the 10 samples on configuration-4" in text
+    assert text.count("Bounds of fewer samples are narrower") == 1
 
 
 def test_figures_of_motion_computation_and_cost(text):

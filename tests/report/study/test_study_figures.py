@@ -14,6 +14,7 @@ from blockshake.report.study.figures.motion import plot_spectra
 from blockshake.report.study.figures.peer import plot_peer
 from blockshake.report.study.figures.samples import bin_count
 from blockshake.report.study.figures.structure import plot_structure
+from blockshake.simulation.models import MODELS
 from blockshake.study.convergence.findings import value_scales
 from blockshake.study.peer_record import load_peer_record
 
@@ -30,9 +31,11 @@ def drawn(case, markers, frame):
 
 def test_each_block_has_a_row_and_each_model_a_column(case):
     figure = drawn(case, ["top-face", "wall-a-1-face"], "slab")
-    assert len(figure.axes) == 4
+    assert len(figure.axes) == 2 * 4
     assert figure.axes[0].get_ylabel() == "top-face\n[mm]"
-    assert figure.axes[1].get_title() == "NSCD rigid, 5 of 6 samples"
+    titles = [axes.get_title() for axes in figure.axes[:4]]
+    assert [title.partition("\n")[0] for title in titles] == [model.label for model in MODELS.values()]
+    assert titles[1] == "NSCD rigid\n5 of 6 samples"
     for axes in figure.axes:
         assert len(axes.lines) == 3  # two bounds and the measured curve
         assert sum(isinstance(one, FillBetweenPolyCollection) for one in axes.collections) == 2

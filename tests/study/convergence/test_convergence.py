@@ -114,7 +114,7 @@ def test_swing_and_impact_are_those_of_a_rigid_block():
     momentum about it is kept, so that the block starts 0.9 % faster.
     """
     parameters = LsDemParameters()
-    read = rocking_block(load_structure("configuration-1"), parameters, 2e-5, 1.0)
+    read = rocking_block(load_structure("configuration-1"), "ls-dem", parameters, 2e-5, 1.0)
     half, edge = 0.8, 0.4
     pivot = edge - 0.02 - parameters.perimeter_inset
     central, radius = (0.8**2 + 1.6**2) / 12.0, np.hypot(half, pivot)
@@ -147,7 +147,7 @@ def test_order_in_the_time_step_is_two_where_nothing_opens():
 def test_block_without_a_base_is_refused(make_structure):
     flying = make_structure([{"name": "b", "shape": "cube", "position": [0.0, 0.0, 2.0]}])
     with pytest.raises(InputError, match="stands on a driven one"):
-        rocking_block(flying, LsDemParameters(), 1e-4, 1.0)
+        rocking_block(flying, "ls-dem", LsDemParameters(), 1e-4, 1.0)
 
 
 def test_stack_that_falls_has_a_sink_and_nothing_else():

@@ -84,8 +84,6 @@ def test_the_band_of_collapsed_members_ends_with_them(make_run, gather):
 def test_what_cannot_be_compared_is_refused(make_run, gather):
     ensemble = _levels(make_run, gather, [0.01, 0.02, 0.03])
     run = make_run(0.02)
-    with pytest.raises(InputError, match="at least 3"):
-        coverage(run, ensemble.isel(sample=slice(2)), NOISE)
     with pytest.raises(InputError, match="measured times within the ensemble's"):
         coverage(run.assign_coords(time=run["time"] + 100.0), ensemble, NOISE)
     with pytest.raises(InputError, match="measured marker"):
@@ -125,3 +123,14 @@ def test_the_chance_of_a_whole_curve_is_calibrated(make_run, gather):
     # 4 of 40 expected at the most, with a standard deviation of 1.9
     assert np.sum(np.array(alike) <= 0.1) <= 4 + 3 * 1.9
     assert np.mean(np.array(larger) <= 0.1) > 0.8
+
+
+@pytest.mark.parametrize("size", [0, 1, 2])
+def test_too_few_members_are_no_reference(make_run, gather, size):
+    status = ["completed"] * size + ["not-converged"]
+    ensemble = gather([make_run(0.02, status=one) for one in status])
+    found = coverage(make_run(0.03), ensemble, NOISE)
+    for name in ("coverage", "reference", "distance", "curve_probability", "band_width"):
+        assert np.isnan(found[name]).all()
+    assert found["member_coverage"].sizes["sample"] == found.attrs["counted"] == size
+    assert found["measured_peak"].sel(marker="block-1-face") == pytest.approx(0.03)

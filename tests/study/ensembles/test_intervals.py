@@ -5,7 +5,12 @@ import pytest
 from scipy.special import ndtri
 from scipy.stats import binom
 
-from blockshake.study.ensembles.intervals import quantile_interval, sample_quantiles, share_interval
+from blockshake.study.ensembles.intervals import (
+    median_interval,
+    quantile_interval,
+    sample_quantiles,
+    share_interval,
+)
 
 
 @pytest.mark.parametrize(("count", "trials"), [(1, 50), (7, 50), (25, 50), (49, 50), (3, 10)])
@@ -49,3 +54,16 @@ def test_quantiles_are_numpys():
     np.testing.assert_allclose(
         sample_quantiles(values, probabilities), np.quantile(values, probabilities, axis=0), atol=1e-14
     )
+
+
+@pytest.mark.parametrize(("size", "place"), [(6, 1), (8, 1), (9, 2), (20, 6), (50, 18)])
+def test_limits_of_a_median_are_the_innermost_values_that_hold_it_95_times_of_100(size, place):
+    """Places as in tables of the sign test; the probability is that of the binomial distribution."""
+    found = median_interval(np.random.default_rng(size).permutation(np.arange(1.0, size + 1.0)))
+    assert found == ((size + 1) / 2.0, place, size + 1.0 - place)
+    assert 1.0 - 2.0 * binom.cdf(place - 1, size, 0.5) >= 0.95 > 1.0 - 2.0 * binom.cdf(place, size, 0.5)
+
+
+def test_limits_of_few_values_are_the_smallest_and_the_largest():
+    assert median_interval(np.array([3.0, np.nan, 1.0])) == (2.0, 1.0, 3.0)
+    assert np.isnan(median_interval(np.array([np.nan]))).all()

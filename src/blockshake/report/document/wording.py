@@ -56,7 +56,8 @@ def given(value):
 
 def millimetres(value):
     """A length [m] in mm to 0.1 mm."""
-    return f"{1e3 * float(value):.1f}" if np.isfinite(value) else MISSING
+    # adding zero makes a minus zero of the rounding a zero
+    return f"{round(1e3 * float(value), 1) + 0.0:.1f}" if np.isfinite(value) else MISSING
 
 
 def percent(value):

@@ -11,6 +11,7 @@ from blockshake.report.study.result_tables import (
     failures_table,
     timings_table,
 )
+from blockshake.simulation.models import MODELS
 from blockshake.study.ensembles.case_input import COMMANDED
 
 
@@ -26,15 +27,17 @@ def checks(content):
         ),
         energy_table(content),
     ]
-    for model in dict.fromkeys([*_COMPUTATION, *content.study["models"]]):
-        if model in content.study["models"]:
-            words = [Text(_COMPUTATION[model])] if model in _COMPUTATION else []
-            blocks += [*words, computation_table(content, model)]
+    for model in content.study["models"]:
+        words = [Text(_COMPUTATION[model])] if model in _COMPUTATION else []
+        blocks += [*words, computation_table(content, model)]
     return Section("Completion, energy and computation", "checks", tuple(blocks))
 
 
-_RIGID = ("ls-dem", "nscd-rigid")
 _COMPUTATION = {
+    "ls-dem": (
+        "LS-DEM is explicit and does not iterate. Its steps are fixed; settling steps bring the stack to rest under "
+        "its own weight before a run; the search for near pairs is repeated when bodies have moved far enough."
+    ),
     "nscd-rigid": (
         "NSCD solves the contact problem of each step by iteration. The relative residual is the error of the solution "
         "in the contact laws; a capped step stopped at the iteration limit before its tolerance; a run with too many "
@@ -47,10 +50,6 @@ _COMPUTATION = {
     "nscd-viscoelastic": (
         "The blocks of this model deform with the viscous modulus of Table 2, read as Pa s. The steps are those of "
         "NSCD; what the scheme takes is listed, and the viscosity of the material takes the rest."
-    ),
-    "ls-dem": (
-        "LS-DEM is explicit and does not iterate. Its steps are fixed; settling steps bring the stack to rest under "
-        "its own weight before a run; the search for near pairs is repeated when bodies have moved far enough."
     ),
 }
 
@@ -132,7 +131,7 @@ def limits(content):
     synthetic = sorted({case.motion for case in cases if content.motions[case.motion].attrs.get("synthetic")})
     if synthetic:
         items.append(f"Synthetic, and no recorded motions: {', '.join(synthetic)}.")
-    rigid = [model_label(model) for model in content.study["models"] if model in _RIGID]
+    rigid = [model_label(model) for model in content.study["models"] if MODELS[model].rigid]
     if rigid:
         items.append(
             f"Blocks are rigid in {' and '.join(rigid)}: no deformation inside a block, no cracking, no crushing of "

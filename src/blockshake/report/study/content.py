@@ -59,6 +59,8 @@ class ReportedCase:
         Standard deviation of the measured markers, or of the optical system's [m].
     responses : dict of str to Response
         By model.
+    differences : xarray.Dataset
+        From `compare_models`.
     """
 
     name: str
@@ -71,6 +73,7 @@ class ReportedCase:
     synthetic: bool
     marker_noise: float
     responses: dict
+    differences: xr.Dataset
 
     @property
     def curve_word(self):
@@ -238,6 +241,7 @@ def _case(study, results, name, settings):
         synthetic=bool(test.attrs.get("synthetic", 0)) if named else False,
         marker_noise=marker_noise,
         responses=responses,
+        differences=load_made(results / "differences" / f"{name}.nc"),
     )
 
 

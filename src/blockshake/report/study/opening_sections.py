@@ -65,15 +65,27 @@ def summary(content):
 
 
 def _fewer_samples(content):
-    """One sentence for every case that a model ran with fewer samples than the design has."""
-    size = len(content.design)
-    return [
-        f"{model_label(model)} ran {one.samples.sizes['sample']} of the {size} samples on {case.name}; bounds of "
-        "fewer samples are narrower in the mean."
-        for case in content.cases.values()
-        for model, one in case.responses.items()
-        if one.samples.sizes["sample"] < size
-    ]
+    """One sentence for every model and number of samples below that of the design, with the cost of a sample."""
+    size, ran = len(content.design), {}
+    cost = {(one.model, one.case): one.cpu_time / one.samples for one in content.timings if one.samples}
+    for case in content.cases.values():
+        for model, one in case.responses.items():
+            ran.setdefault((model, one.samples.sizes["sample"]), []).append(case.name)
+    sentences = []
+    for (model, count), names in ran.items():
+        if count == size:
+            continue
+        costs = sorted(cost[model, name] for name in names if (model, name) in cost)
+        each = " to ".join(dict.fromkeys(number(one, 2) for one in (costs[:1] + costs[-1:])))
+        sentences.append(
+            f"{model_label(model)} ran {count} of the {size} samples on {', '.join(names)}"
+            + (f", where a sample cost {each} CPU s." if costs else ".")
+        )
+    if sentences:
+        sentences.append(
+            "Bounds of fewer samples are narrower in the mean, and intervals of few hold less often than stated."
+        )
+    return sentences
 
 
 def structures(content):

@@ -8,6 +8,7 @@ from blockshake.report.study.closing_sections import checks, limits, origin, tim
 from blockshake.report.study.content import load_content
 from blockshake.report.study.convergence_section import convergence
 from blockshake.report.study.friction_section import friction
+from blockshake.report.study.models.section import models
 from blockshake.report.study.opening_sections import motions, samples, stiffness, structures, summary
 from blockshake.report.study.peer_section import peer
 from blockshake.report.study.result_sections import responses
@@ -21,6 +22,7 @@ _SECTIONS = (
     samples,
     stiffness,
     responses,
+    models,
     sensitivities,
     friction,
     statements,

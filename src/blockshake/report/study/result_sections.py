@@ -5,8 +5,9 @@ from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.rows import face_markers, main_bodies
 from blockshake.report.document.wording import given, model_label, number, share_words
 from blockshake.report.study.figures.displacement import plot_displacements
+from blockshake.report.study.models.tables import block_tables
 from blockshake.report.study.probability_table import probability_table
-from blockshake.report.study.result_tables import coverage_table, peaks_table
+from blockshake.report.study.result_tables import coverage_table
 from blockshake.study.ensembles.outcomes import shortfall
 from blockshake.study.sensitivity.findings import quiet_markers
 
@@ -55,7 +56,7 @@ def _response(case, motion):
         *_gaps(case),
         *_lines(case, markers.values()),
         figure(main, "inertial", f"{case.name}: displacement in the inertial frame{paper}{some}."),
-        peaks_table(case),
+        *block_tables(case),
         *([] if case.measured is None else [coverage_table(case)]),
         figure(
             list(markers), "slab", f"{case.name}: displacement relative to the slab's marker, every block."

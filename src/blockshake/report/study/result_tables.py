@@ -7,7 +7,6 @@ from blockshake.report.document.rows import face_markers
 from blockshake.report.document.wording import (
     MISSING,
     SHOWN_QUANTILES,
-    given,
     millimetres,
     model_label,
     number,
@@ -15,7 +14,6 @@ from blockshake.report.document.wording import (
     quantile_range,
 )
 from blockshake.study.ensembles.coverage import relative_width
-from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 from blockshake.study.ensembles.outcomes import energy_residuals, numerical_figure, unfinished
 from blockshake.study.ensembles.timing import total_timing
 
@@ -54,33 +52,6 @@ def top_block_table(content):
     )  # fmt: skip
 
 
-def peaks_table(case):
-    """Peak and residual displacement relative to the slab of every block."""
-    rows = []
-    for body, marker in face_markers(case.structure).items():
-        at = {"frame": "slab", "marker": marker}
-        cells = []
-        for variable in ("peak", "residual"):
-            cells += [] if case.measured is None else [_measured(case, variable, at)]
-            cells += [
-                quantile_range(one.envelope[variable].sel(**at), millimetres)
-                for one in case.responses.values()
-            ]
-        rows.append((body, *cells))
-    header = ["Block"]
-    for variable in ("Peak", "Residual"):
-        header += [
-            *([] if case.measured is None else [f"{variable}, {case.curve_word}"]),
-            *(f"{variable}, {model_label(one)}" for one in case.responses),
-        ]
-    return Table(
-        f"{case.name}: peak and residual displacement along x relative to the slab [mm]; for the models quantiles "
-        f"{_QUANTILES} over the samples. The residual is the mean over the last "
-        f"{given(RESIDUAL_WINDOW)} s of the window.",
-        tuple(header), tuple(rows), "l" + "r" * (len(header) - 1),
-    )  # fmt: skip
-
-
 def coverage_table(case):
     """Coverage with its reference and the width of the band beside the measured peak."""
     rows = []
@@ -89,6 +60,8 @@ def coverage_table(case):
             if marker not in one.comparison["marker"].values:
                 continue
             at = one.comparison.sel(marker=marker)
+            if not np.isfinite(at["coverage"]):
+                continue  # too few samples
             peak = case.measured["peak"].sel(frame="slab", marker=marker)
             rows.append((
                 body, model_label(model), percent(at["coverage"]), quantile_range(at["reference"], percent),
@@ -101,7 +74,7 @@ def coverage_table(case):
         "each sample in the bounds of the others (leave one out, read with the noise of the markers), quantiles "
         f"{_QUANTILES}; root mean square distance of the {word} from the samples, in standard deviations of noise and "
         "spread, and the chance of a distance as large for one more sample; mean width of the band, in mm and "
-        f"relative to the peak of the {word} relative to the slab.",
+        f"relative to the peak of the {word} relative to the slab. Models with fewer than three samples are left out.",
         (
             "Block", "Model", f"Coverage of the {word} [%]", "Reference, leave one out [%]", "Distance", "Chance",
             "Band width [mm]", "Band width over peak [%]",

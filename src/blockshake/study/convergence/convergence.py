@@ -15,7 +15,8 @@ from blockshake.study.convergence.runs import rocking_block, shaken_stack
 from blockshake.study.convergence.table import COLUMNS, EXACT, OBSERVABLES
 
 NUDGE = 1e-6  # share by which kick and ground acceleration are larger in the run that the floor comes from
-_TIME_STEP = model_of("ls-dem").time_step  # s; the others are varied from it
+_MODEL = "ls-dem"
+_TIME_STEP = model_of(_MODEL).time_step  # s; the others are varied from it
 
 
 def study_convergence(settings, store, source, progress):
@@ -54,7 +55,7 @@ def study_convergence(settings, store, source, progress):
 
         def run():
             started = time.process_time()
-            read = rocking_block(structure, numerical, time_step, strength)
+            read = rocking_block(structure, _MODEL, numerical, time_step, strength)
             read |= shaken_stack(structure, numerical, time_step, *shaken)
             progress(f"{said}: {time.process_time() - started:.2f} CPU s")
             return read

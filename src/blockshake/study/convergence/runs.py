@@ -8,6 +8,7 @@ from blockshake.dynamics.motion import ground_motion
 from blockshake.dynamics.system import Status
 from blockshake.errors import InputError
 from blockshake.simulation.energy_residual import energy_residual
+from blockshake.simulation.models import model_of
 from blockshake.solvers.ls_dem.driver import simulate_ls_dem
 from blockshake.study.convergence.table import OBSERVABLES
 
@@ -19,14 +20,17 @@ _RATE = 5000  # records a second
 _ROWS = 400  # of the sine
 
 
-def rocking_block(structure, parameters, time_step, strength):
+def rocking_block(structure, model, parameters, time_step, strength):
     """Let the lowest block rock freely on the slab alone, after a kick about the edge of its base.
 
     Parameters
     ----------
     structure : Structure
         Its driven bodies and the first free body that touches one are taken.
-    parameters : LsDemParameters
+    model : str
+        Of the table `blockshake.simulation.models.MODELS`.
+    parameters : pydantic model
+        Numerical ones of the model.
     time_step : float
         [s]
     strength : float
@@ -46,7 +50,7 @@ def rocking_block(structure, parameters, time_step, strength):
     """
     alone, block = _kicked(structure, strength)
     times = _records(_KICKED_DURATION)
-    run = simulate_ls_dem(alone, None, parameters, times, time_step)
+    run = model_of(model).solve(alone, None, parameters, times, time_step)
     if run.status != Status.COMPLETED:
         return {"swing_time": np.nan, "impact_ratio": np.nan}
     lean = _leans(run.orientation[:, block])
@@ -62,6 +66,20 @@ def rocking_block(structure, parameters, time_step, strength):
     turned = lean[second] * lean[first] < 0.0 and second < len(times) - 1
     ratio = np.sqrt(energy[second] / energy[first]) if turned else np.nan
     return {"swing_time": float(upright[0]), "impact_ratio": float(ratio)}
+
+
+def housner_ratio(structure):
+    """Impact ratio [1] of the block of `rocking_block`, rigid and on the two edges of its flat base alone.
+
+    Housner (1963), Bull. Seismol. Soc. Am. 53: ``1 - 2 m b^2 / I``, with half the width b of the base and the moment
+    of inertia I about the far edge.
+    """
+    alone, block = _kicked(structure, 1.0)
+    vertices = alone.solid(block).vertices
+    height = -vertices[:, 2].min()
+    half = vertices[vertices[:, 2] < -height + 1e-9, 0].max()
+    about_edge = alone.inertia[block, 1, 1] + alone.mass[block] * (half**2 + height**2)
+    return float(1.0 - 2.0 * alone.mass[block] * half**2 / about_edge)
 
 
 def shaken_stack(structure, parameters, time_step, acceleration, frequency, duration):

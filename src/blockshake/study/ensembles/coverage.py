@@ -71,12 +71,12 @@ def coverage(measured, ensemble, marker_noise, seed=0):
         curve and ``member_distance(sample, marker)`` as of `distances`; ``curve_probability(marker)``, the rank of the
         measured curve's distance among the members', from 1 / (n + 1) to 1; ``band_width(marker)`` [m], mean
         over time; and ``measured_peak(marker)`` [m], largest absolute displacement relative to the slab's marker, to
-        hold the width against.
+        hold the width against. All but the peak are NaN for fewer than three members: too few for a reference.
 
     Raises
     ------
     InputError
-        Fewer than three members, no marker or no time in common.
+        No members, no marker or no time in common.
 
     Notes
     -----
@@ -87,10 +87,22 @@ def coverage(measured, ensemble, marker_noise, seed=0):
     measured curve wherever the band is thinner than the noise. There coverage says nothing at all, of any curve, and
     the distance decides.
     """
-    read, members, curves, readings = compared_curves(measured, ensemble, marker_noise, seed, _FEWEST_MEMBERS)
+    read, members, curves, readings = compared_curves(measured, ensemble, marker_noise, seed, fewest=0)
     markers = list(read["marker"].values)
-    lower, upper = band(curves)
-    member_coverage = members_inside(curves, readings)
+    enough = len(curves) >= _FEWEST_MEMBERS
+    by_curve = np.full((len(curves) + 1, len(markers)), np.nan)
+    inside, width, (*member_coverage, _) = by_curve[-1], by_curve[-1], by_curve
+    *members_away, away = by_curve
+    if enough:
+        lower, upper = band(curves)
+        inside, member_coverage = (
+            share_inside(read.to_numpy(), lower, upper),
+            members_inside(curves, readings),
+        )
+        every_reading = np.concatenate([readings, read.to_numpy()[None]])
+        *members_away, away = distances(every_reading, curves, marker_noise)
+        width = np.nanmean(upper - lower, axis=0)
+    member_coverage = np.reshape(member_coverage, (len(curves), len(markers)))
     by_marker = {"marker": markers}
     by_member = xr.DataArray(
         member_coverage, dims=("sample", "marker"), coords={"sample": members["sample"], **by_marker}
@@ -98,10 +110,7 @@ def coverage(measured, ensemble, marker_noise, seed=0):
     probabilities = xr.DataArray(
         list(REFERENCE_QUANTILES), dims="quantile", coords={"quantile": list(REFERENCE_QUANTILES)}
     )
-    inside = share_inside(read.to_numpy(), lower, upper)
-    *members_away, away = distances(np.concatenate([readings, read.to_numpy()[None]]), curves, marker_noise)
-    member_distance = by_member.copy(data=np.array(members_away))
-    width = np.nanmean(upper - lower, axis=0)
+    member_distance = by_member.copy(data=np.reshape(members_away, by_member.shape))
     result = xr.Dataset(
         {
             "coverage": ("marker", inside),
@@ -111,7 +120,9 @@ def coverage(measured, ensemble, marker_noise, seed=0):
             "member_distance": member_distance,
             "curve_probability": (member_distance >= xr.DataArray(away, dims="marker"))
             .sum("sample")
-            .pipe(lambda beyond: (1.0 + beyond) / (1.0 + len(member_coverage))),
+            .pipe(
+                lambda beyond: (1.0 + beyond) / (1.0 + len(member_coverage)) if enough else np.nan * beyond
+            ),
             "band_width": ("marker", width),
             "measured_peak": ("marker", _measured_peak(measured, members.attrs["slab_marker"], markers)),
         },

@@ -1,7 +1,9 @@
 """How sure a statistic of few samples is: shares and quantiles with their intervals."""
 
+from typing import NamedTuple
+
 import numpy as np
-from scipy.stats import beta
+from scipy.stats import beta, binom
 
 CONFIDENCE = 0.95
 _DRAWS = 400
@@ -57,6 +59,43 @@ def sample_quantiles(values, probabilities):
         high = np.take_along_axis(ordered, np.minimum(below + 1, last)[None], axis=0)[0]
         rows.append(low + (place - below) * (high - low))
     return np.stack(rows)
+
+
+class Median(NamedTuple):
+    """Median of a sample with its limits; NaN without values."""
+
+    median: float
+    lower: float
+    upper: float
+
+
+def median_interval(values):
+    """`Median` with limits of 95 % that are values of the sample, whatever their distribution.
+
+    Parameters
+    ----------
+    values : float64 array, shape (n_samples,)
+        NaN is no value.
+
+    Notes
+    -----
+    Order statistics (Conover 1999, Practical Nonparametric Statistics, section 3.2): the k-th smallest and the k-th
+    largest value enclose the median of independent samples with probability ``1 - 2 P(B < k)``, B binomial with n and
+    1/2. Fewer than six samples reach no 95 %: the limits of n are then their smallest and largest value, which enclose
+    the median with probability ``1 - 2^(1 - n)``.
+
+    Examples
+    --------
+    >>> median_interval(np.array([3.0, 1.0, 2.0]))
+    Median(median=2.0, lower=1.0, upper=3.0)
+    """
+    ordered = np.sort(np.asarray(values, dtype=float))
+    ordered = ordered[np.isfinite(ordered)]
+    size = len(ordered)
+    if size == 0:
+        return Median(np.nan, np.nan, np.nan)
+    place = max(int(binom.ppf(0.5 - 0.5 * CONFIDENCE, size, 0.5)), 1)
+    return Median(*(float(one) for one in (np.median(ordered), ordered[place - 1], ordered[size - place])))
 
 
 def quantile_interval(values, probabilities, generator):

@@ -61,7 +61,8 @@ def compared_curves(measured, ensemble, marker_noise, seed, fewest):
         )
     read, curves = curves_along_x(measured, members)
     curves, generator = curves.to_numpy(), np.random.default_rng(seed)
-    readings = np.stack([noisy_reading(curve, marker_noise, generator) for curve in curves])
+    readings = [noisy_reading(curve, marker_noise, generator) for curve in curves]
+    readings = np.reshape(readings, curves.shape)
     return ComparedCurves(read, members, curves, readings)
 
 

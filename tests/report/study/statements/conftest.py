@@ -3,11 +3,14 @@ from dataclasses import replace
 import pytest
 
 from blockshake.report.study.content import load_content
+from blockshake.simulation.models import MODELS
 
 
 @pytest.fixture(scope="session")
 def loaded(fake):
-    return load_content(fake.study, fake.results, fake.benchmarks)
+    """Content of the made-up study by its models of rigid blocks alone."""
+    rigid = {name: one for name, one in fake.study["models"].items() if MODELS[name].rigid}
+    return load_content({**fake.study, "models": rigid}, fake.results, fake.benchmarks)
 
 
 @pytest.fixture

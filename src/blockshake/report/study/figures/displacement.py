@@ -32,7 +32,7 @@ def plot_displacements(envelopes, measured, markers, labels, frame, synthetic):
         Light grey from the smallest to the largest of the samples, bounds in red, darker grey
         between the quantiles 5 and 95 %, the measured curve dashed.
     """
-    figure = new_figure(0.016 + (0.029 if len(markers) < 6 else 0.0255) * len(markers))
+    figure = new_figure(0.020 + (0.029 if len(markers) < 6 else 0.0255) * len(markers))
     panels = figure.subplots(len(markers), len(envelopes), sharex=True, sharey="row", squeeze=False)
     for column, (model, envelope) in zip(panels.T, envelopes.items(), strict=True):
         for axes, marker in zip(column, markers, strict=True):
@@ -41,7 +41,7 @@ def plot_displacements(envelopes, measured, markers, labels, frame, synthetic):
             if measured is not None and marker in measured["marker"].values:
                 axes.plot(measured["time"], 1e3 * measured["displacement"].sel(**at), **_MEASURED)
         counted, samples = (int(envelope.attrs[name]) for name in ("counted", "samples"))
-        column[0].set_title(f"{model_label(model)}, {counted} of {samples} samples")
+        column[0].set_title(f"{model_label(model)}\n{counted} of {samples} samples")
         column[-1].set_xlabel("time [s]")
     panels[0, 0].set_xlim(0.0, float(next(iter(envelopes.values()))["time"][-1]))
     for axes, label in zip(panels[:, 0], labels, strict=True):

@@ -29,8 +29,8 @@ _FINEST = 1e-4  # mm; histories are stored to this
 _ROW = 0.003  # m of paper, of one variable
 
 
-def plot_sensitivity(sensitivities, markers, noise):
-    """Measures of every variable, one column a block, one row of panels a measure and model.
+def plot_sensitivity(sensitivities, markers, noise, measure):
+    """A measure of every variable, one column a block, one row of panels a model.
 
     Parameters
     ----------
@@ -40,6 +40,8 @@ def plot_sensitivity(sensitivities, markers, noise):
         Body to marker, from the lowest up.
     noise : float
         Standard deviation of a measured marker's position [m]: where samples differ by less, nothing is drawn.
+    measure : str
+        One of `SHOWN`.
 
     Returns
     -------
@@ -49,30 +51,27 @@ def plot_sensitivity(sensitivities, markers, noise):
     """
     variables = [str(name) for name in next(iter(sensitivities.values()))["parameter"].values]
     rows = [
-        (measure, model)
-        for measure in SHOWN
-        for model, result in sensitivities.items()
-        if is_shown(result, markers.values(), measure, noise)
+        model for model, result in sensitivities.items() if is_shown(result, markers.values(), measure, noise)
     ]
     if not rows:
         return None
     figure = new_figure(len(rows) * (0.010 + _ROW * len(variables)) + 0.006)
     panels = figure.subplots(len(rows), len(markers), sharey=True, squeeze=False)
-    for place, (measure, model) in enumerate(rows):
+    quantity, label, limits, ticks = SHOWN[measure]
+    for place, model in enumerate(rows):
         line = panels[place]
         result = sensitivities[model]
-        quantity, label, limits, ticks = SHOWN[measure]
         for axes, (body, marker) in zip(line, markers.items(), strict=True):
             _draw_panel(axes, result.sel(quantity=quantity, marker=marker), measure, noise)
             axes.set_xlim(limits)
             axes.set_xticks(ticks)
             if place == 0:
                 axes.set_title(body)
-        line[len(line) // 2].set_xlabel(label)
         line[0].set_ylabel(f"{model_label(model)}, n = {int(result['used'].sel(quantity=quantity))}")
         line[0].set_yticks(range(len(variables)), [parameter_label(name) for name in variables])
         for text, control in zip(line[0].get_yticklabels(), result["control"].values, strict=True):
             text.set(fontsize=5.5, color=DARK_GREY if control else "black")
+    panels[-1, panels.shape[1] // 2].set_xlabel(label)
     panels[0, 0].set_ylim(len(variables) - 0.4, -0.6)
     figure.align_ylabels(panels[:, 0])
     return figure
@@ -90,7 +89,7 @@ def plot_sensitivity_over_time(sensitivities, marker, noise):
     Above: standard deviation over the samples [mm], dashed the marker's noise [m]. Below: first-order shares of the
     variables of use; seconds in which samples differ by less than the noise have none.
     """
-    figure = new_figure(0.085)
+    figure = new_figure(0.088)
     panels = figure.subplots(2, len(sensitivities), sharex=True, sharey="row", squeeze=False)
     used = ~np.all([result["control"] for result in sensitivities.values()], axis=0)
     for (above, below), (model, result) in zip(panels.T, sensitivities.items(), strict=True):
@@ -100,7 +99,7 @@ def plot_sensitivity_over_time(sensitivities, marker, noise):
         )
         above.semilogy(result["window"], 1e3 * spread, color=BLACK, marker=".", markersize=3)
         above.axhline(1e3 * noise, color=DARK_GREY, linestyle=(0, (4, 2)), linewidth=0.7)
-        above.set_title(f"{model_label(model)}, n = {int(result['used'].sel(quantity='history'))}")
+        above.set_title(f"{model_label(model)}\nn = {int(result['used'].sel(quantity='history'))}")
         level = float(result["window_first_order_chance"])
         below.axhspan(-level, level, color=LIGHT_GREY, linewidth=0.0)
         shown = share.where(spread >= noise)

@@ -44,21 +44,25 @@ def _case(case):
     for model, result in results.items():
         words = sentence(result, top, chosen[top], case.marker_noise)
         blocks.append(Text(f"{model_label(model)}: {words}"))
-    if not any(
-        is_shown(one, chosen.values(), measure, case.marker_noise)
-        for one in results.values()
+    shown = [
+        measure
         for measure in SHOWN
-    ):
+        if any(is_shown(one, chosen.values(), measure, case.marker_noise) for one in results.values())
+    ]
+    if not shown:
         return blocks
     return [
         *blocks,
-        Figure(
-            f"{case.name}: share and correlation of each random variable for the displacement of a block relative to "
-            "the slab, blocks from the lowest (left) up, of equal ones the first. Dots with 95 % intervals; grey: "
-            "level of chance; hollow dots and grey names: controls, variables that model or structure has no use for. "
-            "Models and measures with nothing to show are left out: samples that differ by less than the noise of a "
-            f"marker ({noise} mm, standard deviation), or too few of them.",
-            svg_of(plot_sensitivity, results, chosen, case.marker_noise),
+        *(
+            Figure(
+                f"{case.name}: {SHOWN[measure][1].removesuffix(' [1]')}, of each random variable, for the displacement "
+                "of a block relative to the slab, blocks from the lowest (left) up, of equal ones the first. Dots with "
+                "95 % intervals; grey: level of chance; hollow dots and grey names: controls, variables that model or "
+                "structure has no use for. Models with nothing to show are left out: samples that differ by less than "
+                f"the noise of a marker ({noise} mm, standard deviation), or too few of them.",
+                svg_of(plot_sensitivity, results, chosen, case.marker_noise, measure),
+            )
+            for measure in shown
         ),
         Figure(
             f"{case.name}, {top}: standard deviation over the samples in every second (dashed: noise of a marker), and "

@@ -4,7 +4,9 @@ import numpy as np
 
 from blockshake.report.document.rows import face_markers
 from blockshake.report.document.wording import model_label, number, percent, share_words
+from blockshake.report.study.models.words import order_words
 from blockshake.report.study.statements.statement import against_tests, compared, judged, missing, unjudged
+from blockshake.study.comparison.ranking import CLAIMS, MET, OPEN, judge
 from blockshake.study.ensembles.coverage import is_likely
 
 _RIGID, _ELASTIC, _VISCOELASTIC = "nscd-rigid", "nscd-elastic", "nscd-viscoelastic"
@@ -21,6 +23,8 @@ def resemblance(content):
         for model, one in case.responses.items():
             found = one.comparison
             chance = float(found["curve_probability"].median())
+            if np.isnan(chance):
+                continue  # too few samples
             holds = holds and is_likely(chance, found.attrs["counted"])
             told.append(
                 f"{case.name}, {model_label(model)}: {percent(found['coverage'].median())} % of the time inside "
@@ -37,41 +41,23 @@ def best_model(content):
     cases = compared(content)
     if not cases:
         return unjudged(_NO_TEST)
-    told, holds = [], True
-    for case in cases:
-        away = {model: misfit(case, model) for model in models}
-        holds = holds and min(away, key=away.get) == _VISCOELASTIC
-        told.append(
-            f"{case.name} "
-            + ", ".join(f"{model_label(model)} {percent(one)} %" for model, one in away.items())
-        )
-    words = (
-        f"Root mean square distance of the median from the test over the peak of the test: {'; '.join(told)}."
-    )
-    return against_tests(cases, holds, words)
-
-
-def misfit(case, model):
-    """Root mean square distance of a model's median from the measured curves, over their peak [1].
-
-    Displacement along x relative to the slab; the median of that over the blocks with a measured curve.
-    """
-    envelope = case.responses[model].envelope["marker_displacement"].sel(frame="slab", axis="x", quantile=0.5)
-    measured, shares = case.measured["displacement"].sel(frame="slab"), []
-    for marker in face_markers(case.structure).values():
-        if marker not in measured["marker"].values:
-            continue
-        test = measured.sel(marker=marker).dropna("time")
-        away = test - envelope.sel(marker=marker).interp(time=test["time"])
-        shares.append(float(np.sqrt((away**2).mean()) / abs(test).max()))
-    return float(np.median(shares))
+    found = judge(CLAIMS[0], {case.name: case.differences for case in cases})
+    words = f"By continuous ranked probability scores, {order_words(found)}."
+    if found.by_scores == OPEN:
+        return unjudged(words)
+    return against_tests(cases, found.by_scores == MET, words)
 
 
 def satisfactory(content, model, fits, fails=()):
     """A model that fits some configurations and not others, named by their numbers."""
     if absent := missing(content, model):
         return unjudged(f"{absent} config/paper.yaml has it.")
-    cases = [case for case in compared(content) if case.name.startswith("configuration-")]
+    cases = [
+        case
+        for case in compared(content)
+        if case.name.startswith("configuration-")
+        and case.responses[model].comparison["curve_probability"].notnull().any()
+    ]
     if not cases:
         return unjudged(_NO_TEST)
     expected = {f"configuration-{place}": place in fits for place in (*fits, *fails)}
@@ -84,7 +70,10 @@ def satisfactory(content, model, fits, fails=()):
     absent = sorted(set(expected) - {case.name for case in cases})
     words = f"Chance of the measured curves, median over the markers: {', '.join(told)}."
     return against_tests(
-        cases, holds, words + (f" Not in this study: {', '.join(absent)}." if absent else "")
+        cases,
+        holds,
+        words
+        + (f" Not in this study, or of fewer than three samples: {', '.join(absent)}." if absent else ""),
     )
 
 

@@ -1,0 +1,1 @@
+"""The section that holds the models against each other."""

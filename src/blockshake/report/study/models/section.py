@@ -1,0 +1,40 @@
+"""Section that holds the models against each other, and the paper's ranking of its behaviours against them."""
+
+from blockshake.report.document.blocks import Figure, Heading, Items, Section, Text
+from blockshake.report.document.drawing import svg_of
+from blockshake.report.study.models.figure import plot_differences
+from blockshake.report.study.models.tables import numerics_table, pairs_table, scores_table
+from blockshake.report.study.models.words import case_words, impact_words, ranking_words
+from blockshake.study.comparison.ranking import CLAIMS, judge
+
+
+def models(content):
+    """Distances of every pair of models beside chance and numerics; None where the study has one model."""
+    if len(content.study["models"]) < 2:
+        return None
+    cases = content.cases.values()
+    differences = {case.name: case.differences for case in cases}
+    blocks = [
+        Text(
+            "Are two models farther apart than the samples and the numerics of each make them? The distance of two "
+            "ensembles is the energy distance of Szekely and Rizzo (2013) at every time, mean over times and blocks: "
+            "zero for equal ensembles, and the shift of two narrow ones. Random divisions of the same samples give the "
+            "distance that chance makes. Beside it stands the difference of single runs: the same sample by both "
+            "models, against a sample and its twin by one model, which differs by less than any test could tell. All "
+            "displacements are along x and relative to the slab."
+        ),
+        Items((*(case_words(case) for case in cases), *impact_words(cases))),
+        Figure(
+            "Pairs of models by case. Where a dot is within the grey bar, the ensembles are not told apart; where a "
+            "diamond is near its cross, the difference of two runs is no larger than that of their numerics.",
+            svg_of(plot_differences, differences),
+        ),
+        pairs_table(content),
+        numerics_table(content),
+    ]
+    scores = scores_table(content)
+    if scores is not None:
+        compared = {case.name: case.differences for case in cases if case.measured is not None}
+        judged = tuple(ranking_words(judge(claim, compared)) for claim in CLAIMS)
+        blocks += [Heading("The ranking of the paper", "ranking"), Items(judged), scores]
+    return Section("Models against each other", "models", tuple(blocks))

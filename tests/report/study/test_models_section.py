@@ -1,0 +1,135 @@
+"""The section that holds the models against each other says what its files say."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from blockshake.report.study.content import load_content
+from blockshake.report.study.models.figure import plot_differences
+from blockshake.report.study.models.section import models
+from blockshake.report.study.models.tables import block_tables, numerics_table, pairs_table
+from blockshake.report.study.models.words import case_words, impact_words
+from blockshake.simulation.models import MODELS
+
+FIRST, LAST = "configuration-1", "configuration-4"
+
+
+@pytest.fixture
+def content(fake):
+    return load_content(fake.study, fake.results, fake.benchmarks)
+
+
+def test_every_block_has_its_numbers_by_every_model(content):
+    case = content.cases[FIRST]
+    peak, residual, width = block_tables(case)
+    assert [row[0] for row in peak.rows] == ["block-3", "block-2", "block-1"]
+    labels = [f"{model.label} (n = {4 if 'elastic' in name else 10})" for name, model in MODELS.items()]
+    assert peak.header == ("Block", "Virtual test (synthetic)", *labels)
+    assert width.header == ("Block", *labels)
+    at = case.differences.sel(marker="block-3-face", model="ls-dem")
+    low, high = (1e3 * float(one) for one in at["peak_interval"])
+    assert peak.rows[0][2] == f"{1e3 * float(at['peak']):.1f} [{low:.1f}, {high:.1f}]"
+    assert float(at["peak"]) == float(
+        case.responses["ls-dem"].envelope["peak"].sel(frame="slab", marker="block-3-face", quantile=0.5)
+    )
+    # of four samples the smallest and the largest hold the median with 1 - 2^-3
+    assert "NSCD elastic (88 %)" in peak.caption
+    assert "LS-DEM (" not in peak.caption
+    assert len({len(row) for row in (*residual.rows, residual.header)}) == 1
+
+
+def test_one_sample_has_medians_and_no_width(content):
+    peak, _, width = block_tables(content.cases[LAST])
+    place = width.header.index("NSCD elastic (n = 1)")
+    assert {row[place] for row in width.rows} == {"none"}
+    top = content.cases[LAST].differences["peak"].sel(model="nscd-elastic", marker="top-face")
+    assert peak.rows[0][peak.header.index("NSCD elastic (n = 1)")] == f"{1e3 * float(top):.1f}"
+    assert "NSCD elastic (" not in peak.caption
+
+
+def test_every_pair_and_every_model_has_a_row(content):
+    assert len(pairs_table(content).rows) == 2 * 6
+    assert len(numerics_table(content).rows) == 2 * 4
+    rows = {row[:2]: row for row in pairs_table(content).rows}
+    assert rows[LAST, "LS-DEM and NSCD elastic"][2:4] == ("none", "none")
+
+
+def test_models_of_rigid_blocks_are_held_against_their_numerics(content):
+    case = content.cases[FIRST]
+    words = case_words(case)
+    assert words.startswith("configuration-1, basso-tirreno x 2: the ensembles of ")
+    assert words.count("both have rigid blocks") == 1
+    pair = {"model": "ls-dem", "other": "nscd-rigid"}
+    floors = case.differences["floor"].max("twin")
+    case.differences["history_difference"].loc[pair] = 4.0 * float(
+        floors.sel(model=["ls-dem", "nscd-rigid"]).max()
+    )
+    assert "4 times the larger floor of their numerics" in case_words(case)
+    case.differences["parting_time"].loc[pair] = np.inf
+    assert "the runs are not told apart within the window" in case_words(case)
+
+
+def test_pairs_beyond_chance_are_counted(content):
+    case = content.cases[FIRST]
+    case.differences["distance_chance"][:] = 0.0
+    assert "of all 6 pairs of models are farther apart" in case_words(case)
+    case.differences["distance_chance"][:] = 1.0
+    assert "of none of 6 pairs of models are farther apart" in case_words(case)
+    case.differences["distance_chance"][:] = np.nan
+    assert "x 2: too few samples to tell the ensembles of any two models apart." in case_words(case)
+
+
+def test_impacts_of_equal_blocks_are_said_once(content):
+    cases = [content.cases[FIRST], dataclasses.replace(content.cases[FIRST], name="other")]
+    (words,) = impact_words(cases)
+    assert "configuration-1, other: LS-DEM 0.800, NSCD rigid 0.820" in words
+    assert words.endswith("a rigid block on two edges 0.731 (Housner 1963).")
+
+
+def ranking(section):
+    (items,) = [
+        block.items for block in section.blocks if block.kind == "items" and "state that" in block.items[0]
+    ]
+    return items
+
+
+def test_the_ranking_is_open_and_says_why_where_tests_are_synthetic(content):
+    best, poor = ranking(models(content))
+    assert "viscoelastic model describes all four configurations best: cannot be judged" in best
+    assert "elastic model is poor for configurations 3 and 4" in poor
+    assert "two others: cannot be judged" in poor
+    assert all("The measured curves are synthetic" in words for words in (best, poor))
+
+
+def test_the_ranking_is_computed_where_tests_are_real(content):
+    limits = np.full((2, 4, 4), np.nan)
+    names = list(MODELS)
+    for better, worse in (("nscd-elastic", "nscd-viscoelastic"), ("nscd-elastic", "nscd-rigid")):
+        limits[:, names.index(better), names.index(worse)] = 1e-3, 2e-3
+        limits[:, names.index(worse), names.index(better)] = -2e-3, -1e-3
+    for case in content.cases.values():
+        case.differences.attrs["synthetic"] = 0
+        case.differences["score_difference_interval"][:] = limits
+        case.differences["counted"][:] = 6
+    best, poor = ranking(models(content))
+    assert "best: not met. Of 8 comparisons of two models 0 bear the statement out, 2 contradict it" in best
+    assert "two others: not met." in poor
+
+
+def test_a_study_without_tests_has_no_ranking_and_one_of_one_model_no_section(fake, content):
+    untested = {**fake.study, "cases": [{**case, "measured": None} for case in fake.study["cases"]]}
+    section = models(load_content(untested, fake.results, fake.benchmarks))
+    assert "ranking" not in [block.key for block in section.blocks if block.kind == "heading"]
+    alone = {**fake.study, "models": {"ls-dem": fake.study["models"]["ls-dem"]}}
+    assert models(load_content(alone, fake.results, fake.benchmarks)) is None
+
+
+def test_figure_has_the_distances_in_millimetres(content):
+    differences = {name: case.differences for name, case in content.cases.items()}
+    axes = plot_differences(differences).axes[0]
+    dots = [line for line in axes.lines if line.get_marker() == "o"]
+    drawn = [float(line.get_xdata()[0]) for line in dots]
+    found = differences[FIRST]["distance"].to_numpy()[np.triu_indices(4, 1)]
+    np.testing.assert_allclose(drawn, np.maximum(1e3 * found, 1e-4))
+    assert len([line for line in axes.lines if line.get_marker() == "x"]) == 6

@@ -1,0 +1,118 @@
+"""Made-up ensembles of two models whose differences are known."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from blockshake.study.comparison.comparison import compare_models
+from blockshake.study.comparison.twins import TWINS
+
+BLOCK = "block-1-face"
+NOISE = 1e-4  # m
+SHIFT = 0.02  # m
+LEVELS = (0.010, 0.011, 0.012, 0.013)  # m, amplitudes of the samples of the first model
+STANDING = 400 / 401  # share of the times after the first, at which nothing has moved
+
+
+@pytest.fixture
+def ensembles(make_run, gather):
+    return {
+        "ls-dem": gather([make_run(level) for level in LEVELS]),
+        "nscd-rigid": gather([make_run(level + SHIFT) for level in LEVELS[:3]]),
+        "nscd-elastic": gather([make_run(LEVELS[0])]),
+    }
+
+
+def twins_of(run, ratio):
+    """Twins of a run that are 1 and 2 mm off, from half of the window on."""
+    off = [run["marker_displacement"].copy() for _ in TWINS]
+    for place, moved in enumerate(off, start=1):
+        moved.loc[{"marker": BLOCK, "axis": "x", "time": slice(1.0, None)}] += 1e-3 * place
+    result = xr.Dataset(
+        {
+            "marker_displacement": xr.concat(off, dim="twin"),
+            "impact_ratio": ("step", [ratio, ratio + 0.01]),
+            "housner_ratio": ((), 0.73),
+        },
+        {"twin": list(TWINS), "step": ["usual", "half"]},
+    )
+    result.attrs["sample"] = 0
+    return result
+
+
+@pytest.fixture
+def compared(ensembles, make_run):
+    twins = {"ls-dem": twins_of(make_run(LEVELS[0]), 0.87)}
+    return compare_models(ensembles, twins, (make_run(LEVELS[1]), NOISE))
+
+
+def test_a_shift_is_measured_in_ensembles_and_in_runs(compared):
+    pair = compared.sel(model="ls-dem", other="nscd-rigid")
+    # narrow ensembles: the shift, between mean levels half a millimetre nearer, less the spreads within
+    between = np.abs(np.subtract.outer(LEVELS, np.array(LEVELS[:3]) + SHIFT)).mean()
+    within = [np.abs(np.subtract.outer(one, one)).mean() for one in (LEVELS, LEVELS[:3])]
+    assert float(pair["distance"]) == pytest.approx(STANDING * (between - sum(within) / 2.0), rel=1e-12)
+    assert pair["distance"] > pair["distance_chance"]
+    assert float(pair["history_difference"]) == pytest.approx(STANDING * SHIFT, rel=1e-12)
+    assert int(pair["common"]) == 3
+    assert float(pair["parting_time"]) == 1 / 200
+    np.testing.assert_array_equal(compared["distance"], compared["distance"].T)
+
+
+def test_equal_ensembles_are_not_apart(ensembles):
+    both = {name: ensembles["ls-dem"] for name in ("ls-dem", "nscd-viscoelastic")}
+    pair = compare_models(both, {}, None).sel(model="ls-dem", other="nscd-viscoelastic")
+    assert float(pair["distance"]) == pytest.approx(0.0, abs=1e-18)
+    assert float(pair["history_difference"]) == 0.0
+    assert float(pair["parting_time"]) == np.inf
+
+
+def test_medians_and_width_of_a_block(compared):
+    at = compared.sel(model="ls-dem", marker=BLOCK)
+    assert float(at["peak"]) == pytest.approx(np.median(LEVELS), rel=1e-12)
+    np.testing.assert_allclose(at["peak_interval"], [LEVELS[0], LEVELS[-1]], rtol=1e-12)
+    pairs = [b - a for place, a in enumerate(LEVELS) for b in LEVELS[place + 1 :]]
+    assert float(at["width"]) == pytest.approx(STANDING * np.mean(pairs), rel=1e-9)
+    assert at["width_interval"][0] <= at["width"] <= at["width_interval"][1]
+    assert "slab-face" not in compared["marker"].values
+
+
+def test_floor_and_horizon_are_those_of_the_twins(compared):
+    at = compared.sel(model="ls-dem")
+    # 201 of 401 times from 1 s on
+    np.testing.assert_allclose(at["floor"], np.array([1e-3, 2e-3]) * 201 / 401, rtol=1e-9)
+    np.testing.assert_allclose(at["horizon"], [1.0, 1.0], rtol=1e-12)
+    np.testing.assert_allclose(at["impact_ratio"], [0.87, 0.88])
+    assert np.isnan(compared["floor"].sel(model="nscd-rigid")).all()
+
+
+def test_one_sample_has_no_distance_but_its_history(compared):
+    pair = compared.sel(model="ls-dem", other="nscd-elastic")
+    assert np.isnan(pair["distance"])
+    assert np.isnan(compared["score"].sel(model="nscd-elastic"))
+    assert float(pair["history_difference"]) == 0.0
+    assert int(pair["common"]) == 1
+
+
+def test_the_nearer_model_has_the_lower_score_beyond_doubt(compared):
+    assert compared["score"].sel(model="ls-dem") < compared["score"].sel(model="nscd-rigid")
+    excess = compared.sel(model="ls-dem", other="nscd-rigid")
+    assert (excess["score_difference_interval"] > 0.0).all()
+    assert float(excess["score_difference"]) == pytest.approx(
+        float(compared["score"].sel(model="nscd-rigid") - compared["score"].sel(model="ls-dem")), rel=1e-12
+    )
+
+
+def test_same_ensembles_same_numbers_and_every_number_has_its_unit(ensembles, compared, make_run):
+    twins = {"ls-dem": twins_of(make_run(LEVELS[0]), 0.87)}
+    assert compared.identical(compare_models(ensembles, twins, (make_run(LEVELS[1]), NOISE)))
+    assert all({"units", "long_name"} <= set(one.attrs) for one in compared.values())
+
+
+def test_models_all_of_whose_samples_failed_have_no_numbers(ensembles, make_run, gather):
+    failed = gather([make_run(0.01, status="not-converged")])
+    found = compare_models({**ensembles, "nscd-elastic": failed}, {}, (make_run(0.01), NOISE))
+    at = found.sel(model="nscd-elastic")
+    assert int(at["counted"]) == 0
+    assert np.isnan(at[["peak", "width", "score"]].to_array()).all()
+    assert np.isnan(at["history_difference"].sel(other="ls-dem"))
