@@ -157,3 +157,9 @@ def test_no_docstring_starts_with_what(folder):
             ):
                 found += [f"{path.relative_to(ROOT)}: {words}" for words in starts_with_what(text)]
     assert found == []
+
+
+def test_every_module_of_tests_has_a_name_of_its_own():
+    """Pytest imports them by their names alone."""
+    names = [path.name for path in (ROOT / "tests").rglob("test_*.py")]
+    assert sorted(names) == sorted(set(names))
