@@ -16,7 +16,7 @@ NOMINAL = {
     "joint1.lever.slope": (0.0, 0.05, 0.1),
     "joint1.lever.stray": (1.1, 0.1, 0.03),
     "joint1.closed.compliance": (0.0, 1e-9, 1e-9),
-    "joint1.impact.ringing": (0.018, 5e-3, 2e-3),
+    "joint1.impact.ringing": (0.12, 0.03, 0.01),
     "table.pitch": (0.0, 5e-6, 5e-6),
     "table.compliance": (0.0, 3e-11, 3e-11),
     "unexplained.largest": (0.017, 4e-3, 1e-4),

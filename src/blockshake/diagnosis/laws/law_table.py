@@ -35,7 +35,8 @@ _NONE = float("nan")
 OF_JOINTS = {
     # an edge is known to some 5 mm: by its chamfer in reality, by the places of nodes in a model
     "lever.short": Law(
-        "m", 0.0, 5e-3, 1.2e-2, "half the face's width less the mean lever of both edges while turned", "Housner (1963)"
+        "m", 0.0, 5e-3, 1.2e-2, "half the face's width less the mean lever of both edges at small rotations",
+        "Housner (1963)",
     ),
     "lever.bias": Law(
         "m", 0.0, 0.0, 3e-3, "half the difference of the levers of both edges while turned", "statics of a rigid block"
@@ -63,7 +64,8 @@ OF_JOINTS = {
         "1", 0.0, _NONE, 0.1, "angular velocity after over before an impact, median", "Housner (1963)"
     ),
     "impact.ringing": Law(
-        "m", 2e-3, _NONE, 0.6, "rms of the lever of the joint above from 0.06 to 0.25 s after an impact, median",
+        "m s/rad", 2e-2, _NONE, 0.45,
+        "rms of the lever of the joint above from 0.06 to 0.25 s after an impact, by the angular velocity before, median",
         "restitution of impacts",
     ),
 }  # fmt: skip

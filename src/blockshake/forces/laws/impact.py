@@ -23,7 +23,8 @@ def impact_law(forces, place):
     -------
     dict of str to Statistic
         ``impact.kept``: angular velocity after over before, of the upper body (Housner 1963) [1]; ``impact.ringing``:
-        root mean square of the lever of the joint above about its course, while it rings [m].
+        root mean square of the lever of the joint above about its course, while it rings, over the size of the
+        angular velocity before [m s/rad].
     """
     joint = forces.faces.index(forces.transmitted.faces[place])
     upper = forces.faces[joint].upper
@@ -45,7 +46,9 @@ def impact_law(forces, place):
             continue
         kept.append(spin[last] / spin[first])
         if above:
-            rings.append(_ringing(forces.transmitted.lever[:, above[0]], after, step, side))
+            rings.append(
+                _ringing(forces.transmitted.lever[:, above[0]], after, step, side) / abs(spin[first])
+            )
     rings = [one for one in rings if np.isfinite(one)]
     return {
         "impact.kept": _median(kept),

@@ -7,6 +7,8 @@ from blockshake.forces.laws.statistic import UNTOLD, Statistic, of_blocks, runs_
 _LEAST_TURN = 2e-3  # rad: below it a spread of rotations tells no slope
 _FEWEST = 5  # instants
 _SWINGS_A_SIDE = 2  # of a step, at least
+_SMALL = 0.1  # share of an edge's instants that are its smallest rotations
+_SMALLEST = 10  # of them at least, where the edge has so many
 
 
 def lever_law(forces, place):
@@ -21,15 +23,17 @@ def lever_law(forces, place):
     Returns
     -------
     dict of str to Statistic
-        ``lever.short``: half the face's width less the mean lever of both edges [m]; ``lever.bias``: half their
-        difference, positive where the resultant lies towards +x [m]; ``lever.step``: largest change of both levers from
-        an instant on, towards +x [m]; ``lever.slope``: change of the lever with the
-        size of the rotation [m/rad]; ``lever.stray``: root mean square of what is left, in units of the lever's
-        standard deviation [1].
+        ``lever.short``: half the face's width less the mean lever of both edges, at the smallest tenth of each edge's
+        rotations [m]; ``lever.bias``: half the difference of both levers, positive where the resultant lies towards +x
+        [m]; ``lever.step``: largest change of both levers from an instant on, towards +x [m]; ``lever.slope``: change
+        of the lever with the size of the rotation [m/rad]; ``lever.stray``: root mean square of what is left, in units
+        of the lever's standard deviation [1].
 
     Notes
     -----
-    A rigid block bears on its edge alone: the lever is half the width, to either side (Housner 1963).
+    A rigid block bears on its edge alone: the lever is half the width, to either side (Housner 1963). An edge that wear
+    has rounded bears further in, and least far out at small rotations: the further the block turns, the nearer to the
+    edge it rolls. The shortfall is therefore that of small rotations.
     """
     lever, error = forces.transmitted.lever[:, place], forces.transmitted.lever_error[:, place]
     face = forces.transmitted.faces[place]
@@ -43,8 +47,9 @@ def lever_law(forces, place):
         return dict.fromkeys(names, UNTOLD)
     run = runs_of(turned)[turned]
     own, towards, turn = lever[turned], side[turned], np.abs(forces.joints.rotation[turned, joint])
-    edges = [of_blocks(own[towards == sign], run[towards == sign]) for sign in (1, -1)]
-    short, bias = _both(edges, face.half_width)
+    edges = [towards == sign for sign in (1, -1)]
+    short, _ = _both([_edge(own, run, edge & _smallest(turn, edge)) for edge in edges], face.half_width)
+    _, bias = _both([_edge(own, run, edge) for edge in edges], face.half_width)
     slope = slopes(own * towards, turn[:, None], run)[0] if np.ptp(turn) > _LEAST_TURN else UNTOLD
     middle = sum(np.where(towards == sign, _median(own[towards == sign]), 0.0) for sign in (1, -1))
     stray = float(np.sqrt(np.mean(((own - middle) / error[turned]) ** 2)))
@@ -56,6 +61,18 @@ def lever_law(forces, place):
         Statistic(stray, stray / float(np.sqrt(2 * len(own)))),
     )
     return dict(zip(names, found, strict=True))
+
+
+def _edge(lever, run, chosen):
+    """Lever of some of the instants."""
+    return of_blocks(lever[chosen], run[chosen])
+
+
+def _smallest(turn, edge):
+    """Instants whose rotation is among the smallest of an edge's."""
+    of_edge = np.sort(turn[edge])
+    count = max(round(_SMALL * len(of_edge)), _SMALLEST)
+    return turn <= (of_edge[min(count, len(of_edge)) - 1] if len(of_edge) else 0.0)
 
 
 def _median(values):
