@@ -12,6 +12,8 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from key_tables import HEADER as KEYS_HEADER
+from key_tables import key_rows
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import load_json, write_text
@@ -142,6 +144,11 @@ def published_settings():
     return markdown(heads, rows)
 
 
+def keys_of(kind):
+    """Maker of the table of the keys of a kind of file."""
+    return lambda: markdown(KEYS_HEADER, key_rows(kind))
+
+
 def _top_drift(run):
     """Displacement of the top block of configuration 1 relative to the slab along x [m]."""
     along = run["marker_displacement"].sel(axis="x")
@@ -159,6 +166,10 @@ MAKERS = {
     "statements": statements,
     "departures": departure_table,
     "published-settings": published_settings,
+    "structure-keys": keys_of("structure"),
+    "study-keys": keys_of("study"),
+    "campaign-keys": keys_of("campaign"),
+    "import-keys": keys_of("import"),
 }
 
 

@@ -32,6 +32,12 @@ def test_a_page_holds_the_figures_of_today(figures):
     assert figures.blocks(page)["slenderness"] == figures.slenderness()
 
 
+@pytest.mark.parametrize("kind", ["structure", "study", "campaign", "import"])
+def test_keys_of_a_file_are_those_of_its_schema_and_each_has_a_meaning(kind, figures):
+    assert figures.blocks(ROOT / "docs" / "keys.md")[f"{kind}-keys"] == figures.keys_of(kind)()
+    assert all(row[-1] for row in figures.key_rows(kind))
+
+
 def test_departures_from_the_paper_are_those_of_today(figures):
     page = ROOT / "docs" / "the-paper.md"
     assert figures.blocks(page)["departures"] == figures.departure_table()

@@ -20,7 +20,8 @@ class Material(Strict):
     youngs_modulus: Positive = Field(description="Young's modulus [Pa]")
     poisson_ratio: Finite = Field(gt=-1.0, lt=0.5, description="Poisson's ratio [1]")
     viscous_modulus: NotNegative = Field(
-        0.0, description="viscous modulus of the bulk [Pa s, by assumption]; the rigid solvers do not use it"
+        0.0,
+        description="viscous modulus of the bulk, its unit by assumption; rigid blocks do not use it [Pa s]",
     )
 
 
@@ -47,9 +48,9 @@ class Shape(Strict):
 class Body(Strict):
     """One rigid body: where it starts and how it moves then."""
 
-    name: Name
-    shape: str
-    material: str
+    name: Name = Field(description="no dot, slash or space")
+    shape: str = Field(description="one of `shapes`")
+    material: str = Field(description="one of `materials`")
     position: Vector = Field(description="centroid of the shape, world frame [m]")
     orientation: Quaternion = Field(
         (1.0, 0.0, 0.0, 0.0), description="unit quaternion w, x, y, z, body to world"
@@ -66,7 +67,7 @@ class Body(Strict):
 class Friction(Strict):
     """Coulomb's coefficient of a pair of materials; it may fall with slip rate and slip, and differ by direction."""
 
-    pair: tuple[str, str]
+    pair: tuple[str, str] = Field(description="the two materials, in either order")
     coefficient: NotNegative = Field(description="at rest, before any slip [1]")
     rate_drop: Fraction = Field(0.0, description="share of the coefficient lost at high slip rate [1]")
     rate_scale: Positive = Field(0.01, description="slip rate at which 63 % of it is lost [m/s]")
@@ -89,7 +90,7 @@ class Joint(Strict):
 class Stopper(Strict):
     """A one-sided elastic stop fixed to the driven body."""
 
-    body: str
+    body: str = Field(description="the body that is stopped")
     position: Vector = Field(description="point of the body, body frame, from the centroid [m]")
     axis: Literal["+x", "-x", "+y", "-y", "+z", "-z"] = Field(description="side on which the stop stands")
     gap: NotNegative = Field(description="clearance at the start [m]")
@@ -101,14 +102,14 @@ class Stopper(Strict):
 class ExternalForce(Strict):
     """A force from outside on a body, along a fixed axis; nothing of it acts on the driven body."""
 
-    body: str
+    body: str = Field(description="the body that is pushed")
     position: Vector = Field(
         (0.0, 0.0, 0.0), description="point of the body, body frame, from the centroid [m]"
     )
-    axis: Literal[AXES] = Field("x", description="world frame")
+    axis: Literal[AXES] = Field("x", description="of the world frame, along which the force acts")
     amplitude: Finite = Field(0.0, description="along the axis, from start until end [N]")
-    start: NotNegative = Field(0.0, description="[s]")
-    end: Positive = Field(1e9, description="[s]")
+    start: NotNegative = Field(0.0, description="first instant of the amplitude [s]")
+    end: Positive = Field(1e9, description="last instant of the amplitude [s]")
     stiffness: Finite = Field(
         0.0, description="force against the point's displacement relative to the driven body [N/m]"
     )
@@ -118,26 +119,26 @@ class ExternalForce(Strict):
 class Marker(Strict):
     """A point of a body whose displacement is measured."""
 
-    name: Name
-    body: str
+    name: Name = Field(description="of its readings")
+    body: str = Field(description="the body that carries it")
     position: Vector = Field(description="body frame, from the centroid [m]")
 
 
 class Accelerometer(Strict):
     """An accelerometer fixed to a body, one channel an axis."""
 
-    name: Name
-    body: str
+    name: Name = Field(description="a channel is named NAME-x and the like")
+    body: str = Field(description="the body that carries it")
     position: Vector = Field(description="body frame, from the centroid [m]")
-    axes: tuple[Literal[AXES], ...] = Field(min_length=1)
+    axes: tuple[Literal[AXES], ...] = Field(min_length=1, description="of the body that it measures along")
 
 
 class StructureFile(Strict):
     """The whole file."""
 
-    name: str
-    description: str = ""
-    gravity: Vector = Field((0.0, 0.0, -9.81), description="[m/s2]")
+    name: str = Field(description="of the structure, for reports")
+    description: str = Field("", description="a sentence for reports")
+    gravity: Vector = Field((0.0, 0.0, -9.81), description="acceleration of a free body [m/s2]")
     materials: dict[Name, Material]
     shapes: dict[Name, Shape]
     bodies: tuple[Body, ...] = Field(min_length=1)

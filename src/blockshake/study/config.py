@@ -32,9 +32,15 @@ def _links(ensemble):
 class Ensemble(Strict):
     """The samples: how many, of which variables, how correlated."""
 
-    size: int = Field(ge=SMALLEST_SIZE, description="samples [1]")
+    size: int = Field(
+        ge=SMALLEST_SIZE,
+        description="samples of the Latin hypercube; another size is another design: all samples change [1]",
+    )
     seed: int = Field(ge=0, description="of the design [1]")
-    distributions: dict[str, Lognormal] = Field(TABLE_2, description="random variables by dotted name")
+    distributions: dict[str, Lognormal] = Field(
+        TABLE_2,
+        description="random variables by dotted name, as `blockshake parameters` lists them; Table 2's by default",
+    )
     correlation: str | None = Field(
         None, description="CSV of the target correlation; none means uncorrelated"
     )
@@ -52,7 +58,7 @@ class Ensemble(Strict):
 class ModelSettings(Strict):
     """One solver in the study."""
 
-    time_step: Positive = Field(description="[s]")
+    time_step: Positive = Field(description="of the integration [s]")
     parameters: dict[str, float | int | str | bool] = Field(
         {}, description="of the solver, the same in all samples, by dotted name"
     )
@@ -61,8 +67,8 @@ class ModelSettings(Strict):
 class Measured(Strict):
     """The measured test that a case is compared with."""
 
-    campaign: str = Field(description="folder of the campaign")
-    test: str = Field(description="name of the test in it")
+    campaign: str = Field(description="folder of a campaign of the same structure, by its content")
+    test: str = Field(description="name of the test in it, not a sealed one")
 
 
 def _input_is_optional(schema):
@@ -80,12 +86,14 @@ class StudyCase(Strict):
     scale: Positive = Field(description="multiplies the motion [1]")
     duration: Positive = Field(description="simulated time [s]")
     samples: dict[ModelName, int] = Field(
-        {}, description="fewer samples than the ensemble's, at least 1, by model"
+        {},
+        description="fewer samples than the ensemble's, at least 1, by model: the first rows of the design. With fewer "
+        "than three the case has no twins, distances, widths or scores of that model",
     )
     measured: Measured | None = Field(None, description="none: compared with no test")
     input: Literal[MEASURED, COMMANDED] = Field(
-        description="motion that drives the models: the slab's in the measured test, or the commanded one; by default "
-        "the measured one where there is any",
+        description="motion that drives the models: the slab's in the measured test, each sample by its own draw of "
+        "it, or the commanded one; by default the measured one where there is any. Reasons: decision 9",
     )
 
     @model_validator(mode="before")
@@ -112,7 +120,7 @@ class Ladder(Strict):
 
     motions: tuple[str, ...] = Field((), description="those of the cases by default")
     first: Positive = Field(0.5, description="scale of the first test [1]")
-    increment: Positive = Field(0.25, description="[1]")
+    increment: Positive = Field(0.25, description="from one scale to the next [1]")
     highest: Positive = Field(4.0, description="where the ladder ends [1]")
     largest_drift: Positive | None = Field(
         None,
@@ -125,16 +133,27 @@ class Diagnosis(Strict):
     """Which measured campaigns are diagnosed, and how thoroughly."""
 
     campaigns: tuple[str, ...] = Field((), description="folders of the campaigns")
-    effort: Literal["quick", "standard", "deep"] = Field("standard", description="docs/diagnosis.md")
+    effort: Literal["quick", "standard", "deep"] = Field(
+        "standard", description="how many tests are simulated: docs/diagnosis.md"
+    )
 
 
 class StudyConfig(Strict):
     """The whole file."""
 
-    name: str = Field(pattern=r"^[a-z0-9-]+$", description="names the folder of results and the report")
-    description: Annotated[str, StringConstraints(strip_whitespace=True)]
-    output_rate: Positive = Field(RATE, description="of the histories [Hz]")
-    samples_per_job: int = Field(10, ge=1, description="samples in one job [1]")
+    name: str = Field(
+        pattern=r"^[a-z0-9-]+$",
+        description="names results/NAME, logs/NAME and reports/NAME.html; lower case, digits, hyphens",
+    )
+    description: Annotated[str, StringConstraints(strip_whitespace=True)] = Field(
+        description="one sentence for the report"
+    )
+    output_rate: Positive = Field(
+        RATE, description="of the histories; the default is that of the paper's optical system [Hz]"
+    )
+    samples_per_job: int = Field(
+        10, ge=1, description="samples in one job; a killed job resumes at the sample, whatever this is [1]"
+    )
     models: dict[ModelName, ModelSettings] = Field(min_length=1)
     cases: tuple[StudyCase, ...] = Field(min_length=1)
     ensemble: Ensemble

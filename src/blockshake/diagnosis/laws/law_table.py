@@ -65,7 +65,7 @@ OF_JOINTS = {
     ),
     "impact.ringing": Law(
         "m s/rad", 2e-2, _NONE, 0.45,
-        "rms of the lever of the joint above from 0.06 to 0.25 s after an impact, by the angular velocity before, median",
+        "rms of the lever of the joint above from 0.06 to 0.25 s after an impact, by the angular velocity, median",
         "restitution of impacts",
     ),
 }  # fmt: skip

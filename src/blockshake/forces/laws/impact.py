@@ -8,6 +8,7 @@ _AROUND = 0.06  # s, from the impact to where the angular velocity is read: beyo
 _RINGS = (0.06, 0.25)  # s, after it
 _FEWEST = 2  # impacts
 _LEAST_SPIN = 0.01  # rad/s before it
+_LEAST_TO_RING = 0.06  # rad/s before it: slower impacts ring no louder than the noise of levers
 
 
 def impact_law(forces, place):
@@ -45,7 +46,7 @@ def impact_law(forces, place):
         if side[first] != side[before] or side[last] != side[after] or abs(spin[first]) < _LEAST_SPIN:
             continue
         kept.append(spin[last] / spin[first])
-        if above:
+        if above and abs(spin[first]) > _LEAST_TO_RING:
             rings.append(
                 _ringing(forces.transmitted.lever[:, above[0]], after, step, side) / abs(spin[first])
             )

@@ -26,24 +26,28 @@ Scale = Annotated[Finite, AfterValidator(_not_zero)]
 class Sensors(Strict):
     """Standard deviations of the readings."""
 
-    marker_noise: NotNegative = Field(markers.NOISE, description="[m]")
-    accelerometer_noise: NotNegative = Field(accelerometers.NOISE, description="[m/s2]")
+    marker_noise: NotNegative = Field(markers.NOISE, description="of a marker's reading [m]")
+    accelerometer_noise: NotNegative = Field(
+        accelerometers.NOISE, description="of a channel's reading [m/s2]"
+    )
 
 
 class MeasuredTest(Strict):
     """One test of the list: what was commanded, where it was recorded, what it may be used for."""
 
-    name: str
-    file: str
-    motion: str
-    scale: Scale
-    role: Literal["fit", "select", "sealed"]
+    name: str = Field(description="unique in the campaign")
+    file: str = Field(description="readings: a spreadsheet, CSV or netCDF file in the folder")
+    motion: str = Field(description="commanded motion: a shipped name, or a file in the folder")
+    scale: Scale = Field(description="multiplies the motion; not 0 [1]")
+    role: Literal["fit", "select", "sealed"] = Field(
+        description="what the test may be used for: to fit, to choose between models, or to judge a frozen one"
+    )
 
 
 class CampaignFile(Strict):
     """The file ``campaign.yaml``."""
 
-    name: str
+    name: str = Field(description="of the campaign, for reports")
     structure: str = Field(description="shipped name, or a file in the folder")
     sensors: Sensors = Sensors()
     tests: tuple[MeasuredTest, ...] = Field(min_length=1)

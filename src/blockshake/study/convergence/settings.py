@@ -9,13 +9,24 @@ class Convergence(Strict):
     """The short runs that show how LS-DEM's numerical parameters act, varied one at a time."""
 
     structure: str = Field(description="shipped name or file; one block of it rocks, and all of it is shaken")
-    acceleration: Positive = Field(2.5, description="amplitude of one cycle of sine along x [m/s2]")
+    acceleration: Positive = Field(
+        2.5,
+        description="amplitude of one cycle of sine along x; it should rock the stack and not topple it [m/s2]",
+    )
     frequency: Positive = Field(1.5, description="of that cycle [Hz]")
     duration: Positive = Field(4.0, description="simulated time [s]")
-    time_steps: tuple[Positive, ...] = Field((1e-5, 2e-5, 5e-5, 1e-4), min_length=2, description="[s]")
-    node_spacings: tuple[Positive, ...] = Field((0.05, 0.1, 0.2, 0.4), min_length=2, description="[m]")
+    time_steps: tuple[Positive, ...] = Field(
+        (1e-5, 2e-5, 5e-5, 1e-4),
+        min_length=2,
+        description="of LS-DEM; the smallest is what the others are held against [s]",
+    )
+    node_spacings: tuple[Positive, ...] = Field(
+        (0.05, 0.1, 0.2, 0.4), min_length=2, description="of the surfaces; likewise [m]"
+    )
     perimeter_insets: tuple[Positive, ...] = Field(
-        (0.0025, 0.005, 0.01, 0.02), min_length=2, description="[m]"
+        (0.0025, 0.005, 0.01, 0.02),
+        min_length=2,
+        description="of the outermost nodes of a face; likewise [m]",
     )
     grid_spacings: tuple[Positive, ...] = Field(
         (0.005, 0.01, 0.02, 0.04),

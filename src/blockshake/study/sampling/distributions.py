@@ -27,7 +27,7 @@ class Lognormal(Strict):
     The two parameters of the logarithm follow exactly: variance ``ln(1 + cov^2)`` and mean ``ln(mean) - variance / 2``.
     """
 
-    distribution: Literal["lognormal"] = "lognormal"
+    distribution: Literal["lognormal"] = Field("lognormal", description="the one kind there is")
     mean: Positive = Field(description="mean of the variable itself, SI")
     cov: Positive = Field(description="standard deviation over mean [1]")
 
