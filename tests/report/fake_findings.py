@@ -233,14 +233,25 @@ def made_up_forces(tests, bodies):
 
     columns = {
         "lever": swing, "lever_error": np.full(len(time), 3e-3), "normal": np.full(len(time), 2e5),
-        "shear": 1e4 * swing, "side": np.sign(swing),
+        "shear": 1e4 * swing, "side": np.sign(swing), "rotation": 0.01 * swing, "slip_rate": 0.05 * swing,
     }  # fmt: skip
     return xr.Dataset(
         {
             **{name: along(values, joints) for name, values in columns.items()},
             "unexplained": along(-2e3 * (time > 2.0), bodies),
+            "told": (
+                ("test", "joint", "law", "time"),
+                np.ones((len(tests), len(joints), 3, len(time)), np.int8),
+            ),
             "half_width": ("joint", np.full(len(joints), 0.38)),
+            "coefficient": ("joint", np.full(len(joints), 0.75)),
         },
-        {"test": list(tests), "time": time, "joint": joints, "body": list(bodies)},
+        {
+            "test": list(tests),
+            "time": time,
+            "joint": joints,
+            "body": list(bodies),
+            "law": ["lever", "friction", "closed"],
+        },
         {"outside": "null"},
     )

@@ -8,9 +8,14 @@ import xarray as xr
 from blockshake.diagnosis.laws.findings import OutsideForce
 from blockshake.diagnosis.laws.outside_force import outside_force
 from blockshake.forces.joint_forces import gives_forces, joint_forces
+from blockshake.forces.laws.closed_joint import pressed
+from blockshake.forces.laws.friction import slipping
+from blockshake.forces.laws.lever import bears_on_an_edge
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.motion.outliers import without_outliers
 from blockshake.parity.correction import load_corrected_test
+
+LAWS = {"lever": bears_on_an_edge, "friction": slipping, "closed": pressed}
 
 
 def measured_forces(campaign, names, findings):
@@ -28,8 +33,10 @@ def measured_forces(campaign, names, findings):
     -------
     xarray.Dataset
         Along ``test`` and ``time``, single precision: ``lever``, ``lever_error``, ``normal`` and ``shear(joint)`` of
-        the joints that are statically determinate [m, N], ``side(joint)``, the edge that bears, and
-        ``unexplained(body)``, the least unexplained force along x [N]; ``half_width(joint)`` [m]. The attribute
+        the joints that are statically determinate [m, N], ``side(joint)``, the edge that bears, ``rotation(joint)``
+        [rad], ``slip_rate(joint)`` [m/s], and ``unexplained(body)``, the least unexplained force along x [N];
+        ``told(joint, law)``, the instants that the laws of the lever, of friction and of the closed joint are read
+        from; ``half_width(joint)`` [m] and ``coefficient(joint)`` of friction in the structure [1]. The attribute
         ``outside`` is an `OutsideForce` as JSON, or null. Empty where the sensors give no forces.
     """
     structure = load_structure(campaign.structure)
@@ -63,16 +70,25 @@ def _histories(forces):
         "normal": forces.transmitted.normal,
         "shear": forces.transmitted.force[..., 0],
         "side": forces.joints.side[:, joints],
+        "rotation": forces.joints.rotation[:, joints],
+        "slip_rate": forces.joints.slip_rate[:, joints],
     }
+    told = [[law(forces, place) for law in LAWS.values()] for place in range(len(joints))]
     return xr.Dataset(
         {
             **{name: (("time", "joint"), values.astype(np.float32)) for name, values in columns.items()},
             "unexplained": (("time", "body"), forces.least.wrench[:, free, 0].astype(np.float32)),
+            "told": (
+                ("joint", "law", "time"),
+                np.reshape(told, (len(joints), len(LAWS), -1)).astype(np.int8),
+            ),
+            "coefficient": ("joint", [face.friction for face in forces.transmitted.faces]),
             "half_width": ("joint", [face.half_width for face in forces.transmitted.faces]),
         },
         {
             "time": np.round(forces.motion.time, 6),
             "joint": [face.name for face in forces.transmitted.faces],
+            "law": list(LAWS),
             "body": [names[body] for body in free],
         },
     )

@@ -9,6 +9,14 @@ _BLOCK = 0.1  # s, over which residuals go together
 _FEWEST = 30  # instants
 
 
+def pressed(forces, place):
+    """Instants at which the whole face of a joint is pressed, away from impacts: bool array."""
+    face = forces.transmitted.faces[place]
+    within = np.abs(forces.transmitted.lever[:, place]) < _KERN * face.half_width
+    turn = forces.joints.rotation[:, forces.faces.index(face)]
+    return within & forces.joints.steady & np.isfinite(turn)
+
+
 def closed_joint_law(forces, place):
     """``closed.compliance``: rotation of one joint by its moment while the whole face is pressed [rad/(N m)].
 
@@ -18,13 +26,10 @@ def closed_joint_law(forces, place):
     place : int
         Of the joint in ``forces.transmitted``.
     """
-    face = forces.transmitted.faces[place]
-    joint = forces.faces.index(face)
-    lever = forces.transmitted.lever[:, place]
-    turn = forces.joints.rotation[:, joint]
-    pressed = (np.abs(lever) < _KERN * face.half_width) & forces.joints.steady & np.isfinite(turn)
-    if pressed.sum() < _FEWEST:
+    closed = pressed(forces, place)
+    if closed.sum() < _FEWEST:
         return {"closed.compliance": UNTOLD}
-    moment = (lever * forces.transmitted.normal[:, place])[pressed]
-    block = (forces.motion.time[pressed] / _BLOCK).astype(int)
-    return {"closed.compliance": slopes(turn[pressed], moment[:, None], block)[0]}
+    turn = forces.joints.rotation[closed, forces.faces.index(forces.transmitted.faces[place])]
+    moment = (forces.transmitted.lever[:, place] * forces.transmitted.normal[:, place])[closed]
+    block = (forces.motion.time[closed] / _BLOCK).astype(int)
+    return {"closed.compliance": slopes(turn, moment[:, None], block)[0]}

@@ -10,6 +10,14 @@ _FEWEST = 20  # instants
 _LEAST_DECADES = 0.3  # of slip rates, that a slope is told from
 
 
+def slipping(forces, place):
+    """Instants at which a joint slips, away from impacts, which move the bearing edge and are no slip: bool array."""
+    joint = forces.faces.index(forces.transmitted.faces[place])
+    least = max(SLIPS, _SURE * forces.joints.slip_rate_error[joint])
+    fast = np.abs(forces.joints.slip_rate[:, joint]) > least
+    return forces.joints.steady & fast & (forces.transmitted.normal[:, place] > 0.0)
+
+
 def friction_law(forces, place):
     """Statistics of one joint's friction, by name.
 
@@ -30,11 +38,8 @@ def friction_law(forces, place):
     Coulomb: the shear of a slipping joint is mu N against the slip rate.
     """
     face = forces.transmitted.faces[place]
-    joint = forces.faces.index(face)
-    rate = forces.joints.slip_rate[:, joint]
-    least = max(SLIPS, _SURE * forces.joints.slip_rate_error[joint])
-    # an impact moves the bearing edge, which is no slip
-    slips = forces.joints.steady & (np.abs(rate) > least) & (forces.transmitted.normal[:, place] > 0.0)
+    rate = forces.joints.slip_rate[:, forces.faces.index(face)]
+    slips = slipping(forces, place)
     names = ("friction.loss", "friction.rate")
     if slips.sum() < _FEWEST:
         return dict.fromkeys(names, UNTOLD)

@@ -11,6 +11,13 @@ _SMALL = 0.1  # share of an edge's instants that are its smallest rotations
 _SMALLEST = 10  # of them at least, where the edge has so many
 
 
+def bears_on_an_edge(forces, place):
+    """Instants at which a joint is turned and bears on an edge, away from impacts: bool array."""
+    side = forces.joints.side[:, forces.faces.index(forces.transmitted.faces[place])]
+    told = np.isfinite(forces.transmitted.lever[:, place]) & (forces.transmitted.normal[:, place] > 0.0)
+    return forces.joints.steady & (side != 0) & told
+
+
 def lever_law(forces, place):
     """Statistics of one joint's lever, by name.
 
@@ -39,9 +46,7 @@ def lever_law(forces, place):
     face = forces.transmitted.faces[place]
     joint = forces.faces.index(face)
     side = forces.joints.side[:, joint]
-    turned = (
-        forces.joints.steady & (side != 0) & np.isfinite(lever) & (forces.transmitted.normal[:, place] > 0.0)
-    )
+    turned = bears_on_an_edge(forces, place)
     names = ("lever.short", "lever.bias", "lever.step", "lever.slope", "lever.stray")
     if turned.sum() < _FEWEST:
         return dict.fromkeys(names, UNTOLD)

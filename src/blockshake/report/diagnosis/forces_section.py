@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.diagnosis.laws.law_table import law_of
-from blockshake.report.diagnosis.figures.forces import plot_levers, plot_unexplained
+from blockshake.report.diagnosis.figures.forces import plot_laws, plot_levers, plot_unexplained
 from blockshake.report.document.blocks import Figure, Section, Table, Text
 from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.wording import number
@@ -32,6 +32,16 @@ def forces_section(found):
                 "alone by the equations of Newton and Euler. Dashed: the edges of the face. Red: beyond an edge by "
                 "more than three standard deviations, which a dry joint cannot carry.",
                 svg_of(plot_levers, found.forces, joints[0]),
+            )
+        )
+        blocks.append(
+            Figure(
+                "Laws of the joints, a point an instant away from impacts. Left: the lever of a turned joint by its "
+                f"rotation; a sharp edge has one lever (dashed, of {joints[0]}), a worn one rolls outwards. Middle: "
+                "the ratio of shear to normal force of a slipping joint by its slip rate; Coulomb's is the structure's "
+                f"coefficient (dashed, of {joints[0]}). Right: the rotation of a closed joint by its moment; its slope "
+                "is the joint's compliance.",
+                svg_of(plot_laws, found.forces),
             )
         )
     blocks.append(

@@ -1,4 +1,4 @@
-"""Levers of the joints and the least unexplained force of the blocks, in all tests."""
+"""Levers and laws of the joints and the least unexplained force of the blocks, in all tests."""
 
 import numpy as np
 
@@ -7,6 +7,7 @@ from blockshake.report.document.drawing import BLACK, BLUE, DARK_GREY, GREEN, OR
 _COLOURS = (BLUE, ORANGE, GREEN, PURPLE, BLACK)
 _BEYOND = 1.6  # half widths, at the ends of the axis
 _KILO = 1e-3
+_SLIP_RATES = 0.01, 1.0  # m/s, ends of the axis
 
 
 def plot_levers(forces, joint):
@@ -26,6 +27,61 @@ def plot_levers(forces, joint):
         axes.set_ylabel(f"{test}\nlever [mm]")
     panels[-1].set_xlabel("time [s]")
     figure.align_ylabels(panels)
+    return figure
+
+
+def plot_laws(forces):
+    """Figure of the readings that the laws of the joints rest on, in every test of `measured_forces`.
+
+    Lever against rotation while a joint is turned, with the edges of the lowest face; shear over normal force against
+    the slip rate while a joint slips, with the coefficient of friction; rotation against moment while it is closed.
+    """
+    tests = [str(name) for name in forces["test"].values]
+    figure = new_figure(0.02 + 0.042 * len(tests))
+    panels = figure.subplots(len(tests), 3, sharex="col", squeeze=False)
+    joints = [str(name) for name in forces["joint"].values]
+    for (turned, slips, closed), test in zip(panels, tests, strict=True):
+        for joint, colour in zip(joints, np.resize(_COLOURS, len(joints)), strict=True):
+            one = forces.sel(test=test, joint=joint)
+            look = {
+                "color": str(colour),
+                "label": joint,
+                "linestyle": "none",
+                "marker": ".",
+                "markersize": 1.5,
+            }
+            told = {
+                name: one["told"].sel(law=name).to_numpy() == 1 for name in ("lever", "friction", "closed")
+            }
+            at = {name: one.isel(time=mask) for name, mask in told.items()}
+            turned.plot(1e3 * at["lever"]["rotation"], 1e3 * at["lever"]["lever"], **look)
+            ratio = np.abs(at["friction"]["shear"] / at["friction"]["normal"])
+            slips.plot(np.abs(at["friction"]["slip_rate"]), ratio, **look)
+            moment = at["closed"]["lever"] * at["closed"]["normal"]
+            closed.plot(_KILO * moment, 1e3 * at["closed"]["rotation"], **look)
+        half, coefficient = (
+            float(forces[name].isel(joint=0).max()) for name in ("half_width", "coefficient")
+        )
+        for axes, level in ((turned, 1e3 * half), (turned, -1e3 * half), (slips, coefficient)):
+            axes.axhline(level, color=DARK_GREY, linewidth=0.6, linestyle=(0, (4, 2)))
+        turned.set_ylim(-1e3 * _BEYOND * half, 1e3 * _BEYOND * half)
+        slips.set_xscale("log")
+        slips.set_xlim(_SLIP_RATES)
+        if not forces["told"].sel(test=test, law="friction").any():
+            slips.text(0.5, 0.5, "no joint slips", transform=slips.transAxes, ha="center", color=DARK_GREY)
+        slips.set_ylim(0.0, 1.5 * coefficient)
+        turned.set_ylabel(f"{test}\nlever [mm]")
+        slips.set_ylabel("shear / normal [1]")
+        closed.set_ylabel("rotation [mrad]")
+    for axes, words in zip(panels[-1], ("rotation [mrad]", "slip rate [m/s]", "moment [kN m]"), strict=True):
+        axes.set_xlabel(words)
+    figure.align_ylabels(panels)
+    figure.legend(
+        *panels[0, 0].get_legend_handles_labels(),
+        loc="outside upper center",
+        ncols=len(joints),
+        markerscale=4,
+    )
     return figure
 
 
