@@ -53,6 +53,7 @@ bench: setup
 # the figures in docs/ that the program makes, written to their pages: minutes; findings on the paper after a study
 figures-of-docs: setup
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/figures_of_docs.py
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/figure_overview.py
 
 # other people's programs, under their own licences, in an environment of their own; nothing else needs it
 peers: $(PEERS)/ready
