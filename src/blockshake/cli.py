@@ -3,6 +3,7 @@
 import argparse
 import logging
 import sys
+import time
 from pathlib import Path
 
 from blockshake import __version__
@@ -185,11 +186,15 @@ def _simulate(options):
         raise InputError("--output", options.output, "expected a netCDF file, RUN.nc")
     from blockshake.dynamics.load_motion import load_motion
     from blockshake.dynamics.system import FINISHED
+    from blockshake.geometry.structure import load_structure
+    from blockshake.simulation.ending import ending
     from blockshake.simulation.simulate import simulate
 
     _show_progress()
+    begin = time.monotonic()
+    structure = load_structure(options.structure)
     run = simulate(
-        options.structure,
+        structure,
         load_motion(options.motion, options.scale),
         options.model,
         _settings(options),
@@ -199,6 +204,7 @@ def _simulate(options):
         checkpoint=f"{options.output}.checkpoint",
     )
     write_dataset(options.output, run)
+    print(f"{options.output}: {ending(run, structure)}; took {time.monotonic() - begin:.3g} s")
     if run.attrs["status"] in FINISHED:
         return 0
     print(f"blockshake: {run.attrs['status']}: {run.attrs['reason']}", file=sys.stderr)

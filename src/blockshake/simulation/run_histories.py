@@ -54,7 +54,7 @@ def run_histories(run, structure):
     return xr.Dataset(
         {
             "drift": variable(
-                "time body axis", _drift(structure, position, turns), "m", "displacement against the base"
+                "time body axis", drift_histories(structure, position, turns), "m", "displacement against the base"
             ),
             "normal_force": variable("time joint", joints["normal_force"], "N", "normal force, compression positive"),
             "shear_force": variable("time joint", joints["shear_force"], "N", "magnitude of the shear force"),
@@ -78,7 +78,11 @@ def run_histories(run, structure):
     )  # fmt: skip
 
 
-def _drift(structure, position, turns):
+def drift_histories(structure, position, turns):
+    """Displacement of every mass centre since the start against the first driven body, as in `run_histories` [m].
+
+    ``position`` (n_times, n_bodies, 3) and ``turns`` (n_times, n_bodies, 3, 3), body to world, in the inertial frame.
+    """
     seen = position
     if structure.driven.any():
         base = int(np.argmax(structure.driven))
