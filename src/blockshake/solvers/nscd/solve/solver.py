@@ -14,6 +14,9 @@ _NEWTON_STEPS = (10, 15, 25, 50)
 _SHARES = (0.5, 0.25, 0.125)
 # Sweeps before Newton is tried again from the start; they double after each failure.
 _FIRST_SWEEPS = 8
+# A relative residual above which an answer is not trusted, and the sweeps from rest that it is held against.
+_TRUSTED = 1e-4
+_LAST_SWEEPS = 200
 
 
 @kernel
@@ -39,6 +42,29 @@ def _shorten_into(contacts, v, floor, old_impulse, old_v, tolerance):
 
 
 @kernel
+def _start_from_rest(bodies, inverse_inertia, contacts, floor, residual, v_free, v):
+    """Answer of sweeps from no impulse, where that is nearer to the contact law than the one at hand; its residual.
+
+    Blocks that are wedged can hold any impulses against each other. A search that wanders among such impulses, and is
+    stopped, has a small residual relative to them, and pushes the blocks apart with what it leaves. Sweeps from no
+    impulse build up no more than the motion asks for. Both are compared by the residual itself, not relative to the
+    impulses.
+    """
+    old_impulse, old_v = contacts.impulse.copy(), v.copy()
+    old_size = residual * max(np.sqrt((old_impulse**2).sum()), floor)
+    contacts.impulse[:] = 0.0
+    v[:] = v_free
+    for sweep in range(_LAST_SWEEPS):
+        sweep_into(bodies, inverse_inertia, contacts, sweep % 2 == 0, v)
+    new = relative_residual(contacts, v, floor)
+    if new * max(np.sqrt((contacts.impulse**2).sum()), floor) < old_size:
+        return new
+    contacts.impulse[:] = old_impulse
+    v[:] = old_v
+    return residual
+
+
+@kernel
 def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, tolerance, max_iterations, v):
     """Impulses that satisfy the contact law of all contacts at once.
 
@@ -54,7 +80,7 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
     tolerance : float
         Relative residual that ends the search [1].
     max_iterations : int
-        Newton steps and sweeps allowed, together.
+        Newton steps and sweeps allowed, together; an answer that is then not trusted is held against sweeps from rest.
     v : float64 array, shape (n_bodies, 6)
         Velocities at the end of the step without contact impulses; with them afterwards.
 
@@ -101,8 +127,10 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
                     break
             contacts.impulse[:] = best_impulse
             v[:] = best_v
-            if best <= tolerance or iterations == max_iterations:
+            if best <= tolerance:
                 return iterations, best
+            if iterations == max_iterations:
+                break
         for sweep in range(sweeps):
             if iterations == max_iterations:
                 break
@@ -116,5 +144,7 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
         if best <= tolerance or iterations == max_iterations:
             contacts.impulse[:] = best_impulse
             v[:] = best_v
+            if best > _TRUSTED:
+                best = _start_from_rest(bodies, inverse_inertia, contacts, floor, best, v_free, v)
             return iterations, best
         sweeps *= 2
