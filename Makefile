@@ -9,7 +9,7 @@ READY := $(VENV)/ready
 PEERS := .venv-peers
 SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 
-.PHONY: study quick paper test test-slow test-faults test-hidden-few test-hidden bench figures-of-docs peers setup lint lock clean
+.PHONY: study quick paper examples test test-slow test-faults test-hidden-few test-hidden bench figures-of-docs peers setup lint lock clean
 
 study: setup
 	@$(BIN)/blockshake check config/study.yaml
@@ -26,6 +26,12 @@ paper: setup
 	@$(BIN)/blockshake estimate config/paper.yaml --cores $(CORES)
 	$(SNAKEMAKE) --configfile config/paper.yaml
 	@echo "The report: $(CURDIR)/reports/paper.html and paper.pdf"
+
+# one rocking block, an own wall under an own record, own tests from spreadsheets to a verdict: minutes
+examples: setup
+	$(BIN)/python examples/rocking_block.py
+	$(BIN)/python examples/own_wall.py results/examples/own-wall
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python examples/own_campaign.py results/examples/own-campaign
 
 test: setup
 	$(BIN)/pytest -m "not slow and not hidden_effects and not faults" --numprocesses $(CORES) --dist loadfile

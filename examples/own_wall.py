@@ -1,6 +1,6 @@
 """An own wall under an own record: structure and record as files, both models, a table and a picture.
 
-``python examples/own_wall.py [FOLDER]`` (two minutes the first time, while kernels compile). The files stay in FOLDER,
+``python examples/own_wall.py [FOLDER]`` (a minute or two; more the first time, while kernels compile). The files stay in FOLDER,
 ``own-wall`` by default. The record is made up here, and stands for one that you have: any record that PEER writes.
 """
 
@@ -67,7 +67,7 @@ def top_drift(path):
 
 def main(folder):
     """Write the files, check them, simulate by both models and show the runs."""
-    folder.mkdir(exist_ok=True)
+    folder.mkdir(parents=True, exist_ok=True)
     structure, motion = folder / "own-wall.yaml", folder / "own.at2"
     structure.write_text(yaml.safe_dump(wall(), sort_keys=False), encoding="utf-8")
     motion.write_text(record(), encoding="utf-8")

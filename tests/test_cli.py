@@ -1,6 +1,7 @@
 """The command line of docs/contracts.md: files, messages and exit codes."""
 
 import json
+import re
 import subprocess
 import sys
 
@@ -28,7 +29,11 @@ def test_simulate_writes_a_run_file(tmp_path, capsys):
     assert acted["nscd.tolerance"] == 1e-5
     assert run.attrs["motion_scale"] == 0.5
     assert run.attrs["motion_synthetic"] == 1
-    assert capsys.readouterr().err == ""
+    said = capsys.readouterr()
+    assert said.err == ""
+    assert re.fullmatch(
+        r".*run\.nc: completed at 0\.1 s; largest drift \S+ mm, of block-\d at \S+ s; took \S+ s\n", said.out
+    )
 
 
 def test_sample_and_its_table(tmp_path):

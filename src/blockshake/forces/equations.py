@@ -3,7 +3,9 @@
 import numpy as np
 
 _UNREAD = 1e-9  # of the largest eigenvalue, in units of a metre's arm: a direction that no sensor reads
-_HELD = 1e-6  # m/s2, rad/s2: standard deviation of what is taken as none
+_HELD = (
+    1e-3  # m/s2 and rad/s2: far below what sensors read, and not so far that an eigenvalue beside it drowns
+)
 
 
 class AccelerationEquations:
