@@ -13,7 +13,7 @@ import pandas as pd
 import yaml
 
 import blockshake
-from blockshake.cli import main as command
+from blockshake.cli import main
 from blockshake.measurement.sensors.instruments import Instruments, observe
 
 PUSH = {"body": "block-2", "position": [0.0, 0.0, 0.4], "amplitude": -1500.0, "start": 3.0}
@@ -89,7 +89,14 @@ def columns(stack):
     return markers | channels
 
 
-def main(folder):
+def command(*words):
+    """The command line, ``blockshake WORDS``; ends where a command fails."""
+    code = main(words)
+    if code:
+        sys.exit(code)
+
+
+def example(folder):
     """Make up the spreadsheets, then do what a user does with them."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "own-stack.yaml").write_text(yaml.safe_dump(structure(), sort_keys=False), encoding="utf-8")
@@ -118,11 +125,11 @@ def main(folder):
         "tests": tests,
     }
     (folder / "map.yaml").write_text(yaml.safe_dump(entries, sort_keys=False), encoding="utf-8")
-    command(["import-campaign", str(folder / "map.yaml"), "--output", str(folder / "campaign")])
+    command("import-campaign", str(folder / "map.yaml"), "--output", str(folder / "campaign"))
     command(
         ["diagnose", str(folder / "campaign"), "--output", str(folder / "diagnosis"), "--effort", "quick"]
     )
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "own-campaign"))
+    example(Path(sys.argv[1] if len(sys.argv) > 1 else "own-campaign"))

@@ -1,6 +1,6 @@
 """An own wall under an own record: structure and record as files, both models, a table and a picture.
 
-``python examples/own_wall.py [FOLDER]`` (a minute or two; more the first time, while kernels compile). The files stay in FOLDER,
+``python examples/own_wall.py [FOLDER]`` (a minute; more the first time, while kernels compile). The files stay in FOLDER,
 ``own-wall`` by default. The record is made up here, and stands for one that you have: any record that PEER writes.
 """
 
@@ -12,7 +12,7 @@ import pandas as pd
 import xarray as xr
 import yaml
 
-from blockshake.cli import main as command
+from blockshake.cli import main
 
 LENGTH, WIDTH, HEIGHT = 1.0, 0.5, 0.8  # m, of a block along the wall, across it, and up
 COURSES, LOWEST_COURSE = 3, 4  # blocks
@@ -65,19 +65,26 @@ def top_drift(path):
     return (along.sel(marker="top") - along.sel(marker="slab")).to_numpy()
 
 
-def main(folder):
+def command(*words):
+    """The command line, ``blockshake WORDS``; ends where a command fails."""
+    code = main(words)
+    if code:
+        sys.exit(code)
+
+
+def example(folder):
     """Write the files, check them, simulate by both models and show the runs."""
     folder.mkdir(parents=True, exist_ok=True)
     structure, motion = folder / "own-wall.yaml", folder / "own.at2"
     structure.write_text(yaml.safe_dump(wall(), sort_keys=False), encoding="utf-8")
     motion.write_text(record(), encoding="utf-8")
-    command(["check", str(structure), "--picture", str(folder / "wall.png")])
+    command("check", str(structure), "--picture", str(folder / "wall.png"))
     rows = []
     for model in ("nscd-rigid", "ls-dem"):
         run = folder / f"{model}.nc"
         files = ["--structure", str(structure), "--motion", str(motion), "--output", str(run)]
-        command(["simulate", "--model", model, *files])
-        command(["plot", str(run)])
+        command("simulate", "--model", model, *files)
+        command("plot", str(run))
         drift = 1e3 * top_drift(run)
         rows.append((model, np.abs(drift).max(), drift[-1]))
     heads = ["model", "peak drift of the top [mm]", "at the end [mm]"]
@@ -85,4 +92,4 @@ def main(folder):
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "own-wall"))
+    example(Path(sys.argv[1] if len(sys.argv) > 1 else "own-wall"))
