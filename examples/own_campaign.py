@@ -5,6 +5,7 @@ readings are made up here by a simulation in which a force of -1.5 kN pushes the
 you have. The diagnosis is not told of the force.
 """
 
+import shutil
 import sys
 from pathlib import Path
 
@@ -125,10 +126,10 @@ def example(folder):
         "tests": tests,
     }
     (folder / "map.yaml").write_text(yaml.safe_dump(entries, sort_keys=False), encoding="utf-8")
+    shutil.rmtree(folder / "campaign", ignore_errors=True)  # of a run before: an import overwrites nothing
     command("import-campaign", str(folder / "map.yaml"), "--output", str(folder / "campaign"))
-    command(
-        ["diagnose", str(folder / "campaign"), "--output", str(folder / "diagnosis"), "--effort", "quick"]
-    )
+    campaign, diagnosis = str(folder / "campaign"), str(folder / "diagnosis")
+    command("diagnose", campaign, "--output", diagnosis, "--effort", "quick")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """An own wall under an own record: structure and record as files, both models, a table and a picture.
 
-``python examples/own_wall.py [FOLDER]`` (a minute; more the first time, while kernels compile). The files stay in FOLDER,
+``python examples/own_wall.py [FOLDER]`` (a minute; the first time more, kernels compile). The files stay in FOLDER,
 ``own-wall`` by default. The record is made up here, and stands for one that you have: any record that PEER writes.
 """
 
