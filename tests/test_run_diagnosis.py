@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import subprocess
 
 import pytest
 
@@ -9,7 +10,7 @@ from blockshake import run_diagnosis
 from blockshake.cli import main
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE
-from blockshake.working_folder import hold
+from blockshake.working_folder import hold, this_command
 
 CAMPAIGN = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-1"
 
@@ -101,6 +102,21 @@ def test_a_diagnosis_beside_another_command_is_refused_and_touches_nothing(tmp_p
     assert "expected a folder in which no other study or diagnosis runs" in error
     assert error.count("\n") == 1
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_the_workflow_ends_with_the_diagnosis(tmp_path, monkeypatch):
+    """A diagnosis that is killed leaves no workflow behind, which would hold the folder."""
+    given = {}
+
+    def run(command, env, check):
+        given.update(env)
+        return subprocess.CompletedProcess(command, 1)
+
+    monkeypatch.setattr(run_diagnosis, "HOME", tmp_path)
+    monkeypatch.setattr(run_diagnosis.subprocess, "run", run)
+    with pytest.raises(RuntimeError, match="the workflow stopped"):
+        run_diagnosis.diagnose(CAMPAIGN, tmp_path / "output")
+    assert this_command().items() <= given.items()
 
 
 def test_functions_of_the_package_are_no_modules(tmp_path):

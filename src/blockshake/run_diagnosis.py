@@ -8,7 +8,7 @@ from pathlib import Path
 
 from blockshake.errors import InputError
 from blockshake.files import HOME, PACKAGE, check_output
-from blockshake.working_folder import hold
+from blockshake.working_folder import hold, this_command
 
 _KEPT = ("verdict.json", "decision.json", "parity.json", "misfit.nc", "evidence.nc", "forces.nc")
 _OF_GAIN = ("gain.nc", "consequences.nc")  # where a cause was found and there are sealed tests
@@ -62,7 +62,7 @@ def diagnose(campaign, output, effort="standard", cores=None):
     ]  # fmt: skip
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
     # its output is the progress
-    if subprocess.run(command, env={**os.environ, "PATH": path}, check=False).returncode:
+    if subprocess.run(command, env={**os.environ, **this_command(), "PATH": path}, check=False).returncode:
         raise RuntimeError("the workflow stopped: its messages are above")
     name = result_name(folder)
     results = work / "results" / "diagnosis" / name

@@ -53,9 +53,14 @@ def end_with_command():
         threading.Thread(target=_follow, args=[descriptor], daemon=True).start()
 
 
+def this_command():
+    """Environment variable of a process that ends with this one, see `end_with_command`: a dict of one entry."""
+    return {COMMAND: f"{_BOOT.read_text().strip()} {os.getpid()}"}
+
+
 def start_jobs():
     """Have the jobs that this process starts from now on end with it, see `end_with_command`."""
-    os.environ[COMMAND] = f"{_BOOT.read_text().strip()} {os.getpid()}"
+    os.environ.update(this_command())
 
 
 def _ancestors():

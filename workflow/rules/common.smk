@@ -24,7 +24,7 @@ from blockshake.simulation.models import MODELS as SOLVERS
 from blockshake.sources import kernel_sources, script_sources, source_digest
 from blockshake.study.config import StudyConfig, check_config
 from blockshake.validation import validated
-from blockshake.working_folder import hold, start_jobs
+from blockshake.working_folder import end_with_command, hold, start_jobs
 
 # of a diagnosis, on the command line: they take the place of the study's own
 GIVEN = ("campaign", "campaigns", "effort", "without")
@@ -37,11 +37,15 @@ def refuse(error):
 
 
 def hold_folder():
-    """Keep other commands out of the current folder until this one ends, and have its jobs end with it."""
+    """Keep other commands out of the current folder until this one ends, and have its jobs end with it.
+
+    It ends itself with the command that started it, such as `blockshake diagnose`.
+    """
     try:
         hold(Path.cwd())
     except InputError as error:
         refuse(error)
+    end_with_command()
     start_jobs()
 
 
