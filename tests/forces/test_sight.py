@@ -46,3 +46,17 @@ def test_a_block_with_one_marker_gives_no_joint_forces(folder):
     write_dataset(folder / "one-100.nc", test.sel(marker=kept))
     (line,) = sight_lines(load_campaign(folder))
     assert line == "joint forces: none, the rotation of block-2 is not read; whole tests alone are judged"
+
+
+def test_sensors_without_stated_noise_are_the_best_instruments(folder):
+    campaign = load_campaign(folder)
+    silent = campaign.sensors.model_copy(update={"marker_noise": 0.0, "accelerometer_noise": 0.0})
+    (line,) = sight_lines(replace(campaign, sensors=silent))
+    assert 0.0 < float(line.split("slab-block-1 to ")[1].split(" mm")[0]) < 0.5
+
+
+def test_a_record_of_three_readings_gives_no_joint_forces(folder):
+    test = xr.load_dataset(folder / "one-100.nc")
+    write_dataset(folder / "one-100.nc", test.isel(time=slice(3)))
+    (line,) = sight_lines(load_campaign(folder))
+    assert line == "joint forces: none, the first open test is too short; whole tests alone are judged"

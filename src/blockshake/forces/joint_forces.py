@@ -7,6 +7,7 @@ import numpy as np
 from blockshake.forces.faces import find_faces
 from blockshake.forces.joint_motion import JointMotion, joint_motion
 from blockshake.forces.least_force import LeastForce, least_force
+from blockshake.forces.local_fit import REACH
 from blockshake.forces.motion import WIDTH, Motion, smooth_motion
 from blockshake.forces.required import RequiredWrenches, required_wrenches
 from blockshake.forces.transmitted import TransmittedForces, transmitted_forces
@@ -16,6 +17,8 @@ from blockshake.measurement.motion.body_poses import PLANAR, POSE, TRANSLATION, 
 _STEP = 0.01  # s, between instants: less than the kernel's width
 _LONGEST_STILL = 0.5  # s
 _STILL = 5.0  # standard deviations of a marker
+# noise of the best instruments: a stated noise of 0 says that there is none to speak of
+_LEAST_NOISE = {"marker_noise": 1e-6, "accelerometer_noise": 1e-4}  # m, m/s2
 _ENOUGH = 20  # readings, by which the markers of each body are known
 
 
@@ -48,11 +51,18 @@ class JointForces:
     still: np.ndarray
 
 
+def is_short(test):
+    """Whether a test is too short for the smoothing kernel, to either side of half a second of instants."""
+    return float(test["time"][-1] - test["time"][0]) < 2.0 * REACH * WIDTH + _LONGEST_STILL
+
+
 def gives_forces(test, structure, sensors):
     """Whether forces can be computed: convex shapes, joints, and a motion read of every free body and the table.
 
-    That is its rotation, and its displacement along all three directions.
+    That is its rotation, and its displacement along all three directions, for longer than the kernel needs.
     """
+    if is_short(test):
+        return False
     if any(solid.polyhedron is None for solid in structure.solids.values()) or not structure.touching.any():
         return False
     first = test.isel(time=slice(0, _ENOUGH))
@@ -80,6 +90,9 @@ def joint_forces(test, structure, sensors, width=WIDTH):
     JointForces
         At instants 10 ms apart, those at the ends left out that the kernel does not cover.
     """
+    sensors = sensors.model_copy(
+        update={name: max(getattr(sensors, name), least) for name, least in _LEAST_NOISE.items()}
+    )
     test, until = _from_rest(test, structure, sensors)
     motion = smooth_motion(test, structure, sensors, _STEP, width)
     still = motion.time <= until

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.forces.joint_forces import gives_forces, joint_forces
+from blockshake.forces.joint_forces import gives_forces, is_short, joint_forces
 from blockshake.geometry.schema import AXES
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
@@ -51,6 +51,8 @@ def sight_lines(campaign):
 
 def _hindrance(test, structure, sensors):
     """Reason why there are none."""
+    if is_short(test):
+        return "the first open test is too short"
     if any(solid.polyhedron is None for solid in structure.solids.values()):
         return "a shape is not convex"
     if not structure.touching.any():
