@@ -3,9 +3,7 @@
 import numpy as np
 
 _UNREAD = 1e-9  # of the largest eigenvalue, in units of a metre's arm: a direction that no sensor reads
-_HELD = (
-    1e-3  # m/s2 and rad/s2: far below what sensors read, and not so far that an eigenvalue beside it drowns
-)
+_HELD = 1e-3  # m/s2, rad/s2: standard deviation of what is taken as none
 
 
 class AccelerationEquations:
@@ -19,6 +17,7 @@ class AccelerationEquations:
     def __init__(self, n_times, n_bodies):
         self.information = np.zeros((n_times, n_bodies, 6, 6))
         self.weighted = np.zeros((n_times, n_bodies, 6))
+        self.held = np.zeros((n_bodies, 6), dtype=bool)
 
     def add(self, body, directions, arm, values, variances):
         """Add readings ``d . (a + alpha x arm) = value`` of one body.
@@ -42,9 +41,7 @@ class AccelerationEquations:
 
     def hold(self, bodies, entries):
         """Take entries of the six accelerations of bodies as none."""
-        for body in bodies:
-            for entry in entries:
-                self.information[:, body, entry, entry] += _HELD**-2
+        self.held[np.ix_(bodies, entries)] = True
 
     def solve(self):
         """Least squares.
@@ -55,11 +52,19 @@ class AccelerationEquations:
             Of the mass centre [m/s2] and of the rotation [rad/s2]; NaN where nothing is read.
         information : float64 array, shape (n_times, n_bodies, 6, 6)
             Their inverse covariance, without the directions that no sensor reads.
+
+        Notes
+        -----
+        What is held is left out of the search for directions that are read: beside it rough readings would pass for
+        none.
         """
-        values, vectors = np.linalg.eigh(self.information)
+        free = ~(self.held[:, :, None] | self.held[:, None, :])
+        values, vectors = np.linalg.eigh(np.where(free, self.information, 0.0))
         read = values > _UNREAD * values[..., -1:]
         inverse = np.where(read, 1.0 / np.where(read, values, 1.0), 0.0)
         found = np.einsum("tbij,tbj,tbkj,tbk->tbi", vectors, inverse, vectors, self.weighted, optimize=True)
         found[~read.any(axis=-1)] = np.nan
         information = np.einsum("tbij,tbj,tbkj->tbik", vectors, np.where(read, values, 0.0), vectors)
+        body, entry = np.nonzero(self.held)
+        information[:, body, entry, entry] = _HELD**-2
         return found, information
