@@ -1,12 +1,13 @@
 """Figure of the README: a stack that rocks, how sure its prediction is, and an effect that the readings show.
 
-Run it from the project's root as ``python bench/figure_overview.py``: about two minutes. All of it is synthetic.
+Run it from the project's root as ``python bench/figure_overview.py``: about half a minute. All of it is synthetic.
 """
 
 import argparse
 from pathlib import Path
 
 import numpy as np
+from figures_of_docs import top_drift
 from matplotlib.collections import PolyCollection
 
 from blockshake.dynamics.load_motion import load_motion
@@ -87,7 +88,7 @@ def _prediction(axes, structure):
     moved = driving_motions(CASE, base, seed=1)
     for sample, (_, row) in enumerate(draw_samples(SAMPLES, 1).values.iterrows()):
         run = _run(structure, moved(sample), sample_parameters(row, structure, LINKED), "ls-dem")
-        drifts.append(_drift(run))
+        drifts.append(top_drift(run))
     low, middle, high = 1e3 * np.quantile(drifts, [0.05, 0.5, 0.95], axis=0)
     time = run["time"].to_numpy()
     axes.fill_between(
@@ -95,23 +96,20 @@ def _prediction(axes, structure):
     )
     axes.plot(time, middle, color=DARK_GREY, linewidth=0.7, label="median")
     test, _ = measured_on_clock(MEASURED, base)
-    axes.plot(test["time"], 1e3 * _drift(test), color=BLACK, linewidth=0.8, label="synthetic test")
+    axes.plot(test["time"], 1e3 * top_drift(test), color=BLACK, linewidth=0.8, label="synthetic test")
     axes.set(xlim=(0.0, CASE["duration"]), xlabel="time [s]", ylabel="top block over the slab [mm]")
     axes.set_title("how sure the prediction is")
     axes.legend(loc="lower left")
 
 
-def _drift(readings):
-    """Displacement of the top block relative to the slab along x [m]."""
-    along = readings["marker_displacement"].sel(axis="x")
-    return (along.sel(marker="block-3-face") - along.sel(marker="slab-face")).to_numpy()
-
-
 def _what_the_readings_show(axes, structure, motion):
-    """Lever of the lowest joint by its rotation, in a test as modelled and in one of blocks with worn edges."""
+    """Lever of the lowest joint by its rotation, in a test as modelled and in one with reduced bearing."""
     usual = Experiment(structure, motion, Instruments())
-    worn = with_effect(usual, "reduced-bearing", {"inset": INSET}, {})
-    for experiment, colour, words in ((usual, BLACK, "as modelled"), (worn, RED, "worn edges")):
+    reduced = with_effect(usual, "reduced-bearing", {"inset": INSET}, {})
+    for experiment, colour, words in (
+        (usual, BLACK, "as modelled"),
+        (reduced, RED, f"bearing {1e3 * INSET:.0f} mm in"),
+    ):
         test = observe(_run(experiment.structure, motion), structure, experiment.instruments, seed=1)
         forces = joint_forces(without_outliers(test, structure), structure, Sensors())
         told = bears_on_an_edge(forces, 0)
@@ -127,7 +125,7 @@ def _what_the_readings_show(axes, structure, motion):
         xlabel="rotation of the lowest joint [mrad]",
         ylabel="lever of its force [mm]",
     )
-    axes.set_title("an effect, seen in the readings")
+    axes.set_title("an effect, seen in synthetic readings")
     axes.legend(loc="upper left", markerscale=3)
 
 

@@ -84,7 +84,7 @@ def single_changes():
         run = simulate(
             structure, motion, model, parameters, time_step=_STEPS[model], duration=12.0, accelerometers=False
         )
-        return run["time"].to_numpy(), _top_drift(run)
+        return run["time"].to_numpy(), top_drift(run)
 
     usual = {model: drift({}, model) for model in _STEPS}
     rows = []
@@ -137,7 +137,7 @@ def published_settings():
                 structure, motion, model, parameters, time_step=printed[model].time_step, duration=10.0,
                 accelerometers=False,
             )  # fmt: skip
-            drift = 1e3 * _top_drift(run)
+            drift = 1e3 * top_drift(run)
             residual = 100.0 * energy_residual(run["energy"].to_numpy())
             rows.append((model, words, f"{np.abs(drift).max():.1f}", f"{drift[-1]:.1f}", number(residual, 2)))
     heads = "model", "settings", "peak drift [mm]", "drift at 10 s [mm]", "energy not explained [%]"
@@ -149,7 +149,7 @@ def keys_of(kind):
     return lambda: markdown(KEYS_HEADER, key_rows(kind))
 
 
-def _top_drift(run):
+def top_drift(run):
     """Displacement of the top block of configuration 1 relative to the slab along x [m]."""
     along = run["marker_displacement"].sel(axis="x")
     return (along.sel(marker="block-3-face") - along.sel(marker="slab-face")).to_numpy()

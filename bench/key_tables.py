@@ -33,7 +33,7 @@ def key_rows(kind):
 
 def _rows(schema, known, above):
     for name, entry in schema["properties"].items():
-        entry, optional = _resolved(entry, known)
+        entry = _resolved(entry, known)
         key = f"{above}{name}"
         inner, below = _inside(entry, known)
         words = (
@@ -44,7 +44,7 @@ def _rows(schema, known, above):
             f"`{key}`",
             _value(entry, known),
             unit[1] if unit else "",
-            _default(name, entry, schema, optional),
+            _default(name, entry, schema),
             _UNIT.sub("", words).replace("|", "\\|"),
         )
         if inner is not None:
@@ -52,15 +52,15 @@ def _rows(schema, known, above):
 
 
 def _resolved(entry, known):
-    """An entry with its reference followed, and whether it may be absent."""
+    """An entry with its reference followed; of alternatives the one that is no null, with keys if there is one."""
     own = {name: value for name, value in entry.items() if name not in ("$ref", "anyOf")}
     choices = [one for one in entry.get("anyOf", ()) if one.get("type") != "null"]
     if choices:
         best = max(choices, key=lambda one: "$ref" in one)
-        return {**_resolved(best, known)[0], **own}, len(choices) < len(entry["anyOf"])
+        return {**_resolved(best, known), **own}
     if "$ref" in entry:
-        return {**known[entry["$ref"].rpartition("/")[2]], **own}, False
-    return entry, False
+        return {**known[entry["$ref"].rpartition("/")[2]], **own}
+    return entry
 
 
 def _inside(entry, known):
@@ -68,11 +68,11 @@ def _inside(entry, known):
     if "properties" in entry:
         return entry, ""
     if "items" in entry:
-        inner, _ = _resolved(entry["items"], known)
+        inner = _resolved(entry["items"], known)
         return (inner, "[]") if "properties" in inner else (None, "")
     inner = _of_mapping(entry)
     if inner is not None:
-        inner, _ = _resolved(inner, known)
+        inner = _resolved(inner, known)
         return (inner, ".NAME") if "properties" in inner else (None, "")
     return None, ""
 
@@ -92,9 +92,11 @@ def _value(entry, known):
     if "const" in entry:
         return f"`{entry['const']}`"
     if "prefixItems" in entry:
-        return f"list of {len(entry['prefixItems'])}: {_value(_resolved(entry['prefixItems'][0], known)[0], known)}"
+        return (
+            f"list of {len(entry['prefixItems'])}: {_value(_resolved(entry['prefixItems'][0], known), known)}"
+        )
     if entry.get("type") == "array":
-        inner, _ = _resolved(entry["items"], known)
+        inner = _resolved(entry["items"], known)
         return "list" if "properties" in inner else f"list: {_value(inner, known)}"
     if entry.get("type") == "object":
         inner = _of_mapping(entry)
@@ -103,13 +105,17 @@ def _value(entry, known):
     return f"{_WORDS[entry['type']]} {limits}".strip()
 
 
-def _default(name, entry, schema, optional):
-    """Default in words: needed, none, or its value."""
+def _default(name, entry, schema):
+    """Default in words: needed, none, its value, or where it is said."""
     if name in schema.get("required", ()):
         return "needed"
-    value = entry.get("default")
-    if value in (None, "", [], {}) or isinstance(value, dict):
-        return "none" if optional or value in ("", [], {}) else "as below" if isinstance(value, dict) else ""
+    if "default" not in entry:
+        return "as said"
+    value = entry["default"]
+    if value in (None, "", [], {}):
+        return "none"
+    if isinstance(value, dict):
+        return "as below" if "properties" in entry else "as said"
     if isinstance(value, bool):
         return f"`{str(value).lower()}`"
     if isinstance(value, float):

@@ -14,7 +14,7 @@ _NEWTON_STEPS = (10, 15, 25, 50)
 _SHARES = (0.5, 0.25, 0.125)
 # Sweeps before Newton is tried again from the start; they double after each failure.
 _FIRST_SWEEPS = 8
-# A relative residual above which an answer is not trusted, and the sweeps from rest that it is held against.
+# A relative residual above which an answer is not trusted, and the sweeps from no impulse that it is held against.
 _TRUSTED = 1e-4
 _LAST_SWEEPS = 200
 
@@ -42,8 +42,8 @@ def _shorten_into(contacts, v, floor, old_impulse, old_v, tolerance):
 
 
 @kernel
-def _start_from_rest(bodies, inverse_inertia, contacts, floor, residual, v_free, v):
-    """Answer of sweeps from no impulse, where that is nearer to the contact law than the one at hand; its residual.
+def _restart_into(bodies, inverse_inertia, contacts, floor, residual, v_free, v):
+    """Sweeps from no impulse: their answer where it is nearer to the contact law, and the residual of the better one.
 
     Blocks that are wedged can hold any impulses against each other. A search that wanders among such impulses, and is
     stopped, has a small residual relative to them, and pushes the blocks apart with what it leaves. Sweeps from no
@@ -80,7 +80,7 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
     tolerance : float
         Relative residual that ends the search [1].
     max_iterations : int
-        Newton steps and sweeps allowed, together; an answer that is then not trusted is held against sweeps from rest.
+        Newton steps and sweeps allowed, together; then an answer that is not trusted is held against sweeps.
     v : float64 array, shape (n_bodies, 6)
         Velocities at the end of the step without contact impulses; with them afterwards.
 
@@ -145,6 +145,6 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
             contacts.impulse[:] = best_impulse
             v[:] = best_v
             if best > _TRUSTED:
-                best = _start_from_rest(bodies, inverse_inertia, contacts, floor, best, v_free, v)
+                best = _restart_into(bodies, inverse_inertia, contacts, floor, best, v_free, v)
             return iterations, best
         sweeps *= 2
