@@ -6,6 +6,7 @@ you have. The diagnosis is not told of the force.
 """
 
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -14,11 +15,11 @@ import pandas as pd
 import yaml
 
 import blockshake
-from blockshake.cli import main
 from blockshake.measurement.sensors.instruments import Instruments, observe
 
 PUSH = {"body": "block-2", "position": [0.0, 0.0, 0.4], "amplitude": -1500.0, "start": 3.0}
 G, MM = 9.80665, 1e-3
+BLOCKSHAKE = [sys.executable, "-m", "blockshake"]  # the command line
 BLOCKS, WIDTH, HEIGHT = ("block-1", "block-2"), 0.6, 1.0  # m
 TESTS = {"t1": 0.34, "t2": 0.36}  # g, amplitude of the table
 
@@ -90,13 +91,6 @@ def columns(stack):
     return markers | channels
 
 
-def command(*words):
-    """The command line, ``blockshake WORDS``; ends where a command fails."""
-    code = main(words)
-    if code:
-        sys.exit(code)
-
-
 def example(folder):
     """Make up the spreadsheets, then do what a user does with them."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -127,9 +121,14 @@ def example(folder):
     }
     (folder / "map.yaml").write_text(yaml.safe_dump(entries, sort_keys=False), encoding="utf-8")
     shutil.rmtree(folder / "campaign", ignore_errors=True)  # of a run before: an import overwrites nothing
-    command("import-campaign", str(folder / "map.yaml"), "--output", str(folder / "campaign"))
+    subprocess.run(
+        [*BLOCKSHAKE, "import-campaign", str(folder / "map.yaml"), "--output", str(folder / "campaign")],
+        check=True,
+    )
     campaign, diagnosis = str(folder / "campaign"), str(folder / "diagnosis")
-    command("diagnose", campaign, "--output", diagnosis, "--effort", "quick")
+    subprocess.run(
+        [*BLOCKSHAKE, "diagnose", campaign, "--output", diagnosis, "--effort", "quick"], check=True
+    )
 
 
 if __name__ == "__main__":
