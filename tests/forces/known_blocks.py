@@ -63,6 +63,40 @@ def shaken(amplitude=1.0, frequency=1.0):
     return moved
 
 
+def rocking(table, turn):
+    """One block that rocks about its edges on a table."""
+    half, high = 0.5 * WIDTH, 0.5 * HEIGHT
+
+    def poses(t):
+        angle = turn(t)
+        side = np.sign(angle) if angle else 1.0
+        c, s = np.cos(angle), np.sin(angle)
+        # the mass centre seen from the edge turns with the block
+        x = side * half + (-side * half * c + high * s)
+        z = (side * half * s + high * c) - high
+        return np.array([[table(t), 0.0, 0.0], [table(t) + x, z, angle]])
+
+    return poses
+
+
+def sliding(table, mu):
+    """One block that Coulomb's friction drags along with a table, by integration."""
+    step = 1e-4
+    grid = np.arange(int((DURATION + 0.1) / step)) * step
+    speed = np.gradient(table(grid), step)
+    own = np.zeros_like(grid)
+    for row in range(1, len(grid)):
+        limit = mu * GRAVITY * step
+        own[row] = own[row - 1] + np.clip(speed[row] - own[row - 1], -limit, limit)
+    histories = table(grid), np.cumsum(own) * step
+
+    def poses(t):
+        at_table, at_block = (np.interp(t, grid, history) for history in histories)
+        return np.array([[at_table, 0.0, 0.0], [at_block, 0.0, 0.0]])
+
+    return poses
+
+
 def readings(structure, poses, noise=0.0, noise_acc=0.0, seed=0):
     """A test file of bodies whose poses are functions of time.
 

@@ -2,7 +2,18 @@
 
 import numpy as np
 import pytest
-from known_blocks import DURATION, GRAVITY, HEIGHT, WIDTH, accelerations, readings, shaken, stack
+from known_blocks import (
+    DURATION,
+    GRAVITY,
+    HEIGHT,
+    WIDTH,
+    accelerations,
+    readings,
+    rocking,
+    shaken,
+    sliding,
+    stack,
+)
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 
@@ -33,22 +44,6 @@ def carried(table, n_bodies):
         found = np.zeros((n_bodies, 3))
         found[:, 0] = table(t)
         return found
-
-    return poses
-
-
-def rocking(table, turn):
-    """One block that rocks about its edges on a table."""
-    half, high = 0.5 * WIDTH, 0.5 * HEIGHT
-
-    def poses(t):
-        angle = turn(t)
-        side = np.sign(angle) if angle else 1.0
-        c, s = np.cos(angle), np.sin(angle)
-        # the mass centre seen from the edge turns with the block
-        x = side * half + (-side * half * c + high * s)
-        z = (side * half * s + high * c) - high
-        return np.array([[table(t), 0.0, 0.0], [table(t) + x, z, angle]])
 
     return poses
 
@@ -136,22 +131,7 @@ def test_a_force_that_friction_cannot_carry_is_unexplained(sensors):
 def test_what_slips_shows_its_friction(sensors):
     """Sine shaking of 4 m/s2 slides a block with mu = 0.25 to and fro: known by integration."""
     mu = 0.25
-    structure, table = stack(1, friction=mu), shaken(4.0, 1.5)
-    step = 1e-4
-    grid = np.arange(int((DURATION + 0.1) / step)) * step
-    speed = np.gradient(table(grid), step)
-    own = np.zeros_like(grid)
-    for row in range(1, len(grid)):
-        limit = mu * GRAVITY * step
-        own[row] = own[row - 1] + np.clip(speed[row] - own[row - 1], -limit, limit)
-    place = np.cumsum(own) * step
-    at_table, at_block = (
-        lambda t, values=values: np.interp(t, grid, values) for values in (table(grid), place)
-    )
-
-    def poses(t):
-        return np.array([[at_table(t), 0.0, 0.0], [at_block(t), 0.0, 0.0]])
-
+    structure, poses = stack(1, friction=mu), sliding(shaken(4.0, 1.5), mu)
     told = friction_law(joint_forces(readings(structure, poses), structure, sensors), 0)
     assert abs(told["friction.loss"].value) < 0.02
     assert abs(told["friction.rate"].value) < 0.1  # the spread that the table of laws gives it

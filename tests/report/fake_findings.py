@@ -234,6 +234,7 @@ def made_up_forces(tests, bodies):
     columns = {
         "lever": swing, "lever_error": np.full(len(time), 3e-3), "normal": np.full(len(time), 2e5),
         "shear": 1e4 * swing, "side": np.sign(swing), "rotation": 0.01 * swing, "slip_rate": 0.05 * swing,
+        "work": 200.0 * time,
     }  # fmt: skip
     return xr.Dataset(
         {

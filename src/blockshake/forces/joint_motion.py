@@ -100,7 +100,7 @@ def _one_joint(structure, face, motion, still):
     bearing = face.half_width * np.clip(turn / TURNED, -1.0, 1.0)
     middle = motion.position[:, upper] + motion.rotation[:, upper] @ face.on_upper
     point = middle + bearing[:, None] * (turned @ face.axes[:, 0])
-    rate = _velocity(motion, upper, point) - _velocity(motion, lower, point)
+    rate = motion.velocity_at(upper, point) - motion.velocity_at(lower, point)
     pose, rates = (
         covariance[upper] + covariance[lower]
         for covariance in (motion.pose_covariance, motion.rate_covariance)
@@ -115,13 +115,6 @@ def _one_joint(structure, face, motion, still):
         "slip_rate": np.einsum("ti,ti->t", axes[..., 0], rate),
         "slip_rate_error": np.sqrt(along @ rates @ along),
     }
-
-
-def _velocity(motion, body, point):
-    """Velocity of the point of a body that is at a place [m/s]."""
-    return motion.velocity[:, body] + np.cross(
-        motion.angular_velocity[:, body], point - motion.position[:, body]
-    )
 
 
 def _turn_about(turns, axis, still):

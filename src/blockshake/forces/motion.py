@@ -36,6 +36,8 @@ class Motion:
         Of the smoothed position and small rotation [m, rad], and of their rates [m/s, rad/s].
     known : list of str, length n_bodies
         As of `body_poses`.
+    width : float
+        Standard deviation of the smoothing kernel [s].
     """
 
     time: np.ndarray
@@ -49,6 +51,13 @@ class Motion:
     pose_covariance: np.ndarray
     rate_covariance: np.ndarray
     known: list
+    width: float
+
+    def velocity_at(self, body, point):
+        """Velocity of the point of a body that is at ``point`` (n_times, 3), in the world frame [m/s]."""
+        return self.velocity[:, body] + np.cross(
+            self.angular_velocity[:, body], point - self.position[:, body]
+        )
 
 
 def smooth_motion(test, structure, sensors, step, width=WIDTH):
@@ -93,7 +102,7 @@ def smooth_motion(test, structure, sensors, step, width=WIDTH):
     acceleration, information = equations.solve()
     return Motion(
         time, position, velocity, acceleration[..., :3], rotation, spin, acceleration[..., 3:], information,
-        gains[0] * poses.covariance, gains[1] * poses.covariance, poses.known,
+        gains[0] * poses.covariance, gains[1] * poses.covariance, poses.known, width,
     )  # fmt: skip
 
 

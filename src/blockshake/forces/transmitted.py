@@ -91,14 +91,13 @@ def transmitted_forces(structure, faces, motion, required):
     for joint, (face, above) in enumerate(zip(chosen, carried, strict=True)):
         turn = motion.rotation[:, face.upper]
         middle = motion.position[:, face.upper] + turn @ face.on_upper
-        start = np.einsum("tij,jk->tik", turn, _axes_on_body(structure, face))
         total, covariance = np.zeros((n_times, 6)), np.zeros((n_times, 6, 6))
         for body in above:
             shift = _moved_by(motion.position[:, body] - middle)
             total += np.einsum("tij,tj->ti", shift, required.wrench[:, body])
             covariance += shift @ scatter[:, body] @ np.swapaxes(shift, -1, -2)
         axes = np.zeros((n_times, 6, 6))
-        axes[:, :3, :3] = axes[:, 3:, 3:] = start
+        axes[:, :3, :3] = axes[:, 3:, 3:] = face_axes(structure, face, motion)
         wrench[:, joint] = np.einsum("tji,tj->ti", axes, total)
         scatters[:, joint] = np.swapaxes(axes, -1, -2) @ covariance @ axes
     return TransmittedForces(chosen, carried, wrench[..., :3], wrench[..., 3:], scatters)
@@ -117,9 +116,10 @@ def _cut_off(structure, faces, cut):
     return np.flatnonzero(group == group[cut.upper])
 
 
-def _axes_on_body(structure, face):
-    """Axes of the face in the frame of the upper body."""
-    return rotation_matrices(structure.orientation[face.upper]).T @ face.axes
+def face_axes(structure, face, motion):
+    """Axes of a face as the upper body carries them along: (n_times, 3, 3), in columns, world frame."""
+    on_body = rotation_matrices(structure.orientation[face.upper]).T @ face.axes
+    return motion.rotation[:, face.upper] @ on_body
 
 
 def _moved_by(arm):

@@ -75,6 +75,25 @@ def test_clean_tests_break_no_law():
     assert found.p > 0.01
 
 
+def test_the_energy_that_a_joint_takes_is_shown_and_breaks_nothing():
+    taken = np.random.default_rng(0).normal(500.0, 50.0, (20, 1))  # J
+    measured = xr.Dataset(
+        {"law_value": ("law", [5000.0]), "law_error": ("law", [5.0])},
+        {
+            "law": ["joint1.work.taken"],
+            "law_joint": ("law", ["slab-block-1"]),
+            "law_beneath": ("law", [True]),
+        },
+    )
+    found = judge_laws({"one": measured}, {"one": taken}, None)
+    assert found.laws == found.broken == ()
+    assert found.p == 1.0
+    (shown,) = found.shown
+    assert shown.measured == {"one": 5000.0}
+    assert shown.expected["one"] == pytest.approx(500.0, abs=50.0)
+    assert shown.spreads["one"] == pytest.approx(50.0, rel=0.5)
+
+
 def test_a_law_that_holds_excludes_its_effect_at_its_place():
     found = judged()
     assert law_that_holds("table-pitch", {}, found) == "table.pitch"

@@ -4,11 +4,13 @@ import pytest
 from fake_diagnosis import FakeDiagnosis
 from fake_findings import OPEN
 
+from blockshake.diagnosis.laws.findings import LawFinding
 from blockshake.diagnosis.verdict.verdict import Estimate
 from blockshake.report.diagnosis.content import load_diagnosed
 from blockshake.report.diagnosis.figures.atlas import plot_atlas
 from blockshake.report.diagnosis.figures.candidates import plot_candidates
 from blockshake.report.diagnosis.figures.evidence import plot_constancy, plot_features
+from blockshake.report.diagnosis.figures.forces import plot_work
 from blockshake.report.diagnosis.figures.joint import plot_joints
 from blockshake.report.diagnosis.wording import beyond, estimate_words, place_words, quantity, title_of
 from blockshake.report.document.drawing import RED
@@ -36,6 +38,22 @@ def test_red_is_what_leaves_the_band_and_nothing_else(found, joints):
     assert 0 < int(outside.sum()) < outside.size
     np.testing.assert_array_equal(np.isfinite(red.get_ydata()), outside)
     np.testing.assert_allclose(red.get_ydata()[outside], 1e3 * measured[outside])
+
+
+def test_energy_of_the_joints_stands_beside_that_of_the_draws(found, joints):
+    """The mean of the draws and two standard deviations, beyond the end of the test."""
+    taken = LawFinding(
+        name="joint1.work.taken", unit="J", joint=joints[0], value=0.0, error=0.0, measured={}, errors={},
+        expected={OPEN[0]: 3000.0}, spreads={OPEN[0]: 400.0}, departures={}, together=0.0, broken=False,
+    )  # fmt: skip
+    axes = plot_work(found.forces, (taken,)).axes[0]
+    curve = next(line for line in axes.lines if line.get_label() == joints[0])
+    history = found.forces["work"].sel(test=OPEN[0], joint=joints[0])
+    np.testing.assert_allclose(curve.get_ydata(), 1e-3 * history)
+    ((dot, _, (bar,)),) = axes.containers
+    assert dot.get_xdata()[0] > float(history["time"].max())
+    assert dot.get_ydata()[0] == pytest.approx(3.0)
+    np.testing.assert_allclose(bar.get_segments()[0][:, 1], [2.2, 3.8])
 
 
 def test_horizon_is_shaded_to_the_end(found, joints):

@@ -88,6 +88,8 @@ class LawFindings(Strict):
         Force of the stop, where a contact with a stop is isolated.
     readable : tuple of str
         Laws that have a null distribution in some test, whether a measured test tells them or not.
+    shown : tuple of LawFinding
+        Laws that are told beside the draws and not judged, see `Law.judged`.
     p : float
         Chance of departures as large as the largest by the nominal model, at most: their number times the chance of one
         (Bonferroni) [1].
@@ -98,6 +100,7 @@ class LawFindings(Strict):
     outside: OutsideForce | None
     outside_of_stop: OutsideForce | None = None
     readable: tuple[str, ...] = ()
+    shown: tuple[LawFinding, ...] = ()
     p: float
 
     @property

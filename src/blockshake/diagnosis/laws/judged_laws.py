@@ -54,10 +54,8 @@ def judge_laws(measured, draws, outside):
                 departures.setdefault(name, {})[test] = (value, error, nulls[name])
                 joint, beneath = (own[key].values[place].item() for key in ("law_joint", "law_beneath"))
                 places[name] = {"joint": joint, "beneath": beneath}
-    laws = sorted(
-        (_law(name, by_test, **places[name]) for name, by_test in departures.items()),
-        key=lambda one: -_largest(one),
-    )
+    told = [_law(name, by_test, **places[name]) for name, by_test in departures.items()]
+    laws = sorted((one for one in told if law_of(one.name).judged), key=lambda one: -_largest(one))
     outside = outside if outside and _needed(outside, laws) else None
     isolated = tuple(effect for effect in SIGNATURES if _isolates(effect, laws))
     if outside and outside.law != "steady":
@@ -70,6 +68,7 @@ def judge_laws(measured, draws, outside):
         outside=None if isolated else outside,
         outside_of_stop=outside if isolated == (STOP,) else None,
         readable=tuple(sorted(readable)),
+        shown=tuple(one for one in told if not law_of(one.name).judged),
         p=_chance(laws),
     )
 

@@ -10,8 +10,9 @@ from blockshake.forces.laws.impact import impact_law
 from blockshake.forces.laws.lever import lever_law
 from blockshake.forces.laws.table import table_law
 from blockshake.forces.laws.unexplained import unexplained_law
+from blockshake.forces.laws.work import work_law
 
-_LAWS_OF_JOINTS = (lever_law, friction_law, closed_joint_law, impact_law)
+_LAWS_OF_JOINTS = (lever_law, friction_law, closed_joint_law, impact_law, work_law)
 
 
 NO_LAWS = xr.Dataset(

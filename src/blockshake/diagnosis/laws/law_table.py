@@ -19,6 +19,9 @@ class Law(NamedTuple):
     formula, source : str
     least : bool
         Whether it is a distance that nothing makes too small: only a larger one breaks the law.
+    judged : bool
+        Whether a departure tells of an effect. The total of a whole test scatters as its rocking does: it is shown
+        beside the draws, and no more.
     """
 
     unit: str
@@ -28,6 +31,7 @@ class Law(NamedTuple):
     formula: str
     source: str
     least: bool = False
+    judged: bool = True
 
 
 _NONE = float("nan")
@@ -67,6 +71,10 @@ OF_JOINTS = {
         "m s/rad", 2e-2, _NONE, 0.45,
         "rms of the lever of the joint above from 0.06 to 0.25 s after an impact, by the angular velocity, median",
         "restitution of impacts",
+    ),
+    "work.taken": Law(
+        "J", 0.0, _NONE, 0.0, "energy that the joint takes out of the motion over the test",
+        "wrench times relative velocity", judged=False,
     ),
 }  # fmt: skip
 

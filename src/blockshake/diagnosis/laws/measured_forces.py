@@ -11,6 +11,7 @@ from blockshake.forces.joint_forces import gives_forces, joint_forces
 from blockshake.forces.laws.closed_joint import pressed
 from blockshake.forces.laws.friction import slipping
 from blockshake.forces.laws.lever import bears_on_an_edge
+from blockshake.forces.laws.work import energy_taken
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.motion.outliers import without_outliers
 from blockshake.parity.correction import load_corrected_test
@@ -34,10 +35,11 @@ def measured_forces(campaign, names, findings):
     xarray.Dataset
         Along ``test`` and ``time``, single precision: ``lever``, ``lever_error``, ``normal`` and ``shear(joint)`` of
         the joints that are statically determinate [m, N], ``side(joint)``, the edge that bears, ``rotation(joint)``
-        [rad], ``slip_rate(joint)`` [m/s], and ``unexplained(body)``, the least unexplained force along x [N];
-        ``told(joint, law)``, the instants that the laws of the lever, of friction and of the closed joint are read
-        from; ``half_width(joint)`` [m] and ``coefficient(joint)`` of friction in the structure [1]. The attribute
-        ``outside`` is an `OutsideForce` as JSON, or null. Empty where the sensors give no forces.
+        [rad], ``slip_rate(joint)`` [m/s], ``work(joint)``, the energy that it has taken [J], and
+        ``unexplained(body)``, the least unexplained force along x [N]; ``told(joint, law)``, the instants that the laws
+        of the lever, of friction and of the closed joint are read from; ``half_width(joint)`` [m] and
+        ``coefficient(joint)`` of friction in the structure [1]. The attribute ``outside`` is an `OutsideForce` as JSON,
+        or null. Empty where the sensors give no forces.
     """
     structure = load_structure(campaign.structure)
     found = {}
@@ -61,6 +63,7 @@ def outside_of(forces):
 
 def _histories(forces):
     """Histories of one test."""
+    n_times, places = len(forces.motion.time), range(len(forces.transmitted.faces))
     joints = [forces.faces.index(face) for face in forces.transmitted.faces]
     free = np.flatnonzero(~forces.structure.driven)
     names = forces.structure.body_names
@@ -72,15 +75,16 @@ def _histories(forces):
         "side": forces.joints.side[:, joints],
         "rotation": forces.joints.rotation[:, joints],
         "slip_rate": forces.joints.slip_rate[:, joints],
+        "work": np.reshape([energy_taken(forces, place) for place in places], (len(places), n_times)).T,
     }
-    told = [[law(forces, place) for law in LAWS.values()] for place in range(len(joints))]
+    told = [[law(forces, place) for law in LAWS.values()] for place in places]
     return xr.Dataset(
         {
             **{name: (("time", "joint"), values.astype(np.float32)) for name, values in columns.items()},
             "unexplained": (("time", "body"), forces.least.wrench[:, free, 0].astype(np.float32)),
             "told": (
                 ("joint", "law", "time"),
-                np.reshape(told, (len(joints), len(LAWS), -1)).astype(np.int8),
+                np.reshape(told, (len(places), len(LAWS), n_times)).astype(np.int8),
             ),
             "coefficient": ("joint", [face.friction for face in forces.transmitted.faces]),
             "half_width": ("joint", [face.half_width for face in forces.transmitted.faces]),

@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.diagnosis.laws.law_table import law_of
-from blockshake.report.diagnosis.figures.forces import plot_laws, plot_levers, plot_unexplained
+from blockshake.report.diagnosis.figures.forces import plot_laws, plot_levers, plot_unexplained, plot_work
 from blockshake.report.document.blocks import Figure, Section, Table, Text
 from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.wording import number
@@ -44,6 +44,7 @@ def forces_section(found):
                 svg_of(plot_laws, found.forces),
             )
         )
+        blocks.append(_work(found))
     blocks.append(
         Figure(
             "Least unexplained force along x: the smallest forces on the blocks that one would have to invent so that "
@@ -55,6 +56,22 @@ def forces_section(found):
     if found.decision.laws:
         blocks.append(_table(found))
     return Section("Joint forces", "forces", tuple(blocks))
+
+
+def _work(found):
+    """Energy that the joints take, beside that of the nominal draws where there are some."""
+    shown = found.decision.laws.shown if found.decision.laws else ()
+    words = (
+        "Energy that each joint takes out of the motion, by friction, impacts and damping: the wrench that it "
+        "transmits times the velocity of the upper block relative to the lower one, from the readings alone. Impacts "
+        "of two joints within the smoothing kernel share their loss: one of them may seem to give energy."
+    )
+    if shown:
+        words += (
+            " Beyond the end: the same of simulated tests by the nominal model, mean and two standard deviations. The "
+            "total goes with how far a test rocks, which is chaotic: it is shown and decides nothing."
+        )
+    return Figure(words, svg_of(plot_work, found.forces, shown))
 
 
 def _summary(found):

@@ -2,12 +2,14 @@
 
 import numpy as np
 
+from blockshake.diagnosis.laws.law_table import kind_of
 from blockshake.report.document.drawing import BLACK, BLUE, DARK_GREY, GREEN, ORANGE, PURPLE, RED, new_figure
 
 _COLOURS = (BLUE, ORANGE, GREEN, PURPLE, BLACK)
 _BEYOND = 1.6  # half widths, at the ends of the axis
 _KILO = 1e-3
 _SLIP_RATES = 0.01, 1.0  # m/s, ends of the axis
+_APART = 0.02  # of a test's length, between the joints' draws beyond its end
 
 
 def plot_levers(forces, joint):
@@ -82,6 +84,37 @@ def plot_laws(forces):
         ncols=len(joints),
         markerscale=4,
     )
+    return figure
+
+
+def plot_work(forces, shown):
+    """Figure of the energy that every joint takes out of the motion in every test of `measured_forces`.
+
+    Beyond the end of a test: mean of the nominal draws and two standard deviations, of ``shown`` (sequence of
+    LawFinding).
+    """
+    tests = [str(name) for name in forces["test"].values]
+    figure = new_figure(0.016 + 0.03 * len(tests))
+    panels = figure.subplots(len(tests), 1, sharex=True, squeeze=False)[:, 0]
+    joints = [str(name) for name in forces["joint"].values]
+    of_draws = {one.joint: one for one in shown if kind_of(one.name) == "work.taken"}
+    length = float(forces["time"].max() - forces["time"].min())
+    for axes, test in zip(panels, tests, strict=True):
+        for place, (joint, colour) in enumerate(
+            zip(joints, np.resize(_COLOURS, len(joints)), strict=True), start=1
+        ):
+            one = forces["work"].sel(test=test, joint=joint)
+            axes.plot(one["time"], _KILO * one, color=str(colour), linewidth=0.8, label=joint)
+            if joint in of_draws and test in of_draws[joint].expected:
+                draws = of_draws[joint]
+                axes.errorbar(
+                    float(forces["time"].max()) + _APART * place * length, _KILO * draws.expected[test],
+                    yerr=2.0 * _KILO * draws.spreads[test], color=str(colour), fmt="o", markersize=3, capsize=2,
+                )  # fmt: skip
+        axes.set_ylabel(f"{test}\nenergy [kJ]")
+    panels[-1].set_xlabel("time [s]")
+    figure.align_ylabels(panels)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=len(joints))
     return figure
 
 
