@@ -244,6 +244,9 @@ def made_up_forces(tests, bodies):
                 ("test", "joint", "law", "time"),
                 np.ones((len(tests), len(joints), 3, len(time)), np.int8),
             ),
+            "table_rotation": (("test", "time"), np.broadcast_to(1e-5 * swing, shape)),
+            "table_acceleration": (("test", "time"), np.broadcast_to(2.0 * swing, shape)),
+            "table_moment": (("test", "time"), np.broadcast_to(1e4 * np.cos(time), shape)),
             "half_width": ("joint", np.full(len(joints), 0.38)),
             "coefficient": ("joint", np.full(len(joints), 0.75)),
         },
@@ -254,5 +257,5 @@ def made_up_forces(tests, bodies):
             "body": list(bodies),
             "law": ["lever", "friction", "closed"],
         },
-        {"outside": "null"},
+        {"outside": "null", "weight": 7.2e4},
     )

@@ -14,7 +14,7 @@ def test_a_push_is_described_with_its_place_time_and_size():
     assert "on block-2 or block-1, here 0.80 m above the mass centre of block-2" in words
     assert "constant from an instant on, -1.89 (-1.97 to -1.80) kN, towards -x" in words
     assert "t3: start 2.70 s; t4: start 2.28 s" in words
-    assert "steady throughout 41" in words
+    assert "steady throughout by 41" in words
 
 
 def test_a_spring_through_the_mass_centre_has_a_gap_and_no_direction():

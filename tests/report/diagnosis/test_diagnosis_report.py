@@ -22,7 +22,7 @@ WORDS = {
 }
 SECTIONS = [
     "Verdict", "Joint forces",
-    "Where the nominal model is wrong", "Candidates", "What decided", "The extension",
+    "Where the tests depart from the nominal model", "Candidates", "What decided", "The extension",
     "Gain on sealed tests", "Track record of the procedure", "What was not tested, assumptions, origin",
 ]  # fmt: skip
 
@@ -178,7 +178,7 @@ def test_without_a_cause_no_gain_is_shown(pages):
 
 def test_track_record_prints_its_figures_and_what_it_missed(pages):
     text = pages["named"][1]
-    assert "Goals missed: truth named or in the set." in text
+    assert "Goals that the procedure missed: truth named or in the set." in text
     assert "1 of 60" in text
     for one in track_record().shares.values():
         assert f"{one.meaning} {100 * one.hits / one.n:.1f} %" in text

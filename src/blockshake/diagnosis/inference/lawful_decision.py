@@ -88,7 +88,7 @@ def _reasons(effect, place, findings):
         told = effect not in SIGNATURES or is_told(effect, place, findings)
         yield "no law departs its way" if told else "its law is not told"
     if (findings.broken or findings.outside) and not accounts_for(effect, findings):
-        yield "it does not account for the laws that are broken"
+        yield f"it does not account for the {'laws that are broken' if findings.broken else 'force from outside'}"
 
 
 def _chance_of_none(decision, findings, kind):
@@ -140,17 +140,35 @@ def _parameters(effect, decision, findings):
     return known
 
 
-def _read(effect, findings):
-    """Size of an effect from its own law, with an interval from the scatter between tests and the law's error."""
+def sizes_by_law(effect, findings):
+    """Size of an effect that its own law reads directly, of every test that tells the law where it is broken.
+
+    Parameters
+    ----------
+    effect : str
+    findings : LawFindings
+
+    Returns
+    -------
+    list of (str, float, float)
+        Test, value of the effect's parameter and its standard error, in the parameter's unit; empty for an effect whose
+        size no law reads.
+    """
+    if effect not in _DIRECT:
+        return []
     # the nominal table does not pitch, but nominal blocks do not bear on their very edges
     nominal = float(effect == "reduced-bearing")
-    read = [
-        (value - nominal * law.expected[test], law.errors[test])
+    return [
+        (test, value - nominal * law.expected[test], law.errors[test])
         for law in own_laws(effect, findings.laws)
         if law.broken
         for test, value in law.measured.items()
     ]
-    mean, half = mean_of_tests(*np.array(read).T)
+
+
+def _read(effect, findings):
+    """Size of an effect from its own law, with an interval from the scatter between tests and the law's error."""
+    mean, half = mean_of_tests(*np.array([one[1:] for one in sizes_by_law(effect, findings)]).T)
     return _estimate(mean, mean - half, mean + half, EFFECTS[effect].parameters[0].unit)
 
 

@@ -16,8 +16,8 @@ from blockshake.diagnosis.laws.null_laws import (
 )
 from blockshake.diagnosis.laws.signatures import ECCENTRIC, OF_A_STOP, OF_ANY, OUTSIDE, SIGNATURES, STOP
 
-_BROKEN_ONCE = 7.0  # standard deviations, in one test
-_BROKEN = 5.0  # of the sum over all tests, in its standard deviation
+BROKEN_ONCE = 7.0  # standard deviations, in one test
+BROKEN = 5.0  # of the sum over all tests, in its standard deviation
 _ODD = 4.0  # of a law in a test whose readings ask for a force from outside
 _HOLDS = 3.0
 _LEANS = 3.0  # of the sum over all tests, towards an effect
@@ -198,7 +198,7 @@ def _law(name, by_test, joint, beneath):
         spreads=dict(zip(by_test, (null.spread for null in nulls), strict=True)),
         departures=dict(zip(by_test, (away / spread).tolist(), strict=True)),
         together=together,
-        broken=bool(np.abs(departures).max() > _BROKEN_ONCE or abs(together) > _BROKEN),
+        broken=bool(np.abs(departures).max() > BROKEN_ONCE or abs(together) > BROKEN),
     )
 
 

@@ -11,6 +11,7 @@ from blockshake.forces.joint_forces import gives_forces, joint_forces
 from blockshake.forces.laws.closed_joint import pressed
 from blockshake.forces.laws.friction import slipping
 from blockshake.forces.laws.lever import bears_on_an_edge
+from blockshake.forces.laws.table import table_readings
 from blockshake.forces.laws.work import energy_taken
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.motion.outliers import without_outliers
@@ -38,8 +39,9 @@ def measured_forces(campaign, names, findings):
         [rad], ``slip_rate(joint)`` [m/s], ``work(joint)``, the energy that it has taken [J], and
         ``unexplained(body)``, the least unexplained force along x [N]; ``told(joint, law)``, the instants that the laws
         of the lever, of friction and of the closed joint are read from; ``half_width(joint)`` [m] and
-        ``coefficient(joint)`` of friction in the structure [1]. The attribute ``outside`` is an `OutsideForce` as JSON,
-        or null. Empty where the sensors give no forces.
+        ``coefficient(joint)`` of friction in the structure [1]; of the table ``table_rotation`` [rad],
+        ``table_acceleration`` [m/s2] and ``table_moment`` [N m], see `table_readings`. Attributes: ``outside``, an
+        `OutsideForce` as JSON, or null, and ``weight`` of all free bodies [N]. Empty where the sensors give no forces.
     """
     structure = load_structure(campaign.structure)
     found = {}
@@ -52,7 +54,8 @@ def measured_forces(campaign, names, findings):
     outside = outside_force(found)
     whole = xr.concat([_histories(one) for one in found.values()], dim="test", join="outer")
     text = json.dumps(outside.model_dump() if outside else None)
-    return whole.assign_coords(test=list(found)).assign_attrs(outside=text)
+    weight = structure.mass[~structure.driven].sum() * np.linalg.norm(structure.file.gravity)
+    return whole.assign_coords(test=list(found)).assign_attrs(outside=text, weight=float(weight))
 
 
 def outside_of(forces):
@@ -82,6 +85,12 @@ def _histories(forces):
         {
             **{name: (("time", "joint"), values.astype(np.float32)) for name, values in columns.items()},
             "unexplained": (("time", "body"), forces.least.wrench[:, free, 0].astype(np.float32)),
+            **{
+                f"table_{name}": ("time", values.astype(np.float32))
+                for name, values in zip(
+                    ("rotation", "acceleration", "moment"), table_readings(forces), strict=True
+                )
+            },
             "told": (
                 ("joint", "law", "time"),
                 np.reshape(told, (len(places), len(LAWS), n_times)).astype(np.int8),

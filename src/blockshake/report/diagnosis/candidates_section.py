@@ -7,7 +7,7 @@ from blockshake.report.diagnosis.wording import beyond, size_in_unit, title_of, 
 from blockshake.report.document.blocks import Figure, Section, Table, Text
 from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.units import quantity
-from blockshake.report.document.wording import MISSING, number
+from blockshake.report.document.wording import MISSING, number, percent
 
 
 def candidates_section(found):
@@ -22,10 +22,12 @@ def candidates_section(found):
             f"{len(decision.candidates)} candidates, {len(rows)} effects at all places of the structure, were "
             "added to the nominal model in simulation. The log ratio says how much likelier the features of all tests "
             "are with an effect than without, averaged over its sizes. Placebos shift the features by as much "
-            "but mean nothing physically: what explains no more than they do is no cause."
+            "but mean nothing physically: by the features alone, an effect that explains no more than they do is no "
+            "cause. The laws of the joints overrule the features wherever they tell."
         ),
         Figure(
-            "Log ratio of each effect at its best place to the nominal model. "
+            "Log ratio of each effect at its best place to the nominal model. Both solvers: the mean of their "
+            "likelihoods, which the better one rules. "
             + ("Shaded: effects that are not excluded." if causes else "No effect is a cause."),
             svg_of(plot_candidates, rows, [_words(found, row) for row in rows], causes, decision.placebo),
         ),
@@ -78,15 +80,18 @@ def _reasons(found, rows):
     decision = found.decision
     if decision.decision == "none":
         return Text(
-            "No effect was put to these tests one by one: scores like the strongest one's arise without a missing "
-            "effect."
+            "No effect was put to these tests one by one: scores as high as the strongest one's arise in "
+            f"{percent(decision.p_none)} % of the nominal draws."
         )
     lines = []
     for row in rows:
         name = row.effect
         why = decision.struck_out.get(name)
-        words = f"struck out: {'; '.join(why)}" if why else "not excluded"
-        if not why and decision.decision == "combination":
+        if why:
+            words = f"struck out: {'; '.join(why)}"
+        elif decision.decision == "combination":
             words = "explains the tests together with the other"
+        else:
+            words = "not excluded" if name in decision.causes else "not called by the features of whole tests"
         lines.append((title_of(name), words))
     return Table("Why each effect is a cause or is not.", ("Effect", "Verdict"), tuple(lines), "ll")

@@ -2,6 +2,7 @@
 
 from blockshake.effects.registry import EFFECTS
 from blockshake.report.diagnosis.figures.evidence import plot_constancy, plot_features
+from blockshake.report.diagnosis.law_evidence import decided_by_laws, law_blocks
 from blockshake.report.diagnosis.wording import size_in_unit, title_of, with_place
 from blockshake.report.document.blocks import Figure, Section, Table, Text
 from blockshake.report.document.drawing import svg_of
@@ -13,7 +14,9 @@ _MOST_PANELS = 4
 
 
 def evidence_section(found):
-    """Top features before and after the candidate, and its size test by test."""
+    """Broken laws and the sizes that they read where laws decided; else features before and after the candidate."""
+    if decided_by_laws(found):
+        return Section("What decided", "evidence", law_blocks(found))
     rows = found.evidence.isel(row=slice(_ROWS))
     key, model = found.evidence.attrs["candidate"], model_label(found.evidence.attrs["model"])
     caused = bool(found.decision.causes)
@@ -43,8 +46,8 @@ def evidence_section(found):
         ),
         _table(rows),
         Text(
-            "What is missing in the model has one size in all tests; what only makes up for something else drifts from "
-            "test to test."
+            "A part that the model lacks should have one size in all tests; a part that only makes up for another one "
+            "drifts from test to test."
         ),
         Figure(
             "Size that each test finds by itself, with the sizes that are less likely by a factor e squared at most; "

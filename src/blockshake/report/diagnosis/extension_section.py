@@ -50,7 +50,7 @@ def extension_section(found):
 def _opening(found):
     kind, physical = found.verdict.decision, found.decision.causes
     if kind == "none":
-        return "The model was not extended: nothing is missing that these tests would show."
+        return "The model was not extended: these tests show nothing that it lacks."
     if kind == "unknown" and found.gain is not None:
         outside = found.verdict.outside
         return (

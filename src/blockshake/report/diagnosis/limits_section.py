@@ -34,7 +34,8 @@ def _not_tested(found):
         if effect.acts != "observation" and name not in considered
     ]
     motions = [
-        f"{name}{' (SYNTHETIC)' if one.get('synthetic') else ''}: {one['source']}"
+        f"{name}{' (SYNTHETIC)' if one.get('synthetic') else ''}"
+        + (f": {one['source']}" if one["source"] != name else "")
         for name, one in found.motions.items()
     ]
     items = [

@@ -46,7 +46,7 @@ def misfit_section(found):
             )
         )
     blocks.append(_curves_table(misfit))
-    return Section("Where the nominal model is wrong", "misfit", tuple(blocks))
+    return Section("Where the tests depart from the nominal model", "misfit", tuple(blocks))
 
 
 def _summary(found):
@@ -54,7 +54,7 @@ def _summary(found):
     text = (
         f"Whole curves of all joints in all {len(found.tests)} tests held against the nominal ensemble at once "
         f"(extreme rank length): p = {number(float(misfit['p_curves']), 2)}. "
-        f"Largest misfit: {where(misfit)}."
+        f"First misfit, in the earliest phase with a cell of the atlas beyond its limit: {where(misfit)}."
     )
     if misfit.attrs["law"] in _LAWS:
         text += f" It grows {_LAWS[misfit.attrs['law']]}."
@@ -82,12 +82,19 @@ def _curves_table(misfit):
             " / ".join(number(1e3 * one, 2) for one in own["crps_reference"].values),
         ))  # fmt: skip
     return Table(
-        f"Curves that the nominal ensemble predicts worst, {len(rows)} of {worst.known}, joint 1 being the "
-        f"lowest; {worst.below_reference} curves are inside the band for less time than 95 % of the members are. "
-        "Coverage of the band from smallest to largest member, mean width of the band over the largest measured "
-        "magnitude, continuous ranked probability score (lower is better; mm or mrad). Leave-one-out: each member "
-        "against the others, 5 / 50 / 95 %.",
-        ("Curve", "Coverage [%]", "Leave-one-out [%]", "Width over peak [1]", "CRPS", "Leave-one-out"),
+        f"Curves that the nominal ensemble predicts worst, {len(rows)} of {worst.known}, the worst first by score over "
+        f"that of the members; joint 1 is the lowest. Of all curves, {worst.below_reference} are inside the band for "
+        "less time than 95 % of the members are. Coverage of the band from smallest to largest member, mean width of "
+        "the band over the largest measured magnitude, continuous ranked probability score (lower is better; mm or "
+        "mrad). Leave-one-out: each member against the others, 5 / 50 / 95 %.",
+        (
+            "Curve",
+            "Coverage [%]",
+            "its leave-one-out [%]",
+            "Width over peak [1]",
+            "CRPS",
+            "its leave-one-out",
+        ),
         tuple(rows),
         "lrrrrr",
     )

@@ -43,7 +43,7 @@ def track_record_section(found):
         )
     missed = [one.meaning for one in [*record.shares.values(), *record.medians.values()] if one.met is False]
     if missed:
-        blocks.append(Text(f"Goals missed: {'; '.join(missed)}.", strong=True))
+        blocks.append(Text(f"Goals that the procedure missed: {'; '.join(missed)}.", strong=True))
     blocks += [_shares(record), _confusion(record)]
     return Section("Track record of the procedure", "track-record", tuple(blocks))
 

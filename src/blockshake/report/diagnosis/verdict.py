@@ -5,6 +5,7 @@ import numpy as np
 from blockshake.diagnosis.inference.decision import FALSE_ALARM
 from blockshake.diagnosis.verdict.ladder import ONE_OF
 from blockshake.effects.registry import EFFECTS
+from blockshake.report.diagnosis.forces_section import FORCE_LAWS, force_words
 from blockshake.report.diagnosis.wording import beyond, estimate_words, size_in_unit, title_of, with_place
 from blockshake.report.document.units import interval, quantity
 from blockshake.report.document.wording import number
@@ -24,8 +25,8 @@ def statement(found):
         )
     if verdict.decision == "unknown":
         return (
-            f"{word}: {tests} more differs from the nominal model than by chance (p = {number(verdict.misfit.p, 2)}; "
-            f"{verdict.misfit.where}), and no effect of the registry explains it."
+            f"{word}: {tests} more differs from the nominal model than by chance ({_chance_words(verdict.misfit.p)}), "
+            f"and no effect of the registry explains it. {_first_sign(found)}"
         )
     physical = [_named(found, name) for name in verdict.causes if name in found.decision.causes]
     sensors = "sensor fault: " + ", ".join(_named(found, name) for name in found.sensor_causes)
@@ -35,6 +36,17 @@ def statement(found):
     if not physical:
         return f"{word}: {sensors}; beside it {tests} no misfit larger than chance."
     return f"{word}: {' together with '.join(physical)}{beside}."
+
+
+def _first_sign(found):
+    """Where an unknown cause shows: its force if one is described, else the first misfit of a joint."""
+    outside = found.verdict.outside
+    if outside is None:
+        return f"First misfit: {found.verdict.misfit.where}."
+    return (
+        f"A force along x on {' or '.join(outside.bodies)} would: {FORCE_LAWS[outside.law]}, "
+        f"{force_words(outside)}."
+    )
 
 
 def _named(found, name):
@@ -74,9 +86,9 @@ def facts(found):
     """
     return (
         (
-            "Chance of such scores without a missing effect",
+            "Chance of such a misfit without a missing effect",
             _chance_words(found.verdict.misfit.p),
-            f"called a misfit at {FALSE_ALARM:g} or less",
+            f"by laws and features together; called a misfit at {FALSE_ALARM:g} or less",
         ),
         _size_fact(found),
         _gain_fact(found),
@@ -104,6 +116,13 @@ def _size_fact(found):
             "Effects excluded from some size on",
             f"{len(verdict.excluded_above)} of {considered}",
             "sizes in the table of candidates",
+        )
+    outside = verdict.outside
+    if outside is not None:
+        return (
+            f"Force along x, {FORCE_LAWS[outside.law]}",
+            force_words(outside),
+            f"if all of it acts on {outside.bodies[0]}; 90 % interval",
         )
     residual = np.abs(found.misfit["residual"]).max(("joint", "phase", "quantity", "side"))
     if not residual.notnull().any():

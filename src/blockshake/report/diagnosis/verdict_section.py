@@ -1,10 +1,13 @@
 """First page of a diagnosis: the verdict in its box, and one picture."""
 
+from blockshake.diagnosis.laws.signatures import STOP
 from blockshake.diagnosis.misfit.ranking import strongest_test
+from blockshake.effects.registry import EFFECTS
 from blockshake.report.diagnosis.box import Box
 from blockshake.report.diagnosis.figures.drift import plot_extended_drift, plot_nominal_drift
 from blockshake.report.diagnosis.forces_section import described
 from blockshake.report.diagnosis.verdict import drift_change, excluded, facts, statement
+from blockshake.report.diagnosis.wording import estimate_words, title_of
 from blockshake.report.document.blocks import Figure, Items, Section, Text
 from blockshake.report.document.drawing import svg_of
 
@@ -24,8 +27,11 @@ def verdict_section(found):
     items = []
     if found.verdict.outside:
         items.append(described(found.verdict.outside))
+    for name in found.decision.causes:
+        items += _further(found, name)
     if found.verdict.missing:
         items.append(f"Not called established because {'; '.join(found.verdict.missing)}.")
+    items += [_record(found, name) for name in found.decision.causes if _hidden(found, name)]
     if found.sensor_causes:
         items.append(
             "Faults of sensors were found by the sensors' checks, without any simulation, and taken out of the "
@@ -42,6 +48,37 @@ def verdict_section(found):
         blocks.append(Items(tuple(items)))
     blocks.append(_picture(found))
     return Section("Verdict", "verdict", tuple(blocks))
+
+
+def _further(found, name):
+    """Further parameters of a cause that the tests inform, and the tests that show a stop's force."""
+    _, *others = EFFECTS[name].parameters
+    known = found.decision.parameters.get(name, {})
+    words = [
+        f"{item.name} {estimate_words(known[item.name])}"
+        for item in others
+        if item.name in known and known[item.name].informed
+    ]
+    stop = found.decision.laws and found.decision.laws.outside_of_stop
+    if name == STOP and stop:
+        words.append(f"seen in {', '.join(stop.tests)}")
+    return [f"{title_of(name).capitalize()}: {'; '.join(words)}."] if words else []
+
+
+def _hidden(found, name):
+    """Answers of the track record to the campaigns that hid an effect."""
+    rows = found.track_record.confusion if found.track_record else ()
+    return [row.answers for row in rows if row.truth == name and not row.removed]
+
+
+def _record(found, name):
+    """How often the procedure was right about a cause where its truth was known."""
+    answers = _hidden(found, name)
+    right, count = sum(one.right for one in answers), sum(one.n for one in answers)
+    return (
+        f"Track record of the procedure: of {count} made-up campaigns that hid {title_of(name)}, it named this effect "
+        f"alone in {right}."
+    )
 
 
 def _strongest(found):

@@ -9,7 +9,7 @@ from blockshake.report.document.blocks import PAGE_WIDTH
 
 
 def write_html(path, document):
-    """Write a numbered `Document` as one self-contained HTML file: no script, no link out of it."""
+    """Write a numbered `Document` as one self-contained HTML file: no link out of it."""
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("blockshake.report.document"),
         autoescape=True,

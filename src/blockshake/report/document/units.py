@@ -27,6 +27,7 @@ _PRINTED = {
     "kg/m3": Printed(1.0, f"kg/m{CUBED}"),
     "Pa": Printed(1e-9, "GPa"),
     "Pa s": Printed(1e-6, "MPa s"),
+    "rad/(N m)": Printed(1e9, "mrad per MN m"),
     "N/m": Printed(1e-6, "MN/m"),
     "N/m3": Printed(1e-9, f"GN/m{CUBED}"),
     "m3/N": Printed(1e9, "mm/MPa"),

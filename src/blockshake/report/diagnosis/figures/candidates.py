@@ -15,6 +15,7 @@ from blockshake.report.document.drawing import (
 from blockshake.report.document.wording import model_label
 
 _LINEAR = 10.0  # below which the scale is linear
+_MARGIN = 1.25  # markers lie within the frame
 _TICKS = (-10000, -1000, -100, -20, -10, -5, 0, 5, 10, 20, 50, 100, 200, 500, 1000, 10000, 100000)
 _COLORS = (BLUE, ORANGE, GREEN)
 _MARKERS = ("s", "D", "^")
@@ -43,7 +44,8 @@ def plot_candidates(rows, labels, causes, placebo):
     axes.axvline(0.0, color=BLACK, linewidth=0.8, label="nominal model")
     axes.axvline(placebo, color=RED, linestyle="--", label="best of the placebos")
     axes.set_xscale("symlog", linthresh=_LINEAR)
-    low, high = axes.get_xlim()
+    low, high = (_MARGIN * end for end in axes.get_xlim())
+    axes.set_xlim(low, high)
     ticks = [tick for tick in _TICKS if low <= tick <= high]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.set_xticks([], minor=True)

@@ -60,17 +60,18 @@ def draw_band(axes, quantiles, factor, color):
     thinned = factor * quantiles.isel(time=slice(None, None, stride))
     low, middle, high = (thinned.sel(quantile=one) for one in (0.05, 0.5, 0.95))
     axes.fill_between(thinned["time"], low, high, color=color, alpha=0.35, linewidth=0.0)
-    axes.plot(thinned["time"], middle, color=_darker(color), linewidth=0.7)
+    axes.plot(thinned["time"], middle, color=darker(color), linewidth=0.7)
 
 
-def _darker(color):
+def darker(color):
+    """The colour of a median in a band of a colour."""
     rgb = [int(color[place : place + 2], 16) / 255.0 for place in (1, 3, 5)]
     return tuple(0.75 * np.array(rgb))
 
 
 def _add_legend(figure, colors, measured_word):
     patches = tuple(Patch(facecolor=color, edgecolor="none", alpha=0.35) for color in colors)
-    lines = tuple(Line2D([], [], color=_darker(color), linewidth=0.9) for color in colors)
+    lines = tuple(Line2D([], [], color=darker(color), linewidth=0.9) for color in colors)
     entries = [(patches, "5 to 95 %"), (lines, "median"), (Line2D([], [], **_MEASURED), measured_word)]
     figure.legend(
         [handle for handle, _ in entries], [label for _, label in entries],

@@ -45,7 +45,7 @@ def plot_constancy(panels):
     count = max(len(panel["tests"]) for panel in panels)
     columns = min(2, len(panels))
     rows = -(-len(panels) // columns)
-    figure = new_figure((0.02 + 0.006 * count) * rows)
+    figure = new_figure((0.022 + 0.008 * count) * rows)
     shown = figure.subplots(rows, columns, squeeze=False).flat
     for axes in shown[len(panels) :]:
         axes.set_axis_off()
@@ -61,7 +61,7 @@ def plot_constancy(panels):
             elinewidth=0.9, capsize=2.5,
         )  # fmt: skip
         axes.set_yticks(places, panel["tests"])
-        axes.set_ylim(-0.6, len(places) - 0.4)
+        axes.set_ylim(-0.8, len(places) - 0.2)
         axes.set_xlim(*_widened(panel["ends"]))
         axes.set(title=panel["title"], xlabel=panel["axis"])
     return figure

@@ -1,138 +1,102 @@
-"""Levers and laws of the joints and the least unexplained force of the blocks, in all tests."""
+"""Histories of what the joints transmit and take, and of the least unexplained force, in all tests."""
 
 import numpy as np
 
 from blockshake.diagnosis.laws.law_table import kind_of
 from blockshake.report.document.drawing import BLACK, BLUE, DARK_GREY, GREEN, ORANGE, PURPLE, RED, new_figure
 
-_COLOURS = (BLUE, ORANGE, GREEN, PURPLE, BLACK)
-_BEYOND = 1.6  # half widths, at the ends of the axis
-_KILO = 1e-3
-_SLIP_RATES = 0.01, 1.0  # m/s, ends of the axis
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE, BLACK)
+_LEAST_BEYOND, _MOST_BEYOND = 1.6, 4.0  # half widths, at the ends of an axis of levers
+_MARGIN = 1.08
+KILO = 1e-3
 _APART = 0.02  # of a test's length, between the joints' draws beyond its end
+_SPREADS = 2.0  # standard deviations of the draws, to either side
+_DASHED = {"color": DARK_GREY, "linewidth": 0.6, "linestyle": (0, (4, 2))}
+
+
+def coloured(names):
+    """Pairs of a name and its colour, the same in every figure."""
+    return list(zip([str(name) for name in names], np.resize(COLOURS, len(names)).tolist(), strict=True))
+
+
+def beyond_the_face(one):
+    """Levers of a joint in a test that lie beyond an edge by more than three standard deviations, NaN elsewhere."""
+    half = float(one["half_width"])
+    return one["lever"].where(np.abs(one["lever"]) > half + 3.0 * one["lever_error"])
 
 
 def plot_levers(forces, joint):
     """Figure of the lever of one joint in every test of `measured_forces`, with the edges of its face."""
-    tests = [str(name) for name in forces["test"].values]
-    figure = new_figure(0.012 + 0.026 * len(tests))
-    panels = figure.subplots(len(tests), 1, sharex=True, squeeze=False)[:, 0]
-    half = float(forces["half_width"].sel(joint=joint).max())
-    for axes, test in zip(panels, tests, strict=True):
-        one = forces.sel(test=test, joint=joint)
+    own = forces.sel(joint=joint)
+    figure, panels = _rows(forces, 0.012)
+    for axes, test in zip(panels, forces["test"].values, strict=True):
+        one = own.sel(test=test)
+        half, beyond = float(one["half_width"]), beyond_the_face(one)
         axes.plot(one["time"], 1e3 * one["lever"], color=BLACK, linewidth=0.6)
-        beyond = one["lever"].where(np.abs(one["lever"]) > half + 3.0 * one["lever_error"])
         axes.plot(one["time"], 1e3 * beyond, color=RED, linewidth=0.9)
         for edge in (-half, half):
-            axes.axhline(1e3 * edge, color=DARK_GREY, linewidth=0.6, linestyle=(0, (4, 2)))
-        axes.set_ylim(-1e3 * _BEYOND * half, 1e3 * _BEYOND * half)
+            axes.axhline(1e3 * edge, **_DASHED)
+        farthest = _MARGIN * float(np.abs(beyond).max()) if beyond.notnull().any() else 0.0
+        end = 1e3 * np.clip(farthest, _LEAST_BEYOND * half, _MOST_BEYOND * half)
+        axes.set_ylim(-end, end)
         axes.set_ylabel(f"{test}\nlever [mm]")
-    panels[-1].set_xlabel("time [s]")
-    figure.align_ylabels(panels)
-    return figure
-
-
-def plot_laws(forces):
-    """Figure of the readings that the laws of the joints rest on, in every test of `measured_forces`.
-
-    Lever against rotation while a joint is turned, with the edges of the lowest face; shear over normal force against
-    the slip rate while a joint slips, with the coefficient of friction; rotation against moment while it is closed.
-    """
-    tests = [str(name) for name in forces["test"].values]
-    figure = new_figure(0.02 + 0.042 * len(tests))
-    panels = figure.subplots(len(tests), 3, sharex="col", squeeze=False)
-    joints = [str(name) for name in forces["joint"].values]
-    for (turned, slips, closed), test in zip(panels, tests, strict=True):
-        for joint, colour in zip(joints, np.resize(_COLOURS, len(joints)), strict=True):
-            one = forces.sel(test=test, joint=joint)
-            look = {
-                "color": str(colour),
-                "label": joint,
-                "linestyle": "none",
-                "marker": ".",
-                "markersize": 1.5,
-            }
-            told = {
-                name: one["told"].sel(law=name).to_numpy() == 1 for name in ("lever", "friction", "closed")
-            }
-            at = {name: one.isel(time=mask) for name, mask in told.items()}
-            turned.plot(1e3 * at["lever"]["rotation"], 1e3 * at["lever"]["lever"], **look)
-            ratio = np.abs(at["friction"]["shear"] / at["friction"]["normal"])
-            slips.plot(np.abs(at["friction"]["slip_rate"]), ratio, **look)
-            moment = at["closed"]["lever"] * at["closed"]["normal"]
-            closed.plot(_KILO * moment, 1e3 * at["closed"]["rotation"], **look)
-        half, coefficient = (
-            float(forces[name].isel(joint=0).max()) for name in ("half_width", "coefficient")
-        )
-        for axes, level in ((turned, 1e3 * half), (turned, -1e3 * half), (slips, coefficient)):
-            axes.axhline(level, color=DARK_GREY, linewidth=0.6, linestyle=(0, (4, 2)))
-        turned.set_ylim(-1e3 * _BEYOND * half, 1e3 * _BEYOND * half)
-        slips.set_xscale("log")
-        slips.set_xlim(_SLIP_RATES)
-        if not forces["told"].sel(test=test, law="friction").any():
-            slips.text(0.5, 0.5, "no joint slips", transform=slips.transAxes, ha="center", color=DARK_GREY)
-        slips.set_ylim(0.0, 1.5 * coefficient)
-        turned.set_ylabel(f"{test}\nlever [mm]")
-        slips.set_ylabel("shear / normal [1]")
-        closed.set_ylabel("rotation [mrad]")
-    for axes, words in zip(panels[-1], ("rotation [mrad]", "slip rate [m/s]", "moment [kN m]"), strict=True):
-        axes.set_xlabel(words)
-    figure.align_ylabels(panels)
-    figure.legend(
-        *panels[0, 0].get_legend_handles_labels(),
-        loc="outside upper center",
-        ncols=len(joints),
-        markerscale=4,
-    )
-    return figure
+    return _finished(figure, panels)
 
 
 def plot_work(forces, shown):
     """Figure of the energy that every joint takes out of the motion in every test of `measured_forces`.
 
-    Beyond the end of a test: mean of the nominal draws and two standard deviations, of ``shown`` (sequence of
-    LawFinding).
+    Dashed: all joints together. Beyond the end of a test: mean of the nominal draws and two standard deviations, of
+    ``shown`` (sequence of LawFinding).
     """
-    tests = [str(name) for name in forces["test"].values]
-    figure = new_figure(0.016 + 0.03 * len(tests))
-    panels = figure.subplots(len(tests), 1, sharex=True, squeeze=False)[:, 0]
-    joints = [str(name) for name in forces["joint"].values]
+    figure, panels = _rows(forces, 0.016, 0.03)
     of_draws = {one.joint: one for one in shown if kind_of(one.name) == "work.taken"}
-    length = float(forces["time"].max() - forces["time"].min())
-    for axes, test in zip(panels, tests, strict=True):
-        for place, (joint, colour) in enumerate(
-            zip(joints, np.resize(_COLOURS, len(joints)), strict=True), start=1
-        ):
+    end, length = float(forces["time"].max()), float(np.ptp(forces["time"].to_numpy()))
+    for axes, test in zip(panels, forces["test"].values, strict=True):
+        for place, (joint, colour) in enumerate(coloured(forces["joint"].values), start=1):
             one = forces["work"].sel(test=test, joint=joint)
-            axes.plot(one["time"], _KILO * one, color=str(colour), linewidth=0.8, label=joint)
-            if joint in of_draws and test in of_draws[joint].expected:
-                draws = of_draws[joint]
+            axes.plot(one["time"], KILO * one, color=colour, linewidth=0.8, label=joint)
+            draws = of_draws.get(joint)
+            if draws and test in draws.expected:
                 axes.errorbar(
-                    float(forces["time"].max()) + _APART * place * length, _KILO * draws.expected[test],
-                    yerr=2.0 * _KILO * draws.spreads[test], color=str(colour), fmt="o", markersize=3, capsize=2,
+                    end + _APART * place * length, KILO * draws.expected[test],
+                    yerr=_SPREADS * KILO * draws.spreads[test], color=colour, fmt="o", markersize=3, capsize=2,
                 )  # fmt: skip
+        if forces.sizes["joint"] > 1:
+            together = KILO * forces["work"].sel(test=test).sum("joint", skipna=False)
+            axes.plot(forces["time"], together, label="all together", **_DASHED)
         axes.set_ylabel(f"{test}\nenergy [kJ]")
-    panels[-1].set_xlabel("time [s]")
-    figure.align_ylabels(panels)
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=len(joints))
-    return figure
+    return _finished(figure, panels, columns=forces.sizes["joint"] + 1)
 
 
-def plot_unexplained(forces):
-    """Figure of the least unexplained force of every block in every test of `measured_forces`."""
-    tests = [str(name) for name in forces["test"].values]
-    figure = new_figure(0.016 + 0.026 * len(tests))
-    panels = figure.subplots(len(tests), 1, sharex=True, squeeze=False)[:, 0]
-    for axes, test in zip(panels, tests, strict=True):
-        for body, colour in zip(
-            forces["body"].values, np.resize(_COLOURS, forces.sizes["body"]), strict=True
-        ):
+def plot_unexplained(forces, usual):
+    """Figure of the least unexplained force of every block in every test of `measured_forces`.
+
+    ``usual``: by test, the largest sum over the blocks that nominal draws leave [N]; dashed where it is known.
+    """
+    figure, panels = _rows(forces, 0.016)
+    for axes, test in zip(panels, forces["test"].values, strict=True):
+        for body, colour in coloured(forces["body"].values)[::-1]:
             one = forces["unexplained"].sel(test=test, body=body)
-            axes.plot(one["time"], _KILO * one, color=str(colour), linewidth=0.7, label=str(body))
+            axes.plot(one["time"], KILO * one, color=colour, linewidth=0.7, label=body)
+        for level in (-1.0, 1.0) if test in usual else ():
+            axes.axhline(KILO * level * usual[test], **_DASHED)
         axes.set_ylabel(f"{test}\nforce [kN]")
+    return _finished(figure, panels, columns=forces.sizes["body"])
+
+
+def _rows(forces, above, each=0.026):
+    """Empty figure with a row a test, heights [m] of what is above them and of each."""
+    count = forces.sizes["test"]
+    figure = new_figure(above + each * count)
+    return figure, figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+
+
+def _finished(figure, panels, columns=0):
+    """The figure with its axis of time, and a legend of so many columns."""
     panels[-1].set_xlabel("time [s]")
     figure.align_ylabels(panels)
-    figure.legend(
-        *panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=forces.sizes["body"]
-    )
+    if columns:
+        handles = panels[0].get_legend_handles_labels()
+        figure.legend(*handles, loc="outside upper center", ncols=columns)
     return figure

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from blockshake.report.diagnosis.figures.drift import draw_band
+from blockshake.report.diagnosis.figures.drift import darker, draw_band
 from blockshake.report.document.drawing import BLACK, LIGHT_GREY, RED, SKY, new_figure
 
 _COLUMNS = {"slip": "slip [mm]", "rotation": "rotation [mrad]", "opening": "opening [mm]"}
@@ -74,6 +74,7 @@ def _limits(measured, lower, upper):
 def _add_legend(figure, measured_word, shaded):
     entries = {
         "nominal, 5 to 95 %": Patch(facecolor=SKY, edgecolor="none", alpha=0.35),
+        "median": Line2D([], [], color=darker(SKY), linewidth=0.9),
         measured_word: Line2D([], [], color=BLACK, linewidth=0.8),
         "outside the band": Line2D([], [], color=RED, linewidth=0.9),
     }

@@ -1,0 +1,28 @@
+// Every table can be saved as CSV, and every figure as SVG: what the page holds, and nothing from elsewhere.
+for (const figure of document.querySelectorAll("figure")) {
+  const table = figure.querySelector("table");
+  const drawing = figure.querySelector("svg");
+  const name = figure.querySelector(".number").textContent.toLowerCase().replace(/\W+/g, "-").replace(/-$/, "");
+  const button = document.createElement("button");
+  button.type = "button";
+  button.textContent = table ? "CSV" : "SVG";
+  button.title = "Save " + name;
+  button.addEventListener("click", () => {
+    const [text, type] = table ? [asCsv(table), "text/csv"] : [asSvg(drawing), "image/svg+xml"];
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([text], { type }));
+    link.download = name + (table ? ".csv" : ".svg");
+    link.click();
+    URL.revokeObjectURL(link.href);
+  });
+  figure.querySelector("figcaption").append(button);
+}
+
+function asCsv(table) {
+  const quoted = (cell) => '"' + cell.textContent.trim().replaceAll('"', '""') + '"';
+  return [...table.rows].map((row) => [...row.cells].map(quoted).join(",")).join("\r\n") + "\r\n";
+}
+
+function asSvg(drawing) {
+  return '<?xml version="1.0" encoding="UTF-8"?>\n' + new XMLSerializer().serializeToString(drawing);
+}

@@ -1,0 +1,50 @@
+"""A report's page as a browser shows it: nothing fetched, nothing complained of, everything can be saved."""
+
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from blockshake.report.document.blocks import Document, Figure, Section, Table, Text, numbered
+from blockshake.report.document.html import write_html
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+
+
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory):
+    """What the browser has made of a page, and what it wrote to its console."""
+    folder = tmp_path_factory.mktemp("page")
+    drawing = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 10"><path d="M0 0 L10 10"/></svg>'
+    blocks = (
+        Text("A <b>name</b> & a sentence."),
+        Table("Names.", ("Name", "Value [1]"), (('a "block", 1', "3"),), "lr"),
+        Figure("A line.", drawing),
+    )
+    document = Document("Title", "What it is", (Section("First", "first", blocks),))
+    write_html(folder / "page.html", numbered(document))
+    done = subprocess.run(
+        [
+            CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr",
+            f"--user-data-dir={folder / 'profile'}", "--host-resolver-rules=MAP * ~NOTFOUND", "--dump-dom",
+            (folder / "page.html").as_uri(),
+        ],
+        capture_output=True, text=True, timeout=120, check=True,
+    )  # fmt: skip
+    return done.stdout, [line for line in done.stderr.splitlines() if "CONSOLE" in line]
+
+
+def test_nothing_is_complained_of(shown):
+    assert shown[1] == []
+
+
+def test_every_table_and_every_figure_can_be_saved(shown):
+    buttons = re.findall(r'<button type="button" title="([^"]*)">([^<]*)</button>', shown[0])
+    assert buttons == [("Save table-1", "CSV"), ("Save figure-1", "SVG")]
+
+
+def test_names_are_text(shown):
+    assert "A &lt;b&gt;name&lt;/b&gt; &amp; a sentence." in shown[0]
