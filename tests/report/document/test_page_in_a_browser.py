@@ -16,7 +16,7 @@ pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not instal
 
 @pytest.fixture(scope="module")
 def shown(tmp_path_factory):
-    """What the browser has made of a page, and what it wrote to its console."""
+    """A page as the browser has made it, and the lines of its console."""
     folder = tmp_path_factory.mktemp("page")
     drawing = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 10"><path d="M0 0 L10 10"/></svg>'
     blocks = (
