@@ -111,3 +111,13 @@ def test_edges_that_lie_elsewhere_are_no_force(further_out):
     best = fit_laws(TIME, pushed)[0]
     assert best.name == "steady"
     assert best.amplitude == pytest.approx(-2000.0, abs=20.0)
+
+
+def test_a_stop_on_either_side_is_one_spring_with_a_second_gap():
+    both = FORCES["spring"] + 8e6 * np.maximum(-MOVED - 0.02, 0.0)
+    best = fit_laws(TIME, history(both))[0]
+    assert best.name == "spring"
+    gaps = {best.parameters["gap"], best.parameters["other_gap"]}
+    assert sorted(gaps) == pytest.approx([0.015, 0.02], abs=2e-3)
+    assert sorted([best.amplitude, best.parameters["other_amplitude"]]) == pytest.approx([5e6, 8e6], rel=0.1)
+    assert "other_gap" not in fit_laws(TIME, history(FORCES["spring"]))[0].parameters

@@ -58,8 +58,8 @@ class OutsideForce(Strict):
         Of the law on the first body, with an interval of 90 % over the tests [N, N/m, N s/m].
     unit : str
     tests : dict of str to dict of str to float
-        By test that shows it: ``start`` and ``end`` [s], ``largest`` force [N], and a spring's ``gap`` [m] and
-        ``side``.
+        By test that shows it: ``start`` and ``end`` [s], and a spring's ``gap`` [m] and ``side``, with ``other_gap``
+        and ``other_amplitude`` [N/m] of a second spring on the other side.
     """
 
     bodies: tuple[str, ...]

@@ -11,6 +11,7 @@ _WITHIN_90 = 2.71  # chi-square of one degree of freedom that nine of ten values
 _LONGEST_PULSE = 0.5  # s
 _FEWEST = 5  # instants on a side that tell its edge
 _EDGE = 5e-3  # m: how far edges are known, where readings tell no better
+_SECOND = 25.0  # by how much a second spring must lower the sum of squares to be seen
 
 
 @dataclass(frozen=True)
@@ -24,8 +25,9 @@ class FittedLaw:
     amplitude, error : float
         Of the law and its standard deviation: a force [N]; of a spring [N/m], of a damper [N s/m].
     parameters : dict of str to float
-        Start and end [s], gap [m] and side; ``earliest`` and ``latest``, of a constant force, are the ends of the
-        starts that 90 % of such histories agree with, and the start is in their middle.
+        Start and end [s], gap [m] and side. ``other_gap`` [m] and ``other_amplitude`` [N/m] of a second spring that is
+        seen on the other side. ``earliest`` and ``latest``, of a constant force, are
+        the ends of the starts that 90 % of such histories agree with, and the start is in their middle.
     chi_square : float
         Sum of squares left, in variances of the history; where the force is not told, of what is beyond its ends.
     information : float
@@ -79,7 +81,7 @@ def fit_laws(time, push):
     fits.append(_fitted("steady", np.ones_like(t), readings, {}, 1))
     fits.append(_stepped(t, readings))
     fits.append(_best("pulse", _pulses(t, t[readings.told]), readings, 3))
-    fits.append(_best("spring", _springs(u), readings, 2))
+    fits.append(_with_other_side(_best("spring", _springs(u, (1.0, -1.0)), readings, 2), u, readings))
     fits.append(_fitted("damper", v, readings, {}, 1))
     fits.append(_fitted("proportional", u, readings, {}, 1))
     return sorted((one for one in fits if one is not None), key=lambda one: one.information)
@@ -127,11 +129,32 @@ def _pulses(t, starts):
             )
 
 
-def _springs(u):
-    for side in (1.0, -1.0):
+def _springs(u, sides):
+    for side in sides:
         largest = (side * u).max()
         for gap in np.linspace(0.0, max(largest, 0.0), _GRID, endpoint=False):
             yield -side * np.maximum(side * u - gap, 0.0), {"gap": float(gap), "side": side}
+
+
+def _with_other_side(spring, u, readings):
+    """A spring beyond a gap with a second one on the other side, if what the first one leaves shows it."""
+    if spring is None:
+        return None
+    side, gap = spring.parameters["side"], spring.parameters["gap"]
+    own = -side * spring.amplitude * np.maximum(side * u - gap, 0.0)
+    rest = readings._replace(
+        force=readings.force - own, lower=readings.lower - own, upper=readings.upper - own
+    )
+    other = _best("spring", _springs(u, (-side,)), rest, 2)
+    if other is None or other.amplitude <= 0.0 or spring.chi_square - other.chi_square < _SECOND:
+        return spring
+    second = {"other_gap": other.parameters["gap"], "other_amplitude": other.amplitude}
+    return replace(
+        spring,
+        parameters={**spring.parameters, **second},
+        chi_square=other.chi_square,
+        information=other.information + spring.information - spring.chi_square,
+    )
 
 
 def _best(name, shapes, readings, count):

@@ -7,8 +7,12 @@ from blockshake.effects.registry import EFFECTS
 from blockshake.report.diagnosis.wording import title_of
 from blockshake.report.document.blocks import Items, Table, Text
 from blockshake.report.document.units import quantity
-from blockshake.report.document.wording import number
 
+# of the sizes by test: of an effect, and of a stop
+_HEADS = {
+    False: ("Test", "Size", "90 % by the law's standard error"),
+    True: ("Test", "Stiffness", "Gap", "On the other side"),
+}
 _INTERVAL = 1.645  # standard errors to either side, 90 %
 
 
@@ -36,16 +40,16 @@ def law_blocks(found):
     for name in causes:
         rows = _sizes(name, laws)
         if rows:
-            blocks.append(
-                Table(
-                    f"{title_of(name).capitalize()}: size that each test reads by itself, from its law. The verdict's "
-                    "interval also has the scatter between the tests in it.",
-                    ("Test", EFFECTS[name].parameters[0].name, "90 % by the law's standard error"),
-                    rows,
-                    "lrr",
-                )
-            )
+            caption = f"{title_of(name).capitalize()}: size that each test reads by itself."
+            blocks.append(Table(caption, _HEADS[name == STOP], rows, "lrrr"[: len(rows[0])]))
     return tuple(blocks)
+
+
+def second_stop(values):
+    """A second stop on the other side of the block, from a test of `OutsideForce`; empty where none is seen."""
+    if "other_gap" not in values:
+        return ""
+    return f"{quantity(values['other_amplitude'], 'N/m')} beyond {quantity(values['other_gap'], 'm')}"
 
 
 def _isolated(name, laws):
@@ -84,11 +88,11 @@ def _sizes(name, laws):
         return tuple(
             (
                 test,
-                f"gap {quantity(values['gap'], 'm')}",
-                f"largest force {number(1e-3 * values['largest'])} kN",
+                quantity(values["amplitude"], "N/m"),
+                quantity(values["gap"], "m"),
+                second_stop(values) or "none",
             )
             for test, values in laws.outside_of_stop.tests.items()
-            if {"gap", "largest"} <= values.keys()
         )
     unit = EFFECTS[name].parameters[0].unit
     return tuple(

@@ -6,6 +6,7 @@ from blockshake.effects.registry import EFFECTS
 from blockshake.report.diagnosis.box import Box
 from blockshake.report.diagnosis.figures.drift import plot_extended_drift, plot_nominal_drift
 from blockshake.report.diagnosis.forces_section import described
+from blockshake.report.diagnosis.law_evidence import second_stop
 from blockshake.report.diagnosis.verdict import drift_change, excluded, facts, statement
 from blockshake.report.diagnosis.wording import estimate_words, title_of
 from blockshake.report.document.blocks import Figure, Items, Section, Text
@@ -62,6 +63,11 @@ def _further(found, name):
     stop = found.decision.laws and found.decision.laws.outside_of_stop
     if name == STOP and stop:
         words.append(f"seen in {', '.join(stop.tests)}")
+        second = {test: second_stop(values) for test, values in stop.tests.items() if second_stop(values)}
+        words += [
+            f"{test} shows a second stop on the other side, {one}, which the extension leaves out"
+            for test, one in second.items()
+        ]
     return [f"{title_of(name).capitalize()}: {'; '.join(words)}."] if words else []
 
 
