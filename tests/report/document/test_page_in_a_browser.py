@@ -18,11 +18,14 @@ pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not instal
 def shown(tmp_path_factory):
     """A page as the browser has made it, and the lines of its console."""
     folder = tmp_path_factory.mktemp("page")
-    drawing = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 10"><path d="M0 0 L10 10"/></svg>'
+    drawing = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 10"><path d="M0 0 L90 10"/></svg>'
     blocks = (
         Text("A <b>name</b> & a sentence."),
         Table("Names.", ("Name", "Value [1]"), (('a "block", 1', "3"),), "lr"),
         Figure("A line.", drawing),
+        Figure(
+            "Curves.", drawing, interactive='{"data": [{"y": [1, 2], "name": "</script>"}], "layout": {}}'
+        ),
     )
     document = Document("Title", "What it is", (Section("First", "first", blocks),))
     write_html(folder / "page.html", numbered(document))
@@ -30,6 +33,7 @@ def shown(tmp_path_factory):
         [
             CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr",
             f"--user-data-dir={folder / 'profile'}", "--host-resolver-rules=MAP * ~NOTFOUND", "--dump-dom",
+            "--virtual-time-budget=5000",
             (folder / "page.html").as_uri(),
         ],
         capture_output=True, text=True, timeout=120, check=True,
@@ -43,7 +47,13 @@ def test_nothing_is_complained_of(shown):
 
 def test_every_table_and_every_figure_can_be_saved(shown):
     buttons = re.findall(r'<button type="button" title="([^"]*)">([^<]*)</button>', shown[0])
-    assert buttons == [("Save table-1", "CSV"), ("Save figure-1", "SVG")]
+    assert buttons == [("Save table-1", "CSV"), ("Save figure-1", "SVG"), ("Save figure-2", "SVG")]
+
+
+def test_curves_are_drawn_in_place_of_the_drawing(shown):
+    figures = re.findall(r'<figure class="drawn">.*?</figure>', shown[0], re.DOTALL)
+    assert len(figures) == 1
+    assert "main-svg" in figures[0]
 
 
 def test_names_are_text(shown):

@@ -50,11 +50,15 @@ class Table:
 
 @dataclass(frozen=True)
 class Figure:
-    """A drawing as SVG text, ``width`` [m] in print; ``number`` counts the figures of the document."""
+    """A drawing as SVG text, ``width`` [m] in print; ``number`` counts the figures of the document.
+
+    ``interactive``: JSON of a plotly figure that stands for the drawing on a screen; empty where the drawing stands.
+    """
 
     caption: str
     svg: str
     width: float = PAGE_WIDTH
+    interactive: str = ""
     number: int = 0
     kind: str = field(default="figure", init=False)
 

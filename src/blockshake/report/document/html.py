@@ -3,6 +3,7 @@
 import re
 
 import jinja2
+from plotly.offline import get_plotlyjs
 
 from blockshake.files import write_text
 from blockshake.report.document.blocks import PAGE_WIDTH
@@ -18,7 +19,17 @@ def write_html(path, document):
         undefined=jinja2.StrictUndefined,
     )
     template = environment.get_template("report.html.j2")
-    write_text(path, template.render(document=document, picture=_picture))
+    blocks = [block for section in document.sections for block in section.blocks]
+    library = get_plotlyjs() if any(getattr(block, "interactive", "") for block in blocks) else ""
+    rendered = template.render(
+        document=document, picture=_picture, embedded=_embedded, library=jinja2.filters.Markup(library)
+    )
+    write_text(path, rendered)
+
+
+def _embedded(text):
+    """JSON to stand in a script element: nothing in it ends the element."""
+    return jinja2.filters.Markup(text.replace("<", "\\u003c"))
 
 
 def _picture(block):

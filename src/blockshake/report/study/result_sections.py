@@ -5,6 +5,7 @@ from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.rows import face_markers, main_bodies
 from blockshake.report.document.wording import given, model_label, number, share_words
 from blockshake.report.study.figures.displacement import plot_displacements
+from blockshake.report.study.figures.interactive import interactive_displacements
 from blockshake.report.study.models.tables import block_tables
 from blockshake.report.study.probability_table import probability_table
 from blockshake.report.study.result_tables import coverage_table
@@ -43,8 +44,10 @@ def _response(case, motion):
 
     def figure(bodies, frame, caption):
         chosen = [markers[body] for body in bodies]
-        drawn = svg_of(plot_displacements, envelopes, case.measured, chosen, bodies, frame, case.synthetic)
-        return Figure(caption, drawn)
+        shown = envelopes, case.measured, chosen, bodies, frame, case.synthetic
+        return Figure(
+            caption, svg_of(plot_displacements, *shown), interactive=interactive_displacements(*shown)
+        )
 
     return [
         Heading(case.title, f"response-{case.name}"),

@@ -18,6 +18,19 @@ for (const figure of document.querySelectorAll("figure")) {
   figure.querySelector("figcaption").append(button);
 }
 
+// Curves to zoom into, drawn when they come into sight; without script, and on paper, the drawing stands.
+const sight = new IntersectionObserver((entries) => {
+  for (const entry of entries.filter((one) => one.isIntersecting)) {
+    sight.unobserve(entry.target);
+    const { data, layout } = JSON.parse(entry.target.querySelector("script").textContent);
+    entry.target.classList.add("drawn");
+    Plotly.newPlot(entry.target.querySelector(".interactive"), data, layout, {
+      responsive: true, displaylogo: false, modeBarButtons: [["zoom2d", "pan2d", "resetScale2d", "toImage"]],
+    });
+  }
+}, { rootMargin: "600px" });
+for (const place of document.querySelectorAll(".interactive")) sight.observe(place.parentElement);
+
 function asCsv(table) {
   const quoted = (cell) => '"' + cell.textContent.trim().replaceAll('"', '""') + '"';
   return [...table.rows].map((row) => [...row.cells].map(quoted).join(",")).join("\r\n") + "\r\n";
