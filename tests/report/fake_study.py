@@ -52,6 +52,8 @@ class FakeStudy:
         self.study = {
             "name": "fake",
             "description": "made-up results\n",
+            "author": "A. <Nobody>",
+            "date": "2026-11-23",
             "models": MODELS,
             "cases": [
                 {

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field, StringConstraints, field_validator, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, StringConstraints, field_validator, model_validator
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
@@ -147,6 +147,11 @@ class StudyConfig(Strict):
     )
     description: Annotated[str, StringConstraints(strip_whitespace=True)] = Field(
         description="one sentence for the report"
+    )
+    project: str = Field("", description="for the head of the report, as `author` and `date`")
+    author: str = Field("", description="who answers for the study")
+    date: Annotated[str, BeforeValidator(str)] = Field(
+        "", description="of the report; it is yours to state, since the same results give the same bytes"
     )
     output_rate: Positive = Field(
         RATE, description="of the histories; the default is that of the paper's optical system [Hz]"

@@ -58,6 +58,11 @@ def test_tags_close_and_ids_are_unique(page):
     assert len(set(page.ids)) == len(page.ids)
 
 
+def test_head_says_who_and_when_as_stated(text):
+    assert "Author: A. <Nobody> Date: 2026-11-23" in text
+    assert "Project:" not in text
+
+
 def test_page_refers_to_nothing_outside_itself(page):
     inside = {f"#{one}" for one in page.ids}
     for reference in page.references:
@@ -66,7 +71,8 @@ def test_page_refers_to_nothing_outside_itself(page):
 
 
 def test_style_and_drawings_refer_to_nothing_outside(report, page):
-    html = report[0].read_text(encoding="utf-8")
+    whole = report[0].read_text(encoding="utf-8")
+    html = re.sub(r"<script>.*?</script>", "", whole, flags=re.DOTALL)  # of programs the browser's console tells
     used = set(re.findall(r"url\(([^)]*)\)", html))
     assert used  # clipped curves are
     assert used <= {f"#{one}" for one in page.ids}

@@ -83,11 +83,12 @@ class Section:
 
 @dataclass(frozen=True)
 class Document:
-    """The whole report."""
+    """The whole report; ``details`` are pairs of a label and words for its head."""
 
     title: str
     subtitle: str
     sections: tuple
+    details: tuple = ()
 
 
 def numbered(document):

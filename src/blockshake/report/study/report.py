@@ -67,6 +67,11 @@ def compose(content):
         Document(
             title=f"blockshake: {content.study['name']}",
             subtitle=" ".join(content.study["description"].split()),
+            details=tuple(
+                (name.capitalize(), content.study[name])
+                for name in ("project", "author", "date")
+                if content.study.get(name)
+            ),
             sections=tuple(made for section in _SECTIONS if (made := section(content)) is not None),
         )
     )
