@@ -26,8 +26,8 @@ class FittedLaw:
         Of the law and its standard deviation: a force [N]; of a spring [N/m], of a damper [N s/m].
     parameters : dict of str to float
         Start and end [s], gap [m] and side. ``other_gap`` [m] and ``other_amplitude`` [N/m] of a second spring that is
-        seen on the other side. ``earliest`` and ``latest``, of a constant force, are
-        the ends of the starts that 90 % of such histories agree with, and the start is in their middle.
+        seen on the other side. ``earliest`` and ``latest``, of a constant force, are the ends of the starts that 90 %
+        of such histories agree with, and the start is in their middle.
     chi_square : float
         Sum of squares left, in variances of the history; where the force is not told, of what is beyond its ends.
     information : float
