@@ -45,6 +45,17 @@ def test_the_softest_bed_of_a_heavy_wall_sinks_no_farther_than_a_structure_may_o
     assert 0.0 < top - bottom < DEEPEST_OVERLAP
 
 
+@pytest.mark.parametrize("spacing", [0.15, 0.2135, 0.25, 0.3])
+def test_a_bed_that_sinks_as_far_as_it_may_starts_in_ls_dem(spacing):
+    """Nodes of a lattice carry less than the layer: they sink farther."""
+    experiment = Experiment(load_structure("configuration-3"), REST, Instruments())
+    softest = EFFECT.parameters[0].upper
+    structure = with_effect(experiment, "base-compliance", {"compliance": softest}, {}).structure
+    numerics = {"ls_dem.node_spacing": spacing, "ls_dem.perimeter_inset": 0.0086}
+    run = simulate(structure, REST, "ls-dem", numerics, time_step=5e-5, duration=0.01)
+    assert run.attrs["status"] == "completed"
+
+
 def _level(structure, name, of):
     index = structure.body_names.index(name)
     vertices = structure.solids[structure.file.bodies[index].shape].vertices

@@ -72,7 +72,9 @@ def test_page_refers_to_nothing_outside_itself(page):
 
 def test_style_and_drawings_refer_to_nothing_outside(report, page):
     whole = report[0].read_text(encoding="utf-8")
-    html = re.sub(r"<script>.*?</script>", "", whole, flags=re.DOTALL)  # of programs the browser's console tells
+    html = re.sub(
+        r"<script>.*?</script>", "", whole, flags=re.DOTALL
+    )  # of programs the browser's console tells
     used = set(re.findall(r"url\(([^)]*)\)", html))
     assert used  # clipped curves are
     assert used <= {f"#{one}" for one in page.ids}
