@@ -3,13 +3,13 @@
 from blockshake.diagnosis.laws.signatures import STOP
 from blockshake.diagnosis.misfit.ranking import strongest_test
 from blockshake.effects.registry import EFFECTS
-from blockshake.report.diagnosis.box import Box
 from blockshake.report.diagnosis.figures.drift import plot_extended_drift, plot_nominal_drift
 from blockshake.report.diagnosis.forces_section import described
 from blockshake.report.diagnosis.law_evidence import second_stop
 from blockshake.report.diagnosis.verdict import drift_change, excluded, facts, statement
 from blockshake.report.diagnosis.wording import estimate_words, title_of
 from blockshake.report.document.blocks import Figure, Items, Section, Text
+from blockshake.report.document.box import Box
 from blockshake.report.document.drawing import svg_of
 
 

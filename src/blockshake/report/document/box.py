@@ -1,4 +1,4 @@
-"""The box on the first page of a diagnosis."""
+"""The box on the first page of a report."""
 
 from dataclasses import dataclass, field
 
