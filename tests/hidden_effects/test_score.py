@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 import score
-from case_files import PAGE, SMALL_SEEDS, TRACK_RECORD, load_plan, truth_of
+from case_files import PAGE, ROOT, SMALL_SEEDS, TRACK_RECORD, load_plan, truth_of
 from case_truth import true_effect
 from make_case import structure_file
 from outside_forces import OUTSIDE
@@ -286,6 +286,22 @@ def test_the_page_shows_what_the_file_says():
         assert load_track_record(TRACK_RECORD).seeds == PLAN.digest
     else:
         assert tables_of(page) == "Not run yet: no figures."
+
+
+def test_the_readme_says_what_the_file_says():
+    readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    record = load_track_record(TRACK_RECORD)
+    assert (
+        f"We made {sum(not row.removed for row in record.confusion for _ in range(row.answers.n))} " in readme
+    )
+    for name, words in {
+        "truth_in_set": "in {share:.0f} % of the {n} (goal {goal:.0f} %)",
+        "false_alarms": "in {share:.0f} % of the {n} (goal {goal:.0f} %)",
+        "outside_unknown": "in {share:.0f} % of the {n} (goal {goal:.0f} %)",
+        "outside_named": "in {share:.0f} % (goal {goal:.0f} %)",
+    }.items():
+        one = record.shares[name]
+        assert words.format(share=100.0 * one.estimate, n=one.n, goal=100.0 * one.goal) in readme, name
 
 
 def test_removed_and_known_cases_do_not_mix():

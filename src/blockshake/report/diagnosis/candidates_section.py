@@ -7,7 +7,7 @@ from blockshake.report.diagnosis.wording import beyond, size_in_unit, title_of, 
 from blockshake.report.document.blocks import Figure, Section, Table, Text
 from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.units import quantity
-from blockshake.report.document.wording import MISSING, number, percent
+from blockshake.report.document.wording import MISSING, number
 
 
 def candidates_section(found):
@@ -77,13 +77,7 @@ def _table(found, rows):
 
 
 def _reasons(found, rows):
-    decision = found.decision
-    if decision.decision == "none":
-        return Text(
-            "No effect was put to these tests one by one: scores as high as the strongest one's arise in "
-            f"{percent(decision.p_none)} % of the nominal draws."
-        )
-    lines = []
+    decision, lines = found.decision, []
     for row in rows:
         name = row.effect
         why = decision.struck_out.get(name)

@@ -37,8 +37,8 @@ def forces_section(found):
         shown = laws[:_MOST_LAWS]
         blocks.append(
             Figure(
-                f"Departures of {_of(shown, laws)} from the nominal model, a marker a test; the long marks are all "
-                f"tests together. A law is broken (red) beyond {BROKEN_ONCE:g} standard deviations in one test or "
+                f"Departures of {_how_many(shown, laws)} from the nominal model, a marker a test; the long marks are "
+                f"all tests together. A law is broken (red) beyond {BROKEN_ONCE:g} standard deviations in one test or "
                 f"{BROKEN:g} of all together. lever.stray, unexplained.rms and unexplained.largest are distances: only "
                 "larger values count.",
                 svg_of(plot_departures, shown, found.tests),
@@ -64,7 +64,7 @@ def _summary(found):
     return f"{len(broken)} of {told} laws that the tests tell are broken: {names}{more}."
 
 
-def _of(shown, laws):
+def _how_many(shown, laws):
     return (
         f"all {len(laws)} laws"
         if len(shown) == len(laws)

@@ -56,7 +56,7 @@ def _isolated(name, laws):
     """Why one effect is isolated, in words."""
     others = [one.name for one in laws.broken]
     if name == STOP:
-        reason = "the force that the readings ask for is a spring beyond a gap, on one side of one block"
+        reason = "the force that the readings ask for is a spring beyond a gap from one block"
     else:
         own = SIGNATURES[name].own
         reason = f"its own law is broken, its way and alike in all tests ({own}: {law_of_kind(own)})"

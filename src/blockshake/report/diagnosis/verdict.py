@@ -20,7 +20,7 @@ def statement(found):
     tests = f"in {len(found.tests)} tests"
     if verdict.decision == "none":
         return (
-            f"{word}: {tests} no misfit larger than what one in {round(1 / FALSE_ALARM)} nominal draws shows by "
+            f"{word}: {tests} nothing departs farther than one in {round(1 / FALSE_ALARM)} nominal draws does by "
             f"itself (p = {number(verdict.misfit.p, 2)})."
         )
     if verdict.decision == "unknown":
@@ -88,7 +88,8 @@ def facts(found):
         (
             "Chance of such a misfit without a missing effect",
             _chance_words(found.verdict.misfit.p),
-            f"by laws and features together; called a misfit at {FALSE_ALARM:g} or less",
+            f"by {'laws and features' if found.decision.laws else 'features alone'}; called a misfit at "
+            f"{FALSE_ALARM:g} or less",
         ),
         _size_fact(found),
         _gain_fact(found),

@@ -11,7 +11,7 @@ _MARGIN = 1.08
 KILO = 1e-3
 _APART = 0.02  # of a test's length, between the joints' draws beyond its end
 _SPREADS = 2.0  # standard deviations of the draws, to either side
-_DASHED = {"color": DARK_GREY, "linewidth": 0.6, "linestyle": (0, (4, 2))}
+DASHED = {"color": DARK_GREY, "linewidth": 0.6, "linestyle": (0, (4, 2))}
 
 
 def coloured(names):
@@ -35,7 +35,7 @@ def plot_levers(forces, joint):
         axes.plot(one["time"], 1e3 * one["lever"], color=BLACK, linewidth=0.6)
         axes.plot(one["time"], 1e3 * beyond, color=RED, linewidth=0.9)
         for edge in (-half, half):
-            axes.axhline(1e3 * edge, **_DASHED)
+            axes.axhline(1e3 * edge, **DASHED)
         farthest = _MARGIN * float(np.abs(beyond).max()) if beyond.notnull().any() else 0.0
         end = 1e3 * np.clip(farthest, _LEAST_BEYOND * half, _MOST_BEYOND * half)
         axes.set_ylim(-end, end)
@@ -64,7 +64,7 @@ def plot_work(forces, shown):
                 )  # fmt: skip
         if forces.sizes["joint"] > 1:
             together = KILO * forces["work"].sel(test=test).sum("joint", skipna=False)
-            axes.plot(forces["time"], together, label="all together", **_DASHED)
+            axes.plot(forces["time"], together, label="all together", **DASHED)
         axes.set_ylabel(f"{test}\nenergy [kJ]")
     return _finished(figure, panels, columns=forces.sizes["joint"] + 1)
 
@@ -80,7 +80,7 @@ def plot_unexplained(forces, usual):
             one = forces["unexplained"].sel(test=test, body=body)
             axes.plot(one["time"], KILO * one, color=colour, linewidth=0.7, label=body)
         for level in (-1.0, 1.0) if test in usual else ():
-            axes.axhline(KILO * level * usual[test], **_DASHED)
+            axes.axhline(KILO * level * usual[test], **DASHED)
         axes.set_ylabel(f"{test}\nforce [kN]")
     return _finished(figure, panels, columns=forces.sizes["body"])
 

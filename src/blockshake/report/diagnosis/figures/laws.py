@@ -2,14 +2,13 @@
 
 import numpy as np
 
-from blockshake.report.diagnosis.figures.forces import COLOURS, KILO, coloured
+from blockshake.report.diagnosis.figures.forces import COLOURS, DASHED, KILO, coloured
 from blockshake.report.document.drawing import BLACK, DARK_GREY, LIGHT_GREY, RED, new_figure
 
 _BEYOND = 1.6  # half widths, at the ends of the axis of levers
 _SLIP_RATES = 0.01, 1.0  # m/s, ends of the axis
 _MOST_POINTS = 1500
 _POINTS = {"linestyle": "none", "marker": ".", "markersize": 1.5}
-_DASHED = {"color": DARK_GREY, "linewidth": 0.6, "linestyle": (0, (4, 2))}
 _MARKERS = ("o", "s", "^", "v", "D", "P", "X", "*")
 _LINEAR = 7.0  # standard deviations, below which the axis of departures is linear
 _TICKS = (-1000, -100, -20, -7, -3, 0, 3, 7, 20, 100, 1000)
@@ -76,7 +75,7 @@ def _frame(axes, law, forces):
     half, coefficient = (float(forces[name].isel(joint=0).max()) for name in ("half_width", "coefficient"))
     levels = {"lever": (-1e3 * half, 1e3 * half), "friction": (coefficient,), "closed": ()}[law]
     for level in levels:
-        axes.axhline(level, **_DASHED)
+        axes.axhline(level, **DASHED)
     if law == "lever":
         axes.set_ylim(-1e3 * _BEYOND * half, 1e3 * _BEYOND * half)
     if law == "friction":
