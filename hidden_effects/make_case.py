@@ -9,8 +9,10 @@ import argparse
 import hashlib
 import shutil
 import sys
+from functools import partial
 from pathlib import Path
 
+import numpy as np
 import yaml
 from case_noise import ACCELEROMETER_NOISE, MARKER_NOISE, add_noise, true_noise
 from case_truth import (
@@ -101,30 +103,22 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True, structure_nam
     model, time_step, numerics = true_numerics(seed)
     table, noise = true_table(seed), true_noise(seed)
     happened = {}
-    for number, (motion, scale, _) in enumerate(plan):
+    for number, (motion, scale, role) in enumerate(plan):
         experiment = Experiment(
             structure.with_parameters(physical), follow(load_motion(motion, scale), table),
             Instruments(marker_noise=0.0, accelerometer_noise=0.0),
         )  # fmt: skip
-        solver = own | numerics
-        if name in OUTSIDE:
-            experiment = OUTSIDE[name].act(experiment, effect, number)
-        elif effect is not None:
-            experiment = FORMS[name][1](experiment, effect["values"], effect["place"])
-            solver |= FORM_NUMERICS.get(name, {})
-        settings = VirtualCampaign(
-            name="case", seed=seed, model=model, time_step=time_step, instruments=experiment.instruments
-        )
-        test, run = shake(
-            experiment.structure, solver, None, experiment.motion, settings,
-            true_places(structure, seed, number), DURATION, seed, structure,
+        shaken = partial(
+            _shaken, experiment, number, own | numerics, true_places(structure, seed, number),
+            structure=structure, settings={"seed": seed, "model": model, "time_step": time_step},
         )  # fmt: skip
+        test, run = shaken(effect)
         happened[name_of_test(motion, scale)] = _happened(test, run, structure)
         if effect is not None:
-            markers = [str(marker) for marker in test["marker"].values]
-            test["marker_displacement"].values[:] = distort(
-                test["time"].to_numpy(), test["marker_displacement"].to_numpy(), markers, effect
-            )
+            _distort(test, effect)
+            if role != "sealed":
+                bare, _ = shaken(None)
+                happened[name_of_test(motion, scale)]["trace"] = _farthest(test, bare)
         test = add_noise(test, noise, seed, number)
         test.attrs |= {"motion": motion, "motion_scale": scale}
         write_dataset(folder / f"{name_of_test(motion, scale)}.nc", test, DECIMALS)
@@ -143,6 +137,32 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True, structure_nam
         "SYNTHETIC: simulated runs seen through noisy sensors. Nothing here was measured.\n"
         f"What is hidden in it, if anything, is in a file with sha256 {committed}.\n",
     )
+
+
+def _shaken(experiment, number, solver, places, effect, structure, settings):
+    """Exact readings of a test and its run, with what is hidden or, without an effect, with nothing."""
+    if effect is not None and effect["name"] in OUTSIDE:
+        experiment = OUTSIDE[effect["name"]].act(experiment, effect, number)
+    elif effect is not None:
+        experiment = FORMS[effect["name"]][1](experiment, effect["values"], effect["place"])
+        solver = solver | FORM_NUMERICS.get(effect["name"], {})
+    campaign = VirtualCampaign(name="case", instruments=experiment.instruments, **settings)
+    return shake(
+        experiment.structure, solver, None, experiment.motion, campaign, places, DURATION, settings["seed"], structure,
+    )  # fmt: skip
+
+
+def _distort(test, effect):
+    """What a fault of markers does to their readings, in place."""
+    markers = [str(marker) for marker in test["marker"].values]
+    test["marker_displacement"].values[:] = distort(
+        test["time"].to_numpy(), test["marker_displacement"].to_numpy(), markers, effect
+    )
+
+
+def _farthest(test, bare):
+    """Largest difference that an effect makes to a marker's exact reading while both runs last [m]."""
+    return float(np.nanmax(np.abs(test["marker_displacement"] - bare["marker_displacement"])))
 
 
 def _words(name):

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from case_noise import MARKER_NOISE
 from outside_forces import OUTSIDE
 from scipy.stats import binom
 
@@ -47,6 +48,11 @@ class Scored:
         return decision
 
     @property
+    def traced(self):
+        """Whether the cause moves a reading of an open test by more than the noise of one."""
+        return any(test.get("trace", 0.0) > MARKER_NOISE for test in self.truth["tests"].values())
+
+    @property
     def holds_truth(self):
         """Whether the truth is among the causes."""
         return not self.removed and self.truth["truth"] in self.verdict.causes
@@ -86,8 +92,16 @@ def figures(scored):
             "one name, and it is wrong: of all cases", [case.answer == "wrong" for case in scored], 0.02, "at most"
         ),
         "truth_in_set": _share("the truth is named or in the set", [case.holds_truth for case in known], 0.92),
-        "truth_in_set_large": _share("the same at the larger size", [case.holds_truth for case in large], 0.97),
-        "truth_in_set_seen": _share("the same where an effect is called", [case.holds_truth for case in seen]),
+        "truth_in_set_traced": _share(
+            "the same where the effect moves a reading of an open test by more than the noise of one",
+            [case.holds_truth for case in known if case.traced],
+        ),
+        "truth_in_set_large": _share(
+            "the truth is named or in the set at the larger size", [case.holds_truth for case in large], 0.97
+        ),
+        "truth_in_set_seen": _share(
+            "the truth is named or in the set where an effect is called", [case.holds_truth for case in seen]
+        ),
         "exact_large": _share(
             "the truth alone is named at the larger size; sets within the truth's own group are left out",
             [case.answer == "right" for case in apart], 0.9,
@@ -106,6 +120,10 @@ def figures(scored):
         ),
         "outside_unknown": _share(
             "a cause outside of the registry is called unknown", [case.answer == "unknown" for case in outside], 0.85
+        ),
+        "outside_unknown_traced": _share(
+            "the same where the cause moves a reading of an open test by more than the noise of one",
+            [case.answer == "unknown" for case in outside if case.traced],
         ),
         "outside_named": _share(
             "a cause outside of the registry gets a registered name", [case.answer == "wrong" for case in outside],

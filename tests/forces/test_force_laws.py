@@ -88,29 +88,43 @@ def test_times_at_which_the_force_is_bounded_alone_tell_its_start():
     assert best.amplitude == pytest.approx(-2200.0, rel=0.02)
 
 
+def rocking(further_out, force=0.0):
+    """A block that rocks on edges which lie elsewhere than the structure has them, under a force."""
+    turn = np.sin(np.pi * TIME) * (1.0 + 0.5 * np.cos(0.3 * np.pi * TIME))
+    side, by_lever, half_width, lever_error = np.sign(turn), 30e3, 0.4, 2e-3
+    lever = side * (half_width + further_out) + np.random.default_rng(0).normal(0.0, lever_error, len(TIME))
+    return replace(
+        history(np.zeros(len(TIME))),
+        force=by_lever * (side * half_width - lever) + force,
+        error=np.full(len(TIME), by_lever * lever_error),
+        told=np.abs(turn) > 0.3,
+        edge=side * by_lever,
+        lower=by_lever * (-half_width - lever) + force,
+        upper=by_lever * (half_width - lever) + force,
+        by_lever=np.full(len(TIME), by_lever),
+        displacement=0.06 * turn,
+    )
+
+
 @pytest.mark.parametrize("further_out", [-12e-3, 0.0, 12e-3])
 def test_edges_that_lie_elsewhere_are_no_force(further_out):
-    """A block that rocks on edges which the structure has 12 mm off; the force and its ends go along with the edges."""
-    rocking = np.sin(np.pi * TIME)
-    side, by_lever, half_width, lever_error = np.sign(rocking), 30e3, 0.4, 2e-3
-    lever = side * (half_width + further_out) + np.random.default_rng(0).normal(0.0, lever_error, len(TIME))
-    push = replace(
-        history(np.zeros(len(TIME))),
-        force=by_lever * (side * half_width - lever),
-        error=np.full(len(TIME), by_lever * lever_error),
-        told=np.abs(rocking) > 0.3,
-        edge=side * by_lever,
-        lower=by_lever * (-half_width - lever),
-        upper=by_lever * (half_width - lever),
-        by_lever=np.full(len(TIME), by_lever),
-    )
+    """The force and its ends go along with the edges."""
+    push = rocking(further_out)
     none = next(one for one in fit_laws(TIME, push) if one.name == "none")
     assert fit_laws(TIME, push)[0].name == "none"
     assert none.chi_square < 1.2 * push.told.sum()
-    pushed = replace(push, **{name: getattr(push, name) - 2000.0 for name in ("force", "lower", "upper")})
-    best = fit_laws(TIME, pushed)[0]
+    best = fit_laws(TIME, rocking(further_out, -2000.0))[0]
     assert best.name == "steady"
     assert best.amplitude == pytest.approx(-2000.0, abs=20.0)
+
+
+@pytest.mark.parametrize("further_out", [-12e-3, 0.0, 12e-3])
+def test_a_rope_is_told_from_edges_that_lie_elsewhere(further_out):
+    """Both push back on both sides; the rope by the displacement, the edges by the same force throughout."""
+    moved = rocking(0.0).displacement
+    best = fit_laws(TIME, rocking(further_out, -1e5 * moved))[0]
+    assert best.name == "proportional"
+    assert best.amplitude == pytest.approx(-1e5, abs=4.0 * best.error)
 
 
 def test_a_stop_on_either_side_is_one_spring_with_a_second_gap():

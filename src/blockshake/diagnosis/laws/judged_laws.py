@@ -14,11 +14,10 @@ from blockshake.diagnosis.laws.null_laws import (
     untamed,
     untamed_error,
 )
-from blockshake.diagnosis.laws.signatures import ECCENTRIC, OF_A_STOP, OF_ANY, OUTSIDE, SIGNATURES, STOP
+from blockshake.diagnosis.laws.signatures import ECCENTRIC, OF_A_STOP, OF_ANY, SIGNATURES, STOP
 
 BROKEN_ONCE = 7.0  # standard deviations, in one test
 BROKEN = 5.0  # of the sum over all tests, in its standard deviation
-_ODD = 4.0  # of a law in a test whose readings ask for a force from outside
 _HOLDS = 3.0
 _LEANS = 3.0  # of the sum over all tests, towards an effect
 _LEAST_GAP = 2e-3  # m, of a stop
@@ -56,7 +55,6 @@ def judge_laws(measured, draws, outside):
                 places[name] = {"joint": joint, "beneath": beneath}
     told = [_law(name, by_test, **places[name]) for name, by_test in departures.items()]
     laws = sorted((one for one in told if law_of(one.name).judged), key=lambda one: -_largest(one))
-    outside = outside if outside and _needed(outside, laws) else None
     isolated = tuple(effect for effect in SIGNATURES if _isolates(effect, laws))
     if outside and outside.law != "steady":
         isolated = tuple(effect for effect in isolated if effect != ECCENTRIC)
@@ -88,7 +86,7 @@ def accounts_for(effect, findings):
         accounts for a law of its own that is broken unlike in the tests.
     """
     if effect == STOP:
-        kinds, forces = OF_A_STOP, ("spring", "pulse")
+        kinds, forces = OF_A_STOP, ("spring",)
     elif effect in SIGNATURES:
         kinds, forces = (SIGNATURES[effect].own, *SIGNATURES[effect].others), ("steady",)
     else:
@@ -209,16 +207,6 @@ def _counted(name, departures):
 
 def _largest(law):
     return max(np.abs(_counted(law.name, list(law.departures.values()))).max(), abs(law.together))
-
-
-def _needed(outside, laws):
-    """Whether some test that shows the force departs from the nominal model in a law that such a force moves."""
-    return any(
-        abs(_counted(one.name, one.departures.get(test, 0.0))) > _ODD
-        for one in laws
-        if kind_of(one.name) in OUTSIDE
-        for test in outside.tests
-    )
 
 
 def _is_stop(outside, laws):

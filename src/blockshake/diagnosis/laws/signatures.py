@@ -49,7 +49,8 @@ def _visible(effect, share=1.0):
 SIGNATURES = {
     "table-pitch": Signature(
         "table.pitch", 0,
-        ("lever.short", "lever.slope", "unexplained.rms", "unexplained.largest", "closed.compliance", *_IMPACTS),
+        ("lever.short", "lever.bias", "lever.slope", "unexplained.rms", "unexplained.largest", "unexplained.mean",
+         "closed.compliance", *_IMPACTS),
         excludes=_visible("table-pitch"),
     ),
     "base-compliance": Signature(
@@ -63,7 +64,7 @@ SIGNATURES = {
         excludes=_visible("reduced-bearing"),
     ),
     "eccentricity": Signature(
-        "lever.bias", 0, ("unexplained.rms", "unexplained.largest", "unexplained.mean", *_IMPACTS),
+        "lever.bias", 0, ("lever.short", "unexplained.rms", "unexplained.largest", "unexplained.mean", *_IMPACTS),
         excludes=_visible("eccentricity", 1.0 / 3.0),  # one of three blocks that a joint carries
     ),
     "weak-joint": Signature(

@@ -8,9 +8,12 @@ import numpy as np
 _GRID = 40  # gaps that are tried
 _STEP = 0.05  # s, between the starts that are tried
 _WITHIN_90 = 2.71  # chi-square of one degree of freedom that nine of ten values stay below
-_LONGEST_PULSE = 0.5  # s
+_SHORTEST_PULSE, _LONGEST_PULSE = 0.03, 0.5  # s
+_LENGTHS = 6  # of pulses that are tried
 _FEWEST = 5  # instants on a side that tell its edge
 _EDGE = 5e-3  # m: how far edges are known, where readings tell no better
+_ANYWHERE = 1.0  # m, farther than any edge: where both sides tell it
+_ALIKE = 1e-8  # determinant of the shapes' correlations, below which readings do not tell them apart
 _SECOND = 25.0  # by how much a second spring must lower the sum of squares to be seen
 
 
@@ -32,6 +35,8 @@ class FittedLaw:
         Sum of squares left, in variances of the history; where the force is not told, of what is beyond its ends.
     information : float
         Bayesian information criterion: ``chi_square + k ln n`` (Schwarz 1978).
+    freedom : int
+        Told instants less what is fitted to them, 1 at least.
     """
 
     name: str
@@ -40,16 +45,24 @@ class FittedLaw:
     parameters: dict
     chi_square: float
     information: float
+    freedom: int
+
+    def evidence(self, none):
+        """By how much it lowers the sum of squares of no force, in the mean square that it leaves, 1 at least."""
+        return (none.chi_square - self.chi_square) / max(self.chi_square / self.freedom, 1.0)
 
 
 class _Readings(NamedTuple):
-    """History at the known instants: the force where it is told, its ends elsewhere, and its standard deviation."""
+    """History at the known instants: the force where it is told, its ends elsewhere, and what an edge adds to both."""
 
     told: np.ndarray
     force: np.ndarray
     error: np.ndarray
+    edge: np.ndarray
     lower: np.ndarray
     upper: np.ndarray
+    by_lever: np.ndarray
+    edge_error: float  # m, of the edges' places before the readings
 
 
 def fit_laws(time, push):
@@ -65,47 +78,39 @@ def fit_laws(time, push):
     -------
     list of FittedLaw
         Empty where nothing is told.
+
+    Notes
+    -----
+    With every law goes how far further out the edges lie than the structure has them, the same to both sides: an edge
+    takes up ``shift * edge``, which the history lacks. A block that turned to one side alone tells its edge no better
+    than it is known before.
     """
-    told = push.told
-    bounded = ~told & np.isfinite(push.lower + push.error + push.displacement + push.velocity)
-    if not told.any():
+    bounded = ~push.told & np.isfinite(push.lower + push.error + push.displacement + push.velocity)
+    if not push.told.any():
         return []
-    shift = _edge_shift(push.force[told], push.edge[told])
-    known = told | bounded
+    known = push.told | bounded
+    sides = [np.count_nonzero(push.told & (side * push.edge > 0.0)) for side in (1.0, -1.0)]
     readings = _Readings(
-        told[known], push.force[known] + shift * push.edge[known], push.error[known],
-        push.lower[known] - shift * push.by_lever[known], push.upper[known] + shift * push.by_lever[known],
+        push.told[known], push.force[known], push.error[known], push.edge[known],
+        push.lower[known], push.upper[known], push.by_lever[known],
+        _EDGE if min(sides) < _FEWEST else _ANYWHERE,
     )  # fmt: skip
     t, u, v = time[known], push.displacement[known], push.velocity[known]
-    fits = [_fitted("none", np.zeros_like(t), readings, {}, 0)]
-    fits.append(_fitted("steady", np.ones_like(t), readings, {}, 1))
+    fits = [_fitted("none", [], readings, {}, 0)]
+    fits.append(_fitted("steady", [np.ones_like(t)], readings, {}, 1))
     fits.append(_stepped(t, readings))
-    fits.append(_best("pulse", _pulses(t, t[readings.told]), readings, 3))
+    fits.append(_pulse(t, readings))
     fits.append(_with_other_side(_best("spring", _springs(u, (1.0, -1.0)), readings, 2), u, readings))
-    fits.append(_fitted("damper", v, readings, {}, 1))
-    fits.append(_fitted("proportional", u, readings, {}, 1))
+    fits.append(_fitted("damper", [v], readings, {}, 1))
+    fits.append(_fitted("proportional", [u], readings, {}, 1))
     return sorted((one for one in fits if one is not None), key=lambda one: one.information)
-
-
-def _edge_shift(force, edge):
-    """How far further out the edges lie than the structure has them, the same to both sides [m].
-
-    An edge further out takes up the force ``shift * edge``, which the history lacks. A force that is looked for shows
-    with one sign on one side and the other on the other: the mean of the two sides is free of it. A block that turned
-    to one side alone tells its edge no better than it is known.
-    """
-    sides = [force[side * edge > 0.0] / edge[side * edge > 0.0] for side in (1.0, -1.0)]
-    middle = [-float(np.median(own)) for own in sides if len(own) >= _FEWEST]
-    if len(middle) == 2:
-        return 0.5 * (middle[0] + middle[1])
-    return float(np.clip(middle[0], -_EDGE, _EDGE)) if middle else 0.0
 
 
 def _stepped(t, readings):
     """Force that is constant from an instant on; between two instants that tell, every start is as good."""
     starts = np.arange(t[0], t[-1], _STEP)
     fits = [
-        _fitted("constant", (t >= one).astype(float), readings, {"start": float(one)}, 2) for one in starts
+        _fitted("constant", [(t >= one).astype(float)], readings, {"start": float(one)}, 2) for one in starts
     ]
     fits = [one for one in fits if one is not None]
     if not fits:
@@ -117,23 +122,39 @@ def _stepped(t, readings):
     return replace(middle, parameters={**middle.parameters, "earliest": earliest, "latest": latest})
 
 
-def _pulses(t, starts):
-    for start in np.unique(starts):
-        for length in np.geomspace(0.03, _LONGEST_PULSE, 6):
-            yield (
-                ((t >= start) & (t < start + length)).astype(float),
-                {
-                    "start": float(start),
-                    "end": float(start + length),
-                },
-            )
+def _pulse(t, readings):
+    """The pulse that lowers the sum of squares most where the force is told: sums over windows tell all of them."""
+    told, weight = readings.told, readings.error[readings.told] ** -2
+    own, force, edge = t[told], readings.force[told], -readings.edge[told]
+    starts, lengths = np.unique(own)[:, None], np.geomspace(_SHORTEST_PULSE, _LONGEST_PULSE, _LENGTHS)
+    ends = np.searchsorted(own, np.stack(np.broadcast_arrays(starts, starts + lengths)))
+    of_pulse, shared, along = (
+        np.diff(np.concatenate([[0.0], np.cumsum(terms)])[ends], axis=0)[0]
+        for terms in (weight, weight * edge, weight * force)
+    )
+    of_edge, along_edge = weight @ edge**2 + readings.edge_error**-2, weight @ (edge * force)
+    determinant = of_pulse * of_edge - shared**2
+    lowers = of_edge * along**2 - 2.0 * shared * along * along_edge + of_pulse * along_edge**2
+    lowers = np.where(determinant > _ALIKE * of_pulse * of_edge, lowers, 0.0) / np.maximum(
+        determinant, 1e-300
+    )
+    start, length = np.unravel_index(np.argmax(lowers), lowers.shape)
+    first, last = float(starts[start, 0]), float(starts[start, 0] + lengths[length])
+    return _fitted(
+        "pulse", [((t >= first) & (t < last)).astype(float)], readings, {"start": first, "end": last}, 3
+    )
 
 
 def _springs(u, sides):
     for side in sides:
         largest = (side * u).max()
         for gap in np.linspace(0.0, max(largest, 0.0), _GRID, endpoint=False):
-            yield -side * np.maximum(side * u - gap, 0.0), {"gap": float(gap), "side": side}
+            yield _beyond(u, gap, side), {"gap": float(gap), "side": side}
+
+
+def _beyond(u, gap, side):
+    """Shape of a spring beyond a gap: it pushes back."""
+    return -side * np.maximum(side * u - gap, 0.0)
 
 
 def _with_other_side(spring, u, readings):
@@ -141,40 +162,52 @@ def _with_other_side(spring, u, readings):
     if spring is None:
         return None
     side, gap = spring.parameters["side"], spring.parameters["gap"]
-    own = -side * spring.amplitude * np.maximum(side * u - gap, 0.0)
-    rest = readings._replace(
-        force=readings.force - own, lower=readings.lower - own, upper=readings.upper - own
-    )
-    other = _best("spring", _springs(u, (-side,)), rest, 2)
-    if other is None or other.amplitude <= 0.0 or spring.chi_square - other.chi_square < _SECOND:
+    fits = []
+    for other, parameters in _springs(u, (-side,)):
+        both = {"gap": gap, "side": side, "other_gap": parameters["gap"]}
+        fits.append(_fitted("spring", [_beyond(u, gap, side), other], readings, both, 4))
+    other = _least(fits)
+    if other is None or min(other.amplitude, other.parameters["other_amplitude"]) <= 0.0:
         return spring
-    second = {"other_gap": other.parameters["gap"], "other_amplitude": other.amplitude}
-    return replace(
-        spring,
-        parameters={**spring.parameters, **second},
-        chi_square=other.chi_square,
-        information=other.information + spring.information - spring.chi_square,
-    )
+    return other if spring.chi_square - other.chi_square > _SECOND else spring
 
 
 def _best(name, shapes, readings, count):
-    fits = [_fitted(name, shape, readings, parameters, count) for shape, parameters in shapes]
+    return _least([_fitted(name, [shape], readings, parameters, count) for shape, parameters in shapes])
+
+
+def _least(fits):
     fits = [one for one in fits if one is not None]
     return min(fits, key=lambda one: one.chi_square) if fits else None
 
 
-def _fitted(name, shape, readings, parameters, count):
-    """Amplitude by weighted least squares where the force is told, or None where the shape is zero there."""
-    told, weight = readings.told, readings.error**-2
-    own = np.where(told, shape, 0.0)
-    square = float(weight @ own**2)
-    if square == 0.0 and name != "none":
+def _fitted(name, shapes, readings, parameters, count):
+    """Amplitudes of one shape or two, with the edges' shift, by weighted least squares where the force is told.
+
+    None where the told instants do not tell a shape from the others or from a shift of the edges.
+    """
+    told, weight = readings.told, readings.error[readings.told] ** -2
+    design = np.column_stack([*(shape[told] for shape in shapes), -readings.edge[told]])
+    normal = (design * weight[:, None]).T @ design
+    normal[-1, -1] += readings.edge_error**-2
+    size = np.sqrt(np.diag(normal))
+    if (size == 0.0).any() or np.linalg.det(normal / np.outer(size, size)) < _ALIKE:
         return None
-    amplitude = float(weight @ (own * readings.force)) / square if square > 0.0 else 0.0
-    force = amplitude * shape
-    beyond = np.maximum(np.maximum(readings.lower - force, force - readings.upper), 0.0)
-    left = float(weight @ np.where(told, readings.force - force, beyond) ** 2)
+    *amplitudes, shift = np.linalg.solve(normal, design.T @ (weight * readings.force[told]))
+    force = sum((one * shape for one, shape in zip(amplitudes, shapes, strict=True)), np.zeros(len(told)))
+    lower = readings.lower - shift * readings.by_lever - force
+    upper = readings.upper + shift * readings.by_lever - force
+    beyond = np.maximum(np.maximum(lower, -upper), 0.0)
+    away = np.where(told, readings.force + shift * readings.edge - force, beyond) / readings.error
+    left = float(away @ away) + (shift / readings.edge_error) ** 2
+    if len(amplitudes) == 2:
+        parameters = parameters | {"other_amplitude": float(amplitudes[1])}
     return FittedLaw(
-        name, amplitude, square**-0.5 if square > 0.0 else np.nan, parameters, left,
-        left + count * np.log(np.count_nonzero(told)),
-    )  # fmt: skip
+        name,
+        float(amplitudes[0]) if amplitudes else 0.0,
+        float(np.linalg.inv(normal)[0, 0] ** 0.5) if amplitudes else np.nan,
+        parameters,
+        left,
+        left + count * float(np.log(np.count_nonzero(told))),
+        max(int(np.count_nonzero(told)) - count, 1),
+    )
