@@ -155,7 +155,8 @@ def decide(folder, effects, files):
     measured = load_made(files.readings)
     names = [str(name) for name in measured["test"].values]
     library, scales = score_library(load_tables(files.libraries), effects)
-    places = {one.key: one.place for one in candidates(load_structure(load_campaign(folder).structure))}
+    structure = load_structure(load_campaign(folder).structure)
+    places = {one.key: one.place for one in candidates(structure)}
     cases = load_cases(files.calibration)
     decision = decide(library, tamed_readings(scales, measured), cases, places)
     ensembles = [list(by_solver.values()) for by_solver in load_tables(files.histories)]
@@ -165,7 +166,8 @@ def decide(folder, effects, files):
             for name, own in zip(names, ensembles, strict=True)
         }
         own = {name: measured.sel(test=name) for name in names}
-        decision = with_laws(decision, judge_laws(own, draws, outside_of(load_made(files.forces))), places)
+        outside = outside_of(load_made(files.forces))
+        decision = with_laws(decision, judge_laws(own, draws, outside, structure.weight_shares()), places)
     return Decided(
         decision,
         misfit(measured, dict(zip(names, ensembles, strict=True))),

@@ -19,12 +19,16 @@ PUSH = OutsideForce(
 )  # fmt: skip
 
 
+SHARES = {"block-1": 0.6, "block-2": 0.4}
+
+
 def findings(laws=(), isolated=(), outside=None):
     broken = outside or any(law.broken for law in laws)
     readable = tuple(law.name for law in laws)
     return LawFindings(
-        laws=laws, isolated=isolated, outside=outside, readable=readable, p=1e-9 if broken else 0.5
-    )
+        laws=laws, isolated=isolated, outside=outside, readable=readable, shares=SHARES,
+        p=1e-9 if broken else 0.5,
+    )  # fmt: skip
 
 
 def test_an_isolated_effect_is_the_cause_with_the_size_that_its_law_reads():
@@ -75,6 +79,34 @@ def test_an_isolated_effect_is_where_its_law_is_broken():
     assert decision.places["weak-joint"] == "weak-joint@slab-block-1"
     found = with_laws(decision, findings((weak,), ("weak-joint",)), places)
     assert found.location == {"weak-joint": {"joint": ("block-1", "block-2")}}
+
+
+def read(effect, law, measured, expected, place):
+    """Parameters of an effect whose law was read in two tests, of the joint beneath all blocks."""
+    own = PITCH.model_copy(
+        update={
+            "name": law, "joint": "slab-block-1", "beneath": True, "measured": dict.fromkeys(PITCH.measured, measured),
+            "errors": dict.fromkeys(PITCH.measured, 0.01 * abs(measured)),
+            "expected": dict.fromkeys(PITCH.measured, expected),
+        }
+    )  # fmt: skip
+    key = effect if "joint" not in place else f"{effect}@slab-block-1"
+    decision = made_up_decision("none").model_copy(update={"places": {effect: key}})
+    return with_laws(decision, findings((own,), (effect,)), {key: place}).parameters[effect]
+
+
+def test_the_levers_tell_how_far_off_a_blocks_mass_is_by_its_share_of_the_weight():
+    """20 mm at the joint beneath both blocks is 50 mm of a block that has two fifths of the weight, the other way."""
+    size = read("eccentricity", "joint1.lever.bias", -0.019, 0.001, {"body": "block-2"})["offset"]
+    assert size.estimate == pytest.approx(0.05)
+    assert size.informed
+    assert size.lower < 0.045
+    assert size.upper > 0.055
+
+
+def test_the_friction_of_a_joint_tells_the_factor_of_a_weak_one():
+    size = read("weak-joint", "joint1.friction.loss", 0.83, 0.03, {"joint": ("slab", "block-1")})["factor"]
+    assert size.estimate == pytest.approx(0.2)
 
 
 def test_features_keep_the_parameters_that_they_found():

@@ -23,6 +23,7 @@ NOMINAL = {
     "unexplained.mean": (0.0, 1e-4, 1e-4),
 }
 NAMES = list(NOMINAL)
+SHARES = {"block-1": 0.5, "block-2": 0.5}
 
 
 def draws(seed, count=20):
@@ -50,7 +51,7 @@ def judged(outside=None, by_test=None, **changed):
         test: reading(100 + place, **(changed if by_test is None else by_test.get(test, {})))
         for place, test in enumerate(TESTS)
     }
-    return judge_laws(measured, {test: draws(place) for place, test in enumerate(TESTS)}, outside)
+    return judge_laws(measured, {test: draws(place) for place, test in enumerate(TESTS)}, outside, SHARES)
 
 
 def force(law, **parameters):
@@ -85,7 +86,7 @@ def test_the_energy_that_a_joint_takes_is_shown_and_breaks_nothing():
             "law_beneath": ("law", [True]),
         },
     )
-    found = judge_laws({"one": measured}, {"one": taken}, None)
+    found = judge_laws({"one": measured}, {"one": taken}, None, SHARES)
     assert found.laws == found.broken == ()
     assert found.p == 1.0
     (shown,) = found.shown
@@ -130,7 +131,7 @@ def test_clean_campaigns_seldom_break_a_law():
     for seed in range(200):
         measured = {test: reading(1000 + 10 * seed + place) for place, test in enumerate(TESTS)}
         null = {test: draws(5000 + 10 * seed + place) for place, test in enumerate(TESTS)}
-        broken += bool(judge_laws(measured, null, None).broken)
+        broken += bool(judge_laws(measured, null, None, SHARES).broken)
     assert broken <= 4
 
 
@@ -148,7 +149,7 @@ def test_laws_that_all_tests_of_a_structure_share_seldom_break():
         for number, test in enumerate(tests):
             values = centre + own + 0.2 * scatter * generator.normal(size=len(NAMES))
             measured[test] = reading(number, **dict(zip(NAMES, values, strict=True)))
-        broken += bool(judge_laws(measured, null, None).broken)
+        broken += bool(judge_laws(measured, null, None, SHARES).broken)
     assert broken <= 4
 
 

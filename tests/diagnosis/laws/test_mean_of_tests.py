@@ -6,17 +6,26 @@ import pytest
 from blockshake.diagnosis.laws.mean_of_tests import mean_of_tests
 
 
-@pytest.mark.parametrize("count", [1, 2, 3, 6])
-def test_nine_of_ten_intervals_hold_the_size(count):
-    """Sizes of tests that differ by 15 %, the share that the form of a law leaves out, and by their errors."""
+def held(count, common, own, form):
+    """Share of a thousand intervals that hold a size of which tests differ by shares, all alike and each its own."""
     generator, size, errors = np.random.default_rng(count), 2.0, np.full(count, 0.1)
-    held = 0
+    found = 0
     for _ in range(1000):
-        values = size * (1.0 + 0.15 * generator.normal(size=count)) + errors * generator.normal(size=count)
-        mean, half = mean_of_tests(values, errors)
-        held += abs(mean - size) <= half
-    # 900 is expected; four standard deviations of the count of a thousand
-    assert held == pytest.approx(900, abs=38)
+        share = 1.0 + common * generator.normal() + own * generator.normal(size=count)
+        mean, half = mean_of_tests(size * share + errors * generator.normal(size=count), errors, form)
+        found += abs(mean - size) <= half
+    return found / 1000
+
+
+@pytest.mark.parametrize("count", [2, 3, 6])
+def test_nine_of_ten_intervals_hold_a_size_by_which_tests_differ(count):
+    # four standard deviations of the count of a thousand
+    assert held(count, 0.0, 0.15, 0.0) == pytest.approx(0.9, abs=0.038)
+
+
+@pytest.mark.parametrize("count", [1, 6, 30])
+def test_nine_of_ten_intervals_hold_a_size_that_the_form_has_wrong_in_all_tests_alike(count):
+    assert held(count, 0.15, 0.0, 0.15) == pytest.approx(0.9, abs=0.045)
 
 
 def test_a_test_that_tells_little_counts_little():

@@ -10,8 +10,15 @@ from blockshake.diagnosis.libraries.candidates import effect_of
 from blockshake.effects.registry import EFFECTS
 
 _GAP_ERROR = 1e-3  # m, standard deviation of a fitted gap: steps of the search, and the form of the law
-# parameter of an effect that its own law reads directly
-_DIRECT = {"table-pitch": "coefficient", "base-compliance": "compliance", "reduced-bearing": "inset"}
+# parameters of an effect that the laws read directly
+READ = {
+    "table-pitch": ("coefficient",),
+    "base-compliance": ("compliance",),
+    "reduced-bearing": ("inset",),
+    "eccentricity": ("offset",),
+    "weak-joint": ("factor",),
+    STOP: ("stiffness", "gap"),
+}
 
 
 def with_laws(decision, findings, places_of):
@@ -56,7 +63,7 @@ def with_laws(decision, findings, places_of):
     sizes, parameters = {}, {}
     for effect in causes:
         if effect in isolated:
-            parameters[effect] = _parameters(effect, decision, findings)
+            parameters[effect] = _parameters(effect, decision, findings, places_of[places[effect]])
             sizes[effect] = _visible(effect, parameters[effect])
         else:
             parameters |= {effect: decision.parameters[effect]} if effect in decision.parameters else {}
@@ -121,7 +128,7 @@ def _place_by_law(effect, otherwise, findings, places_of):
     return otherwise
 
 
-def _parameters(effect, decision, findings):
+def _parameters(effect, decision, findings, place):
     """Parameters of an isolated effect, those that a law reads from the law."""
     known = dict(decision.parameters.get(effect, {}))
     first, *others = EFFECTS[effect].parameters
@@ -130,46 +137,48 @@ def _parameters(effect, decision, findings):
     if effect == STOP and findings.outside_of_stop is not None:
         outside = findings.outside_of_stop
         gaps = np.array([test["gap"] for test in outside.tests.values()])
-        known["stiffness"] = _estimate(outside.amplitude, outside.lower, outside.upper, "N/m")
+        known["stiffness"] = _estimate(outside.amplitude, max(outside.lower, 0.0), outside.upper, "N/m")
         mean, half = mean_of_tests(gaps, np.full(len(gaps), _GAP_ERROR), form=0.0)
         known["gap"] = _estimate(mean, mean - half, mean + half, "m")
-    elif effect in _DIRECT:
-        known[_DIRECT[effect]] = _read(effect, findings)
+    elif sizes := sizes_by_law(effect, findings, place):
+        mean, half = mean_of_tests(*np.array([one[1:] for one in sizes]).T)
+        known[first.name] = _estimate(mean, mean - half, mean + half, first.unit)
     else:
         known.setdefault(first.name, _prior(first))
     return known
 
 
-def sizes_by_law(effect, findings):
+def sizes_by_law(effect, findings, place):
     """Size of an effect that its own law reads directly, of every test that tells the law where it is broken.
 
     Parameters
     ----------
     effect : str
     findings : LawFindings
+    place : dict
+        Of the effect.
 
     Returns
     -------
     list of (str, float, float)
         Test, value of the effect's parameter and its standard error, in the parameter's unit; empty for an effect whose
-        size no law reads.
+        size no law reads. The levers of a joint tell an eccentric block in proportion to its share of the weight above:
+        with the block's mass taken at its centroid both resultants seem to lie the other way.
     """
-    if effect not in _DIRECT:
+    if effect == STOP or effect not in READ:
         return []
-    # the nominal table does not pitch, but nominal blocks do not bear on their very edges
-    nominal = float(effect == "reduced-bearing")
+    broken = [law for law in own_laws(effect, findings.laws) if law.broken]
+    factor, null, nominal = 1.0, 0.0, effect in ("reduced-bearing", "eccentricity", "weak-joint")
+    if effect == "eccentricity":
+        broken = [law for law in broken if law.beneath]
+        factor = -1.0 / findings.shares[place["body"]]
+    if effect == "weak-joint":
+        factor, null = -1.0, 1.0
     return [
-        (test, value - nominal * law.expected[test], law.errors[test])
-        for law in own_laws(effect, findings.laws)
-        if law.broken
+        (test, null + factor * (value - nominal * law.expected[test]), abs(factor) * law.errors[test])
+        for law in broken
         for test, value in law.measured.items()
     ]
-
-
-def _read(effect, findings):
-    """Size of an effect from its own law, with an interval from the scatter between tests and the law's error."""
-    mean, half = mean_of_tests(*np.array([one[1:] for one in sizes_by_law(effect, findings)]).T)
-    return _estimate(mean, mean - half, mean + half, EFFECTS[effect].parameters[0].unit)
 
 
 def _estimate(value, lower, upper, unit):

@@ -90,6 +90,8 @@ class LawFindings(Strict):
         Laws that have a null distribution in some test, whether a measured test tells them or not.
     shown : tuple of LawFinding
         Laws that are told beside the draws and not judged, see `Law.judged`.
+    shares : dict of str to float
+        By free body: its share of the weight of all of them [1].
     p : float
         Chance of departures as large as the largest by the nominal model, at most: their number times the chance of one
         (Bonferroni) [1].
@@ -101,6 +103,7 @@ class LawFindings(Strict):
     outside_of_stop: OutsideForce | None = None
     readable: tuple[str, ...] = ()
     shown: tuple[LawFinding, ...] = ()
+    shares: dict[str, float]
     p: float
 
     @property

@@ -26,7 +26,7 @@ _ALIKE = 4.0  # standard deviations that sizes of one cause may differ by from t
 _SURE = 5.0  # standard deviations: an effect of the visible size stays within `_HOLDS` in 2 % of the tests
 
 
-def judge_laws(measured, draws, outside):
+def judge_laws(measured, draws, outside, shares):
     """Laws of a campaign.
 
     Parameters
@@ -37,6 +37,8 @@ def judge_laws(measured, draws, outside):
         By open test: laws of nominal draws by all solvers, in the order of the measured ones.
     outside : OutsideForce or None
         From `outside_force`, of these tests.
+    shares : dict of str to float
+        By free body: its share of the weight of all of them [1].
 
     Returns
     -------
@@ -67,6 +69,7 @@ def judge_laws(measured, draws, outside):
         outside_of_stop=outside if isolated == (STOP,) else None,
         readable=tuple(sorted(readable)),
         shown=tuple(one for one in told if not law_of(one.name).judged),
+        shares=shares,
         p=_chance(laws),
     )
 

@@ -56,10 +56,11 @@ OF_JOINTS = {
         "statics of a rigid block", least=True,
     ),
     "friction.loss": Law(
-        "1", 0.0, 0.0, 0.1, "the structure's coefficient less shear over normal force while slipping", "Coulomb"
+        "1", 0.0, 0.0, 0.13, "1 less shear over normal force while slipping over the structure's coefficient", "Coulomb"
     ),
     "friction.rate": Law(
-        "1", 0.0, 0.0, 0.1, "change of shear over normal force by decade of the slip rate", "Coulomb"
+        "1", 0.0, 0.0, 0.3, "change of shear over normal force by decade of the slip rate, over the coefficient",
+        "Coulomb",
     ),
     "closed.compliance": Law(
         "rad/(N m)", 1e-9, 0.0, 1.5, "slope of a closed joint's rotation on its moment", "Winkler's bed"

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.diagnosis.laws.findings import OutsideForce
-from blockshake.diagnosis.laws.mean_of_tests import FORM, mean_of_tests
+from blockshake.diagnosis.laws.mean_of_tests import mean_of_tests
 from blockshake.forces.outside.force_laws import fit_laws
 from blockshake.forces.outside.push_history import push_history
 from blockshake.geometry.rotations import rotation_matrices
@@ -23,13 +23,16 @@ class _Law(NamedTuple):
 
 _LAWS = {  # by rising number of parameters
     "steady": _Law("N", 250.0),
-    "damper": _Law("N s/m", 25.0),
+    "damper": _Law("N s/m", 22.0),
     "proportional": _Law("N/m", 60.0),
     "constant": _Law("N", 250.0),
     "spring": _Law("N/m", 180.0),
     "pulse": _Law("N", 150.0),
 }
 _SHOWN = 25.0  # by how much a law's information must beat that of no force, for a test to show it
+_ADEQUATE = (
+    60.0  # evidence of the best law over a simpler one: an eccentric block's for a push 42, a push's 107
+)
 _AGREES = 3.0  # factor of the least unexplained distance that blocks agree within
 _NOISE = 0.05  # squared distance of an instant that is explained
 
@@ -108,7 +111,7 @@ def law_of_tests(fits):
 
     Notes
     -----
-    A law is adequate if what it leaves beyond the best one is a force that errs by the share of its form.
+    A law is adequate if there is little evidence for the best one beside it.
     """
     shown = {}
     for test, own in fits.items():
@@ -117,14 +120,19 @@ def law_of_tests(fits):
             shown[test] = by_name
     if not shown:
         return None
-    names = [name for name in ("none", *_LAWS) if all(name in own for own in shown.values())]
+    names = [name for name in _LAWS if all(name in own for own in shown.values())]
     total = {name: sum(own[name].information for own in shown.values()) for name in names}
-    none, least = total.pop("none"), min(total.values())
-    law = next(name for name in total if total[name] - least <= FORM**2 * (none - least))
-    if sum(own[law].evidence(own["none"]) for own in shown.values()) < _LAWS[law].evidence:
+    best = min(total, key=total.get)
+    law = next(name for name in names if _evidence(shown, best, name) <= _ADEQUATE)
+    if _evidence(shown, law, "none") < _LAWS[law].evidence:
         return None
     scores = {name: value - total[law] for name, value in sorted(total.items(), key=lambda item: item[1])}
     return LawOfTests(law, scores, {test: own[law] for test, own in shown.items()})
+
+
+def _evidence(shown, law, other):
+    """Evidence of one law over another, summed over tests."""
+    return sum(own[law].evidence(own[other]) for own in shown.values())
 
 
 def _explained(forces, place):

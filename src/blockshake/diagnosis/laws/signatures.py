@@ -68,8 +68,7 @@ SIGNATURES = {
         excludes=_visible("eccentricity", 1.0 / 3.0),  # one of three blocks that a joint carries
     ),
     "weak-joint": Signature(
-        "friction.loss", 1, ("friction.rate", "closed.compliance", "lever.stray", *_IMPACTS),
-        excludes=_visible("weak-joint", 0.6),  # times the coefficient of friction
+        "friction.loss", 1, ("closed.compliance", "lever.stray", *_IMPACTS), excludes=_visible("weak-joint"),
     ),
     "rate-weakening-friction": Signature(
         "friction.rate", -1, ("friction.loss", "closed.compliance", "lever.stray", *_IMPACTS)

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from blockshake.diagnosis.inference.lawful_decision import READ
 from blockshake.diagnosis.libraries.candidates import effect_of
 from blockshake.diagnosis.verdict.ladder import rung
 from blockshake.diagnosis.verdict.sensor_causes import sensor_causes
@@ -63,8 +64,10 @@ def conclude(
         caveats.append("quick effort: no stronger word than probable")
     for solver in decision.solver_dependent:
         caveats.append(f"solver-dependent: by {solver} alone another effect explains more")
-    physical = ({effect_of(size.key): size.parameters} if size else {}) | _read_from_laws(decision)
-    physical = decision.parameters | physical
+    physical = dict(decision.parameters)
+    if size:
+        cause = effect_of(size.key)
+        physical[cause] = size.parameters | _read_from_laws(cause, decision)
     for name, values in physical.items():
         unknown = [key for key, value in values.items() if not value.informed]
         if unknown and name in causes:
@@ -102,10 +105,11 @@ def conclude(
     )
 
 
-def _read_from_laws(decision):
-    """Parameters of the effects that the laws isolate: sharper than those of simulated draws."""
+def _read_from_laws(cause, decision):
+    """Parameters of a cause that the laws isolate and read: sharper than those of simulated draws."""
     isolated = decision.laws.isolated if decision.laws else ()
-    return {name: own for name, own in decision.parameters.items() if name in isolated}
+    own = decision.parameters.get(cause, {})
+    return {name: own[name] for name in READ.get(cause, ()) if cause in isolated and own[name].informed}
 
 
 def _misfit(decision, sensors, where):

@@ -2,10 +2,13 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from blockshake.diagnosis.inference.decision import ParameterEstimate
 from blockshake.effects.registry import EFFECTS
 
 _SIGMAS = 1.645  # of a Gaussian, within which nine tenths lie
+_FORM = 0.05  # share of a fault's size by which it may vary with the reading, as that of a real sensor does
 
 
 class SensorCause(NamedTuple):
@@ -44,7 +47,8 @@ def _estimates(finding):
     size = effect.parameters[0]
     # a wrong place is a vector in the body's frame, of which the registry's effect has the height
     component = 2 if len(finding.estimate) == 3 else 0
-    estimate, error = float(finding.estimate[component]), float(finding.standard_error[component])
+    estimate = float(finding.estimate[component])
+    error = float(np.hypot(finding.standard_error[component], _FORM * estimate))
     return {
         size.name: ParameterEstimate(
             estimate=estimate,

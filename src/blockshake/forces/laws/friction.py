@@ -30,8 +30,8 @@ def friction_law(forces, place):
     Returns
     -------
     dict of str to Statistic
-        ``friction.loss``: the structure's coefficient less the ratio of shear to normal force against the slip [1];
-        ``friction.rate``: change of that ratio by decade of the slip rate [1].
+        ``friction.loss``: share of the structure's coefficient that the ratio of shear to normal force against the
+        slip lacks [1]; ``friction.rate``: change of that ratio by decade of the slip rate, over the coefficient [1].
 
     Notes
     -----
@@ -44,9 +44,9 @@ def friction_law(forces, place):
     if slips.sum() < _FEWEST:
         return dict.fromkeys(names, UNTOLD)
     run = runs_of(slips)[slips]
-    ratio = -np.sign(rate[slips]) * forces.transmitted.friction[slips, place]
+    ratio = -np.sign(rate[slips]) * forces.transmitted.friction[slips, place] / face.friction
     decades = np.log10(np.abs(rate[slips]))
     mean = of_blocks(ratio, run)
-    loss = mean._replace(value=face.friction - mean.value)
+    loss = mean._replace(value=1.0 - mean.value)
     change = slopes(ratio, decades[:, None], run)[0] if np.ptp(decades) > _LEAST_DECADES else UNTOLD
     return dict(zip(names, (loss, change), strict=True))

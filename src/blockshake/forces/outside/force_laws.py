@@ -47,9 +47,9 @@ class FittedLaw:
     information: float
     freedom: int
 
-    def evidence(self, none):
-        """By how much it lowers the sum of squares of no force, in the mean square that it leaves, 1 at least."""
-        return (none.chi_square - self.chi_square) / max(self.chi_square / self.freedom, 1.0)
+    def evidence(self, other):
+        """By how much it leaves less than another law, or than none, in the mean square that it leaves, 1 at least."""
+        return (other.chi_square - self.chi_square) / max(self.chi_square / self.freedom, 1.0)
 
 
 class _Readings(NamedTuple):

@@ -38,7 +38,7 @@ def law_blocks(found):
         Items(tuple(_isolated(name, laws) for name in causes) or (_unknown(laws),)),
     ]
     for name in causes:
-        rows = _sizes(name, laws)
+        rows = _sizes(name, laws, found.decision.location[name])
         if rows:
             caption = f"{title_of(name).capitalize()}: size that each test reads by itself."
             blocks.append(Table(caption, _HEADS[name == STOP], rows, "lrrr"[: len(rows[0])]))
@@ -82,7 +82,7 @@ def _unknown(laws):
     return f"No effect of the registry accounts for {what}."
 
 
-def _sizes(name, laws):
+def _sizes(name, laws, place):
     """Rows of the sizes by test."""
     if name == STOP and laws.outside_of_stop:
         return tuple(
@@ -101,5 +101,5 @@ def _sizes(name, laws):
             quantity(value, unit),
             f"{quantity(value - _INTERVAL * error, unit)} to {quantity(value + _INTERVAL * error, unit)}",
         )
-        for test, value, error in sizes_by_law(name, laws)
+        for test, value, error in sizes_by_law(name, laws, place)
     )
