@@ -153,7 +153,7 @@ def _shaken(experiment, number, solver, places, effect, structure, settings):
 
 
 def _distort(test, effect):
-    """What a fault of markers does to their readings, in place."""
+    """Readings of markers with their fault, in place."""
     markers = [str(marker) for marker in test["marker"].values]
     test["marker_displacement"].values[:] = distort(
         test["time"].to_numpy(), test["marker_displacement"].to_numpy(), markers, effect
