@@ -78,6 +78,13 @@ def svg_of(plot, *arguments, **named):
 
 
 def _shorter(path):
-    """Path data to a hundredth of a point, which no printer shows, at half the bytes."""
+    """Path data to a hundredth of a point, which no printer shows, at half the bytes.
+
+    A line's command stands once for all the points that follow.
+    """
     rounded = re.sub(r"-?\d+\.\d{3,}", lambda found: f"{float(found[0]):.2f}", path)
-    return " ".join(rounded.split())
+    return re.sub(r"L [-\d. ]+(?:L [-\d. ]+)+", _one_line, " ".join(rounded.split()))
+
+
+def _one_line(found):
+    return f"L {found[0].replace('L ', '')}"

@@ -6,7 +6,7 @@ from matplotlib.patches import Patch
 from blockshake.report.document.drawing import BLACK, GREY, LIGHT_GREY, RED, new_figure
 from blockshake.report.document.wording import model_label
 
-_MOST_BAND_POINTS = 600  # in print half a point apart; bands drawn finer only make files large
+_MOST_BAND_POINTS = 500  # in print a fifth of a point apart or more; bands drawn finer only make files large
 _MEASURED = {"color": BLACK, "linestyle": (0, (4, 2)), "linewidth": 0.9}
 
 
