@@ -204,7 +204,7 @@ def test_a_campaign_without_a_gain_says_why(found):
 
 def test_a_force_that_the_laws_describe_extends_the_model(found, tmp_path):
     """The cause is unknown, and its gain is measured like that of a named one."""
-    laws = LawFindings(laws=(), isolated=(), outside=PUSH, p=1e-6)
+    laws = LawFindings(laws=(), isolated=(), outside=PUSH, shares={}, p=1e-6)
     unknown = found.decided.decision.model_copy(update={"decision": "unknown", "causes": (), "laws": laws})
     decision, frozen = tmp_path / "decision.json", tmp_path / "frozen.json"
     write_result(decision, unknown)
