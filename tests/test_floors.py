@@ -21,6 +21,7 @@ FLOORS = [
     ["diagnosis", "virtual"],
     ["report"],
     ["run_diagnosis", "own_files"],
+    ["cost"],
     ["cli"],
 ]
 ROOMS_OF_DIAGNOSIS = [

@@ -2,6 +2,7 @@
 
 import argparse
 import logging
+import os
 import sys
 import time
 from pathlib import Path
@@ -138,10 +139,13 @@ def _parser():
     command.set_defaults(run=_check)
 
     command = commands.add_parser(
-        "estimate", help="how long a study takes here, by trying a moment of each case"
+        "estimate", help="how long a study or a diagnosis takes here, by trying its simulations"
     )
-    command.add_argument("config", metavar="CONFIG")
-    command.add_argument("--cores", type=int, default=1)
+    command.add_argument("file", metavar="STUDY.yaml|CAMPAIGN")
+    command.add_argument("--cores", type=int, default=os.cpu_count())
+    command.add_argument(
+        "--effort", default="standard", metavar="quick|standard|deep", help="of a campaign's diagnosis"
+    )
     command.set_defaults(run=_estimate)
 
     command = commands.add_parser("parameters", help="every parameter with unit, default and source")
@@ -341,12 +345,24 @@ def _draw_structure(files, picture):
 
 
 def _estimate(options):
-    from blockshake.simulation.cost import estimate_hours
-    from blockshake.study.config import load_config
+    from blockshake.cost.diagnosis_cost import campaign_cost
+    from blockshake.cost.study_cost import study_cost
 
-    hours = estimate_hours(load_config(options.config))
-    spread = f"{hours / options.cores:.1f} h on {options.cores} cores"
-    print(f"{options.config}: about {hours:.1f} CPU hours on this machine, {spread}")
+    if Path(options.file).is_dir():
+        parts = campaign_cost(options.file, options.effort)
+    else:
+        parts = study_cost(options.file)
+    _print_table(
+        [
+            ("part", "runs", "CPU min"),
+            *((one.name, str(one.count), f"{one.seconds / 60.0:.1f}") for one in parts),
+        ]
+    )
+    minutes = sum(one.seconds for one in parts) / 60.0
+    print(
+        f"{options.file}: about {minutes:.0f} CPU minutes on this machine, "
+        f"{minutes / options.cores:.0f} min on {options.cores} cores"
+    )
 
 
 def _parameters(options):

@@ -50,21 +50,15 @@ def diagnose(campaign, output, effort="standard", cores=None):
     if cores is not None and (not isinstance(cores, int) or cores < 1):
         raise InputError("diagnose", "cores", f"expected a whole number from 1, not {cores!r}")
     plan_diagnosis(campaign, effort)
-    work = Path.cwd() if HOME.is_relative_to(PACKAGE) else HOME
+    work = working_place()
     os.close(hold(work))  # the workflow holds it again
     check_output(Path(output) / "verdict.json")
-    folder = Path(campaign).resolve()
-    command = [
-        sys.executable, "-m", "snakemake", "diagnose", "--cores", str(os.cpu_count() if cores is None else cores),
-        "--snakefile", str(HOME / "Snakefile"), "--directory", str(work),
-        "--configfile", str(HOME / "config" / "diagnosis.yaml"),
-        "--config", f"campaign={folder}", f"effort={effort}",
-    ]  # fmt: skip
+    command = diagnosis_command(campaign, effort, os.cpu_count() if cores is None else cores)
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
     # its output is the progress
     if subprocess.run(command, env={**os.environ, **this_command(), "PATH": path}, check=False).returncode:
         raise RuntimeError("the workflow stopped: its messages are above")
-    name = result_name(folder)
+    name = result_name(campaign)
     results = work / "results" / "diagnosis" / name
     kept = _KEPT if load_verdict(results / "verdict.json").gain is None else (*_KEPT, *_OF_GAIN)
     found = [results / file for file in kept]
@@ -75,3 +69,18 @@ def diagnose(campaign, output, effort="standard", cores=None):
     for path in found:
         shutil.copyfile(path, Path(output) / path.name.replace(f"diagnosis-{name}", "report"))
     return load_verdict(Path(output) / "verdict.json")
+
+
+def working_place():
+    """Folder of the results: the checkout or, of an installed package, the current one."""
+    return Path.cwd() if HOME.is_relative_to(PACKAGE) else HOME
+
+
+def diagnosis_command(campaign, effort, cores):
+    """Command that starts the workflow of a campaign's diagnosis, as a list of its words."""
+    return [
+        sys.executable, "-m", "snakemake", "diagnose", "--cores", str(cores),
+        "--snakefile", str(HOME / "Snakefile"), "--directory", str(working_place()),
+        "--configfile", str(HOME / "config" / "diagnosis.yaml"),
+        "--config", f"campaign={Path(campaign).resolve()}", f"effort={effort}",
+    ]  # fmt: skip

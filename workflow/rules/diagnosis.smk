@@ -63,6 +63,8 @@ rule calibrate_decision:
         "results/libraries/calibrations/{calibration}.json",
     log:
         "logs/calibrate_decision/{calibration}.log",
+    benchmark:
+        "benchmarks/calibrate_decision/{calibration}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     resources:
@@ -85,6 +87,8 @@ rule read_measured:
         forces="results/diagnosis/{campaign}/forces.nc",
     log:
         "logs/diagnosis/{campaign}/read_measured.log",
+    benchmark:
+        "benchmarks/diagnosis/{campaign}/read_measured.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -113,6 +117,8 @@ checkpoint decide:
         frozen="results/diagnosis/{campaign}/frozen.json",
     log:
         "logs/diagnosis/{campaign}/decide.log",
+    benchmark:
+        "benchmarks/diagnosis/{campaign}/decide.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -162,6 +168,8 @@ rule size_cause:
         frozen="results/diagnosis/{campaign}/frozen-size.json",
     log:
         "logs/diagnosis/{campaign}/size_cause.log",
+    benchmark:
+        "benchmarks/diagnosis/{campaign}/size_cause.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -222,6 +230,8 @@ rule measure_gain:
         summary="results/diagnosis/{campaign}/gain.json",
     log:
         "logs/diagnosis/{campaign}/measure_gain.log",
+    benchmark:
+        "benchmarks/diagnosis/{campaign}/measure_gain.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -243,6 +253,8 @@ rule conclude:
         "results/diagnosis/{campaign}/verdict.json",
     log:
         "logs/diagnosis/{campaign}/conclude.log",
+    benchmark:
+        "benchmarks/diagnosis/{campaign}/conclude.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -264,6 +276,8 @@ rule predict_twins:
         "results/libraries/{library}/predictability.nc",
     log:
         "logs/predict_twins/{library}.log",
+    benchmark:
+        "benchmarks/predict_twins/{library}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -306,6 +320,8 @@ rule make_diagnosis_report:
         pdf=report("reports/diagnosis-{campaign}.pdf", category="Diagnosis"),
     log:
         "logs/diagnosis/{campaign}/make_diagnosis_report.log",
+    benchmark:
+        "benchmarks/diagnosis/{campaign}/make_diagnosis_report.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -10,6 +10,8 @@ rule make_envelope:
         samples="results/{study}/samples/{model}/{case}.nc",
     log:
         "logs/{study}/make_envelope/{model}/{case}.log",
+    benchmark:
+        "benchmarks/{study}/make_envelope/{model}/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -30,6 +32,8 @@ rule compare_with_measurement:
         "results/{study}/comparisons/{model}/{case}.nc",
     log:
         "logs/{study}/compare_with_measurement/{model}/{case}.log",
+    benchmark:
+        "benchmarks/{study}/compare_with_measurement/{model}/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -51,6 +55,8 @@ rule measure_sensitivity:
         "results/{study}/sensitivities/{model}/{case}.nc",
     log:
         "logs/{study}/measure_sensitivity/{model}/{case}.log",
+    benchmark:
+        "benchmarks/{study}/measure_sensitivity/{model}/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -77,6 +83,8 @@ rule compare_models:
         "results/{study}/differences/{case}.nc",
     log:
         "logs/{study}/compare_models/{case}.log",
+    benchmark:
+        "benchmarks/{study}/compare_models/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

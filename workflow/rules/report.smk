@@ -67,6 +67,8 @@ rule make_report:
         paper="results/{study}/the-paper.json",
     log:
         "logs/{study}/make_report.log",
+    benchmark:
+        "benchmarks/{study}/make_report.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -5,6 +5,8 @@ rule draw_samples:
         summary="results/{study}/design.json",
     log:
         "logs/{study}/draw_samples.log",
+    benchmark:
+        "benchmarks/{study}/draw_samples.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -98,6 +98,8 @@ rule climb_ladder:
         "results/{study}/ladder.json",
     log:
         "logs/{study}/climb_ladder.log",
+    benchmark:
+        "benchmarks/{study}/climb_ladder.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -8,7 +8,7 @@ from blockshake.errors import InputError
 
 _OPEN_TESTS_NEEDED = 2
 _OWN_DRAWS_NEEDED = 2
-_ENSEMBLES_OF_SEALED_TEST = 3  # nominal, recalibrated, extended
+ENSEMBLES_OF_SEALED_TEST = 3  # nominal, recalibrated, extended
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def own_draws(effort, candidates, tests, sealed):
     solvers = len(MODELS)
     spent = solvers * (
         tests * (effort.nominal_draws + effort.further_draws + 1 + effort.twins)
-        + sealed * _ENSEMBLES_OF_SEALED_TEST * effort.members
+        + sealed * ENSEMBLES_OF_SEALED_TEST * effort.members
     )
     count = min(effort.own_draws, (effort.runs - spent) // (solvers * tests * candidates))
     if count < _OWN_DRAWS_NEEDED:

@@ -1,0 +1,1 @@
+"""How long a study or a diagnosis takes on this machine, from short trials of its simulations."""

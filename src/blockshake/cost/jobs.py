@@ -1,0 +1,62 @@
+"""Jobs of the workflow: their number, and the CPU time of each beside its simulations."""
+
+import os
+import re
+import subprocess
+from typing import NamedTuple
+
+from blockshake.cost.part import Part
+from blockshake.errors import InputError
+
+# CPU seconds of jobs that simulate nothing, or too little to be tried, with the start of a job among them;
+# on the machine of docs/bench.md, where the plan of the default study took `_PLANNED`
+_USUAL = 7.0
+_FIXED = {
+    "all": 0.0,
+    "calibrate_decision": 60.0,
+    "compare_definitions": 29.0,
+    "make_diagnosis_report": 40.0,
+    "make_report": 60.0,
+    "predict_twins": 30.0,
+    "read_measured": 45.0,
+    "study_convergence": 55.0,
+}
+_PLANNED = 6.0  # CPU s
+_ROW = re.compile(r"^(\w+) +(\d+)$", re.MULTILINE)
+
+
+class Jobs(NamedTuple):
+    """Number of jobs by rule, and how slow this machine is beside that of the fixed costs [1]."""
+
+    counts: dict
+    slowness: float
+
+    def as_part(self):
+        """`Part` of a study: all that its jobs take beside the simulations that are tried."""
+        seconds = sum(count * _FIXED.get(rule, _USUAL) for rule, count in self.counts.items())
+        return Part("jobs beside their runs", sum(self.counts.values()), self.slowness * seconds)
+
+
+def planned_jobs(command):
+    """`Jobs` of a command that starts the workflow, if nothing is made yet.
+
+    Parameters
+    ----------
+    command : list of str
+
+    Raises
+    ------
+    InputError
+        The workflow refuses its files.
+    """
+    before = os.times()
+    done = subprocess.run(
+        [*command, "--dry-run", "--forceall", "--quiet", "rules"], capture_output=True, text=True, check=False
+    )
+    after = os.times()
+    if done.returncode:
+        raise InputError("the workflow", "", f"cannot be planned: {' '.join(done.stderr.split()[-30:])}")
+    counts = {rule: int(count) for rule, count in _ROW.findall(done.stdout + done.stderr)}
+    counts.pop("total", None)
+    spent = after.children_user + after.children_system - before.children_user - before.children_system
+    return Jobs(counts, spent / _PLANNED)

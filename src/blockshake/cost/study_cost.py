@@ -1,0 +1,59 @@
+"""How long a study takes, from a trial of each case by each model on this machine."""
+
+import sys
+
+from blockshake.cost.diagnosis_cost import diagnosis_cost
+from blockshake.cost.jobs import planned_jobs
+from blockshake.cost.part import Part
+from blockshake.cost.trial import run_seconds
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.files import HOME
+from blockshake.geometry.structure import load_structure
+from blockshake.study.config import load_config
+
+_TWINS = 3  # runs that twins cost: one of the usual step, one of half
+
+
+def study_cost(path):
+    """CPU time of a study's parts if nothing of it is made yet.
+
+    Parameters
+    ----------
+    path : str or path
+        Of its configuration.
+
+    Returns
+    -------
+    list of Part
+
+    Raises
+    ------
+    InputError
+
+    Notes
+    -----
+    Twins count as one run and one of twice the steps; the search of the mean friction with as many runs as it may
+    need; a diagnosis without the runs of a cause, which it has only where it finds one.
+    """
+    config = load_config(path)
+    parts = []
+    for model, settings in config.models.items():
+        for case in config.cases:
+            structure, motion = load_structure(case.structure), load_motion(case.motion, case.scale)
+            trial = {"model": model, **settings.model_dump()}
+            each = run_seconds(structure, motion, trial, case.duration)
+            samples = config.samples(model, case.name)
+            parts.append(Part(f"samples of {case.name}, {model}", samples, samples * each))
+            if config.has_twins(model, case.name):
+                parts.append(Part(f"twins of {case.name}, {model}", _TWINS, _TWINS * each))
+            search = config.friction_calibration
+            if search is not None and search.model == model and case.name in search.cases:
+                parts.append(Part(f"mean friction of {case.name}", search.runs, search.runs * each))
+    tried = {}
+    for folder in config.diagnosis.campaigns:
+        parts += diagnosis_cost(folder, config.diagnosis.effort, tried)
+    command = [
+        sys.executable, "-m", "snakemake", "--cores", "1", "--snakefile", str(HOME / "Snakefile"),
+        "--configfile", str(path),
+    ]  # fmt: skip
+    return [*parts, planned_jobs(command).as_part()]

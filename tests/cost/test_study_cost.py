@@ -1,0 +1,63 @@
+"""The estimate counts every run of a study, those of the friction search and of the diagnosis too."""
+
+import sys
+
+import pytest
+
+from blockshake.cost import diagnosis_cost, study_cost
+from blockshake.cost.jobs import Jobs, planned_jobs
+from blockshake.diagnosis.libraries.plan import plan_diagnosis
+from blockshake.errors import InputError
+from blockshake.files import PACKAGE
+from blockshake.study.config import load_config
+
+ROOT = PACKAGE.parents[1]
+
+
+@pytest.fixture(autouse=True)
+def _in_the_checkout(monkeypatch):
+    monkeypatch.chdir(ROOT)
+
+
+def test_every_run_of_the_default_study_is_counted(monkeypatch):
+    """Every run costs a CPU second a second of motion: CPU seconds are then the simulated seconds."""
+    monkeypatch.setattr(study_cost, "run_seconds", lambda structure, motion, settings, duration: duration)
+    monkeypatch.setattr(study_cost, "diagnosis_cost", lambda folder, effort, tried: [])
+    monkeypatch.setattr(study_cost, "planned_jobs", lambda command: Jobs({}, 1.0))
+    search = load_config("config/study.yaml").friction_calibration
+    assert search.runs == (6 + 2 * 2) * 10 * 3
+    samples = 4 * 50 + 50 + 50 + 20 + 10 + 2 * (8 + 8 + 8 + 1)
+    twins = 2 * 4 + 2 * 3  # of every model and case but configuration 4 with deformable blocks
+    parts = study_cost.study_cost("config/study.yaml")
+    assert sum(part.seconds for part in parts) == pytest.approx((samples + 3 * twins + search.runs) * 10.0)
+
+
+def test_every_simulated_test_of_a_diagnosis_is_counted(monkeypatch):
+    """A simulation costs a second and the readings nothing: CPU seconds are then the numbers of simulated tests."""
+    monkeypatch.setattr(diagnosis_cost, "_seconds_of_draws", lambda planned, model: (1.0, 0.0, 0.0))
+    folder, known = "data/virtual-campaign/configuration-2", {}
+    plan = plan_diagnosis(folder, "standard")
+    *libraries, further, sealed = diagnosis_cost.diagnosis_cost(folder, "standard", known)
+    assert sum(part.seconds for part in libraries) == plan.runs
+    assert further.seconds == plan.further_runs
+    assert sealed.seconds == 2 * 3 * 2 * plan.effort.members  # solvers, ensembles, sealed tests
+    again = diagnosis_cost.diagnosis_cost(folder, "standard", known)
+    assert len(again) == 2  # the libraries are there
+
+
+def test_jobs_are_those_of_the_workflow():
+    """Jobs of the table that Snakemake prints; a rule without a cost of its own has the usual one."""
+    table = "job    count\\n-----  -----\\nall        1\\nmake_envelope        10\\ntotal        11\\n"
+    jobs = planned_jobs([sys.executable, "-c", f"print('{table}')"])
+    assert jobs.counts == {"all": 1, "make_envelope": 10}
+    part = jobs.as_part()
+    assert part.count == 11
+    assert part.seconds == pytest.approx(
+        jobs.slowness * 10 * Jobs({"make_envelope": 1}, 1.0).as_part().seconds
+    )
+
+
+def test_a_plan_that_fails_says_why():
+    """The workflow's own last line is the reason."""
+    with pytest.raises(InputError, match="no such file"):
+        planned_jobs([sys.executable, "-c", "import sys; sys.exit('no such file')"])
