@@ -15,7 +15,7 @@ from pathlib import Path
 
 from case_files import PAGE, ROOT, TRACK_RECORD, load_plan, truth_of, verdict_of
 from score_figures import Scored, figures
-from track_record_text import as_markdown, with_tables
+from track_record_text import as_markdown, with_block
 
 from blockshake.diagnosis.verdict.track_record import TrackRecord, write_track_record
 from blockshake.diagnosis.verdict.verdict import load_verdict
@@ -76,7 +76,7 @@ def main(arguments):
     plan = load_plan()
     record = make_track_record(score_plan(plan, asked.results), plan.efforts, plan.digest)
     write_track_record(asked.track_record, record)
-    write_text(asked.page, with_tables(asked.page.read_text(encoding="utf-8"), record))
+    write_text(asked.page, with_block(asked.page.read_text(encoding="utf-8"), "figures", as_markdown(record)))
     sys.stdout.write(as_markdown(record) + "\n")
 
 

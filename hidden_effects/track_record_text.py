@@ -2,7 +2,6 @@
 
 from blockshake.diagnosis.verdict.track_record import Answers
 
-BEGIN, END = "<!-- figures: begin -->", "<!-- figures: end -->"
 _WORDS = {True: "met", False: "missed", None: ""}
 
 
@@ -49,16 +48,21 @@ def as_markdown(record):
     return "\n".join(lines)
 
 
-def with_tables(page, record):
-    """A page with the tables of the track record between its two marks."""
-    before, rest = page.split(BEGIN)
-    _, after = rest.split(END)
-    return f"{before}{BEGIN}\n\n{as_markdown(record)}\n\n{END}{after}"
+def with_block(page, name, text):
+    """A page with a text between the two marks of a block."""
+    begin, end = _marks(name)
+    before, rest = page.split(begin)
+    return f"{before}{begin}\n\n{text}\n\n{end}{rest.split(end)[1]}"
 
 
-def tables_of(page):
-    """Tables between the marks of a page."""
-    return page.split(BEGIN)[1].split(END)[0].strip()
+def block_of(page, name):
+    """Text between the marks of a page's block."""
+    begin, end = _marks(name)
+    return page.split(begin)[1].split(end)[0].strip()
+
+
+def _marks(name):
+    return f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
 
 
 def _goal(figure):

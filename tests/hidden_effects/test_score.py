@@ -11,7 +11,7 @@ from make_case import structure_file
 from outside_forces import OUTSIDE
 from score import make_track_record
 from score_figures import Scored, figures
-from track_record_text import BEGIN, END, as_markdown, tables_of, with_tables
+from track_record_text import as_markdown, block_of, with_block
 
 from blockshake.diagnosis.laws.findings import OutsideForce
 from blockshake.diagnosis.verdict.track_record import load_track_record, write_track_record
@@ -22,6 +22,7 @@ from blockshake.files import write_json
 from blockshake.geometry.structure import load_structure
 
 PLAN = load_plan()
+EMPTY = "<!-- figures: begin -->\nold\n<!-- figures: end -->"
 STRUCTURES = {name: load_structure(structure_file(name)) for name in PLAN.efforts}
 TESTS = ("one", "two", "three")
 GAIN = {"estimate": 0.7, "lower": 0.5, "upper": 0.9}
@@ -228,11 +229,11 @@ def test_the_track_record_comes_back_from_its_file(perfect, tmp_path):
     track_record = make_track_record(perfect, PLAN.efforts, PLAN.digest)
     write_track_record(tmp_path / "track-record.json", track_record)
     assert load_track_record(tmp_path / "track-record.json") == track_record
-    page = with_tables(f"before\n{BEGIN}\nold\n{END}\nafter\n", track_record)
-    assert tables_of(page) == as_markdown(track_record)
+    page = with_block(f"before\n{EMPTY}\nafter\n", "figures", as_markdown(track_record))
+    assert block_of(page, "figures") == as_markdown(track_record)
     assert page.startswith("before")
     assert page.endswith("after\n")
-    assert with_tables(page, track_record) == page
+    assert with_block(page, "figures", as_markdown(track_record)) == page
 
 
 def test_scoring_goes_from_the_files_of_a_run_to_track_record_and_page(tmp_path, monkeypatch, capsys):
@@ -247,7 +248,7 @@ def test_scoring_goes_from_the_files_of_a_run_to_track_record_and_page(tmp_path,
         write_verdict(verdicts / f"{case.name}-None" / "verdict.json", _perfect(_truth(case)))
     write_verdict(verdicts / "small-4-eccentricity" / "verdict.json", _verdict("unknown"))
     page = tmp_path / "page.md"
-    page.write_text(f"{BEGIN}\n{END}\n")
+    page.write_text(EMPTY)
     told = [
         "--results",
         str(tmp_path),
@@ -259,7 +260,9 @@ def test_scoring_goes_from_the_files_of_a_run_to_track_record_and_page(tmp_path,
     score.main(told)
     track_record = load_track_record(tmp_path / "track-record.json")
     assert [case.answer for case in track_record.cases] == ["none", "right", "right", "right", "unknown"]
-    assert tables_of(page.read_text()) == as_markdown(track_record) == capsys.readouterr().out.strip()
+    assert (
+        block_of(page.read_text(), "figures") == as_markdown(track_record) == capsys.readouterr().out.strip()
+    )
     (verdicts / "small-2-None" / "verdict.json").unlink()
     with pytest.raises(InputError):
         score.main(told)
@@ -291,11 +294,11 @@ def test_a_missing_track_record_is_one_line(tmp_path):
 def test_the_page_shows_what_the_file_says():
     page = PAGE.read_text(encoding="utf-8")
     if TRACK_RECORD.is_file():
-        assert tables_of(page) == as_markdown(load_track_record(TRACK_RECORD))
+        assert block_of(page, "figures") == as_markdown(load_track_record(TRACK_RECORD))
         # of the last plan that was run; the next one is fixed before it is
         assert load_track_record(TRACK_RECORD).seeds in (PLAN.digest, load_plan(SEEDS_OF_RECORD).digest)
     else:
-        assert tables_of(page) == "Not run yet: no figures."
+        assert block_of(page, "figures") == "Not run yet: no figures."
 
 
 def test_the_readme_says_what_the_file_says():
