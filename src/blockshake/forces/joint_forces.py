@@ -113,7 +113,9 @@ def _from_rest(test, structure, sensors):
     own = [marker.name for marker in structure.file.markers if marker.body in driven and marker.name in names]
     moved = test["marker_displacement"].sel(marker=own, axis="x").to_numpy()
     time = test["time"].to_numpy()
+    moved = moved[:, np.isfinite(moved[:10]).any(axis=0)]
     moving = (np.abs(moved - np.nanmedian(moved[:10], axis=0)) > _STILL * sensors.marker_noise).all(axis=1)
+    moving &= moved.shape[1] > 0
     end = time[int(np.argmax(moving))] if moving.any() else time[-1]
     until = float(min(end, time[0] + _LONGEST_STILL))
     rest = test["marker_displacement"].isel(time=time <= until).mean("time").fillna(0.0)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from blockshake.forces.joint_motion import from_rest
 from blockshake.forces.laws.statistic import UNTOLD, slopes
 
 _BLOCK = 0.1  # s, over which residuals go together
@@ -24,8 +25,7 @@ def table_readings(forces):
     """
     structure, motion = forces.structure, forces.motion
     driven = int(np.flatnonzero(structure.driven)[0])
-    pitch = motion.rotation[:, driven, 0, 2]
-    pitch = pitch - np.nanmean(pitch[forces.still]) if forces.still.any() else pitch
+    pitch = from_rest(motion.rotation[:, driven, 0, 2], forces.still)
     arm = motion.position - motion.position[:, driven, None]
     wrench = forces.required.wrench
     moment = wrench[..., 4] + arm[..., 2] * wrench[..., 0] - arm[..., 0] * wrench[..., 2]

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from blockshake.forces.joint_motion import from_rest
 from blockshake.forces.laws.friction import SLIPS
 from blockshake.forces.least_force import least_force
 
@@ -108,7 +109,6 @@ def push_history(forces, body, height=0.0):
     ]
     driven = int(np.flatnonzero(forces.structure.driven)[0])
     moved = motion.position[:, body, 0] - motion.position[:, driven, 0]
-    rest = np.nanmean(moved[forces.still]) if forces.still.any() else 0.0
     return PushHistory(
         body=body,
         height=height,
@@ -120,6 +120,6 @@ def push_history(forces, body, height=0.0):
         lower=ends[0],
         upper=ends[1],
         by_lever=by_lever,
-        displacement=moved - rest,
+        displacement=from_rest(moved, forces.still),
         velocity=motion.velocity[:, body, 0] - motion.velocity[:, driven, 0],
     )
