@@ -198,10 +198,14 @@ def test_a_table_that_pitches_with_its_acceleration(sensors):
 
     noisy = readings(structure, poses, sensors.marker_noise, sensors.accelerometer_noise)
     gap = noisy.copy(deep=True)  # no marker of the slab is seen in the quiet start
-    gap["marker_displacement"].loc[{"marker": ["slab-a", "slab-b", "slab-c"], "time": slice(0.0, 0.8)}] = np.nan
+    gap["marker_displacement"].loc[{"marker": ["slab-a", "slab-b", "slab-c"], "time": slice(0.0, 0.8)}] = (
+        np.nan
+    )
     for test in (noisy, gap):
         told = table_law(joint_forces(test, structure, sensors))
-        assert told["table.pitch"].value == pytest.approx(coefficient, abs=5.0 * told["table.pitch"].error + 1e-5)
+        assert told["table.pitch"].value == pytest.approx(
+            coefficient, abs=5.0 * told["table.pitch"].error + 1e-5
+        )
 
 
 def test_a_constant_push_is_found_with_its_start_and_size(sensors):
