@@ -6,7 +6,7 @@ from blockshake.geometry.rotations import rotation_matrix_into
 from blockshake.jit import kernel
 
 # Cosine of the tilt from which a block does not come back.
-_COSINE_OF_TILT = np.sqrt(0.5)
+COSINE_OF_TILT = np.sqrt(0.5)
 
 
 def collapse_limits(structure):
@@ -60,6 +60,6 @@ def find_collapsed(bodies, state, supported, drop_limit):
         rotation_matrix_into(bodies.home_orientation[body], start)
         rotation_matrix_into(state.orientation[body], now)
         cosine = now[2, 0] * start[2, 0] + now[2, 1] * start[2, 1] + now[2, 2] * start[2, 2]
-        if cosine < _COSINE_OF_TILT:
+        if cosine < COSINE_OF_TILT:
             return body
     return -1

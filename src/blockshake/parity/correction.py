@@ -6,6 +6,7 @@ import xarray as xr
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.campaigns.campaign import load_test
 from blockshake.measurement.motion.body_frame import see_from_body
+from blockshake.measurement.motion.fall import find_fall, until_fall
 
 _AT_RANGE = 1e-6  # of the largest reading
 _REST = 0.1  # s, whose mean is an accelerometer's reading at rest
@@ -13,8 +14,13 @@ _ORDERS = {"x and y": [1, 0, 2], "x and z": [2, 1, 0], "y and z": [0, 2, 1]}
 
 
 def load_corrected_test(campaign, name, structure, findings):
-    """Load a test of a campaign without the faults that were found, its time counted from its first reading."""
-    test = corrected(load_test(campaign, name), name, structure, findings)
+    """Load a test of a campaign without the faults that were found, until a block falls.
+
+    Its time is counted from its first reading.
+    """
+    test = load_test(campaign, name)
+    test = until_fall(test, find_fall(test, structure, campaign.sensors))
+    test = corrected(test, name, structure, findings)
     return test.assign_coords(time=np.round(test["time"] - test["time"][0], 6))
 
 

@@ -10,6 +10,7 @@ from blockshake.files import load_json
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
+from blockshake.measurement.motion.fall import Fall, find_fall, until_fall
 from blockshake.measurement.sensors.markers import whole_markers
 from blockshake.parity.acceleration_parity import channel_pairs
 from blockshake.parity.channel_findings import channel_findings
@@ -43,6 +44,8 @@ class Parity:
         ``gain(channel)``, reading over truth less 1, with ``gain_error(channel)`` [1].
     looked_at : int
         Number of hypotheses.
+    falls : dict of str to Fall
+        By test: the block that fell first; the test is judged until then.
     """
 
     findings: tuple
@@ -50,6 +53,7 @@ class Parity:
     clock: xr.Dataset
     channels: xr.Dataset
     looked_at: int
+    falls: dict
 
     def as_json(self):
         """As JSON-like values, NaN as null."""
@@ -59,6 +63,7 @@ class Parity:
             "clock": _columns(self.clock, "test"),
             "channels": _columns(self.channels, "channel"),
             "looked_at": self.looked_at,
+            "falls": {name: fall._asdict() for name, fall in self.falls.items()},
         }
 
     @classmethod
@@ -70,6 +75,7 @@ class Parity:
             clock=_table(values["clock"], "test", _CLOCK_UNITS),
             channels=_table(values["channels"], "channel", _CHANNEL_UNITS),
             looked_at=values["looked_at"],
+            falls={name: Fall(**fall) for name, fall in values["falls"].items()},
         )
 
 
@@ -116,9 +122,16 @@ def campaign_parity(campaign, names, without=()):
         if name not in campaign.tests or campaign.tests[name].role == "sealed":
             usable = [test.name for test in campaign.tests.values() if test.role != "sealed"]
             raise InputError(campaign.folder, f"tests.{name}", f"expected one of {', '.join(usable)}")
+    structure = load_structure(campaign.structure)
     tests = {name: load_test(campaign, name) for name in names}
-    parity = check_parity(tests, load_structure(campaign.structure), campaign.sensors)
-    return replace(parity, findings=tuple(one for one in parity.findings if one.effect not in without))
+    falls = {name: find_fall(test, structure, campaign.sensors) for name, test in tests.items()}
+    tests = {name: until_fall(test, falls[name]) for name, test in tests.items()}
+    parity = check_parity(tests, structure, campaign.sensors)
+    return replace(
+        parity,
+        findings=tuple(one for one in parity.findings if one.effect not in without),
+        falls={name: fall for name, fall in falls.items() if fall},
+    )
 
 
 def check_parity(tests, structure, sensors, level=LEVEL):
@@ -163,6 +176,7 @@ def check_parity(tests, structure, sensors, level=LEVEL):
         clock=_table(_scored_rows(lags, "lag"), "test", _CLOCK_UNITS),
         channels=_table(_scored_rows(gains, "gain"), "channel", _CHANNEL_UNITS),
         looked_at=looked_at,
+        falls={},
     )
 
 

@@ -17,6 +17,7 @@ from blockshake.files import PACKAGE, content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Campaign, load_campaign, load_test
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
+from blockshake.measurement.motion.fall import find_fall, until_fall
 from blockshake.measurement.sensors.markers import unread_directions
 
 _CHECKOUT = PACKAGE.parents[1].resolve()
@@ -30,12 +31,15 @@ def sealed_tests(campaign):
 def planned_test(campaign, name, structure):
     """A test that is not sealed as libraries simulate it: as long and with the sensors that were read in it.
 
+    Of a test in which a block falls it is the part before.
+
     Raises
     ------
     InputError
         A commanded motion that is neither shipped nor in the campaign's folder, or bad readings.
     """
     test = load_test(campaign, name)
+    test = until_fall(test, find_fall(test, structure, campaign.sensors))
     time = test["time"].to_numpy()
     return PlannedTest(
         structure=structure,

@@ -21,6 +21,7 @@ from blockshake.measurement.checks.quiet_noise import (
     marker_remarks,
 )
 from blockshake.measurement.checks.slab_accelerometer import clock_remarks
+from blockshake.measurement.motion.fall import find_fall
 from blockshake.measurement.sensors.markers import directions_read, marker_bodies, unread_directions
 
 _QUIET = 0.5  # s at most that are taken as the quiet start
@@ -59,6 +60,11 @@ def campaign_lines(folder):
         described = _Described(campaign, structure, entry, test)
         lines.append(f"  {entry.name} ({entry.role}): {', '.join(described.facts)}")
         remarks += [f"  {entry.name}: {remark}" for remark in described.remarks]
+        fall = find_fall(test, structure, campaign.sensors) if entry.role != "sealed" else None
+        if fall:
+            remarks.append(
+                f"  {entry.name}: {fall.body} falls at {fall.time:.2f} s; a diagnosis reads the test until then"
+            )
     for marker in structure.file.markers:
         if marker.name not in read:
             remarks.append(f"  marker {marker.name} of the structure is in no test")
