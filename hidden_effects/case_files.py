@@ -14,7 +14,6 @@ from blockshake.validation import Strict, validated
 
 ROOT = Path(__file__).parents[1]
 SEEDS = Path(__file__).parent / "seeds.yaml"
-SEEDS_OF_RECORD = Path(__file__).parent / "seeds-of-record.yaml"
 SMALL_SEEDS = Path(__file__).parent / "small-seeds.yaml"
 TRACK_RECORD = ROOT / "data" / "track-record" / "hidden-effects.json"
 PAGE = ROOT / "docs" / "hidden-effects.md"

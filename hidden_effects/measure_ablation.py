@@ -1,4 +1,4 @@
-"""What the features of whole tests and the laws of the joints each add: every case decided without the other.
+"""Ablation of the decision: every case decided without the laws of the joints, and without features of whole tests.
 
 ``python hidden_effects/measure_ablation.py --results results/hidden-effects`` reads the libraries and readings of a
 finished track record, decides every case again in each way, and writes the shares of right and wrong answers to the

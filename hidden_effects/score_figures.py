@@ -261,8 +261,8 @@ def _confusion(scored):
 def _cases(scored):
     return [
         JudgedCase(
-            name=case.name, seed=case.truth["seed"], truth=case.truth["truth"], size=case.truth["size_class"],
-            removed=case.removed, answer=case.answer, causes=case.verdict.causes,
+            name=case.name, seed=case.truth["seed"], structure=case.truth["structure"], truth=case.truth["truth"],
+            size=case.truth["size_class"], removed=case.removed, answer=case.answer, causes=case.verdict.causes,
         )
         for case in scored
     ]  # fmt: skip

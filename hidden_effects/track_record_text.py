@@ -1,6 +1,9 @@
 """Tables of the track record as text, for the terminal and for docs/hidden-effects.md; no figure is typed."""
 
+from outside_forces import OUTSIDE
+
 from blockshake.diagnosis.verdict.track_record import Answers
+from blockshake.effects.registry import EFFECTS
 
 _WORDS = {True: "met", False: "missed", None: ""}
 
@@ -19,9 +22,7 @@ def as_markdown(record):
     lines = [
         f"{record.date}, sources {record.commit}, {record.machine}, seeds {record.seeds}: {len(record.cases)} cases.",
         "",
-        "Effort by structure:",
-        "",
-        *(f"- {structure}: {effort}" for structure, effort in record.efforts.items()),
+        *_by_structure(record),
         "",
         "| figure | share | of | 95 % interval | goal | |",
         "|---|---|---|---|---|---|",
@@ -46,6 +47,25 @@ def as_markdown(record):
         counts = [str(count) if count else "" for count in row.answers.model_dump().values()]
         lines.append(f"| {', '.join(words)} | {' | '.join(counts)} |")
     return "\n".join(lines)
+
+
+def _by_structure(record):
+    """Lines of a table: right answers by structure."""
+    yield "| structure | effort | none where nothing is hidden | truth named or in the set | outside called unknown |"
+    yield "|---|---|---|---|---|"
+    for structure, effort in record.efforts.items():
+        own = [case for case in record.cases if case.structure == structure and not case.removed]
+        counts = (
+            _count(own, ("none",), lambda truth: truth == "none"),
+            _count(own, ("right", "set_with"), lambda truth: truth in EFFECTS),
+            _count(own, ("unknown",), lambda truth: truth in OUTSIDE),
+        )
+        yield f"| {structure} | {effort} | {' | '.join(counts)} |"
+
+
+def _count(cases, answers, belongs):
+    own = [case for case in cases if belongs(case.truth)]
+    return f"{sum(case.answer in answers for case in own)} of {len(own)}"
 
 
 def with_block(page, name, text):

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 import score
-from case_files import PAGE, ROOT, SEEDS_OF_RECORD, SMALL_SEEDS, TRACK_RECORD, load_plan, truth_of
+from case_files import PAGE, ROOT, SMALL_SEEDS, TRACK_RECORD, load_plan, truth_of
 from case_truth import true_effect
 from make_case import structure_file
 from outside_forces import OUTSIDE
@@ -39,6 +39,7 @@ def _truth(case):
     tests = {test: {"trace": 2e-4} for test in TESTS}
     return {
         "truth": case.truth, "size_class": case.size, "effect": effect, "seed": case.seed, "tests": tests,
+        "structure": case.structure,
         "sealed": case.sealed,
     }  # fmt: skip
 
@@ -169,7 +170,15 @@ def test_always_none_is_never_wrong_and_finds_nothing(perfect):
 def _case(verdict, truth="eccentricity", place=None, size="large", removed=False):
     place = place or {"body": "block-1"}
     effect = {"name": truth, "values": {"offset": -0.08}, "place": place}
-    told = {"truth": truth, "size_class": size, "effect": effect, "seed": 1, "sealed": False, "tests": {}}
+    told = {
+        "truth": truth,
+        "size_class": size,
+        "effect": effect,
+        "seed": 1,
+        "sealed": False,
+        "tests": {},
+        "structure": "two-blocks",
+    }
     return Scored("case", told, verdict, removed)
 
 
@@ -296,7 +305,7 @@ def test_the_page_shows_what_the_file_says():
     if TRACK_RECORD.is_file():
         assert block_of(page, "figures") == as_markdown(load_track_record(TRACK_RECORD))
         # of the last plan that was run; the next one is fixed before it is
-        assert load_track_record(TRACK_RECORD).seeds in (PLAN.digest, load_plan(SEEDS_OF_RECORD).digest)
+        assert load_track_record(TRACK_RECORD).seeds == PLAN.digest
     else:
         assert block_of(page, "figures") == "Not run yet: no figures."
 

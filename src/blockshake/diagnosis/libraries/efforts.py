@@ -43,7 +43,7 @@ class Effort:
 EFFORTS = {
     "quick": Effort(runs=400, tests=2, nominal_draws=12, own_draws=2, further_draws=0, members=0, twins=3),
     "standard": Effort(
-        runs=2000, tests=3, nominal_draws=40, own_draws=6, further_draws=12, members=12, twins=8
+        runs=2000, tests=3, nominal_draws=40, own_draws=2, further_draws=12, members=12, twins=8
     ),
     "deep": Effort(
         runs=12000, tests=12, nominal_draws=80, own_draws=12, further_draws=12, members=40, twins=12

@@ -102,6 +102,7 @@ class JudgedCase(Strict):
 
     name: str
     seed: Count
+    structure: str
     truth: str
     size: Literal["small", "large"] | None = None
     removed: bool = False
