@@ -192,6 +192,10 @@ config.update(CHECKED.model_dump(mode="json"))
 
 # models that the null hypothesis of a diagnosis holds
 NULL_MODELS = [name for name, model in SOLVERS.items() if model.perturbation]
+TEMPLATES = expand(
+    beside(PACKAGE / "report" / "document" / "templates" / "{name}"),
+    name=["report.html.j2", "report.css", "report.js", "moving.js", "report.typ"],
+)
 STUDY = config["name"]
 MODELS = list(config["models"])
 CASES = {Path(case["structure"]).stem: case for case in config["cases"]}

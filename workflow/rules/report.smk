@@ -1,65 +1,56 @@
+def files_of_report(cases):
+    """Files that a report of these cases is made of, by name."""
+    measured = [case for case in cases if case in MEASURED]
+    motions = {Path(CASES[case]["motion"]).stem for case in cases}
+
+    def results(pattern, **named):
+        return expand(f"results/{STUDY}/{pattern}", **named)
+
+    def by_model(kind, named):
+        return results(f"{kind}/{{model}}/{{case}}.nc", model=MODELS, case=named)
+
+    return {
+        "structures": [
+            definition("structures", CASES[case]["structure"]) for case in cases
+        ],
+        "campaigns": [file for case in measured for file in campaign_files(case)],
+        "templates": TEMPLATES,
+        "motions": results("motions/{motion}.nc", motion=sorted(motions)),
+        "design": results("design.{suffix}", suffix=["csv", "json"]),
+        "stiffness": results("stiffness/{case}.csv", case=cases),
+        "waves": results("waves/{case}.nc", case=cases),
+        "bases": results("inputs/{case}.nc", case=measured),
+        "definitions": (
+            results("stiffness-definitions.nc") if next(iter(CASES)) in cases else []
+        ),
+        "envelopes": by_model("envelopes", cases),
+        "samples": by_model("samples", cases),
+        "shown": by_model("shown", cases),
+        "comparisons": by_model("comparisons", measured),
+        "differences": results("differences/{case}.nc", case=cases),
+        "friction": results(
+            "friction/{case}.json",
+            case=[case for case in FRICTION_SEARCH.get("cases", []) if case in cases],
+        ),
+        "sensitivities": by_model("sensitivities", cases),
+    }
+
+
 rule make_report:
     """The study as one self-contained page and as a PDF, and its findings on the paper, from the same content."""
     input:
-        structures=[
-            definition("structures", case["structure"]) for case in CASES.values()
-        ],
-        campaigns=[campaign_files(case) for case in MEASURED],
+        unpack(lambda wildcards: files_of_report(list(CASES))),
+        ladder_motions=expand(
+            "results/{study}/motions/{motion}.nc", study=STUDY, motion=MOTIONS
+        ),
         shipped=[
             definition("structures", f"configuration-{place}")
             for place in (1, 2, 3, 4)
         ]
         + [beside(HOME / "config" / f"{name}.yaml") for name in ("study", "paper")],
         peer=beside(HOME / "data" / "peers" / "lmgc90.nc"),
-        templates=expand(
-            beside(PACKAGE / "report" / "document" / "templates" / "{name}"),
-            name=["report.html.j2", "report.typ"],
-        ),
-        motions=expand(
-            "results/{study}/motions/{motion}.nc", study=STUDY, motion=MOTIONS
-        ),
-        design=f"results/{STUDY}/design.csv",
-        design_summary=f"results/{STUDY}/design.json",
-        stiffness=expand(
-            "results/{study}/stiffness/{case}.csv", study=STUDY, case=CASES
-        ),
-        waves=expand("results/{study}/waves/{case}.nc", study=STUDY, case=CASES),
-        bases=expand("results/{study}/inputs/{case}.nc", study=STUDY, case=MEASURED),
         convergence=(
             f"results/{STUDY}/convergence.csv" if config.get("convergence") else []
-        ),
-        definitions=f"results/{STUDY}/stiffness-definitions.nc",
-        envelopes=expand(
-            "results/{study}/envelopes/{model}/{case}.nc",
-            study=STUDY,
-            model=MODELS,
-            case=CASES,
-        ),
-        samples=expand(
-            "results/{study}/samples/{model}/{case}.nc",
-            study=STUDY,
-            model=MODELS,
-            case=CASES,
-        ),
-        comparisons=expand(
-            "results/{study}/comparisons/{model}/{case}.nc",
-            study=STUDY,
-            model=MODELS,
-            case=MEASURED,
-        ),
-        differences=expand(
-            "results/{study}/differences/{case}.nc", study=STUDY, case=CASES
-        ),
-        friction=expand(
-            "results/{study}/friction/{case}.json",
-            study=STUDY,
-            case=FRICTION_SEARCH.get("cases", []),
-        ),
-        sensitivities=expand(
-            "results/{study}/sensitivities/{model}/{case}.nc",
-            study=STUDY,
-            model=MODELS,
-            case=CASES,
         ),
     output:
         html=report("reports/{study}.html", category="Study"),
@@ -76,3 +67,24 @@ rule make_report:
         source=source_of("make_report"),
     script:
         "../scripts/make_report.py"
+
+
+rule make_case_report:
+    """One case of the study as a page and as a PDF, from the results of this case alone."""
+    input:
+        unpack(lambda wildcards: files_of_report([wildcards.case])),
+    output:
+        html=report("reports/{study}-{case}.html", category="Study"),
+        pdf=report("reports/{study}-{case}.pdf", category="Study"),
+    log:
+        "logs/{study}/make_case_report/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        study=CHECKED.model_dump(mode="json"),
+        case="{case}",
+        results="results/{study}",
+        benchmarks="benchmarks/{study}",
+        source=source_of("make_case_report"),
+    script:
+        "../scripts/make_case_report.py"

@@ -70,7 +70,7 @@ def timings(content):
 
 def origin(content):
     """Versions, digests, seeds, configuration, and the command that makes the report again."""
-    name = content.study["name"]
+    name = content.name
     sources = {}
     for case in content.cases.values():
         for model, one in case.responses.items():
