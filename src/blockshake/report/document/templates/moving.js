@@ -1,113 +1,161 @@
-// Blocks of a sample in space beside the measured markers: to play, to turn, and to choose sample, time and
-// magnification from. Displacements are multiplied point by point, so that blocks and markers stay comparable.
+// Blocks of a sample in parallel projection beside the measured markers: to play, to turn, and to choose the sample, the
+// time and the magnification of. Displacements are multiplied point by point, so that blocks and markers compare.
 function showMoving(place, { step, frames, magnification, bodies, samples, measured }) {
-  const own = document.createElement("form");
-  own.className = "controls";
-  own.innerHTML = `<button type="button" name="play">Play</button>
+  const form = document.createElement("form");
+  form.className = "controls";
+  form.innerHTML = `<button type="button" name="play">Play</button>
     <label>Sample <select name="sample"></select></label>
     <label>Time <input name="frame" type="range" min="0" max="${frames - 1}" value="0"> <output name="clock"></output></label>
-    <label>Magnification <input name="factor" type="range" min="1" max="50" value="${magnification}"> <output name="times"></output></label>`;
-  const { play, sample, frame, clock, factor, times } = own.elements;
-  own.addEventListener("submit", (event) => event.preventDefault());
+    <label>Magnification <input name="factor" type="range" min="1" max="50" value="${magnification}"> <output name="times"></output></label>
+    <label>Seen from <input name="turn" type="range" min="-90" max="90" value="35"></label>`;
+  const { play, sample, frame, clock, factor, times, turn } = form.elements;
   samples.forEach((one, row) => sample.add(new Option(one.label, row)));
-  const picture = document.createElement("div");
-  place.append(own, picture);
+  const canvas = document.createElement("canvas"), pen = canvas.getContext("2d");
+  canvas.setAttribute("role", "img");
+  canvas.setAttribute("aria-label", "blocks of the chosen sample at the chosen time, and markers");
+  place.append(form, canvas);
 
-  const unpacked = ({ unit, data }) => ({ unit, whole: new Int16Array(Uint8Array.from(atob(data), (one) => one.charCodeAt(0)).buffer) });
-  const motions = samples.map(({ shift, turn }) => ({ shift: unpacked(shift), turn: unpacked(turn) }));
-  const markers = measured ? { ...measured, shift: unpacked(measured.shift) } : { bodies: [], arms: [], shift: { unit: 1, whole: [] } };
-  const vector = ({ unit, whole }, row) => [0, 1, 2].map((axis) => (whole[3 * row + axis] === -32768 ? null : unit * whole[3 * row + axis]));
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+  const minus = (a, b) => a.map((one, axis) => one - b[axis]);
+  const unpacked = ({ unit, data }) => {
+    const bytes = new DataView(Uint8Array.from(atob(data), (one) => one.charCodeAt(0)).buffer);
+    return (row) => [0, 2, 4].map((at) => bytes.getInt16(6 * row + at, true)).map((one) => (one === -32768 ? NaN : unit * one));
+  };
+  const motions = samples.map((one) => ({ shift: unpacked(one.shift), turn: unpacked(one.turn) }));
+  const markers = (measured ? measured.arms : []).map((arm, row) => ({ arm, row, body: measured.bodies[row] }));
+  const read = measured && unpacked(measured.shift);
 
-  // a function that moves points of a body, given from its mass centre
-  function mover(motion, at, body, times) {
-    const shift = vector(motion.shift, at * bodies.length + body), turn = vector(motion.turn, at * bodies.length + body);
-    const angle = Math.hypot(...turn), axis = turn.map((one) => one / (angle || 1));
-    const sine = Math.sin(angle), rest = 1 - Math.cos(angle);
+  // where points of a body, given as seen from its mass centre, are at a frame
+  function mover(at, body) {
+    const { shift, turn } = motions[sample.value], row = at * bodies.length + body;
+    const moved = shift(row), rotation = turn(row), angle = Math.hypot(...rotation);
+    const axis = rotation.map((one) => one / (angle || 1)), sine = Math.sin(angle), rest = 1 - Math.cos(angle);
     return (arm) => {
       const once = cross(axis, arm), twice = cross(axis, once);
-      return arm.map((one, k) => bodies[body].place[k] + one + times * (shift[k] + sine * once[k] + rest * twice[k]));
+      return arm.map((one, k) => bodies[body].place[k] + one + factor.value * (moved[k] + sine * once[k] + rest * twice[k]));
     };
   }
+  const pointsAt = (at) => bodies.map(({ arms }, body) => arms.map(mover(at, body)));
 
-  // points of blocks, edges, markers of the sample and measured markers, each as lists x, y and z
-  function points(motion, at, times) {
-    const moved = bodies.map((body, row) => body.arms.map(mover(motion, at, row, times)));
-    const edges = bodies.flatMap((body, row) => body.edges.flatMap(([a, b]) => [moved[row][a], moved[row][b], [null, null, null]]));
-    const simulated = markers.arms.map((arm, row) => mover(motion, at, markers.bodies[row], times)(arm));
-    const read = markers.arms.map((arm, row) => {
-      const shift = vector(markers.shift, at * markers.arms.length + row), { place } = bodies[markers.bodies[row]];
-      return shift.includes(null) ? shift : arm.map((one, k) => place[k] + one + times * shift[k]);
-    });
-    return [moved.flat(), edges, simulated, read].map((list) => [0, 1, 2].map((axis) => list.map((one) => one[axis])));
+  // directions to the right, up and towards the eye
+  function axes() {
+    const [about, above] = [turn.value, 20].map((degrees) => (degrees * Math.PI) / 180);
+    const right = [Math.cos(about), Math.sin(about), 0];
+    const towards = [Math.sin(about) * Math.cos(above), -Math.cos(about) * Math.cos(above), Math.sin(above)];
+    return [right, cross(towards, right), towards];
   }
 
-  // the room that the motion takes, so that the picture stands still
-  function ranges() {
-    const low = [1e9, 1e9, 1e9], high = [-1e9, -1e9, -1e9];
-    for (let at = 0; at < frames; at += 4) {
-      for (const lists of points(motions[sample.value], at, +factor.value)) {
-        lists.forEach((list, axis) => { for (const one of list) if (one !== null) {
-          low[axis] = Math.min(low[axis], one); high[axis] = Math.max(high[axis], one);
-        } });
+  // bodies in an order in which none hides one after it: of two, the axis along which they part most tells the nearer
+  function farthestFirst(points, towards) {
+    const low = points.map((own) => [0, 1, 2].map((axis) => Math.min(...own.map((one) => one[axis]))));
+    const high = points.map((own) => [0, 1, 2].map((axis) => Math.max(...own.map((one) => one[axis]))));
+    const nearer = (a, b) => {
+      const gaps = [0, 1, 2].flatMap((axis) => [
+        { gap: low[a][axis] - high[b][axis], side: towards[axis] }, { gap: low[b][axis] - high[a][axis], side: -towards[axis] },
+      ]);
+      return gaps.reduce((best, one) => (one.gap > best.gap ? one : best)).side > 1e-6;
+    };
+    const left = points.map((own, body) => body), order = [];
+    while (left.length) {
+      const next = left.find((body) => !left.some((other) => other !== body && nearer(body, other))) ?? left[0];
+      left.splice(left.indexOf(next), 1);
+      order.push(next);
+    }
+    return order;
+  }
+
+  // the room that the motion takes: the picture stands still while the blocks move
+  let room;
+  function measure() {
+    const [right, up] = axes(), low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+    for (let at = 0; at < frames; at += 5) {
+      for (const one of pointsAt(at).flat()) {
+        [dot(one, right), dot(one, up)].forEach((seen, k) => {
+          low[k] = Math.min(low[k], seen);
+          high[k] = Math.max(high[k], seen);
+        });
       }
     }
-    return low.map((one, axis) => [one, high[axis]]);
+    room = { low, high };
   }
 
-  let first = 0;
-  const starts = bodies.map((body) => (first += body.arms.length) - body.arms.length);
-  const corners = [0, 1, 2].map((corner) => bodies.flatMap((body, row) => body.triangles.map((one) => one[corner] + starts[row])));
-  const at = (lists) => ({ x: lists[0], y: lists[1], z: lists[2] });
-  const [solid, edges, simulated, read] = points(motions[0], 0, 1);
-  const data = [
-    { type: "mesh3d", ...at(solid), i: corners[0], j: corners[1], k: corners[2], flatshading: true, hoverinfo: "skip",
-      facecolor: bodies.flatMap((body) => body.triangles.map(() => body.color)),
-      lighting: { ambient: 0.75, diffuse: 0.5, specular: 0.0 }, lightposition: { x: -1e4, y: -2e4, z: 3e4 } },
-    { type: "scatter3d", mode: "lines", ...at(edges), line: { color: "#555", width: 2 }, hoverinfo: "skip", showlegend: false },
-    { type: "scatter3d", mode: "markers", ...at(simulated), name: "the same markers of the sample", hoverinfo: "skip",
-      marker: { size: 5, symbol: "circle-open", color: "#0072b2", line: { width: 2, color: "#0072b2" } } },
-    { type: "scatter3d", mode: "markers", ...at(read), name: measured ? `markers, ${measured.label}` : "", hoverinfo: "skip",
-      marker: { size: 4, color: "#cc3311" } },
-  ].slice(0, measured ? 4 : 2);
-  const bare = (text) => ({ title: { text }, showspikes: false, showbackground: false, nticks: 5 });
-  const layout = {
-    height: 520, margin: { l: 0, r: 0, t: 0, b: 0 }, uirevision: "kept", font: { size: 11 },
-    legend: { x: 0, y: 1, bgcolor: "rgba(255,255,255,0.7)" },
-    scene: { aspectmode: "data", xaxis: bare("x [m]"), yaxis: bare("y [m]"), zaxis: bare("z [m]"),
-      camera: { projection: { type: "orthographic" }, eye: { x: 1.1, y: -1.6, z: 0.6 } } },
-  };
-  const made = Plotly.newPlot(picture, data, layout, { responsive: true, displaylogo: false, modeBarButtons: [["resetCameraDefault3d", "toImage"]] });
+  function disc([x, y], radius, color, filled) {
+    pen.beginPath();
+    pen.arc(x, y, radius, 0, 7);
+    pen.lineWidth = 1.6;
+    pen.fillStyle = pen.strokeStyle = color;
+    if (filled) pen.fill();
+    else pen.stroke();
+  }
 
-  const draw = (room = {}) => {
+  function draw() {
     clock.value = `${(step * frame.value).toFixed(2)} s`;
     times.value = `${factor.value} times`;
-    const lists = points(motions[sample.value], +frame.value, +factor.value).slice(0, data.length);
-    const along = (axis) => lists.map((list) => list[axis]);
-    return Plotly.update(picture, { x: along(0), y: along(1), z: along(2) }, room);
-  };
-  const drawAnew = () => {
-    const [x, y, z] = ranges();
-    return draw({ "scene.xaxis.range": x, "scene.yaxis.range": y, "scene.zaxis.range": z });
-  };
-  let since = null; // when time 0 was played
-  const run = async (now) => {
-    if (since === null) return;
-    const shown = Math.floor((now - since) / 1000 / step);
-    if (shown >= frames) since = now;
-    frame.value = shown % frames;
-    await draw();
+    const width = canvas.clientWidth, height = canvas.clientHeight, fine = window.devicePixelRatio;
+    canvas.width = width * fine;
+    canvas.height = height * fine;
+    pen.scale(fine, fine);
+    const sizes = minus(room.high, room.low), scale = Math.min((width - 40) / sizes[0], (height - 80) / sizes[1]);
+    const [right, up, towards] = axes(), middle = (room.low[0] + room.high[0]) / 2;
+    const seen = (one) => [width / 2 + scale * (dot(one, right) - middle), height - 30 - scale * (dot(one, up) - room.low[1])];
+    const points = pointsAt(+frame.value), light = [-0.35, 0.45, 0.82];
+    pen.lineJoin = "round";
+    for (const body of farthestFirst(points, towards)) {
+      const own = points[body];
+      const faces = bodies[body].faces.map((face) => {
+        const normal = cross(minus(own[face[1]], own[face[0]]), minus(own[face[2]], own[face[0]])), size = Math.hypot(...normal);
+        const across = axes().map((axis) => dot(axis, normal) / size);
+        return { face, depth: dot(own[face[0]], towards), facing: across[2], bright: 0.62 + 0.38 * Math.max(0, dot(across, light)) };
+      });
+      for (const { face, bright } of faces.filter((one) => one.facing > 1e-6).sort((a, b) => a.depth - b.depth)) {
+        pen.beginPath();
+        face.forEach((corner) => pen.lineTo(...seen(own[corner])));
+        pen.closePath();
+        pen.fillStyle = `rgb(${bodies[body].color.map((one) => Math.round(255 * bright * one))})`;
+        pen.strokeStyle = "#555";
+        pen.lineWidth = 0.7;
+        pen.fill();
+        pen.stroke();
+      }
+      for (const { arm, row } of markers.filter((one) => one.body === body && dot(one.arm, towards) > 0)) {
+        disc(seen(mover(+frame.value, body)(arm)), 4, "#0072b2", false);
+        const shift = read(+frame.value * markers.length + row);
+        if (!shift.includes(NaN)) disc(seen(arm.map((one, k) => bodies[body].place[k] + one + factor.value * shift[k])), 2.4, "#cc3311", true);
+      }
+    }
+    pen.font = "12px system-ui, sans-serif";
+    pen.fillStyle = "#000";
+    pen.fillRect(16, height - 14, scale, 2);
+    pen.fillText("1 m", 20 + scale, height - 9);
+    if (!measured) return;
+    disc([18, 18], 2.4, "#cc3311", true);
+    disc([18, 36], 4, "#0072b2", false);
+    pen.fillStyle = "#000";
+    pen.fillText(`markers, ${measured.label}`, 28, 22);
+    pen.fillText("the same markers of the sample", 28, 40);
+  }
+
+  let begun = null; // when time 0 was played
+  function pause() {
+    begun = null;
+    play.textContent = "Play";
+  }
+  function run(now) {
+    if (begun === null) return;
+    frame.value = Math.floor((now - begun) / 1000 / step) % frames;
+    draw();
     requestAnimationFrame(run);
-  };
-  const pause = () => { since = null; play.textContent = "Play"; };
+  }
   play.addEventListener("click", () => {
-    if (since !== null) return pause();
-    since = performance.now() - 1000 * step * (+frame.value % (frames - 1));
+    if (begun !== null) return pause();
+    begun = performance.now() - 1000 * step * (frame.value % (frames - 1));
     play.textContent = "Pause";
     requestAnimationFrame(run);
   });
+  form.addEventListener("submit", (event) => event.preventDefault());
   frame.addEventListener("input", () => { pause(); draw(); });
-  for (const one of [sample, factor]) one.addEventListener("change", drawAnew);
-  factor.addEventListener("input", () => { times.value = `${factor.value} times`; });
-  return made.then(drawAnew);
+  for (const one of [sample, factor, turn]) one.addEventListener("input", () => { measure(); draw(); });
+  measure();
+  new ResizeObserver(draw).observe(canvas);
 }

@@ -18,14 +18,13 @@ for (const figure of document.querySelectorAll("figure")) {
   figure.querySelector("figcaption").append(button);
 }
 
-// Curves to zoom into and blocks that move, drawn when they come into sight. The drawing stands without script, without
-// a browser's means for pictures in space, and on paper.
+// Curves to zoom into and blocks that move, drawn when they come into sight; without script, and on paper, the drawing
+// stands.
 const sight = new IntersectionObserver((entries) => {
   for (const entry of entries.filter((one) => one.isIntersecting)) {
     sight.unobserve(entry.target);
     const place = entry.target.querySelector(".interactive");
     const { moving, data, layout } = JSON.parse(entry.target.querySelector("script").textContent);
-    if (moving && !document.createElement("canvas").getContext("webgl")) continue;
     entry.target.classList.add("drawn");
     if (moving) showMoving(place, moving);
     else Plotly.newPlot(place, data, layout, {

@@ -5,7 +5,6 @@ import json
 
 import numpy as np
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import to_hex
 from scipy.spatial.transform import Rotation
 
 from blockshake.measurement.sensors.markers import marker_bodies
@@ -44,8 +43,8 @@ def moving_samples(case):
     for body in range(len(colors)):
         mesh = body_mesh(case.structure, body)
         bodies.append({
-            "place": _rounded(mesh.place), "arms": _rounded(mesh.arms), "triangles": mesh.triangles.tolist(),
-            "edges": mesh.edges.tolist(), "color": to_hex(colors[body]),
+            "place": _rounded(mesh.place), "arms": _rounded(mesh.arms), "faces": mesh.faces,
+            "color": _rounded(colors[body]),
         })  # fmt: skip
     samples = [
         {
