@@ -26,8 +26,8 @@ _PACKAGES = ("numpy", "scipy", "numba", "xarray", "pandas", "snakemake", "matplo
 
 @dataclass(frozen=True)
 class Response:
-    """Results of one case by one model: envelope, figures of the samples, motion of those that are shown, coverage of the
-    measured curves where there are any, and sensitivity to the random variables."""
+    """Results of one case by one model: envelope, figures of the samples, motion of those that are shown, coverage of
+    the measured curves where there are any, and sensitivity to the random variables."""
 
     envelope: xr.Dataset
     samples: xr.Dataset

@@ -76,11 +76,11 @@ def _moving(case):
     markers = f", points: markers, {case.curve_word}" if case.test is not None else ""
     return [
         Figure(
-            f"{case.name}: blocks of the sample of the median peak by every model when a block is farthest{markers}. "
-            f"Displacement is relative to the slab's marker and drawn {given(usual_magnification(case))} times as "
-            "large. On a screen the blocks move, in real time, and can be turned; samples are those of the median and "
-            "of the largest peak, and each point's displacement is multiplied, so that blocks bend where the "
-            "magnification is large.",
+            f"{case.name}: blocks of samples by every model{markers}. Displacement is relative to the slab's marker. "
+            "In print: the sample of the median peak when a block is farthest, displacement drawn "
+            f"{given(usual_magnification(case))} times as large. On a screen: the samples of the median and of the "
+            "largest peak, moving in real time; the displacement of each point is multiplied, so that blocks look "
+            "bent where the magnification is large.",
             svg_of(plot_still, case),
             interactive=moving_samples(case),
         )
@@ -129,9 +129,11 @@ def _gaps(case):
 
 
 def _lines(case, markers):
-    """A remark on each model whose samples are nearly one and the same run."""
+    """A remark on each model whose samples are nearly one and the same run, or one only."""
     texts = []
     for model, one in case.responses.items():
+        if one.envelope.attrs["counted"] == 1:
+            texts.append(Text(f"{model_label(model)}: one sample, whose curve is drawn in place of a band."))
         quiet = quiet_markers(one.sensitivity, markers, case.marker_noise)
         if quiet:
             texts.append(

@@ -40,10 +40,11 @@ def gather_ensemble(runs, samples, parameters, slab_marker):
     -------
     xarray.Dataset
         Along ``sample``: ``marker_displacement(sample, time, marker, axis)`` and ``position(sample, time, body, axis)``
-        [m], inertial frame; ``orientation(sample, time, body, quaternion)``; ``status`` and ``reason``; ``end_time`` [s]; ``peak`` and
-        ``residual(sample, frame, marker)`` [m], along x; ``peak_rotation(sample, body)`` [rad];
-        ``parameter_value(sample, parameter)``; and the runs' figures of their computation, ``energy_residual`` and
-        ``numerics_*``, NaN where a run has none. Attributes: the others that all runs share, and ``slab_marker``.
+        [m], inertial frame; ``orientation(sample, time, body, quaternion)``; ``status`` and ``reason``;
+        ``end_time`` [s]; ``peak`` and ``residual(sample, frame, marker)`` [m], along x;
+        ``peak_rotation(sample, body)`` [rad]; ``parameter_value(sample, parameter)``; and the runs' figures of
+        their computation, ``energy_residual`` and ``numerics_*``, NaN where a run has none. Attributes: the others that
+        all runs share, and ``slab_marker``.
 
     Raises
     ------

@@ -90,10 +90,10 @@ def _frames(times):
 
 def _motion(run, slab_marker):
     """Shift and turn of a sample at the frames, float64 arrays (n_times, n_bodies, 3)."""
-    last = int(np.isfinite(run["position"]).all(("body", "axis")).sum()) - 1
-    rows = np.minimum(np.arange(run.sizes["time"])[_frames(run["time"].to_numpy())], last)
     run = run.transpose("time", "body", "marker", "axis", "quaternion", ...)
     place = (run["position"] - run["marker_displacement"].sel(marker=slab_marker, drop=True)).to_numpy()
+    last = int(np.isfinite(place).all(axis=(1, 2)).sum()) - 1
+    rows = np.minimum(np.arange(len(place))[_frames(run["time"].to_numpy())], last)
     orientation = run["orientation"].to_numpy()
     now, start = (
         Rotation.from_quat(one.reshape(-1, 4), scalar_first=True)

@@ -7,7 +7,7 @@ function showMoving(place, { step, frames, magnification, bodies, samples, measu
     <label>Sample <select name="sample"></select></label>
     <label>Time <input name="frame" type="range" min="0" max="${frames - 1}" value="0"> <output name="clock"></output></label>
     <label>Magnification <input name="factor" type="range" min="1" max="50" value="${magnification}"> <output name="times"></output></label>
-    <label>Seen from <input name="turn" type="range" min="-90" max="90" value="35"></label>`;
+    <label>Turn <input name="turn" type="range" min="-90" max="90" value="35"></label>`;
   const { play, sample, frame, clock, factor, times, turn } = form.elements;
   samples.forEach((one, row) => sample.add(new Option(one.label, row)));
   const canvas = document.createElement("canvas"), pen = canvas.getContext("2d");

@@ -86,7 +86,9 @@ def plot_still(case):
         _draw_blocks(axes, scene, colors, case.structure, one.isel(time=frame), magnification)
         if case.test is not None:
             _draw_markers(axes, scene, case, one["time"].to_numpy()[frame], magnification)
-        axes.set_title(f"{model_label(model)}\nsample {int(one['sample'])} at {float(one['time'][frame]):.2f} s")
+        axes.set_title(
+            f"{model_label(model)}\nsample {int(one['sample'])} at {float(one['time'][frame]):.2f} s"
+        )
         axes.set_aspect("equal")
         axes.autoscale_view()
         axes.set_axis_off()
@@ -122,7 +124,9 @@ def _markers(structure, names):
 def _label(model, one):
     words = f"{model_label(model)}, sample {int(one['sample'])}: {one['chosen'].item()}, {millimetres(one['peak'])} mm"
     ended = one["status"].item()
-    return words if ended == "completed" else f"{words}, {ended} at {given(round(float(one['end_time']), 2))} s"
+    return (
+        words if ended == "completed" else f"{words}, {ended} at {given(round(float(one['end_time']), 2))} s"
+    )
 
 
 def _packed(values):
