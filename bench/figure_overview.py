@@ -21,8 +21,8 @@ from blockshake.measurement.motion.outliers import without_outliers
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.report.document.drawing import BLACK, DARK_GREY, RED, SKY, new_figure, save_picture
 from blockshake.report.run.animation import magnified
-from blockshake.report.run.colors import body_colors
-from blockshake.report.run.projection import Scene
+from blockshake.report.scene.colors import body_colors
+from blockshake.report.scene.projection import Scene
 from blockshake.simulation.simulate import simulate
 from blockshake.study.ensembles.case_input import driving_motions, measured_input, measured_on_clock
 from blockshake.study.sampling.distributions import LINKED

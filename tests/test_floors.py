@@ -33,7 +33,7 @@ ROOMS_OF_DIAGNOSIS = [
     ["gain"],
     ["steps"],
 ]
-ROOMS_OF_REPORT = [["document"], ["study", "diagnosis", "run"]]
+ROOMS_OF_REPORT = [["document"], ["scene"], ["study", "diagnosis", "run"]]
 MOST_MODULES = 15
 
 

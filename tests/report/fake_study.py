@@ -19,6 +19,7 @@ from blockshake.study.ensembles.case_input import measured_input
 from blockshake.study.ensembles.coverage import coverage
 from blockshake.study.ensembles.ensemble import gather_ensemble, sample_figures
 from blockshake.study.ensembles.envelope import envelope
+from blockshake.study.ensembles.shown_samples import shown_samples
 from blockshake.study.sampling.distributions import TABLE_2
 from blockshake.study.sampling.latin_hypercube import draw_samples
 from blockshake.study.sensitivity.sensitivity import sensitivity
@@ -135,6 +136,7 @@ class FakeStudy:
             for kind, result in (
                 ("envelopes", envelope(ensemble, 0.4)),
                 ("samples", sample_figures(ensemble)),
+                ("shown", shown_samples(ensemble)),
                 ("comparisons", coverage(test, ensemble, 1e-4)),
                 ("sensitivities", sensitivity(ensemble, list(self.design.columns))),
             ):

@@ -94,6 +94,15 @@ def test_edit_of_the_report_simulates_nothing(finished):
         path.write_text(before)
 
 
+def test_report_of_one_case_needs_its_results_alone(finished):
+    answer = finished.snakemake("reports/small-configuration-1.html")
+    assert answer.returncode == 0, answer.stderr
+    assert (finished.folder / "reports" / "small-configuration-1.pdf").read_bytes().startswith(b"%PDF")
+    planned = finished.jobs("--forceall", "reports/small-configuration-1.html")
+    assert planned["make_case_report"] == 1
+    assert not {"study_convergence", "make_report"} & set(planned)
+
+
 def test_single_sample_is_a_batch_of_one(finished):
     target = "results/small/runs/nscd-rigid/configuration-1/003-003.nc"
     answer = finished.snakemake(target)

@@ -132,6 +132,44 @@ def files_of_models(wildcards):
     return named
 
 
+def files_of_report(cases):
+    """Files that a report of these cases is made of, by name."""
+    measured = [case for case in cases if case in MEASURED]
+    motions = {Path(CASES[case]["motion"]).stem for case in cases}
+
+    def results(pattern, **named):
+        return expand(f"results/{STUDY}/{pattern}", **named)
+
+    def by_model(kind, named):
+        return results(f"{kind}/{{model}}/{{case}}.nc", model=MODELS, case=named)
+
+    return {
+        "structures": [
+            definition("structures", CASES[case]["structure"]) for case in cases
+        ],
+        "campaigns": [file for case in measured for file in campaign_files(case)],
+        "templates": TEMPLATES,
+        "motions": results("motions/{motion}.nc", motion=sorted(motions)),
+        "design": results("design.{suffix}", suffix=["csv", "json"]),
+        "stiffness": results("stiffness/{case}.csv", case=cases),
+        "waves": results("waves/{case}.nc", case=cases),
+        "bases": results("inputs/{case}.nc", case=measured),
+        "definitions": (
+            results("stiffness-definitions.nc") if next(iter(CASES)) in cases else []
+        ),
+        "envelopes": by_model("envelopes", cases),
+        "samples": by_model("samples", cases),
+        "shown": by_model("shown", cases),
+        "comparisons": by_model("comparisons", measured),
+        "differences": results("differences/{case}.nc", case=cases),
+        "friction": results(
+            "friction/{case}.json",
+            case=[case for case in FRICTION_SEARCH.get("cases", []) if case in cases],
+        ),
+        "sensitivities": by_model("sensitivities", cases),
+    }
+
+
 def source_of(script, *models):
     """Digest of all that a script imports, and of the solvers of the models that it runs."""
     return source_digest(*script_sources(script, *models))
@@ -192,6 +230,10 @@ config.update(CHECKED.model_dump(mode="json"))
 
 # models that the null hypothesis of a diagnosis holds
 NULL_MODELS = [name for name, model in SOLVERS.items() if model.perturbation]
+TEMPLATES = expand(
+    beside(PACKAGE / "report" / "document" / "templates" / "{name}"),
+    name=["report.html.j2", "report.css", "report.js", "moving.js", "report.typ"],
+)
 STUDY = config["name"]
 MODELS = list(config["models"])
 CASES = {Path(case["structure"]).stem: case for case in config["cases"]}

@@ -310,10 +310,7 @@ rule make_diagnosis_report:
             f"results/libraries/{name}/predictability.nc"
             for name in library_names(wildcards.campaign)
         ],
-        templates=expand(
-            beside(PACKAGE / "report" / "document" / "templates" / "{name}"),
-            name=["report.html.j2", "report.typ"],
-        ),
+        templates=TEMPLATES,
         track_record=[TRACK_RECORD] if Path(TRACK_RECORD).exists() else [],
     output:
         html=report("reports/diagnosis-{campaign}.html", category="Diagnosis"),

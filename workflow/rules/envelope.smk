@@ -22,6 +22,22 @@ rule make_envelope:
         "../scripts/make_envelope.py"
 
 
+rule show_samples:
+    """Motion of the sample of the median peak and of that of the largest one, for the report."""
+    input:
+        batches=batch_files,
+    output:
+        "results/{study}/shown/{model}/{case}.nc",
+    log:
+        "logs/{study}/show_samples/{model}/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        source=source_of("show_samples"),
+    script:
+        "../scripts/show_samples.py"
+
+
 rule compare_with_measurement:
     """Coverage of the measured curves by the ensemble's bounds, with its leave-one-out reference."""
     input:

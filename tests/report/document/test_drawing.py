@@ -1,9 +1,11 @@
+import re
+
 import numpy as np
 import pytest
 from PIL import Image
 
 from blockshake.errors import InputError
-from blockshake.report.document.drawing import new_figure, save_picture
+from blockshake.report.document.drawing import new_figure, save_picture, svg_of
 
 
 def plot(end):
@@ -32,3 +34,25 @@ def test_a_suffix_that_is_no_picture_is_refused(tmp_path):
     with pytest.raises(InputError, match=r"expected a picture's suffix: \.png, \.pdf, \.svg"):
         save_picture(tmp_path / "a.jpg", plot, 2.0)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_points_of_a_curve_are_where_matplotlib_puts_them(tmp_path):
+    """Each is told from the one before, to a hundredth of a point; errors do not add up along the curve."""
+
+    def curve():
+        figure = new_figure(0.05)
+        figure.subplots().plot(np.sin(0.3 * np.arange(400.0)), gid="curve")
+        return figure
+
+    save_picture(tmp_path / "exact.svg", curve)
+    exact = np.array(_curve((tmp_path / "exact.svg").read_text()).replace("L", "").split()[1:], dtype=float)
+    command, x, y, line, *steps = _curve(svg_of(curve)).split()
+    assert (command, line) == ("M", "l")
+    told = np.cumsum(np.array([x, y, *steps], dtype=float).reshape(-1, 2), axis=0)
+    np.testing.assert_allclose(told, exact.reshape(-1, 2), atol=0.0051)
+    assert len(" ".join(steps)) < 0.5 * len((tmp_path / "exact.svg").read_text())
+
+
+def _curve(svg):
+    """Path data of the curve."""
+    return re.search(r'id="curve">\s*<path d="([^"]*)"', svg)[1]

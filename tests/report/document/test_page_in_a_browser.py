@@ -1,9 +1,12 @@
 """A report's page as a browser shows it: nothing fetched, nothing complained of, everything can be saved."""
 
+import base64
+import json
 import re
 import shutil
 import subprocess
 
+import numpy as np
 import pytest
 
 from blockshake.report.document.blocks import Document, Figure, Section, Table, Text, numbered
@@ -27,6 +30,16 @@ def shown(tmp_path_factory):
             "Curves.", drawing, interactive='{"data": [{"y": [1, 2], "name": "</script>"}], "layout": {}}'
         ),
     )
+    zeros = {"unit": 0.1, "data": base64.b64encode(np.zeros((2, 1, 3), "<i2").tobytes()).decode()}
+    arms = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    moving = {
+        "step": 0.04, "frames": 2, "magnification": 5,
+        "bodies": [{"place": [0, 0, 1], "arms": arms, "faces": faces, "color": [0.8, 0.8, 0.8]}],
+        "samples": [{"label": "sample <7>", "shift": zeros, "turn": zeros}],
+        "measured": {"label": "measured", "bodies": [0], "arms": [[0.3, 0, 0.3]], "shift": zeros},
+    }  # fmt: skip
+    blocks += (Figure("Blocks.", drawing, interactive=json.dumps({"moving": moving})),)
     document = Document("Title", "What it is", (Section("First", "first", blocks),))
     write_html(folder / "page.html", numbered(document))
     done = subprocess.run(
@@ -47,13 +60,23 @@ def test_nothing_is_complained_of(shown):
 
 def test_every_table_and_every_figure_can_be_saved(shown):
     buttons = re.findall(r'<button type="button" title="([^"]*)">([^<]*)</button>', shown[0])
-    assert buttons == [("Save table-1", "CSV"), ("Save figure-1", "SVG"), ("Save figure-2", "SVG")]
+    figures = [(f"Save figure-{number}", "SVG") for number in (1, 2, 3)]
+    assert buttons == [("Save table-1", "CSV"), *figures]
 
 
 def test_curves_are_drawn_in_place_of_the_drawing(shown):
     figures = re.findall(r'<figure class="drawn">.*?</figure>', shown[0], re.DOTALL)
-    assert len(figures) == 1
+    assert len(figures) == 2
     assert "main-svg" in figures[0]
+
+
+def test_blocks_that_move_are_drawn_with_their_controls(shown):
+    form = re.search(r'<form class="controls">.*?</form><canvas[^>]*>', shown[0], re.DOTALL)[0]
+    assert '<option value="0">sample &lt;7&gt;</option>' in form
+    assert '<button type="button" name="play">Play</button>' in form
+    assert "0.00 s" in form
+    assert "5 times" in form
+    assert int(re.search(r'<canvas[^>]* width="(\d+)"', form)[1]) > 100  # set when it is drawn
 
 
 def test_names_are_text(shown):

@@ -19,7 +19,7 @@ from blockshake.report.study.closing_sections import checks
 from blockshake.report.study.content import load_content
 from blockshake.report.study.convergence_section import convergence as annex
 from blockshake.report.study.opening_sections import stiffness
-from blockshake.report.study.report import compose, make_report
+from blockshake.report.study.report import compose, make_case_report, make_report
 from blockshake.report.study.statements.section import findings
 from blockshake.study.convergence.table import load_convergence
 from blockshake.study.peer_record import load_peer_record
@@ -107,7 +107,8 @@ def test_peaks_are_those_of_the_files(fake, text):
         envelope = xr.load_dataset(fake.results / "envelopes" / model / "configuration-4.nc")
         peak = envelope["peak"].sel(frame="slab", marker="top-face")
         shown = " / ".join(f"{1e3 * float(peak.sel(quantile=one)):.1f}" for one in (0.05, 0.5, 0.95))
-        assert f"{shown} (n = {envelope.attrs['counted']})" in text
+        one = f"{shown.partition(' ')[0]} (one sample)"
+        assert (one if envelope.attrs["counted"] == 1 else f"{shown} (n = {envelope.attrs['counted']})") in text
 
 
 def test_measured_peak_is_that_of_the_simulated_window(fake, tmp_path):
@@ -253,6 +254,31 @@ def test_study_without_nscd_has_no_annex_on_lmgc90(fake):
     study = {**fake.study, "models": {"ls-dem": MODELS["ls-dem"]}}
     document = compose(load_content(study, fake.results, fake.benchmarks))
     assert "peer" not in [section.key for section in document.sections]
+
+
+def test_case_alone_needs_and_tells_nothing_of_the_others(tmp_path):
+    fake = FakeStudy(tmp_path)
+    others = [*fake.results.rglob("configuration-1*"), fake.results / "convergence.csv"]
+    for path in [*others, fake.results / "motions" / "alkion.nc", fake.results / "stiffness-definitions.nc"]:
+        path.unlink()
+    html, pdf = tmp_path / "case.html", tmp_path / "case.pdf"
+    make_case_report(fake.study, "configuration-4", fake.results, fake.benchmarks, html, pdf)
+    assert pdf.read_bytes().startswith(b"%PDF")
+    parsed = Page()
+    parsed.feed(html.read_text(encoding="utf-8"))
+    said = " ".join(" ".join(parsed.words).split())
+    assert "blockshake: fake, configuration-4" in said
+    assert "1 structure, 4 models" in said
+    assert "reports/fake-configuration-4.html" in said
+    assert {"summary", "structures", "responses", "models", "limits", "origin"} <= set(parsed.ids)
+    assert not {"statements", "convergence", "peer"} & set(parsed.ids)
+    before = said[: said.index("Configuration used")]
+    assert "configuration-1" not in before
+
+
+def test_quantiles_that_print_alike_say_why(text):
+    assert re.search(r"\d+\.\d \(one sample\)", text)
+    assert "NSCD elastic: one sample, whose curve is drawn in place of a band." in text
 
 
 def test_missing_results_are_named(tmp_path):

@@ -52,7 +52,8 @@ class Table:
 class Figure:
     """A drawing as SVG text, ``width`` [m] in print; ``number`` counts the figures of the document.
 
-    ``interactive``: JSON of a plotly figure that stands for the drawing on a screen; empty where the drawing stands.
+    ``interactive``: JSON of a plotly figure, or of blocks that move under ``moving``, that stands for the drawing on a
+    screen; empty where the drawing stands.
     """
 
     caption: str

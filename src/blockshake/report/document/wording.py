@@ -79,6 +79,15 @@ def share_words(count, total):
     return {0: f"none of {total}", total: f"all {total}"}.get(count, f"{count} of {total}")
 
 
+def count_words(count, noun):
+    """A number of things: ``2 models``.
+
+    >>> count_words(1, "model"), count_words(0, "model")
+    ('1 model', '0 models')
+    """
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
 def sentence_case(text):
     """Text as a sentence: first letter large, full stop at the end."""
     return f"{text[0].upper()}{text[1:]}."

@@ -16,9 +16,9 @@ from blockshake.errors import InputError
 from blockshake.files import replacing
 from blockshake.report.document.drawing import DARK_GREY, STYLE
 from blockshake.report.document.wording import given
-from blockshake.report.run.colors import body_colors
 from blockshake.report.run.figure import run_title
-from blockshake.report.run.projection import VIEWS, Scene
+from blockshake.report.scene.colors import body_colors
+from blockshake.report.scene.projection import VIEWS, Scene
 from blockshake.solvers.pieces import Due
 
 FRAME_RATE = 20.0  # Hz; a GIF counts in hundredths of a second

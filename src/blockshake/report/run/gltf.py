@@ -6,7 +6,7 @@ from trimesh.exchange.gltf import export_glb
 from trimesh.visual.material import PBRMaterial
 
 from blockshake.files import replacing
-from blockshake.report.run.colors import body_colors
+from blockshake.report.scene.colors import body_colors
 
 _UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, 1.0, 0], [0, -1.0, 0, 0], [0, 0, 0, 1.0]])  # glTF's y is up
 _FLOAT = 5126  # glTF 2.0, section 3.6.2.2: a component of 32 bits

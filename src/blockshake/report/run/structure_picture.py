@@ -6,8 +6,8 @@ from matplotlib.path import Path
 
 from blockshake.measurement.motion.joint_coordinates import find_joints
 from blockshake.report.document.drawing import DARK_GREY, RED, new_figure
-from blockshake.report.run.colors import body_colors
-from blockshake.report.run.projection import Scene
+from blockshake.report.scene.colors import body_colors
+from blockshake.report.scene.projection import Scene
 
 _VIEWS = {"front": ("front view", "x [m]"), "side": ("side view", "y [m]"), "3d": ("", "")}
 _WIDTH, _HEIGHT = 0.25, 0.2  # m of paper at most

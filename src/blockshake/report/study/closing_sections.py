@@ -70,7 +70,7 @@ def timings(content):
 
 def origin(content):
     """Versions, digests, seeds, configuration, and the command that makes the report again."""
-    name = content.study["name"]
+    name = content.name
     sources = {}
     for case in content.cases.values():
         for model, one in case.responses.items():
@@ -105,6 +105,10 @@ def origin(content):
             "Seeds; those of the motions stand with their sources above.", ("Use", "Seed"), _alike(seeds)
         ),
         *command_blocks(f"snakemake -c2 reports/{name}.html reports/{name}.pdf --configfile FILE"),
+        Text(
+            "Command that shows which job made each result, with its code, parameters and times, in a page of its own:"
+        ),
+        Listing("Provenance", "snakemake --report provenance.html --configfile FILE"),
         Listing("Configuration used, the content of FILE", configuration),
     )
     return Section("Origin", "origin", blocks)

@@ -26,11 +26,12 @@ _PACKAGES = ("numpy", "scipy", "numba", "xarray", "pandas", "snakemake", "matplo
 
 @dataclass(frozen=True)
 class Response:
-    """Results of one case by one model: envelope, figures of the samples, coverage of the measured curves where there
-    are any, and sensitivity to the random variables."""
+    """Results of one case by one model: envelope, figures of the samples, motion of those that are shown, coverage of
+    the measured curves where there are any, and sensitivity to the random variables."""
 
     envelope: xr.Dataset
     samples: xr.Dataset
+    shown: xr.Dataset
     comparison: xr.Dataset | None
     sensitivity: xr.Dataset
 
@@ -51,8 +52,10 @@ class ReportedCase:
         The slab's measured motion, from `measured_input`; none where the case is compared with no test.
     measured : xarray.Dataset or None
         From `measured_curves`; none likewise.
+    test : xarray.Dataset or None
+        The measured test, from `measured_on_clock`.
     test_file : Path or None
-        File of the measured test.
+        Its file.
     synthetic : bool
         The measured test is a virtual one.
     marker_noise : float
@@ -69,6 +72,7 @@ class ReportedCase:
     motion: str
     base: xr.Dataset | None
     measured: xr.Dataset | None
+    test: xr.Dataset | None
     test_file: Path | None
     synthetic: bool
     marker_noise: float
@@ -108,6 +112,8 @@ class Content:
     ----------
     study : dict
         The configuration.
+    only : str or None
+        Name of the case that is reported alone; none where all are.
     cases : dict of str to ReportedCase
     motions : dict of str to xarray.Dataset
         From `describe_motion`, by name.
@@ -117,13 +123,14 @@ class Content:
     distributions : dict of str to Lognormal
     calibrated : tuple of Calibrated
         Every case in one of them.
-    definitions : xarray.Dataset
+    definitions : xarray.Dataset or None
+        Of the study's first case; none where that is not reported.
     friction : dict of str to dict
         Friction calibrations by case; empty where the study asks for none.
     convergence : pandas.DataFrame or None
-        From `study_convergence`, where the study has one.
-    peer : xarray.Dataset
-        From `load_peer_record`.
+        From `study_convergence`, where the study has one; a case alone has none.
+    peer : xarray.Dataset or None
+        From `load_peer_record`; a case alone has none.
     timings : tuple of Timing
     digests : dict of str to str
         Of input files and of tables that all samples come from, by path.
@@ -132,19 +139,25 @@ class Content:
     """
 
     study: dict
+    only: str | None
     cases: dict
     motions: dict
     design: pd.DataFrame
     design_summary: dict
     distributions: dict
     calibrated: tuple
-    definitions: xr.Dataset
+    definitions: xr.Dataset | None
     friction: dict
     convergence: pd.DataFrame | None
-    peer: xr.Dataset
+    peer: xr.Dataset | None
     timings: tuple
     digests: dict
     versions: dict
+
+    @property
+    def name(self):
+        """Name of the report, as in the names of its files."""
+        return f"{self.study['name']}-{self.only}" if self.only else self.study["name"]
 
     def peak_acceleration(self, case):
         """Peak ground acceleration of a case's scaled motion [m/s2]."""
@@ -155,8 +168,8 @@ class Content:
         return [case.name for case in self.cases.values() if has_parameter(case.structure, variable)]
 
 
-def load_content(study, results, benchmarks):
-    """Read the `Content` of a finished study.
+def load_content(study, results, benchmarks, only=None):
+    """Read the `Content` of a finished study, or of one of its cases.
 
     Parameters
     ----------
@@ -164,6 +177,8 @@ def load_content(study, results, benchmarks):
         Its configuration, checked.
     results, benchmarks : str or path
         Folders of its results and of its jobs' benchmarks.
+    only : str, optional
+        Name of the case that is reported alone: nothing of the others is read.
 
     Raises
     ------
@@ -171,10 +186,12 @@ def load_content(study, results, benchmarks):
         A file is missing or holds something else.
     """
     results = Path(results)
-    cases = {Path(case["structure"]).stem: case for case in study["cases"]}
+    every = {Path(case["structure"]).stem: case for case in study["cases"]}
+    cases = {only: every[only]} if only else every
     loaded = {name: _case(study, results, name, settings) for name, settings in cases.items()}
     motions = {}
-    for named in [*(case["motion"] for case in cases.values()), *study["ladder"]["motions"]]:
+    climbed = [] if only else study["ladder"]["motions"]
+    for named in [*(case["motion"] for case in cases.values()), *climbed]:
         motions[Path(named).stem] = load_made(results / "motions" / f"{Path(named).stem}.nc")
     design = results / "design.csv"
     stiffness = [results / "stiffness" / f"{name}.csv" for name in cases]
@@ -182,28 +199,33 @@ def load_content(study, results, benchmarks):
         named_file(f"{kind}s", case[kind]) for kind in ("structure", "motion") for case in cases.values()
     ]
     tests = [case.test_file for case in loaded.values() if case.test_file]
+    peers = [] if only else [PEER_RECORD]
     return Content(
         study=study,
+        only=only,
         cases=loaded,
         motions=motions,
         design=load_design(design),
         design_summary=load_json(results / "design.json"),
         distributions=load_distributions(study["ensemble"].get("distributions"), study["name"]),
         calibrated=_calibrated(results, cases),
-        definitions=load_made(results / "stiffness-definitions.nc"),
+        definitions=load_made(results / "stiffness-definitions.nc") if next(iter(every)) in cases else None,
         friction={
             name: load_json(results / "friction" / f"{name}.json")
             for name in (study.get("friction_calibration") or {}).get("cases", ())
+            if name in cases
         },
-        convergence=load_convergence(results / "convergence.csv") if study.get("convergence") else None,
-        peer=load_peer_record(),
+        convergence=(
+            load_convergence(results / "convergence.csv") if study.get("convergence") and not only else None
+        ),
+        peer=None if only else load_peer_record(),
         timings=read_timings(
             benchmarks,
             {(model, case.name): one.samples for case in loaded.values() for model, one in case.responses.items()},
         ),
         digests={
             "configuration of the study": content_digest(study),
-            **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, *stiffness, PEER_RECORD]},
+            **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, *stiffness, *peers]},
         },
         versions=software_versions(_PACKAGES),
     )  # fmt: skip
@@ -219,6 +241,7 @@ def _case(study, results, name, settings):
         model: Response(
             found("envelopes", model),
             found("samples", model),
+            found("shown", model),
             found("comparisons", model) if named else None,
             found("sensitivities", model),
         )
@@ -237,6 +260,7 @@ def _case(study, results, name, settings):
         motion=Path(settings["motion"]).stem,
         base=base,
         measured=measured_curves(test, test.attrs["slab_marker"], settings["duration"]) if named else None,
+        test=test,
         test_file=campaign.folder / campaign.tests[named["test"]].file if named else None,
         synthetic=bool(test.attrs.get("synthetic", 0)) if named else False,
         marker_noise=marker_noise,

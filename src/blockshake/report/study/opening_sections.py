@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.report.document.blocks import Figure, Heading, Items, Section, Text
 from blockshake.report.document.drawing import svg_of
-from blockshake.report.document.wording import given, model_label, number, parameter_label
+from blockshake.report.document.wording import count_words, given, model_label, number, parameter_label
 from blockshake.report.study.definition_tables import definition_blocks
 from blockshake.report.study.figures.motion import plot_motions, plot_spectra
 from blockshake.report.study.figures.samples import plot_correlation, plot_samples
@@ -52,7 +52,7 @@ def summary(content):
     responses = [one for case in cases for one in case.responses.values()]
     ended = count_outcomes(np.concatenate([one.samples["status"] for one in responses]))
     items = [
-        f"{len(content.cases)} structures, {len(content.study['models'])} models "
+        f"{count_words(len(content.cases), 'structure')}, {count_words(len(content.study['models']), 'model')} "
         f"({', '.join(model_label(model) for model in content.study['models'])}), {sum(ended)} runs: "
         f"{ended.completed} completed, {ended.collapsed} collapsed, {ended.failed} failed.",
         f"{len(content.design)} samples of {len(content.distributions)} random variables in the design (seed "
@@ -218,4 +218,6 @@ def stiffness(content):
                 svg_of(plot_stiffness, calibrated.stiffness),
             ),
         ]
-    return Section("Contact stiffness", "stiffness", (*blocks, *definition_blocks(content.definitions)))
+    if content.definitions is not None:
+        blocks += definition_blocks(content.definitions)
+    return Section("Contact stiffness", "stiffness", tuple(blocks))

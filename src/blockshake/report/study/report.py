@@ -1,4 +1,4 @@
-"""The report of a study: one page and one PDF from the same content."""
+"""The report of a study, or of one of its cases: one page and one PDF from the same content."""
 
 from blockshake.files import write_json
 from blockshake.report.document.blocks import Document, numbered
@@ -33,6 +33,8 @@ _SECTIONS = (
     convergence,
     peer,
 )
+# these judge the study as a whole
+_NOT_OF_A_CASE = (statements, convergence, peer)
 
 
 def make_report(study, results, benchmarks, html, pdf, paper):
@@ -61,17 +63,25 @@ def make_report(study, results, benchmarks, html, pdf, paper):
     write_json(paper, findings(content))
 
 
+def make_case_report(study, case, results, benchmarks, html, pdf):
+    """Write the report of one case of a study, from the results of this case alone; parameters as of `make_report`."""
+    document = compose(load_content(study, results, benchmarks, case))
+    write_html(html, document)
+    write_pdf(pdf, document)
+
+
 def compose(content):
-    """Document of the content of a study."""
+    """Document of the content of a study or of one of its cases."""
+    sections = [one for one in _SECTIONS if not (content.only and one in _NOT_OF_A_CASE)]
     return numbered(
         Document(
-            title=f"blockshake: {content.study['name']}",
+            title=f"blockshake: {content.study['name']}" + (f", {content.only}" if content.only else ""),
             subtitle=" ".join(content.study["description"].split()),
             details=tuple(
                 (name.capitalize(), content.study[name])
                 for name in ("project", "author", "date")
                 if content.study.get(name)
             ),
-            sections=tuple(made for section in _SECTIONS if (made := section(content)) is not None),
+            sections=tuple(made for section in sections if (made := section(content)) is not None),
         )
     )

@@ -6,6 +6,7 @@ from blockshake.report.document.rows import face_markers, main_bodies
 from blockshake.report.document.wording import given, model_label, number, share_words
 from blockshake.report.study.figures.displacement import plot_displacements
 from blockshake.report.study.figures.interactive import interactive_displacements
+from blockshake.report.study.figures.moving import moving_samples, plot_still, usual_magnification
 from blockshake.report.study.models.tables import block_tables
 from blockshake.report.study.probability_table import probability_table
 from blockshake.report.study.result_tables import coverage_table
@@ -59,11 +60,30 @@ def _response(case, motion):
         *_gaps(case),
         *_lines(case, markers.values()),
         figure(main, "inertial", f"{case.name}: displacement in the inertial frame{paper}{some}."),
+        *_moving(case),
         *block_tables(case),
         *([] if case.measured is None else [coverage_table(case)]),
         figure(
             list(markers), "slab", f"{case.name}: displacement relative to the slab's marker, every block."
         ),
+    ]
+
+
+def _moving(case):
+    """Blocks of some samples in space, where any sample has a result."""
+    if not any(one.shown.sizes["sample"] for one in case.responses.values()):
+        return []
+    markers = f", points: markers, {case.curve_word}" if case.test is not None else ""
+    return [
+        Figure(
+            f"{case.name}: blocks of samples by every model{markers}. Displacement is relative to the slab's marker. "
+            "In print: the sample of the median peak when a block is farthest, displacement drawn "
+            f"{given(usual_magnification(case))} times as large. On a screen: the samples of the median and of the "
+            "largest peak, moving in real time; the displacement of each point is multiplied, so that blocks look "
+            "bent where the magnification is large.",
+            svg_of(plot_still, case),
+            interactive=moving_samples(case),
+        )
     ]
 
 
@@ -109,9 +129,11 @@ def _gaps(case):
 
 
 def _lines(case, markers):
-    """A remark on each model whose samples are nearly one and the same run."""
+    """A remark on each model whose samples are nearly one and the same run, or one only."""
     texts = []
     for model, one in case.responses.items():
+        if one.envelope.attrs["counted"] == 1:
+            texts.append(Text(f"{model_label(model)}: one sample, whose curve is drawn in place of a band."))
         quiet = quiet_markers(one.sensitivity, markers, case.marker_noise)
         if quiet:
             texts.append(

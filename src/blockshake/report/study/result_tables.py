@@ -32,11 +32,7 @@ def top_block_table(content):
                 case.name,
                 body,
                 *([_measured(case, "peak", at)] if compared else []),
-                *(
-                    f"{quantile_range(one.envelope['peak'].sel(**at), millimetres)} "
-                    f"(n = {int(one.envelope.attrs['counted'])})"
-                    for one in case.responses.values()
-                ),
+                *(_peaks(one.envelope, at) for one in case.responses.values()),
             )
         )
     models = content.study["models"]
@@ -47,9 +43,19 @@ def top_block_table(content):
     )  # fmt: skip
     return Table(
         "Peak displacement of the top block along x relative to the slab: quantiles over the n samples that "
-        "completed or collapsed.",
+        "completed or collapsed; one number where they print alike, with the reason.",
         header, tuple(rows), "ll" + "r" * (len(header) - 2),
     )  # fmt: skip
+
+
+def _peaks(envelope, at):
+    """Quantiles of a marker's peak with the number of samples; one number where they print alike, and why they do."""
+    counted = int(envelope.attrs["counted"])
+    shown = quantile_range(envelope["peak"].sel(**at), millimetres).split(" / ")
+    if len(set(shown)) > 1:
+        return f"{' / '.join(shown)} (n = {counted})"
+    reason = "one sample" if counted == 1 else f"n = {counted}, alike to 0.1 mm"
+    return f"{shown[0]} ({reason})" if counted else shown[0]
 
 
 def coverage_table(case):

@@ -16,7 +16,8 @@ from blockshake.study.ensembles.ensemble import gather_ensemble
 from blockshake.study.sampling.latin_hypercube import load_design
 from blockshake.study.sampling.sample_parameters import sample_parameters
 
-DECIMALS = {"m": 7}  # digits kept in histories: 0.1 um, a thousandth of a marker's noise
+# digits kept in histories: 0.1 um, a thousandth of a marker's noise, and of a quaternion as much at a block's length
+DECIMALS = {"m": 7, "1": 8}
 
 
 def simulate_samples(case, motions, model, settings, output_rate, rows, linked, store, source, progress):

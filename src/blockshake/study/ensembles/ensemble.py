@@ -40,10 +40,11 @@ def gather_ensemble(runs, samples, parameters, slab_marker):
     -------
     xarray.Dataset
         Along ``sample``: ``marker_displacement(sample, time, marker, axis)`` and ``position(sample, time, body, axis)``
-        [m], inertial frame; ``status`` and ``reason``; ``end_time`` [s]; ``peak`` and
-        ``residual(sample, frame, marker)`` [m], along x; ``peak_rotation(sample, body)`` [rad];
-        ``parameter_value(sample, parameter)``; and the runs' figures of their computation, ``energy_residual`` and
-        ``numerics_*``, NaN where a run has none. Attributes: the others that all runs share, and ``slab_marker``.
+        [m], inertial frame; ``orientation(sample, time, body, quaternion)``; ``status`` and ``reason``;
+        ``end_time`` [s]; ``peak`` and ``residual(sample, frame, marker)`` [m], along x;
+        ``peak_rotation(sample, body)`` [rad]; ``parameter_value(sample, parameter)``; and the runs' figures of
+        their computation, ``energy_residual`` and ``numerics_*``, NaN where a run has none. Attributes: the others that
+        all runs share, and ``slab_marker``.
 
     Raises
     ------
@@ -117,17 +118,17 @@ def join_batches(batches):
 
 def sample_figures(ensemble):
     """Outcome of each sample without the histories: status, peaks, residuals, parameters, figures."""
-    figures = ensemble.drop_dims(["time", "axis"])
+    figures = ensemble.drop_dims(["time", "axis", "quaternion"])
     figures.attrs = {**ensemble.attrs, "title": "samples of an ensemble of simulated runs"}
     return figures
 
 
 def _piece(run):
     """The variables of a run that an ensemble keeps, and the largest rotation of its bodies."""
-    piece = run[["marker_displacement", "position"]]
+    piece = run[["marker_displacement", "position", "orientation"]]
     piece = piece.assign(peak_rotation=_peak_rotation(run["orientation"]))
     piece.attrs = {}
-    return piece.transpose("time", "marker", "body", "axis")
+    return piece.transpose("time", "marker", "body", "axis", "quaternion")
 
 
 def _peak_rotation(orientation):

@@ -18,13 +18,16 @@ for (const figure of document.querySelectorAll("figure")) {
   figure.querySelector("figcaption").append(button);
 }
 
-// Curves to zoom into, drawn when they come into sight; without script, and on paper, the drawing stands.
+// Curves to zoom into and blocks that move, drawn when they come into sight; without script, and on paper, the drawing
+// stands.
 const sight = new IntersectionObserver((entries) => {
   for (const entry of entries.filter((one) => one.isIntersecting)) {
     sight.unobserve(entry.target);
-    const { data, layout } = JSON.parse(entry.target.querySelector("script").textContent);
+    const place = entry.target.querySelector(".interactive");
+    const { moving, data, layout } = JSON.parse(entry.target.querySelector("script").textContent);
     entry.target.classList.add("drawn");
-    Plotly.newPlot(entry.target.querySelector(".interactive"), data, layout, {
+    if (moving) showMoving(place, moving);
+    else Plotly.newPlot(place, data, layout, {
       responsive: true, displaylogo: false, modeBarButtons: [["zoom2d", "pan2d", "resetScale2d", "toImage"]],
     });
   }

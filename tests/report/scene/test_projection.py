@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from blockshake.geometry.structure import load_structure
-from blockshake.report.run.projection import VIEWS, Scene
+from blockshake.report.scene.projection import VIEWS, Scene
 
 
 def test_views_are_right_handed_turns():

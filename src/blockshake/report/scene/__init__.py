@@ -1,0 +1,1 @@
+"""Blocks as pictures show them: projections, colours and meshes."""

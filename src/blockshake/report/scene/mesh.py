@@ -1,0 +1,33 @@
+"""Blocks as faces in space."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.geometry.rotations import rotation_matrices
+
+
+class BodyMesh(NamedTuple):
+    """A body at the start of its structure.
+
+    Attributes
+    ----------
+    place : float64 array, shape (3,)
+        Of the mass centre, world frame [m].
+    arms : float64 array, shape (n_points, 3)
+        Points of the surface seen from the mass centre, world axes [m].
+    faces : list of lists of int
+        Rows of ``arms``, outward; triangles where the shape is not convex.
+    """
+
+    place: np.ndarray
+    arms: np.ndarray
+    faces: list
+
+
+def body_mesh(structure, body):
+    """`BodyMesh` of the body with this index."""
+    solid = structure.solid(body)
+    faces = solid.triangles if solid.polyhedron is None else solid.polyhedron.faces
+    arms = solid.vertices @ rotation_matrices(structure.orientation[body]).T
+    return BodyMesh(structure.position[body], arms, [list(map(int, face)) for face in faces])

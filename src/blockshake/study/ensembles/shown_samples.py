@@ -1,0 +1,103 @@
+"""Samples whose motion a report shows, of all runs of a case by a model the usual one and the farthest, and markers."""
+
+import numpy as np
+import xarray as xr
+from scipy.spatial.transform import Rotation
+
+from blockshake.measurement.sensors.markers import unread_directions
+from blockshake.study.ensembles.envelope import counted_samples
+
+FRAME_RATE = 25.0  # Hz
+
+
+def shown_samples(ensemble):
+    """Motion of the sample of the median peak and of that of the largest one, relative to the slab.
+
+    Parameters
+    ----------
+    ensemble : xarray.Dataset
+        From `gather_ensemble`; only completed and collapsed samples count.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``sample``, one and the same once, and none of none, at about `FRAME_RATE`:
+        ``shift(sample, time, body, axis)``, displacement of the mass centres since the start less that of the slab's
+        marker, inertial axes [m]; ``turn(sample, time, body, axis)``, rotation vector since the start [rad];
+        ``peak(sample)``, the largest displacement of any marker along x relative to the slab [m];
+        ``chosen(sample)``, why the sample is shown; ``status`` and ``end_time`` [s]. A run that ended early stands
+        still after its end.
+
+    Notes
+    -----
+    Of an even number of samples the median one is that below the middle.
+    """
+    counted = counted_samples(ensemble)
+    peak = counted["peak"].sel(frame="slab", drop=True).max("marker")
+    order = np.argsort(peak.to_numpy(), kind="stable")
+    words = {}
+    if len(order):
+        words[order[-1]] = "largest peak"
+        words[order[(len(order) - 1) // 2]] = "median peak" if len(order) > 1 else "the only sample"
+    rows = sorted(words, reverse=True, key=lambda row: words[row])  # the median one first
+    chosen = counted.isel(sample=rows)
+    moved = [_motion(chosen.isel(sample=place), ensemble.attrs["slab_marker"]) for place in range(len(rows))]
+    time = ensemble["time"].isel(time=_frames(ensemble["time"].to_numpy()))
+    shape = (len(rows), len(time), ensemble.sizes["body"], 3)
+    shift, turn = (np.reshape([one[part] for one in moved], shape) for part in (0, 1))
+    dims = ("sample", "time", "body", "axis")
+    result = xr.Dataset(
+        {
+            "shift": (dims, shift, {"long_name": "displacement relative to the slab's marker", "units": "m"}),
+            "turn": (dims, turn, {"long_name": "rotation vector since the start", "units": "rad"}),
+            "peak": ("sample", peak.to_numpy()[rows], {"long_name": "largest displacement", "units": "m"}),
+            "chosen": ("sample", [words[row] for row in rows], {"long_name": "why the sample is shown"}),
+            "status": chosen["status"].variable,
+            "end_time": chosen["end_time"].variable,
+        },
+        coords={"sample": chosen["sample"], "time": time, "body": ensemble["body"], "axis": ensemble["axis"]},
+        attrs={**ensemble.attrs, "title": "samples of an ensemble that a report shows moving"},
+    )
+    return result.drop_encoding()
+
+
+def shown_markers(test, times):
+    """Displacement of measured markers relative to the slab's marker at these times, as a picture shows it.
+
+    Parameters
+    ----------
+    test : xarray.Dataset
+        From `measured_on_clock`.
+    times : float64 array
+        [s]
+
+    Returns
+    -------
+    xarray.DataArray, (time, marker, axis)
+        [m], inertial axes; NaN in a gap. A direction that a marker does not measure counts as still.
+    """
+    displacement = test["marker_displacement"].transpose("time", "marker", "axis").copy()
+    for marker, axis in unread_directions(test):
+        displacement.loc[{"marker": marker, "axis": axis}] = 0.0
+    relative = displacement - displacement.sel(marker=test.attrs["slab_marker"], drop=True)
+    return relative.interp(time=times)
+
+
+def _frames(times):
+    """Slice of evenly spaced times at about `FRAME_RATE`."""
+    return slice(None, None, max(1, round((len(times) - 1) / FRAME_RATE / (times[-1] - times[0]))))
+
+
+def _motion(run, slab_marker):
+    """Shift and turn of a sample at the frames, float64 arrays (n_times, n_bodies, 3)."""
+    run = run.transpose("time", "body", "marker", "axis", "quaternion", ...)
+    place = (run["position"] - run["marker_displacement"].sel(marker=slab_marker, drop=True)).to_numpy()
+    last = int(np.isfinite(place).all(axis=(1, 2)).sum()) - 1
+    rows = np.minimum(np.arange(len(place))[_frames(run["time"].to_numpy())], last)
+    orientation = run["orientation"].to_numpy()
+    now, start = (
+        Rotation.from_quat(one.reshape(-1, 4), scalar_first=True)
+        for one in (orientation[rows], np.repeat(orientation[:1], len(rows), axis=0))
+    )
+    turn = (now * start.inv()).as_rotvec()
+    return place[rows] - place[0], turn.reshape(len(rows), -1, 3)
