@@ -30,6 +30,8 @@ rule show_samples:
         "results/{study}/shown/{model}/{case}.nc",
     log:
         "logs/{study}/show_samples/{model}/{case}.log",
+    benchmark:
+        "benchmarks/{study}/show_samples/{model}/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -42,6 +42,8 @@ rule make_case_report:
         pdf=report("reports/{study}-{case}.pdf", category="Study"),
     log:
         "logs/{study}/make_case_report/{case}.log",
+    benchmark:
+        "benchmarks/{study}/make_case_report/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
