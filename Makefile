@@ -9,7 +9,7 @@ READY := $(VENV)/ready
 PEERS := .venv-peers
 SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 
-.PHONY: study quick paper examples test test-slow test-faults test-hidden-few test-hidden bench figures-of-docs peers setup lint lock clean
+.PHONY: study quick paper examples test test-slow test-faults test-cluster test-hidden-few test-hidden bench figures-of-docs peers cluster setup lint lock clean
 
 study: setup
 	@$(BIN)/blockshake check config/study.yaml
@@ -34,7 +34,7 @@ examples: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python examples/own_campaign.py results/examples/own-campaign
 
 test: setup
-	$(BIN)/pytest -m "not slow and not hidden_effects and not faults" --numprocesses $(CORES) --dist loadfile
+	$(BIN)/pytest -m "not slow and not hidden_effects and not faults and not cluster" --numprocesses $(CORES) --dist loadfile
 
 test-slow: setup
 	$(BIN)/pytest -m slow
@@ -43,6 +43,11 @@ test-slow: setup
 MOMENTS ?= 20
 test-faults: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" BLOCKSHAKE_MOMENTS=$(MOMENTS) $(BIN)/pytest -m faults
+
+# a small study through a SLURM of one node on this machine, from Debian's slurmctld, slurmd, slurm-client and munge:
+# tens of minutes; skipped where they are not installed
+test-cluster: cluster
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest -m cluster
 
 # five campaigns with and without a hidden effect, diagnosed by the ordinary rules: minutes
 test-hidden-few: setup
@@ -69,6 +74,13 @@ $(PEERS)/ready:
 	@$(PYTHON) -m venv --clear $(PEERS)
 	@$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check numpy mujoco==4.0.0
 	@$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps compas_lmgc90==0.1.11
+	@touch $@
+
+# adds Snakemake's executor for SLURM to the environment: docs/cluster.md
+cluster: $(VENV)/cluster
+
+$(VENV)/cluster: $(READY)
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-build-isolation -e '.[cluster]'
 	@touch $@
 
 setup: $(READY)

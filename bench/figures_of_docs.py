@@ -14,9 +14,10 @@ import numpy as np
 import pandas as pd
 from key_tables import HEADER as KEYS_HEADER
 from key_tables import key_rows
+from schedule import deep_diagnosis, hours, measured, planned, timed_study
 
 from blockshake.dynamics.load_motion import load_motion
-from blockshake.files import load_json, write_text
+from blockshake.files import load_json, load_yaml, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.report.document.wording import number
 from blockshake.report.study.convergence_section import numbers_table
@@ -44,6 +45,10 @@ _CHANGES = {
 }
 STUDY = Path("results/study/the-paper.json")
 _STEPS = {"nscd-rigid": 1e-3, "ls-dem": 5e-5}  # s
+DEFAULT = DOCS.parent / "config" / "study.yaml"
+DIAGNOSED = DOCS.parent / "data" / "virtual-campaign" / "configuration-2"
+PROFILE = DOCS.parent / "profiles" / "slurm" / "profile.yaml"
+_CORES = (1, 64, 1024)
 LITERAL = DOCS.parent / "config" / "literal.yaml"
 _FINE_IMPACTS = {"nscd.impact_parts": 20}  # as in config/study.yaml
 _GRID = "ls_dem.level_set", "ls_dem.grid_spacing"  # mean nothing without each other
@@ -144,6 +149,45 @@ def published_settings():
     return markdown(heads, rows)
 
 
+def cost_of_samples():
+    """Core hours of 1,000 samples of the default study, by model and configuration; None where it has not been run."""
+    if not STUDY.is_file():
+        return None
+    config, times = load_config(DEFAULT), measured(".")
+    cases = [case.name for case in config.cases]
+    rows = [
+        (
+            model,
+            f"{settings.time_step:g}",
+            *(number(times["simulate_batch", (model, case)] / 3.6, 2) for case in cases),
+        )
+        for model, settings in config.models.items()
+    ]
+    return markdown(("model", "step [s]", *cases), rows)
+
+
+def times_on_a_cluster():
+    """Hours of the studies and of a deep diagnosis by the number of cores; None where no study has been run."""
+    if not STUDY.is_file():
+        return None
+    done, times = load_config(DEFAULT), measured(".")
+    plans = {}
+    for words, path in (
+        ("the default study", DEFAULT),
+        ("the paper's study", DEFAULT.with_name("paper.yaml")),
+    ):
+        jobs = planned("--configfile", str(path), "--config", *load_yaml(PROFILE)["config"])
+        plans[words] = timed_study(jobs, load_config(path), done, times)
+    plans["a deep diagnosis"] = deep_diagnosis(DIAGNOSED, times)
+    rows = []
+    for words, jobs in plans.items():
+        longest = max(jobs, key=lambda job: job.seconds)
+        spans = [number(hours(jobs, cores), 2) for cores in _CORES]
+        rows.append((words, len(jobs), *spans, f"`{longest.rule}`, {number(longest.seconds / 3600.0, 2)} h"))
+    heads = [f"{cores:,} cores [h]" if cores > 1 else "1 core [h]" for cores in _CORES]
+    return markdown(("what", "jobs", *heads, "longest job"), rows)
+
+
 def keys_of(kind):
     """Maker of the table of the keys of a kind of file."""
     return lambda: markdown(KEYS_HEADER, key_rows(kind))
@@ -166,6 +210,8 @@ MAKERS = {
     "statements": statements,
     "departures": departure_table,
     "published-settings": published_settings,
+    "cost-of-samples": cost_of_samples,
+    "times-on-a-cluster": times_on_a_cluster,
     "structure-keys": keys_of("structure"),
     "study-keys": keys_of("study"),
     "campaign-keys": keys_of("campaign"),

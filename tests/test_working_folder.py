@@ -92,3 +92,42 @@ def test_a_job_goes_on_but_without_its_command(command, code):
         [sys.executable, "-c", JOB.replace("600", "0")], env={**os.environ, COMMAND: command}, check=False
     )
     assert job.returncode == code
+
+
+QUEUED = """
+import os, sys, time
+from blockshake import working_folder
+working_folder._PERIOD = 0.01
+working_folder.end_with_folder(sys.argv[1])
+assert working_folder.COMMAND not in os.environ  # a job of this job follows nobody
+print(1, flush=True)
+time.sleep(float(sys.argv[2]))
+"""
+
+
+def _queued(folder, command, seconds):
+    return subprocess.Popen(
+        [sys.executable, "-c", QUEUED, folder, str(seconds)],
+        env={**os.environ, COMMAND: command}, stdout=subprocess.PIPE, text=True,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("kept", [True, False], ids=["command alive", "command ended"])
+def test_a_job_of_a_queue_goes_on_until_another_command_takes_the_folder(kept, tmp_path):
+    held = hold(tmp_path)
+    command = f"{BOOT} {os.getpid()}"
+    if not kept:
+        os.close(held)
+    assert _queued(tmp_path, command, 0.2).wait(LIMIT) == 0
+    job = _queued(tmp_path, command, 600)
+    assert job.stdout.readline() == "1\n"
+    if kept:
+        os.close(held)
+    next_command = _start(HOLDS + "time.sleep(600)", tmp_path)
+    assert next_command.stdout.readline() == "1\n"
+    assert job.wait(LIMIT) == -signal.SIGKILL
+    # one that was still in the queue begins nothing
+    late = _queued(tmp_path, command, 600)
+    assert late.communicate(timeout=LIMIT) == ("", None)
+    next_command.kill()
+    next_command.communicate()

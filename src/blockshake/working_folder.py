@@ -1,10 +1,16 @@
-"""The folder that a workflow works in: one command at a time, whose jobs end with it, however it ends."""
+"""The folder that a workflow works in: one command at a time, whose jobs end with it, however it ends.
 
+Jobs that a queue starts outlive their command, so that hours of work are not lost with a session. They end when the
+next command takes the folder, which starts them anew.
+"""
+
+import contextlib
 import fcntl
 import os
 import select
 import signal
 import threading
+import time
 from pathlib import Path
 
 from blockshake.errors import InputError
@@ -13,6 +19,8 @@ COMMAND = (
     "BLOCKSHAKE_COMMAND"  # environment variable of jobs: machine and process of the command that started them
 )
 _BOOT = Path("/proc/sys/kernel/random/boot_id")  # of this machine since it was switched on
+_LOCK = Path(".snakemake") / "command.lock"  # holds the name of the command that took the folder last
+_PERIOD = 10.0  # s; between two looks at the lock from another machine
 
 
 def hold(folder):
@@ -25,7 +33,7 @@ def hold(folder):
     InputError
         Another command works in the folder.
     """
-    path = Path(folder) / ".snakemake" / "command.lock"
+    path = Path(folder) / _LOCK
     path.parent.mkdir(parents=True, exist_ok=True)
     held = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
     try:
@@ -34,13 +42,15 @@ def hold(folder):
         os.close(held)
         said = "expected a folder in which no other study or diagnosis runs; wait for its end, then type this again"
         raise InputError(Path(folder).resolve(), "", said) from None
+    os.ftruncate(held, 0)
+    os.write(held, this_command()[COMMAND].encode())
     return held
 
 
 def end_with_command():
     """Kill this process when the command that started it on this machine ends, as one that is killed does.
 
-    A job that a queue starts, on this machine or another, goes on.
+    A job that a queue starts goes on, see `end_with_folder`.
     """
     machine, _, command = os.environ.get(COMMAND, "").partition(" ")
     if machine != _BOOT.read_text().strip():
@@ -51,6 +61,19 @@ def end_with_command():
         os.kill(os.getpid(), signal.SIGKILL)
     if int(command) in _ancestors():
         threading.Thread(target=_follow, args=[descriptor], daemon=True).start()
+
+
+def end_with_folder(folder):
+    """Kill this process, which a queue started, when another command than its own takes the folder.
+
+    On this machine or another: the processes that it starts are the queue's to end with it, and no longer know the
+    command.
+    """
+    command = os.environ.pop(COMMAND, None)
+    if command is None:  # a job of a job: that one looks after the folder
+        return
+    _check_holder(Path(folder) / _LOCK, command)
+    threading.Thread(target=_watch, args=[Path(folder) / _LOCK, command], daemon=True).start()
 
 
 def this_command():
@@ -76,3 +99,15 @@ def _follow(descriptor):
     waiting.register(descriptor, select.POLLIN)
     waiting.poll()
     os.kill(os.getpid(), signal.SIGKILL)
+
+
+def _watch(lock, command):
+    while True:
+        time.sleep(_PERIOD)
+        _check_holder(lock, command)
+
+
+def _check_holder(lock, command):
+    with contextlib.suppress(OSError):  # of a shared folder that is away for a moment
+        if lock.read_text() != command:
+            os.kill(os.getpid(), signal.SIGKILL)

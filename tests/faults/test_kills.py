@@ -19,6 +19,7 @@ import psutil
 import pytest
 import xarray as xr
 from checkout import LIMIT, Checkout
+from likeness import count_unlike, files
 
 from blockshake.store import kept
 
@@ -45,13 +46,13 @@ def test_a_study_killed_again_and_again(tmp_path, capsys):
         lost["orphans"] += _count_orphans(killed.folder)
         finished = _judge(killed.folder, finished, lost)
         if ended:
-            lost["files unlike those of a whole run"] += _count_unlike(whole.folder, killed.folder)
+            lost["files unlike those of a whole run"] += count_unlike(whole.folder, killed.folder)
             _clear(killed.folder)
             finished = {}
     answer = killed.snakemake(*TARGETS)
     lost["commands that did not end"] += answer.returncode != 0
     finished = _judge(killed.folder, finished, lost)
-    lost["files unlike those of a whole run"] += _count_unlike(whole.folder, killed.folder)
+    lost["files unlike those of a whole run"] += count_unlike(whole.folder, killed.folder)
     with capsys.disabled():
         sys.stdout.write(_table("done to a study", done) + _table("lost", lost))
     assert finished
@@ -112,47 +113,15 @@ def _works_in(process, folder):
 
 def _judge(folder, finished, lost):
     """Count units that were made again and files that are not whole; give the finished units with their times."""
-    units = {path: path.stat().st_mtime_ns for path in _files(folder / "results" / "store", ".nc", ".json")}
+    units = {path: path.stat().st_mtime_ns for path in files(folder / "results" / "store", ".nc", ".json")}
     lost["finished units lost"] += len(finished.keys() - units.keys())
     lost["finished units made again"] += sum(
         units[path] != made for path, made in finished.items() if path in units
     )
     lost["half-written units"] += sum(not kept(path) for path in units)
-    for path in _files(folder / "results", ".nc"):
+    for path in files(folder / "results", ".nc"):
         try:
             xr.load_dataset(path)
         except (OSError, RuntimeError, ValueError):
             lost["half-written results"] += 1
     return units
-
-
-def _files(folder, *suffixes):
-    found = folder.rglob("*") if folder.exists() else []
-    return sorted(path for path in found if path.suffix in suffixes and not path.name.startswith("."))
-
-
-def _count_unlike(whole, killed):
-    """Results whose variables or bytes are not those of the run that was not killed; the store's units too."""
-    names = {
-        path.relative_to(folder)
-        for folder in (whole, killed)
-        for path in _files(folder / "results", ".nc", ".json", ".csv")
-        if "kernels" not in path.parts
-    }
-    return sum(not _alike(whole / name, killed / name) for name in names)
-
-
-def _alike(one, other):
-    if not (one.exists() and other.exists()):
-        return False
-    if one.suffix != ".nc":
-        return one.read_bytes() == other.read_bytes()
-    return _content(one) == _content(other)
-
-
-def _content(path):
-    """Dimensions and bytes of the variables by name; of texts, which are objects, the texts."""
-    return {
-        name: (one.dims, one.values.tolist() if one.dtype == object else one.values.tobytes())
-        for name, one in xr.load_dataset(path).variables.items()
-    }

@@ -42,8 +42,8 @@ class Checkout:
         self.config = config
         (self.folder / "config" / "small.yaml").write_text(yaml.safe_dump(config, sort_keys=False))
 
-    def command(self, *arguments):
-        return [SNAKEMAKE, "--cores", "2", *arguments, "--configfile", "config/small.yaml"]
+    def command(self, *arguments, engine=("--cores", "2")):
+        return [SNAKEMAKE, *engine, *arguments, "--configfile", "config/small.yaml"]
 
     def snakemake(self, *arguments):
         return subprocess.run(

@@ -24,7 +24,12 @@ from blockshake.simulation.models import MODELS as SOLVERS
 from blockshake.sources import kernel_sources, script_sources, source_digest
 from blockshake.study.config import StudyConfig, check_config
 from blockshake.validation import validated
-from blockshake.working_folder import end_with_command, hold, start_jobs
+from blockshake.working_folder import (
+    end_with_command,
+    end_with_folder,
+    hold,
+    start_jobs,
+)
 
 # of a diagnosis, on the command line: they take the place of the study's own
 GIVEN = ("campaign", "campaigns", "effort", "without")
@@ -222,6 +227,10 @@ def case_definition(wildcards):
 
 onstart:
     hold_folder()
+
+
+if workflow.remote_exec:
+    end_with_folder(Path.cwd())
 
 
 config.update(with_numbers(config))

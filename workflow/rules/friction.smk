@@ -16,6 +16,10 @@ rule calibrate_friction:
         "benchmarks/{study}/calibrate_friction/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=2880,
     params:
         case=case_definition,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],

@@ -1,0 +1,173 @@
+"""How long a study takes on more cores: its jobs begun one after the other as cores get free, by measured job times.
+
+The jobs and what each waits for are those of a dry run. The times are those that Snakemake keeps of a finished default
+study, start-up of a job included: of the same rule, model and configuration, by sample and by step. They may have been
+measured on a busy machine: then they are too long, all by about the same factor.
+"""
+
+import heapq
+import re
+import subprocess
+import sys
+from collections import defaultdict
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import mean
+
+from blockshake.diagnosis.libraries.null_model import MODELS
+from blockshake.diagnosis.libraries.plan import plan_diagnosis
+from blockshake.files import load_json
+
+_JOB = re.compile(r"^(?:localrule|rule|checkpoint) (\w+):\n((?:    .+\n)+)", re.MULTILINE)
+_TWINS = 3  # runs that twins cost: one, and one of twice the steps
+_START = 10.0  # s; of a job of which no time is known
+
+
+@dataclass
+class Job:
+    """A job of a plan: its rule, model, case and number of samples, its files, and its time [s]."""
+
+    rule: str
+    key: tuple
+    samples: int
+    needs: list
+    makes: list
+    seconds: float = _START
+
+
+def planned(*arguments):
+    """Jobs of a dry run of everything."""
+    command = [
+        sys.executable, "-m", "snakemake", "-n", "--forceall", "--workflow-profile", "none", "--nolock", "--cores", "1",
+        *arguments,
+    ]  # fmt: skip
+    return read_plan(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+
+
+def read_plan(text):
+    """Jobs that a dry run prints."""
+    jobs = []
+    for rule, body in _JOB.findall(text):
+        said = dict(re.findall(r"^    (\w+): (.+)$", body, flags=re.MULTILINE))
+        needs, makes = ((said.get(name) or "").split(", ") for name in ("input", "output"))
+        jobs.append(Job(rule, *_who(said.get("log", "")), needs, makes))
+    return jobs
+
+
+def measured(folder):
+    """Mean seconds of the jobs of a finished study, by rule, model and case; of batches those of a sample."""
+    found = {}
+    for path in Path(folder, ".snakemake", "metadata").rglob("*"):
+        if path.is_file():
+            record = load_json(path)
+            found[record["log"][0] if record["log"] else path.name] = record
+    spent = defaultdict(list)
+    for log, record in found.items():
+        key, samples = _who(log)
+        seconds = record["endtime"] - record["starttime"]
+        spent[record["rule"], key].append(seconds / samples)
+        spent[record["rule"], ()].append(seconds)
+    return {key: mean(values) for key, values in spent.items()}
+
+
+def _who(log):
+    """Model and case of a job, and the number of its samples, from the path of its log."""
+    parts = log.removesuffix(".log").split("/")[3:]
+    batch = re.fullmatch(r"(\d+)-(\d+)", parts[-1]) if parts else None
+    if batch is None:
+        return tuple(parts), 1
+    return tuple(parts[:-1]), int(batch[2]) - int(batch[1]) + 1
+
+
+def timed_study(jobs, config, done, times):
+    """Give the jobs of a study their times, from those of the study that was done.
+
+    Runs take as long as there by sample and by step, twins and a search of the mean friction as their runs; all other
+    jobs as there, whatever the number of samples.
+    """
+    for job in jobs:
+        if job.rule in ("simulate_batch", "run_twins"):
+            runs = _TWINS if job.rule == "run_twins" else job.samples
+            job.seconds = runs * times["simulate_batch", job.key] * _steps(config, done, *job.key)
+        elif job.rule == "calibrate_friction":
+            (case,) = job.key
+            run = _run_of_search(done, done.friction_calibration.cases[0], times)
+            share = times[job.rule, ()] / run / done.friction_calibration.runs  # of the runs that it may need
+            steps = _steps(config, done, config.friction_calibration.model, case)
+            job.seconds = (
+                share * config.friction_calibration.runs * _run_of_search(config, case, times) * steps
+            )
+        else:
+            job.seconds = times.get((job.rule, job.key), times.get((job.rule, ()), _START))
+    return jobs
+
+
+def _run_of_search(config, case, times):
+    return times["simulate_batch", (config.friction_calibration.model, case)]
+
+
+def _steps(config, done, model, case):
+    """Steps of a run over those of the run that was done."""
+    counts = []
+    for one in (config, done):
+        (duration,) = [found.duration for found in one.cases if found.name == case]
+        counts.append(duration / one.models[model].time_step)
+    return counts[0] / counts[1]
+
+
+def hours(jobs, cores):
+    """Hours until the last job ends: a free core takes the longest of the jobs that wait for nothing more."""
+    maker = {name: number for number, job in enumerate(jobs) for name in job.makes if name}
+    waits = [{maker[name] for name in job.needs if name in maker} for job in jobs]
+    follow = defaultdict(list)
+    for number, needed in enumerate(waits):
+        for other in needed:
+            follow[other].append(number)
+    ready = [(-jobs[number].seconds, number) for number, needed in enumerate(waits) if not needed]
+    heapq.heapify(ready)
+    running, now, ended = [], 0.0, 0
+    while ready or running:
+        while ready and len(running) < cores:
+            _, number = heapq.heappop(ready)
+            heapq.heappush(running, (now + jobs[number].seconds, number))
+        now, number = heapq.heappop(running)
+        ended += 1
+        for other in follow[number]:
+            waits[other].discard(number)
+            if not waits[other]:
+                heapq.heappush(ready, (-jobs[other].seconds, other))
+    assert ended == len(jobs)
+    return now / 3600.0
+
+
+def deep_diagnosis(campaign, times):
+    """Jobs of a deep diagnosis that finds a cause, from the times of a standard one."""
+    done, plan = (plan_diagnosis(campaign, effort) for effort in ("standard", "deep"))
+    before, draws = (one.runs / len(one.tests) / len(MODELS) for one in (done, plan))
+    a_run, more = times["simulate_library", ()] / before, draws / before
+    members = plan.effort.members / done.effort.members
+
+    def job(rule, seconds, needs, makes):
+        return Job(rule, (), 1, needs, makes, seconds)
+
+    def as_there(rule, needs, makes, factor=1.0):
+        return job(rule, factor * times[rule, ()], needs, makes)
+
+    libraries = [f"{test} {model}" for test in plan.tests for model in MODELS]
+    further = [f"further {name}" for name in libraries]
+    extended = [f"extended {model}" for model in MODELS]
+    jobs = [job("simulate_library", a_run * draws, [], [name]) for name in libraries]
+    jobs += [as_there("predict_twins", libraries, [f"twins {test}"]) for test in plan.tests]
+    jobs.append(
+        as_there("calibrate_decision", libraries, ["calibration"], more * len(plan.tests) / len(done.tests))
+    )
+    jobs.append(as_there("decide", ["calibration"], ["decision"], more))
+    jobs += [
+        job("simulate_cause", a_run * plan.effort.further_draws, ["decision"], [name]) for name in further
+    ]
+    jobs += [as_there("extend_model", further, [name], members) for name in extended]
+    jobs.append(as_there("measure_gain", extended, ["gain"], members))
+    jobs.append(
+        as_there("make_diagnosis_report", ["gain", *(f"twins {test}" for test in plan.tests)], ["report"])
+    )
+    return jobs
