@@ -9,7 +9,7 @@ from blockshake.files import PACKAGE
 # From the ground up; what stands on one line knows nothing of its neighbours.
 FLOORS = [
     ["errors"],
-    ["files", "quantities", "working_folder"],
+    ["files", "paths", "quantities", "working_folder"],
     ["validation", "log", "sources", "store"],
     ["tables"],
     ["jit"],

@@ -1,5 +1,7 @@
 """The one error that a user can mend, worded in one line."""
 
+_LONGEST = 1000  # characters of a line that someone reads
+
 
 class InputError(ValueError):
     """Bad input: names the file, the key and what was expected.
@@ -12,9 +14,19 @@ class InputError(ValueError):
         Dotted key inside it; empty when the whole file is at fault.
     expected : str
         A correct input in words, and the value found where that helps.
+
+    Notes
+    -----
+    Names and values of files stand in the words. A line break or another control character among them is shown as an
+    escape, so that the words are one line, and the end of a very long line is left out.
     """
 
     def __init__(self, where, key, expected):
         self.where, self.key, self.expected = str(where), str(key), str(expected)
         place = f"{self.where}: {self.key}" if self.key else self.where
-        super().__init__(f"{place}: {self.expected}")
+        super().__init__(_one_line(f"{place}: {self.expected}"))
+
+
+def _one_line(words):
+    line = "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in words[:_LONGEST])
+    return line if len(words) <= _LONGEST >= len(line) else f"{line[: _LONGEST - 4]} ..."

@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import tempfile
+from collections import Counter
 from pathlib import Path
 
 import yaml
@@ -17,6 +18,9 @@ PACKAGE = Path(__file__).parent
 _INSTALLED = PACKAGE / "shipped"
 # what ships beside the package: a checkout's own folders, or the copy of them in an installed package
 HOME = _INSTALLED if _INSTALLED.is_dir() else PACKAGE.parents[1]
+MADE_ANEW = "expected the {} file that an earlier job made; delete it, and the same command makes it anew"
+# no file of this kind comes near; a few lines of aliases of aliases would grow beyond any memory
+_DEEPEST, _MOST_VALUES = 50, 200_000
 _NO_NUMBER = -(2**31)  # stands for NaN in packed variables
 
 
@@ -24,9 +28,9 @@ class _StrictLoader(yaml.CSafeLoader):
     """YAML 1.2 numbers (``1e-5`` is one) and no key twice."""
 
     def construct_mapping(self, node, deep=False):
-        keys = [key.value for key, _ in node.value]
-        for key in keys:
-            if keys.count(key) > 1:
+        keys = Counter(key.value for key, _ in node.value if isinstance(key, yaml.ScalarNode))
+        for key, count in keys.items():
+            if count > 1:
                 raise yaml.constructor.ConstructorError(
                     None, None, f"the key '{key}' stands twice", node.start_mark
                 )
@@ -48,12 +52,40 @@ def parse_yaml(text, where):
     Raises
     ------
     InputError
-        The text is not YAML or states a key twice.
+        The text is not YAML, states a key twice, or grows too large or too deep.
     """
     try:
+        _check_growth(text)
         return yaml.load(text, Loader=_StrictLoader)
-    except (yaml.YAMLError, ValueError, TypeError, RecursionError) as error:
+    except (yaml.YAMLError, ValueError, TypeError, KeyError, AttributeError) as error:  # a bad value of a tag
         raise InputError(where, "", "expected YAML; " + " ".join(str(error).split())) from None
+
+
+def _check_growth(text):
+    """Refuse a text whose values hold themselves, lie too deep, or are very many once every alias is written out."""
+    sizes, opened = {}, []  # by anchor; of the collections around an event, with their anchors
+    for event in yaml.parse(text, Loader=_StrictLoader):
+        if isinstance(event, yaml.CollectionStartEvent):
+            opened.append([event.anchor, 1])
+            if len(opened) > _DEEPEST:
+                raise ValueError(f"it is deeper than {_DEEPEST} levels")
+            continue
+        if isinstance(event, yaml.CollectionEndEvent):
+            anchor, size = opened.pop()
+        elif isinstance(event, yaml.AliasEvent):
+            if any(anchor == event.anchor for anchor, _ in opened):
+                raise ValueError(f"'{event.anchor}' holds itself")
+            anchor, size = None, sizes.get(event.anchor, 1)
+        elif isinstance(event, yaml.ScalarEvent):
+            anchor, size = event.anchor, 1
+        else:
+            continue
+        if anchor is not None:
+            sizes[anchor] = size
+        if opened:
+            opened[-1][1] += size
+        if size > _MOST_VALUES:
+            raise ValueError(f"it has more than {_MOST_VALUES} values")
 
 
 def load_yaml(path):
@@ -90,12 +122,18 @@ def read_bytes(path):
     Raises
     ------
     InputError
-        The file is missing.
+        The file is missing, or is none: a folder, a device, a pipe.
     """
     try:
+        if os.path.exists(path) and not os.path.isfile(path):
+            raise InputError(path, "", "expected a readable file; this is a folder or a device")
         return Path(path).read_bytes()
+    except InputError:
+        raise
     except OSError as error:
         raise InputError(path, "", f"expected a readable file; {error.strerror.lower()}") from None
+    except ValueError:  # a null byte
+        raise InputError(path, "", "expected the path of a readable file") from None
 
 
 def load_json(path):
@@ -106,10 +144,39 @@ def load_json(path):
     InputError
         The file is missing or holds something else.
     """
+    return parse_json(read_text(path), path)
+
+
+def parse_json(text, where):
+    """Value of a JSON text.
+
+    Raises
+    ------
+    InputError
+        The text is something else.
+    """
     try:
-        return json.loads(read_text(path))
-    except json.JSONDecodeError as error:
-        raise InputError(path, "", f"expected JSON; {error}") from None
+        return json.loads(text)
+    except (
+        ValueError,
+        RecursionError,
+    ) as error:  # a whole number of thousands of digits; lists in lists in lists
+        raise InputError(where, "", f"expected JSON; {error}") from None
+
+
+def load_made_json(path, read):
+    """What ``read`` makes of the JSON value that an earlier job wrote.
+
+    Raises
+    ------
+    InputError
+        The file is missing or holds something else.
+    """
+    value = load_json(path)
+    try:
+        return read(value)
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise InputError(path, "", MADE_ANEW.format("JSON")) from None
 
 
 def named_file(kind, name):
@@ -120,12 +187,12 @@ def named_file(kind, name):
     InputError
         Neither of them, for a name without a suffix.
     """
-    path = shipped(kind, name)
-    if not path.is_file():
-        path = Path(name)
-        if not path.exists() and path.suffix == "":
-            known = f"expected a {kind.removesuffix('s')} file or one of {', '.join(shipped_names(kind))}"
-            raise InputError(name, "", known)
+    if str(name) in shipped_names(kind):
+        return shipped(kind, name)
+    path = Path(name)
+    if not os.path.exists(path) and path.suffix == "":
+        known = f"expected a {kind.removesuffix('s')} file or one of {', '.join(shipped_names(kind))}"
+        raise InputError(name, "", known)
     return path
 
 

@@ -1,5 +1,6 @@
 """A campaign diagnosed by the checkout's workflow: what `blockshake diagnose` and `blockshake.diagnose` start."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -82,5 +83,5 @@ def diagnosis_command(campaign, effort, cores):
         sys.executable, "-m", "snakemake", "diagnose", "--cores", str(cores),
         "--snakefile", str(HOME / "Snakefile"), "--directory", str(working_place()),
         "--configfile", str(HOME / "config" / "diagnosis.yaml"),
-        "--config", f"campaign={Path(campaign).resolve()}", f"effort={effort}",
+        "--config", f"campaign={json.dumps(str(Path(campaign).resolve()))}", f"effort={effort}",
     ]  # fmt: skip

@@ -7,7 +7,7 @@ from pathlib import Path
 import xarray as xr
 
 from blockshake.errors import InputError
-from blockshake.files import replacing, write_dataset, write_json
+from blockshake.files import MADE_ANEW, replacing, write_dataset, write_json
 
 _SEAL = 64  # bytes at the end of a kept file: the digest of its name and of all before them
 
@@ -62,10 +62,7 @@ def load_made(path):
     try:
         return xr.load_dataset(path)
     except (OSError, RuntimeError, ValueError):
-        advice = (
-            "expected the netCDF file that an earlier job made; delete it, and the same command makes it anew"
-        )
-        raise InputError(path, "", advice) from None
+        raise InputError(path, "", MADE_ANEW.format("netCDF")) from None
 
 
 def _keep(path, write):

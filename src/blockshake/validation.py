@@ -17,6 +17,9 @@ ProperFraction = Annotated[Finite, Field(ge=0, lt=1)]
 Count = Annotated[int, Field(strict=True, ge=0)]
 
 
+_SHOWN = 20  # faults in a line
+
+
 class Strict(BaseModel):
     """Base of every schema of the project: unknown keys are errors, values do not change."""
 
@@ -39,13 +42,13 @@ def validated(schema, mapping, where, prefix=""):
     Raises
     ------
     InputError
-        Names all keys that are unknown, with the nearest known one, or missing, and the first wrong value with what was
-        expected, in one line; an entry of a list by its ``name`` where it has one.
+        Names up to 20 keys that are unknown, with the nearest known one, or missing, and the first wrong value with
+        what was expected, in one line; an entry of a list by its ``name`` where it has one.
     """
     try:
         return schema.model_validate(mapping)
     except ValidationError as error:
-        found = [one for one in error.errors() if one["type"] != "default_factory_not_called"]
+        found = [one for one in error.errors() if one["type"] != "default_factory_not_called"][:_SHOWN]
     # a list is counted without its entries at fault
     places = [one["loc"] for one in found]
     found = [

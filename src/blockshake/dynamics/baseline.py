@@ -3,8 +3,11 @@
 import numpy as np
 from scipy import fft
 
+from blockshake.errors import InputError
+
 CORNER_FREQUENCY = 0.1  # Hz; below it analogue records hold more noise than ground motion
 _ORDER = 4  # of the Butterworth filter, applied forwards and backwards
+_MOST_SAMPLES = 2e7  # a minute at 1 kHz has 180 000 with its pads at 0.1 Hz
 _TAPERED = 0.02  # share of the record under the half-cosine at each end
 
 
@@ -40,6 +43,24 @@ def correct_baseline(acceleration, time_step, corner_frequency=CORNER_FREQUENCY)
     return close_integrals(filtered, time_step)
 
 
+def check_samples(n_rows, time_step, corner_frequency, where):
+    """Refuse a series that the correction would pad beyond what a computer holds.
+
+    Raises
+    ------
+    InputError
+        More than 20 million samples with the pads.
+    """
+    samples = n_rows + 2.0 * _pad(time_step, corner_frequency)
+    if not samples <= _MOST_SAMPLES:
+        raise InputError(
+            where,
+            "",
+            f"expected at most {_MOST_SAMPLES:g} samples in a corrected record with its pads, not {samples:.3g}; the "
+            f"time step is {time_step:g} s, the corner {corner_frequency:g} Hz",
+        )
+
+
 def correction_words(corner_frequency):
     """The steps of `correct_baseline` in words, for the attributes of a motion."""
     return (
@@ -60,12 +81,17 @@ def taper_ends(values):
 
 def high_pass(values, time_step, corner_frequency):
     """Acausal fourth-order Butterworth high-pass of a zero-padded series, pads stripped."""
-    pad = int(np.ceil(1.5 * _ORDER / corner_frequency / time_step))
+    pad = int(_pad(time_step, corner_frequency))
     length = fft.next_fast_len(len(values) + 2 * pad, real=True)
     frequency = fft.rfftfreq(length, time_step)
     power = (frequency / corner_frequency) ** (2 * _ORDER)
     padded = fft.irfft(fft.rfft(values, length) * power / (1.0 + power), length)
     return padded[: len(values)]
+
+
+def _pad(time_step, corner_frequency):
+    with np.errstate(over="ignore"):
+        return np.ceil(1.5 * _ORDER / np.float64(corner_frequency) / time_step)
 
 
 def close_integrals(acceleration, time_step):

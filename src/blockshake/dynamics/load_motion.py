@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from blockshake.dynamics.baseline import CORNER_FREQUENCY, correct_baseline, correction_words
-from blockshake.dynamics.motion import ground_motion
+from blockshake.dynamics.baseline import CORNER_FREQUENCY, check_samples, correct_baseline, correction_words
+from blockshake.dynamics.motion import check_finite, ground_motion
 from blockshake.dynamics.records.at2 import is_at2, read_at2
 from blockshake.dynamics.records.contract_csv import read_motion_csv
 from blockshake.dynamics.records.cosmos import is_cosmos, read_cosmos
@@ -46,17 +46,23 @@ def load_motion(source, scale=1.0, correct=True, corner_frequency=CORNER_FREQUEN
     ------
     InputError
         Missing file, unknown name, unknown format or unit, NaN, time that does not increase,
-        mixed kinds, too few rows, a file cut short, a scale that is not a finite number.
+        mixed kinds, too few rows, a file cut short, a scale that is not a finite number, a displacement beyond all
+        numbers.
     """
     if not np.isfinite(scale):
         raise InputError(source, "scale", f"expected a finite number, found {scale}")
-    motion = _read(named_file("motions", source), corner_frequency if correct else None)
-    return motion if scale == 1.0 else motion.scaled(scale)
+    with np.errstate(over="ignore", invalid="ignore"):  # looked at below
+        motion = _read(named_file("motions", source), corner_frequency if correct else None)
+        motion = motion if scale == 1.0 else motion.scaled(scale)
+    check_finite(motion, source)
+    return motion
 
 
 def _read(path, corner):
     if path.suffix.lower() in (".yaml", ".yml"):
-        return synthesise(load_synthetic(path))
+        asked = load_synthetic(path)
+        check_samples(asked.duration / asked.time_step, asked.time_step, asked.high_pass_frequency, path)
+        return synthesise(asked)
     text = read_text(path)
     for recognises, _, read in _RECORD_FORMATS:
         if recognises(text):
@@ -84,6 +90,7 @@ def _csv_motion(text, path):
 def _record_motion(record, path, corner):
     acceleration, baseline = record.acceleration, "none"
     if corner is not None:
+        check_samples(len(acceleration), record.time_step, corner, path)
         acceleration = correct_baseline(acceleration, record.time_step, corner)
         baseline = correction_words(corner)
     time = record.time_step * np.arange(len(acceleration))

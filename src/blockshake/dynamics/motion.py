@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicSpline, PPoly
 
+from blockshake.errors import InputError
 from blockshake.jit import borrowing_kernel
 
 CHANNELS = ("x", "y", "z", "pitch_y")
@@ -106,6 +107,17 @@ def ground_motion(name, time, columns, kind, attributes=None):
         cubic = "displacement" if channel == "pitch_y" else kind
         coefficients[:, CHANNELS.index(channel)] = _cubic(time, values, cubic)
     return GroundMotion(name, MotionTable(time, coefficients), kind, dict(attributes or {}))
+
+
+def check_finite(motion, where):
+    """Refuse a motion with a displacement beyond all numbers, which very large values integrate to.
+
+    Raises
+    ------
+    InputError
+    """
+    if not np.isfinite(motion.table.coefficients).all():
+        raise InputError(where, "", "expected a motion with finite displacements; its values are too large")
 
 
 def _cubic(time, values, kind):

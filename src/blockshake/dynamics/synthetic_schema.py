@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 from blockshake.files import load_yaml
 from blockshake.validation import Count, Positive, Strict, validated
 
+_MOST_STEPS = 200_000  # a quarter of an hour at 200 Hz; each round of matching walks through all
 InnerFraction = Annotated[Positive, Field(lt=1)]
 
 
@@ -57,8 +58,8 @@ class SyntheticMotion(Strict):
         periods = [ordinate.period for ordinate in self.target_spectrum]
         if any(later <= earlier for earlier, later in pairwise(periods)):
             raise ValueError("expected target_spectrum in order of rising period")
-        if self.duration < 100.0 * self.time_step:
-            raise ValueError("expected a duration of at least 100 time steps")
+        if not 100.0 <= self.duration / self.time_step <= _MOST_STEPS:
+            raise ValueError(f"expected a duration of 100 to {_MOST_STEPS} time steps")
         return self
 
 

@@ -1,6 +1,7 @@
 """A structure as the solvers need it: checked file, shapes, mass properties, start state."""
 
 import copy
+import io
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import numpy as np
 import trimesh
 
 from blockshake.errors import InputError
-from blockshake.files import load_yaml, named_file
+from blockshake.files import load_yaml, named_file, read_bytes
 from blockshake.geometry.mass_offset import check_offset, offset_inertia, offset_solid
 from blockshake.geometry.overlap import near_pairs, penetration_depths
 from blockshake.geometry.polyhedron import (
@@ -22,8 +23,10 @@ from blockshake.geometry.polyhedron import (
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import StructureFile
 from blockshake.geometry.structure_file import check_names, friction_matrix, replace_into, unit_quaternions
+from blockshake.paths import file_below
 from blockshake.validation import validated
 
+MESHES = (".stl", ".ply", ".obj", ".off")  # suffixes of mesh files
 DEEPEST_OVERLAP = 1e-3  # m; deeper is a wrong structure, not an initial penetration
 # m; an equilibrium of elastic or shrunk contacts within this of the given poses is the start of a run, and bodies
 # nearer than this touch
@@ -235,15 +238,17 @@ def _solid(name, shape, source, folder):
         polyhedron = convex_polyhedron(box_vertices(shape.box, shape.chamfer))
         vertices, faces = polyhedron.vertices, triangles(polyhedron)
         return Solid(vertices, faces, polyhedron, mass_properties(vertices, faces))
-    path = Path(folder) / shape.mesh
+    key = f"shapes.{name}.mesh"
+    path = file_below(folder, shape.mesh, source, key)
+    if path.suffix.lower() not in MESHES:
+        raise InputError(source, key, f"expected a mesh file {', '.join(MESHES)}, not '{path}'")
     try:
-        mesh = trimesh.load_mesh(path)
+        # from its bytes, so that it cannot name further files
+        mesh = trimesh.load_mesh(io.BytesIO(read_bytes(path)), file_type=path.suffix.lower()[1:])
     except Exception as error:  # trimesh raises whatever its many readers raise
-        raise InputError(
-            source, f"shapes.{name}.mesh", f"expected a readable mesh file {path}; {error}"
-        ) from None
+        raise InputError(source, key, f"expected a readable mesh file {path}; {error}") from None
     if not mesh.is_volume:
-        raise InputError(source, f"shapes.{name}.mesh", "expected a closed surface with outward triangles")
+        raise InputError(source, key, "expected a closed surface with outward triangles")
     vertices = np.array(mesh.vertices) - mesh.center_mass
     faces = np.array(mesh.faces)
     polyhedron = convex_polyhedron(vertices) if mesh.is_convex else None

@@ -180,7 +180,7 @@ def _map_of_options(options, given, columns):
         },
         **({"rest": numbers["rest"]} if "rest" in numbers else {}),
     }
-    return checked_map(mapping, "options", Path())
+    return checked_map(mapping, "options")
 
 
 def _new(options):

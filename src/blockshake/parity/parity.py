@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.errors import InputError
-from blockshake.files import load_json
+from blockshake.files import load_made_json
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
@@ -80,8 +80,14 @@ class Parity:
 
 
 def load_parity(path):
-    """Parity of the file ``parity.json``."""
-    return Parity.from_json(load_json(path))
+    """Parity of the file ``parity.json``.
+
+    Raises
+    ------
+    InputError
+        The file is missing or holds something else.
+    """
+    return load_made_json(path, Parity.from_json)
 
 
 def _columns(table, dim):

@@ -22,6 +22,15 @@ _VARIABLES = {
     "lower": ("joint",),
     "upper": ("joint",),
 }
+_UNITS = {
+    "position": "m",
+    "orientation": "1",
+    "velocity": "m s-1",
+    "angular_velocity": "rad s-1",
+    "marker_displacement": "m",
+    "energy": "J",
+    "joint_force": "N",
+}
 _ATTRIBUTES = ("structure_file", "structure", "motion", "motion_scale", "motion_synthetic", "model")
 _ORDERS = {"axis": AXES, "quaternion": QUATERNION, "term": ENERGY_TERMS}
 
@@ -51,19 +60,40 @@ def load_run(path, meshes=None):
         raise InputError(path, "", "expected a run file of blockshake simulate; there is no such file")
     try:
         run = xr.load_dataset(path, engine="netcdf4", decode_times=False)
-    except (OSError, ValueError, RuntimeError) as error:  # a truncated file fails while its values are read
+    except (
+        OSError,
+        ValueError,
+        RuntimeError,
+        KeyError,
+        TypeError,
+        MemoryError,
+    ) as error:  # of a damaged file
         reason = getattr(error, "strerror", None) or error
         raise InputError(path, "", f"expected a readable netCDF file; {reason}") from None
     for name, dims in _VARIABLES.items():
         if name not in run.variables or run[name].dims != dims:
             raise InputError(path, name, f"expected a run file of blockshake simulate, with {name}{dims}")
+    for name in ("time", *_UNITS):
+        if name not in run.variables or run[name].dtype.kind != "f":
+            raise InputError(path, name, "expected numbers")
+    for name, unit in _UNITS.items():
+        if run[name].attrs.get("units") != unit:
+            raise InputError(path, f"{name}.units", f"expected {unit}")
     for name in _ATTRIBUTES:
         if name not in run.attrs:
             raise InputError(path, name, "expected a run file of blockshake simulate, with this attribute")
     structure = _structure_of(run, path, Path(path).parent if meshes is None else Path(meshes))
-    for name, order in {**_ORDERS, "body": structure.body_names}.items():
+    markers = [marker.name for marker in structure.file.markers]
+    for name, order in {**_ORDERS, "body": structure.body_names, "marker": markers}.items():
         if name not in run.coords or run[name].values.tolist() != list(order):
             raise InputError(path, name, f"expected {', '.join(order)}")
+    for name in ("lower", "upper"):
+        if not set(run[name].values.tolist()) <= set(structure.body_names):
+            raise InputError(
+                path, name, f"expected bodies of the structure: {', '.join(structure.body_names)}"
+            )
+    if not (np.isfinite(run["time"]).all() and (np.diff(run["time"]) > 0.0).all()):
+        raise InputError(path, "time", "expected times that increase")
     reached = np.isfinite(run["position"]).all(("body", "axis"))
     if not reached.any():
         raise InputError(path, "position", "expected at least one time that the run reached")

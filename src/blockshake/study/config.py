@@ -1,5 +1,6 @@
 """The configuration of a study: every key, its type and its limits, checked before the first job."""
 
+import re
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -11,6 +12,7 @@ from blockshake.files import load_yaml
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.sensors.markers import RATE
+from blockshake.paths import check_plain
 from blockshake.simulation.models import ModelName, split_parameters
 from blockshake.study.comparison.differences import FEWEST
 from blockshake.study.convergence.settings import Convergence
@@ -20,6 +22,8 @@ from blockshake.study.sampling.correlation_target import load_correlation
 from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, load_distributions
 from blockshake.study.sampling.latin_hypercube import SMALLEST_SIZE
 from blockshake.validation import Positive, Strict, validated
+
+_NAME = re.compile(r"\w[\w.-]*")  # of a structure or a motion: it names results
 
 
 def _links(ensemble):
@@ -194,6 +198,7 @@ def load_config(path):
 def check_config(mapping, where):
     """Configuration from a mapping, checked with all that it names; ``where`` is its file."""
     config = validated(StudyConfig, mapping, where)
+    _check_paths(config, where)
     names = [case.name for case in config.cases]
     for model, settings in config.models.items():
         _check_parameters(model, settings, f"models.{model}.parameters", where)
@@ -224,6 +229,36 @@ def check_config(mapping, where):
     for folder in config.diagnosis.campaigns:
         load_campaign(folder)
     return config
+
+
+def _check_paths(config, where):
+    """Refuse paths that the workflow reads as patterns, and structures and motions whose names cannot name results."""
+    paths = [("diagnosis.campaigns", folder) for folder in config.diagnosis.campaigns]
+    if config.ensemble.correlation is not None:
+        paths.append(("ensemble.correlation", config.ensemble.correlation))
+    paths += [
+        (f"cases.{index}.measured.campaign", case.measured.campaign)
+        for index, case in enumerate(config.cases)
+        if case.measured
+    ]
+    naming = [("ladder.motions", motion) for motion in config.ladder.motions]
+    if config.convergence is not None:
+        naming.append(("convergence.structure", config.convergence.structure))
+    for index, case in enumerate(config.cases):
+        naming += [(f"cases.{index}.structure", case.structure), (f"cases.{index}.motion", case.motion)]
+    for key, path in [*paths, *naming]:
+        check_plain(path, where, key)
+    by_name = {}
+    for key, path in naming:
+        name = Path(path).stem
+        if not _NAME.fullmatch(name):
+            raise InputError(
+                where, key, f"expected letters, digits, dots, hyphens in the name of the file, not '{name}'"
+            )
+        if "motion" in key and by_name.setdefault(name, path) != path:
+            raise InputError(
+                where, key, f"expected motions of different names, not {by_name[name]} and {path}"
+            )
 
 
 def _check_parameters(model, settings, key, where):

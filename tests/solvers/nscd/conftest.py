@@ -13,7 +13,7 @@ G = 9.81
 def scene():
     """Structure of bodies on a driven floor whose top is at z = 0, all of one stone; friction may be a law."""
 
-    def make(shapes, bodies, *, friction=0.5, floor=True, **keys):
+    def make(shapes, bodies, *, friction=0.5, floor=True, folder=".", **keys):
         laws = (
             friction
             if isinstance(friction, list)
@@ -30,7 +30,7 @@ def scene():
                 **keys,
             },
             "test.yaml",
-            ".",
+            folder,
         )
 
     return make

@@ -7,7 +7,7 @@ import numpy as np
 
 from blockshake.diagnosis.inference.constancy import constancy
 from blockshake.diagnosis.libraries.candidates import effect_of
-from blockshake.files import load_json, write_json
+from blockshake.files import load_made_json, write_json
 
 NONE = "none"
 _CASES_NEEDED = 10  # cases with which a chance below 10 % can be told
@@ -55,8 +55,14 @@ def write_cases(path, cases):
 
 
 def load_cases(path):
-    """Cases of a file that `write_cases` wrote."""
-    return cases_of(load_json(path))
+    """Cases of a file that `write_cases` wrote.
+
+    Raises
+    ------
+    InputError
+        The file is missing or holds something else.
+    """
+    return load_made_json(path, cases_of)
 
 
 def rows_of(cases):

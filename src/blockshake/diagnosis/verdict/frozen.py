@@ -1,7 +1,7 @@
 """A file frozen by its hash before sealed tests are opened: one that was changed since is refused."""
 
 from blockshake.errors import InputError
-from blockshake.files import file_digest, load_json, write_json
+from blockshake.files import file_digest, load_made_json, write_json
 
 
 def freeze(path, decided, tests):
@@ -16,7 +16,7 @@ def check_frozen(path, decided):
     ------
     InputError
     """
-    frozen = load_json(path)["digest"]
+    frozen = load_made_json(path, lambda value: str(value["digest"]))
     found = file_digest(decided)
     if found != frozen:
         raise InputError(decided, "", f"expected the file that was frozen as {frozen}, found {found}")

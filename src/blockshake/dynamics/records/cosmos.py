@@ -9,7 +9,9 @@ import re
 from blockshake.dynamics.records.record import Record, acceleration_unit, positive_number, values_of
 from blockshake.errors import InputError
 
-_BLOCK = re.compile(r"^\s*(\d+)\s+(integer|real)-header values follow.*format\s*=\s*\((.*)\)", re.IGNORECASE)
+_BLOCK = re.compile(
+    r"^\s*(\d{1,9})\s+(integer|real)-header values follow.*format\s*=\s*\((.*)\)", re.IGNORECASE
+)
 _SERIES = re.compile(
     r"^\s*(\d+)\s+(acceleration|velocity|displacement|\S+)\s+p(?:oin)?ts\b.*?units\s*=\s*([^,(]+)(?:\(\s*\d+\s*\))?\s*,"
     r"\s*format\s*=\s*\((.*)\)",
@@ -81,7 +83,8 @@ def _columns(fortran, where, line):
         raise InputError(
             where, f"line {line}", f"expected a Fortran format such as (8F10.3), found '({fortran})'"
         )
-    return int(match.group(1) or 1), int(match.group(2))
+    columns, width = match.group(1) or "1", match.group(2)
+    return tuple(positive_number(number, where, f"line {line}, format", int) for number in (columns, width))
 
 
 def _split(line, width):

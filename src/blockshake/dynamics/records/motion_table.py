@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from blockshake.dynamics.baseline import correct_baseline, correction_words
-from blockshake.dynamics.motion import CHANNELS, ground_motion
+from blockshake.dynamics.baseline import check_samples, correct_baseline, correction_words
+from blockshake.dynamics.motion import CHANNELS, check_finite, ground_motion
 from blockshake.errors import InputError
 from blockshake.tables.table_file import read_table
 from blockshake.tables.units import kind_of_unit, unit_size
@@ -56,12 +56,16 @@ def load_motion_table(source, layout, time, columns, unit, time_unit="s", corner
     baseline = "none"
     if corner_frequency is not None:
         step = _even_step(at, kind, table.source)
+        check_samples(len(at), step, corner_frequency, table.source)
         read = {name: correct_baseline(values, step, corner_frequency) for name, values in read.items()}
         baseline = correction_words(corner_frequency)
     attributes = {"source": Path(source).name, "format": "table", "synthetic": False, "baseline": baseline}
     if at[0] != 0.0:
         attributes["first_time"] = float(at[0])
-    return ground_motion(Path(source).stem, at - at[0], read, kind, attributes)
+    with np.errstate(over="ignore", invalid="ignore"):  # looked at below
+        motion = ground_motion(Path(source).stem, at - at[0], read, kind, attributes)
+    check_finite(motion, table.source)
+    return motion
 
 
 def _even_step(time, kind, source):

@@ -1,16 +1,18 @@
 """Campaigns of measured tests: the list of tests and their marker readings."""
 
 from dataclasses import dataclass
+from os.path import isfile  # false, not an error, for a name that no file can have
 from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field
 
 from blockshake.errors import InputError
-from blockshake.files import load_yaml
+from blockshake.files import load_yaml, shipped_names
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.recorded_test import read_test
 from blockshake.measurement.sensors import accelerometers, markers
+from blockshake.paths import check_plain, file_below
 from blockshake.validation import Finite, NotNegative, Strict, validated
 
 
@@ -80,7 +82,7 @@ def load_campaign(folder):
     Raises
     ------
     InputError
-        Missing folder or file, unknown key, a test named twice.
+        Missing folder or file, unknown key, a test named twice, a file outside of the folder, a path with braces.
     """
     folder = Path(folder)
     path = folder / "campaign.yaml"
@@ -88,13 +90,23 @@ def load_campaign(folder):
     tests = {test.name: test for test in file.tests}
     if len(tests) < len(file.tests):
         raise InputError(path, "tests", "expected every test's name once")
+    check_plain(folder, path, "")
     for test in file.tests:
-        if not (folder / test.file).is_file():
+        for key in ("file", "motion"):
+            check_plain(getattr(test, key), path, f"tests.{test.name}.{key}")
+        if not isfile(file_below(folder, test.file, path, f"tests.{test.name}.file")):
             raise InputError(
                 path, f"tests.{test.name}.file", f"expected a file in {folder}; it has no {test.file}"
             )
-    structure = str(folder / file.structure) if (folder / file.structure).is_file() else file.structure
-    return Campaign(folder, file.name, structure, file.sensors, tests)
+        file_below(folder, test.motion, path, f"tests.{test.name}.motion")
+    check_plain(file.structure, path, "structure")
+    structure = file_below(folder, file.structure, path, "structure")
+    if not isfile(structure) and file.structure not in shipped_names("structures"):
+        known = ", ".join(shipped_names("structures"))
+        raise InputError(path, "structure", f"expected a file in {folder} or one of {known}")
+    return Campaign(
+        folder, file.name, str(structure) if isfile(structure) else file.structure, file.sensors, tests
+    )
 
 
 def load_test(campaign, name):

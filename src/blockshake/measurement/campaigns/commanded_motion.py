@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
+from os.path import isfile
 
 import numpy as np
 
@@ -118,7 +119,7 @@ def driven_axis_remarks(slab):
 def commanded_motion(campaign, entry):
     """The motion that was commanded in a test, None where the campaign names one that is not at hand."""
     own = campaign.folder / entry.motion
-    if own.is_file():
+    if isfile(own):
         return load_motion(own, entry.scale)
     return _shipped_motion(entry.motion, entry.scale) if entry.motion in shipped_names("motions") else None
 

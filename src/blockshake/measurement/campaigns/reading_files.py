@@ -9,6 +9,7 @@ import xarray as xr
 from blockshake.errors import InputError
 from blockshake.files import read_text
 from blockshake.geometry.schema import AXES
+from blockshake.paths import file_below
 
 _METRES = ("m", "metre", "metres", "meter", "meters")
 _ACCELERATION = ("m s-2", "m s^-2", "m s**-2", "m/s2", "m/s^2", "m/s**2", "m.s-2", "meters/second^2")
@@ -24,7 +25,7 @@ _VARIABLES = {
 }
 _CLASSIC = (b"CDF\x01", b"CDF\x02")  # whose missing end the netCDF library reads as zeros, and scipy refuses
 # what the reader of a damaged file may raise
-_DAMAGE = (OSError, ValueError, RuntimeError, KeyError, TypeError, IndexError, AttributeError)
+_DAMAGE = (OSError, ValueError, RuntimeError, KeyError, TypeError, IndexError, AttributeError, MemoryError)
 
 
 def read_netcdf(path):
@@ -35,14 +36,7 @@ def read_netcdf(path):
     InputError
         No netCDF, readings or coordinates missing, other dimensions, no numbers, another unit than SI stated.
     """
-    try:
-        content = path.read_bytes()
-        if content[:4] in _CLASSIC:
-            test = xr.load_dataset(io.BytesIO(content), engine="scipy", decode_times=False)
-        else:
-            test = xr.load_dataset(path, decode_times=False)
-    except _DAMAGE:
-        raise InputError(path, "", "expected a netCDF file; this is cut, damaged or something else") from None
+    test = _dataset(path)
     if "marker_displacement" not in test:
         raise InputError(path, "marker_displacement", "expected displacements over time, marker and axis")
     known = [name for name in _VARIABLES if name in test]
@@ -56,6 +50,27 @@ def read_netcdf(path):
             if name in test.coords
         }
     )
+
+
+def netcdf_attributes(path):
+    """Attributes of a netCDF file by name.
+
+    Raises
+    ------
+    InputError
+        No netCDF.
+    """
+    return _dataset(path).attrs
+
+
+def _dataset(path):
+    try:
+        content = path.read_bytes()
+        if content[:4] in _CLASSIC:
+            return xr.load_dataset(io.BytesIO(content), engine="scipy", decode_times=False)
+        return xr.load_dataset(path, decode_times=False)
+    except _DAMAGE:
+        raise InputError(path, "", "expected a netCDF file; this is cut, damaged or something else") from None
 
 
 def _check_variable(test, name, path):
@@ -101,7 +116,7 @@ def read_tables(path):
     coordinates = {"time": time, "marker": markers, "axis": list(AXES)}
     wanted = f"{path.stem}-acc.csv".lower()
     for beside in sorted(item for item in path.parent.iterdir() if item.name.lower() == wanted)[:1]:
-        time_acc, channels = _table(beside)
+        time_acc, channels = _table(file_below(path.parent, beside.name, path, "accelerometers"))
         variables["accelerometer"] = (
             ("time_acc", "channel"), np.column_stack(list(channels.values())), {"units": "m s-2"},
         )  # fmt: skip

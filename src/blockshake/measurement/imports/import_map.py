@@ -7,6 +7,7 @@ from pydantic import BeforeValidator, Field
 
 from blockshake.files import load_yaml, shipped_names
 from blockshake.measurement.campaigns.campaign import MeasuredTest, Sensors
+from blockshake.paths import file_below
 from blockshake.tables.table_file import TableLayout
 from blockshake.validation import NotNegative, Strict, validated
 
@@ -61,31 +62,35 @@ class ImportMap(Strict):
 
 
 def load_map(path):
-    """`ImportMap` from a YAML file; the files that it names are taken from its folder.
+    """`ImportMap` from a YAML file; the files that it names lie below its folder.
 
     Raises
     ------
     InputError
-        Not YAML, an unknown or missing key.
+        Not YAML, an unknown or missing key, a path that leads out of the folder.
     """
-    return checked_map(load_yaml(path), path, Path(path).parent)
+    found = checked_map(load_yaml(path), path)
+    folder = Path(path).parent
 
+    def below(name, key, kind=None):
+        if kind is not None and name in shipped_names(kind):
+            return name
+        file_below(folder, name.partition("#")[0], path, key)  # of a workbook; its sheet is no path
+        return str(file_below(folder, name, path, key))
 
-def checked_map(mapping, where, folder):
-    """`ImportMap` from a mapping; files are taken from a folder, ``where`` is named in errors."""
-    found = validated(ImportMap, mapping, where)
-    tests = [
-        one.model_copy(update={
-            "file": str(folder / one.file),
-            "accelerometers": one.accelerometers and str(folder / one.accelerometers),
-            "motion": _beside(one.motion, "motions", folder),
-        })
-        for one in found.tests
-    ]  # fmt: skip
-    structure = _beside(found.structure, "structures", folder)
+    tests = []
+    for one in found.tests:
+        key, beside = f"tests.{one.name}", one.accelerometers
+        changes = {
+            "file": below(one.file, f"{key}.file"),
+            "motion": below(one.motion, f"{key}.motion", "motions"),
+            "accelerometers": None if beside is None else below(beside, f"{key}.accelerometers"),
+        }
+        tests.append(one.model_copy(update=changes))
+    structure = below(found.structure, "structure", "structures")
     return found.model_copy(update={"tests": tuple(tests), "structure": structure})
 
 
-def _beside(name, kind, folder):
-    """A shipped name as it is, a file from the folder."""
-    return name if name in shipped_names(kind) else str(folder / name)
+def checked_map(mapping, where):
+    """`ImportMap` from a mapping; ``where`` is named in errors."""
+    return validated(ImportMap, mapping, where)

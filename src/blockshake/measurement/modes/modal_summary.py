@@ -1,16 +1,16 @@
 """Dynamic properties of a stack from the low-amplitude tests of a campaign, or from one test or run file."""
 
-import json
 from pathlib import Path
 
 import numpy as np
-import xarray as xr
 from scipy.stats import norm
 from scipy.stats import t as student
 
 from blockshake.errors import InputError
+from blockshake.files import parse_json
 from blockshake.geometry.structure import build_structure, load_structure
 from blockshake.measurement.campaigns.campaign import Sensors, load_campaign, load_test
+from blockshake.measurement.campaigns.reading_files import netcdf_attributes
 from blockshake.measurement.campaigns.recorded_test import read_test
 from blockshake.measurement.modes.dynamic_properties import modes_from_noise
 from blockshake.measurement.modes.transmissibility import PIECES, transmissibility
@@ -89,14 +89,12 @@ def _tests(source, structure):
         built = load_structure(structure)
         yield source.stem, read_test(source, built), built, Sensors()
         return
-    try:
-        run = xr.load_dataset(source)
-    except (OSError, ValueError) as error:
-        raise InputError(source, "", f"expected a netCDF file; {error}") from None
-    if "structure_file" not in run.attrs:
+    attributes = netcdf_attributes(source)
+    if "structure_file" not in attributes:
         raise InputError("--structure", "", f"expected the structure of {source}, which is no run file")
-    built = build_structure(json.loads(run.attrs["structure_file"]), str(source), source.parent)
-    yield source.stem, run, built, _NOISELESS
+    mapping = parse_json(str(attributes["structure_file"]), source)
+    built = build_structure(mapping, str(source), source.parent)
+    yield source.stem, read_test(source, built), built, _NOISELESS
 
 
 def _summary(test, structure, sensors, axis):

@@ -37,6 +37,7 @@ STYLE = {
     "path.simplify_threshold": 0.1,  # of a point in print
     "svg.fonttype": "path",
     "svg.hashsalt": "blockshake",
+    "text.parse_math": False,  # a dollar in a name is a dollar
 }
 # none of matplotlib's own remarks: no date, no links
 _NO_METADATA = {"Date": None, "Creator": None, "Format": None, "Type": None}

@@ -165,8 +165,9 @@ def test_shape_that_is_not_convex_is_refused_by_name(scene, tmp_path):
     part = trimesh.creation.annulus(0.3, 0.5, 0.4)
     part.export(tmp_path / "ring.stl")
     structure = scene(
-        {"ring": {"mesh": str(tmp_path / "ring.stl")}},
+        {"ring": {"mesh": "ring.stl"}},
         [{"name": "r", "shape": "ring", "position": [0, 0, 2]}],
+        folder=tmp_path,
     )
     with pytest.raises(InputError, match=r"shapes\.ring.*convex"):
         pack_polyhedra(structure, np.arange(2))

@@ -1,0 +1,141 @@
+"""Results in JSON with mutations - decisions, verdicts, parity, scored cases, track record - are read or refused."""
+
+import json
+
+import numpy as np
+import pytest
+from contract import read_or_refused, scratch
+from hypothesis import given
+from hypothesis import strategies as st
+from mutations import FEW, MANY, mutated_bytes, mutated_mappings, mutated_texts, mutations, nested
+
+from blockshake.diagnosis.inference.calibration import load_cases
+from blockshake.diagnosis.inference.decision import Decision, load_result
+from blockshake.diagnosis.verdict.frozen import check_frozen
+from blockshake.diagnosis.verdict.track_record import load_track_record
+from blockshake.diagnosis.verdict.verdict import load_verdict
+from blockshake.errors import InputError
+from blockshake.files import HOME, load_json
+from blockshake.parity.finding import Finding
+from blockshake.parity.parity import load_parity
+
+_ESTIMATE = {"estimate": 0.3, "lower": 0.2, "upper": 0.4, "unit": "1"}
+_CONTRAST = {"estimate": 0.8, "lower": 0.7, "upper": 0.9}
+VERDICT = {
+    "version": 2, "decision": "named", "causes": ["weak-joint"], "probabilities": {"weak-joint": 0.6,
+    "table-pitch": 0.02},
+    "parameters": {"weak-joint": {"factor": _ESTIMATE}}, "location": {"weak-joint": {"joint": ["slab", "block-1"]}},
+    "misfit": {"p": 0.01, "where": "slip"}, "excluded_above": {"table-pitch": 1e-4}, "next_test": None,
+    "gain": {"recalibrated": _CONTRAST, "nominal": _CONTRAST, "discrepancy": _CONTRAST}, "runs": 400,
+    "caveats": ["few"],
+    "laws": [{"name": "friction", "unit": "1", "measured": {"t1": 0.3}, "departures": {"t1": 4.0}}], "outside": None,
+    "word": "probable", "missing": ["the effort was quick"], "law_gain": _CONTRAST,
+}  # fmt: skip
+DECISION = {
+    "decision": "named", "causes": ["weak-joint"], "places": {"weak-joint": "weak-joint@slab-block-1"},
+    "sizes": {"weak-joint": 0.9}, "p_none": 0.01, "probabilities": {"weak-joint": 0.6}, "adequacy": {"weak-joint": 0.5},
+    "constancy": {"weak-joint": 0.5}, "placebo": 1.0, "struck_out": {"table-pitch": ["p"]}, "solver_dependent": [],
+    "shown_above": {"weak-joint": None}, "nominal_distance": 2.0,
+    "parameters": {"weak-joint": {"factor": _ESTIMATE | {"informed": True}}},
+    "location": {"weak-joint": {"joint": ["slab", "block-1"]}},
+    "candidates": [{
+        "key": "weak-joint@slab-block-1", "effect": "weak-joint", "log_ratio": 3.0, "by_model": {"ls-dem": 3.0},
+        "size": 0.9,
+        "sizes": [0.5, 1.0], "weights": [0.2, 0.8], "model": "ls-dem", "distance": 1.0,
+        "by_test": [{"estimate": 0.9, "lower": 0.8, "upper": 1.0}],
+    }],
+    "laws": None,
+}  # fmt: skip
+_FINDING = Finding(
+    "sensor-gain", ("a-x",), "gain", np.array([0.1]), np.array([[1e-4]]), 0.01, ("t1",), (("b", ("c",), "d"),)
+)
+PARITY = {
+    "findings": [_FINDING.as_json() | {"where": ["a-x"], "tests": ["t1"], "rivals": [["b", ["c"], "d"]]}],
+    "markers": {"m": {"noise": 1e-4, "misfit": None}}, "clock": {"t1": {"lag": 0.0, "lag_error": 1e-3}},
+    "channels": {"a-x": {"gain": 0.1, "gain_error": 0.01}}, "looked_at": 12,
+}  # fmt: skip
+CASES = [{
+    "truth": "none", "size": 0.0, "strongest": 1.0, "nominal": 1.0, "shortfall": {"weak-joint": 0.1},
+    "distance": {"weak-joint": 1.0}, "constancy": {"weak-joint": 0.5}, "missed": None,
+}]  # fmt: skip
+FROZEN = {"digest": "0123456789ab", "tests": ["t1"]}
+
+
+def frozen(path):
+    """The comparison of a frozen digest with a file, whose refusal is the right answer."""
+    check_frozen(path, path)
+
+
+READERS = {
+    "verdict": (VERDICT, load_verdict),
+    "decision": (DECISION, lambda path: load_result(Decision, path)),
+    "parity": (PARITY, load_parity),
+    "cases": (CASES, load_cases),
+    "frozen": (FROZEN, frozen),
+    "track record": (
+        load_json(HOME / "data" / "track-record" / "hidden-effects.json"), load_track_record,
+    ),
+}  # fmt: skip
+# JSON has no dates and no keys but texts
+ODD = ("", "x", "a\nb", "<script>", None, True, 0, -1, 1e308, float("nan"), float("inf"), 10**400, [], {}, [[]],
+       {"a": 1}, nested(40), nested(900), [0] * 2000, {f"k{n}": n for n in range(500)})  # fmt: skip
+
+
+def damaged(name):
+    """Mutations of a result's values, of its text, and of its bytes."""
+    good = READERS[name][0]
+    whole = json.dumps(good)
+    by_value = st.just(good) if name == "track record" else mutated_mappings(good, ODD)
+    return st.one_of(
+        by_value.map(lambda value: _json(value).encode("utf-8", "surrogatepass")),
+        mutated_texts(whole).map(lambda text: text.encode("utf-8", "surrogatepass")),
+        mutated_bytes(whole.encode()),
+    )
+
+
+def _json(value):
+    try:
+        return json.dumps(value)
+    except TypeError:  # keys of several kinds
+        return json.dumps(value, skipkeys=True)
+
+
+def read(name, content):
+    """Whether a result with this content is read."""
+    with scratch() as folder:
+        path = f"{folder}/r.json"
+        with open(path, "wb") as file:
+            file.write(content)
+        return read_or_refused(lambda: READERS[name][1](path), folder)
+
+
+@pytest.mark.parametrize("name", [name for name in READERS if name != "frozen"])
+def test_good_results_are_read(name):
+    assert read(name, json.dumps(READERS[name][0]).encode())
+
+
+def test_a_frozen_file_without_a_digest_is_refused(tmp_path):
+    (tmp_path / "frozen.json").write_text("[]")
+    with pytest.raises(InputError, match=r"frozen\.json"):
+        check_frozen(tmp_path / "frozen.json", tmp_path / "frozen.json")
+
+
+def test_lists_in_lists_are_refused(tmp_path):
+    (tmp_path / "v.json").write_text("[" * 100_000)
+    with pytest.raises(InputError, match="expected JSON"):
+        load_verdict(tmp_path / "v.json")
+
+
+@pytest.mark.parametrize("name", READERS)
+@mutations(FEW)
+@given(st.data())
+def test_mutated_results(name, data):
+    read(name, data.draw(damaged(name)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", READERS)
+@mutations(MANY)
+@given(st.data())
+def test_many_mutated_results(name, data):
+    read(name, data.draw(damaged(name)))
