@@ -165,7 +165,7 @@ def parse_json(text, where):
 
 
 def load_made_json(path, read):
-    """What ``read`` makes of the JSON value that an earlier job wrote.
+    """Value that ``read`` makes of the JSON that an earlier job wrote.
 
     Raises
     ------
