@@ -108,7 +108,9 @@ def test_peaks_are_those_of_the_files(fake, text):
         peak = envelope["peak"].sel(frame="slab", marker="top-face")
         shown = " / ".join(f"{1e3 * float(peak.sel(quantile=one)):.1f}" for one in (0.05, 0.5, 0.95))
         one = f"{shown.partition(' ')[0]} (one sample)"
-        assert (one if envelope.attrs["counted"] == 1 else f"{shown} (n = {envelope.attrs['counted']})") in text
+        assert (
+            one if envelope.attrs["counted"] == 1 else f"{shown} (n = {envelope.attrs['counted']})"
+        ) in text
 
 
 def test_measured_peak_is_that_of_the_simulated_window(fake, tmp_path):
