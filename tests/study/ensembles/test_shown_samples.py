@@ -52,3 +52,11 @@ def test_markers_are_read_at_the_frames_relative_to_the_slab(make_run):
     shown = shown_markers(test, np.array([0.5, 1.0, 1.5])).sel(marker="block-1-face")
     np.testing.assert_allclose(shown.sel(axis="x"), [0.03, np.nan, 0.03], atol=ROUNDING)
     np.testing.assert_array_equal(shown.sel(axis="z"), 0.0)
+
+
+def test_record_that_starts_within_a_frame_has_its_first_one(make_run):
+    run = make_run(0.03)
+    test = run[["marker_displacement"]].assign_coords(time=run["time"] + 3e-3)
+    test.attrs = {"slab_marker": "slab-face"}
+    shown = shown_markers(test, np.array([0.0, 1.0, 2.04])).sel(marker="block-1-face", axis="x")
+    np.testing.assert_allclose(shown, [0.0, 0.03, np.nan], atol=ROUNDING)

@@ -73,14 +73,15 @@ def _moving(case):
     """Blocks of some samples in space, where any sample has a result."""
     if not any(one.shown.sizes["sample"] for one in case.responses.values()):
         return []
+    times = usual_magnification(case)
+    size = "not at all" if times == 1.0 else f"{given(times)} times"
     markers = f", points: markers, {case.curve_word}" if case.test is not None else ""
     return [
         Figure(
             f"{case.name}: blocks of samples by every model{markers}. Displacement is relative to the slab's marker. "
-            "In print: the sample of the median peak when a block is farthest, displacement drawn "
-            f"{given(usual_magnification(case))} times as large. On a screen: the samples of the median and of the "
-            "largest peak, moving in real time; the displacement of each point is multiplied, so that blocks look "
-            "bent where the magnification is large.",
+            f"In print: the sample of the median peak when a block is farthest, magnified {size}. "
+            "On a screen: the samples of the median and of the largest peak, moving in real time; the displacement of "
+            "each point is multiplied, so that blocks look bent where the magnification is large.",
             svg_of(plot_still, case),
             interactive=moving_samples(case),
         )

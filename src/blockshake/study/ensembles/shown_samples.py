@@ -74,13 +74,16 @@ def shown_markers(test, times):
     Returns
     -------
     xarray.DataArray, (time, marker, axis)
-        [m], inertial axes; NaN in a gap. A direction that a marker does not measure counts as still.
+        [m], inertial axes; NaN in a gap and beyond the record, whose first and last readings count for half a frame
+        outside of it. A direction that a marker does not measure counts as still.
     """
     displacement = test["marker_displacement"].transpose("time", "marker", "axis").copy()
     for marker, axis in unread_directions(test):
         displacement.loc[{"marker": marker, "axis": axis}] = 0.0
     relative = displacement - displacement.sel(marker=test.attrs["slab_marker"], drop=True)
-    return relative.interp(time=times)
+    known = np.clip(times, *relative["time"].to_numpy()[[0, -1]])
+    read = relative.interp(time=known).assign_coords(time=times)
+    return read.where(xr.DataArray(np.abs(known - times) < 0.5 / FRAME_RATE, dims="time"))
 
 
 def _frames(times):

@@ -91,7 +91,7 @@ function showMoving(place, { step, frames, magnification, bodies, samples, measu
 
   function draw() {
     clock.value = `${(step * frame.value).toFixed(2)} s`;
-    times.value = `${factor.value} times`;
+    times.value = `\u00d7 ${factor.value}`;
     const width = canvas.clientWidth, height = canvas.clientHeight, fine = window.devicePixelRatio;
     canvas.width = width * fine;
     canvas.height = height * fine;
