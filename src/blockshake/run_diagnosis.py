@@ -59,7 +59,7 @@ def diagnose(campaign, output, effort="standard", cores=None):
         sys.executable, "-m", "snakemake", "diagnose", "--cores", str(os.cpu_count() if cores is None else cores),
         "--snakefile", str(HOME / "Snakefile"), "--directory", str(work),
         "--configfile", str(HOME / "config" / "diagnosis.yaml"),
-        "--config", f"campaign={json.dumps(str(folder))}", f"effort={effort}",
+        "--config", f"campaign={json.dumps(str(folder), ensure_ascii=False)}", f"effort={effort}",
     ]  # fmt: skip
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
     # its output is the progress
