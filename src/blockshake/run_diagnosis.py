@@ -83,5 +83,5 @@ def diagnosis_command(campaign, effort, cores):
         sys.executable, "-m", "snakemake", "diagnose", "--cores", str(cores),
         "--snakefile", str(HOME / "Snakefile"), "--directory", str(working_place()),
         "--configfile", str(HOME / "config" / "diagnosis.yaml"),
-        "--config", f"campaign={json.dumps(str(Path(campaign).resolve()))}", f"effort={effort}",
+        "--config", f"campaign={json.dumps(str(Path(campaign).resolve()), ensure_ascii=False)}", f"effort={effort}",
     ]  # fmt: skip

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 
-FEW, MANY = 60, 3000  # mutations of a kind in `make test`, and in `make test-slow`
+FEW, MANY = 40, 3000  # mutations of a kind in `make test`, and in `make test-slow`
 
 
 def mutations(count):

@@ -1,6 +1,5 @@
 """What the rules of a diagnosis share: campaigns by name, their plans, and which files follow from a decision."""
 
-import json
 import re
 from functools import cache
 
@@ -133,8 +132,13 @@ def sealed_motions(campaign):
 
 def decided(wildcards):
     """Decision on the physical causes of a campaign; asks for it first."""
+    from blockshake.diagnosis.inference.decision import Decision, load_result
+
     path = checkpoints.decide.get(campaign=wildcards.campaign).output.decision
-    return json.loads(Path(path).read_text())
+    try:
+        return load_result(Decision, path).model_dump()
+    except InputError as error:
+        refuse(error)
 
 
 def described(decision):
@@ -179,10 +183,14 @@ def extended_files(wildcards):
 def gain_files(wildcards):
     """The gain and its scores, where there are sealed tests, and a cause that only sensors have or members to simulate one with."""
     from blockshake.diagnosis.libraries.plan import sealed_tests
+    from blockshake.parity.parity import load_parity
 
     decision, asked = decided(wildcards), plan(wildcards.campaign)
     parity = f"results/diagnosis/{wildcards.campaign}/parity.json"
-    faulty = bool(json.loads(Path(parity).read_text())["findings"])
+    try:
+        faulty = bool(load_parity(parity).findings)
+    except InputError as error:
+        refuse(error)
     physical = bool(decision["causes"]) or described(decision)
     measurable = asked.effort.members if physical else faulty
     if measurable and sealed_tests(asked.campaign):

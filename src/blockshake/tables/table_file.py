@@ -3,6 +3,7 @@
 import csv
 import io
 import re
+import zipfile
 from decimal import Decimal
 from pathlib import Path
 from typing import Literal, NamedTuple
@@ -18,6 +19,7 @@ _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 _SEPARATORS = "\t;|,"  # looked for in the header in this order; white space where it has none of them
 _GAPS = ("", "nan", "#n/a", "#nv")  # the last two as spreadsheets write them, in English and German
 _WORKBOOK = (".xlsx", ".xlsm")
+_MOST_BYTES, _MOST_CELLS = 5e8, 2e7  # a workbook of a few kilobytes may claim any number of them
 _MOST_NAMES = 20  # columns that an error lists
 
 
@@ -81,7 +83,7 @@ class Table(NamedTuple):
 
     def _number(self, cell, size, key):
         if isinstance(cell, (int, float)) and not isinstance(cell, bool):
-            return float(Decimal(repr(cell)) * size)
+            cell = repr(cell)
         text = "" if cell is None else str(cell).strip()
         if text.lower() in _GAPS:
             return np.nan
@@ -91,7 +93,10 @@ class Table(NamedTuple):
             raise InputError(
                 self.source, key, f"expected a number with a decimal {sign}, or nothing, not '{text}'"
             )
-        return float(Decimal(plain) * size)
+        try:
+            return float(Decimal(plain) * size)
+        except ArithmeticError:
+            raise InputError(self.source, key, f"expected a number of usual size, not '{text}'") from None
 
 
 def read_table(source, layout):
@@ -162,12 +167,29 @@ def _sheet_rows(path, sheet):
 
     content = io.BytesIO(read_bytes(path))
     try:
+        with zipfile.ZipFile(content) as parts:
+            unpacked = sum(part.file_size for part in parts.infolist())
+        if unpacked > _MOST_BYTES:
+            raise InputError(path, "", f"expected a workbook of at most {_MOST_BYTES:g} bytes, unpacked")
         book = openpyxl.load_workbook(content, read_only=True, data_only=True)
+        names = [one.title for one in book.worksheets]
+        if sheet not in names and (sheet or len(names) != 1):
+            raise InputError(path, sheet, f"expected FILE#SHEET with one of the sheets {', '.join(names)}")
+        return (f"{path}#{sheet}" if sheet else str(path)), _filled_rows(book[sheet or names[0]], path)
+    except InputError:
+        raise
     except Exception:  # zip, XML and key errors, whatever is damaged
         raise InputError(path, "", "expected a workbook (xlsx); this is damaged or something else") from None
-    names = [one.title for one in book.worksheets]
-    if sheet not in names and (sheet or len(names) > 1):
-        raise InputError(path, sheet, f"expected FILE#SHEET with one of the sheets {', '.join(names)}")
-    chosen = book[sheet or names[0]]
-    rows = [(number, list(row)) for number, row in enumerate(chosen.iter_rows(values_only=True), start=1)]
-    return (f"{path}#{sheet}" if sheet else str(path)), rows
+
+
+def _filled_rows(sheet, path):
+    """Rows of a sheet that hold anything, by number from 1."""
+    sheet.reset_dimensions()  # which a file may state at will
+    rows, count = [], 0
+    for number, row in enumerate(sheet.iter_rows(values_only=True), start=1):
+        count += len(row)
+        if count > _MOST_CELLS:
+            raise InputError(path, "", f"expected a sheet of at most {_MOST_CELLS:g} cells")
+        if any(cell is not None for cell in row):
+            rows.append((number, list(row)))
+    return rows

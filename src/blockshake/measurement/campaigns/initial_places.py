@@ -26,8 +26,8 @@ def check_initial_places(test, structure, path):
         if name in test:
             _check_bodies(test, structure, path)
             size = np.abs(test[name].transpose("body", "axis").to_numpy())
-            size = np.where(np.isfinite(size), size, 0.0).max(axis=1)
-            if size.max() > limit:
+            size = np.where(np.isfinite(size), size, 0.0).max(axis=1, initial=0.0)
+            if size.max(initial=0.0) > limit:
                 body = test["body"].values[int(size.argmax())]
                 raise InputError(
                     path, f"{name}.{body}", f"expected at most {limit:g} {unit}, not {size.max():.3g}"
