@@ -78,10 +78,14 @@ def working_place():
 
 
 def diagnosis_command(campaign, effort, cores):
-    """Command that starts the workflow of a campaign's diagnosis, as a list of its words."""
+    """Command that starts the workflow of a campaign's diagnosis, as a list of its words.
+
+    The folder is told in a list: Snakemake takes the quotes off a single text.
+    """
+    folders = json.dumps([str(Path(campaign).resolve())], ensure_ascii=False)
     return [
         sys.executable, "-m", "snakemake", "diagnose", "--cores", str(cores),
         "--snakefile", str(HOME / "Snakefile"), "--directory", str(working_place()),
         "--configfile", str(HOME / "config" / "diagnosis.yaml"),
-        "--config", f"campaign={json.dumps(str(Path(campaign).resolve()), ensure_ascii=False)}", f"effort={effort}",
+        "--config", f"campaigns={folders}", f"effort={effort}",
     ]  # fmt: skip

@@ -167,7 +167,7 @@ def test_a_study_in_an_odd_folder_reaches_no_shell(odd, tmp_path):
     answer = subprocess.run([*command, "-n"], capture_output=True, text=True, check=False)
     assert answer.returncode == 0, answer.stdout + answer.stderr
     answer = subprocess.run(
-        [*command, "results/small/motions/m.nc"], capture_output=True, text=True, check=False
+        [*command, "--", "results/small/motions/m.nc"], capture_output=True, text=True, check=False
     )
     assert answer.returncode == 0, answer.stdout + answer.stderr
     assert (tmp_path / "work" / "results" / "small" / "motions" / "m.nc").exists()
@@ -216,5 +216,5 @@ def test_a_diagnosis_is_told_the_very_folder(odd, tmp_path, monkeypatch):
     monkeypatch.setattr("blockshake.diagnosis.libraries.plan.plan_diagnosis", lambda *_: None)
     with pytest.raises(RuntimeError, match="workflow stopped"):
         run_diagnosis.diagnose(odd, tmp_path / "out", "quick", 1)
-    (campaign,) = [word for word in given if word.startswith("campaign=")]
-    assert parse_config([campaign]) == {"campaign": str(odd)}
+    (campaigns,) = [word for word in given if word.startswith("campaigns=")]
+    assert parse_config([campaigns]) == {"campaigns": [str(odd)]}
