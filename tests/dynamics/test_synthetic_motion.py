@@ -129,7 +129,7 @@ def broken(tmp_path, old, new):
         ("  kappa: 0.04", "  kappa: -0.04", "source.kappa"),
         ("synthetic: true", "synthetic: false", "synthetic"),
         ("{period: 0.1,", "{period: 0.01,", "target_spectrum in order"),
-        ("duration: 25.0", "duration: 0.1", "100 time steps"),
+        ("duration: 25.0", "duration: 0.1", "100 to 200000 time steps"),
     ],
 )
 def test_wrong_parameters_are_named(tmp_path, old, new, key):

@@ -170,6 +170,7 @@ def parity(structure, findings):
         "clock": {name: {"lag": 3e-5, "lag_error": 1e-4} for name in OPEN},
         "channels": {},
         "looked_at": 214,
+        "falls": {},
     })  # fmt: skip
 
 
@@ -187,7 +188,14 @@ def track_record():
             for _ in range(count):
                 seed += 1
                 cases.append(
-                    JudgedCase(name=f"case-{seed}", seed=seed, truth=truth, size=size, answer=answer)
+                    JudgedCase(
+                        name=f"case-{seed}",
+                        seed=seed,
+                        structure="two-blocks",
+                        truth=truth,
+                        size=size,
+                        answer=answer,
+                    )
                 )
     return TrackRecord(
         date="2026-11-20", commit="0123456789ab", machine="two cores", efforts={"two-blocks": "standard"},

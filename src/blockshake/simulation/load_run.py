@@ -76,12 +76,12 @@ def load_run(path, meshes=None):
     for name in ("time", *_UNITS):
         if name not in run.variables or run[name].dtype.kind != "f":
             raise InputError(path, name, "expected numbers")
-    for name, unit in _UNITS.items():
-        if run[name].attrs.get("units") != unit:
-            raise InputError(path, f"{name}.units", f"expected {unit}")
     for name in _ATTRIBUTES:
         if name not in run.attrs:
             raise InputError(path, name, "expected a run file of blockshake simulate, with this attribute")
+    for name, unit in _UNITS.items():
+        if run[name].attrs.get("units") != unit:
+            raise InputError(path, f"{name}.units", f"expected {unit}")
     structure = _structure_of(run, path, Path(path).parent if meshes is None else Path(meshes))
     markers = [marker.name for marker in structure.file.markers]
     for name, order in {**_ORDERS, "body": structure.body_names, "marker": markers}.items():
