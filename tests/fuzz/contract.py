@@ -11,6 +11,8 @@ import time
 import warnings
 from pathlib import Path
 
+import matplotlib
+
 from blockshake.cli import BAD_INPUT, NUMERICAL_FAILURE, main
 from blockshake.errors import InputError
 from blockshake.jit import CACHE_FOLDER
@@ -69,7 +71,8 @@ class _Watch:
             self.seen.append(f"{event} {arguments}")
 
     def _own(self, path):
-        return any(Path(path).is_relative_to(own) for own in (self.folder, CACHE_FOLDER.resolve(), "/dev"))
+        kept = self.folder, CACHE_FOLDER.resolve(), "/dev", Path(matplotlib.get_cachedir()).resolve()
+        return "__pycache__" in path or any(Path(path).is_relative_to(own) for own in kept)
 
 
 _WATCH = _Watch()

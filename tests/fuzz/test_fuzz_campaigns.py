@@ -10,6 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mutations import FEW, MANY, mutated_bytes, mutated_datasets, mutated_mappings, mutated_texts, mutations
 
+pytestmark = pytest.mark.slow  # a limit of CPU time, which kernels that are compiled first would break
+
 CLASSIC = "NETCDF3_64BIT"
 
 

@@ -8,6 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mutations import FEW, MANY, mutated_bytes, mutated_mappings, mutated_texts, mutations
 
+pytestmark = pytest.mark.slow  # a limit of CPU time, which kernels that are compiled first would break
+
 ROWS = 60
 _VALUES = np.round(np.sin(np.arange(ROWS) / 5.0) * np.hanning(ROWS), 5)
 CSV = "time_s,acceleration_x,acceleration_z,pitch_y\n" + "".join(

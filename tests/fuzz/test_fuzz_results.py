@@ -19,6 +19,8 @@ from blockshake.files import HOME, load_json
 from blockshake.parity.finding import Finding
 from blockshake.parity.parity import load_parity
 
+pytestmark = pytest.mark.slow  # a limit of CPU time, which kernels that are compiled first would break
+
 _ESTIMATE = {"estimate": 0.3, "lower": 0.2, "upper": 0.4, "unit": "1"}
 _CONTRAST = {"estimate": 0.8, "lower": 0.7, "upper": 0.9}
 VERDICT = {

@@ -17,6 +17,8 @@ from blockshake.geometry.structure import build_structure
 from blockshake.simulation.simulate import simulate
 from blockshake.solvers.checkpoint import load_parts, save_parts
 
+pytestmark = pytest.mark.slow  # a limit of CPU time, which kernels that are compiled first would break
+
 COMMANDS = (
     ("export", "r.nc", "--output", "o.csv"), ("export", "r.nc", "--output", "o.vtkhdf"),
     ("export", "r.nc", "--output", "o.glb"), ("modes", "r.nc"), ("plot", "r.nc", "--output", "o.png"),

@@ -9,6 +9,8 @@ from mutations import FEW, MANY, mutated_mappings, mutated_texts, mutations
 
 from blockshake.files import load_yaml, shipped
 
+pytestmark = pytest.mark.slow  # a limit of CPU time, which kernels that are compiled first would break
+
 GOOD = {
     "name": "two", "description": "Two blocks.", "gravity": [0.0, 0.0, -9.81],
     "materials": {"stone": {"density": 2400.0, "youngs_modulus": 3e10, "poisson_ratio": 0.2}},

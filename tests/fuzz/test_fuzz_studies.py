@@ -10,6 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mutations import FEW, MANY, mutated_mappings, mutated_texts, mutations
 
+pytestmark = pytest.mark.slow  # a limit of CPU time, which kernels that are compiled first would break
+
 STUDY = {
     "name": "small", "description": "Two blocks.", "output_rate": 100.0, "samples_per_job": 5, "date": "2020-01-01",
     "models": {"ls-dem": {"time_step": 5e-5}, "nscd-rigid": {"time_step": 1e-3,
