@@ -172,6 +172,14 @@ def test_few_samples_have_no_partial_correlation():
     assert np.isnan(explained).all()
 
 
+def test_output_that_is_one_input_leaves_nothing_to_the_others():
+    # by the rounding of a processor alone the others would correlate fully with the rest, which is zero
+    inputs = hypercube(np.random.default_rng(7), 50, 4)
+    found, explained = partial_rank_correlation(inputs, as_output(np.exp(inputs[:, 2])))
+    np.testing.assert_array_equal(found, [[0.0, 0.0, 1.0, 0.0]])
+    assert explained == 1.0
+
+
 def test_output_that_does_not_vary_has_no_sensitivity():
     inputs = hypercube(np.random.default_rng(6), 50, 3)
     outputs = as_output(np.column_stack([np.full(50, 0.3), inputs[:, 0]]))

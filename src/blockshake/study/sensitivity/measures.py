@@ -7,6 +7,7 @@ import numpy as np
 from scipy.stats import rankdata
 
 FEWEST_DEGREES = 5  # of freedom below which a partial correlation says nothing
+_ROUNDING = 1e-9  # of a standardised slope, and of a share of the variance
 FEWEST_SAMPLES = 6  # below which no class of two samples and its rival remain
 
 
@@ -91,14 +92,19 @@ def partial_rank_correlation(inputs, outputs):
     inverse = np.linalg.pinv(ranks.T @ ranks / n_samples)
     with np.errstate(divide="ignore", invalid="ignore"):
         along = _standardised(rankdata(outputs[:, :, 0], axis=0)).T @ ranks / n_samples
-        slopes = along @ inverse
-        unexplained = np.maximum(1.0 - (slopes * along).sum(axis=1), 0.0)
+        slopes = _beyond_rounding(along @ inverse)
+        unexplained = np.maximum(_beyond_rounding(1.0 - (slopes * along).sum(axis=1)), 0.0)
         scale = np.sqrt(slopes**2 + unexplained[:, None] * np.diag(inverse))
-        correlation = slopes / scale
+        # an output that one input explains to the last digit leaves nothing to the others
+        correlation = np.divide(slopes, scale, out=np.zeros_like(slopes), where=scale > 0.0)
     explained = 1.0 - (n_samples - 1) / degrees * unexplained
     still = ~_varies(outputs)
     correlation[still], explained[still] = np.nan, np.nan
     return correlation, explained
+
+
+def _beyond_rounding(values):
+    return np.where(np.abs(values) > _ROUNDING, values, 0.0)
 
 
 def bootstrap_interval(measure, inputs, outputs, estimate, confidence, count, generator):
