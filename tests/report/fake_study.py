@@ -10,6 +10,7 @@ from fake_inputs import definitions, motion, waves
 
 from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
+from blockshake.measurement.motion.joint_coordinates import find_joints
 from blockshake.measurement.sensors.marker_noise import noisy_reading
 from blockshake.study.comparison.comparison import compare_models
 from blockshake.study.comparison.differences import FEWEST
@@ -20,6 +21,8 @@ from blockshake.study.ensembles.coverage import coverage
 from blockshake.study.ensembles.ensemble import gather_ensemble, sample_figures
 from blockshake.study.ensembles.envelope import envelope
 from blockshake.study.ensembles.shown_samples import shown_samples
+from blockshake.study.fragility.climb import gathered
+from blockshake.study.fragility.fragility import fragility
 from blockshake.study.sampling.distributions import TABLE_2
 from blockshake.study.sampling.latin_hypercube import draw_samples
 from blockshake.study.sensitivity.sensitivity import sensitivity
@@ -39,6 +42,26 @@ CPU_TIME = 43.21  # s, of every job
 HOUSNER = 0.731
 # of the first sample, and what an impact keeps
 STRENGTH = {"ls-dem": 0.8, "nscd-rigid": 0.82, "nscd-elastic": 0.6, "nscd-viscoelastic": 0.79}
+
+
+def climbed_and_fitted():
+    """Five samples that pass two, three or four of six levels, the last of them without an end."""
+    scales = 0.5 + 0.25 * np.arange(6)
+    climbs = []
+    for stands in (2, 3, 3, 4, 3):
+        rungs = [
+            {
+                "scale": scale,
+                "passed": place < stands,
+                "status": "completed",
+                "reason": "",
+                "peak": 0.1 * scale,
+            }
+            for place, scale in enumerate(scales[: stands + 1])
+        ]
+        climbs.append(rungs)
+    climbs[-1][-1]["status"] = "not-converged"
+    return fragility(gathered(np.arange(5), climbs, scales, 0.4), ("configuration-1",))
 
 
 class FakeStudy:
@@ -75,10 +98,12 @@ class FakeStudy:
             },
             "output_rate": 200.0,
             "ladder": {"motions": ["alkion", "basso-tirreno"], "first": 0.5, "increment": 0.25},
+            "fragility": {"model": "nscd-rigid", "cases": ["configuration-1"], "size": 5},
             "friction_calibration": {"cases": ["configuration-1"]},
             "convergence": {"structure": "configuration-1"},
         }
         write_json(self.results / "friction" / "configuration-1.json", friction())
+        write_dataset(self.results / "fragility" / "configuration-1.nc", climbed_and_fitted())
         for place, name in enumerate(("basso-tirreno", "alkion")):
             write_dataset(self.results / "motions" / f"{name}.nc", motion(name, place))
         self._write_design()
@@ -171,14 +196,23 @@ class FakeStudy:
             displacement[:, place, 0] = slab + height[marker.body] * sway
         still = np.zeros((len(self.time), len(bodies), 4))
         still[..., 0] = 1.0
+        joints = find_joints(structure)[0]
         return xr.Dataset(
             {
                 "marker_displacement": (("time", "marker", "axis"), displacement, {"units": "m"}),
                 "position": (("time", "body", "axis"), np.zeros((len(self.time), len(bodies), 3))),
                 "orientation": (("time", "body", "quaternion"), still),
+                "joint_compression": (
+                    "joint",
+                    1e5 * strength * np.arange(len(joints), 0, -1),
+                    {"units": "N"},
+                ),
+                "joint_uplift": ("joint", 1e-3 * strength * np.arange(1, len(joints) + 1), {"units": "m"}),
+                "joint_slip": ("joint", 2e-4 * strength * np.arange(len(joints), 0, -1), {"units": "m"}),
             },
             coords={
                 "time": self.time,
+                "joint": [f"{bodies[lower]}-{bodies[upper]}" for lower, upper in joints],
                 "marker": [marker.name for marker in markers],
                 "marker_body": ("marker", [marker.body for marker in markers]),
                 "body": bodies,

@@ -12,7 +12,8 @@ MARKERS = ["slab-face", "block-1-face"]
 
 @pytest.fixture
 def make_run():
-    """Run Dataset whose block marker is at ``slab + amplitude`` along x, with a known rotation."""
+    """Run Dataset whose block marker is at ``slab + amplitude`` along x, with a known rotation; its joint opens by half
+    the block's width times the angle and slips by the amplitude."""
 
     def make(amplitude, slab=0.0, angle=0.0, status="completed", end=TIME[-1], sample=0):
         displacement = np.zeros((len(TIME), 2, 3))
@@ -32,12 +33,16 @@ def make_run():
                 "marker_displacement": (("time", "marker", "axis"), displacement, {"units": "m"}),
                 "position": (("time", "body", "axis"), position, {"units": "m"}),
                 "orientation": (("time", "body", "quaternion"), orientation, {"units": "1"}),
+                "joint_compression": ("joint", [1e5], {"units": "N", "long_name": "compression"}),
+                "joint_uplift": ("joint", [0.4 * angle], {"units": "m", "long_name": "uplift"}),
+                "joint_slip": ("joint", [np.abs(amplitude).max()], {"units": "m", "long_name": "slip"}),
             },
             coords={
                 "time": ("time", TIME, {"units": "s"}),
                 "marker": MARKERS,
                 "marker_body": ("marker", ["slab", "block-1"]),
                 "body": ["slab", "block-1"],
+                "joint": ["slab-block-1"],
                 "axis": ["x", "y", "z"],
                 "quaternion": ["w", "x", "y", "z"],
             },

@@ -103,8 +103,13 @@ def campaign_files(case):
 
 
 def batches(model, case):
-    """Ids of the batches of a case: first and last sample."""
-    count, size = CHECKED.samples(model, case), config["samples_per_job"]
+    """Ids of the batches of a case."""
+    return batch_ids(CHECKED.samples(model, case))
+
+
+def batch_ids(count):
+    """Ids of the batches of so many samples: first and last sample."""
+    size = config["samples_per_job"]
     return [
         f"{first:03d}-{min(first + size, count) - 1:03d}"
         for first in range(0, count, size)
@@ -171,6 +176,10 @@ def files_of_report(cases):
             "friction/{case}.json",
             case=[case for case in FRICTION_SEARCH.get("cases", []) if case in cases],
         ),
+        "fragility": results(
+            "fragility/{case}.nc",
+            case=[case for case in FRAGILITY.get("cases", []) if case in cases],
+        ),
         "sensitivities": by_model("sensitivities", cases),
     }
 
@@ -198,11 +207,12 @@ def campaign_kernels(wildcards):
 
 def stiffness_file(wildcards):
     """Calibrated stiffness of the samples, for the models that have any: an edit of LS-DEM reruns no NSCD."""
-    return (
-        f"results/{wildcards.study}/stiffness/{wildcards.case}.csv"
-        if SOLVERS[wildcards.model].calibrated
-        else []
-    )
+    return stiffness_of(wildcards.model, wildcards.study, wildcards.case)
+
+
+def stiffness_of(model, study, case):
+    """The same of a model, a study and a case by their names."""
+    return f"results/{study}/stiffness/{case}.csv" if SOLVERS[model].calibrated else []
 
 
 def base_file(wildcards):
@@ -248,6 +258,7 @@ MODELS = list(config["models"])
 CASES = {Path(case["structure"]).stem: case for case in config["cases"]}
 MEASURED = [name for name, case in CASES.items() if case["measured"]]
 FRICTION_SEARCH = config.get("friction_calibration") or {}
+FRAGILITY = config.get("fragility") or {}
 LADDER_MOTIONS = config["ladder"]["motions"] or list(
     dict.fromkeys(case["motion"] for case in config["cases"])
 )

@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, ConfigDict, Field, StringConstraints, field_validator, model_validator
 
 from blockshake.dynamics.load_motion import load_motion
@@ -17,6 +18,7 @@ from blockshake.simulation.models import ModelName, split_parameters
 from blockshake.study.comparison.differences import FEWEST
 from blockshake.study.convergence.settings import Convergence
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED, check_record
+from blockshake.study.fragility.settings import FragilitySettings
 from blockshake.study.friction.settings import FrictionSearch
 from blockshake.study.sampling.correlation_target import load_correlation
 from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, load_distributions
@@ -132,6 +134,12 @@ class Ladder(Strict):
         "of the smaller width of the structure's blocks [m]",
     )
 
+    @property
+    def scales(self):
+        """Scales from the first to the highest, float64 array [1]."""
+        count = int(np.floor((self.highest - self.first) / self.increment + 1e-9)) + 1
+        return self.first + self.increment * np.arange(count)
+
 
 class Diagnosis(Strict):
     """Which measured campaigns are diagnosed, and how thoroughly."""
@@ -167,6 +175,7 @@ class StudyConfig(Strict):
     cases: tuple[StudyCase, ...] = Field(min_length=1)
     ensemble: Ensemble
     ladder: Ladder = Ladder()
+    fragility: FragilitySettings | None = Field(None, description="none: no sample climbs the ladder")
     friction_calibration: FrictionSearch | None = None
     convergence: Convergence | None = Field(None, description="none: no study of the numerical parameters")
     diagnosis: Diagnosis = Field(Diagnosis(), description="none: no campaign is diagnosed")
@@ -222,6 +231,7 @@ def check_config(mapping, where):
                 where, f"ensemble.linked.{target}", f"expected one of the random variables, not {source}"
             )
     _check_friction_search(config, where)
+    _check_fragility(config, where)
     if config.ensemble.correlation is not None:
         load_correlation(config.ensemble.correlation)
     if config.convergence is not None:
@@ -290,6 +300,20 @@ def _check_measured(case, where, key):
     if case.input == MEASURED:
         time = load_test(campaign, case.measured.test)["time"].to_numpy()
         check_record(time[-1] - time[0], case.duration, where, f"{key.removesuffix('measured')}duration")
+
+
+def _check_fragility(config, where):
+    asked = config.fragility
+    if asked is None:
+        return
+    known = [case.name for case in config.cases]
+    for name in asked.cases:
+        if name not in known:
+            raise InputError(where, "fragility.cases", f"expected one of {', '.join(known)}, not {name}")
+    if asked.model not in config.models:
+        raise InputError(where, "fragility.model", f"expected a model of the study, not {asked.model}")
+    if asked.size > config.ensemble.size:
+        raise InputError(where, "fragility.size", f"expected at most ensemble.size, {config.ensemble.size}")
 
 
 def _check_friction_search(config, where):

@@ -56,3 +56,29 @@ def test_points_of_a_curve_are_where_matplotlib_puts_them(tmp_path):
 def _curve(svg):
     """Path data of the curve."""
     return re.search(r'id="curve">\s*<path d="([^"]*)"', svg)[1]
+
+
+@pytest.mark.parametrize(
+    ("scale", "limits", "wanted"),
+    [
+        ("log", (1e-3, 1e2), {"10⁻³", "10⁰", "10²"}),
+        ("symlog", (-100.0, 100.0), {"-10²", "0", "10²"}),
+        ("log", (2.0, 7.0), {"2\N{MULTIPLICATION SIGN}10⁰", "6\N{MULTIPLICATION SIGN}10⁰"}),
+    ],
+)
+def test_powers_of_ten_are_plain_letters(tmp_path, scale, limits, wanted):
+    """Formulas are not read, so that the labels of a logarithmic axis must not be any."""
+    drawn = new_figure(0.06)
+
+    def plot():
+        axes = drawn.subplots()
+        axes.set(xscale=scale, xlim=limits)
+        return drawn
+
+    save_picture(tmp_path / "powers.png", plot)
+    (axes,) = drawn.axes
+    labels = {
+        label.get_text().replace(" ", "") for label in axes.get_xticklabels(which="both") if label.get_text()
+    }
+    assert wanted <= labels, labels
+    assert not [label for label in labels if set(label) & set("${}\\^")]

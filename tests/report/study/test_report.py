@@ -143,9 +143,9 @@ def test_samples_that_did_not_complete_are_listed_with_their_reason(text):
     assert "the statistics leave out failed samples (1)" in text
 
 
-def test_fewer_samples_of_a_model_are_said_first(text):
-    told = "NSCD rigid ran 6 of the 10 samples on configuration-4, where a sample cost 7.2 CPU s"
-    assert text.index(told) < text.index("Table 1.")
+def test_fewer_samples_of_a_model_are_said_first_and_their_cost_with_the_samples(text):
+    assert text.index("NSCD rigid (n = 5), configuration-4") < text.index("Table 1.")
+    assert "NSCD rigid ran 6 of the 10 samples on configuration-4, where a sample cost 7.2 CPU s" in text
     assert "NSCD elastic ran 1 of the 10 samples on configuration-4" in text
     assert text.count("Bounds of fewer samples are narrower") == 1
 

@@ -51,6 +51,8 @@ def test_peak_residual_and_rotation_of_known_curves(make_run, gather):
     # the arccosine near 1 keeps half the digits
     np.testing.assert_allclose(ensemble["peak_rotation"].sel(sample=0), [0.0, 0.04], atol=1e-7)
     np.testing.assert_array_equal(peak.sel(sample=1), 0.0)
+    np.testing.assert_allclose(ensemble["joint_uplift"].sel(joint="slab-block-1"), [0.016, 0.0])
+    np.testing.assert_allclose(ensemble["joint_slip"].sel(joint="slab-block-1"), [0.05, 0.0], atol=ROUNDING)
 
 
 def test_a_run_cut_short_keeps_its_peak_and_has_no_residual(make_run, gather):
@@ -159,6 +161,7 @@ def test_joined_texts_keep_their_length_through_a_file(tmp_path):
                 "time": [0.0, 1.0],
                 "marker": ["m"],
                 "body": ["b"],
+                "joint": ["j"],
                 "parameter": ["p"],
             },
         )

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import matplotlib
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatterSciNotation
 
 from blockshake.errors import InputError
 from blockshake.files import replacing
@@ -39,6 +40,12 @@ STYLE = {
     "svg.hashsalt": "blockshake",
     "text.parse_math": False,  # a dollar in a name is a dollar
 }
+_RAISED = str.maketrans(
+    "-0123456789",
+    "\N{SUPERSCRIPT MINUS}\N{SUPERSCRIPT ZERO}\N{SUPERSCRIPT ONE}\N{SUPERSCRIPT TWO}\N{SUPERSCRIPT THREE}"
+    "\N{SUPERSCRIPT FOUR}\N{SUPERSCRIPT FIVE}\N{SUPERSCRIPT SIX}\N{SUPERSCRIPT SEVEN}\N{SUPERSCRIPT EIGHT}"
+    "\N{SUPERSCRIPT NINE}",
+)
 # none of matplotlib's own remarks: no date, no links
 _NO_METADATA = {"Date": None, "Creator": None, "Format": None, "Type": None}
 # formats of picture files by suffix, with the same of theirs
@@ -62,20 +69,40 @@ def save_picture(path, plot, *arguments, **named):
     check_picture(path)
     with matplotlib.rc_context(STYLE), replacing(path) as temporary:
         kind = Path(path).suffix.lower()
-        plot(*arguments, **named).savefig(
-            temporary, format=kind[1:], dpi=_RESOLUTION, metadata=_PICTURES[kind]
-        )
+        figure = _with_plain_powers(plot(*arguments, **named))
+        figure.savefig(temporary, format=kind[1:], dpi=_RESOLUTION, metadata=_PICTURES[kind])
 
 
 def svg_of(plot, *arguments, **named):
     """SVG text, in the report's style, of the matplotlib figure that ``plot(...)`` returns."""
     with matplotlib.rc_context(STYLE):
-        figure = plot(*arguments, **named)
+        figure = _with_plain_powers(plot(*arguments, **named))
         with io.StringIO() as text:
             figure.savefig(text, format="svg", metadata=_NO_METADATA)
             svg = text.getvalue()
     svg = svg[svg.index("<svg") :]
     return re.sub(r' d="([^"]*)"', lambda found: f' d="{_shorter(found[1])}"', svg)
+
+
+class PowersOfTen(LogFormatterSciNotation):
+    """Labels of a logarithmic axis in plain letters, such as 10 with a raised 3: formulas are not read."""
+
+    def __call__(self, x, pos=None):
+        """Label of a tick at ``x``, empty where it has none."""
+        label = re.sub(r"\$|\\mathdefault", "", super().__call__(x, pos))
+        label = label.replace(r"\times", "\N{MULTIPLICATION SIGN}")
+        label = re.sub(r"\^\{(.*?)\}", lambda found: found[1].translate(_RAISED), label)
+        return label.replace("{", "").replace("}", "")
+
+
+def _with_plain_powers(figure):
+    """The figure with `PowersOfTen` on each of its axes that labels powers."""
+    for axis in (one for axes in figure.axes for one in (axes.xaxis, axes.yaxis)):
+        if isinstance(axis.get_major_formatter(), LogFormatterSciNotation):
+            axis.set_major_formatter(PowersOfTen())
+        if isinstance(axis.get_minor_formatter(), LogFormatterSciNotation):
+            axis.set_minor_formatter(PowersOfTen())
+    return figure
 
 
 def _shorter(path):

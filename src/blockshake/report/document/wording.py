@@ -65,6 +65,11 @@ def percent(value):
     return f"{100.0 * float(value):.1f}" if np.isfinite(value) else MISSING
 
 
+def quantile_percent(probability):
+    """Name of a quantile: ``95 %``."""
+    return f"{100.0 * probability:g} %"
+
+
 def quantile_range(values, show):
     """Values along ``quantile`` at 5, 50 and 95 %, each printed by ``show``, parted by slashes."""
     return " / ".join(show(values.sel(quantile=one)) for one in SHOWN_QUANTILES)

@@ -127,6 +127,8 @@ class Content:
         Of the study's first case; none where that is not reported.
     friction : dict of str to dict
         Friction calibrations by case; empty where the study asks for none.
+    fragility : dict of str to xarray.Dataset
+        From `fragility`, by case; empty where the study asks for none.
     convergence : pandas.DataFrame or None
         From `study_convergence`, where the study has one; a case alone has none.
     peer : xarray.Dataset or None
@@ -148,6 +150,7 @@ class Content:
     calibrated: tuple
     definitions: xr.Dataset | None
     friction: dict
+    fragility: dict
     convergence: pd.DataFrame | None
     peer: xr.Dataset | None
     timings: tuple
@@ -213,6 +216,11 @@ def load_content(study, results, benchmarks, only=None):
         friction={
             name: load_json(results / "friction" / f"{name}.json")
             for name in (study.get("friction_calibration") or {}).get("cases", ())
+            if name in cases
+        },
+        fragility={
+            name: load_made(results / "fragility" / f"{name}.nc")
+            for name in (study.get("fragility") or {}).get("cases", ())
             if name in cases
         },
         convergence=(

@@ -5,6 +5,7 @@ import numpy as np
 from blockshake.report.document.blocks import Figure, Heading, Items, Section, Text
 from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.wording import count_words, given, model_label, number, parameter_label
+from blockshake.report.study.conclusions import conclusions
 from blockshake.report.study.definition_tables import definition_blocks
 from blockshake.report.study.figures.motion import plot_motions, plot_spectra
 from blockshake.report.study.figures.samples import plot_correlation, plot_samples
@@ -18,13 +19,13 @@ from blockshake.report.study.input_tables import (
     samples_table,
     waves_table,
 )
-from blockshake.report.study.result_tables import top_block_table
+from blockshake.report.study.probability_table import probability_table
 from blockshake.study.ensembles.outcomes import count_outcomes
 from blockshake.study.sensitivity.sensitivity import unused_variables
 
 
 def summary(content):
-    """Cases, data, outcomes and the peaks of the top blocks."""
+    """Conclusions, the figures behind them, and the cases."""
     cases = content.cases.values()
     synthetic_tests = [case.name for case in cases if case.synthetic]
     synthetic_motions = sorted(
@@ -57,10 +58,18 @@ def summary(content):
         f"{ended.completed} completed, {ended.collapsed} collapsed, {ended.failed} failed.",
         f"{len(content.design)} samples of {len(content.distributions)} random variables in the design (seed "
         f"{content.study['ensemble']['seed']}).",
-        *_fewer_samples(content),
     ]
     return Section(
-        "Summary", "summary", (*blocks, Items(tuple(items)), cases_table(content), top_block_table(content))
+        "Summary",
+        "summary",
+        (
+            *blocks,
+            *conclusions(content),
+            Heading("Figures behind these sentences", "figures-of-summary"),
+            probability_table(content),
+            Items(tuple(items)),
+            cases_table(content),
+        ),
     )
 
 
@@ -167,6 +176,7 @@ def samples(content):
             svg_of(plot_samples, content.design, content.distributions),
         ),
         samples_table(content),
+        *([Items(tuple(fewer))] if (fewer := _fewer_samples(content)) else []),
         Figure(
             f"{found['correlation_kind'].capitalize()} correlation reached between the variables; asked for: {target}. "
             f"Difference from the target over the pairs: {number(found['rms_correlation_error'])} rms, "

@@ -7,6 +7,7 @@ from blockshake.report.document.pdf import write_pdf
 from blockshake.report.study.closing_sections import checks, limits, origin, timings
 from blockshake.report.study.content import load_content
 from blockshake.report.study.convergence_section import convergence
+from blockshake.report.study.fragility_section import fragility
 from blockshake.report.study.friction_section import friction
 from blockshake.report.study.models.section import models
 from blockshake.report.study.opening_sections import motions, samples, stiffness, structures, summary
@@ -22,6 +23,7 @@ _SECTIONS = (
     samples,
     stiffness,
     responses,
+    fragility,
     models,
     sensitivities,
     friction,

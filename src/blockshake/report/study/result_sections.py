@@ -7,9 +7,9 @@ from blockshake.report.document.wording import given, model_label, number, share
 from blockshake.report.study.figures.displacement import plot_displacements
 from blockshake.report.study.figures.interactive import interactive_displacements
 from blockshake.report.study.figures.moving import moving_samples, plot_still, usual_magnification
+from blockshake.report.study.joint_blocks import joint_blocks
 from blockshake.report.study.models.tables import block_tables
-from blockshake.report.study.probability_table import probability_table
-from blockshake.report.study.result_tables import coverage_table
+from blockshake.report.study.result_tables import coverage_table, top_block_table
 from blockshake.study.ensembles.outcomes import shortfall
 from blockshake.study.sensitivity.findings import quiet_markers
 
@@ -25,7 +25,7 @@ def responses(content):
             "further run of the same model at one instant with probability (n - 1) / (n + 1). For a whole record no "
             "probability is known; therefore every coverage stands beside its leave-one-out reference."
         ),
-        probability_table(content),
+        top_block_table(content),
     ]
     for case in content.cases.values():
         blocks += _response(case, content.motions[case.motion])
@@ -66,6 +66,7 @@ def _response(case, motion):
         figure(
             list(markers), "slab", f"{case.name}: displacement relative to the slab's marker, every block."
         ),
+        *joint_blocks(case),
     ]
 
 

@@ -9,6 +9,7 @@ from blockshake.errors import InputError
 from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.markers import driven_marker
+from blockshake.simulation.joint_figures import joint_figures
 from blockshake.simulation.simulate import simulate
 from blockshake.simulation.structure_digest import structure_digest
 from blockshake.store import keep_dataset, kept
@@ -69,7 +70,8 @@ def simulate_samples(case, motions, model, settings, output_rate, rows, linked, 
                 time_step=settings["time_step"], duration=case["duration"], output_rate=output_rate,
                 accelerometers=False, checkpoint=path.with_suffix(".checkpoint"),
             )  # fmt: skip
-            keep_dataset(path, gather_ensemble([run], [sample], rows, driven_marker(structure)), DECIMALS)
+            member = run.drop_dims("joint").merge(joint_figures(run, structure))
+            keep_dataset(path, gather_ensemble([member], [sample], rows, driven_marker(structure)), DECIMALS)
             how = "simulated"
         outcome = sample_outcome(path)
         progress(f"{structure.file.name} {model} sample {sample}, {how}: {outcome}")

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.errors import InputError
+from blockshake.simulation.joint_figures import JOINT_FIGURES
 from blockshake.store import load_made
 from blockshake.study.sampling.distributions import parameter_unit
 
@@ -27,8 +28,8 @@ def gather_ensemble(runs, samples, parameters, slab_marker):
     Parameters
     ----------
     runs : sequence of xarray.Dataset or path, length n_samples
-        Run files or their content, of one structure, motion and model, at the same times. Files
-        are read one after the other.
+        Run files or their content, of one structure, motion and model, at the same times, with `joint_figures` in
+        place of the joints' histories. Files are read one after the other.
     samples : sequence of int, length n_samples
         Their rows in the design.
     parameters : pandas.DataFrame
@@ -42,9 +43,9 @@ def gather_ensemble(runs, samples, parameters, slab_marker):
         Along ``sample``: ``marker_displacement(sample, time, marker, axis)`` and ``position(sample, time, body, axis)``
         [m], inertial frame; ``orientation(sample, time, body, quaternion)``; ``status`` and ``reason``;
         ``end_time`` [s]; ``peak`` and ``residual(sample, frame, marker)`` [m], along x;
-        ``peak_rotation(sample, body)`` [rad]; ``parameter_value(sample, parameter)``; and the runs' figures of
-        their computation, ``energy_residual`` and ``numerics_*``, NaN where a run has none. Attributes: the others that
-        all runs share, and ``slab_marker``.
+        ``peak_rotation(sample, body)`` [rad]; the runs' `joint_figures`, ``(sample, joint)``;
+        ``parameter_value(sample, parameter)``; and the runs' figures of their computation, ``energy_residual`` and
+        ``numerics_*``, NaN where a run has none. Attributes: the others that all runs share, and ``slab_marker``.
 
     Raises
     ------
@@ -106,7 +107,7 @@ def join_batches(batches):
     if not samples or len(set(samples)) < len(samples):
         raise InputError("ensemble", "samples", "expected at least one batch, and every sample in one only")
     for part in parts[1:]:
-        _check_alike(part, parts[0], int(part["sample"][0]), ("time", "marker", "body", "parameter"))
+        _check_alike(part, parts[0], int(part["sample"][0]), ("time", "marker", "body", "joint", "parameter"))
     joined = xr.concat(
         parts, dim="sample", data_vars="all", coords="minimal", compat="override", join="override"
     ).sortby("sample")
@@ -125,10 +126,10 @@ def sample_figures(ensemble):
 
 def _piece(run):
     """The variables of a run that an ensemble keeps, and the largest rotation of its bodies."""
-    piece = run[["marker_displacement", "position", "orientation"]]
+    piece = run[["marker_displacement", "position", "orientation", *JOINT_FIGURES]]
     piece = piece.assign(peak_rotation=_peak_rotation(run["orientation"]))
     piece.attrs = {}
-    return piece.transpose("time", "marker", "body", "axis", "quaternion")
+    return piece.transpose("time", "marker", "body", "joint", "axis", "quaternion")
 
 
 def _peak_rotation(orientation):
@@ -139,7 +140,7 @@ def _peak_rotation(orientation):
     return angle.reset_coords(drop=True)
 
 
-def _check_alike(piece, first, sample, names=("time", "marker", "body")):
+def _check_alike(piece, first, sample, names=("time", "marker", "body", "joint")):
     for name in names:
         if not piece[name].equals(first[name]):
             raise InputError("ensemble", f"sample {sample}", f"expected the same '{name}' in all runs")

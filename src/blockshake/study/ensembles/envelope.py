@@ -5,6 +5,7 @@ import xarray as xr
 
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.files import content_digest
+from blockshake.simulation.joint_figures import JOINT_FIGURES
 from blockshake.study.ensembles.ensemble import in_frames
 from blockshake.study.ensembles.intervals import (
     CONFIDENCE,
@@ -15,6 +16,7 @@ from blockshake.study.ensembles.intervals import (
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 BOUNDS = {"lower": 0.0, "upper": 1.0}
+_SINGLE = ("peak", "residual", "peak_rotation", *JOINT_FIGURES)  # numbers of a sample
 
 
 def counted_samples(ensemble):
@@ -38,6 +40,7 @@ def envelope(ensemble, largest_drift):
         ``marker_envelope(frame, bound, time, marker, axis)`` [m]: the smallest and the largest displacement at each
         time, coordinate ``bound`` lower and upper; ``marker_displacement(frame, quantile, time, marker, axis)`` [m];
         ``peak`` and ``residual(quantile, frame, marker)`` [m]; ``peak_rotation(quantile, body)`` [rad];
+        `joint_figures` ``(quantile, joint)``;
         ``contributing(time)``: samples with a value at that time; ``collapse_probability`` and
         ``drift_probability(marker)`` [1]. NaN where no sample has a value. The statistics of single numbers have their
         95 % limits beside them, ``NAME_interval(bound, ...)``. Attributes ``samples`` and ``counted``: how many runs
@@ -59,19 +62,17 @@ def envelope(ensemble, largest_drift):
         {
             "marker_envelope": over_samples(displacement, bounds),
             "marker_displacement": over_samples(displacement, probabilities),
-            "peak": over_samples(counted["peak"], probabilities),
-            "residual": over_samples(counted["residual"], probabilities),
-            "peak_rotation": over_samples(counted["peak_rotation"], probabilities),
+            **{name: over_samples(counted[name], probabilities) for name in _SINGLE},
             "contributing": counted["marker_displacement"].notnull().all(("marker", "axis")).sum("sample"),
         }
-    ).transpose("frame", "bound", "quantile", "time", "marker", "body", "axis")
+    ).transpose("frame", "bound", "quantile", "time", "marker", "body", "joint", "axis")
     result = result.merge(_probabilities(counted, largest_drift)).merge(_intervals(counted, probabilities))
     result["marker_envelope"].attrs = {
         "long_name": "smallest and largest marker displacement over the samples",
         "units": "m",
     }
     result["marker_displacement"].attrs = {"long_name": "marker displacement since the start", "units": "m"}
-    for name in ("peak", "residual", "peak_rotation"):
+    for name in _SINGLE:
         result[name].attrs = {**ensemble[name].attrs, "ancillary_variables": f"{name}_interval"}
     result["contributing"].attrs = {"long_name": "samples with a value at this time", "units": "1"}
     result["quantile"].attrs = {"long_name": "probability of a smaller value", "units": "1"}
@@ -126,7 +127,7 @@ def _intervals(counted, probabilities):
     identity = (str(counted.attrs.get(key)) for key in ("model", "structure"))
     generator = np.random.default_rng(int(content_digest("envelope", *identity), 16))
     result = xr.Dataset()
-    for name in ("peak", "residual", "peak_rotation"):
+    for name in _SINGLE:
         values = counted[name].transpose("sample", ...)
         limits = quantile_interval(values.to_numpy(), probabilities.to_numpy(), generator)
         result[f"{name}_interval"] = (("bound", "quantile", *values.dims[1:]), limits)

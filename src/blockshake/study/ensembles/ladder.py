@@ -1,5 +1,6 @@
 """The paper's ladder of intensities: 50 %, then 25 % more until a potential collapse."""
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,13 +15,17 @@ from blockshake.simulation.structure_digest import structure_digest
 from blockshake.store import kept_value
 
 
-def climb_ladder(structure, motion, model, time_step, duration, ladder, store, source):
+def climb(structure, motion_at, model, parameters, time_step, duration, ladder, store, source):
     """Simulate one structure at growing intensities, each from the restored stack.
 
     Parameters
     ----------
-    structure, motion, model : str
-        Names or files.
+    structure : Structure
+    motion_at : callable
+        Gives the `GroundMotion` of a scale.
+    model : str
+    parameters : dict
+        As of `simulate`.
     time_step, duration : float
         [s]
     ladder : Ladder
@@ -43,11 +48,11 @@ def climb_ladder(structure, motion, model, time_step, duration, ladder, store, s
     -----
     Zhou et al. (2023), section Case Study: first test at 50 %, increments of about 25 %.
     """
-    loaded, rungs = load_structure(structure), []
-    largest_drift = ladder.largest_drift or half_width(loaded)
-    count = int(np.floor((ladder.highest - ladder.first) / ladder.increment + 1e-9)) + 1
-    for scale in ladder.first + ladder.increment * np.arange(count):
-        outcome = _rung(loaded, load_motion(motion, float(scale)), model, time_step, duration, store, source)
+    rungs, largest_drift = [], ladder.largest_drift or half_width(structure)
+    for scale in ladder.scales:
+        outcome = _rung(
+            structure, motion_at(float(scale)), model, parameters, time_step, duration, store, source
+        )
         passed = outcome["status"] == Status.COMPLETED and outcome["peak"] <= largest_drift
         rungs.append({"scale": float(scale), **outcome, "passed": passed})
         if not passed:
@@ -55,36 +60,37 @@ def climb_ladder(structure, motion, model, time_step, duration, ladder, store, s
     return rungs
 
 
-def _rung(structure, motion, model, time_step, duration, store, source):
+def _rung(structure, motion, model, parameters, time_step, duration, store, source):
     """How one run ended, and the largest drift in it [m]; from the store if it was simulated before."""
     key = content_digest(
         source, "rung", model, structure_digest(structure), *(part.tobytes() for part in motion.table),
-        time_step, duration,
+        parameters, time_step, duration,
     )  # fmt: skip
 
-    def climb():
+    def simulated():
         run = simulate(
-            structure, motion, model, time_step=time_step, duration=duration, accelerometers=False,
+            structure, motion, model, parameters, time_step=time_step, duration=duration, accelerometers=False,
             checkpoint=Path(store) / f"{key}.checkpoint",
         )  # fmt: skip
         moved = run["position"].sel(axis="x") - run["position"].sel(axis="x").isel(time=0)
         drift = np.abs(moved - moved.isel(body=0)).max()
         return {"status": run.attrs["status"], "reason": run.attrs["reason"], "peak": float(drift)}
 
-    return kept_value(store, key, climb)
+    return kept_value(store, key, simulated)
 
 
 def climb_ladders(cases, motions, time_step, ladder, store, source, progress):
-    """Climb the ladder of every case with every motion by LS-DEM, as `climb_ladder`: rungs by structure and motion.
+    """Climb the ladder of every case with every motion by LS-DEM, nominal parameters: rungs by structure and motion.
 
     ``cases``: ``structure`` and ``duration`` [s] of the configuration's; ``motions``: names or files; ``time_step``
-    [s]; ``store`` and ``source`` as of `climb_ladder`; ``progress`` is called with a line of text after each ladder.
+    [s]; ``store`` and ``source`` as of `climb`; ``progress`` is called with a line of text after each ladder.
     """
     found = {case["structure"]: {} for case in cases}
     for case in cases:
+        structure = load_structure(case["structure"])
         for motion in motions:
-            run = "ls-dem", time_step, case["duration"], ladder, store, source
-            rungs = climb_ladder(case["structure"], motion, *run)
+            run = "ls-dem", {}, time_step, case["duration"], ladder, store, source
+            rungs = climb(structure, partial(load_motion, motion), *run)
             found[case["structure"]][motion] = rungs
             passed = [rung["scale"] for rung in rungs if rung["passed"]]
             progress(f"{case['structure']} {motion}: passed {passed}")

@@ -9,8 +9,7 @@ from blockshake.report.document.rows import face_markers
 from blockshake.report.document.wording import MISSING, given, millimetres, model_label, number
 from blockshake.study.comparison.comparison import TOLD_APART_BY
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
-
-_SURE_FROM = 6  # samples, from which order statistics enclose the median in 95 of 100 cases
+from blockshake.study.ensembles.intervals import SURE_FROM
 
 
 def block_tables(case):
@@ -21,10 +20,10 @@ def block_tables(case):
     few = [
         f"{model_label(model)} ({100.0 * (1.0 - 2.0 ** (1 - size)):.0f} %)"
         for model, size in sizes.items()
-        if 1 < size < _SURE_FROM
+        if 1 < size < SURE_FROM
     ]
     limits = "In brackets limits of 95 % by order statistics" + (
-        f"; with fewer than {_SURE_FROM} samples the smallest and the largest one: {', '.join(few)}."
+        f"; with fewer than {SURE_FROM} samples the smallest and the largest one: {', '.join(few)}."
         if few
         else "."
     )

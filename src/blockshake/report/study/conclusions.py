@@ -1,0 +1,258 @@
+"""Conclusions of a study in computed sentences, for whoever must decide: by case, and what is not known."""
+
+from itertools import combinations
+
+import numpy as np
+
+from blockshake.report.document.blocks import Heading, Items
+from blockshake.report.document.rows import face_markers
+from blockshake.report.document.wording import (
+    given,
+    millimetres,
+    model_label,
+    number,
+    parameter_label,
+    percent,
+    quantile_percent,
+)
+from blockshake.report.study.fragility_section import words as fragility_words
+from blockshake.study.ensembles.coverage import is_likely
+from blockshake.study.ensembles.intervals import CONFIDENCE, SURE_FROM
+from blockshake.study.sensitivity.findings import influences, is_known
+
+_UPPER = 0.95  # quantile that stands for a large peak
+_FEW = 20  # samples, of which the largest is the 95 % quantile
+
+
+def conclusions(content):
+    """Blocks: what was found in every case, then what is not known."""
+    blocks = []
+    for case in content.cases.values():
+        told = _case(case)
+        if told and case.name in content.fragility:
+            told.append(f"Fragility: {fragility_words(content, case.name)}")
+        if told:
+            blocks += [
+                Heading(
+                    f"{case.title}, {case.motion} x {given(case.settings['scale'])}", f"found-{case.name}"
+                ),
+                Items(tuple(told)),
+            ]
+    unknown = _unknown(content)
+    return (
+        [*blocks, Heading("Not known from this study", "not-known"), Items(tuple(unknown))]
+        if unknown
+        else blocks
+    )
+
+
+def _case(case):
+    """Sentences on one case; none where no sample has a result."""
+    counted = {model: one for model, one in case.responses.items() if int(one.envelope.attrs["counted"])}
+    if not counted:
+        return []
+    body, marker = next(iter(face_markers(case.structure).items()))
+    return [
+        _drift(case, counted, body, marker),
+        _collapse(counted),
+        _joints(counted),
+        *_models(case, counted, marker),
+        *_measured(case, counted, body, marker),
+        *_causes(counted, body, marker),
+    ]
+
+
+def _drift(case, counted, body, marker):
+    """Displacement that 95 % of the samples stay below, and the share beyond the limit."""
+    told = []
+    for model, response in counted.items():
+        peak = response.envelope.sel(frame="slab", marker=marker, quantile=_UPPER)
+        size = int(response.envelope.attrs["counted"])
+        low, high = (millimetres(peak["peak_interval"].sel(bound=one)) for one in ("lower", "upper"))
+        told.append(
+            f"{millimetres(peak['peak'])} mm by {model_label(model)} "
+            + ("(one sample)" if size == 1 else f"[{low}, {high}] (n = {size})")
+        )
+    limit = next(iter(counted.values())).envelope["drift_probability"].attrs["largest_drift"]
+    beyond = [
+        f"{percent(value)} % by {model_label(model)}"
+        for model, one in counted.items()
+        if (value := float(one.envelope["drift_probability"].sel(marker=marker))) > 0.0
+    ]
+    return (
+        f"The top block, {body}, moves from the slab by at most so much in {quantile_percent(_UPPER)} of the samples, "
+        f"with {quantile_percent(CONFIDENCE)} limits: {', '.join(told)}. "
+        + (
+            f"Of the samples, beyond {millimetres(limit)} mm or collapsed: {', '.join(beyond)}."
+            if beyond
+            else f"No sample moves by more than {millimetres(limit)} mm."
+        )
+    )
+
+
+def _collapse(counted):
+    told, any_fell = [], False
+    for model, response in counted.items():
+        one = response.envelope
+        share, size = float(one["collapse_probability"]), int(one.attrs["counted"])
+        any_fell |= share > 0.0
+        upper = percent(one["collapse_probability_interval"].sel(bound="upper"))
+        if share:
+            lower = percent(one["collapse_probability_interval"].sel(bound="lower"))
+            told.append(f"{percent(share)} % [{lower}, {upper}] by {model_label(model)} (n = {size})")
+        else:
+            told.append(f"below {upper} % by {model_label(model)} (n = {size})")
+    found = "Collapse is found" if any_fell else "No sample collapses"
+    return f"{found}. Probability of collapse, {quantile_percent(CONFIDENCE)} limits: {', '.join(told)}."
+
+
+def _joints(counted):
+    """The joint that opens most and the one that slips most by any model."""
+    words = []
+    for name, what in (("joint_uplift", "opening"), ("joint_slip", "slip")):
+        found = []
+        for model, response in counted.items():
+            values = response.envelope[name].sel(quantile=_UPPER).dropna("joint")
+            if values.size:
+                place = values.argmax("joint")
+                found.append((float(values[place]), str(values["joint"][place].values), model))
+        if found:
+            value, joint, model = max(found)
+            words.append(
+                f"the largest {what} is that of {joint}, {millimetres(value)} mm ({model_label(model)})"
+            )
+    if not words:
+        return "The structure has no joints at its start."
+    told = " and ".join(words)
+    return f"{told[0].upper()}{told[1:]}, {quantile_percent(_UPPER)} quantile at the middle of the face."
+
+
+def _models(case, counted, marker):
+    """Whether the medians of the models, of samples enough for limits, differ by more than these."""
+    found = case.differences
+    known = [model for model in counted if int(found["counted"].sel(model=model)) >= SURE_FROM]
+    if len(known) < 2:
+        return []
+    medians = {model: float(found["peak"].sel(model=model, marker=marker)) for model in known}
+    apart = [pair for pair in combinations(known, 2) if not _overlap(found, *pair, marker)]
+    low, high = min(medians, key=medians.get), max(medians, key=medians.get)
+    spread = (
+        f"Median peaks of the models lie between {millimetres(medians[low])} mm ({model_label(low)}) and "
+        f"{millimetres(medians[high])} mm ({model_label(high)})"
+    )
+    if not apart:
+        return [f"{spread}; the limits of every two of them overlap."]
+    pairs = ", ".join(f"{model_label(one)} and {model_label(other)}" for one, other in apart)
+    return [f"{spread}; the limits of these do not overlap: {pairs}. The choice of the model matters here."]
+
+
+def _overlap(found, own, other, marker):
+    (low, high), (least, most) = (
+        [
+            float(found["peak_interval"].sel(model=one, marker=marker, bound=bound))
+            for bound in ("lower", "upper")
+        ]
+        for one in (own, other)
+    )
+    return low <= most and least <= high
+
+
+def _measured(case, counted, body, marker):
+    """Measured peak beside the models, whether the measured curve may be one of the samples, and the lowest score."""
+    if case.measured is None or marker not in case.measured["marker"].values:
+        return []
+    word = case.curve_word
+    peak = millimetres(case.measured["peak"].sel(frame="slab", marker=marker))
+    fits, misses = [], []
+    for model, response in counted.items():
+        chance = float(response.comparison["curve_probability"].sel(marker=marker))
+        if np.isfinite(chance):
+            likely = is_likely(chance, int(response.comparison.attrs["counted"]))
+            (fits if likely else misses).append(model_label(model))
+    words = f"The {word} of {body} peaks at {peak} mm."
+    if fits:
+        words += f" As a whole the curve may be one more sample of {', '.join(fits)}."
+    if misses:
+        words += f" It is farther from the samples than one more would be: {', '.join(misses)}."
+    scores = case.differences["score"].dropna("model")
+    if scores.size > 1:
+        best = model_label(str(scores["model"].values[scores.argmin("model")]))
+        words += f" The lowest score against all blocks is that of {best}."
+    return [words]
+
+
+def _causes(counted, body, marker):
+    """The variable that explains most of the spread beyond chance, models of the same variable together."""
+    told, silent = {}, []
+    for model, response in counted.items():
+        history = response.sensitivity.sel(quantity="history", marker=marker)
+        if not is_known(history, "first_order"):
+            continue
+        beyond = influences(history, "first_order").beyond_chance
+        if beyond:
+            told.setdefault(beyond[0].parameter, []).append(
+                f"{percent(beyond[0].value)} % by {model_label(model)}"
+            )
+        else:
+            silent.append(model_label(model))
+    words = [f"{parameter_label(name)}, {', '.join(shares)}" for name, shares in told.items()]
+    if words:
+        explained = f"Most of the spread of {body} that one variable explains by itself: {'; '.join(words)}."
+        return [
+            explained + (f" No variable stands out from chance by {', '.join(silent)}." if silent else "")
+        ]
+    return [f"No single variable is shown to explain the spread of {body}."] if silent else []
+
+
+def _unknown(content):
+    """Sentences on what these results leave open."""
+    cases = list(content.cases.values())
+    told = []
+    without = [case.name for case in cases if case.measured is None]
+    synthetic = [case.name for case in cases if case.synthetic]
+    if without or synthetic:
+        named = [f"{', '.join(without)} (no measured test)"] if without else []
+        named += [f"{', '.join(synthetic)} (synthetic tests)"] if synthetic else []
+        told.append(f"Whether any model is right about real blocks: {'; '.join(named)}.")
+    few = {}
+    for case in cases:
+        for model, one in case.responses.items():
+            size = int(one.envelope.attrs["counted"])
+            if size < _FEW:
+                few.setdefault(f"{model_label(model)} (n = {size})", []).append(case.name)
+    if few:
+        words = "; ".join(f"{model}, {', '.join(names)}" for model, names in few.items())
+        told.append(
+            f"How large the {quantile_percent(_UPPER)} quantile is, where fewer than {_FEW} samples ran: {words}."
+        )
+    cut = [
+        f"{model_label(model)}, {case.name}"
+        for case in cases
+        for model, one in case.responses.items()
+        if float(one.envelope["collapse_probability"]) > 0.0
+    ]
+    if cut:
+        told.append(
+            f"How far blocks of collapsed samples would have moved, peaks are lower limits: {'; '.join(cut)}."
+        )
+    chaotic = _chaotic(cases)
+    if chaotic:
+        told.append(
+            "Single histories after the time at which twins, alike to one part in a million of the motion or run at "
+            f"half the time step, are told apart: {'; '.join(chaotic)}. Bounds and quantiles remain."
+        )
+    assumed = [case.name for case in cases if case.name not in content.friction]
+    if assumed:
+        told.append(f"The mean friction, which is assumed and not calibrated: {', '.join(assumed)}.")
+    return told
+
+
+def _chaotic(cases):
+    """Model, case and the earliest time at which its twins part within the window [s]."""
+    found = []
+    for case in cases:
+        for model in case.differences["model"].values:
+            horizon = float(case.differences["horizon"].sel(model=model).min("twin"))
+            if horizon < case.settings["duration"]:
+                found.append(f"{case.name}, {model_label(str(model))}, {number(horizon)} s")
+    return found

@@ -1,0 +1,118 @@
+"""Section on the fragility: how the probability of a potential collapse grows with the intensity."""
+
+import numpy as np
+
+from blockshake.report.document.blocks import Figure, Items, Section, Table, Text
+from blockshake.report.document.drawing import svg_of
+from blockshake.report.document.wording import (
+    MISSING,
+    SQUARED,
+    count_words,
+    given,
+    millimetres,
+    model_label,
+    number,
+    percent,
+    quantile_percent,
+)
+from blockshake.report.study.figures.fragility import plot_fragility
+from blockshake.study.ensembles.intervals import CONFIDENCE
+from blockshake.study.fragility.fragility import SAFE
+
+_SHOWN = (0.5, 0.95)
+
+
+def fragility(content):
+    """Samples that climb the ladder of intensities; None where the study asks for none."""
+    if not content.fragility:
+        return None
+    asked = content.study["fragility"]
+    blocks = [
+        Text(
+            f"Samples that climb the ladder by {model_label(asked['model'])}: each is shaken by the case's commanded "
+            "motion at rising factors, from the restored stack each time, until it collapses or a block moves from the "
+            "slab by more than the displacement that counts as a potential collapse. The capacity of a sample lies "
+            "between the last factor that it passed and the first that it did not. Drawn is the lognormal distribution "
+            "of largest likelihood for such bounds (incremental dynamic analysis, Vamvatsikos and Cornell 2002; "
+            "fragility by maximum likelihood, Shinozuka et al. 2000). The spread is that of the sampled variables. The "
+            "motion is one: another motion of the same peak has another fragility."
+        ),
+        Items(tuple(words(content, name) for name in content.fragility)),
+        Figure(
+            "Largest displacement of any block from the slab, and probability of a potential collapse, by the factor "
+            f"of the motion. Dotted: {percent(SAFE)} %.",
+            svg_of(plot_fragility, content.fragility),
+        ),
+        _table(content),
+    ]
+    return Section("Fragility", "fragility", tuple(blocks))
+
+
+def words(content, name):
+    """Median capacity, safe factor and what the samples do not tell, of one case in sentences."""
+    one, case = content.fragility[name], content.cases[name]
+    unit = content.motions[case.motion].attrs["peak_acceleration"]
+    size = one.sizes["sample"]
+    who = f"{name}, {case.motion}, {size} samples"
+    stopped = int((~np.isin(one["status"].values, ("completed", "collapsed"))).sum())
+    less = (
+        f" The last run of {count_words(stopped, 'sample')} ended for a numerical reason." if stopped else ""
+    )
+    median = float(one["median"])
+    if not np.isfinite(median):
+        passed = float(one["capacity_lower"].min())
+        side = (
+            f"all pass the highest factor that was climbed, {given(passed)}"
+            if passed
+            else f"none passes the lowest factor, {given(one['scale'][0])}"
+        )
+        return f"{who}: {side}, so that no fragility is told.{less}"
+    if float(one["dispersion"]) < _told_from(one):
+        less += (
+            " The capacities differ by less than the levels are apart: the dispersion, and with it the factor that "
+            f"{percent(SAFE)} % are below, is bounded by the level below alone."
+        )
+    return (
+        f"{who}: half of the capacities are below {_limited(one, 'median')} times the motion "
+        f"({number(median * unit)} m/s{SQUARED}), {percent(SAFE)} % below {_limited(one, 'safe_scale')} "
+        f"({number(float(one['safe_scale']) * unit)} m/s{SQUARED}); limits of {quantile_percent(CONFIDENCE)} in "
+        f"brackets. Dispersion: {_limited(one, 'dispersion')}.{less}"
+    )
+
+
+def _told_from(one):
+    """Dispersion of capacities below which a step of the scales hides it: of a uniform spread over one step [1]."""
+    return float(one["scale"][1] - one["scale"][0]) / float(one["median"]) / np.sqrt(12.0)
+
+
+def _limited(one, name):
+    low, high = (number(one[f"{name}_interval"].sel(bound=side)) for side in ("lower", "upper"))
+    return f"{number(one[name])} [{low}, {high}]"
+
+
+def _table(content):
+    rows = []
+    for name, one in content.fragility.items():
+        case = content.cases[name]
+        unit = content.motions[case.motion].attrs["peak_acceleration"]
+        for scale in one["scale"].values:
+            at = one.sel(scale=scale)
+            known = int(at["known"])
+            climbed = int(at["passed"].notnull().sum())
+            low, high = (percent(at["share_interval"].sel(bound=side)) for side in ("lower", "upper"))
+            rows.append((
+                name, given(scale), number(scale * unit), str(climbed),
+                f"{percent(at['share'])} [{low}, {high}]" if known else MISSING,
+                " / ".join(millimetres(at["peak"].sel(quantile=one)) for one in _SHOWN) if climbed else MISSING,
+            ))  # fmt: skip
+    quantiles = " / ".join(map(quantile_percent, _SHOWN))
+    return Table(
+        "Levels that the samples climbed. Not passed: share of the samples of which it is known that do not pass this "
+        "level, or did not pass a lower one, with Clopper-Pearson limits of 95 %. Displacement: the largest of any "
+        f"block from the slab, quantiles {quantiles} over the samples that climbed this level.",
+        (
+            "Case", "Factor", f"Peak acceleration [m/s{SQUARED}]", "Climbed", "Not passed [%]",
+            f"Displacement, {quantiles} [mm]",
+        ),
+        tuple(rows), "lrrrrr",
+    )  # fmt: skip

@@ -1,0 +1,103 @@
+"""Samples of a case that climb the ladder of intensities, each until its potential collapse."""
+
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.system import FINISHED
+from blockshake.geometry.reference_block import half_width
+from blockshake.geometry.structure import load_structure
+from blockshake.study.described import describe
+from blockshake.study.ensembles.ladder import climb
+from blockshake.study.sampling.sample_parameters import sample_parameters
+
+_DESCRIBED = {
+    "scale": ("factor of the motion", "1"),
+    "peak": ("largest displacement of a block relative to the slab along x", "m"),
+    "passed": ("1 where the stack stood, 0 where it did not, NaN where nobody climbed", "1"),
+    "capacity_lower": ("last scale that the sample passed, 0 for none", "1"),
+    "capacity_upper": ("first scale that it did not pass, infinity for none", "1"),
+}
+
+
+def climb_samples(case, model, settings, rows, linked, ladder, store, source, progress):
+    """Levels that each sample of a case passes, from the restored stack each time.
+
+    Parameters
+    ----------
+    case : dict
+        ``structure``, ``motion`` and ``duration`` [s] of a case of the configuration.
+    model : str
+    settings : dict
+        The model's, as of `simulate_samples`.
+    rows : pandas.DataFrame
+        Sampled values, index the sample, contact stiffness included.
+    linked : dict of str to str
+        As in `sample_parameters`.
+    ladder : Ladder
+    store, source
+        As of `climb`.
+    progress : callable
+        Called with a line of text after each sample.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``peak(sample, scale)`` [m] and ``passed(sample, scale)``; ``capacity_lower`` and ``capacity_upper(sample)``, of
+        the motion's factor [1]; ``status`` and ``reason(sample)`` of the last run. Attribute ``largest_drift`` [m].
+
+    Notes
+    -----
+    The motion is the commanded one: no test was measured at every level. A run that ends for a numerical reason tells
+    nothing of its level, so that its sample is only known to pass the levels before. A stack may stand a level above
+    one that it did not pass; its capacity is the first that it did not.
+    """
+    structure = load_structure(case["structure"])
+    climbs = []
+    for sample, row in rows.iterrows():
+        parameters = settings.get("parameters", {}) | sample_parameters(row, structure, linked)
+        rungs = climb(
+            structure, partial(load_motion, case["motion"]), model, parameters,
+            settings["time_step"], case["duration"], ladder, store, source,
+        )  # fmt: skip
+        climbs.append(rungs)
+        progress(f"{structure.file.name} {model} sample {sample}: {_words(rungs)}")
+    return gathered(
+        rows.index.to_numpy(), climbs, ladder.scales, ladder.largest_drift or half_width(structure)
+    )
+
+
+def _words(rungs):
+    last = rungs[-1]
+    return f"{'passed' if last['passed'] else 'did not pass'} {last['scale']:g}, {last['status']}"
+
+
+def gathered(samples, climbs, scales, largest_drift):
+    """Dataset of `climb_samples` from the rungs of each sample, as of `climb`."""
+    peak, passed = np.full((2, len(samples), len(scales)), np.nan)
+    bounds = np.zeros((len(samples), 2))
+    for place, rungs in enumerate(climbs):
+        told = [rung for rung in rungs if rung["status"] in FINISHED]
+        stood = [rung["scale"] for rung in told if rung["passed"]]
+        fell = [rung["scale"] for rung in told if not rung["passed"]]
+        bounds[place] = max(stood, default=0.0), min(fell, default=np.inf)
+        peak[place, : len(told)] = [rung["peak"] for rung in told]
+        passed[place, : len(told)] = [rung["passed"] for rung in told]
+    result = xr.Dataset(
+        {
+            "peak": (("sample", "scale"), peak),
+            "passed": (("sample", "scale"), passed),
+            "capacity_lower": ("sample", bounds[:, 0]),
+            "capacity_upper": ("sample", bounds[:, 1]),
+            "status": ("sample", [str(rungs[-1]["status"]) for rungs in climbs]),
+            "reason": ("sample", [str(rungs[-1]["reason"]) for rungs in climbs]),
+        },
+        coords={"sample": samples.astype(np.int64), "scale": scales},
+    )
+    describe(result, _DESCRIBED)
+    result["status"].attrs = {"long_name": "how the last run of the sample ended"}
+    result["reason"].attrs = {"long_name": "why it ended so"}
+    result.attrs = {"title": "levels of intensity that samples pass", "largest_drift": float(largest_drift)}
+    return result

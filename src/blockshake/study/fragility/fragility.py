@@ -1,0 +1,99 @@
+"""Probability of a potential collapse by level, and the lognormal fragility through it, with their limits."""
+
+import numpy as np
+import xarray as xr
+
+from blockshake.files import content_digest
+from blockshake.store import load_made
+from blockshake.study.described import describe
+from blockshake.study.ensembles.envelope import BOUNDS, QUANTILES, over_samples
+from blockshake.study.ensembles.intervals import CONFIDENCE, share_interval
+from blockshake.study.fragility.capacity import bootstrap_capacities, fit_capacity
+
+SAFE = 0.05  # probability of a potential collapse that a safe level may have
+_POINTS = 101  # of the curve
+_DESCRIBED = {
+    "known": ("samples of which it is known whether they pass this scale", "1"),
+    "share": ("share of these that do not pass it, or did not pass a lower one", "1"),
+    "share_interval": ("Clopper-Pearson limits of that probability", "1"),
+    "peak": ("largest displacement of a block from the slab along x, samples that climbed this scale", "m"),
+    "fine_scale": ("factor of the motion", "1"),
+    "curve": ("probability of a capacity below that factor, lognormal", "1"),
+    "curve_interval": ("bootstrap limits of it", "1"),
+    "median": ("median capacity, factor of the motion", "1"),
+    "median_interval": ("bootstrap limits of it", "1"),
+    "dispersion": ("standard deviation of the logarithm of the capacity", "1"),
+    "dispersion_interval": ("bootstrap limits of it", "1"),
+    "safe_scale": (f"factor that {100.0 * SAFE:g} % of the capacities are below", "1"),
+    "safe_scale_interval": ("bootstrap limits of it", "1"),
+}
+
+
+def fragility_of_case(batches, case):
+    """`fragility` of a case from the files of its samples' climbs."""
+    climbed = [load_made(batch) for batch in batches]
+    joined = xr.concat(climbed, dim="sample", data_vars="minimal", coords="minimal", combine_attrs="override")
+    return fragility(joined.drop_encoding(), (case,))
+
+
+def fragility(climbed, identity):
+    """Probability of a potential collapse at the levels of `climb_samples`, and a lognormal curve through them.
+
+    Parameters
+    ----------
+    climbed : xarray.Dataset
+        From `climb_samples`.
+    identity : sequence of str
+        Names the case: the seed of the bootstrap.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``climbed``'s variables but ``peak``, and: ``known(scale)``; ``share(scale)`` with
+        ``share_interval(bound, scale)``; ``peak(quantile, scale)`` [m]; ``median``, ``dispersion`` and ``safe_scale``,
+        the factor that 5 % of the capacities are below, each with its ``_interval(bound)``; ``curve(fine_scale)`` with
+        ``curve_interval(bound, fine_scale)``. NaN where the samples bound the capacity on one side alone.
+
+    Notes
+    -----
+    Limits of 95 %; samples are taken as independent. A sample whose run ended for a numerical reason is known at the
+    levels below. The spread is that of the sampled variables under one motion: another motion has another fragility.
+    """
+    lower, upper = climbed["capacity_lower"].to_numpy(), climbed["capacity_upper"].to_numpy()
+    scales = climbed["scale"].to_numpy()
+    failed = (upper[:, None] <= scales + 1e-9).sum(axis=0)
+    known = failed + (lower[:, None] >= scales - 1e-9).sum(axis=0)
+    limits = np.array(
+        [share_interval(int(count), int(size)) for count, size in zip(failed, known, strict=True)]
+    )
+    fine = np.linspace(scales[0], scales[-1], _POINTS)
+    fitted = fit_capacity(lower, upper)
+    generator = np.random.default_rng(int(content_digest("fragility", *identity), 16))
+    drawn = bootstrap_capacities(lower, upper, generator)
+    tails = (0.5 - 0.5 * CONFIDENCE, 0.5 + 0.5 * CONFIDENCE)
+
+    def with_limits(of):
+        values = np.array([of(one) for one in drawn])
+        return of(fitted), np.quantile(values, tails, axis=0) if np.isfinite(values).all() else np.full(
+            (2, *values.shape[1:]), np.nan
+        )
+
+    result = climbed.drop_vars("peak").assign(
+        known=("scale", known),
+        share=("scale", np.divide(failed, known, out=np.full(len(scales), np.nan), where=known > 0)),
+        share_interval=(("bound", "scale"), limits.T),
+        peak=over_samples(climbed["peak"], xr.DataArray(list(QUANTILES), dims="quantile")),
+    )
+    for name, of in (
+        ("median", lambda one: one.median),
+        ("dispersion", lambda one: one.dispersion),
+        ("safe_scale", lambda one: one.level(SAFE)),
+    ):
+        value, bounds = with_limits(of)
+        result[name], result[f"{name}_interval"] = ((), float(value)), ("bound", bounds)
+    value, bounds = with_limits(lambda one: one.probability(fine))
+    result["curve"], result["curve_interval"] = ("fine_scale", value), (("bound", "fine_scale"), bounds)
+    result = result.assign_coords(bound=list(BOUNDS), quantile=list(QUANTILES), fine_scale=fine)
+    describe(result, _DESCRIBED)
+    result.attrs |= {"title": "fragility of a structure under one motion", "confidence": CONFIDENCE}
+    return result

@@ -1,0 +1,60 @@
+rule climb_samples:
+    """Some samples of a case, each at rising intensities until its potential collapse; finished runs are in the store."""
+    input:
+        structure=lambda wildcards: definition(
+            "structures", CASES[wildcards.case]["structure"]
+        ),
+        motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
+        design="results/{study}/design.csv",
+        stiffness=lambda wildcards: stiffness_of(
+            FRAGILITY["model"], wildcards.study, wildcards.case
+        ),
+        kernels=lambda wildcards: kernels(FRAGILITY["model"]),
+    output:
+        "results/{study}/climbs/{case}/{batch}.nc",
+    log:
+        "logs/{study}/climb_samples/{case}/{batch}.log",
+    benchmark:
+        "benchmarks/{study}/climb_samples/{case}/{batch}.jsonl"
+    conda:
+        "../envs/blockshake.yaml"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=240,
+    params:
+        case=lambda wildcards: {
+            key: CASES[wildcards.case][key]
+            for key in ("structure", "motion", "duration")
+        },
+        model=lambda wildcards: FRAGILITY["model"],
+        settings=lambda wildcards: config["models"][FRAGILITY["model"]],
+        ladder=lookup(dpath="ladder", within=config),
+        linked=lookup(dpath="ensemble/linked", within=config),
+        store="results/store",
+        source=lambda wildcards: source_of("climb_samples", FRAGILITY["model"]),
+    script:
+        "../scripts/climb_samples.py"
+
+
+rule fit_fragility:
+    """Probability of a potential collapse by intensity: shares at the levels, and a lognormal curve through them."""
+    input:
+        lambda wildcards: expand(
+            "results/{study}/climbs/{case}/{batch}.nc",
+            study=wildcards.study,
+            case=wildcards.case,
+            batch=batch_ids(FRAGILITY["size"]),
+        ),
+    output:
+        "results/{study}/fragility/{case}.nc",
+    log:
+        "logs/{study}/fit_fragility/{case}.log",
+    benchmark:
+        "benchmarks/{study}/fit_fragility/{case}.jsonl"
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        source=source_of("fit_fragility"),
+    script:
+        "../scripts/fit_fragility.py"
