@@ -57,9 +57,10 @@ test-hidden-few: setup
 test-hidden: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python hidden_effects/measure_track_record.py --cores $(CORES)
 
-# how fast the solvers are on this machine, for maintainers: minutes on a machine that does nothing else
+# how fast the solvers are on this machine, for maintainers: minutes on a machine that does nothing else;
+# ARGUMENTS=--accept keeps the figures
 bench: setup
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/bench.py
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/bench.py $(ARGUMENTS)
 
 # the figures in docs/ that the program makes, written to their pages: minutes; findings on the paper after a study
 figures-of-docs: setup

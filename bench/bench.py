@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import accepted
 import arithmetic
 import force_evaluation
 import machine
@@ -32,11 +33,18 @@ def main(arguments=None):
     parser.add_argument("--only", choices=PARTS, action="append", help="measure this part; may be repeated")
     parser.add_argument("--blocks", type=int, nargs="+", help="sizes of the walls")
     parser.add_argument("--quick", action="store_true", help="smallest runs, to see that the program works")
+    parser.add_argument(
+        "--accept",
+        action="store_true",
+        help="keep the table in docs/bench.md, the operations in bench/accepted.json",
+    )
     parser.add_argument("--output", type=Path, default=Path("results/bench.json"))
     options = parser.parse_args(arguments)
     result = measure(options.only or PARTS, options.blocks, options.quick)
     write_json(options.output, result)
     sys.stdout.write(tables.as_text(result))
+    if options.accept:
+        accepted.accept(result, tables.as_text(result))
 
 
 def measure(parts, blocks, quick):

@@ -15,6 +15,8 @@ import pandas as pd
 from key_tables import HEADER as KEYS_HEADER
 from key_tables import key_rows
 from schedule import deep_diagnosis, hours, measured, planned, timed_study
+from shear_damping import HEADER as SHEAR_HEADER
+from shear_damping import shear_damping_rows, shear_damping_words
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import load_json, load_yaml, write_text
@@ -188,6 +190,12 @@ def times_on_a_cluster():
     return markdown(("what", "jobs", *heads, "longest job"), rows)
 
 
+def shear_damping():
+    """Table of twins by the damping of the shear springs, and how often it keeps them together."""
+    rows = shear_damping_rows()
+    return f"{markdown(SHEAR_HEADER, rows)}\n\n{shear_damping_words(rows)}"
+
+
 def keys_of(kind):
     """Maker of the table of the keys of a kind of file."""
     return lambda: markdown(KEYS_HEADER, key_rows(kind))
@@ -210,6 +218,7 @@ MAKERS = {
     "statements": statements,
     "departures": departure_table,
     "published-settings": published_settings,
+    "shear-damping": shear_damping,
     "cost-of-samples": cost_of_samples,
     "times-on-a-cluster": times_on_a_cluster,
     "structure-keys": keys_of("structure"),

@@ -104,6 +104,16 @@ def test_the_contact_kernel_is_vectorised(result):
     assert 0.0 < result["arithmetic"]["share_of_peak"] < 1.0
 
 
+def test_the_contact_kernel_has_no_more_operations_than_were_accepted(result):
+    """Counted in its machine code, not timed: `make bench ARGUMENTS=--accept` accepts others."""
+    import accepted
+
+    before = accepted.accepted_operations(result["machine"]["instruction_set"])
+    if before is None:
+        pytest.skip(f"no bench was accepted on {result['machine']['instruction_set']}")
+    assert accepted.total_operations(result["arithmetic"]) <= accepted.LARGEST_LOSS * before
+
+
 @pytest.mark.parametrize("n_blocks", [10, 30, 100, 300, 1000, 2000])
 def test_walls_have_the_blocks_asked_for_in_half_bond(n_blocks):
     import walls

@@ -48,7 +48,7 @@ def test_a_run_watches_all_that_python_imports_for_it(model):
     ).stdout
     loaded = {path.partition("/blockshake/")[2] for path in printed.split()}
     loaded = {name for name in loaded if not name.endswith("__init__.py")}
-    unwatched = {"jit.py", "log.py", "quantities.py", "sources.py"}
+    unwatched = {"log.py", "quantities.py", "sources.py"}
     assert loaded - unwatched == files(module_sources("simulation/simulate.py", model)) - unwatched
 
 
@@ -62,6 +62,14 @@ def test_a_batch_watches_its_own_solver_and_not_the_other(model, other):
 @pytest.mark.parametrize("model", MODELS)
 def test_kernels_of_a_model_are_among_the_sources_of_its_batches(model):
     assert set(kernel_sources(model)) <= set(script_sources("simulate_batch", model))
+
+
+def test_numbas_options_are_watched_by_what_they_compile():
+    """Other options are other machine code: the compiled kernels and all that they computed are then old."""
+    assert "jit.py" in compiled_sources()
+    for model in MODELS:
+        assert "jit.py" in kernel_sources(model)
+        assert "jit.py" in script_sources("simulate_batch", model)
 
 
 def test_what_judges_is_no_source_of_what_is_simulated():

@@ -13,7 +13,6 @@ from blockshake.files import HOME, PACKAGE
 _SCRIPTS = HOME / "workflow" / "scripts"
 # These name things, write logs, or decide what is in the names of the files made: they compute nothing.
 _COMPUTE_NOTHING = (
-    "jit.py",
     "log.py",
     "quantities.py",
     "sources.py",

@@ -28,8 +28,10 @@ def test_every_run_of_the_default_study_is_counted(monkeypatch):
     assert search.runs == (6 + 2 * 2) * 10 * 3
     samples = 4 * 50 + 50 + 50 + 20 + 10 + 2 * (8 + 8 + 8 + 1)
     twins = 2 * 4 + 2 * 3  # of every model and case but configuration 4 with deformable blocks
+    climbs = 2 * 20 * 23  # two cases, 20 samples, 0.5 to 6 by 0.25
     parts = study_cost.study_cost("config/study.yaml")
-    assert sum(part.seconds for part in parts) == pytest.approx((samples + 3 * twins + search.runs) * 10.0)
+    runs = samples + 3 * twins + search.runs + climbs
+    assert sum(part.seconds for part in parts) == pytest.approx(runs * 10.0)
 
 
 def test_every_simulated_test_of_a_diagnosis_is_counted(monkeypatch):

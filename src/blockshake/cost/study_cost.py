@@ -32,8 +32,8 @@ def study_cost(path):
 
     Notes
     -----
-    Twins count as one run and one of twice the steps; the search of the mean friction with as many runs as it may
-    need; a diagnosis without the runs of a cause, which it has only where it finds one.
+    Twins count as one run and one of twice the steps; the search of the mean friction and the fragility with as
+    many runs as they may need; a diagnosis without the runs of a cause, which it has only where it finds one.
     """
     config = load_config(path)
     parts = []
@@ -49,6 +49,10 @@ def study_cost(path):
             search = config.friction_calibration
             if search is not None and search.model == model and case.name in search.cases:
                 parts.append(Part(f"mean friction of {case.name}", search.runs, search.runs * each))
+            climbs = config.fragility
+            if climbs is not None and climbs.model == model and case.name in climbs.cases:
+                count = climbs.size * len(config.ladder.scales)
+                parts.append(Part(f"fragility of {case.name}", count, count * each))
     tried = {}
     for folder in config.diagnosis.campaigns:
         parts += diagnosis_cost(folder, config.diagnosis.effort, tried)

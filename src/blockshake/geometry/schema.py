@@ -10,14 +10,20 @@ AXES = ("x", "y", "z")  # order of every vector
 QUATERNION = ("w", "x", "y", "z")  # order of every quaternion
 Vector = tuple[Finite, Finite, Finite]
 Quaternion = tuple[Finite, Finite, Finite, Finite]
+# beyond anything that stands: where they end, arithmetic does too
+Density = Annotated[Finite, Field(ge=1e-3, le=1e6)]
+Modulus = Annotated[Finite, Field(ge=1.0, le=1e15)]
+Velocities = tuple[*[Annotated[Finite, Field(ge=-1e3, le=1e3)]] * 3]
+AngularVelocities = tuple[*[Annotated[Finite, Field(ge=-1e4, le=1e4)]] * 3]
+Accelerations = tuple[*[Annotated[Finite, Field(ge=-1e4, le=1e4)]] * 3]
 Name = Annotated[str, Field(min_length=1, pattern=r"^[^\s./]+$")]
 
 
 class Material(Strict):
     """Bulk properties of a material."""
 
-    density: Positive = Field(description="mass density [kg/m3]")
-    youngs_modulus: Positive = Field(description="Young's modulus [Pa]")
+    density: Density = Field(description="mass density [kg/m3]")
+    youngs_modulus: Modulus = Field(description="Young's modulus [Pa]")
     poisson_ratio: Finite = Field(gt=-1.0, lt=0.5, description="Poisson's ratio [1]")
     viscous_modulus: NotNegative = Field(
         0.0,
@@ -55,10 +61,10 @@ class Body(Strict):
     orientation: Quaternion = Field(
         (1.0, 0.0, 0.0, 0.0), description="unit quaternion w, x, y, z, body to world"
     )
-    velocity: Vector = Field((0.0, 0.0, 0.0), description="of the centroid, world frame [m/s]")
-    angular_velocity: Vector = Field((0.0, 0.0, 0.0), description="world frame [rad/s]")
+    velocity: Velocities = Field((0.0, 0.0, 0.0), description="of the centroid, world frame [m/s]")
+    angular_velocity: AngularVelocities = Field((0.0, 0.0, 0.0), description="world frame [rad/s]")
     driven: bool = Field(False, strict=True, description="the body follows the ground motion")
-    density: Positive | None = Field(None, description="of this body instead of its material's [kg/m3]")
+    density: Density | None = Field(None, description="of this body instead of its material's [kg/m3]")
     mass_offset: Vector = Field(
         (0.0, 0.0, 0.0), description="mass centre seen from the centroid of the shape, body frame [m]"
     )
@@ -138,7 +144,7 @@ class StructureFile(Strict):
 
     name: str = Field(description="of the structure, for reports")
     description: str = Field("", description="a sentence for reports")
-    gravity: Vector = Field((0.0, 0.0, -9.81), description="acceleration of a free body [m/s2]")
+    gravity: Accelerations = Field((0.0, 0.0, -9.81), description="acceleration of a free body [m/s2]")
     materials: dict[Name, Material]
     shapes: dict[Name, Shape]
     bodies: tuple[Body, ...] = Field(min_length=1)

@@ -1,11 +1,14 @@
+import copy
 import json
 import re
+import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 from fake_inputs import PEAK_ACCELERATION
-from fake_study import COLLAPSE_REASON, CPU_TIME, MODELS, FakeStudy
+from fake_study import COLLAPSE_REASON, CPU_TIME, MODELS
 from page import CLAIMS, Page
 
 from blockshake.errors import InputError
@@ -15,11 +18,14 @@ from blockshake.report.document.html import write_html
 from blockshake.report.document.pdf import write_pdf
 from blockshake.report.document.wording import number
 from blockshake.report.study import closing_sections
-from blockshake.report.study.closing_sections import checks
+from blockshake.report.study.closing_sections import checks, limits
 from blockshake.report.study.content import load_content
 from blockshake.report.study.convergence_section import convergence as annex
-from blockshake.report.study.opening_sections import stiffness
+from blockshake.report.study.friction_section import friction
+from blockshake.report.study.opening_sections import samples, stiffness
+from blockshake.report.study.peer_section import peer
 from blockshake.report.study.report import compose, make_case_report, make_report
+from blockshake.report.study.result_sections import responses
 from blockshake.report.study.statements.section import findings
 from blockshake.study.convergence.table import load_convergence
 from blockshake.study.peer_record import load_peer_record
@@ -38,6 +44,14 @@ def report(fake, tmp_path_factory):
 def document(fake):
     """Composed a second time from the same files."""
     return compose(load_content(fake.study, fake.results, fake.benchmarks))
+
+
+@pytest.fixture
+def copied(fake, tmp_path):
+    """The made-up study with results of its own, to be changed."""
+    own = copy.copy(fake)
+    own.results = Path(shutil.copytree(fake.results, tmp_path / "results"))
+    return own
 
 
 @pytest.fixture(scope="module")
@@ -226,15 +240,9 @@ def test_annex_has_the_numbers_of_the_convergence_table_and_marks_defaults(fake,
 
 def test_study_without_convergence_has_no_annex_and_says_so(fake):
     study = {name: value for name, value in fake.study.items() if name != "convergence"}
-    document = compose(load_content(study, fake.results, fake.benchmarks))
-    assert "convergence" not in [section.key for section in document.sections]
-    said = [
-        item
-        for section in document.sections
-        for block in section.blocks
-        if block.kind == "items"
-        for item in block.items
-    ]
+    content = load_content(study, fake.results, fake.benchmarks)
+    assert annex(content) is None
+    said = texts(limits(content))
     assert sum("The convergence with time step" in item and "annex" not in item for item in said) == 1
 
 
@@ -254,12 +262,11 @@ def test_annex_has_the_recorded_comparison_with_lmgc90_and_its_date(text):
 
 def test_study_without_nscd_has_no_annex_on_lmgc90(fake):
     study = {**fake.study, "models": {"ls-dem": MODELS["ls-dem"]}}
-    document = compose(load_content(study, fake.results, fake.benchmarks))
-    assert "peer" not in [section.key for section in document.sections]
+    assert peer(load_content(study, fake.results, fake.benchmarks)) is None
 
 
-def test_case_alone_needs_and_tells_nothing_of_the_others(tmp_path):
-    fake = FakeStudy(tmp_path)
+def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
+    fake = copied
     others = [*fake.results.rglob("configuration-1*"), fake.results / "convergence.csv"]
     for path in [*others, fake.results / "motions" / "alkion.nc", fake.results / "stiffness-definitions.nc"]:
         path.unlink()
@@ -283,8 +290,8 @@ def test_quantiles_that_print_alike_say_why(text):
     assert "NSCD elastic: one sample, whose curve is drawn in place of a band." in text
 
 
-def test_missing_results_are_named(tmp_path):
-    fake = FakeStudy(tmp_path, size=10)
+def test_missing_results_are_named(copied, tmp_path):
+    fake = copied
     missing = fake.results / "envelopes" / "ls-dem" / "configuration-1.nc"
     missing.unlink()
     made = [tmp_path / f"a.{kind}" for kind in ("html", "pdf", "json")]
@@ -306,18 +313,16 @@ def test_the_friction_calibration_says_what_the_test_does_not_tell(document):
 
 def test_a_study_without_a_friction_calibration_has_no_such_section(fake):
     study = {name: value for name, value in fake.study.items() if name != "friction_calibration"}
-    made = compose(load_content(study, fake.results, fake.benchmarks))
-    assert "friction" not in [section.key for section in made.sections]
+    assert friction(load_content(study, fake.results, fake.benchmarks)) is None
 
 
-def texts(document):
-    """All sentences of a document but those in tables and listings."""
-    for section in document.sections:
-        for block in section.blocks:
-            if block.kind == "text":
-                yield block.text
-            if block.kind == "items":
-                yield from block.items
+def texts(section):
+    """All sentences of a section but those in tables and listings."""
+    for block in section.blocks:
+        if block.kind == "text":
+            yield block.text
+        if block.kind == "items":
+            yield from block.items
 
 
 def test_findings_on_numerical_parameters_follow_the_table(fake, document):
@@ -333,27 +338,29 @@ def test_findings_on_numerical_parameters_follow_the_table(fake, document):
 
 def test_variables_without_use_are_those_of_the_models_of_the_study(fake):
     study = {**fake.study, "models": {"ls-dem": MODELS["ls-dem"]}}
-    said = " ".join(texts(compose(load_content(study, fake.results, fake.benchmarks))))
+    said = " ".join(texts(samples(load_content(study, fake.results, fake.benchmarks))))
     assert "LS-DEM has no use for viscous modulus of concrete" in said
     assert "NSCD rigid has no use" not in said
 
 
 def test_bands_that_are_lines_are_counted(fake):
     content = load_content(fake.study, fake.results, fake.benchmarks)
-    assert not [one for one in texts(compose(content)) if "close to lines" in one]
+    assert not [one for one in texts(responses(content)) if "close to lines" in one]
     spread = content.cases["configuration-1"].responses["nscd-rigid"].sensitivity["spread"]
     spread.loc[{"quantity": "history", "marker": "block-1-face"}] = 1e-6
-    (said,) = [one for one in texts(compose(content)) if "close to lines" in one]
+    (said,) = [one for one in texts(responses(content)) if "close to lines" in one]
     assert said.startswith("NSCD rigid: the samples of 1 of 3 blocks differ by less")
 
 
 def test_a_window_that_ends_with_the_motion_has_no_remark(fake):
     content = load_content(fake.study, fake.results, fake.benchmarks)
-    remarks = [one for one in texts(compose(content)) if one.startswith("The window ends before the motion")]
+    remarks = [
+        one for one in texts(responses(content)) if one.startswith("The window ends before the motion")
+    ]
     assert len(remarks) == len(content.cases)
     for motion in content.motions.values():
         motion.attrs["duration"] = 2.0
-    assert not [one for one in texts(compose(content)) if one.startswith("The window ends")]
+    assert not [one for one in texts(responses(content)) if one.startswith("The window ends")]
 
 
 def test_study_without_measured_tests_tells_of_its_samples_alone(fake):
@@ -365,8 +372,8 @@ def test_study_without_measured_tests_tells_of_its_samples_alone(fake):
     assert "virtual test" not in said
 
 
-def test_cases_of_unlike_blocks_have_their_own_stiffness(tmp_path):
-    study = FakeStudy(tmp_path)
+def test_cases_of_unlike_blocks_have_their_own_stiffness(copied):
+    study = copied
     together = load_content(study.study, study.results, study.benchmarks)
     assert [one.cases for one in together.calibrated] == [("configuration-1", "configuration-4")]
     table = load_design(study.results / "stiffness" / "configuration-4.csv")

@@ -29,7 +29,10 @@ def trajectory_of(structure, order, times, time_step, code, culprit, progress, j
     end_time = min(int(progress.clock[STEP]) * time_step, float(times[-1]))
     name = structure.body_names[order[culprit]]
     status, reason = _status(code, name, end_time, progress.clock)
-    joint_force = record.joint_force[:, : len(joints.slip)]
+    # a run that ends in its first step has found its joints and made no room for them
+    joint_force = np.zeros((len(times), len(joints.slip), 3))
+    recorded = record.joint_force[:, : len(joints.slip)]
+    joint_force[:, : recorded.shape[1]] = recorded
     joint_force[progress.clock[NEXT_RECORD] :] = np.nan
     return Trajectory(
         time=times,
@@ -39,7 +42,7 @@ def trajectory_of(structure, order, times, time_step, code, culprit, progress, j
         angular_velocity=record.angular_velocity[:, place],
         energy=record.energy,
         joints=order[joints.pair],
-        joint_force=np.ascontiguousarray(joint_force),
+        joint_force=joint_force,
         status=status,
         reason=reason,
         end_time=end_time,

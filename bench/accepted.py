@@ -1,0 +1,33 @@
+"""The last accepted figures: their table in docs/bench.md, and what the tests hold new code against."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+from blockshake.files import load_json, write_json, write_text
+
+PAGE = Path(__file__).parents[1] / "docs" / "bench.md"
+COUNTS = Path(__file__).with_name("accepted.json")
+LARGEST_LOSS = 1.3  # operations over the accepted ones
+_BEGIN, _END = "<!-- figures: bench -->\n", "<!-- end of figures -->"
+
+
+def accept(result, table):
+    """Put the table of a whole bench on its page, and the operations of its kernel beside those of other processors."""
+    text = PAGE.read_text(encoding="utf-8")
+    before, _, rest = text.partition(_BEGIN)
+    _, _, after = rest.partition(_END)
+    block = f"Measured {datetime.now(UTC):%Y-%m-%d}.\n\n```\n{table}```\n"
+    write_text(PAGE, before + _BEGIN + block + _END + after)
+    known = load_json(COUNTS) if COUNTS.exists() else {}
+    own = {result["machine"]["instruction_set"]: total_operations(result["arithmetic"])}
+    write_json(COUNTS, dict(sorted({**known, **own}.items())))
+
+
+def accepted_operations(instruction_set):
+    """Operations of the contact kernel's loops on a processor, as accepted last; None where they never were."""
+    return load_json(COUNTS).get(instruction_set)
+
+
+def total_operations(arithmetic):
+    """Operations for a node, sum over the innermost loops of the contact kernel."""
+    return sum(loop["operations_per_node"] for loop in arithmetic["loops"])

@@ -1,0 +1,74 @@
+"""Twins of LS-DEM that differ by one part in a million of the motion, by the damping of the shear springs."""
+
+import textwrap
+
+import numpy as np
+
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.sensors.markers import NOISE, block_markers, driven_marker
+from blockshake.report.document.wording import number, percent, share_words
+from blockshake.simulation.simulate import simulate
+from blockshake.study.comparison.comparison import TOLD_APART_BY
+from blockshake.study.convergence.convergence import NUDGE
+from blockshake.study.ensembles.ensemble import relative_to_slab
+
+CONFIGURATIONS = ("configuration-1", "configuration-2", "configuration-3", "configuration-4")
+SCALES = (1.0, 1.5, 2.0)
+RATIOS = (0.0, 0.1, 0.3)
+DURATION, TIME_STEP = 10.0, 5e-5  # s
+HEADER = (
+    "structure",
+    "scale",
+    *(f"ratio {ratio:g}: {what}" for ratio in RATIOS for what in ("peak [mm]", "twin [mm]", "horizon [s]")),
+)
+
+
+def shear_damping_rows():
+    """Peak of any block, largest distance of the twins and horizon, by structure, scale and ratio."""
+    rows = []
+    for name in CONFIGURATIONS:
+        structure = load_structure(name)
+        for scale in SCALES:
+            cells = []
+            for ratio in RATIOS:
+                one, twin = (_moved(structure, scale * factor, ratio) for factor in (1.0, 1.0 + NUDGE))
+                cells += _cells(one, twin)
+            rows.append((name, f"{scale:g}", *cells))
+    return rows
+
+
+def shear_damping_words(rows):
+    """In how many of the rows twins stay nearer, and peaks differ, with a dashpot than without one."""
+    width = len(HEADER[2:]) // len(RATIOS)
+    told = []
+    for place, ratio in enumerate(RATIOS[1:], start=1):
+        peaks, twins = (
+            [[float(row[2 + width * which + column]) for which in (0, place)] for row in rows]
+            for column in (0, 1)
+        )
+        nearer = sum(damped < plain for plain, damped in twins)
+        moved = max(abs(damped / plain - 1.0) for plain, damped in peaks)
+        told.append(
+            f"with a ratio of {ratio:g} the twins stay nearer in {share_words(nearer, len(rows))} cases, and the peak "
+            f"changes by up to {percent(moved)} %"
+        )
+    return textwrap.fill(f"{'; '.join(told).capitalize()}.", 100)
+
+
+def _moved(structure, scale, ratio):
+    """Displacement along x of a marker of each block relative to the slab's (n_times, n_blocks) [m]; and the times."""
+    run = simulate(
+        structure, load_motion("basso-tirreno", scale), "ls-dem", {"ls_dem.shear_damping_ratio": ratio},
+        time_step=TIME_STEP, duration=DURATION, accelerometers=False,
+    )  # fmt: skip
+    along = run["marker_displacement"].sel(axis="x")
+    markers = list(block_markers(structure).values())
+    return relative_to_slab(along, driven_marker(structure)).sel(marker=markers)
+
+
+def _cells(one, twin):
+    away = np.abs(one - twin).max("marker")
+    told = np.flatnonzero(away > TOLD_APART_BY * NOISE)
+    horizon = number(away["time"][told[0]]) if len(told) else f"> {DURATION:g}"
+    return f"{1e3 * float(np.abs(one).max()):.1f}", number(1e3 * float(away.max()), 2), horizon
