@@ -8,7 +8,7 @@ from blockshake.files import load_json, write_json, write_text
 PAGE = Path(__file__).parents[1] / "docs" / "bench.md"
 COUNTS = Path(__file__).with_name("accepted.json")
 LARGEST_LOSS = 1.3  # operations over the accepted ones
-_BEGIN, _END = "<!-- figures: bench -->\n", "<!-- end of figures -->"
+_BEGIN, _END = "<!-- make bench: begin -->\n", "<!-- make bench: end -->"
 
 
 def accept(result, table):

@@ -82,13 +82,18 @@ def _who(log):
 def timed_study(jobs, config, done, times):
     """Give the jobs of a study their times, from those of the study that was done.
 
-    Runs take as long as there by sample and by step, twins and a search of the mean friction as their runs; all other
-    jobs as there, whatever the number of samples.
+    Runs and climbs take as long as there by sample and by step, climbs of a case that did not climb as those that did;
+    twins and a search of the mean friction as their runs; all other jobs as there, whatever the number of samples.
     """
     for job in jobs:
         if job.rule in ("simulate_batch", "run_twins"):
             runs = _TWINS if job.rule == "run_twins" else job.samples
             job.seconds = runs * times["simulate_batch", job.key] * _steps(config, done, *job.key)
+        elif job.rule == "climb_samples":
+            (case,) = job.key
+            known = times.get((job.rule, job.key))
+            each = known or times[job.rule, ()] / done.samples_per_job
+            job.seconds = job.samples * each * _steps(config, done, config.fragility.model, case)
         elif job.rule == "calibrate_friction":
             (case,) = job.key
             run = _run_of_search(done, done.friction_calibration.cases[0], times)

@@ -8,18 +8,24 @@ from typing import NamedTuple
 from blockshake.cost.part import Part
 from blockshake.errors import InputError
 
-# CPU seconds of jobs that simulate nothing, or too little to be tried, with the start of a job among them;
-# on the machine of docs/bench.md, where the plan of the default study took `_PLANNED`
+# CPU seconds of jobs beside their simulations: 5 s of its start, which no benchmark counts, and what the benchmarks of
+# the default study say (2026-11-23, on the machine of docs/bench.md, where the plan of that study took `_PLANNED`)
 _USUAL = 7.0
 _FIXED = {
     "all": 0.0,
-    "calibrate_decision": 60.0,
-    "compare_definitions": 29.0,
-    "make_diagnosis_report": 40.0,
-    "make_report": 60.0,
-    "predict_twins": 30.0,
-    "read_measured": 45.0,
-    "study_convergence": 55.0,
+    "calibrate_decision": 20.0,
+    "calibrate_stiffness": 9.0,
+    "compare_definitions": 18.0,
+    "compare_models": 14.0,
+    "compile_kernels": 53.0,
+    "decide": 13.0,
+    "make_diagnosis_report": 13.0,
+    "make_report": 20.0,
+    "measure_gain": 14.0,
+    "measure_sensitivity": 9.0,
+    "predict_twins": 17.0,
+    "read_measured": 19.0,
+    "study_convergence": 20.0,
 }
 _PLANNED = 6.0  # CPU s
 _ROW = re.compile(r"^(\w+) +(\d+)$", re.MULTILINE)

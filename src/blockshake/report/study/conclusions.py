@@ -80,8 +80,8 @@ def _drift(case, counted, body, marker):
         if (value := float(one.envelope["drift_probability"].sel(marker=marker))) > 0.0
     ]
     return (
-        f"The top block, {body}, moves from the slab by at most so much in {quantile_percent(_UPPER)} of the samples, "
-        f"with {quantile_percent(CONFIDENCE)} limits: {', '.join(told)}. "
+        f"Displacement of the top block, {body}, from the slab that {quantile_percent(_UPPER)} of the samples stay "
+        f"below, with {quantile_percent(CONFIDENCE)} limits: {', '.join(told)}. "
         + (
             f"Of the samples, beyond {millimetres(limit)} mm or collapsed: {', '.join(beyond)}."
             if beyond
@@ -248,11 +248,15 @@ def _unknown(content):
 
 
 def _chaotic(cases):
-    """Model, case and the earliest time at which its twins part within the window [s]."""
-    found = []
+    """Models with the earliest time at which their twins part within the window [s], in words by case."""
+    told = []
     for case in cases:
-        for model in case.differences["model"].values:
-            horizon = float(case.differences["horizon"].sel(model=model).min("twin"))
-            if horizon < case.settings["duration"]:
-                found.append(f"{case.name}, {model_label(str(model))}, {number(horizon)} s")
-    return found
+        horizons = case.differences["horizon"].min("twin")
+        parted = [
+            f"{model_label(model)} {number(horizons.sel(model=model))} s"
+            for model in horizons["model"].values
+            if float(horizons.sel(model=model)) < case.settings["duration"]
+        ]
+        if parted:
+            told.append(f"{case.name}, {', '.join(parted)}")
+    return told

@@ -39,8 +39,8 @@ def fragility(content):
         ),
         Items(tuple(words(content, name) for name in content.fragility)),
         Figure(
-            "Largest displacement of any block from the slab, and probability of a potential collapse, by the factor "
-            f"of the motion. Dotted: {percent(SAFE)} %.",
+            "Largest displacement of any block from the slab, up to twice the one that counts as a potential collapse, "
+            f"and probability of such a collapse, by the factor of the motion. Dotted: {percent(SAFE)} %.",
             svg_of(plot_fragility, content.fragility),
         ),
         _table(content),

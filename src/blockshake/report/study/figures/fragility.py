@@ -16,8 +16,8 @@ def plot_fragility(found):
     """Figure of fragilities, a row a case.
 
     ``found``: from `fragility`, by case. Left: quantiles of the largest displacement of the samples that climbed a
-    scale, and the displacement that counts as a potential collapse. Right: share that did not pass with its limits, and
-    the lognormal curve with its band.
+    scale, and the displacement that counts as a potential collapse, up to twice of it. Right: share that did not pass
+    with its limits, and the lognormal curve with its band.
     """
     figure = new_figure(_ROW * len(found) + 0.012)
     rows = figure.subplots(len(found), 2, squeeze=False, sharex=True)
@@ -44,7 +44,7 @@ def _draw_peaks(axes, one):
     axes.vlines(scale, low, high, color=BLUE, linewidth=1.2)
     axes.plot(scale, median, color=BLUE, marker="o", markersize=3.5, linewidth=0.6)
     axes.axhline(1e3 * one.attrs["largest_drift"], color=RED, linestyle="--", linewidth=0.8)
-    axes.set_ylim(bottom=0.0)
+    axes.set_ylim(0.0, 2e3 * one.attrs["largest_drift"])
 
 
 def _draw_probability(axes, one):
