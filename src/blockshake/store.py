@@ -51,8 +51,8 @@ def kept_value(store, key, make):
     return json.loads(path.read_bytes()[:-_SEAL])
 
 
-def load_made(path):
-    """Dataset of a netCDF file that an earlier job made.
+def load_made(path, without=()):
+    """Dataset of a netCDF file that an earlier job made, some of its variables left out.
 
     Raises
     ------
@@ -60,7 +60,7 @@ def load_made(path):
         The file cannot be read as such.
     """
     try:
-        return xr.load_dataset(path)
+        return xr.load_dataset(path, drop_variables=list(without))
     except (OSError, RuntimeError, ValueError):
         raise InputError(path, "", MADE_ANEW.format("netCDF")) from None
 

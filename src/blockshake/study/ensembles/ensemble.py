@@ -12,6 +12,7 @@ from blockshake.study.sampling.distributions import parameter_unit
 
 RESIDUAL_WINDOW = 0.5  # s at the end of a run, averaged for the residual so that rocking on is evened out
 FRAMES = ("inertial", "slab")
+POSES = ("position", "orientation")
 _OF_ONE_RUN = ("status", "reason", "end_time", "sample", "parameters")
 
 
@@ -84,13 +85,15 @@ def gather_ensemble(runs, samples, parameters, slab_marker):
     return ensemble.assign(_extremes(ensemble))
 
 
-def join_batches(batches):
+def join_batches(batches, without=()):
     """Ensemble whose samples were gathered in several batches.
 
     Parameters
     ----------
     batches : sequence of xarray.Dataset or path
         From `gather_ensemble`, of one structure, motion, model and design.
+    without : sequence of str
+        Variables that are not read from files, such as `POSES`: half of what an ensemble holds.
 
     Returns
     -------
@@ -102,7 +105,7 @@ def join_batches(batches):
     InputError
         No batches, a sample in two of them, or times, markers, bodies or parameters that differ.
     """
-    parts = [batch if isinstance(batch, xr.Dataset) else load_made(batch) for batch in batches]
+    parts = [batch if isinstance(batch, xr.Dataset) else load_made(batch, without) for batch in batches]
     samples = [int(sample) for part in parts for sample in part["sample"].values]
     if not samples or len(set(samples)) < len(samples):
         raise InputError("ensemble", "samples", "expected at least one batch, and every sample in one only")
@@ -119,7 +122,7 @@ def join_batches(batches):
 
 def sample_figures(ensemble):
     """Outcome of each sample without the histories: status, peaks, residuals, parameters, figures."""
-    figures = ensemble.drop_dims(["time", "axis", "quaternion"])
+    figures = ensemble.drop_dims(["time", "axis", "quaternion"], errors="ignore")
     figures.attrs = {**ensemble.attrs, "title": "samples of an ensemble of simulated runs"}
     return figures
 

@@ -55,13 +55,12 @@ def envelope(ensemble, largest_drift):
     counts as one whose drift exceeded the limit.
     """
     counted = counted_samples(ensemble)
-    displacement = in_frames(counted["marker_displacement"], ensemble.attrs["slab_marker"])
     probabilities = xr.DataArray(list(QUANTILES), dims="quantile", coords={"quantile": list(QUANTILES)})
     bounds = xr.DataArray(list(BOUNDS.values()), dims="bound", coords={"bound": list(BOUNDS)})
     result = xr.Dataset(
         {
-            "marker_envelope": over_samples(displacement, bounds),
-            "marker_displacement": over_samples(displacement, probabilities),
+            "marker_envelope": _over_markers(counted, bounds),
+            "marker_displacement": _over_markers(counted, probabilities),
             **{name: over_samples(counted[name], probabilities) for name in _SINGLE},
             "contributing": counted["marker_displacement"].notnull().all(("marker", "axis")).sum("sample"),
         }
@@ -85,6 +84,16 @@ def envelope(ensemble, largest_drift):
         "confidence": CONFIDENCE,
     }
     return result
+
+
+def _over_markers(counted, probabilities):
+    """Quantiles of the displacement of every marker in both frames; one marker at a time, for the sake of memory."""
+    slab, moved = counted.attrs["slab_marker"], counted["marker_displacement"]
+    quantiles = []
+    for marker in moved["marker"].values:
+        pair = moved.sel(marker=list(dict.fromkeys([marker, slab])))
+        quantiles.append(over_samples(in_frames(pair, slab).sel(marker=[marker]), probabilities))
+    return xr.concat(quantiles, dim="marker")
 
 
 def _probabilities(counted, largest_drift):
