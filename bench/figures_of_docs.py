@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 from key_tables import HEADER as KEYS_HEADER
 from key_tables import key_rows
-from schedule import deep_diagnosis, hours, measured, planned, timed_study
+from schedule import deep_diagnosis, hours, measured, planned, shares, timed_study
 from shear_damping import HEADER as SHEAR_HEADER
 from shear_damping import shear_damping_rows, shear_damping_words
 
@@ -51,6 +51,7 @@ DEFAULT = DOCS.parent / "config" / "study.yaml"
 DIAGNOSED = DOCS.parent / "data" / "virtual-campaign" / "configuration-2"
 PROFILE = DOCS.parent / "profiles" / "slurm" / "profile.yaml"
 _CORES = (1, 64, 1024)
+_SHOWN = 8  # rules that take most of the time
 LITERAL = DOCS.parent / "config" / "literal.yaml"
 _FINE_IMPACTS = {"nscd.impact_parts": 20}  # as in config/study.yaml
 _GRID = "ls_dem.level_set", "ls_dem.grid_spacing"  # mean nothing without each other
@@ -196,6 +197,23 @@ def shear_damping():
     return f"{markdown(SHEAR_HEADER, rows)}\n\n{shear_damping_words(rows)}"
 
 
+def study_shares():
+    """CPU time of the default study by rule; None where it has not been run."""
+    if not STUDY.is_file():
+        return None
+    found = shares(DOCS.parent)
+    total = sum(seconds for *_, seconds in found)
+    rest = [sum(row[column] for row in found[_SHOWN:]) for column in (1, 2)]
+    rows = [
+        (rule, jobs, f"{seconds / 60.0:.1f}", f"{100.0 * seconds / total:.1f}")
+        for rule, jobs, seconds in [
+            *((f"`{row[0]}`", *row[1:]) for row in found[:_SHOWN]),
+            ("all others", *rest),
+        ]
+    ]
+    return markdown(("rule", "jobs", "CPU min", "share [%]"), rows)
+
+
 def keys_of(kind):
     """Maker of the table of the keys of a kind of file."""
     return lambda: markdown(KEYS_HEADER, key_rows(kind))
@@ -219,6 +237,7 @@ MAKERS = {
     "departures": departure_table,
     "published-settings": published_settings,
     "shear-damping": shear_damping,
+    "study-shares": study_shares,
     "cost-of-samples": cost_of_samples,
     "times-on-a-cluster": times_on_a_cluster,
     "structure-keys": keys_of("structure"),

@@ -6,6 +6,7 @@ measured on a busy machine: then they are too long, all by about the same factor
 """
 
 import heapq
+import json
 import re
 import subprocess
 import sys
@@ -68,6 +69,16 @@ def measured(folder):
         spent[record["rule"], key].append(seconds / samples)
         spent[record["rule"], ()].append(seconds)
     return {key: mean(values) for key, values in spent.items()}
+
+
+def shares(folder):
+    """Jobs and CPU seconds of every rule of the finished study in a folder, the dearest first, from its benchmarks."""
+    rules = {path.stem for path in Path(folder, "workflow", "scripts").glob("*.py")}
+    spent = defaultdict(list)
+    for path in Path(folder, "benchmarks").rglob("*.jsonl"):
+        (rule,) = rules & set(path.with_suffix("").parts)
+        spent[rule].append(json.loads(path.read_text(encoding="utf-8").splitlines()[-1])["cpu_time"])
+    return sorted(((rule, len(each), sum(each)) for rule, each in spent.items()), key=lambda row: -row[2])
 
 
 def _who(log):

@@ -191,12 +191,17 @@ def _simulate(options):
     from blockshake.dynamics.load_motion import load_motion
     from blockshake.dynamics.system import FINISHED
     from blockshake.geometry.structure import load_structure
+    from blockshake.jit import CACHE_FOLDER
     from blockshake.simulation.ending import ending
     from blockshake.simulation.simulate import simulate
 
     _show_progress()
     begin = time.monotonic()
     structure = load_structure(options.structure)
+    if not CACHE_FOLDER.exists():
+        print(
+            "blockshake: compiles the solver first, once, for one to two minutes", file=sys.stderr, flush=True
+        )
     run = simulate(
         structure,
         load_motion(options.motion, options.scale),

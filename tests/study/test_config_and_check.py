@@ -286,3 +286,68 @@ def test_check_remarks_any_direction_kind_and_clock(tmp_path, column, size, cloc
 @pytest.mark.parametrize("name", ["alkion", "basso-tirreno"])
 def test_shipped_motions_have_no_remarks(name):
     assert motion_remarks(load_motion(name)) == []
+
+
+def own_study(mapping, folder, structure, **changes):
+    """The default study with an own structure alone, by rigid contact dynamics and without what hangs on others."""
+    (folder / "own.yaml").write_text(yaml.safe_dump(structure))
+    case = {"structure": str(folder / "own.yaml"), "motion": "alkion", "scale": 1.0, "duration": 5.0}
+    for key in ("friction_calibration", "fragility", "convergence", "diagnosis"):
+        del mapping[key]
+    return {**mapping, "models": {"nscd-rigid": {"time_step": 1e-3}}, "cases": [case]} | changes
+
+
+@pytest.fixture
+def cube(make_mapping):
+    """A stone cube with a marker on itself and one on the slab."""
+    body = {"name": "cube", "shape": "cube", "position": [0.0, 0.0, 0.5]}
+    markers = [
+        {"name": f"{body}-face", "body": body, "position": [0.0, -0.5, 0.0]} for body in ("slab", "cube")
+    ]
+    return make_mapping([body], markers=markers)
+
+
+def stone(**more):
+    """Ensemble of ten samples with a density of stone."""
+    density = {"distribution": "lognormal", "mean": 2400.0, "cov": 0.04}
+    return {"size": 10, "seed": 1, "distributions": {"materials.stone.density": density, **more}}
+
+
+def test_a_study_needs_markers_of_the_base_and_of_a_block(mapping, cube, tmp_path):
+    check_config(own_study(dict(mapping), tmp_path, cube, ensemble=stone()), "study.yaml")
+    for left, line in ((1, "expected a marker on a driven body"), (0, "a body that is not driven")):
+        bare = {**cube, "markers": [cube["markers"][left]]}
+        with pytest.raises(InputError, match=line):
+            check_config(own_study(dict(mapping), tmp_path, bare, ensemble=stone()), "study.yaml")
+
+
+def test_variables_that_no_structure_has_are_refused_or_remarked(mapping, cube, tmp_path):
+    of_concrete = own_study(dict(mapping), tmp_path, cube, ensemble={"size": 10, "seed": 1})
+    with pytest.raises(InputError, match=r"expected a variable of .*which has none of friction"):
+        check_config(of_concrete, "study.yaml")
+    wrong = {"friction.ston.stone": {"distribution": "lognormal", "mean": 0.5, "cov": 0.1}}
+    study = own_study(dict(mapping), tmp_path, cube, ensemble=stone(**wrong))
+    (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
+    told = check_file(tmp_path / "study.yaml")
+    assert told.startswith("a study of 1 case by nscd-rigid (10 samples)")
+    assert "remark: ensemble.distributions.friction.ston.stone: no structure of the cases has it" in told
+
+
+def test_a_study_remarks_what_its_structures_hardly_mean(mapping, cube, tmp_path):
+    cube["materials"]["stone"]["density"] = 2.4
+    study = own_study(dict(mapping), tmp_path, cube, ensemble=stone())
+    study["cases"][0]["duration"] = 80.0
+    (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
+    told = check_file(tmp_path / "study.yaml")
+    assert "expected kg/m3" in told
+    assert "80 s are simulated of a motion of" in told
+
+
+def test_an_unknown_structure_and_a_solver_s_parameter_are_named_by_their_keys(mapping):
+    mapping["cases"][1]["structure"] = "nowhere.yaml"
+    with pytest.raises(InputError, match=r"study\.yaml: cases\.1\.structure: nowhere\.yaml"):
+        check_config(mapping, "study.yaml")
+    mapping["cases"][1]["structure"] = "configuration-2"
+    mapping["models"]["nscd-rigid"]["parameters"] = {"nscd.impact_part": 20}
+    with pytest.raises(InputError, match=r"models\.nscd-rigid\.parameters: nscd\.impact_part"):
+        check_config(mapping, "study.yaml")

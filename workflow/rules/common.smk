@@ -22,7 +22,7 @@ from blockshake.files import HOME, PACKAGE, shipped
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.simulation.models import MODELS as SOLVERS
 from blockshake.sources import kernel_sources, script_sources, source_digest
-from blockshake.study.config import StudyConfig, check_config
+from blockshake.study.config import StudyConfig, check_config, shows_stiffness
 from blockshake.validation import validated
 from blockshake.working_folder import (
     end_with_command,
@@ -145,6 +145,7 @@ def files_of_models(wildcards):
 def files_of_report(cases):
     """Files that a report of these cases is made of, by name."""
     measured = [case for case in cases if case in MEASURED]
+    stiff = cases if shows_stiffness(config) else []
     motions = {Path(CASES[case]["motion"]).stem for case in cases}
 
     def results(pattern, **named):
@@ -161,11 +162,11 @@ def files_of_report(cases):
         "templates": TEMPLATES,
         "motions": results("motions/{motion}.nc", motion=sorted(motions)),
         "design": results("design.{suffix}", suffix=["csv", "json"]),
-        "stiffness": results("stiffness/{case}.csv", case=cases),
-        "waves": results("waves/{case}.nc", case=cases),
+        "stiffness": results("stiffness/{case}.csv", case=stiff),
+        "waves": results("waves/{case}.nc", case=stiff),
         "bases": results("inputs/{case}.nc", case=measured),
         "definitions": (
-            results("stiffness-definitions.nc") if next(iter(CASES)) in cases else []
+            results("stiffness-definitions.nc") if next(iter(CASES)) in stiff else []
         ),
         "envelopes": by_model("envelopes", cases),
         "samples": by_model("samples", cases),

@@ -11,7 +11,10 @@ from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.study.config import load_config
 from blockshake.study.motion_remarks import motion_line, motion_remarks
+from blockshake.study.sampling.sample_parameters import has_parameter
 from blockshake.study.structure_remarks import structure_lines, structure_remarks
+
+_LATE = 5.0  # s of rest after a motion that need no remark
 
 
 def check_file(source):
@@ -66,4 +69,21 @@ def _study_line(source):
     for model in config.models:
         counts = sorted({config.samples(model, case.name) for case in config.cases})
         told.append(f"{model} ({' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))} samples)")
-    return f"a study of {len(config.cases)} cases by {', '.join(told)}"
+    count = f"{len(config.cases)} case{'s' * (len(config.cases) != 1)}"
+    return _with_remarks([f"a study of {count} by {', '.join(told)}"], _study_remarks(config))
+
+
+def _study_remarks(config):
+    """Variables that no structure has, and remarks on each structure and motion."""
+    structures = {case.structure: load_structure(case.structure) for case in config.cases}
+    for variable in config.ensemble.distributions:
+        if not any(has_parameter(one, variable) for one in structures.values()):
+            yield f"ensemble.distributions.{variable}: no structure of the cases has it"
+    for name, structure in structures.items():
+        yield from (f"{name}: {remark}" for remark in structure_remarks(structure))
+    for case in config.cases:
+        motion = load_motion(case.motion)
+        yield from (f"{case.motion}: {remark}" for remark in motion_remarks(motion))
+        length = float(motion.table.breaks[-1])
+        if case.duration > length + _LATE:
+            yield f"cases: {case.name}: {case.duration:g} s are simulated of a motion of {length:g} s"

@@ -12,9 +12,9 @@ from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
-from blockshake.measurement.sensors.markers import RATE
+from blockshake.measurement.sensors.markers import RATE, block_markers, driven_marker
 from blockshake.paths import check_plain
-from blockshake.simulation.models import ModelName, split_parameters
+from blockshake.simulation.models import MODELS, ModelName, split_parameters
 from blockshake.study.comparison.differences import FEWEST
 from blockshake.study.convergence.settings import Convergence
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED, check_record
@@ -23,6 +23,7 @@ from blockshake.study.friction.settings import FrictionSearch
 from blockshake.study.sampling.correlation_target import load_correlation
 from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, load_distributions
 from blockshake.study.sampling.latin_hypercube import SMALLEST_SIZE
+from blockshake.study.sampling.sample_parameters import has_parameter
 from blockshake.validation import Positive, Strict, validated
 
 _NAME = re.compile(r"\w[\w.-]*")  # of a structure or a motion: it names results
@@ -87,7 +88,9 @@ class StudyCase(Strict):
 
     model_config = ConfigDict(json_schema_extra=_input_is_optional)
 
-    structure: str = Field(description="shipped name or file")
+    structure: str = Field(
+        description="shipped name or file, whose name without its ending names the case: each structure stands once"
+    )
     motion: str = Field(description="shipped name or file")
     scale: Positive = Field(description="multiplies the motion [1]")
     duration: Positive = Field(description="simulated time [s]")
@@ -133,6 +136,12 @@ class Ladder(Strict):
         description="displacement of a block relative to the slab that counts as a potential collapse, by default half "
         "of the smaller width of the structure's blocks [m]",
     )
+
+    @model_validator(mode="after")
+    def _rises(self):
+        if self.highest < self.first:
+            raise ValueError("expected `highest` not below `first`")
+        return self
 
     @property
     def scales(self):
@@ -193,6 +202,18 @@ class StudyConfig(Strict):
         return self.samples(model, case) >= FEWEST
 
 
+def shows_stiffness(study):
+    """Whether a study, as a mapping, tells of contact stiffness: a model has any, or a structure is the paper's."""
+    return any(MODELS[model].calibrated for model in study["models"]) or any(
+        is_of_the_paper(case["structure"]) for case in study["cases"]
+    )
+
+
+def is_of_the_paper(structure):
+    """Whether a structure is one of Zhou et al. (2023), by its shipped name."""
+    return structure.startswith("configuration-")
+
+
 def load_config(path):
     """Configuration from a YAML file, checked with all that it names.
 
@@ -222,7 +243,7 @@ def check_config(mapping, where):
                 raise InputError(
                     where, f"{key}.samples.{model}", f"expected 1 to {config.ensemble.size}, not {count}"
                 )
-        load_structure(case.structure)
+        _check_structure(case.structure, config.ensemble.distributions, where, key)
         if case.measured is not None:
             _check_measured(case, where, f"{key}.measured")
     for target, source in config.ensemble.linked.items():
@@ -239,6 +260,23 @@ def check_config(mapping, where):
     for folder in config.diagnosis.campaigns:
         load_campaign(folder)
     return config
+
+
+def _check_structure(name, distributions, where, key):
+    """A structure that can be read, with a marker on a driven body and on a free one, and some random variable."""
+    try:
+        structure = load_structure(name)
+    except InputError as error:
+        raise InputError(where, f"{key}.structure", str(error)) from None
+    driven_marker(structure)
+    if not block_markers(structure):
+        raise InputError(structure.source, "markers", "expected a marker on a body that is not driven")
+    if not any(has_parameter(structure, variable) for variable in distributions):
+        raise InputError(
+            where,
+            "ensemble.distributions",
+            f"expected a variable of {name}, which has none of {', '.join(distributions)}",
+        )
 
 
 def _check_paths(config, where):
@@ -273,7 +311,10 @@ def _check_paths(config, where):
 
 def _check_parameters(model, settings, key, where):
     """Refuse parameters shared by all samples that are not the solver's."""
-    physical, _ = split_parameters(settings.parameters, model)
+    try:
+        physical, _ = split_parameters(settings.parameters, model)
+    except InputError as error:
+        raise InputError(where, key, str(error).removeprefix("--set: ")) from None
     if physical:
         raise InputError(where, f"{key}.{next(iter(physical))}", "expected a parameter of the solver")
 

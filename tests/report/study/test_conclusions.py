@@ -36,7 +36,7 @@ def test_peak_is_the_upper_quantile_of_the_top_block(content):
     )
     low, high = (1e3 * float(peak["peak_interval"].sel(bound=one)) for one in ("lower", "upper"))
     assert f"{1e3 * float(peak['peak']):.1f} mm by LS-DEM [{low:.1f}, {high:.1f}] (n = 10)" in drift
-    assert "No sample moves by more than 400.0 mm." in drift
+    assert "No sample moves it by more than 400.0 mm." in drift
 
 
 def test_collapse_is_found_where_a_sample_collapsed(content):

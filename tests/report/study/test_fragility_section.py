@@ -49,6 +49,13 @@ def test_samples_that_all_pass_tell_no_fragility(content):
     assert "none passes the lowest factor, 0.5" in words(none, CASE)
 
 
+def test_capacities_between_the_same_levels_are_told_by_these_alone(content):
+    same = with_fragility(content, dispersion=0.0, capacity_lower=1.0, capacity_upper=1.25)
+    told = words(same, CASE)
+    assert "all capacities lie between 1 and 1.25 times the motion" in told
+    assert "half of the capacities" not in told
+
+
 def test_a_dispersion_that_the_levels_hide_is_said(content):
     assert "differ by less than the levels are apart" in words(with_fragility(content, dispersion=0.01), CASE)
     assert "differ by less" not in words(with_fragility(content, dispersion=0.4), CASE)

@@ -7,11 +7,11 @@ def test_collapse_and_quantiles_are_those_of_the_files_with_limits(fake):
     table = probability_table(content)
     rows = {row[:2]: row[2:] for row in table.rows}
     # one collapsed and one failed of six: 1 of 5 counts, limits of Clopper and Pearson
-    counted, collapse, drift, *_ = rows["configuration-4", "NSCD rigid"]
+    counted, collapse, drift, *_ = rows["configuration-4, top-face", "NSCD rigid"]
     assert counted == "5 + 1 failed"
     assert collapse == "20.0 [0.5, 71.6]"
     assert drift == collapse  # a collapse is a drift beyond all limits, and no other sample drifts by 400 mm
-    assert rows["configuration-1", "LS-DEM"][:2] == ("10", "0.0 [0.0, 30.8]")
+    assert rows["configuration-1, block-3-face", "LS-DEM"][:2] == ("10", "0.0 [0.0, 30.8]")
     envelope = content.cases["configuration-1"].responses["ls-dem"].envelope
     peak = envelope["peak"].sel(frame="slab", marker="block-3-face", quantile=0.95)
-    assert rows["configuration-1", "LS-DEM"][4].startswith(f"{1e3 * float(peak):.1f} [")
+    assert rows["configuration-1, block-3-face", "LS-DEM"][4].startswith(f"{1e3 * float(peak):.1f} [")

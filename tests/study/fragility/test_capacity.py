@@ -44,10 +44,11 @@ def test_bootstrap_limits_hold_the_median_about_as_often_as_they_say():
     assert np.mean(inside) >= 0.8
 
 
-def test_capacities_between_the_same_two_levels_lie_well_between_them():
-    found = fit_capacity(np.full(20, 1.5), np.full(20, 1.75))
-    assert 1.5 <= found.median <= 1.75
-    np.testing.assert_allclose(found.probability(np.array([1.5, 1.75])), [0.0, 1.0], atol=1e-6)
+def test_capacities_that_one_value_would_do_for_have_no_dispersion():
+    found = fit_capacity([1.5, 1.25, 1.5], [1.75, 1.75, np.inf])
+    assert found.median == pytest.approx(np.sqrt(1.5 * 1.75))
+    assert found.dispersion == 0.0
+    np.testing.assert_array_equal(found.probability(np.array([1.5, 1.75])), [0.0, 1.0])
 
 
 @pytest.mark.parametrize(

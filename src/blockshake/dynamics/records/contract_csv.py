@@ -70,7 +70,11 @@ def _rows(text):
 def _check_header(header, where):
     allowed = ["time_s", *(f"{kind}_{axis}" for kind in KINDS for axis in AXES), "pitch_y"]
     if "time_s" not in header:
-        raise InputError(where, "time_s", "expected this column in the header row")
+        raise InputError(
+            where,
+            "time_s",
+            "expected this column in the header row; `blockshake convert-motion` reads other tables",
+        )
     for name in header:
         if name not in allowed:
             raise InputError(where, f"column '{name}'", f"expected one of {', '.join(allowed)}")

@@ -80,12 +80,12 @@ def _drift(case, counted, body, marker):
         if (value := float(one.envelope["drift_probability"].sel(marker=marker))) > 0.0
     ]
     return (
-        f"Displacement of the top block, {body}, from the slab that {quantile_percent(_UPPER)} of the samples stay "
-        f"below, with {quantile_percent(CONFIDENCE)} limits: {', '.join(told)}. "
+        f"Displacement of marker {marker} on the top block, {body}, from the slab that {quantile_percent(_UPPER)} of "
+        f"the samples stay below, with {quantile_percent(CONFIDENCE)} limits: {', '.join(told)}. "
         + (
             f"Of the samples, beyond {millimetres(limit)} mm or collapsed: {', '.join(beyond)}."
             if beyond
-            else f"No sample moves by more than {millimetres(limit)} mm."
+            else f"No sample moves it by more than {millimetres(limit)} mm."
         )
     )
 

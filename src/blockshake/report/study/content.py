@@ -12,6 +12,7 @@ from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.sensors import markers
 from blockshake.report.document.origin import software_versions
 from blockshake.store import load_made
+from blockshake.study.config import is_of_the_paper, shows_stiffness
 from blockshake.study.convergence.table import load_convergence
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.measured import measured_curves
@@ -92,7 +93,7 @@ class ReportedCase:
     @property
     def is_shipped(self):
         """Whether the structure is one of the paper's, by its name."""
-        return self.settings["structure"].startswith("configuration-")
+        return is_of_the_paper(self.settings["structure"])
 
 
 @dataclass(frozen=True)
@@ -122,9 +123,9 @@ class Content:
     design_summary : dict
     distributions : dict of str to Lognormal
     calibrated : tuple of Calibrated
-        Every case in one of them.
+        Every case in one of them; empty where the study tells of no contact stiffness.
     definitions : xarray.Dataset or None
-        Of the study's first case; none where that is not reported.
+        Of the study's first case; none where that is not reported, or likewise.
     friction : dict of str to dict
         Friction calibrations by case; empty where the study asks for none.
     fragility : dict of str to xarray.Dataset
@@ -197,7 +198,7 @@ def load_content(study, results, benchmarks, only=None):
     for named in [*(case["motion"] for case in cases.values()), *climbed]:
         motions[Path(named).stem] = load_made(results / "motions" / f"{Path(named).stem}.nc")
     design = results / "design.csv"
-    stiffness = [results / "stiffness" / f"{name}.csv" for name in cases]
+    stiffness = [results / "stiffness" / f"{name}.csv" for name in cases if shows_stiffness(study)]
     inputs = [
         named_file(f"{kind}s", case[kind]) for kind in ("structure", "motion") for case in cases.values()
     ]
@@ -211,8 +212,10 @@ def load_content(study, results, benchmarks, only=None):
         design=load_design(design),
         design_summary=load_json(results / "design.json"),
         distributions=load_distributions(study["ensemble"].get("distributions"), study["name"]),
-        calibrated=_calibrated(results, cases),
-        definitions=load_made(results / "stiffness-definitions.nc") if next(iter(every)) in cases else None,
+        calibrated=_calibrated(results, cases) if stiffness else (),
+        definitions=(
+            load_made(results / "stiffness-definitions.nc") if stiffness and next(iter(every)) in cases else None
+        ),
         friction={
             name: load_json(results / "friction" / f"{name}.json")
             for name in (study.get("friction_calibration") or {}).get("cases", ())

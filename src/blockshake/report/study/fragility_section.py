@@ -30,17 +30,18 @@ def fragility(content):
     blocks = [
         Text(
             f"Samples that climb the ladder by {model_label(asked['model'])}: each is shaken by the case's commanded "
-            "motion at rising factors, from the restored stack each time, until it collapses or a block moves from the "
-            "slab by more than the displacement that counts as a potential collapse. The capacity of a sample lies "
-            "between the last factor that it passed and the first that it did not. Drawn is the lognormal distribution "
-            "of largest likelihood for such bounds (incremental dynamic analysis, Vamvatsikos and Cornell 2002; "
-            "fragility by maximum likelihood, Shinozuka et al. 2000). The spread is that of the sampled variables. The "
-            "motion is one: another motion of the same peak has another fragility."
+            "motion at rising factors, from the restored stack each time, until it collapses or the mass centre of a "
+            "block moves from the slab by more than the displacement that counts as a potential collapse. The capacity "
+            "of a sample lies between the last factor that it passed and the first that it did not. Drawn is the "
+            "lognormal distribution of largest likelihood for such bounds (incremental dynamic analysis, Vamvatsikos "
+            "and Cornell 2002; fragility by maximum likelihood, Shinozuka et al. 2000). The spread is that of the "
+            "sampled variables. The motion is one: another motion of the same peak has another fragility."
         ),
         Items(tuple(words(content, name) for name in content.fragility)),
         Figure(
-            "Largest displacement of any block from the slab, up to twice the one that counts as a potential collapse, "
-            f"and probability of such a collapse, by the factor of the motion. Dotted: {percent(SAFE)} %.",
+            "Largest displacement of the mass centre of any block from the slab, up to twice the one that counts as a "
+            "potential collapse, and probability of such a collapse, by the factor of the motion. Dotted: "
+            f"{percent(SAFE)} %.",
             svg_of(plot_fragility, content.fragility),
         ),
         _table(content),
@@ -67,6 +68,12 @@ def words(content, name):
             else f"none passes the lowest factor, {given(one['scale'][0])}"
         )
         return f"{who}: {side}, so that no fragility is told.{less}"
+    if float(one["dispersion"]) == 0.0:
+        low, high = float(one["capacity_lower"].max()), float(one["capacity_upper"].min())
+        return (
+            f"{who}: all capacities lie between {given(low)} and {given(high)} times the motion ({number(low * unit)} "
+            f"and {number(high * unit)} m/s{SQUARED}). The levels are too far apart to tell more.{less}"
+        )
     if float(one["dispersion"]) < _told_from(one):
         less += (
             " The capacities differ by less than the levels are apart: the dispersion, and with it the factor that "
@@ -108,8 +115,8 @@ def _table(content):
     quantiles = " / ".join(map(quantile_percent, _SHOWN))
     return Table(
         "Levels that the samples climbed. Not passed: share of the samples of which it is known that do not pass this "
-        "level, or did not pass a lower one, with Clopper-Pearson limits of 95 %. Displacement: the largest of any "
-        f"block from the slab, quantiles {quantiles} over the samples that climbed this level.",
+        "level, or did not pass a lower one, with Clopper-Pearson limits of 95 %. Displacement: the largest of the "
+        f"mass centre of any block from the slab, quantiles {quantiles} over the samples that climbed this level.",
         (
             "Case", "Factor", f"Peak acceleration [m/s{SQUARED}]", "Climbed", "Not passed [%]",
             f"Displacement, {quantiles} [mm]",

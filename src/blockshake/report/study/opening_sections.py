@@ -204,7 +204,9 @@ def _without_use(content):
 
 
 def stiffness(content):
-    """Waves, their speed, and the stiffness of every sample, for each kind of blocks."""
+    """Waves, their speed, and the stiffness of every sample, for each kind of blocks; None where the study has none."""
+    if not content.calibrated:
+        return None
     waves = content.calibrated[0].waves
     blocks = [
         Text(

@@ -21,7 +21,8 @@ def probability_table(content):
             counted, failed, *_ = shortfall(one)
             top = one.sel(marker=marker, body=body)
             rows.append((
-                case.name, model_label(model), f"{counted} + {failed} failed" if failed else str(counted),
+                f"{case.name}, {marker}", model_label(model),
+                f"{counted} + {failed} failed" if failed else str(counted),
                 _with_limits(top, "collapse_probability", percent), _with_limits(top, "drift_probability", percent),
                 *(_with_limits(top.sel(frame="slab", quantile=q), "peak", _thousandths) for q in _SHOWN),
                 *(_with_limits(top.sel(quantile=q), "peak_rotation", _thousandths) for q in _SHOWN),
@@ -30,14 +31,14 @@ def probability_table(content):
     shown = " and ".join(f"{100 * one:.0f} %" for one in _SHOWN)
     quantiles = [f"{100 * one:.0f} %" for one in _SHOWN]
     return Table(
-        "Top block: probability of collapse, and of a displacement relative to the slab of more than "
+        "Top block, at its marker: probability of collapse, and of a displacement relative to the slab of more than "
         f"{number(1e3 * limit.attrs['largest_drift'])} mm (a collapse counts as more), with Clopper-Pearson limits; "
         f"quantiles {shown} of peak displacement [mm] and peak rotation [mrad] over the n samples that completed or "
         "collapsed, with bootstrap limits, which cannot reach beyond the largest sample and hold the upper quantile "
         f"less often than stated. All limits are of {100 * CONFIDENCE:.0f} % and take samples as independent; "
         "collapsed samples count with the displacement that they had reached.",
         (
-            "Case", "Model", "n", "Collapse [%]", "Drift [%]", *(f"Peak, {one} [mm]" for one in quantiles),
+            "Case, marker", "Model", "n", "Collapse [%]", "Drift [%]", *(f"Peak, {one} [mm]" for one in quantiles),
             *(f"Rotation, {one} [mrad]" for one in quantiles),
         ),
         tuple(rows), "llrrrrrrr",

@@ -20,7 +20,8 @@ def responses(content):
     """Displacement of the blocks by every model, case by case."""
     blocks = [
         Text(
-            "Displacement along x of a marker on the side face of each block, from the top block down. Grey: area of "
+            "Displacement along x of one marker of each block, from the top block down: that named BLOCK-face, or the "
+            "block's first. A marker higher on a block that rocks moves farther. Grey: area of "
             "the samples; red: the smallest and the largest value at each time. Two bounds of n samples hold one "
             "further run of the same model at one instant with probability (n - 1) / (n + 1). For a whole record no "
             "probability is known; therefore every coverage stands beside its leave-one-out reference."

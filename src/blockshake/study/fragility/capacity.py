@@ -19,7 +19,7 @@ class Capacity(NamedTuple):
 
     def probability(self, level):
         """Probability of a capacity below a level, or levels [1]."""
-        return ndtr((np.log(level) - np.log(self.median)) / self.dispersion)
+        return ndtr((np.log(level) - np.log(self.median)) / max(self.dispersion, _SHARPEST))
 
     def level(self, probability):
         """Level below which the capacity lies with a probability, in the unit of the levels."""
@@ -38,7 +38,8 @@ def fit_capacity(lower, upper):
     -------
     Capacity
         NaN where no capacity has an upper bound or none a lower one: the data then bound the median on one side alone.
-        Where all lie between the same two levels, any dispersion that keeps them there is as likely as another.
+        A dispersion of 0, and the middle of the levels on a logarithmic scale, where one capacity would do for all: any
+        median between the levels is then as likely as another.
 
     Notes
     -----
@@ -48,6 +49,8 @@ def fit_capacity(lower, upper):
     lower, upper = np.asarray(lower, dtype=float), np.asarray(upper, dtype=float)
     if not len(lower) or np.isinf(upper).all() or (lower == 0.0).all():
         return Capacity(np.nan, np.nan)
+    if lower.max() < upper.min():
+        return Capacity(float(np.sqrt(lower.max() * upper.min())), 0.0)
     bounds, counts = np.unique(np.column_stack([lower, upper]), axis=0, return_counts=True)
     with np.errstate(divide="ignore"):
         low, high = np.log(bounds).T

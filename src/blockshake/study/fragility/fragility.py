@@ -91,7 +91,10 @@ def fragility(climbed, identity):
     ):
         value, bounds = with_limits(of)
         result[name], result[f"{name}_interval"] = ((), float(value)), ("bound", bounds)
-    value, bounds = with_limits(lambda one: one.probability(fine))
+    curve = (
+        fitted.dispersion > 0.0
+    )  # else the levels tell two factors alone, between which all capacities lie
+    value, bounds = with_limits(lambda one: one.probability(fine) if curve else np.full(_POINTS, np.nan))
     result["curve"], result["curve_interval"] = ("fine_scale", value), (("bound", "fine_scale"), bounds)
     result = result.assign_coords(bound=list(BOUNDS), quantile=list(QUANTILES), fine_scale=fine)
     describe(result, _DESCRIBED)

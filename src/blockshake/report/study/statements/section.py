@@ -55,7 +55,9 @@ def findings(content):
 
 
 def statements(content):
-    """The paper, statement by statement."""
+    """The paper, statement by statement; None where no structure of the study is one of the paper's."""
+    if not any(case.is_shipped for case in content.cases.values()):
+        return None
     rows_by_heading = judge_statements(content)
     blocks = [
         Text(
