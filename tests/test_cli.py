@@ -44,8 +44,9 @@ def test_sample_and_its_table(tmp_path):
     assert design.columns[0] == "friction.concrete.concrete"
 
 
-def test_convert_motion_round_trip(tmp_path):
+def test_convert_motion_round_trip(tmp_path, capsys):
     assert main(["convert-motion", "basso-tirreno", "--output", str(tmp_path / "m.csv")]) == 0
+    assert f"{tmp_path / 'm.csv'}: a motion of " in capsys.readouterr().out
     assert (tmp_path / "m.csv").read_text().splitlines()[0].startswith("time_s,acceleration_x")
     assert main(["check", str(tmp_path / "m.csv")]) == 0
 

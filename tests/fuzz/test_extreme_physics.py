@@ -14,14 +14,14 @@ from blockshake.simulation.simulate import simulate
 STEPS = {"ls-dem": 5e-5, "nscd-rigid": 1e-3}
 STONE = ("materials", "stone")
 EXTREMES = [
-    *(((*STONE, "density"), value) for value in (1e-3, 1e6)),
+    *(((*STONE, "density"), value) for value in (1e-3, 1e9)),
     *(((*STONE, "youngs_modulus"), value) for value in (1.0, 1e15)),
     *(((*STONE, "poisson_ratio"), value) for value in (-0.999, 0.4999999)),
     *(((*STONE, "viscous_modulus"), value) for value in (1e-300, 1e300)),
     *((("friction", 0, "coefficient"), value) for value in (0.0, 1e-300, 1e6)),
     *((("gravity",), value) for value in ([0.0, 0.0, 0.0], [0.0, 0.0, 9.81], [1e4, 0.0, -9.81], [0.0, 0.0, -1e4])),
     *((("restitution",), value) for value in (1e-300, 1.0)),
-    *((("bodies", 1, "velocity"), value) for value in ([900.0, 0.0, 0.0], [0.0, 0.0, -1e3])),
+    *((("bodies", 1, "velocity"), value) for value in ([900.0, 0.0, 0.0], [0.0, 0.0, -1e4])),
     *((("bodies", 1, "angular_velocity"), value) for value in ([0.0, 1e4, 0.0], [1e4, 0.0, 0.0])),
 ]  # fmt: skip
 

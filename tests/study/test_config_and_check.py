@@ -248,7 +248,7 @@ def test_shipped_structures_have_no_remarks(number):
 
 def motion_file(folder, values, column="acceleration_x", clock=1.0):
     time = np.arange(0.0, 20.0, 0.01)
-    rows = "\n".join(f"{clock * t:.2f},{value:.6g}" for t, value in zip(time, values(time), strict=True))
+    rows = "\n".join(f"{clock * t:.5f},{value:.6g}" for t, value in zip(time, values(time), strict=True))
     path = folder / "motion.csv"
     path.write_text(f"time_s,{column}\n{rows}\n")
     return str(path)
@@ -275,6 +275,7 @@ def test_check_remarks_a_motion_in_other_units_or_with_an_offset(tmp_path, scale
         ("displacement_x", 80.0, 1.0, "expected m, not mm"),
         ("displacement_z", 0.08, 1.0, ""),
         ("acceleration_x", 3.0, 1000.0, "the motion lasts 19990 s: expected s, not ms"),
+        ("acceleration_x", 3.0, 0.001, "the motion lasts 0.02 s: were its times in s already?"),
     ],
 )
 def test_check_remarks_any_direction_kind_and_clock(tmp_path, column, size, clock, remark):

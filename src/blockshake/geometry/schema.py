@@ -11,9 +11,9 @@ QUATERNION = ("w", "x", "y", "z")  # order of every quaternion
 Vector = tuple[Finite, Finite, Finite]
 Quaternion = tuple[Finite, Finite, Finite, Finite]
 # beyond anything that stands: where they end, arithmetic does too
-Density = Annotated[Finite, Field(ge=1e-3, le=1e6)]
+Density = Annotated[Finite, Field(ge=1e-3, le=1e9)]
 Modulus = Annotated[Finite, Field(ge=1.0, le=1e15)]
-Velocities = tuple[*[Annotated[Finite, Field(ge=-1e3, le=1e3)]] * 3]
+Velocities = tuple[*[Annotated[Finite, Field(ge=-1e4, le=1e4)]] * 3]
 AngularVelocities = tuple[*[Annotated[Finite, Field(ge=-1e4, le=1e4)]] * 3]
 Accelerations = tuple[*[Annotated[Finite, Field(ge=-1e4, le=1e4)]] * 3]
 Name = Annotated[str, Field(min_length=1, pattern=r"^[^\s./]+$")]

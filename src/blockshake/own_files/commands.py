@@ -107,6 +107,7 @@ def _convert_motion(options):
     from blockshake.dynamics.load_motion import load_motion
     from blockshake.dynamics.records.contract_csv import write_motion_csv
     from blockshake.dynamics.records.motion_table import load_motion_table
+    from blockshake.study.motion_remarks import motion_line, motion_remarks
     from blockshake.tables.table_file import TableLayout
     from blockshake.validation import validated
 
@@ -128,6 +129,9 @@ def _convert_motion(options):
     else:
         motion = load_motion(options.file, correct=options.baseline != NONE, corner_frequency=corner)
     write_motion_csv(motion, options.output)
+    print(f"{options.output}: {motion_line(motion)}")
+    for remark in motion_remarks(motion):
+        print(f"  remark: {remark}")
 
 
 def _import_campaign(options):

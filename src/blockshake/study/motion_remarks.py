@@ -12,6 +12,7 @@ _FARTHEST = 1.0  # m, of a shake table or of the ground
 _STEEPEST = 0.05  # rad, of a table
 _FASTEST_END = 0.05  # m/s
 _LONGEST = 600.0  # s, of a test or of an earthquake
+_SHORTEST = 0.1  # s
 # by kind of motion: its unit, and smaller ones that are perhaps meant
 _UNITS = {"acceleration": "m/s2", "velocity": "m/s", "displacement": "m"}
 _SMALLER = {"acceleration": "cm/s2 or mm/s2", "velocity": "cm/s or mm/s", "displacement": "mm"}
@@ -51,4 +52,6 @@ def motion_remarks(motion):
         remarks.append(f"the table pitches by {pitched:.2g} rad")
     if motion.duration > _LONGEST:
         remarks.append(f"the motion lasts {motion.duration:.0f} s: expected s, not ms")
+    if motion.duration < _SHORTEST:
+        remarks.append(f"the motion lasts {motion.duration:.2g} s: were its times in s already?")
     return remarks

@@ -11,7 +11,7 @@ from blockshake.simulation.simulate import simulate
 @pytest.mark.parametrize(
     ("key", "value", "words"),
     [
-        ("materials.concrete.youngs_modulus", 0.0, "greater than 0"),
+        ("materials.concrete.youngs_modulus", 0.0, "greater than or equal to 1"),
         ("materials.concrete.poisson_ratio", 0.5, "less than 0.5"),
         ("materials.concrete.viscous_modulus", -1.0, "greater than or equal to 0"),
         ("nscd_deformable.mesh_size", 0.0, "greater than 0"),
