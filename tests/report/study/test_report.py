@@ -17,7 +17,7 @@ from blockshake.report.document.blocks import Table
 from blockshake.report.document.html import write_html
 from blockshake.report.document.pdf import write_pdf
 from blockshake.report.document.wording import number
-from blockshake.report.study import closing_sections
+from blockshake.report.study import closing_sections, content
 from blockshake.report.study.closing_sections import checks, limits
 from blockshake.report.study.content import load_content
 from blockshake.report.study.convergence_section import convergence as annex
@@ -27,6 +27,7 @@ from blockshake.report.study.peer_section import peer
 from blockshake.report.study.report import compose, make_case_report, make_report
 from blockshake.report.study.result_sections import responses
 from blockshake.report.study.statements.section import findings
+from blockshake.study import config
 from blockshake.study.convergence.table import load_convergence
 from blockshake.study.peer_record import load_peer_record
 from blockshake.study.sampling.latin_hypercube import load_design
@@ -263,6 +264,18 @@ def test_annex_has_the_recorded_comparison_with_lmgc90_and_its_date(text):
 def test_study_without_nscd_has_no_annex_on_lmgc90(fake):
     study = {**fake.study, "models": {"ls-dem": MODELS["ls-dem"]}}
     assert peer(load_content(study, fake.results, fake.benchmarks)) is None
+
+
+def test_own_structures_by_rigid_models_need_no_contact_stiffness(copied, monkeypatch):
+    for module in (config, content):
+        monkeypatch.setattr(module, "is_of_the_paper", lambda structure: False)
+    for name in ("stiffness", "waves"):
+        shutil.rmtree(copied.results / name)
+    (copied.results / "stiffness-definitions.nc").unlink()
+    study = {**copied.study, "models": {"nscd-rigid": MODELS["nscd-rigid"]}}
+    found = load_content(study, copied.results, copied.benchmarks)
+    assert not {"stiffness", "statements"} & {section.key for section in compose(found).sections}
+    assert findings(found)["findings"] == {}
 
 
 def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):

@@ -13,7 +13,10 @@ _WIDTHS, _DEPARTURES_WIDTHS = (6, 9, 5, 17, 9), (4, 10, 18, 10)
 
 
 def judge_statements(content):
-    """Findings of a study on all statements: rows of text under `HEADER`, by heading."""
+    """Findings of a study on all statements: rows of text under `HEADER`, by heading; none without the structures of
+    the paper, which the statements are about."""
+    if not any(case.is_shipped for case in content.cases.values()):
+        return {}
     return {
         heading: tuple(_row(content, one) for one in statements) for heading, statements in STATEMENTS.items()
     }
@@ -56,9 +59,9 @@ def findings(content):
 
 def statements(content):
     """The paper, statement by statement; None where no structure of the study is one of the paper's."""
-    if not any(case.is_shipped for case in content.cases.values()):
-        return None
     rows_by_heading = judge_statements(content)
+    if not rows_by_heading:
+        return None
     blocks = [
         Text(
             "Zhou et al. (2023), statement by statement, in the words of this program. Met: the study at hand finds or "
