@@ -74,12 +74,14 @@ def _study_line(source):
 
 
 def _study_remarks(config):
-    """Variables that no structure has, and remarks on each structure and motion."""
+    """Structures whose samples are all alike, variables that none has, and remarks on each structure and motion."""
     structures = {case.structure: load_structure(case.structure) for case in config.cases}
     for variable in config.ensemble.distributions:
         if not any(has_parameter(one, variable) for one in structures.values()):
             yield f"ensemble.distributions.{variable}: no structure of the cases has it"
     for name, structure in structures.items():
+        if not any(has_parameter(structure, variable) for variable in config.ensemble.distributions):
+            yield f"{name}: no variable of ensemble.distributions is the structure's: all of its samples are alike"
         yield from (f"{name}: {remark}" for remark in structure_remarks(structure))
     for case in config.cases:
         motion = load_motion(case.motion)

@@ -23,7 +23,6 @@ from blockshake.study.friction.settings import FrictionSearch
 from blockshake.study.sampling.correlation_target import load_correlation
 from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, load_distributions
 from blockshake.study.sampling.latin_hypercube import SMALLEST_SIZE
-from blockshake.study.sampling.sample_parameters import has_parameter
 from blockshake.validation import Positive, Strict, validated
 
 _NAME = re.compile(r"\w[\w.-]*")  # of a structure or a motion: it names results
@@ -243,7 +242,7 @@ def check_config(mapping, where):
                 raise InputError(
                     where, f"{key}.samples.{model}", f"expected 1 to {config.ensemble.size}, not {count}"
                 )
-        _check_structure(case.structure, config.ensemble.distributions, where, key)
+        _check_structure(case.structure, where, key)
         if case.measured is not None:
             _check_measured(case, where, f"{key}.measured")
     for target, source in config.ensemble.linked.items():
@@ -262,8 +261,8 @@ def check_config(mapping, where):
     return config
 
 
-def _check_structure(name, distributions, where, key):
-    """A structure that can be read, with a marker on a driven body and on a free one, and some random variable."""
+def _check_structure(name, where, key):
+    """A structure that can be read, with a marker on a driven body and on a free one."""
     try:
         structure = load_structure(name)
     except InputError as error:
@@ -271,12 +270,6 @@ def _check_structure(name, distributions, where, key):
     driven_marker(structure)
     if not block_markers(structure):
         raise InputError(structure.source, "markers", "expected a marker on a body that is not driven")
-    if not any(has_parameter(structure, variable) for variable in distributions):
-        raise InputError(
-            where,
-            "ensemble.distributions",
-            f"expected a variable of {name}, which has none of {', '.join(distributions)}",
-        )
 
 
 def _check_paths(config, where):
