@@ -35,6 +35,7 @@ class Checkout:
         config["cases"][0]["duration"] = 0.05
         del config["models"]["nscd-viscoelastic"], config["cases"][0]["samples"]
         config["convergence"]["duration"] = 0.05
+        config["fragility"]["size"], config["ladder"]["highest"] = 3, 1.0
         config["name"] = "small"
         self.write_config(config | changes)
 
