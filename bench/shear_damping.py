@@ -57,7 +57,7 @@ def shear_damping_words(rows):
 
 
 def _moved(structure, scale, ratio):
-    """Displacement along x of a marker of each block relative to the slab's (n_times, n_blocks) [m]; and the times."""
+    """Displacement along x of a marker of each block relative to the slab's marker, over time and marker [m]."""
     run = simulate(
         structure, load_motion("basso-tirreno", scale), "ls-dem", {"ls_dem.shear_damping_ratio": ratio},
         time_step=TIME_STEP, duration=DURATION, accelerometers=False,

@@ -199,9 +199,7 @@ def _simulate(options):
     begin = time.monotonic()
     structure = load_structure(options.structure)
     if not CACHE_FOLDER.exists():
-        print(
-            "blockshake: compiles the solver first, once, for one to two minutes", file=sys.stderr, flush=True
-        )
+        logging.getLogger("blockshake").info("compiles the solver first, once, for one to three minutes")
     run = simulate(
         structure,
         load_motion(options.motion, options.scale),

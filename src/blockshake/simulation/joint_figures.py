@@ -34,13 +34,10 @@ def joint_figures(run, structure):
     histories = run_histories(run, structure)
     pairs, _ = find_joints(structure)
     names = structure.body_names
-    touched = [
-        frozenset(pair) for pair in zip(histories["lower"].values, histories["upper"].values, strict=True)
-    ]
-    rows = [
-        touched.index(one) if one in touched else None
-        for one in (frozenset(names[b] for b in p) for p in pairs)
-    ]
+    # a run names a pair in the order in which its bodies met
+    touched = zip(histories["lower"].values, histories["upper"].values, strict=True)
+    places = {frozenset(pair): place for place, pair in enumerate(touched)}
+    rows = [places.get(frozenset((names[lower], names[upper]))) for lower, upper in pairs]
 
     def figure(name, statistic):
         values = histories[name].to_numpy()

@@ -11,6 +11,7 @@ from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.study.config import load_config
 from blockshake.study.motion_remarks import motion_line, motion_remarks
+from blockshake.study.sampling.distributions import TABLE_2
 from blockshake.study.sampling.sample_parameters import has_parameter
 from blockshake.study.structure_remarks import structure_lines, structure_remarks
 
@@ -76,16 +77,18 @@ def _study_line(source):
 def _study_remarks(config):
     """Structures whose samples are all alike, variables that none has, and remarks on each structure and motion."""
     structures = {case.structure: load_structure(case.structure) for case in config.cases}
-    for variable in config.ensemble.distributions:
+    # Table 2 stands for all configurations of the paper, of which some have no steel
+    for variable in (name for name in config.ensemble.distributions if name not in TABLE_2):
         if not any(has_parameter(one, variable) for one in structures.values()):
             yield f"ensemble.distributions.{variable}: no structure of the cases has it"
     for name, structure in structures.items():
         if not any(has_parameter(structure, variable) for variable in config.ensemble.distributions):
             yield f"{name}: no variable of ensemble.distributions is the structure's: all of its samples are alike"
         yield from (f"{name}: {remark}" for remark in structure_remarks(structure))
+    motions = {case.motion: load_motion(case.motion) for case in config.cases}
+    for name, motion in motions.items():
+        yield from (f"{name}: {remark}" for remark in motion_remarks(motion))
     for case in config.cases:
-        motion = load_motion(case.motion)
-        yield from (f"{case.motion}: {remark}" for remark in motion_remarks(motion))
-        length = float(motion.table.breaks[-1])
+        length = motions[case.motion].duration
         if case.duration > length + _LATE:
-            yield f"cases: {case.name}: {case.duration:g} s are simulated of a motion of {length:g} s"
+            yield f"{case.name}: {case.duration:g} s are simulated of a motion of {length:g} s"

@@ -125,7 +125,7 @@ class Content:
     calibrated : tuple of Calibrated
         Every case in one of them; empty where the study tells of no contact stiffness.
     definitions : xarray.Dataset or None
-        Of the study's first case; none where that is not reported, or likewise.
+        Of the study's first case; none where that is not reported, or where the study tells of no contact stiffness.
     friction : dict of str to dict
         Friction calibrations by case; empty where the study asks for none.
     fragility : dict of str to xarray.Dataset

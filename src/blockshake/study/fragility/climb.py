@@ -15,7 +15,7 @@ from blockshake.study.sampling.sample_parameters import sample_parameters
 
 _DESCRIBED = {
     "scale": ("factor of the motion", "1"),
-    "peak": ("largest displacement of a block relative to the slab along x", "m"),
+    "peak": ("largest displacement of the mass centre of a block relative to the slab along x", "m"),
     "passed": ("1 where the stack stood, 0 where it did not, NaN where nobody climbed", "1"),
     "capacity_lower": ("last scale that the sample passed, 0 for none", "1"),
     "capacity_upper": ("first scale that it did not pass, infinity for none", "1"),

@@ -16,7 +16,7 @@ _DESCRIBED = {
     "known": ("samples of which it is known whether they pass this scale", "1"),
     "share": ("share of these that do not pass it, or did not pass a lower one", "1"),
     "share_interval": ("Clopper-Pearson limits of that probability", "1"),
-    "peak": ("largest displacement of a block from the slab along x, samples that climbed this scale", "m"),
+    "peak": ("largest displacement of the mass centre of a block from the slab, samples that climbed", "m"),
     "fine_scale": ("factor of the motion", "1"),
     "curve": ("probability of a capacity below that factor, lognormal", "1"),
     "curve_interval": ("bootstrap limits of it", "1"),
