@@ -198,6 +198,8 @@ def _simulate(options):
     _show_progress()
     begin = time.monotonic()
     structure = load_structure(options.structure)
+    if Path(options.output).exists():
+        logging.getLogger("blockshake").info("%s is there and will be replaced", options.output)
     if not CACHE_FOLDER.exists():
         logging.getLogger("blockshake").info("compiles the solver first, once, for one to three minutes")
     run = simulate(

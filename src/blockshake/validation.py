@@ -1,6 +1,7 @@
 """Checking a mapping against its schema, with pydantic's complaints worded as one line."""
 
 import difflib
+import re
 import types
 from typing import Annotated, Union, get_args, get_origin
 
@@ -18,6 +19,8 @@ Count = Annotated[int, Field(strict=True, ge=0)]
 
 
 _SHOWN = 20  # faults in a line
+_WITH_COMMA = re.compile(r"\s*[-+]?\d+,\d+([eE][-+]?\d+)?\s*")
+_POINT = "numbers take a decimal point, 0.75 and not 0,75"
 
 
 class Strict(BaseModel):
@@ -56,26 +59,46 @@ def validated(schema, mapping, where, prefix=""):
     ]
     wrong_values = [one for one in found if not _is_of_key(one)]
     shown = [one for one in found if _is_of_key(one) or one is wrong_values[0]]
-    faults = [(_key(one["loc"], mapping, prefix), _in_words(one, schema)) for one in shown]
+    faults = [
+        (_key((*one["loc"], *_key_inside(one)), mapping, prefix), _in_words(one, schema)) for one in shown
+    ]
     if len(faults) == 1:
         raise InputError(where, *faults[0])
     raise InputError(where, "", "; ".join(f"{key}: {said}" for key, said in faults))
 
 
 def _is_of_key(error):
-    return error["type"] in ("missing", "extra_forbidden")
+    return error["type"] in ("missing", "extra_forbidden", "invalid_key")
+
+
+def _input_error(error):
+    """The `InputError` with which a validator of a schema refused a value, or none."""
+    cause = error.get("ctx", {}).get("error")
+    return cause if isinstance(cause, InputError) else None
+
+
+def _key_inside(error):
+    """Key at fault inside the value that a validator refused, which the refusal names from the value's own name on."""
+    refusal = _input_error(error)
+    return refusal.key.split(".")[1:] if refusal else ()
 
 
 def _in_words(error, schema):
     """One fault in words, without its key."""
+    if refusal := _input_error(error):
+        return refusal.expected
     if error["type"] == "missing":
         return "missing key"
+    if error["type"] == "invalid_key":
+        return f"a key of letters was expected; {_POINT}"
     if error["type"] == "extra_forbidden":
         *place, name = error["loc"]
         near = difflib.get_close_matches(str(name), _known_keys(schema, place), n=1)
         return f"unknown key, did you mean {near[0]}?" if near else "unknown key"
     message = error["msg"].removeprefix("Value error, ")
     found = "" if isinstance(error["input"], dict) else f", not {error['input']!r}"
+    if isinstance(error["input"], str) and _WITH_COMMA.fullmatch(error["input"]):
+        found += f"; {_POINT}"
     return f"{message[0].lower()}{message[1:]}{found}"
 
 

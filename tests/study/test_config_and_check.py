@@ -89,7 +89,16 @@ def test_all_models_run_all_cases_of_the_default_study(mapping):
             "no-such: expected a structure file or one of configuration-1",
         ),
         (("cases", 0, "motion"), "no-such", "no-such: expected a motion file or one of alkion"),
-        (("cases", 1, "structure"), "configuration-1", "study.yaml: cases.0: expected every structure once"),
+        (
+            ("cases", 1, "structure"),
+            "configuration-1",
+            "study.yaml: cases.0.name: expected a name of its own",
+        ),
+        (
+            ("cases", 0, "name"),
+            "a b",
+            "study.yaml: cases.0.name: expected letters, digits, dots, hyphens, not 'a b'",
+        ),
         (
             ("cases", 3, "samples"),
             {"nscd-rigid": 0},
@@ -180,6 +189,33 @@ def test_all_wrong_keys_are_named_at_once_with_the_nearest_known_one():
         "friction_calibration.zzz: unknown key",
         "modles: unknown key, did you mean models?",
     ]
+
+
+def test_a_structure_may_have_several_cases_of_different_names():
+    mapping = copy.deepcopy(NEEDED)
+    mapping["cases"] += [mapping["cases"][0] | {"name": "stronger", "scale": 2.0}]
+    config = check_config(mapping, "mine.yaml")
+    assert [(case.name, case.scale) for case in config.cases] == [("configuration-2", 1.0), ("stronger", 2.0)]
+
+
+def test_a_decimal_comma_is_named():
+    mapping = copy.deepcopy(NEEDED)
+    # {mean: 0,75} is in YAML a mean of 0 and a key 75
+    mapping["ensemble"]["distributions"] = {
+        "friction.concrete.concrete": {"distribution": "lognormal", "mean": 0.75, "cov": "0,10"}
+    }
+    with pytest.raises(InputError) as error:
+        check_config(mapping, "mine.yaml")
+    assert str(error.value) == (
+        "mine.yaml: ensemble.distributions.friction.concrete.concrete.cov: input should be a valid number, not '0,10'; "
+        "numbers take a decimal point, 0.75 and not 0,75"
+    )
+    mapping = copy.deepcopy(NEEDED)
+    mapping["cases"][0] |= {"scale": 0, 75: None}
+    with pytest.raises(
+        InputError, match=r"cases\.0\.75: a key of letters was expected; numbers take a decimal point"
+    ):
+        check_config(mapping, "mine.yaml")
 
 
 def test_friction_is_calibrated_against_a_measured_test_alone(mapping):

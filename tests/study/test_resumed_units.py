@@ -36,6 +36,14 @@ def _climb(path, store):
     write_json(path, ladder.climb_ladders(*climbed, store, "source", lambda line: None))
 
 
+def test_a_structure_of_two_cases_is_climbed_once_for_the_longer_one(tmp_path, monkeypatch):
+    climbed = []
+    monkeypatch.setattr(ladder, "climb", lambda structure, motion, *run: climbed.append(run[3]) or [])
+    cases = [CASE, CASE | {"duration": 0.1}]
+    ladder.climb_ladders(cases, ["alkion"], 1e-4, RUNGS, tmp_path, "source", lambda line: None)
+    assert climbed == [0.1]
+
+
 def _converge(path, store):
     write_convergence(path, convergence.study_convergence(SHORT, store, "source", lambda line: None))
 

@@ -256,7 +256,7 @@ TEMPLATES = expand(
 )
 STUDY = config["name"]
 MODELS = list(config["models"])
-CASES = {Path(case["structure"]).stem: case for case in config["cases"]}
+CASES = {case["name"]: case for case in config["cases"]}
 MEASURED = [name for name, case in CASES.items() if case["measured"]]
 FRICTION_SEARCH = config.get("friction_calibration") or {}
 FRAGILITY = config.get("fragility") or {}

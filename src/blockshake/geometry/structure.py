@@ -287,7 +287,7 @@ def _touching(file, source, solids, position, orientation):
             source,
             f"bodies.{bodies[b].name}.position",
             f"overlaps {bodies[a].name} by {1e3 * depth[place]:.3g} mm; "
-            f"expected at most {1e3 * DEEPEST_OVERLAP:.0f} mm",
+            f"expected at most {1e3 * DEEPEST_OVERLAP:.0f} mm, from boxes and positions in metres",
         )
     touching = np.zeros((len(bodies), len(bodies)), dtype=bool)
     a, b = pairs[(depth > -START_TOLERANCE) & ~driven[pairs].all(axis=1)].T

@@ -76,7 +76,9 @@ def _add_layout(command):
     command.add_argument(
         "--separator", metavar="CHARACTER", help="between cells (default: as the header shows)"
     )
-    command.add_argument("--decimal", choices=(".", ","), help="decimal sign (default .)")
+    command.add_argument(
+        "--decimal", choices=(".", ","), metavar="SIGN", help="decimal sign, . (default) or ,"
+    )
     command.add_argument("--header", type=int, metavar="LINE", help="of the columns' names (default 1)")
     command.add_argument(
         "--data", type=int, metavar="LINE", help="first one of numbers (default: below the names)"

@@ -77,19 +77,21 @@ class Measured(Strict):
     test: str = Field(description="name of the test in it, not a sealed one")
 
 
-def _input_is_optional(schema):
-    """Take ``input``, whose default follows from ``measured``, off the keys that a JSON schema requires."""
-    schema["required"].remove("input")
+def _defaults_follow(schema):
+    """Take the keys whose defaults follow from other keys off those that a JSON schema requires."""
+    schema["required"] = [key for key in schema["required"] if key not in ("name", "input")]
 
 
 class StudyCase(Strict):
     """One structure under one motion."""
 
-    model_config = ConfigDict(json_schema_extra=_input_is_optional)
+    model_config = ConfigDict(json_schema_extra=_defaults_follow)
 
-    structure: str = Field(
-        description="shipped name or file, whose name without its ending names the case: each structure stands once"
+    name: str = Field(
+        description="names the case in the report and in paths; by default the name of the structure's file. Two cases "
+        "of one structure, under two motions say, need names"
     )
+    structure: str = Field(description="shipped name or file")
     motion: str = Field(description="shipped name or file")
     scale: Positive = Field(description="multiplies the motion [1]")
     duration: Positive = Field(description="simulated time [s]")
@@ -106,21 +108,19 @@ class StudyCase(Strict):
 
     @model_validator(mode="before")
     @classmethod
-    def _with_input(cls, given):
-        if not isinstance(given, dict) or "input" in given:
+    def _with_defaults(cls, given):
+        if not isinstance(given, dict):
             return given
-        return given | {"input": MEASURED if given.get("measured") else COMMANDED}
+        return {
+            "name": Path(str(given.get("structure", ""))).stem,
+            "input": MEASURED if given.get("measured") else COMMANDED,
+        } | given
 
     @model_validator(mode="after")
     def _has_input(self):
         if self.input == MEASURED and self.measured is None:
             raise ValueError(f"expected input: {COMMANDED}, as there is no measured test")
         return self
-
-    @property
-    def name(self):
-        """Structure's name, which names the case in paths."""
-        return Path(self.structure).stem
 
 
 class Ladder(Strict):
@@ -236,7 +236,9 @@ def check_config(mapping, where):
     for index, case in enumerate(config.cases):
         key = f"cases.{index}"
         if names.count(case.name) > 1:
-            raise InputError(where, key, f"expected every structure once; {case.name} stands twice")
+            raise InputError(
+                where, f"{key}.name", f"expected a name of its own, as there are two cases {case.name}"
+            )
         for model, count in case.samples.items():
             if not 1 <= count <= config.ensemble.size:
                 raise InputError(
@@ -287,6 +289,10 @@ def _check_paths(config, where):
         naming.append(("convergence.structure", config.convergence.structure))
     for index, case in enumerate(config.cases):
         naming += [(f"cases.{index}.structure", case.structure), (f"cases.{index}.motion", case.motion)]
+        if not _NAME.fullmatch(case.name):
+            raise InputError(
+                where, f"cases.{index}.name", f"expected letters, digits, dots, hyphens, not '{case.name}'"
+            )
     for key, path in [*paths, *naming]:
         check_plain(path, where, key)
     by_name = {}

@@ -126,7 +126,8 @@ def _joint_panels(histories):
     cut = f"; up to {number(largest, 2)}" if shown < largest else ""
     yield _Panel(f"normal force\n[kN]{cut}", normal, (0.0, shown))
     yield _Panel(f"friction ratio\nT / ({MICRO} N) [1]", joints["friction_ratio"], (0.0, 1.0), line=1.0)
-    yield _Panel("uplift\n[mm]", uplift, (0.0, float(uplift.max())))
+    if uplift.max() > 0.0:
+        yield _Panel("uplift\n[mm]", uplift, (0.0, float(uplift.max())))
 
 
 def _energy_panels(run, histories):

@@ -190,7 +190,7 @@ def load_content(study, results, benchmarks, only=None):
         A file is missing or holds something else.
     """
     results = Path(results)
-    every = {Path(case["structure"]).stem: case for case in study["cases"]}
+    every = {case["name"]: case for case in study["cases"]}
     cases = {only: every[only]} if only else every
     loaded = {name: _case(study, results, name, settings) for name, settings in cases.items()}
     motions = {}

@@ -130,7 +130,9 @@ def motions(content):
     used = {}
     for case in content.cases.values():
         used.setdefault(content.motions[case.motion].attrs["name"], set()).add(case.settings["duration"])
-    windows = {name: sorted(durations) for name, durations in used.items()}
+    lasts = {one.attrs["name"]: float(one["time"][-1]) for one in content.motions.values()}
+    cut = {name: sorted(end for end in ends if end < lasts[name]) for name, ends in used.items()}
+    cut = {name: ends for name, ends in cut.items() if ends}
     unused = [
         name for name in content.motions if name not in {case.motion for case in content.cases.values()}
     ]
@@ -146,12 +148,17 @@ def motions(content):
         ),
         Items(tuple(f"{one.attrs['name']}: {one.attrs.get('source', '')}." for one in data)),
         Figure(
-            "Ground acceleration, velocity and displacement along x (after the paper's Fig. 5); dashed: end of the "
-            "window that the cases simulate.",
-            svg_of(plot_motions, data, windows),
+            "Ground acceleration, velocity and displacement along x (after the paper's Fig. 5)"
+            + ("; dashed: end of the window that the cases simulate." if cut else "."),
+            svg_of(plot_motions, data, cut),
         ),
         Figure(
-            "Response spectra at 5 % damping, with the ordinates that a synthetic motion aims at.",
+            "Response spectra at 5 % damping"
+            + (
+                ", with the ordinates that a synthetic motion aims at."
+                if any("target" in one for one in data)
+                else "."
+            ),
             svg_of(plot_spectra, data),
         ),
         motions_table(content.motions),

@@ -83,15 +83,19 @@ def climb_ladders(cases, motions, time_step, ladder, store, source, progress):
     """Climb the ladder of every case with every motion by LS-DEM, nominal parameters: rungs by structure and motion.
 
     ``cases``: ``structure`` and ``duration`` [s] of the configuration's; ``motions``: names or files; ``time_step``
-    [s]; ``store`` and ``source`` as of `climb`; ``progress`` is called with a line of text after each ladder.
+    [s]; ``store`` and ``source`` as of `climb`; ``progress`` is called with a line of text after each ladder. A
+    structure of several cases is climbed with the longest duration of these.
     """
-    found = {case["structure"]: {} for case in cases}
+    durations = {}
     for case in cases:
-        structure = load_structure(case["structure"])
+        durations[case["structure"]] = max(case["duration"], durations.get(case["structure"], 0.0))
+    found = {name: {} for name in durations}
+    for name, duration in durations.items():
+        structure = load_structure(name)
         for motion in motions:
-            run = "ls-dem", {}, time_step, case["duration"], ladder, store, source
+            run = "ls-dem", {}, time_step, duration, ladder, store, source
             rungs = climb(structure, partial(load_motion, motion), *run)
-            found[case["structure"]][motion] = rungs
+            found[name][motion] = rungs
             passed = [rung["scale"] for rung in rungs if rung["passed"]]
-            progress(f"{case['structure']} {motion}: passed {passed}")
+            progress(f"{name} {motion}: passed {passed}")
     return found

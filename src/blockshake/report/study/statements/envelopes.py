@@ -9,6 +9,7 @@ from blockshake.report.document.wording import (
     share_words,
 )
 from blockshake.report.study.sensitivity.summary import markers_by_height, thickness_by_case
+from blockshake.report.study.statements.specimens import HEIGHTS
 from blockshake.report.study.statements.statement import judged, missing, unjudged
 from blockshake.study.sensitivity.findings import influences, is_known
 from blockshake.study.sensitivity.thickness import growth_with_structure
@@ -50,7 +51,7 @@ def _tops(content, model, thicker, thinner):
     if absent := missing(content, model):
         return unjudged(absent)
     found = {name: one for name, one in thickness_by_case(content, model).items() if one.known}
-    thicker = [name for name in thicker if name in found and name.startswith("configuration-")]
+    thicker = [name for name in thicker if name in found and name in HEIGHTS]
     if thinner not in found or not thicker:
         return unjudged(f"This study lacks one of the cases to compare: it has {', '.join(content.cases)}.")
     if len({found[name].shaking for name in (thinner, *thicker)}) > 1:

@@ -5,6 +5,7 @@ import numpy as np
 from blockshake.report.document.rows import face_markers
 from blockshake.report.document.wording import model_label, number, percent, share_words
 from blockshake.report.study.models.words import order_words
+from blockshake.report.study.statements.specimens import HEIGHTS
 from blockshake.report.study.statements.statement import against_tests, compared, judged, missing, unjudged
 from blockshake.study.comparison.ranking import CLAIMS, MET, OPEN, judge
 from blockshake.study.ensembles.coverage import is_likely
@@ -55,8 +56,7 @@ def satisfactory(content, model, fits, fails=()):
     cases = [
         case
         for case in compared(content)
-        if case.name.startswith("configuration-")
-        and case.responses[model].comparison["curve_probability"].notnull().any()
+        if case.name in HEIGHTS and case.responses[model].comparison["curve_probability"].notnull().any()
     ]
     if not cases:
         return unjudged(_NO_TEST)
