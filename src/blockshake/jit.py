@@ -21,6 +21,8 @@ from pathlib import Path
 import numba
 from numba.core.caching import CacheImpl, IndexDataCacheFile, _CacheLocator
 from numba.core.compiler_lock import global_compiler_lock
+from numba.core.cpu import CPUTargetOptions
+from numba.core.options import TargetOptions
 from numba.core.serialize import dumps
 
 from blockshake.sources import compiled_sources, source_digest
@@ -94,6 +96,10 @@ inline_kernel = numba.njit(**_OPTIONS, inline="always")
 # the kernels that it calls unless they say, as those above do, that they count. Its code is copied to where it is
 # called, because the tables of a run are hundreds of arguments, which a call would pass one by one.
 borrowing_kernel = numba.njit(**_OPTIONS, _nrt=False, forceinline=True)
+# The same where no array argument overlaps another one, which the compiler is told: loops over the lanes of packets,
+# which are in two arrays, become vector instructions only so. Numba has the flag and no option for it.
+CPUTargetOptions.noalias = TargetOptions.Mapping("noalias")
+separate_kernel = numba.njit(**_OPTIONS, _nrt=False, forceinline=True, noalias=True)
 
 
 def compiling():

@@ -9,7 +9,16 @@ import pytest
 from blockshake.jit import kernel
 from blockshake.solvers.ls_dem.contact import located_nodes
 from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
-from blockshake.solvers.ls_dem.contact.packets import AREA, LANES, NORMAL_X, PACKET, PHI, PLACE_X, POINT_X
+from blockshake.solvers.ls_dem.contact.packets import (
+    AREA,
+    LANES,
+    LOCATED,
+    NORMAL_X,
+    PACKET,
+    PHI,
+    PLACE_X,
+    POINT_X,
+)
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces, level_set
 
@@ -31,8 +40,8 @@ def test_packets_give_the_bits_of_single_places(surfaces):
     rng = np.random.default_rng(10)
     points = (rng.random((N_PACKETS * LANES, 3)) - 0.5) * np.array([1.1, 2.7, 1.9])
     points[::7] = 1e6  # filling of a packet
-    packets = np.zeros((N_PACKETS, PACKET))
-    rows = packets.reshape(N_PACKETS, -1, LANES)
+    packets, located = np.zeros((N_PACKETS, PACKET)), np.zeros((N_PACKETS, LOCATED))
+    rows, found = packets.reshape(N_PACKETS, -1, LANES), located.reshape(N_PACKETS, -1, LANES)
     first = POINT_X // LANES
     rows[:, first : first + 3] = points.reshape(N_PACKETS, LANES, 3).transpose(0, 2, 1)
     rows[:, AREA // LANES] = 0.5
@@ -40,17 +49,17 @@ def test_packets_give_the_bits_of_single_places(surfaces):
     R, d = np.zeros((2, 3, 3)), np.zeros((2, 3))
     R[1] = np.eye(3)
     area = locate_nodes_into(
-        packets, 0, N_PACKETS, surfaces.half, surfaces.chamfer, surfaces.lattice, surfaces.values, shape,
+        packets, located, 0, N_PACKETS, 0, surfaces.half, surfaces.chamfer, surfaces.lattice, surfaces.values, shape,
         R, d, 1,
     )  # fmt: skip
     expected = _level_sets(surfaces, shape, points)
-    np.testing.assert_array_equal(rows[:, PHI // LANES].ravel(), expected)
+    np.testing.assert_array_equal(found[:, PHI // LANES].ravel(), expected)
     assert area == 0.5 * (expected < 0.0).sum()
     first = PLACE_X // LANES
     np.testing.assert_array_equal(rows[:, first : first + 3].transpose(0, 2, 1).reshape(-1, 3), points)
     # the gradient of the distance is a unit vector, and central differences of it
     first = NORMAL_X // LANES
-    normal = rows[:, first : first + 3].transpose(0, 2, 1).reshape(-1, 3)
+    normal = found[:, first : first + 3].transpose(0, 2, 1).reshape(-1, 3)
     np.testing.assert_allclose(np.linalg.norm(normal, axis=1), 1.0, rtol=1e-12)
     near = np.abs(expected) < 0.015  # beyond the lattice there is a bound only
     step = 1e-6
@@ -73,6 +82,17 @@ def test_packets_become_vector_instructions(surfaces, name):
     table = (surfaces.half, surfaces.chamfer)
     if name == "_locate_in_lattice_into":
         table = (surfaces.lattice, surfaces.values)
-    fresh(np.zeros((1, PACKET)), 0, 0, *table, 0, np.zeros((2, 3, 3)), np.zeros((2, 3)), 0)
+    fresh(
+        np.zeros((1, PACKET)),
+        np.zeros((1, LOCATED)),
+        0,
+        0,
+        0,
+        *table,
+        0,
+        np.zeros((2, 3, 3)),
+        np.zeros((2, 3)),
+        0,
+    )
     products = re.findall(r"fmul .*<(\d+) x double>", next(iter(fresh.inspect_llvm().values())))
     assert len(products) >= 9  # those of the turn into the other frame at least

@@ -14,11 +14,11 @@ from blockshake.solvers.ls_dem.contact.packets import (
     FAR_AWAY,
     HELD,
     LANES,
+    LOCATED,
     PACKET,
     POINT_X,
     POINT_Y,
     POINT_Z,
-    SLOPE,
     STRETCH_X,
     STRETCH_Y,
     STRETCH_Z,
@@ -34,8 +34,9 @@ class Candidates(NamedTuple):
     ``pairs`` int64 (n_pairs, 2), lower index first; ``joint`` int64 (n_pairs,): their rows in `Joints`. Side ``2 p`` of
     pair ``p`` holds nodes of its first body against the level set of its second, side ``2 p + 1`` the reverse.
     ``first`` int64 (2 n_pairs + 1,): first packet of each side. ``node`` int64 (n_packets * LANES,): index in
-    `Surfaces`, -1 for filling. ``packets`` float64 (n_packets, PACKET): see `packets`. ``position`` and
-    ``orientation``: poses for which the list was made.
+    `Surfaces`, -1 for filling. ``packets`` float64 (n_packets, PACKET): see `packets`. ``located`` float64 (packets of
+    the pair with most, LOCATED): workspace of the pair at hand. ``position`` and ``orientation``: poses for which the
+    list was made.
     """
 
     pairs: np.ndarray
@@ -43,6 +44,7 @@ class Candidates(NamedTuple):
     first: np.ndarray
     node: np.ndarray
     packets: np.ndarray
+    located: np.ndarray
     position: np.ndarray
     orientation: np.ndarray
 
@@ -52,7 +54,7 @@ def empty_candidates(n_bodies):
     """Lists before the first search."""
     return Candidates(
         np.empty((0, 2), np.int64), np.empty(0, np.int64), np.zeros(1, np.int64), np.empty(0, np.int64),
-        np.empty((0, PACKET)), np.full((n_bodies, 3), np.inf), np.zeros((n_bodies, 4)),
+        np.empty((0, PACKET)), np.empty((0, LOCATED)), np.full((n_bodies, 3), np.inf), np.zeros((n_bodies, 4)),
     )  # fmt: skip
 
 
@@ -199,6 +201,7 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
         first[side + 1] = first[side] + (count[side + 1] - count[side] + LANES - 1) // LANES
     node = np.full(first[n_sides] * LANES, -1, np.int64)
     packets = np.zeros((first[n_sides], PACKET))
+    located = np.zeros((_most_packets(first), LOCATED))
     for side in range(n_sides):
         owner, other = pairs[side // 2, side % 2], pairs[side // 2, 1 - side % 2]
         e, n_nodes = surfaces.offset[owner], count[side + 1] - count[side]
@@ -214,19 +217,54 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
                 packets[packet, lane + DAMPING_WEIGHT] = surfaces.damping_weight[node[place]]
             else:
                 packets[packet, lane + POINT_X] = FAR_AWAY
-            packets[packet, lane + SLOPE] = 1.0
         relative_pose_into(
             poses.position_before, poses.rotation_before, surfaces.offset, owner, other, 0, R, d
         )
         locate_nodes_into(
-            packets, first[side], first[side + 1],
+            packets, located, first[side], first[side + 1], first[side],
             surfaces.half, surfaces.chamfer, surfaces.lattice, surfaces.values, surfaces.shape[other],
             R, d, 0,
         )  # fmt: skip
     joint = np.full(pairs.shape[0], -1, np.int64)
-    new = Candidates(pairs, joint, first, node, packets, position.copy(), orientation.copy())
+    new = Candidates(pairs, joint, first, node, packets, located, position.copy(), orientation.copy())
     _carry_over_into(old, new)
     return new, _name_joints(new, joints)
+
+
+@kernel
+def _most_packets(first):
+    """Number of packets of the pair that has most."""
+    most = 0
+    for side in range(0, first.size - 1, 2):
+        most = max(most, first[side + 2] - first[side])
+    return most
+
+
+@borrowing_kernel
+def locate_pair_into(candidates, surfaces, poses, pair, R, d):
+    """Locate the nodes of both sides of a pair; the area in touch, the mean of what the two sides find [m2].
+
+    Parameters
+    ----------
+    candidates : Candidates
+        Places and ``located`` are overwritten.
+    surfaces : Surfaces
+    poses : Poses
+    pair : int
+    R, d : float64 arrays, shape (2, 3, 3) and (2, 3)
+        Overwritten by `relative_pose_into`.
+    """
+    pairs, first = candidates.pairs, candidates.first
+    area = 0.0
+    for side in range(2):
+        owner, other = pairs[pair, side], pairs[pair, 1 - side]
+        relative_pose_into(poses.position, poses.rotation, surfaces.offset, owner, other, side, R, d)
+        area += 0.5 * locate_nodes_into(
+            candidates.packets, candidates.located, first[2 * pair + side], first[2 * pair + side + 1],
+            first[2 * pair], surfaces.half, surfaces.chamfer, surfaces.lattice, surfaces.values,
+            surfaces.shape[other], R, d, side,
+        )  # fmt: skip
+    return area
 
 
 @kernel

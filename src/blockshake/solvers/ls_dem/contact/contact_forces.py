@@ -6,10 +6,9 @@ import numpy as np
 
 from blockshake.dynamics.friction import friction_asymmetry, friction_coefficient
 from blockshake.jit import borrowing_kernel, inline_kernel, kernel
+from blockshake.solvers.ls_dem.contact.candidates import locate_pair_into
 from blockshake.solvers.ls_dem.contact.contact_law import Law
-from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
 from blockshake.solvers.ls_dem.contact.packets import LANES, N_SUMS, SUM_DAMPED, SUM_HELD, SUM_SLID
-from blockshake.solvers.ls_dem.contact.relative_pose import relative_pose_into
 from blockshake.solvers.ls_dem.contact.side_forces import side_forces_into
 from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
 from blockshake.solvers.ls_dem.joints import Joints
@@ -89,10 +88,9 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
     that a face on a face has it once. The area in touch is the mean of what the two sides find.
     """
     R, d, lanes, sums = loads.workspace
-    pairs, bounds, packets = candidates.pairs, candidates.first, candidates.packets
-    shapes, half, chamfer = surfaces.shape, surfaces.half, surfaces.chamfer
-    lattice, values, offset = surfaces.lattice, surfaces.values, surfaces.offset
-    position, rotation = poses.position, poses.rotation
+    pairs, bounds = candidates.pairs, candidates.first
+    packets, located = candidates.packets, candidates.located
+    offset, rotation = surfaces.offset, poses.rotation
     force, moment, joint_force = loads.force, loads.moment, loads.joints.force
     energy = loads.energy
     rate = 1.0 / dt if dt > 0.0 else 0.0
@@ -100,14 +98,7 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
         if bounds[2 * pair] == bounds[2 * pair + 2]:
             continue
         a, b, joint = pairs[pair, 0], pairs[pair, 1], candidates.joint[pair]
-        area = 0.0
-        for side in range(2):
-            owner, other = pairs[pair, side], pairs[pair, 1 - side]
-            relative_pose_into(position, rotation, offset, owner, other, side, R, d)
-            area += 0.5 * locate_nodes_into(
-                packets, bounds[2 * pair + side], bounds[2 * pair + side + 1],
-                half, chamfer, lattice, values, shapes[other], R, d, side,
-            )  # fmt: skip
+        area = locate_pair_into(candidates, surfaces, poses, pair, R, d)
         k_n, k_s = normal_stiffness(interfaces, a, b), in_series(interfaces.k_s, a, b)
         gamma_n = dashpot_coefficient(interfaces, a, b, interfaces.damping_ratio, k_n, area)
         gamma_s = dashpot_coefficient(interfaces, a, b, interfaces.shear_damping_ratio, k_s, area)
@@ -124,8 +115,9 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
             )
             law = Law(0.5 * k_n, 0.5 * k_s, gamma_n, mu, bx, by, bz, interfaces.least_force, rate)
             side_forces_into(
-                packets, bounds[2 * pair + side], bounds[2 * pair + side + 1], law, gamma_s, lanes, sums
-            )
+                packets, located, bounds[2 * pair + side], bounds[2 * pair + side + 1], bounds[2 * pair], law,
+                gamma_s, lanes, sums,
+            )  # fmt: skip
             _share_into(
                 pairs[pair, side], pairs[pair, 1 - side], side, rotation, offset, d, sums, force, moment, joint,
                 joint_force,

@@ -2,7 +2,7 @@
 
 from blockshake.geometry.level_set import box_distance
 from blockshake.geometry.trilinear import corner_values, interpolate, locate
-from blockshake.jit import borrowing_kernel, inline_kernel
+from blockshake.jit import borrowing_kernel, inline_kernel, separate_kernel
 from blockshake.solvers.ls_dem.contact.packets import (
     AREA,
     BUSY,
@@ -38,16 +38,22 @@ from blockshake.solvers.ls_dem.surfaces import (
 
 
 @borrowing_kernel
-def locate_nodes_into(packets, first, last, half, chamfer, lattice, values, shape, R, d, side):
+def locate_nodes_into(
+    packets, located, first, last, start, half, chamfer, lattice, values, shape, R, d, side
+):
     """Locate the nodes of one side.
 
     Parameters
     ----------
     packets : float64 array, shape (n_packets, PACKET)
-        Place, change of place, level-set value, area inside, normal and whether a packet is busy are
-        overwritten; by a sampled level set the slope and the forces too.
+        The nodes' places are overwritten.
+    located : float64 array, shape (packets of the pair with most, LOCATED)
+        Change of place, level-set value, slope, area inside, normal and whether a packet is busy are
+        overwritten; by a sampled level set the forces too.
     first, last : int
         Packets of this side.
+    start : int
+        First packet of the pair, whose row of ``located`` is the first.
     half, chamfer, lattice, values, shape : as in `Surfaces`, int
         Shape whose level set is read.
     R, d, side : float64 arrays, shape (2, 3, 3) and (2, 3), int
@@ -64,25 +70,25 @@ def locate_nodes_into(packets, first, last, half, chamfer, lattice, values, shap
     lever arms of the step's end, the latter would creep by ``dt / 2`` times the centripetal acceleration.
     """
     if lattice[shape, INVERSE_SPACING] == 0.0:
-        _locate_in_box_into(packets, first, last, half, chamfer, shape, R, d, side)
+        _locate_in_box_into(packets, located, first, last, start, half, chamfer, shape, R, d, side)
     else:
-        _locate_in_lattice_into(packets, first, last, lattice, values, shape, R, d, side)
-    return _area_inside(packets, first, last)
+        _locate_in_lattice_into(packets, located, first, last, start, lattice, values, shape, R, d, side)
+    return _area_inside(located, first - start, last - start)
 
 
 @borrowing_kernel
-def _area_inside(packets, first, last):
+def _area_inside(located, first, last):
     """Area of the nodes that lie inside [m2], added up lane by lane, then as `sum_lanes` does."""
     a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for packet in range(first, last):
-        a += packets[packet, INSIDE]
-        b += packets[packet, INSIDE + 1]
-        c += packets[packet, INSIDE + 2]
-        d += packets[packet, INSIDE + 3]
-        e += packets[packet, INSIDE + 4]
-        f += packets[packet, INSIDE + 5]
-        g += packets[packet, INSIDE + 6]
-        h += packets[packet, INSIDE + 7]
+    for row in range(first, last):
+        a += located[row, INSIDE]
+        b += located[row, INSIDE + 1]
+        c += located[row, INSIDE + 2]
+        d += located[row, INSIDE + 3]
+        e += located[row, INSIDE + 4]
+        f += located[row, INSIDE + 5]
+        g += located[row, INSIDE + 6]
+        h += located[row, INSIDE + 7]
     return ((a + b) + (c + d)) + ((e + f) + (g + h))
 
 
@@ -96,7 +102,7 @@ def _pose(R, d, side):
 
 
 @inline_kernel
-def _follow(packets, packet, lane, pose):
+def _follow(packets, packet, located, row, lane, pose):
     """Place of a node in the other's frame [m]; it is kept, with its change since the step before."""
     r00, r01, r02, r10, r11, r12, r20, r21, r22, d0, d1, d2 = pose
     px, py = packets[packet, POINT_X + lane], packets[packet, POINT_Y + lane]
@@ -104,40 +110,41 @@ def _follow(packets, packet, lane, pose):
     x = r00 * px + r01 * py + r02 * pz + d0
     y = r10 * px + r11 * py + r12 * pz + d1
     z = r20 * px + r21 * py + r22 * pz + d2
-    packets[packet, MOVED_X + lane] = x - packets[packet, PLACE_X + lane]
-    packets[packet, MOVED_Y + lane] = y - packets[packet, PLACE_Y + lane]
-    packets[packet, MOVED_Z + lane] = z - packets[packet, PLACE_Z + lane]
+    located[row, MOVED_X + lane] = x - packets[packet, PLACE_X + lane]
+    located[row, MOVED_Y + lane] = y - packets[packet, PLACE_Y + lane]
+    located[row, MOVED_Z + lane] = z - packets[packet, PLACE_Z + lane]
     packets[packet, PLACE_X + lane] = x
     packets[packet, PLACE_Y + lane] = y
     packets[packet, PLACE_Z + lane] = z
     return x, y, z
 
 
-@borrowing_kernel
-def _locate_in_box_into(packets, first, last, half, chamfer, shape, R, d, side):
+@separate_kernel
+def _locate_in_box_into(packets, located, first, last, start, half, chamfer, shape, R, d, side):
     """Places, level-set values and normals by the exact distance."""
     a, b, c, leg = half[shape, 0], half[shape, 1], half[shape, 2], chamfer[shape]
     pose = _pose(R, d, side)
     for packet in range(first, last):
-        busy = False
+        busy, row = False, packet - start
         for lane in range(LANES):
-            x, y, z = _follow(packets, packet, lane, pose)
+            x, y, z = _follow(packets, packet, located, row, lane, pose)
             phi, nx, ny, nz = box_distance(x, y, z, a, b, c, leg)
-            packets[packet, PHI + lane] = phi
-            packets[packet, NORMAL_X + lane] = nx
-            packets[packet, NORMAL_Y + lane] = ny
-            packets[packet, NORMAL_Z + lane] = nz
+            located[row, PHI + lane] = phi
+            located[row, SLOPE + lane] = 1.0
+            located[row, NORMAL_X + lane] = nx
+            located[row, NORMAL_Y + lane] = ny
+            located[row, NORMAL_Z + lane] = nz
             area = packets[packet, AREA + lane]
-            packets[packet, INSIDE + lane] = area if phi < 0.0 else 0.0
+            located[row, INSIDE + lane] = area if phi < 0.0 else 0.0
             busy |= (phi < 0.0) | (packets[packet, HELD + lane] != 0.0)
-        packets[packet, BUSY] = busy
+        located[row, BUSY] = busy
 
 
-@borrowing_kernel
-def _locate_in_lattice_into(packets, first, last, lattice, values, shape, R, d, side):
+@separate_kernel
+def _locate_in_lattice_into(packets, located, first, last, start, lattice, values, shape, R, d, side):
     """Places, level-set values and normals by trilinear interpolation, with the bits of `grid_distance`.
 
-    Three loops, because a compiler that must assume ``values`` overlaps ``packets`` turns no loop with both
+    Three loops, because a compiler that must assume ``values`` overlaps the packets turns no loop with both
     into vector instructions: so the middle one only moves numbers, and the arithmetic before and after
     it runs on all lanes at once.
     """
@@ -146,41 +153,42 @@ def _locate_in_lattice_into(packets, first, last, lattice, values, shape, R, d, 
     n_x, n_y, n_z = lattice[shape, COUNT_X], lattice[shape, COUNT_Y], lattice[shape, COUNT_Z]
     pose = _pose(R, d, side)
     for packet in range(first, last):
+        row = packet - start
         for lane in range(LANES):
-            x, y, z = _follow(packets, packet, lane, pose)
+            x, y, z = _follow(packets, packet, located, row, lane, pose)
             at, fx, fy, fz, beyond = locate(x, y, z, at_first, ox, oy, oz, n_x, n_y, n_z, inverse)
-            packets[packet, PHI + lane] = beyond
-            packets[packet, NORMAL_X + lane] = fx
-            packets[packet, NORMAL_Y + lane] = fy
-            packets[packet, NORMAL_Z + lane] = fz
-            packets[packet, CORNERS + lane] = at
+            located[row, PHI + lane] = beyond
+            located[row, NORMAL_X + lane] = fx
+            located[row, NORMAL_Y + lane] = fy
+            located[row, NORMAL_Z + lane] = fz
+            located[row, CORNERS + lane] = at
         for lane in range(LANES):
             (
-                packets[packet, CORNERS + lane],
-                packets[packet, CORNERS + LANES + lane],
-                packets[packet, CORNERS + 2 * LANES + lane],
-                packets[packet, CORNERS + 3 * LANES + lane],
-                packets[packet, CORNERS + 4 * LANES + lane],
-                packets[packet, CORNERS + 5 * LANES + lane],
-                packets[packet, CORNERS + 6 * LANES + lane],
-                packets[packet, CORNERS + 7 * LANES + lane],
-            ) = corner_values(values, packets[packet, CORNERS + lane], n_y, n_z)
+                located[row, CORNERS + lane],
+                located[row, CORNERS + LANES + lane],
+                located[row, CORNERS + 2 * LANES + lane],
+                located[row, CORNERS + 3 * LANES + lane],
+                located[row, CORNERS + 4 * LANES + lane],
+                located[row, CORNERS + 5 * LANES + lane],
+                located[row, CORNERS + 6 * LANES + lane],
+                located[row, CORNERS + 7 * LANES + lane],
+            ) = corner_values(values, located[row, CORNERS + lane], n_y, n_z)
         busy = False
         for lane in range(LANES):
             phi, nx, ny, nz, slope = interpolate(
-                packets[packet, CORNERS + lane], packets[packet, CORNERS + LANES + lane],
-                packets[packet, CORNERS + 2 * LANES + lane], packets[packet, CORNERS + 3 * LANES + lane],
-                packets[packet, CORNERS + 4 * LANES + lane], packets[packet, CORNERS + 5 * LANES + lane],
-                packets[packet, CORNERS + 6 * LANES + lane], packets[packet, CORNERS + 7 * LANES + lane],
-                packets[packet, NORMAL_X + lane], packets[packet, NORMAL_Y + lane], packets[packet, NORMAL_Z + lane],
-                packets[packet, PHI + lane], inverse,
+                located[row, CORNERS + lane], located[row, CORNERS + LANES + lane],
+                located[row, CORNERS + 2 * LANES + lane], located[row, CORNERS + 3 * LANES + lane],
+                located[row, CORNERS + 4 * LANES + lane], located[row, CORNERS + 5 * LANES + lane],
+                located[row, CORNERS + 6 * LANES + lane], located[row, CORNERS + 7 * LANES + lane],
+                located[row, NORMAL_X + lane], located[row, NORMAL_Y + lane], located[row, NORMAL_Z + lane],
+                located[row, PHI + lane], inverse,
             )  # fmt: skip
-            packets[packet, SLOPE + lane] = slope
-            packets[packet, PHI + lane] = phi
-            packets[packet, NORMAL_X + lane] = nx
-            packets[packet, NORMAL_Y + lane] = ny
-            packets[packet, NORMAL_Z + lane] = nz
+            located[row, SLOPE + lane] = slope
+            located[row, PHI + lane] = phi
+            located[row, NORMAL_X + lane] = nx
+            located[row, NORMAL_Y + lane] = ny
+            located[row, NORMAL_Z + lane] = nz
             area = packets[packet, AREA + lane]
-            packets[packet, INSIDE + lane] = area if phi < 0.0 else 0.0
+            located[row, INSIDE + lane] = area if phi < 0.0 else 0.0
             busy |= (phi < 0.0) | (packets[packet, HELD + lane] != 0.0)
-        packets[packet, BUSY] = busy
+        located[row, BUSY] = busy

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import separate_kernel
 from blockshake.solvers.ls_dem.contact.contact_law import node_force
 from blockshake.solvers.ls_dem.contact.packets import (
     AREA,
@@ -31,6 +31,7 @@ from blockshake.solvers.ls_dem.contact.packets import (
     PLACE_Z,
     SLID,
     SLOPE,
+    SPRUNG,
     STRETCH_X,
     STRETCH_Y,
     STRETCH_Z,
@@ -38,16 +39,16 @@ from blockshake.solvers.ls_dem.contact.packets import (
 )
 
 
-@borrowing_kernel
-def side_forces_into(packets, first, last, law, gamma_s, lanes, sums):
+@separate_kernel
+def side_forces_into(packets, located, first, last, start, law, gamma_s, lanes, sums):
     """Forces of the nodes of one side, summed.
 
     Parameters
     ----------
     packets : float64 array, shape (n_packets, PACKET)
-        Located nodes; their springs are updated.
-    first, last : int
-        Packets of this side.
+        The nodes' springs are updated.
+    located, first, last, start
+        As of `locate_nodes_into`; the forces are overwritten.
     law : Law
     gamma_s : float
         Dashpot beside the shear springs, per unit of a node's damping weight.
@@ -63,19 +64,20 @@ def side_forces_into(packets, first, last, law, gamma_s, lanes, sums):
     """
     lanes[:] = 0.0
     for packet in range(first, last):
-        if packets[packet, BUSY] == 0.0:
+        row = packet - start
+        if located[row, BUSY] == 0.0:
             for lane in range(LANES):
                 packets[packet, CLOSED + lane] = (
-                    packets[packet, MOVED_X + lane] * packets[packet, NORMAL_X + lane]
-                    + packets[packet, MOVED_Y + lane] * packets[packet, NORMAL_Y + lane]
-                    + packets[packet, MOVED_Z + lane] * packets[packet, NORMAL_Z + lane]
+                    located[row, MOVED_X + lane] * located[row, NORMAL_X + lane]
+                    + located[row, MOVED_Y + lane] * located[row, NORMAL_Y + lane]
+                    + located[row, MOVED_Z + lane] * located[row, NORMAL_Z + lane]
                 )
             continue
         for lane in range(LANES):
             fx, fy, fz, sx, sy, sz, closed, held, slid, damped = node_force(
-                packets[packet, PHI + lane], packets[packet, SLOPE + lane], packets[packet, NORMAL_X + lane],
-                packets[packet, NORMAL_Y + lane], packets[packet, NORMAL_Z + lane], packets[packet, MOVED_X + lane],
-                packets[packet, MOVED_Y + lane], packets[packet, MOVED_Z + lane], packets[packet, STRETCH_X + lane],
+                located[row, PHI + lane], located[row, SLOPE + lane], located[row, NORMAL_X + lane],
+                located[row, NORMAL_Y + lane], located[row, NORMAL_Z + lane], located[row, MOVED_X + lane],
+                located[row, MOVED_Y + lane], located[row, MOVED_Z + lane], packets[packet, STRETCH_X + lane],
                 packets[packet, STRETCH_Y + lane], packets[packet, STRETCH_Z + lane], packets[packet, CLOSED + lane],
                 packets[packet, AREA + lane], packets[packet, DAMPING_WEIGHT + lane], law,
             )  # fmt: skip
@@ -85,25 +87,26 @@ def side_forces_into(packets, first, last, law, gamma_s, lanes, sums):
             packets[packet, STRETCH_Y + lane] = sy
             packets[packet, STRETCH_Z + lane] = sz
             packets[packet, CLOSED + lane] = closed
-            packets[packet, FORCE_X + lane] = fx
-            packets[packet, FORCE_Y + lane] = fy
-            packets[packet, FORCE_Z + lane] = fz
-            packets[packet, MOMENT_X + lane] = y * fz - z * fy
-            packets[packet, MOMENT_Y + lane] = z * fx - x * fz
-            packets[packet, MOMENT_Z + lane] = x * fy - y * fx
+            located[row, FORCE_X + lane] = fx
+            located[row, FORCE_Y + lane] = fy
+            located[row, FORCE_Z + lane] = fz
+            located[row, MOMENT_X + lane] = y * fz - z * fy
+            located[row, MOMENT_Y + lane] = z * fx - x * fz
+            located[row, MOMENT_Z + lane] = x * fy - y * fx
             packets[packet, HELD + lane] = held
-            packets[packet, SLID + lane] = slid
-            packets[packet, DAMPED + lane] = damped
+            located[row, SPRUNG + lane] = held
+            located[row, SLID + lane] = slid
+            located[row, DAMPED + lane] = damped
         if gamma_s > 0.0:
-            _add_shear_dashpots_into(packets, packet, gamma_s * law.rate, law)
+            _add_shear_dashpots_into(packets, packet, located, row, gamma_s * law.rate, law)
         for entry in range(N_SUMS * LANES):
-            lanes[entry] += packets[packet, FORCE_X + entry]
+            lanes[entry] += located[row, FORCE_X + entry]
     for quantity in range(N_SUMS):
         sums[quantity] = sum_lanes(lanes, quantity * LANES)
 
 
-@borrowing_kernel
-def _add_shear_dashpots_into(packets, packet, gamma_rate, law):
+@separate_kernel
+def _add_shear_dashpots_into(packets, packet, located, row, gamma_rate, law):
     """Dashpots beside the shear springs of one packet's nodes, as long as these do not slide.
 
     The velocity is the mean of the step, the tangential change of place over the step, whose inverse is in
@@ -111,17 +114,17 @@ def _add_shear_dashpots_into(packets, packet, gamma_rate, law):
     """
     for lane in range(LANES):
         x, y = packets[packet, PLACE_X + lane], packets[packet, PLACE_Y + lane]
-        z, phi = packets[packet, PLACE_Z + lane], packets[packet, PHI + lane]
-        nx, ny = packets[packet, NORMAL_X + lane], packets[packet, NORMAL_Y + lane]
-        nz, along = packets[packet, NORMAL_Z + lane], packets[packet, CLOSED + lane]
-        ux = packets[packet, MOVED_X + lane] - along * nx
-        uy = packets[packet, MOVED_Y + lane] - along * ny
-        uz = packets[packet, MOVED_Z + lane] - along * nz
+        z, phi = packets[packet, PLACE_Z + lane], located[row, PHI + lane]
+        nx, ny = located[row, NORMAL_X + lane], located[row, NORMAL_Y + lane]
+        nz, along = located[row, NORMAL_Z + lane], packets[packet, CLOSED + lane]
+        ux = located[row, MOVED_X + lane] - along * nx
+        uy = located[row, MOVED_Y + lane] - along * ny
+        uz = located[row, MOVED_Z + lane] - along * nz
         # a node sticks where this step made no friction heat
-        sticks = phi < 0.0 and packets[packet, SLID + lane] == 0.0
+        sticks = phi < 0.0 and located[row, SLID + lane] == 0.0
         c = gamma_rate * packets[packet, DAMPING_WEIGHT + lane] if sticks else 0.0
-        gx, gy = packets[packet, FORCE_X + lane], packets[packet, FORCE_Y + lane]
-        gz = packets[packet, FORCE_Z + lane]
+        gx, gy = located[row, FORCE_X + lane], located[row, FORCE_Y + lane]
+        gz = located[row, FORCE_Z + lane]
         f_n = gx * nx + gy * ny + gz * nz
         gx, gy, gz = gx - f_n * nx, gy - f_n * ny, gz - f_n * nz
         # the share of it that Coulomb's limit leaves: |g - share c u| = mu f_n
@@ -132,10 +135,10 @@ def _add_shear_dashpots_into(packets, packet, gamma_rate, law):
         share = (root - along_u) / square if square > 0.0 else 0.0
         c *= min(max(share, 0.0), 1.0)
         fx, fy, fz = -c * ux, -c * uy, -c * uz
-        packets[packet, FORCE_X + lane] += fx
-        packets[packet, FORCE_Y + lane] += fy
-        packets[packet, FORCE_Z + lane] += fz
-        packets[packet, MOMENT_X + lane] += y * fz - z * fy
-        packets[packet, MOMENT_Y + lane] += z * fx - x * fz
-        packets[packet, MOMENT_Z + lane] += x * fy - y * fx
-        packets[packet, DAMPED + lane] += c * (ux * ux + uy * uy + uz * uz)
+        located[row, FORCE_X + lane] += fx
+        located[row, FORCE_Y + lane] += fy
+        located[row, FORCE_Z + lane] += fz
+        located[row, MOMENT_X + lane] += y * fz - z * fy
+        located[row, MOMENT_Y + lane] += z * fx - x * fz
+        located[row, MOMENT_Z + lane] += x * fy - y * fx
+        located[row, DAMPED + lane] += c * (ux * ux + uy * uy + uz * uz)

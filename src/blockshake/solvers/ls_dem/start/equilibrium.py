@@ -7,7 +7,7 @@ from scipy.sparse.linalg import splu
 
 from blockshake.geometry.rotations import rotate_into, rotation_matrices
 from blockshake.jit import kernel
-from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates
+from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates, locate_pair_into
 from blockshake.solvers.ls_dem.contact.contact_forces import clear_loads, contact_forces_into, no_loads
 from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES, NORMAL_X, PHI, PLACE_X
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
@@ -74,7 +74,7 @@ def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near):
         poses.rotation_before[:] = rotation
         reach = near if iteration == 0 else 0.0
         stiffness, pull, touching, relaxation = _joint_stiffness(
-            candidates, interfaces, surfaces.offset, poses, reach, down
+            candidates, interfaces, surfaces, poses, reach, down
         )
         if iteration == 0:
             stable_step = _stable_step(candidates.pairs, stiffness, relaxation, bodies)
@@ -145,17 +145,17 @@ def _solve(pairs, stiffness, solved, load):
 
 
 @kernel
-def _joint_stiffness(candidates, interfaces, offset, poses, reach, down):
+def _joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
     """Stiffness of each pair for the displacements and rotations of its two bodies, and the pull of open nodes.
 
     Parameters
     ----------
     candidates : Candidates
-        Located nodes.
+        The nodes are located anew.
     interfaces : Interfaces
-    offset : float64 array, shape (n_bodies, 3)
-        As in `Surfaces`.
+    surfaces : Surfaces
     poses : Poses
+        Those of the last force evaluation.
     reach : float
         Nodes whose level-set value is below this are in touch [m].
     down : float64 array, shape (3,)
@@ -177,7 +177,9 @@ def _joint_stiffness(candidates, interfaces, offset, poses, reach, down):
     stiffness, pull = np.zeros((n_pairs, 12, 12)), np.zeros((poses.position.shape[0], 6))
     touching, relaxation = np.zeros(n_pairs, np.bool_), np.zeros(n_pairs)
     B, DB = np.zeros((3, 12)), np.empty((3, 12))
+    turn, shift = np.empty((2, 3, 3)), np.empty((2, 3))
     for pair in range(n_pairs):
+        locate_pair_into(candidates, surfaces, poses, pair, turn, shift)
         a, b = candidates.pairs[pair, 0], candidates.pairs[pair, 1]
         k_n, k_s = normal_stiffness(interfaces, a, b), in_series(interfaces.k_s, a, b)
         area, weight = 0.0, 0.0
@@ -185,16 +187,19 @@ def _joint_stiffness(candidates, interfaces, offset, poses, reach, down):
             owner, other = candidates.pairs[pair, side], candidates.pairs[pair, 1 - side]
             R = poses.rotation[other]
             for packet in range(candidates.first[2 * pair + side], candidates.first[2 * pair + side + 1]):
+                node, found = (
+                    candidates.packets[packet],
+                    candidates.located[packet - candidates.first[2 * pair]],
+                )
                 for lane in range(LANES):
-                    node = candidates.packets[packet]
-                    phi = node[PHI + lane]
+                    phi = found[PHI + lane]
                     if not phi < reach:
                         continue
                     n, arm = np.zeros(3), np.zeros(3)
                     for i in range(3):
                         for j in range(3):
-                            n[i] += R[i, j] * node[NORMAL_X + j * LANES + lane]
-                            arm[i] += R[i, j] * (node[PLACE_X + j * LANES + lane] - offset[other, j])
+                            n[i] += R[i, j] * found[NORMAL_X + j * LANES + lane]
+                            arm[i] += R[i, j] * (node[PLACE_X + j * LANES + lane] - surfaces.offset[other, j])
                     if phi >= 0.0 and abs(n[0] * down[0] + n[1] * down[1] + n[2] * down[2]) < 0.5:
                         continue
                     touching[pair] = True

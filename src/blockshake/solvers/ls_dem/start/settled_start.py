@@ -6,9 +6,12 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from blockshake.errors import InputError
+from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import DEEPEST_OVERLAP, START_TOLERANCE
-from blockshake.solvers.ls_dem.contact.candidates import empty_candidates
-from blockshake.solvers.ls_dem.contact.packets import FORCE_X, NORMAL_X, PHI, STRETCH_X
+from blockshake.jit import kernel
+from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, locate_pair_into
+from blockshake.solvers.ls_dem.contact.packets import HELD, LANES, PHI, STRETCH_X
+from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.joints import no_joints
 from blockshake.solvers.ls_dem.start.equilibrium import approach_equilibrium
 from blockshake.solvers.ls_dem.start.settle import settle
@@ -50,7 +53,7 @@ def settled_start(structure, bodies, surfaces, interfaces, skin, time_step, stat
         bodies, surfaces, interfaces, skin, time_step, state, relaxed, START_TOLERANCE, at_rest, left,
         empty_candidates(len(bodies.mass)), no_joints(),
     )  # fmt: skip
-    _check_overlap(structure, candidates)
+    _check_overlap(structure, candidates, surfaces, relaxed)
     free = ~structure.driven
     _, group = connected_components(structure.touching & free[:, None] & free[None, :])
     settled = free & ~np.isin(group, group[left])
@@ -61,19 +64,34 @@ def settled_start(structure, bodies, surfaces, interfaces, skin, time_step, stat
     for pair, (a, b) in enumerate(candidates.pairs):
         if not (settled[a] or settled[b]):
             first, last = candidates.first[2 * pair], candidates.first[2 * pair + 2]
-            candidates.packets[first:last, STRETCH_X:FORCE_X] = 0.0
+            candidates.packets[first:last, STRETCH_X:HELD] = 0.0
     return candidates, joints, np.array([steps, stable_step])
 
 
-def _check_overlap(structure, candidates):
+def _check_overlap(structure, candidates, surfaces, state):
     """Refuse bodies that start inside one another: where one is not convex, the structure's own check is blind."""
-    depth = -candidates.packets[:, PHI:NORMAL_X]
+    rotation = np.ascontiguousarray(rotation_matrices(state.orientation))
+    poses = Poses(state.position, rotation, state.position, rotation)
+    # places of a copy, since the springs of the first step count from where they are
+    depth = _depth_of_pairs(candidates._replace(packets=candidates.packets.copy()), surfaces, poses)
     if depth.max(initial=0.0) > DEEPEST_OVERLAP:
-        side = np.searchsorted(candidates.first, depth.max(axis=1).argmax(), side="right") - 1
-        a, b = candidates.pairs[side // 2]
+        a, b = candidates.pairs[depth.argmax()]
         raise InputError(
             structure.source,
             f"bodies.{structure.body_names[b]}.position",
             f"overlaps {structure.body_names[a]} by {1e3 * depth.max():.3g} mm; "
             f"expected at most {1e3 * DEEPEST_OVERLAP:.0f} mm",
         )
+
+
+@kernel
+def _depth_of_pairs(candidates, surfaces, poses):
+    """Depth of the deepest node of every pair [m], zero where none is inside."""
+    depth = np.zeros(candidates.pairs.shape[0])
+    R, d = np.empty((2, 3, 3)), np.empty((2, 3))
+    for pair in range(depth.size):
+        locate_pair_into(candidates, surfaces, poses, pair, R, d)
+        for row in range(candidates.first[2 * pair + 2] - candidates.first[2 * pair]):
+            for lane in range(LANES):
+                depth[pair] = max(depth[pair], -candidates.located[row, PHI + lane])
+    return depth
