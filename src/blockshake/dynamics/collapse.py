@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from blockshake.geometry.rotations import rotation_matrix_into
-from blockshake.jit import kernel
+from blockshake.geometry.rotations import rotation_rows
+from blockshake.jit import borrowing_kernel
 
 # Cosine of the tilt from which a block does not come back.
 COSINE_OF_TILT = np.sqrt(0.5)
@@ -29,7 +29,7 @@ def collapse_limits(structure):
     )
 
 
-@kernel
+@borrowing_kernel
 def find_collapsed(bodies, state, supported, drop_limit):
     """First body that has collapsed, or -1.
 
@@ -51,15 +51,14 @@ def find_collapsed(bodies, state, supported, drop_limit):
         if bodies.driven[body]:
             lift = state.position[body, 2] - bodies.home[body, 2]
             break
-    start, now = np.empty((3, 3)), np.empty((3, 3))
     for body in range(supported.size):
         if not supported[body]:
             continue
         if bodies.home[body, 2] + lift - state.position[body, 2] > drop_limit[body]:
             return body
-        rotation_matrix_into(bodies.home_orientation[body], start)
-        rotation_matrix_into(state.orientation[body], now)
-        cosine = now[2, 0] * start[2, 0] + now[2, 1] * start[2, 1] + now[2, 2] * start[2, 2]
+        _, _, start = rotation_rows(bodies.home_orientation[body])
+        _, _, now = rotation_rows(state.orientation[body])
+        cosine = now[0] * start[0] + now[1] * start[1] + now[2] * start[2]
         if cosine < COSINE_OF_TILT:
             return body
     return -1

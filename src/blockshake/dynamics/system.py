@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.motion import PITCH
-from blockshake.geometry.rotations import rotation_matrix_into, turned
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.geometry.rotations import rotation_rows, turned
+from blockshake.jit import borrowing_kernel
 
 ENERGY_TERMS = (
     "kinetic",
@@ -184,21 +184,20 @@ def place_driven_into(bodies, displacement, velocity, state):
             q[0], q[1], q[2], q[3] = turned(home[0], home[1], home[2], home[3], 0.0, displacement[PITCH], 0.0)
 
 
-@kernel
+@borrowing_kernel
 def kinetic_energy(bodies, velocity, angular_velocity, orientation):
     """Kinetic energy of the bodies that are not driven [J]; arrays as in `State`."""
-    R = np.empty((3, 3))
     energy = 0.0
     for body in range(bodies.mass.size):
         if bodies.driven[body]:
             continue
-        rotation_matrix_into(orientation[body], R)
+        x, y, z = rotation_rows(orientation[body])
         v, w, inertia = velocity[body], angular_velocity[body], bodies.inertia[body]
         energy += 0.5 * bodies.mass[body] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
         for i in range(3):
-            spin_i = R[0, i] * w[0] + R[1, i] * w[1] + R[2, i] * w[2]
+            spin_i = x[i] * w[0] + y[i] * w[1] + z[i] * w[2]
             for j in range(3):
-                spin_j = R[0, j] * w[0] + R[1, j] * w[1] + R[2, j] * w[2]
+                spin_j = x[j] * w[0] + y[j] * w[1] + z[j] * w[2]
                 energy += 0.5 * spin_i * inertia[i, j] * spin_j
     return energy
 

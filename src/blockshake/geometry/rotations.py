@@ -5,6 +5,17 @@ import numpy as np
 from blockshake.jit import borrowing_kernel, inline_kernel
 
 
+@inline_kernel
+def rotation_rows(q):
+    """Rows of the rotation matrix of a unit quaternion (w, x, y, z), body to world, as three tuples of three."""
+    w, x, y, z = q[0], q[1], q[2], q[3]
+    return (
+        (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
+        (2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
+        (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
+    )
+
+
 @borrowing_kernel
 def rotation_matrix_into(q, R):
     """Rotation matrix of a unit quaternion, written into ``R``.
@@ -16,16 +27,10 @@ def rotation_matrix_into(q, R):
     R : float64 array, shape (3, 3)
         Overwritten: ``R @ body_vector`` is the world vector.
     """
-    w, x, y, z = q[0], q[1], q[2], q[3]
-    R[0, 0] = 1.0 - 2.0 * (y * y + z * z)
-    R[0, 1] = 2.0 * (x * y - w * z)
-    R[0, 2] = 2.0 * (x * z + w * y)
-    R[1, 0] = 2.0 * (x * y + w * z)
-    R[1, 1] = 1.0 - 2.0 * (x * x + z * z)
-    R[1, 2] = 2.0 * (y * z - w * x)
-    R[2, 0] = 2.0 * (x * z - w * y)
-    R[2, 1] = 2.0 * (y * z + w * x)
-    R[2, 2] = 1.0 - 2.0 * (x * x + y * y)
+    first, second, third = rotation_rows(q)
+    R[0, 0], R[0, 1], R[0, 2] = first
+    R[1, 0], R[1, 1], R[1, 2] = second
+    R[2, 0], R[2, 1], R[2, 2] = third
 
 
 @inline_kernel

@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrix_into
 from blockshake.geometry.schema import AXES
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, kernel
 
 
 class ExternalForces(NamedTuple):
@@ -90,13 +90,13 @@ def external_wrenches_into(bodies, forces, state, time, ahead, wrench):
             wrench[body, 3 + i] += size * rate[i]
 
 
-@kernel
+@borrowing_kernel
 def _turned_into(turn, vector, out):
     for i in range(3):
         out[i] = turn[i, 0] * vector[0] + turn[i, 1] * vector[1] + turn[i, 2] * vector[2]
 
 
-@kernel
+@borrowing_kernel
 def _cross_into(a, b, out):
     out[0] = a[1] * b[2] - a[2] * b[1]
     out[1] = a[2] * b[0] - a[0] * b[2]

@@ -13,7 +13,7 @@ from blockshake.dynamics.system import (
     kinetic_energy,
     potential_energy,
 )
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.nscd.progress import (
     BAD_STEPS,
     CAPPED_STEPS,
@@ -61,7 +61,7 @@ def start_audit(bodies, contacts, dt, theta, strain, progress):
     progress.audit[IN_PLAY] = 1e-3 * weight
 
 
-@kernel
+@borrowing_kernel
 def count_into(iterations, residual, tolerance, parts, clock, audit):
     """Add a step to the counts; ``residual`` is the worst and ``iterations`` the sum of its ``parts``."""
     clock[ITERATIONS] += iterations
@@ -72,7 +72,7 @@ def count_into(iterations, residual, tolerance, parts, clock, audit):
     audit[WORST_RESIDUAL] = max(audit[WORST_RESIDUAL], residual)
 
 
-@kernel
+@borrowing_kernel
 def audit_into(contacts, n_contacts, progress):
     """Bring the deepest penetration, the energy in play and its misfit up to the end of a step."""
     audit, energy, start = progress.audit, progress.energy, progress.energy_start
@@ -91,14 +91,22 @@ def audit_into(contacts, n_contacts, progress):
 
 
 @kernel
-def account_into(bodies, stoppers, base, contacts, u_mean, step, theta, deformation, progress):
+def stopper_energy(bodies, stoppers, base, state):
+    """Energy in the stoppers of the driven body ``base`` [J]."""
+    held, reach, arm, toward = 0.0, np.empty(3), np.empty(3), np.empty(3)
+    for stopper in range(stoppers.body.size):
+        squeezed = closure_into(bodies, stoppers, stopper, base, state, reach, arm, toward)
+        held += 0.5 * stoppers.stiffness[stopper] * max(squeezed, 0.0) ** 2
+    return held
+
+
+@borrowing_kernel
+def account_into(bodies, contacts, u_mean, step, theta, squeezed, deformation, progress):
     """Bring the energy terms up to the end of the step.
 
     Parameters
     ----------
-    bodies, stoppers : Bodies, Stoppers
-    base : int
-        Driven body of the stoppers.
+    bodies : Bodies
     contacts : Contacts
         With the impulses of the step.
     u_mean : float64 array, shape (n_contacts, 3)
@@ -106,6 +114,8 @@ def account_into(bodies, stoppers, base, contacts, u_mean, step, theta, deformat
     step : Step
     theta : float
         Weight of the end of the step [1].
+    squeezed : float
+        Energy in the stoppers at the end of the step, of `stopper_energy` [J].
     deformation : tuple of 3 float
         Kinetic and elastic energy of the bodies' deformation at the end of the step, and what it lost in it [J].
     progress : Progress
@@ -138,10 +148,7 @@ def account_into(bodies, stoppers, base, contacts, u_mean, step, theta, deformat
     for body in range(bodies.mass.size):
         for i in range(6):
             energy[INPUT] += step.external[body, i] * step.v_mean[body, i]
-    reach, arm, toward = np.empty(3), np.empty(3), np.empty(3)
-    for stopper in range(stoppers.body.size):
-        squeezed = closure_into(bodies, stoppers, stopper, base, state, reach, arm, toward)
-        held += 0.5 * stoppers.stiffness[stopper] * max(squeezed, 0.0) ** 2
+    held += squeezed
     audit[NORMAL_WORK] -= held - audit[HELD]
     audit[HELD] = held
     kinetic, strain, lost = deformation

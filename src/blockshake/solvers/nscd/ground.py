@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.motion import PITCH, MotionTable, find_segment, ground_state_into
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, kernel
 
 
 class Ground(NamedTuple):
@@ -33,7 +33,7 @@ def ground_at_start(table):
     return ground
 
 
-@kernel
+@borrowing_kernel
 def move_ground_into(ground, t):
     """Displacement and its rate at one time."""
     segment = find_segment(ground.table.breaks, t, ground.segment[0])
@@ -43,12 +43,13 @@ def move_ground_into(ground, t):
     ground.segment[0] = segment
 
 
-@kernel
+@borrowing_kernel
 def move_ground_by_secant_into(ground, t, later, dt):
     """Displacement at the time ``t``, and the mean velocity from there to ``later``, which is ``dt`` after it."""
     move_ground_into(ground, t)
-    now = ground.displacement.copy()
+    at = ground.displacement
+    now = at[0], at[1], at[2], at[3]
     move_ground_into(ground, later)
     for channel in range(4):
-        ground.velocity[channel] = (ground.displacement[channel] - now[channel]) / dt
-        ground.displacement[channel] = now[channel]
+        ground.velocity[channel] = (at[channel] - now[channel]) / dt
+        at[channel] = now[channel]

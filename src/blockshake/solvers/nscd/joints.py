@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, kernel
 
 
 class Joints(NamedTuple):
@@ -12,19 +12,35 @@ class Joints(NamedTuple):
 
     ``row`` int64 (n_bodies, n_bodies): joint of a pair, the lower index first, -1 for none. ``pair`` int64
     (n_joints, 2). ``slip`` (n_joints,): made so far, either way [m]; ``slip_rate`` (n_joints,): at the last step [m/s].
+    ``sums`` (n_joints, 2): workspace.
     """
 
     row: np.ndarray
     pair: np.ndarray
     slip: np.ndarray
     slip_rate: np.ndarray
+    sums: np.ndarray
 
 
 def no_joints(n_bodies):
     """Joints before any body touched another."""
     return Joints(
-        np.full((n_bodies, n_bodies), -1, np.int64), np.empty((0, 2), np.int64), np.empty(0), np.empty(0)
+        np.full((n_bodies, n_bodies), -1, np.int64),
+        np.empty((0, 2), np.int64),
+        np.empty(0),
+        np.empty(0),
+        np.empty((0, 2)),
     )
+
+
+@borrowing_kernel
+def press_anew(joints, contacts, n_contacts):
+    """Whether a pair without a joint presses on each other; the first ``n_contacts`` of the contacts are of bodies."""
+    for contact in range(n_contacts):
+        a, b = contacts.body_a[contact], contacts.body_b[contact]
+        if joints.row[a, b] < 0 and contacts.impulse[contact, 0] > 0.0:
+            return True
+    return False
 
 
 @kernel
@@ -44,14 +60,16 @@ def with_pressed(joints, contacts, n_contacts):
 def _with_joint(joints, a, b):
     """Joints with one more, which has not slipped yet; ``row`` is changed in place."""
     n = joints.slip.size
-    new = Joints(joints.row, np.empty((n + 1, 2), np.int64), np.zeros(n + 1), np.zeros(n + 1))
+    new = Joints(
+        joints.row, np.empty((n + 1, 2), np.int64), np.zeros(n + 1), np.zeros(n + 1), np.zeros((n + 1, 2))
+    )
     new.pair[:n], new.slip[:n], new.slip_rate[:n] = joints.pair, joints.slip, joints.slip_rate
     new.row[a, b] = n
     new.pair[n, 0], new.pair[n, 1] = a, b
     return new
 
 
-@kernel
+@borrowing_kernel
 def slip_into(contacts, n_contacts, u, dt, theta, joints):
     """Bring slip and slip rate of the joints up to the end of a step.
 
@@ -72,15 +90,16 @@ def slip_into(contacts, n_contacts, u, dt, theta, joints):
     the mean of the rates at both ends of the step by the rule of the positions. A contact that sticks has
     neither, to the tolerance of the solver.
     """
-    rate, load = np.zeros(joints.slip.size), np.zeros(joints.slip.size)
+    sums = joints.sums
+    sums[:] = 0.0
     for contact in range(n_contacts):
         joint = joints.row[contacts.body_a[contact], contacts.body_b[contact]]
         p_n = contacts.impulse[contact, 0]
         if joint >= 0 and p_n > 0.0:
             u_1, u_2 = u[contact, 1] + contacts.shift[contact, 1], u[contact, 2] + contacts.shift[contact, 2]
-            rate[joint] += p_n * np.sqrt(u_1 * u_1 + u_2 * u_2)
-            load[joint] += p_n
+            sums[joint, 0] += p_n * np.sqrt(u_1 * u_1 + u_2 * u_2)
+            sums[joint, 1] += p_n
     for joint in range(joints.slip.size):
-        now = rate[joint] / load[joint] if load[joint] > 0.0 else 0.0
+        now = sums[joint, 0] / sums[joint, 1] if sums[joint, 1] > 0.0 else 0.0
         joints.slip[joint] += dt * ((1.0 - theta) * joints.slip_rate[joint] + theta * now)
         joints.slip_rate[joint] = now

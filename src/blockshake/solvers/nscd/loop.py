@@ -4,9 +4,9 @@ import numpy as np
 
 from blockshake.dynamics.collapse import find_collapsed
 from blockshake.dynamics.system import place_driven_into
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.external_forces import external_wrenches_into
-from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit
+from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit, stopper_energy
 from blockshake.solvers.nscd.contact.contacts import contact_margin, delassus_into, detect_contacts
 from blockshake.solvers.nscd.contact.friction import friction_into
 from blockshake.solvers.nscd.contact.law_shift import bodies_meet, law_shift_into
@@ -14,10 +14,10 @@ from blockshake.solvers.nscd.contact.polyhedra import empty_placed, place_into
 from blockshake.solvers.nscd.contact.stoppers import place_stoppers_into
 from blockshake.solvers.nscd.contact.warm_start import warm_start_into
 from blockshake.solvers.nscd.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
-from blockshake.solvers.nscd.joints import slip_into, with_pressed
+from blockshake.solvers.nscd.joints import press_anew, slip_into, with_pressed
 from blockshake.solvers.nscd.progress import LAST_STEP
 from blockshake.solvers.nscd.recording import record_driven_into, record_forces_into, record_into
-from blockshake.solvers.nscd.solve.gauss_seidel import contact_velocities
+from blockshake.solvers.nscd.solve.gauss_seidel import contact_velocities_into
 from blockshake.solvers.nscd.solve.solver import solve_contacts_into
 from blockshake.solvers.nscd.step import empty_step, move_into, predict_into
 from blockshake.solvers.nscd.vectors import dot
@@ -57,16 +57,18 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
     -----
     A step in which bodies meet is taken again in parts, each like a step of its own (``impact_parts``).
     """
-    settings, state, clock = scene.settings, progress.state, progress.clock
+    # taken out here: in the loop, each taking out would count the holders of all arrays in it
+    bodies, friction, stoppers, forces, layers, polyhedra, _, settings, watch = scene
+    state, clock, audit, energy = progress.state, progress.clock, progress.audit, progress.energy
     dt, theta = settings.dt, settings.theta
-    step, placed, ground = empty_step(state), empty_placed(scene.polyhedra), ground_at_start(scene.table)
-    energy_before = progress.energy.copy()
-    meeting_speed = np.linalg.norm(scene.bodies.gravity) * dt
+    step, placed, ground = empty_step(state), empty_placed(polyhedra), ground_at_start(scene.table)
+    energy_before = energy.copy()
+    gravity = np.linalg.norm(bodies.gravity)
     if clock[STEP] == 0:
         _start(scene, ground, step, placed, progress)
     n_steps = int(np.ceil(times[times.size - 1] / dt - _ROUNDING))
     if n_steps == 0:
-        record_into(scene.bodies, state, state, progress.energy, progress.energy, 0.0, 0, record)
+        record_into(bodies, state, state, energy, energy, 0.0, 0, record)
         clock[NEXT_RECORD] = 1
     while clock[STEP] < n_steps:
         if clock[STEP] == pause:
@@ -75,47 +77,55 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
         while part < parts:
             h, place = dt / parts, clock[STEP] * parts + part
             move_ground_by_secant_into(ground, (place + 1.0 - theta) * h, (place + 2.0 - theta) * h, h)
-            external_wrenches_into(
-                scene.bodies, scene.forces, state, (place + 0.5) * h, 0.5 * h, step.external
-            )
-            step.external[:] *= h
-            predict_into(scene.bodies, state, ground, h, theta, step)
+            if forces.body.size > 0:
+                external_wrenches_into(bodies, forces, state, (place + 0.5) * h, 0.5 * h, step.external)
+                step.external[:] *= h
+            predict_into(bodies, state, ground, h, theta, step)
 
-            found = _detect(scene, step, placed, progress.face, h)
-            n_contacts = found.gap.size - scene.stoppers.body.size
-            share = h / progress.audit[LAST_STEP]
-            tried, left = _solve(scene, contacts, joints, step, share, h, found)
+            found = _detect(
+                bodies, stoppers, layers, polyhedra, settings, watch.base, step, placed, progress.face, h
+            )
+            n_contacts = found.gap.size - stoppers.body.size
+            friction_into(friction, joints, step.rotations, found)
+            law_shift_into(step, h, theta, settings.restitution, found)
+            warm_start_into(contacts, polyhedra.radius, h / audit[LAST_STEP], found)
+            tried, left = solve_contacts_into(
+                bodies, step.inertia, step.inverse_inertia, found, least_impulse(bodies, gravity, step.v, h),
+                settings.tolerance, settings.max_iterations, step.v,
+            )  # fmt: skip
             iterations += tried
-            if parts < settings.impact_parts and bodies_meet(found, n_contacts, step.v_start, meeting_speed):
+            if parts < settings.impact_parts and bodies_meet(found, n_contacts, step.v_start, gravity * dt):
                 parts = settings.impact_parts
                 continue
             contacts, residual = found, max(residual, left)
 
             move_ground_into(ground, (place + 1) * h)
-            move_into(scene.bodies, ground, h, theta, contacts, step, state)
-            energy_before[:] = progress.energy
-            account_into(
-                scene.bodies, scene.stoppers, scene.watch.base, contacts, contact_velocities(contacts, step.v_mean),
-                step, theta, (0.0, 0.0, 0.0), progress,
-            )  # fmt: skip
+            move_into(bodies, ground, h, theta, contacts, step, state)
+            energy_before[:] = energy
+            squeezed = stopper_energy(bodies, stoppers, watch.base, state) if stoppers.body.size > 0 else 0.0
+            u = np.empty((contacts.gap.size, 3))
+            contact_velocities_into(contacts, step.v_mean, u)
+            account_into(bodies, contacts, u, step, theta, squeezed, (0.0, 0.0, 0.0), progress)
             audit_into(contacts, n_contacts, progress)
-            joints = with_pressed(joints, contacts, n_contacts)
-            slip_into(contacts, n_contacts, contact_velocities(contacts, step.v), h, theta, joints)
-            progress.audit[LAST_STEP] = h
+            if press_anew(joints, contacts, n_contacts):
+                joints = with_pressed(joints, contacts, n_contacts)
+                record = with_room(record, joints.slip.size)
+            contact_velocities_into(contacts, step.v, u)
+            slip_into(contacts, n_contacts, u, h, theta, joints)
+            audit[LAST_STEP] = h
             part += 1
 
             runaway = find_diverged(state)
             if runaway >= 0:
                 clock[STEP] += 1
                 return DIVERGED, runaway, contacts, joints, record
-            record = with_room(record, joints.slip.size)
             record_until_into(
-                scene.bodies, ground, step.before, energy_before, contacts, n_contacts, joints, place, h, times,
+                bodies, ground, step.before, energy_before, contacts, n_contacts, joints, place, h, times,
                 progress, record,
             )  # fmt: skip
-        count_into(iterations, residual, settings.tolerance, parts, clock, progress.audit)
+        count_into(iterations, residual, settings.tolerance, parts, clock, audit)
         clock[STEP] += 1
-        fallen = find_collapsed(scene.bodies, state, scene.watch.supported, scene.watch.drop_limit)
+        fallen = find_collapsed(bodies, state, watch.supported, watch.drop_limit)
         if fallen >= 0:
             return COLLAPSED, fallen, contacts, joints, record
     return COMPLETED, -1, contacts, joints, record
@@ -137,38 +147,20 @@ def _start(scene, ground, step, placed, progress):
 
 
 @kernel
-def _detect(scene, step, placed, face, dt):
+def _detect(bodies, stoppers, layers, polyhedra, settings, base, step, placed, face, dt):
     """Contacts at the predicted poses, the stoppers last, with their Delassus operators."""
-    bodies, settings, polyhedra = scene.bodies, scene.settings, scene.polyhedra
     place_into(polyhedra, step.detection.position, step.detection.orientation, placed)
-    margin = contact_margin(step.v_start, polyhedra.radius, bodies.gravity, dt)
     contacts = detect_contacts(
-        bodies, polyhedra, placed, step.rotations, margin, settings.shrink, scene.layers,
-        settings.theta * dt * dt, face, scene.stoppers.body.size,
+        bodies, polyhedra, placed, step.rotations, contact_margin(step.v_start, polyhedra.radius, bodies.gravity, dt),
+        settings.shrink, layers, settings.theta * dt * dt, face, stoppers.body.size,
     )  # fmt: skip
-    place_stoppers_into(bodies, scene.stoppers, scene.watch.base, step, dt, settings.theta, contacts)
+    if stoppers.body.size > 0:
+        place_stoppers_into(bodies, stoppers, base, step, dt, settings.theta, contacts)
     delassus_into(bodies, step.inverse_inertia, contacts)
     return contacts
 
 
-@kernel
-def _solve(scene, contacts_before, joints, step, share, dt, contacts):
-    """Contact law of the step, and the impulses that satisfy it; iterations made and residual left are returned.
-
-    ``share``: length of the step over that of the step before [1], whose contacts are ``contacts_before``.
-    """
-    bodies, settings = scene.bodies, scene.settings
-    friction_into(scene.friction, joints, step.rotations, contacts)
-    law_shift_into(step, dt, settings.theta, settings.restitution, contacts)
-    warm_start_into(contacts_before, scene.polyhedra.radius, share, contacts)
-    floor = least_impulse(bodies, step.v, dt)
-    return solve_contacts_into(
-        bodies, step.inertia, step.inverse_inertia, contacts, floor, settings.tolerance,
-        settings.max_iterations, step.v,
-    )  # fmt: skip
-
-
-@kernel
+@borrowing_kernel
 def record_until_into(
     bodies, ground, before, energy_before, contacts, n_contacts, joints, place, dt, times, progress, record
 ):
@@ -187,14 +179,16 @@ def record_until_into(
         clock[NEXT_RECORD] += 1
 
 
-@kernel
-def least_impulse(bodies, v, dt):
-    """Impulse below which all impulses of a step count as that [N s]: a thousandth of the lightest body's weight's."""
-    gravity = np.linalg.norm(bodies.gravity)
+@borrowing_kernel
+def least_impulse(bodies, gravity, v, dt):
+    """Impulse below which all impulses of a step count as that [N s]: a thousandth of the lightest body's weight's.
+
+    ``gravity``: its size [m/s2]. ``v`` (n_bodies, 6): velocities of the bodies.
+    """
     return 1e-3 * dt * gravity * _lightest(bodies) + 1e-12 * _momentum(bodies, v) + 1e-300
 
 
-@kernel
+@borrowing_kernel
 def _lightest(bodies):
     """Least mass of a free body [kg]."""
     lightest = np.inf
@@ -204,7 +198,7 @@ def _lightest(bodies):
     return lightest
 
 
-@kernel
+@borrowing_kernel
 def _momentum(bodies, v):
     """Sum of the sizes of the free bodies' momenta [N s]."""
     total = 0.0
@@ -214,7 +208,7 @@ def _momentum(bodies, v):
     return total
 
 
-@kernel
+@borrowing_kernel
 def find_diverged(state):
     """First body whose state is not finite or that is faster than anything real, or -1."""
     for body in range(state.position.shape[0]):

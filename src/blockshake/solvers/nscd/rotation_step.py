@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
-from blockshake.jit import kernel
-from blockshake.solvers.nscd.vectors import matrix_product, put_into, transposed_product
+from blockshake.geometry.rotations import rotate_into, rotation_rows
+from blockshake.jit import borrowing_kernel
+from blockshake.solvers.nscd.vectors import columns_product, matrix_product, put_into, rows_product
 
 _MAX_ITERATIONS = 50
 _ROUNDING = 1e-15
 
 
-@kernel
+@borrowing_kernel
 def _rotated(rotation, x):
     """Vector ``x`` turned by a rotation vector [rad], by Rodrigues' formula."""
     rx, ry, rz = rotation[0], rotation[1], rotation[2]
@@ -27,7 +27,7 @@ def _rotated(rotation, x):
     )
 
 
-@kernel
+@borrowing_kernel
 def _weighted(start, end, theta, factor):
     """``factor`` times the mean of two vectors, the second with weight ``theta``."""
     return (
@@ -37,7 +37,7 @@ def _weighted(start, end, theta, factor):
     )
 
 
-@kernel
+@borrowing_kernel
 def turn_into(
     orientation, spin, inertia, inverse_inertia, torque, dt, theta, new_orientation, new_spin, mean_spin
 ):
@@ -67,9 +67,8 @@ def turn_into(
     ``R1 = R0 exp(dt W)`` and ``W = (1 - theta) W0 + theta W1`` in the body frame, by fixed-point iteration. As
     ``exp(dt W)`` leaves ``W`` alone, the kinetic energy changes at theta 0.5 by exactly ``torque`` times ``mean_spin``.
     """
-    R = np.empty((3, 3))
-    rotation_matrix_into(orientation, R)
-    start, added = transposed_product(R, spin), transposed_product(R, torque)
+    R = rotation_rows(orientation)
+    start, added = columns_product(R, spin), columns_product(R, torque)
     kept = matrix_product(inertia, start)
     target = (kept[0] + added[0], kept[1] + added[1], kept[2] + added[2])
     end = matrix_product(inverse_inertia, target)
@@ -80,7 +79,6 @@ def turn_into(
         end = following
         if change <= _ROUNDING * size:
             break
-    rotate_into(orientation, matrix_product(R, _weighted(start, end, theta, dt)), new_orientation)
-    put_into(matrix_product(R, _weighted(start, end, 0.5, 1.0)), mean_spin)
-    rotation_matrix_into(new_orientation, R)
-    put_into(matrix_product(R, end), new_spin)
+    rotate_into(orientation, rows_product(R, _weighted(start, end, theta, dt)), new_orientation)
+    put_into(rows_product(R, _weighted(start, end, 0.5, 1.0)), mean_spin)
+    put_into(rows_product(rotation_rows(new_orientation), end), new_spin)

@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.dynamics.system import State, place_driven_into
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.nscd.rotation_step import turn_into
 from blockshake.solvers.nscd.vectors import cross, put_into, tensor_in_world_into, transposed_product
 
@@ -60,14 +60,14 @@ def copy_state(state):
     )
 
 
-@kernel
+@borrowing_kernel
 def predict_into(bodies, state, ground, dt, theta, step):
     """Poses at ``(1 - theta) dt`` into the step, and velocities at its end without contact, but for external impulses.
 
-    ``ground`` (Ground): displacement there, and velocity at the end of the step.
+    ``ground`` (Ground): displacement there, and velocity at the end of the step. ``step.before`` and ``step.v_mean``
+    are worked in.
     """
     detection, v = step.detection, step.v
-    rotation, orientation, mean = np.empty(3), np.empty(4), np.empty(3)
     for body in range(bodies.mass.size):
         for axis in range(3):
             step.v_start[body, axis] = state.velocity[body, axis]
@@ -78,10 +78,12 @@ def predict_into(bodies, state, ground, dt, theta, step):
             detection.position[body, axis] = (
                 state.position[body, axis] + (1.0 - theta) * dt * state.velocity[body, axis]
             )
-            rotation[axis] = (1.0 - theta) * dt * state.angular_velocity[body, axis]
             v[body, axis] = state.velocity[body, axis] + dt * bodies.gravity[axis]
             v[body, axis] += bodies.inverse_mass[body] * step.external[body, axis]
-        rotate_into(state.orientation[body], rotation, detection.orientation[body])
+        w, share = state.angular_velocity[body], (1.0 - theta) * dt
+        rotate_into(
+            state.orientation[body], (share * w[0], share * w[1], share * w[2]), detection.orientation[body]
+        )
         turn_into(
             state.orientation[body],
             state.angular_velocity[body],
@@ -90,9 +92,9 @@ def predict_into(bodies, state, ground, dt, theta, step):
             step.external[body, 3:],
             dt,
             theta,
-            orientation,
+            step.before.orientation[body],
             v[body, 3:],
-            mean,
+            step.v_mean[body, 3:],
         )
     place_driven_into(bodies, ground.displacement, ground.velocity, detection)
     for body in range(bodies.mass.size):
@@ -105,18 +107,22 @@ def predict_into(bodies, state, ground, dt, theta, step):
             put_into(detection.angular_velocity[body], v[body, 3:])
 
 
-@kernel
+@borrowing_kernel
 def move_into(bodies, ground, dt, theta, contacts, step, state):
     """Newton-Euler equations: poses and velocities at the end of the step under gravity and all impulses.
 
     ``ground`` (Ground): at the end of the step. ``step.before`` is overwritten with the state at the start.
     """
     before = step.before
-    before.position[:] = state.position
-    before.orientation[:] = state.orientation
-    before.velocity[:] = state.velocity
-    before.angular_velocity[:] = state.angular_velocity
-    step.impulse[:] = step.external
+    for body in range(bodies.mass.size):
+        for axis in range(3):
+            before.position[body, axis] = state.position[body, axis]
+            before.velocity[body, axis] = state.velocity[body, axis]
+            before.angular_velocity[body, axis] = state.angular_velocity[body, axis]
+        for part in range(4):
+            before.orientation[body, part] = state.orientation[body, part]
+        for i in range(6):
+            step.impulse[body, i] = step.external[body, i]
     for contact in range(contacts.gap.size):
         world = transposed_product(contacts.basis[contact], contacts.impulse[contact])
         for sign, body, arm in (

@@ -1,9 +1,9 @@
 """Products of three numbers, without arrays in between: vectors are anything with three entries, answers are tuples."""
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel
 
 
-@kernel
+@borrowing_kernel
 def matrix_product(A, x):
     """``A x`` for a matrix of three rows and columns."""
     return (
@@ -13,7 +13,7 @@ def matrix_product(A, x):
     )
 
 
-@kernel
+@borrowing_kernel
 def transposed_product(A, x):
     """``A^T x``: world to body for a rotation; to the world from a contact's basis, whose rows are its axes."""
     return (
@@ -23,25 +23,42 @@ def transposed_product(A, x):
     )
 
 
-@kernel
+@borrowing_kernel
 def cross(x, y):
     """``x`` cross ``y``."""
     return (x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0])
 
 
-@kernel
+@borrowing_kernel
 def dot(x, y):
     """``x`` times ``y``."""
     return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
 
 
-@kernel
+@borrowing_kernel
+def rows_product(rows, x):
+    """``R x`` for a matrix given by its rows, three tuples."""
+    return dot(rows[0], x), dot(rows[1], x), dot(rows[2], x)
+
+
+@borrowing_kernel
+def columns_product(rows, x):
+    """``R^T x`` for a matrix given by its rows, three tuples."""
+    first, second, third = rows
+    return (
+        first[0] * x[0] + second[0] * x[1] + third[0] * x[2],
+        first[1] * x[0] + second[1] * x[1] + third[1] * x[2],
+        first[2] * x[0] + second[2] * x[1] + third[2] * x[2],
+    )
+
+
+@borrowing_kernel
 def put_into(x, out):
     """Copy three numbers into an array."""
     out[0], out[1], out[2] = x[0], x[1], x[2]
 
 
-@kernel
+@borrowing_kernel
 def tensor_in_world_into(R, A, out):
     """``R A R^T``: a symmetric body-frame tensor in the world frame, written into ``out``."""
     for i in range(3):
@@ -50,7 +67,7 @@ def tensor_in_world_into(R, A, out):
             out[i, j] = row[0] * R[j, 0] + row[1] * R[j, 1] + row[2] * R[j, 2]
 
 
-@kernel
+@borrowing_kernel
 def velocity_at(v, arm):
     """Velocity [m/s] of a body's point at ``arm`` from its mass centre; ``v`` (6,) as in `Step`."""
     return (

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.nscd.contact.contacts import empty_contacts
 from blockshake.solvers.nscd.contact.detection import detect_pair_into
 from blockshake.solvers.nscd.contact.polyhedra import find_pairs
@@ -31,7 +31,7 @@ class Anchors(NamedTuple):
     active: np.ndarray
 
 
-@kernel
+@borrowing_kernel
 def _parts(one, other, spacing):
     """Equal parts of at most ``spacing`` into which the longer of two opposite sides, given by their ends, is cut."""
     longest = 0.0
@@ -39,6 +39,37 @@ def _parts(one, other, spacing):
         dx, dy, dz = side[0], side[1], side[2]
         longest = max(longest, np.sqrt(dx * dx + dy * dy + dz * dz))
     return max(1, int(np.ceil(longest / spacing - 1e-6)))
+
+
+@borrowing_kernel
+def _joint_points_into(P, g, n_s, n_t, area, points, clearance, areas):
+    """Points over a joint with four corners ``P`` and gaps ``g`` there, as in `joint_points`; their number."""
+    found = 0
+    for i in range(n_s + 1):
+        for j in range(n_t + 1):
+            s, t = i / n_s, j / n_t
+            weights = ((1.0 - s) * (1.0 - t), s * (1.0 - t), s * t, (1.0 - s) * t)
+            for axis in range(3):
+                points[found, axis] = (
+                    weights[0] * P[0, axis] + weights[1] * P[1, axis]
+                    + weights[2] * P[2, axis] + weights[3] * P[3, axis]
+                )  # fmt: skip
+            share = (0.5 if i in (0, n_s) else 1.0) * (0.5 if j in (0, n_t) else 1.0) / (n_s * n_t)
+            new = True
+            for other in range(found):
+                dx, dy = points[other, 0] - points[found, 0], points[other, 1] - points[found, 1]
+                dz = points[other, 2] - points[found, 2]
+                if dx * dx + dy * dy + dz * dz < _SAME_POINT * _SAME_POINT:
+                    areas[other] += share * area
+                    new = False
+                    break
+            if new:
+                clearance[found] = (
+                    weights[0] * g[0] + weights[1] * g[1] + weights[2] * g[2] + weights[3] * g[3]
+                )
+                areas[found] = share * area
+                found += 1
+    return found
 
 
 @kernel
@@ -79,30 +110,7 @@ def joint_points(corners, gaps, count, spacing):
         area += 0.5 * np.sqrt(dot(x, x))
     points, clearance = np.empty(((n_s + 1) * (n_t + 1), 3)), np.empty((n_s + 1) * (n_t + 1))
     areas = np.empty((n_s + 1) * (n_t + 1))
-    found = 0
-    for i in range(n_s + 1):
-        for j in range(n_t + 1):
-            s, t = i / n_s, j / n_t
-            weights = ((1.0 - s) * (1.0 - t), s * (1.0 - t), s * t, (1.0 - s) * t)
-            for axis in range(3):
-                points[found, axis] = (
-                    weights[0] * P[0, axis] + weights[1] * P[1, axis]
-                    + weights[2] * P[2, axis] + weights[3] * P[3, axis]
-                )  # fmt: skip
-            share = (0.5 if i in (0, n_s) else 1.0) * (0.5 if j in (0, n_t) else 1.0) / (n_s * n_t)
-            new = True
-            for other in range(found):
-                d = points[other] - points[found]
-                if dot(d, d) < _SAME_POINT * _SAME_POINT:
-                    areas[other] += share * area
-                    new = False
-                    break
-            if new:
-                clearance[found] = (
-                    weights[0] * g[0] + weights[1] * g[1] + weights[2] * g[2] + weights[3] * g[3]
-                )
-                areas[found] = share * area
-                found += 1
+    found = _joint_points_into(P, g, n_s, n_t, area, points, clearance, areas)
     return points[:found], clearance[:found], areas[:found]
 
 
@@ -119,6 +127,49 @@ def _with_capacity(contacts, points, weights, capacity):
     more_points, more_weights = np.empty((2 * capacity, 2, 4), np.int64), np.empty((2 * capacity, 2, 4))
     more_points[:n], more_weights[:n] = points, weights
     return more, more_points, more_weights
+
+
+@borrowing_kernel
+def _add_joint_into(
+    elastic,
+    center,
+    rotations,
+    a,
+    b,
+    normal,
+    joint,
+    clearance,
+    areas,
+    margin,
+    layer,
+    admittance,
+    contacts,
+    points,
+    weights,
+    count,
+):
+    """Add the points of a joint within ``margin`` to the contacts and anchors, after ``count`` others; their number.
+
+    ``layer``: compliance of the joint's layer [m3/N]; ``admittance`` as of `find_contacts`.
+    """
+    outward_a, inward_b = transposed_product(rotations[a], normal), transposed_product(rotations[b], normal)
+    outward_b = -inward_b[0], -inward_b[1], -inward_b[2]
+    for point in range(clearance.size):
+        if clearance[point] > margin:
+            continue
+        contacts.body_a[count], contacts.body_b[count] = a, b
+        contacts.gap[count] = clearance[point]
+        contacts.compliance[count] = layer / (admittance * areas[point])
+        put_into(normal, contacts.basis[count, 0])
+        for axis in range(3):
+            contacts.arm_a[count, axis] = joint[point, axis] - center[a, axis]
+            contacts.arm_b[count, axis] = joint[point, axis] - center[b, axis]
+        put_into(transposed_product(rotations[a], contacts.arm_a[count]), contacts.home[count])
+        place_b = transposed_product(rotations[b], contacts.arm_b[count])
+        anchor_into(elastic, a, contacts.home[count], outward_a, points[count, 0], weights[count, 0])
+        anchor_into(elastic, b, place_b, outward_b, points[count, 1], weights[count, 1])
+        count += 1
+    return count
 
 
 @kernel
@@ -167,22 +218,10 @@ def find_contacts(
             continue
         joint, clearance, areas = joint_points(corners, gaps, found, spacing)
         contacts, points, weights = _with_capacity(contacts, points, weights, count + clearance.size)
-        outward_a = np.array(transposed_product(rotations[a], normal))
-        outward_b = -np.array(transposed_product(rotations[b], normal))
-        for point in range(clearance.size):
-            if clearance[point] > margin:
-                continue
-            contacts.body_a[count], contacts.body_b[count] = a, b
-            contacts.gap[count] = clearance[point]
-            contacts.compliance[count] = layers[a, b] / (admittance * areas[point])
-            put_into(normal, contacts.basis[count, 0])
-            contacts.arm_a[count] = joint[point] - placed.center[a]
-            contacts.arm_b[count] = joint[point] - placed.center[b]
-            put_into(transposed_product(rotations[a], contacts.arm_a[count]), contacts.home[count])
-            place_b = np.array(transposed_product(rotations[b], contacts.arm_b[count]))
-            anchor_into(elastic, a, contacts.home[count], outward_a, points[count, 0], weights[count, 0])
-            anchor_into(elastic, b, place_b, outward_b, points[count, 1], weights[count, 1])
-            count += 1
+        count = _add_joint_into(
+            elastic, placed.center, rotations, a, b, normal, joint, clearance, areas, margin,
+            layers[a, b], admittance, contacts, points, weights, count,
+        )  # fmt: skip
     contacts, points, weights = _with_capacity(contacts, points, weights, count + n_stoppers)
     points[count : count + n_stoppers] = 0
     weights[count : count + n_stoppers] = 0.0
@@ -226,7 +265,7 @@ def _first_rows(contacts, total):
     return kept
 
 
-@kernel
+@borrowing_kernel
 def tangents_into(rotations, contacts):
     """Complete each contact's basis with tangents that follow body a: they turn with it and never flip."""
     for contact in range(contacts.gap.size):
@@ -245,7 +284,7 @@ def tangents_into(rotations, contacts):
         put_into(cross(n, basis[1]), basis[2])
 
 
-@kernel
+@borrowing_kernel
 def deform_gaps_into(anchors, rotations, displacements, contacts):
     """Add to each gap what the deformation opens it by.
 
@@ -260,7 +299,7 @@ def deform_gaps_into(anchors, rotations, displacements, contacts):
             contacts.gap[contact] += (1.0 if side else -1.0) * dot(inward, moved)
 
 
-@kernel
+@borrowing_kernel
 def anchored(anchors, contact, side, values):
     """Vector at a contact, from those at the lattice's points of one of its bodies; body frame."""
     x, y, z = 0.0, 0.0, 0.0

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.errors import InputError
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, inline_kernel
 from blockshake.solvers.nscd_deformable.block.shapes import elastic_shapes
 
 # What fits into 2 GiB: constraint shapes of a mesh, and all modes of one
@@ -136,7 +136,7 @@ def undeformed(elastic):
     return Deformation(np.zeros(n_shapes), np.zeros(n_shapes), np.zeros(1))
 
 
-@kernel
+@inline_kernel
 def shapes_of(elastic, body):
     """Displacements of one body's points: float64 array, shape (3 n_points, n_shapes), a view."""
     rows = 3 * (elastic.first_point[body + 1] - elastic.first_point[body])
@@ -144,7 +144,7 @@ def shapes_of(elastic, body):
     return elastic.shape[elastic.first_entry[body] : elastic.first_entry[body + 1]].reshape(rows, columns)
 
 
-@kernel
+@borrowing_kernel
 def _cell(elastic, body, axis, x):
     """Line below a coordinate, within the lattice, and how far the coordinate is from it to the next, 0 to 1."""
     first, last = elastic.first_line[3 * body + axis], elastic.first_line[3 * body + axis + 1]
@@ -155,7 +155,7 @@ def _cell(elastic, body, axis, x):
     return line - first, min(max(share, 0.0), 1.0)
 
 
-@kernel
+@borrowing_kernel
 def anchor_into(elastic, body, x, outward, points, weights):
     """Four points of a body's lattice around a place on its surface, and their weights.
 
@@ -163,16 +163,17 @@ def anchor_into(elastic, body, x, outward, points, weights):
     ----------
     elastic : Elastic
     body : int
-    x : float64 array, shape (3,)
+    x : three floats
         Place seen from the mass centre, body frame [m].
-    outward : float64 array, shape (3,)
+    outward : three floats
         Direction out of the body there, body frame: says on which of the six faces the place is.
     points : int64 array, shape (4,)
         Overwritten: indices among the points of all bodies.
     weights : float64 array, shape (4,)
         Overwritten: bilinear, of sum 1 [1]; zero where the body is rigid.
     """
-    points[:], weights[:] = 0, 0.0
+    for corner in range(4):
+        points[corner], weights[corner] = 0, 0.0
     if elastic.first_point[body] == elastic.first_point[body + 1]:
         return
     across = 0
@@ -180,16 +181,19 @@ def anchor_into(elastic, body, x, outward, points, weights):
         if abs(outward[axis]) > abs(outward[across]) + 1e-9:
             across = axis
     one, other = (across + 1) % 3, (across + 2) % 3
-    counts = np.empty(3, np.int64)
-    for axis in range(3):
-        counts[axis] = elastic.first_line[3 * body + axis + 1] - elastic.first_line[3 * body + axis]
-    place = np.empty(3, np.int64)
-    place[across] = counts[across] - 1 if outward[across] > 0.0 else 0
+    first = elastic.first_line
+    last = first[3 * body + across + 1] - first[3 * body + across] - 1 if outward[across] > 0.0 else 0
+    n_y, n_z = first[3 * body + 2] - first[3 * body + 1], first[3 * body + 3] - first[3 * body + 2]
     u, share_u = _cell(elastic, body, one, x[one])
     v, share_v = _cell(elastic, body, other, x[other])
     for corner in range(4):
         step_u, step_v = corner & 1, corner >> 1
-        place[one], place[other] = u + step_u, v + step_v
-        cell = (place[0] * counts[1] + place[1]) * counts[2] + place[2]
+        u_here, v_here = u + step_u, v + step_v
+        i, j, k = last, u_here, v_here
+        if across == 1:
+            i, j, k = v_here, last, u_here
+        elif across == 2:
+            i, j, k = u_here, v_here, last
+        cell = (i * n_y + j) * n_z + k
         points[corner] = elastic.first_point[body] + elastic.table[elastic.first_cell[body] + cell]
         weights[corner] = (share_u if step_u else 1.0 - share_u) * (share_v if step_v else 1.0 - share_v)

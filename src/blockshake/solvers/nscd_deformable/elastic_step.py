@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, inline_kernel, kernel
 from blockshake.solvers.nscd_deformable.elastic_bodies import shapes_of
 
 
@@ -49,7 +49,7 @@ def step_response(elastic, dt, theta):
     return Response(dt, theta, admittance, first_entry, compliance)
 
 
-@kernel
+@inline_kernel
 def compliance_of(elastic, response, body):
     """Velocity per impulse of one body's points: float64 array, shape (3 n_points, 3 n_points), a view."""
     rows = 3 * (elastic.first_point[body + 1] - elastic.first_point[body])
@@ -57,7 +57,7 @@ def compliance_of(elastic, response, body):
     return response.compliance[first:last].reshape(rows, rows)
 
 
-@kernel
+@borrowing_kernel
 def predict_elastic_into(elastic, response, deformation, amplitude, rate):
     """Elastic coordinates at which contacts are found, and rates at the end of the step without contact.
 
@@ -72,7 +72,7 @@ def predict_elastic_into(elastic, response, deformation, amplitude, rate):
         rate[shape] = response.admittance[shape] * (v - pull)
 
 
-@kernel
+@borrowing_kernel
 def points_into(elastic, coordinates, anchors, points):
     """Displacements, or velocities, of the lattice's points that carry contact, body frames.
 
@@ -95,7 +95,7 @@ def points_into(elastic, coordinates, anchors, points):
                 points[point, axis] = _dot(shapes[3 * (point - first) + axis], own)
 
 
-@kernel
+@borrowing_kernel
 def _dot(x, y):
     """``x`` times ``y`` in four sums that are added in a fixed order."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
@@ -109,6 +109,37 @@ def _dot(x, y):
     for i in range(last, n):
         a += x[i] * y[i]
     return (a + b) + (c + d)
+
+
+@borrowing_kernel
+def _move_elastic_into(elastic, response, anchors, forces, rate, deformation, pushes):
+    """`move_elastic_into` with an array (n_shapes,) to work in."""
+    for body in range(elastic.first_shape.size - 1):
+        shapes = shapes_of(elastic, body)
+        first, low, high = elastic.first_point[body], elastic.first_shape[body], elastic.first_shape[body + 1]
+        push = pushes[low:high]
+        push[:] = 0.0
+        for entry in range(anchors.first[body], anchors.first[body + 1]):
+            point = anchors.active[entry]
+            for axis in range(3):
+                force, row = forces[point, axis], shapes[3 * (point - first) + axis]
+                if force != 0.0:
+                    for shape in range(push.size):
+                        push[shape] += force * row[shape]
+        for shape in range(push.size):
+            rate[low + shape] += response.admittance[low + shape] * push[shape]
+    dt, theta = response.dt, response.theta
+    viscous, algorithmic = 0.0, 0.0
+    for shape in range(rate.size):
+        old, new = deformation.rate[shape], rate[shape]
+        mean = (1.0 - theta) * old + theta * new
+        change = dt * mean
+        viscous += dt * elastic.damping[shape] * mean * mean
+        algorithmic += (new - old) * (new - old) + elastic.squared_frequency[shape] * change * change
+        deformation.amplitude[shape] += change
+        deformation.rate[shape] = new
+    deformation.lost[0] += (theta - 0.5) * algorithmic
+    return viscous + (theta - 0.5) * algorithmic
 
 
 @kernel
@@ -138,34 +169,10 @@ def move_elastic_into(elastic, response, anchors, forces, rate, deformation):
     ``h damping rate_theta^2`` and the scheme ``(theta - 1/2) (change of rate^2 + omega^2 change of amplitude^2)``:
     these add up to the change of the elastic and kinetic energy exactly.
     """
-    for body in range(elastic.first_shape.size - 1):
-        shapes = shapes_of(elastic, body)
-        first, low, high = elastic.first_point[body], elastic.first_shape[body], elastic.first_shape[body + 1]
-        push = np.zeros(high - low)
-        for entry in range(anchors.first[body], anchors.first[body + 1]):
-            point = anchors.active[entry]
-            for axis in range(3):
-                force, row = forces[point, axis], shapes[3 * (point - first) + axis]
-                if force != 0.0:
-                    for shape in range(push.size):
-                        push[shape] += force * row[shape]
-        for shape in range(push.size):
-            rate[low + shape] += response.admittance[low + shape] * push[shape]
-    dt, theta = response.dt, response.theta
-    viscous, algorithmic = 0.0, 0.0
-    for shape in range(rate.size):
-        old, new = deformation.rate[shape], rate[shape]
-        mean = (1.0 - theta) * old + theta * new
-        change = dt * mean
-        viscous += dt * elastic.damping[shape] * mean * mean
-        algorithmic += (new - old) * (new - old) + elastic.squared_frequency[shape] * change * change
-        deformation.amplitude[shape] += change
-        deformation.rate[shape] = new
-    deformation.lost[0] += (theta - 0.5) * algorithmic
-    return viscous + (theta - 0.5) * algorithmic
+    return _move_elastic_into(elastic, response, anchors, forces, rate, deformation, np.empty(rate.size))
 
 
-@kernel
+@borrowing_kernel
 def elastic_energy(elastic, deformation):
     """Kinetic and strain energy of the elastic coordinates [J]."""
     kinetic, strain = 0.0, 0.0

@@ -6,12 +6,12 @@ from blockshake.dynamics.collapse import find_collapsed
 from blockshake.dynamics.system import place_driven_into
 from blockshake.jit import kernel
 from blockshake.solvers.external_forces import external_wrenches_into
-from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit
+from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit, stopper_energy
 from blockshake.solvers.nscd.contact.contacts import contact_margin
 from blockshake.solvers.nscd.contact.law_shift import bodies_meet
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed, place_into
 from blockshake.solvers.nscd.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
-from blockshake.solvers.nscd.joints import slip_into, with_pressed
+from blockshake.solvers.nscd.joints import press_anew, slip_into, with_pressed
 from blockshake.solvers.nscd.loop import find_diverged, least_impulse, record_until_into
 from blockshake.solvers.nscd.progress import LAST_STEP
 from blockshake.solvers.nscd.recording import record_into
@@ -58,7 +58,7 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
     dt, theta = settings.dt, settings.theta
     step, placed, ground = empty_step(state), empty_placed(scene.polyhedra), ground_at_start(scene.table)
     energy_before = progress.energy.copy()
-    meeting_speed = np.linalg.norm(bodies.gravity) * dt
+    gravity = np.linalg.norm(bodies.gravity)
     rate = np.empty(deformation.rate.size)
     if clock[STEP] == 0:
         _start(model, ground, step, placed, deformation, progress)
@@ -73,19 +73,20 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
         while part < parts:
             h, place = dt / parts, clock[STEP] * parts + part
             move_ground_by_secant_into(ground, (place + 1.0 - theta) * h, (place + 2.0 - theta) * h, h)
-            external_wrenches_into(bodies, scene.forces, state, (place + 0.5) * h, 0.5 * h, step.external)
-            step.external[:] *= h
+            if scene.forces.body.size > 0:
+                external_wrenches_into(bodies, scene.forces, state, (place + 0.5) * h, 0.5 * h, step.external)
+                step.external[:] *= h
             predict_into(bodies, state, ground, h, theta, step)
 
             margin = contact_margin(step.v_start, scene.polyhedra.radius, bodies.gravity, h)
-            floor, share = least_impulse(bodies, step.v, h), h / progress.audit[LAST_STEP]
+            floor, share = least_impulse(bodies, gravity, step.v, h), h / progress.audit[LAST_STEP]
             found, anchors, motion, tried, left, factor = solve_step(
                 model, response, theta, settings.restitution, margin, joints, progress.face, contacts, share,
                 floor, settings.tolerance, deformation, rate, step, placed, factor,
             )  # fmt: skip
             n_contacts = found.gap.size - scene.stoppers.body.size
             iterations += tried
-            if parts < settings.impact_parts and bodies_meet(found, n_contacts, step.v_start, meeting_speed):
+            if parts < settings.impact_parts and bodies_meet(found, n_contacts, step.v_start, gravity * dt):
                 parts, response = settings.impact_parts, model.part
                 continue
             contacts, residual = found, max(residual, left)
@@ -99,12 +100,12 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
             u_mean = working_velocities(anchors, step.rotations, contacts, step.v_mean, motion.points)
             kinetic, strain = elastic_energy(elastic, deformation)
             energy_before[:] = progress.energy
-            account_into(
-                bodies, scene.stoppers, scene.watch.base, contacts, u_mean, step, theta, (kinetic, strain, lost),
-                progress,
-            )  # fmt: skip
+            squeezed = stopper_energy(bodies, scene.stoppers, scene.watch.base, state)
+            account_into(bodies, contacts, u_mean, step, theta, squeezed, (kinetic, strain, lost), progress)
             audit_into(contacts, n_contacts, progress)
-            joints = with_pressed(joints, contacts, n_contacts)
+            if press_anew(joints, contacts, n_contacts):
+                joints = with_pressed(joints, contacts, n_contacts)
+                record = with_room(record, joints.slip.size)
             slip_into(contacts, n_contacts, motion.u, h, theta, joints)
             progress.audit[LAST_STEP] = h
             part += 1
@@ -113,7 +114,6 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
             if runaway >= 0:
                 clock[STEP] += 1
                 return DIVERGED, runaway, contacts, joints, factor, record
-            record = with_room(record, joints.slip.size)
             record_until_into(
                 bodies, ground, step.before, energy_before, contacts, n_contacts, joints, place, h, times, progress,
                 record,

@@ -78,7 +78,7 @@ def test_packets_give_the_bits_of_single_places(surfaces):
 @pytest.mark.parametrize("name", ["_locate_in_box_into", "_locate_in_lattice_into"])
 def test_packets_become_vector_instructions(surfaces, name):
     """Products of several doubles at once, on any 64-bit processor."""
-    fresh = numba.njit(error_model="numpy")(getattr(located_nodes, name).py_func)  # not from the cache
+    fresh = numba.njit(error_model="numpy", noalias=True)(getattr(located_nodes, name).py_func)  # not cached
     table = (surfaces.half, surfaces.chamfer)
     if name == "_locate_in_lattice_into":
         table = (surfaces.lattice, surfaces.values)

@@ -143,7 +143,7 @@ def test_reduction_keeps_the_deepest_point():
 
 def test_shrinking_keeps_the_centroid():
     polygon = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 3.0, 0.0]])
-    shrink_polygon_into(0.5, polygon)
+    shrink_polygon_into(0.5, polygon, 3, np.empty(3))
     np.testing.assert_allclose(polygon.mean(axis=0), [1.0, 1.0, 0.0])
     np.testing.assert_allclose(polygon[1], [2.0, 0.5, 0.0])
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.nscd.contact.detection import detect_pair_into
 from blockshake.solvers.nscd.contact.polyhedra import find_pairs
 from blockshake.solvers.nscd.vectors import cross, dot, matrix_product, put_into, transposed_product
@@ -70,7 +70,7 @@ def _first_rows(contacts, count):
     )  # fmt: skip
 
 
-@kernel
+@borrowing_kernel
 def contact_margin(v_start, radius, gravity, dt):
     """Gap up to which points of two bodies are kept as contacts: what no pair can close in a step [m]."""
     fastest = 0.0
@@ -78,6 +78,34 @@ def contact_margin(v_start, radius, gravity, dt):
         v = v_start[body]
         fastest = max(fastest, np.sqrt(dot(v[:3], v[:3])) + radius[body] * np.sqrt(dot(v[3:], v[3:])))
     return _LEAST_MARGIN + 2.0 * dt * (fastest + dt * np.sqrt(dot(gravity, gravity)))
+
+
+@borrowing_kernel
+def _detect_into(
+    pairs, polyhedra, placed, rotations, margin, shrink, layers, admittance, memory, normal, points, gaps, areas,
+    contacts,
+):  # fmt: skip
+    """Contacts of the pairs, as in `detect_contacts`; their number. The arrays are as in `detect_pair_into`."""
+    count = 0
+    for pair in range(pairs.shape[0]):
+        a, b = pairs[pair, 0], pairs[pair, 1]
+        layer = layers[a, b]
+        found = detect_pair_into(
+            polyhedra, placed, a, b, margin, shrink, layer, memory, normal, points, gaps, areas
+        )
+        if found == 0:
+            memory[a, b] = -1
+        for point in range(found):
+            contacts.body_a[count], contacts.body_b[count] = a, b
+            contacts.gap[count] = gaps[point]
+            contacts.compliance[count] = layer / (admittance * areas[point])
+            put_into(normal, contacts.basis[count, 0])
+            for axis in range(3):
+                contacts.arm_a[count, axis] = points[point, axis] - placed.center[a, axis]
+                contacts.arm_b[count, axis] = points[point, axis] - placed.center[b, axis]
+            put_into(transposed_product(rotations[a], contacts.arm_a[count]), contacts.home[count])
+            count += 1
+    return count
 
 
 @kernel
@@ -109,41 +137,29 @@ def detect_contacts(
     """
     pairs = find_pairs(placed, bodies.driven, margin)
     contacts = empty_contacts(5 * pairs.shape[0] + n_stoppers)
-    normal, points, gaps, areas = np.empty(3), np.empty((5, 3)), np.empty(5), np.empty(5)
-    count = 0
-    for pair in range(pairs.shape[0]):
-        a, b = pairs[pair, 0], pairs[pair, 1]
-        layer = layers[a, b]
-        found = detect_pair_into(
-            polyhedra, placed, a, b, margin, shrink, layer, memory, normal, points, gaps, areas
-        )
-        if found == 0:
-            memory[a, b] = -1
-        for point in range(found):
-            contacts.body_a[count], contacts.body_b[count] = a, b
-            contacts.gap[count] = gaps[point]
-            contacts.compliance[count] = layer / (admittance * areas[point])
-            put_into(normal, contacts.basis[count, 0])
-            for axis in range(3):
-                contacts.arm_a[count, axis] = points[point, axis] - placed.center[a, axis]
-                contacts.arm_b[count, axis] = points[point, axis] - placed.center[b, axis]
-            put_into(transposed_product(rotations[a], contacts.arm_a[count]), contacts.home[count])
-            count += 1
+    count = _detect_into(
+        pairs, polyhedra, placed, rotations, margin, shrink, layers, admittance, memory, np.empty(3),
+        np.empty((5, 3)), np.empty(5), np.empty(5), contacts,
+    )  # fmt: skip
     return _first_rows(contacts, count + n_stoppers)
 
 
-@kernel
-def _add_body_into(arm, inverse_mass, inverse_inertia, basis, W):
-    """Add one body's share of ``basis (1/m - arm x I^-1 arm x) basis^T`` to ``W``."""
-    levers = (cross(arm, basis[0]), cross(arm, basis[1]), cross(arm, basis[2]))
-    for i in range(3):
-        spin = matrix_product(inverse_inertia, levers[i])
-        W[i, i] += inverse_mass
-        for j in range(3):
-            W[i, j] += dot(levers[j], spin)
+@borrowing_kernel
+def _with_body(W, arm, inverse_mass, inverse_inertia, basis):
+    """``W`` and one body's share of ``basis (1/m - arm x I^-1 arm x) basis^T``; the upper entries, row by row."""
+    along, first, second = cross(arm, basis[0]), cross(arm, basis[1]), cross(arm, basis[2])
+    spin, turn = matrix_product(inverse_inertia, along), matrix_product(inverse_inertia, first)
+    return (
+        W[0] + inverse_mass + dot(along, spin),
+        W[1] + dot(first, spin),
+        W[2] + dot(second, spin),
+        W[3] + inverse_mass + dot(first, turn),
+        W[4] + dot(second, turn),
+        W[5] + inverse_mass + dot(second, matrix_product(inverse_inertia, second)),
+    )
 
 
-@kernel
+@borrowing_kernel
 def _tangents_into(basis):
     """Two tangents that complete a right-handed frame with the normal ``basis[0]``."""
     n = basis[0]
@@ -157,7 +173,7 @@ def _tangents_into(basis):
     put_into(cross(n, basis[1]), basis[2])
 
 
-@kernel
+@borrowing_kernel
 def delassus_into(bodies, inverse_inertia, contacts):
     """Fill in the tangents and the Delassus operators, ``W = J M^-1 J^T`` of each contact alone.
 
@@ -172,28 +188,28 @@ def delassus_into(bodies, inverse_inertia, contacts):
         ``basis`` needs its normals; the tangents are turned such that the tangential block of
         the operator is diagonal. A contact's share and compliance are in its `W_NN`.
     """
-    W = np.empty((3, 3))
     for contact in range(contacts.gap.size):
         a, b = contacts.body_a[contact], contacts.body_b[contact]
         basis = contacts.basis[contact]
         _tangents_into(basis)
-        W[:] = 0.0
-        _add_body_into(contacts.arm_a[contact], bodies.inverse_mass[a], inverse_inertia[a], basis, W)
-        _add_body_into(contacts.arm_b[contact], bodies.inverse_mass[b], inverse_inertia[b], basis, W)
-        angle = 0.5 * np.arctan2(2.0 * W[1, 2], W[1, 1] - W[2, 2])
+        W = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        W = _with_body(W, contacts.arm_a[contact], bodies.inverse_mass[a], inverse_inertia[a], basis)
+        W = _with_body(W, contacts.arm_b[contact], bodies.inverse_mass[b], inverse_inertia[b], basis)
+        w_nn, w_n1, w_n2, w_11, w_12, w_22 = W
+        angle = 0.5 * np.arctan2(2.0 * w_12, w_11 - w_22)
         c, s = np.cos(angle), np.sin(angle)
         for axis in range(3):
             t_1, t_2 = basis[1, axis], basis[2, axis]
             basis[1, axis], basis[2, axis] = c * t_1 + s * t_2, c * t_2 - s * t_1
         w = contacts.delassus[contact]
-        w[W_NN] = contacts.share[contact] * W[0, 0] + contacts.compliance[contact]
-        w[W_11] = c * c * W[1, 1] + 2.0 * c * s * W[1, 2] + s * s * W[2, 2]
-        w[W_22] = s * s * W[1, 1] - 2.0 * c * s * W[1, 2] + c * c * W[2, 2]
-        w[W_N1] = c * W[0, 1] + s * W[0, 2]
-        w[W_N2] = c * W[0, 2] - s * W[0, 1]
+        w[W_NN] = contacts.share[contact] * w_nn + contacts.compliance[contact]
+        w[W_11] = c * c * w_11 + 2.0 * c * s * w_12 + s * s * w_22
+        w[W_22] = s * s * w_11 - 2.0 * c * s * w_12 + c * c * w_22
+        w[W_N1] = c * w_n1 + s * w_n2
+        w[W_N2] = c * w_n2 - s * w_n1
 
 
-@kernel
+@borrowing_kernel
 def effective_mass(w):
     """Least mass that a contact with the Delassus operator ``w`` moves along its basis [kg]."""
     return 1.0 / max(w[W_NN], max(w[W_11], w[W_22]))

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel
 from blockshake.solvers.nscd.contact.overlap_polygon import (
     area_and_centroid_into,
     choose_four_into,
-    clip_face,
+    clip_face_into,
     shrink_polygon_into,
 )
-from blockshake.solvers.nscd.vectors import put_into
+from blockshake.solvers.nscd.vectors import dot, put_into
 
 # Relative to the smaller radius of the pair: an axis must separate this much better than the one of
 # the step before, or an edge axis than a face, to take its place; so resting contacts do not flip.
@@ -24,7 +24,7 @@ _CORNER = 1.0 / 12.0
 _LEAST_AREA = 1e-12  # m2, of a joint that has none
 
 
-@kernel
+@borrowing_kernel
 def detect_pair_into(polyhedra, placed, a, b, margin, shrink, layer, memory, normal, points, gaps, areas):
     """Contact points of bodies ``a`` and ``b``, at most four and the middle of a joint with a layer; their number.
 
@@ -32,6 +32,7 @@ def detect_pair_into(polyhedra, placed, a, b, margin, shrink, layer, memory, nor
     ----------
     polyhedra : Polyhedra
     placed : Placed
+        The outline is worked in.
     a, b : int
         Bodies.
     margin : float
@@ -69,14 +70,14 @@ def detect_pair_into(polyhedra, placed, a, b, margin, shrink, layer, memory, nor
     )
     count = _face_points_into(polyhedra, placed, other, face, margin, shrink, layer, points, gaps, areas)
     if count == 0 or separation < -_TOUCH * size:
-        edge_normal = np.empty(3)
+        edge_normal = placed.outline.axis
         edge_separation = _best_edge_into(polyhedra, placed, a, b, edge_normal)
         if edge_separation > margin:
             return 0
         better = edge_separation > separation + bias
         if better and _edge_point_into(polyhedra, placed, a, b, edge_normal, points):
             gaps[0], areas[0] = edge_separation, np.inf
-            normal[:] = edge_normal
+            put_into(edge_normal, normal)
             return 1
     sign = 1.0 if owner == a else -1.0
     for axis in range(3):
@@ -84,7 +85,7 @@ def detect_pair_into(polyhedra, placed, a, b, margin, shrink, layer, memory, nor
     return count
 
 
-@kernel
+@borrowing_kernel
 def _face_separation(polyhedra, placed, face, other):
     n = placed.normals[face]
     lowest = np.inf
@@ -94,7 +95,7 @@ def _face_separation(polyhedra, placed, face, other):
     return lowest - placed.offsets[face]
 
 
-@kernel
+@borrowing_kernel
 def _best_face(polyhedra, placed, a, b, margin, last_face, bias):
     """Face whose normal separates best, and by how much; the last one has the bias, then ``a``."""
     best_face, best = last_face, -np.inf
@@ -120,7 +121,7 @@ def _best_face(polyhedra, placed, a, b, margin, last_face, bias):
     return best_face, best
 
 
-@kernel
+@borrowing_kernel
 def _incident_face(polyhedra, placed, face, other):
     """Face of ``other`` that holds its nearest vertex and looks most against the reference face."""
     n = placed.normals[face]
@@ -140,7 +141,7 @@ def _incident_face(polyhedra, placed, face, other):
     return chosen
 
 
-@kernel
+@borrowing_kernel
 def _face_points_into(polyhedra, placed, other, face, margin, shrink, layer, points, gaps, areas):
     """Corners of the overlap, and its middle where there is a layer; those within ``margin``.
 
@@ -150,23 +151,21 @@ def _face_points_into(polyhedra, placed, other, face, margin, shrink, layer, poi
     points that all press and stick at different heights would hold a block that turns about an axis along the joint.
     """
     incident = _incident_face(polyhedra, placed, face, other)
-    polygon = clip_face(polyhedra, placed, face, incident)
+    polygon, distance, chosen = placed.outline.corners, placed.outline.gaps, placed.outline.chosen
+    middle, n_corners = placed.outline.middle, clip_face_into(polyhedra, placed, face, incident)
     if shrink > 0.0:
-        shrink_polygon_into(shrink, polygon)
+        shrink_polygon_into(shrink, polygon, n_corners, middle)
     n, offset = placed.normals[face], placed.offsets[face]
-    middle = np.empty(3)
-    area = max(area_and_centroid_into(polygon, middle), _LEAST_AREA)
-    corners = min(polygon.shape[0], 4)
-    distance = np.empty(polygon.shape[0])
+    area = max(area_and_centroid_into(polygon, n_corners, middle), _LEAST_AREA)
+    corners = min(n_corners, 4)
     count = 0
-    for index in range(polygon.shape[0]):
+    for index in range(n_corners):
         x = polygon[index]
         gap = n[0] * x[0] + n[1] * x[1] + n[2] * x[2] - offset
         if gap <= margin:
             put_into(x, polygon[count])
             distance[count] = gap
             count += 1
-    chosen = np.empty(4, np.int64)
     count = choose_four_into(polygon, distance, count, n, chosen)
     gap = n[0] * middle[0] + n[1] * middle[1] + n[2] * middle[2] - offset
     lowest = gap
@@ -185,7 +184,7 @@ def _face_points_into(polyhedra, placed, other, face, margin, shrink, layer, poi
     return count
 
 
-@kernel
+@borrowing_kernel
 def _best_edge_into(polyhedra, placed, a, b, normal):
     """Largest separation along a cross of edge directions [m]; its unit vector from ``a`` to ``b``."""
     best = -np.inf
@@ -220,7 +219,7 @@ def _best_edge_into(polyhedra, placed, a, b, normal):
     return best
 
 
-@kernel
+@borrowing_kernel
 def _support_edge(polyhedra, placed, body, normal, sign):
     """Edge perpendicular to ``normal`` that lies farthest along ``sign`` times it."""
     best, chosen = -np.inf, -1
@@ -234,19 +233,24 @@ def _support_edge(polyhedra, placed, body, normal, sign):
     return chosen
 
 
-@kernel
+@borrowing_kernel
+def _less(x, y):
+    return x[0] - y[0], x[1] - y[1], x[2] - y[2]
+
+
+@borrowing_kernel
 def _edge_point_into(polyhedra, placed, a, b, normal, points):
     """Midpoint of the two support edges' common perpendicular; False where they pass each other."""
     edge_a = polyhedra.edges[_support_edge(polyhedra, placed, a, normal, 1.0)]
     edge_b = polyhedra.edges[_support_edge(polyhedra, placed, b, normal, -1.0)]
     p, q = placed.vertices[edge_a[0]], placed.vertices[edge_b[0]]
-    u, v, w = placed.vertices[edge_a[1]] - p, placed.vertices[edge_b[1]] - q, q - p
-    uu, uv, vv = np.dot(u, u), np.dot(u, v), np.dot(v, v)
+    u, v, w = _less(placed.vertices[edge_a[1]], p), _less(placed.vertices[edge_b[1]], q), _less(q, p)
+    uu, uv, vv = dot(u, u), dot(u, v), dot(v, v)
     determinant = uu * vv - uv * uv
     if determinant < _PARALLEL * _PARALLEL * uu * vv:
         return False
-    s = (np.dot(w, u) * vv - np.dot(w, v) * uv) / determinant
-    t = (np.dot(w, u) * uv - np.dot(w, v) * uu) / determinant
+    s = (dot(w, u) * vv - dot(w, v) * uv) / determinant
+    t = (dot(w, u) * uv - dot(w, v) * uu) / determinant
     if s < 0.0 or s > 1.0 or t < 0.0 or t > 1.0:
         return False
     for axis in range(3):

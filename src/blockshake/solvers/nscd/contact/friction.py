@@ -10,7 +10,7 @@ from blockshake.dynamics.friction import (
     friction_asymmetry,
     friction_coefficient,
 )
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel
 from blockshake.solvers.nscd.vectors import dot
 
 
@@ -32,7 +32,7 @@ def ordered_friction(structure, order):
     return Friction(ordered, np.ascontiguousarray(order))
 
 
-@kernel
+@borrowing_kernel
 def friction_into(friction, joints, rotations, contacts):
     """Fill in the coefficients of the contacts and their bias by direction.
 
@@ -53,7 +53,7 @@ def friction_into(friction, joints, rotations, contacts):
     """
     laws = friction.laws
     a, b = -1, -1
-    mu, toward = 0.0, np.zeros(3)
+    mu, toward = 0.0, (0.0, 0.0, 0.0)
     for contact in range(contacts.gap.size):
         if contacts.stopper[contact] >= 0:
             continue
@@ -64,14 +64,14 @@ def friction_into(friction, joints, rotations, contacts):
             mu = friction_coefficient(laws, a, b, rate, slip)
             share = mu * friction_asymmetry(laws, a, b)
             a_is_first = friction.file_index[a] < friction.file_index[b]
-            for axis in range(3):
-                toward[axis] = share * rotations[a][axis, 0] if a_is_first else -share * rotations[b][axis, 0]
+            R, share = (rotations[a], share) if a_is_first else (rotations[b], -share)
+            toward = share * R[0, 0], share * R[1, 0], share * R[2, 0]
         contacts.friction[contact] = mu
         for tangent in range(2):
             contacts.bias[contact, tangent] = dot(contacts.basis[contact, 1 + tangent], toward)
 
 
-@kernel
+@borrowing_kernel
 def coefficient_along(contacts, contact, p_1, p_2):
     """Coefficient of a contact whose friction pushes b along (p_1, p_2), so that it slips the other way [1]."""
     mu = contacts.friction[contact]

@@ -1,11 +1,11 @@
 """Velocities by which the contact law of a step differs from ``u_n >= 0``: gaps, restitution, levers that turn."""
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel
 from blockshake.solvers.nscd.solve.gauss_seidel import relative_velocity
 from blockshake.solvers.nscd.vectors import dot
 
 
-@kernel
+@borrowing_kernel
 def law_shift_into(step, dt, theta, restitution, contacts):
     """Fill in ``shift``, the velocities that the contact law adds to those of the contacts.
 
@@ -44,7 +44,7 @@ def law_shift_into(step, dt, theta, restitution, contacts):
             shift[0] += max(gap, 0.0) / dt
 
 
-@kernel
+@borrowing_kernel
 def _deepest_of_pair(contacts, first):
     """The contact with the least gap among those of the pair of bodies that begin at ``first``."""
     deepest, contact = first, first
@@ -59,7 +59,7 @@ def _deepest_of_pair(contacts, first):
     return deepest
 
 
-@kernel
+@borrowing_kernel
 def _turn_of_levers(step, contacts, contact):
     """Centripetal acceleration of b's point less that of a's [m/s2]."""
     of_b = _centripetal(step.v_start[contacts.body_b[contact], 3:], contacts.arm_b[contact])
@@ -67,7 +67,7 @@ def _turn_of_levers(step, contacts, contact):
     return of_b[0] - of_a[0], of_b[1] - of_a[1], of_b[2] - of_a[2]
 
 
-@kernel
+@borrowing_kernel
 def bodies_meet(contacts, n_contacts, v_start, speed):
     """Whether a contact of bodies presses that closed faster than ``speed`` [m/s] when the step began."""
     for contact in range(n_contacts):
@@ -78,7 +78,7 @@ def bodies_meet(contacts, n_contacts, v_start, speed):
     return False
 
 
-@kernel
+@borrowing_kernel
 def _centripetal(spin, arm):
     """``spin x (spin x arm)`` [m/s2]."""
     along, squared = dot(spin, arm), dot(spin, spin)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel
 from blockshake.solvers.nscd.vectors import put_into
 
 # Points this far outside a side plane count as inside, so that flush faces do not flicker [m].
@@ -11,21 +11,17 @@ _FLUSH = 1e-9
 _SAME_POINT = 1e-7
 
 
-@kernel
-def clip_face(polyhedra, placed, reference, incident):
-    """Part of the incident face inside the prism over the reference face.
+@borrowing_kernel
+def clip_face_into(polyhedra, placed, reference, incident):
+    """Part of the incident face inside the prism over the reference face; the number of its corners.
 
     Parameters
     ----------
     polyhedra : Polyhedra
     placed : Placed
+        Its outline's corners are overwritten: of a convex polygon in the plane of the incident face [m].
     reference, incident : int
         Rows of faces.
-
-    Returns
-    -------
-    float64 array, shape (n, 3)
-        Corners of a convex polygon in the plane of the incident face [m]; n may be 0.
 
     Notes
     -----
@@ -33,8 +29,7 @@ def clip_face(polyhedra, placed, reference, incident):
     """
     first, last = polyhedra.first_corner[incident], polyhedra.first_corner[incident + 1]
     ref_first, ref_last = polyhedra.first_corner[reference], polyhedra.first_corner[reference + 1]
-    size = (last - first) + (ref_last - ref_first) + 2
-    polygon, clipped = np.empty((size, 3)), np.empty((size, 3))
+    polygon, clipped = placed.outline.corners, placed.outline.other
     count = last - first
     for corner in range(count):
         put_into(placed.vertices[polyhedra.corners[first + corner]], polygon[corner])
@@ -63,16 +58,17 @@ def clip_face(polyhedra, placed, reference, incident):
                 for axis in range(3):
                     clipped[kept, axis] = here[axis] + share * (there[axis] - here[axis])
                 kept += 1
-        polygon, clipped = clipped, polygon
+        for index in range(kept):
+            put_into(clipped[index], polygon[index])
         count = kept
         if count == 0:
             break
-    return _without_doubles(polygon, count)
+    return _without_doubles_into(polygon, count)
 
 
-@kernel
-def _without_doubles(polygon, count):
-    """The first ``count`` corners without those that repeat the one before."""
+@borrowing_kernel
+def _without_doubles_into(polygon, count):
+    """Number of the first ``count`` corners without those that repeat the one before, which are taken out."""
     kept = 0
     for index in range(count):
         double = False
@@ -82,21 +78,20 @@ def _without_doubles(polygon, count):
         if not double:
             put_into(polygon[index], polygon[kept])
             kept += 1
-    return polygon[:kept]
+    return kept
 
 
-@kernel
+@borrowing_kernel
 def _squared_distance(x, y):
     dx, dy, dz = x[0] - y[0], x[1] - y[1], x[2] - y[2]
     return dx * dx + dy * dy + dz * dz
 
 
-@kernel
-def area_and_centroid_into(polygon, center):
-    """Area of a convex polygon [m2]; ``center`` is overwritten with its centroid, the mean corner where it has none."""
-    count = polygon.shape[0]
+@borrowing_kernel
+def area_and_centroid_into(polygon, count, center):
+    """Area of a convex polygon of so many corners [m2]; its centroid, or else the mean corner, into ``center``."""
     weight = 0.0
-    center[:] = 0.0
+    center[0] = center[1] = center[2] = 0.0
     for index in range(1, count - 1):
         ux, uy, uz = (
             polygon[index, 0] - polygon[0, 0], polygon[index, 1] - polygon[0, 1], polygon[index, 2] - polygon[0, 2]
@@ -120,18 +115,16 @@ def area_and_centroid_into(polygon, center):
     return 0.5 * weight
 
 
-@kernel
-def shrink_polygon_into(shrink, polygon):
-    """Scale a polygon by ``1 - shrink`` about its area centroid, in place."""
-    count = polygon.shape[0]
-    center = np.empty(3)
-    area_and_centroid_into(polygon, center)
+@borrowing_kernel
+def shrink_polygon_into(shrink, polygon, count, center):
+    """Scale a polygon by ``1 - shrink`` about its area centroid, in place, which is put into ``center``."""
+    area_and_centroid_into(polygon, count, center)
     for index in range(count):
         for axis in range(3):
             polygon[index, axis] = center[axis] + (1.0 - shrink) * (polygon[index, axis] - center[axis])
 
 
-@kernel
+@borrowing_kernel
 def choose_four_into(points, gaps, count, normal, chosen):
     """Indices of at most four points that hold the deepest and keep the extent; their number.
 
@@ -157,17 +150,16 @@ def choose_four_into(points, gaps, count, normal, chosen):
         for index in range(count):
             chosen[index] = index
         return count
-    mean = np.zeros(3)
+    x, y, z = 0.0, 0.0, 0.0
     lowest = np.inf
     for index in range(count):
         lowest = min(lowest, gaps[index])
-        for axis in range(3):
-            mean[axis] += points[index, axis] / count
+        x, y, z = x + points[index, 0] / count, y + points[index, 1] / count, z + points[index, 2] / count
     p, q, r, s = -1, -1, -1, -1
     best = -1.0
     for index in range(count):
         if gaps[index] <= lowest + _SAME_POINT:
-            distance = _squared_distance(points[index], mean)
+            distance = _squared_distance(points[index], (x, y, z))
             # the small factor keeps equal distances, rounded differently, on the first of them
             if distance > best * (1.0 + 1e-9):
                 best, p = distance, index
@@ -200,7 +192,7 @@ def choose_four_into(points, gaps, count, normal, chosen):
     return kept
 
 
-@kernel
+@borrowing_kernel
 def _signed_area(a, b, c, normal):
     ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]

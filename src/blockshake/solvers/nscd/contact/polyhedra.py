@@ -5,11 +5,26 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.errors import InputError
-from blockshake.geometry.rotations import rotation_matrix_into
-from blockshake.jit import kernel
+from blockshake.geometry.rotations import rotation_rows
+from blockshake.jit import borrowing_kernel, kernel
+from blockshake.solvers.nscd.vectors import put_into, rows_product
 
 # Edge directions closer than this are one separating axis: only rounding tells them apart.
 _SAME_DIRECTION = 1e-9
+
+
+class Outline(NamedTuple):
+    """Where two faces overlap: ``corners``, ``other`` (n, 3) [m], ``gaps`` (n,) [m]; ``chosen`` int64 (4,).
+
+    ``middle``, ``axis`` (3,): centroid of the overlap [m] and normal to two edges. Room for all corners of two faces.
+    """
+
+    corners: np.ndarray
+    other: np.ndarray
+    gaps: np.ndarray
+    chosen: np.ndarray
+    middle: np.ndarray
+    axis: np.ndarray
 
 
 class Polyhedra(NamedTuple):
@@ -41,7 +56,8 @@ class Placed(NamedTuple):
     """The polyhedra in the world: rows as in `Polyhedra`, bounding boxes by body.
 
     ``center`` (n_bodies, 3) [m], mass centres; ``vertices``, ``normals``, ``directions``;
-    ``offsets`` of the world planes; ``low`` and ``high`` (n_bodies, 3), corners of the axis-aligned boxes [m].
+    ``offsets`` of the world planes; ``low`` and ``high`` (n_bodies, 3), corners of the axis-aligned boxes [m];
+    ``outline``: workspace of `detect_pair_into`.
     """
 
     center: np.ndarray
@@ -51,6 +67,7 @@ class Placed(NamedTuple):
     directions: np.ndarray
     low: np.ndarray
     high: np.ndarray
+    outline: Outline
 
 
 def pack_polyhedra(structure, order):
@@ -115,30 +132,43 @@ def _directions(solid, edges):
 
 
 @kernel
+def empty_outline(room):
+    """Workspace for that many corners."""
+    return Outline(
+        np.empty((room, 3)),
+        np.empty((room, 3)),
+        np.empty(room),
+        np.empty(4, np.int64),
+        np.empty(3),
+        np.empty(3),
+    )
+
+
+@kernel
 def empty_placed(polyhedra):
     """Arrays for `place_into`."""
     n_bodies = polyhedra.radius.size
+    most = 0
+    for face in range(polyhedra.normals.shape[0]):
+        most = max(most, polyhedra.first_corner[face + 1] - polyhedra.first_corner[face])
     return Placed(
         np.empty((n_bodies, 3)), np.empty(polyhedra.vertices.shape), np.empty(polyhedra.normals.shape),
         np.empty(polyhedra.offsets.shape), np.empty(polyhedra.directions.shape), np.empty((n_bodies, 3)),
-        np.empty((n_bodies, 3)),
+        np.empty((n_bodies, 3)), empty_outline(2 * most + 2),
     )  # fmt: skip
 
 
-@kernel
-def _turn_into(R, rows, first, last, out):
+@borrowing_kernel
+def _turn_into(R, vectors, first, last, out):
     for row in range(first, last):
-        x, y, z = rows[row, 0], rows[row, 1], rows[row, 2]
-        for axis in range(3):
-            out[row, axis] = R[axis, 0] * x + R[axis, 1] * y + R[axis, 2] * z
+        put_into(rows_product(R, vectors[row]), out[row])
 
 
-@kernel
+@borrowing_kernel
 def place_into(polyhedra, position, orientation, placed):
     """Write the polyhedra at these poses, shapes as in `State`, into ``placed``."""
-    R = np.empty((3, 3))
     for body in range(polyhedra.radius.size):
-        rotation_matrix_into(orientation[body], R)
+        R = rotation_rows(orientation[body])
         center = position[body]
         first, last = polyhedra.first_vertex[body], polyhedra.first_vertex[body + 1]
         _turn_into(R, polyhedra.vertices, first, last, placed.vertices)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel
 from blockshake.solvers.nscd.contact.friction import coefficient_along
 from blockshake.solvers.nscd.vectors import matrix_product, transposed_product
 
@@ -10,7 +10,7 @@ from blockshake.solvers.nscd.vectors import matrix_product, transposed_product
 _SAME_CONTACT = 0.1
 
 
-@kernel
+@borrowing_kernel
 def _before(stopper, a, b, other_stopper, other_a, other_b):
     """Whether a contact comes before another in `Contacts`: pairs first, then stoppers."""
     if stopper != other_stopper:
@@ -18,7 +18,7 @@ def _before(stopper, a, b, other_stopper, other_a, other_b):
     return a < other_a or (a == other_a and b < other_b)
 
 
-@kernel
+@borrowing_kernel
 def _block_of_pair(contacts, a, b, stopper, start):
     """Rows ``first`` to ``last`` of a pair, or of a stopper, searched upwards from ``start``."""
     first = start
@@ -38,7 +38,7 @@ def _block_of_pair(contacts, a, b, stopper, start):
     return first, last
 
 
-@kernel
+@borrowing_kernel
 def warm_start_into(old, radius, share, contacts):
     """Give each contact the impulse of the nearest one of the same pair at the step before.
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, kernel
 
 _FREE = 6  # velocities of a body
 
@@ -16,7 +16,8 @@ class BlockSystem(NamedTuple):
     driven ones. ``first`` int64 (n_free + 1,) and ``column`` int64 (n_blocks,): the blocks right of the diagonal in
     row k are those of columns ``column[first[k]:first[k + 1]]``, increasing, with room for what elimination fills
     in. ``diagonal`` (n_free, 6, 6); ``right_of`` and ``below`` (n_blocks, 6, 6): block (k, j), and
-    block (j, k) transposed. ``x`` (n_free, 6): right side, and then the answer.
+    block (j, k) transposed. ``x`` (n_free, 6): right side, and then the answer. ``exchange`` int64 (n_free, 6): rows
+    that elimination exchanged.
     """
 
     rank: np.ndarray
@@ -26,6 +27,7 @@ class BlockSystem(NamedTuple):
     right_of: np.ndarray
     below: np.ndarray
     x: np.ndarray
+    exchange: np.ndarray
 
 
 @kernel
@@ -91,11 +93,11 @@ def block_system(driven, body_a, body_b):
             column[at] = here
     return BlockSystem(
         rank, first, column[:count].copy(), np.empty((n, _FREE, _FREE)), np.empty((count, _FREE, _FREE)),
-        np.empty((count, _FREE, _FREE)), np.empty((n, _FREE)),
+        np.empty((count, _FREE, _FREE)), np.empty((n, _FREE)), np.empty((n, _FREE), np.int64),
     )  # fmt: skip
 
 
-@kernel
+@borrowing_kernel
 def find_block(system, row, column):
     """Entry of ``right_of`` and ``below`` that holds the block of a row and a later column."""
     low, high = system.first[row], system.first[row + 1]
@@ -108,7 +110,7 @@ def find_block(system, row, column):
     return low
 
 
-@kernel
+@borrowing_kernel
 def _factor_into(A, exchange):
     """Elimination within a block, rows exchanged; False where it is singular.
 
@@ -132,7 +134,7 @@ def _factor_into(A, exchange):
     return True
 
 
-@kernel
+@borrowing_kernel
 def _divide_right_into(A, exchange, B):
     """The rows of ``B``, right of the factored block ``A``, once those of ``A`` are eliminated."""
     for k in range(_FREE):
@@ -147,7 +149,7 @@ def _divide_right_into(A, exchange, B):
                 B[k, j] -= factor * B[i, j]
 
 
-@kernel
+@borrowing_kernel
 def _divide_below_into(A, B):
     """Multipliers, transposed, of the rows of ``B^T`` below the factored block ``A``."""
     for k in range(_FREE):
@@ -159,7 +161,7 @@ def _divide_below_into(A, B):
             B[k, j] /= A[k, k]
 
 
-@kernel
+@borrowing_kernel
 def _subtract_into(A, B, C):
     """Subtract ``A^T B`` from ``C``."""
     for i in range(_FREE):
@@ -174,7 +176,7 @@ def _subtract_into(A, B, C):
             )
 
 
-@kernel
+@borrowing_kernel
 def solve_blocks_into(system):
     """Replace the right side ``x`` by the answer; the blocks are lost. False where a block is singular.
 
@@ -184,9 +186,13 @@ def solve_blocks_into(system):
     and a smaller unsymmetric part, of slipping contacts.
     """
     n = system.x.shape[0]
-    exchanges = np.empty((n, _FREE), np.int64)
     for k in range(n):
-        A, exchange, first, last = system.diagonal[k], exchanges[k], system.first[k], system.first[k + 1]
+        A, exchange, first, last = (
+            system.diagonal[k],
+            system.exchange[k],
+            system.first[k],
+            system.first[k + 1],
+        )
         if not _factor_into(A, exchange):
             return False
         y = system.x[k]

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel
 from blockshake.solvers.nscd.contact.contacts import W_11, W_22, W_N1, W_N2, W_NN, effective_mass
 from blockshake.solvers.nscd.contact.friction import coefficient_along
 from blockshake.solvers.nscd.solve.local_solve import contact_residual, solve_contact
 from blockshake.solvers.nscd.vectors import cross, matrix_product, transposed_product
 
 
-@kernel
+@borrowing_kernel
 def relative_velocity(contacts, contact, v):
     """Velocity of b minus that of a at a contact, along its basis [m/s].
 
@@ -28,16 +28,14 @@ def relative_velocity(contacts, contact, v):
     )
 
 
-@kernel
-def contact_velocities(contacts, v):
-    """Velocities of all contacts along their bases: float64 array, shape (n_contacts, 3) [m/s]; ``v`` as there."""
-    u = np.empty((contacts.gap.size, 3))
+@borrowing_kernel
+def contact_velocities_into(contacts, v, u):
+    """Velocities of all contacts along their bases [m/s], into ``u`` (n_contacts, 3); ``v`` as there."""
     for contact in range(contacts.gap.size):
         u[contact, 0], u[contact, 1], u[contact, 2] = relative_velocity(contacts, contact, v)
-    return u
 
 
-@kernel
+@borrowing_kernel
 def _push_into(v, arm, inverse_mass, inverse_inertia, x, y, z):
     """Velocity of one body after an impulse (x, y, z) [N s] at ``arm`` from its mass centre."""
     v[0] += inverse_mass * x
@@ -50,7 +48,7 @@ def _push_into(v, arm, inverse_mass, inverse_inertia, x, y, z):
     v[5] += J[2, 0] * tx + J[2, 1] * ty + J[2, 2] * tz
 
 
-@kernel
+@borrowing_kernel
 def apply_impulse_into(bodies, inverse_inertia, contacts, contact, p_n, p_1, p_2, v):
     """Add the effect of an impulse [N s], along the basis, to the velocities of both bodies."""
     basis = contacts.basis[contact]
@@ -63,7 +61,7 @@ def apply_impulse_into(bodies, inverse_inertia, contacts, contact, p_n, p_1, p_2
         _push_into(v[a], contacts.arm_a[contact], bodies.inverse_mass[a], inverse_inertia[a], -x, -y, -z)
 
 
-@kernel
+@borrowing_kernel
 def apply_impulses_into(bodies, inverse_inertia, contacts, v_free, v):
     """Overwrite ``v`` with ``v_free`` and the effect of all impulses."""
     v[:] = 0.0
@@ -78,7 +76,8 @@ def apply_impulses_into(bodies, inverse_inertia, contacts, v_free, v):
             b[3 + axis] += moment_b[axis]
     for body in range(bodies.mass.size):
         if bodies.driven[body]:
-            v[body] = v_free[body]
+            for i in range(6):
+                v[body, i] = v_free[body, i]
             continue
         spin = matrix_product(inverse_inertia[body], v[body, 3:])
         for axis in range(3):
@@ -86,7 +85,7 @@ def apply_impulses_into(bodies, inverse_inertia, contacts, v_free, v):
             v[body, 3 + axis] = v_free[body, 3 + axis] + spin[axis]
 
 
-@kernel
+@borrowing_kernel
 def relative_residual(contacts, v, floor):
     """Residual of the contact law, relative to the impulses [1].
 
@@ -108,7 +107,7 @@ def relative_residual(contacts, v, floor):
     return np.sqrt(left) / max(np.sqrt(load), floor)
 
 
-@kernel
+@borrowing_kernel
 def sweep_into(bodies, inverse_inertia, contacts, upwards, v):
     """One sweep of NLGS: the local problem of every contact in turn, first to last if ``upwards``, else back.
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel
 
 _MAX_HALVINGS = 100
 _ROOT = 1e-14  # relative width of the last bracket: rounding, so that the local answer is exact
 
 
-@kernel
+@borrowing_kernel
 def solve_contact(w_n, w_1, w_2, a_1, a_2, q_n, q_1, q_2, mu, guess):
     """Impulse of one frictional contact that leaves the others as they are.
 
@@ -76,7 +76,7 @@ def solve_contact(w_n, w_1, w_2, a_1, a_2, q_n, q_1, q_2, mu, guess):
     return max(p_n, 0.0), p_1, p_2, slip_ratio
 
 
-@kernel
+@borrowing_kernel
 def _impulse(w_n, w_1, w_2, a_1, a_2, q_n, q_1, q_2, slip_ratio):
     """Impulse with ``u_n = 0`` and ``u_t = -slip_ratio p_t``."""
     d_1, d_2 = 1.0 / (w_1 + slip_ratio), 1.0 / (w_2 + slip_ratio)
@@ -84,7 +84,7 @@ def _impulse(w_n, w_1, w_2, a_1, a_2, q_n, q_1, q_2, slip_ratio):
     return p_n, -(a_1 * p_n + q_1) * d_1, -(a_2 * p_n + q_2) * d_2
 
 
-@kernel
+@borrowing_kernel
 def contact_residual(p_n, p_1, p_2, u_n, u_1, u_2, mu, rho):
     """Residual of the law at one contact, as an impulse [N s].
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.nscd.contact.contacts import effective_mass
 from blockshake.solvers.nscd.contact.friction import coefficient_along
 from blockshake.solvers.nscd.solve.block_elimination import (
@@ -22,29 +22,32 @@ class NewtonSpace(NamedTuple):
 
     ``system`` (BlockSystem): in the velocities of the free bodies. ``entry`` int64 (n_contacts,): where the bodies
     of a contact meet in it, -1 where one is driven. ``slope`` (n_contacts, 3, 3) [kg] and ``offset``
-    (n_contacts, 3) [N s]: of the linear laws.
+    (n_contacts, 3) [N s]: of the linear laws. ``columns`` (3, 6): of one contact and one body.
     """
 
     system: BlockSystem
     entry: np.ndarray
     slope: np.ndarray
     offset: np.ndarray
+    columns: np.ndarray
 
 
 @kernel
-def newton_space(bodies, contacts):
-    """Work space for the contacts of a step."""
-    n_contacts = contacts.gap.size
-    system = block_system(bodies.driven, contacts.body_a, contacts.body_b)
+def newton_space(driven, body_a, body_b):
+    """Work space for the contacts of a step between these bodies."""
+    n_contacts = body_a.size
+    system = block_system(driven, body_a, body_b)
     entry = np.full(n_contacts, -1, np.int64)
     for contact in range(n_contacts):
-        one, other = system.rank[contacts.body_a[contact]], system.rank[contacts.body_b[contact]]
+        one, other = system.rank[body_a[contact]], system.rank[body_b[contact]]
         if one >= 0 and other >= 0:
             entry[contact] = find_block(system, min(one, other), max(one, other))
-    return NewtonSpace(system, entry, np.empty((n_contacts, 3, 3)), np.empty((n_contacts, 3)))
+    return NewtonSpace(
+        system, entry, np.empty((n_contacts, 3, 3)), np.empty((n_contacts, 3)), np.empty((3, 6))
+    )
 
 
-@kernel
+@borrowing_kernel
 def linear_law_into(contacts, contact, u, stiffness, D, c):
     """Linear law ``p = c - D u`` of one contact, from its state and where that points.
 
@@ -101,7 +104,7 @@ def linear_law_into(contacts, contact, u, stiffness, D, c):
     c[2] = mu * d_2 * c[0] - D[2, 1] * shift[1] - D[2, 2] * shift[2]
 
 
-@kernel
+@borrowing_kernel
 def _columns_into(slope, transposed, basis, arm, T):
     """Impulse [N s] of a contact on its second body, world frame, per velocity of a body at ``arm``: (3, 6).
 
@@ -120,7 +123,7 @@ def _columns_into(slope, transposed, basis, arm, T):
         T[i, 3], T[i, 4], T[i, 5] = cross(arm, T[i])
 
 
-@kernel
+@borrowing_kernel
 def _add_block_into(sign, arm, T, block):
     """Add force and moment about the mass centre, at ``arm``, of the columns ``T``."""
     for j in range(6):
@@ -133,7 +136,7 @@ def _add_block_into(sign, arm, T, block):
         block[5, j] += arm[0] * y - arm[1] * x
 
 
-@kernel
+@borrowing_kernel
 def _add_contact_into(contacts, contact, slope, entry, system, T):
     """Add the linear law of one contact, closed, to the matrix."""
     basis = contacts.basis[contact]
@@ -152,7 +155,7 @@ def _add_contact_into(contacts, contact, slope, entry, system, T):
     _add_block_into(1.0, first_arm, T, system.diagonal[first])
 
 
-@kernel
+@borrowing_kernel
 def _add_impulse_into(sign, arm, f, x):
     """Add an impulse [N s] and its moment to the right side of a body."""
     moment = cross(arm, f)
@@ -161,7 +164,7 @@ def _add_impulse_into(sign, arm, f, x):
         x[3 + axis] += sign * moment[axis]
 
 
-@kernel
+@borrowing_kernel
 def _assemble_into(bodies, inertia, contacts, stiffness, v, newton):
     """Linear laws of all contacts, and the system that they give."""
     system = newton.system
@@ -169,7 +172,7 @@ def _assemble_into(bodies, inertia, contacts, stiffness, v, newton):
     system.right_of[:] = 0.0
     system.below[:] = 0.0
     system.x[:] = 0.0
-    T = np.empty((3, 6))
+    T = newton.columns
     for body in range(system.rank.size):
         rank = system.rank[body]
         if rank >= 0:
@@ -193,7 +196,7 @@ def _assemble_into(bodies, inertia, contacts, stiffness, v, newton):
             _add_contact_into(contacts, contact, D, newton.entry[contact], system, T)
 
 
-@kernel
+@borrowing_kernel
 def newton_step_into(bodies, inertia, inverse_inertia, contacts, stiffness, v_free, v, newton):
     """Replace the impulses by those of one Newton step, inside Coulomb's cone, and the velocities with them.
 

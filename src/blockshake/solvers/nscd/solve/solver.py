@@ -105,7 +105,7 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
     old_impulse, old_v = np.empty((n_contacts, 3)), np.empty(v.shape)
     best, best_impulse, best_v = relative_residual(contacts, v, floor), contacts.impulse.copy(), v.copy()
     iterations, sweeps = 0, _FIRST_SWEEPS
-    newton = newton_space(bodies, contacts)
+    newton = newton_space(bodies.driven, contacts.body_a, contacts.body_b)
     while True:
         for attempt in range(len(_STIFFNESS)):
             for _ in range(_NEWTON_STEPS[attempt]):

@@ -1,11 +1,11 @@
 """Linear systems with a band of varying width, eliminated without exchange of rows."""
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel
 
 _PANEL = 8  # pivots eliminated at a time; `_eliminate_below_into` names each
 
 
-@kernel
+@borrowing_kernel
 def factor_into(A, last):
     """Replace a matrix by its two triangular factors; False where a pivot is zero.
 
@@ -40,7 +40,7 @@ def factor_into(A, last):
     return True
 
 
-@kernel
+@borrowing_kernel
 def _eliminate_below_into(A, first, end):
     """Take a panel's pivots, from ``first`` on, out of the columns behind them in the rows below them."""
     after = first + _PANEL
@@ -67,7 +67,7 @@ def _eliminate_below_into(A, first, end):
             )  # fmt: skip
 
 
-@kernel
+@borrowing_kernel
 def solve_into(A, last, x):
     """Replace the right side ``x`` by the answer; arguments as in `factor_into`, after it."""
     n = A.shape[0]

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel
 from blockshake.solvers.nscd.contact.contacts import effective_mass
 from blockshake.solvers.nscd.contact.friction import coefficient_along
 from blockshake.solvers.nscd.solve.local_solve import solve_contact
 from blockshake.solvers.nscd_deformable.solve.residual import law_velocity
 
 
-@kernel
+@borrowing_kernel
 def sweep_into(contacts, W, upwards, u):
     """Solve every contact once in turn, first to last if ``upwards`` and back otherwise (Jean 1999).
 

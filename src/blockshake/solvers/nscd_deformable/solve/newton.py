@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.nscd.contact.friction import coefficient_along
 from blockshake.solvers.nscd.solve.newton import linear_law_into
 from blockshake.solvers.nscd.vectors import matrix_product
@@ -53,7 +53,7 @@ def empty_laws(n_contacts):
     return Laws(np.empty((n_contacts, 3, 3)), np.empty((n_contacts, 3)), np.empty(n_contacts, np.int64))
 
 
-@kernel
+@borrowing_kernel
 def _laws_into(contacts, u, stiffness, laws):
     """Linear laws at the velocities ``u`` of the contacts."""
     for contact in range(contacts.gap.size):
@@ -65,7 +65,7 @@ def _laws_into(contacts, u, stiffness, laws):
         laws.state[contact] = state
 
 
-@kernel
+@borrowing_kernel
 def _serves(factor, contacts, laws, setting):
     """Whether a factored system still belongs to these contacts and states."""
     n = contacts.gap.size
@@ -84,17 +84,10 @@ def _serves(factor, contacts, laws, setting):
     return True
 
 
-@kernel
-def _factored(contacts, laws, setting, operator):
-    """The system ``I + D W`` of the closed contacts, factored; its ``matrix`` is empty where it is singular."""
-    n = contacts.gap.size
-    row = np.full(n, -1, np.int64)
-    closed = 0
-    for contact in range(n):
-        if laws.state[contact] != OPEN:
-            row[contact] = closed
-            closed += 1
-    A, last = np.zeros((3 * closed, 3 * closed)), np.empty(3 * closed, np.int64)
+@borrowing_kernel
+def _system_into(laws, operator, row, A, last):
+    """The system of the closed contacts, whose places in it are ``row``, into the zeros of ``A``."""
+    n = row.size
     for one in range(n):
         if row[one] < 0:
             continue
@@ -119,12 +112,74 @@ def _factored(contacts, laws, setting, operator):
                         for j in range(3):
                             below[j] += slope * given[j]
         last[3 * row[one] : 3 * row[one] + 3] = 3 * end + 2
+
+
+@kernel
+def _factored(contacts, laws, setting, operator):
+    """The system ``I + D W`` of the closed contacts, factored; its ``matrix`` is empty where it is singular."""
+    n = contacts.gap.size
+    row = np.full(n, -1, np.int64)
+    closed = 0
+    for contact in range(n):
+        if laws.state[contact] != OPEN:
+            row[contact] = closed
+            closed += 1
+    A, last = np.zeros((3 * closed, 3 * closed)), np.empty(3 * closed, np.int64)
+    _system_into(laws, operator, row, A, last)
     if not factor_into(A, last):
         A = np.empty((0, 0))
     return Factor(
         contacts.body_a.copy(), contacts.body_b.copy(), laws.state.copy(), contacts.home.copy(), setting.copy(), A,
         last,
     )  # fmt: skip
+
+
+@borrowing_kernel
+def _drop_open_into(contacts, laws):
+    """Take the impulses of open contacts away; whether there were any."""
+    dropped = False
+    for contact in range(contacts.gap.size):
+        if laws.state[contact] == OPEN:
+            p = contacts.impulse[contact]
+            if p[0] != 0.0 or p[1] != 0.0 or p[2] != 0.0:
+                p[0] = p[1] = p[2] = 0.0
+                dropped = True
+    return dropped
+
+
+@borrowing_kernel
+def _count_closed(laws):
+    closed = 0
+    for contact in range(laws.state.size):
+        closed += 1 if laws.state[contact] != OPEN else 0
+    return closed
+
+
+@borrowing_kernel
+def _step_into(contacts, u, laws, matrix, last, x):
+    """Impulses of the closed contacts after the step, cut at Coulomb's cone; ``x``, three a contact, is worked in."""
+    closed = 0
+    for contact in range(contacts.gap.size):
+        if laws.state[contact] != OPEN:
+            due = matrix_product(laws.slope[contact], u[contact])
+            for axis in range(3):
+                x[3 * closed + axis] = (
+                    laws.offset[contact, axis] - due[axis] - contacts.impulse[contact, axis]
+                )
+            closed += 1
+    solve_into(matrix, last, x)
+    closed = 0
+    for contact in range(contacts.gap.size):
+        if laws.state[contact] != OPEN:
+            p = contacts.impulse[contact]
+            for axis in range(3):
+                p[axis] += x[3 * closed + axis]
+            p[0] = max(p[0], 0.0)
+            size = np.sqrt(p[1] * p[1] + p[2] * p[2])
+            limit = coefficient_along(contacts, contact, p[1], p[2]) * p[0]
+            if size > limit:
+                p[1], p[2] = p[1] * limit / size, p[2] * limit / size
+            closed += 1
 
 
 @kernel
@@ -161,44 +216,16 @@ def newton_step_into(problem, contacts, stiffness, fresh, operator, motion, laws
     ``(I + D W) dp = c - D u - p`` with the linear laws of `linear_law_into`. The velocities are those of the exact
     operator, so that an old factorisation costs iterations and no accuracy.
     """
-    n = contacts.gap.size
     _laws_into(contacts, motion.u, stiffness, laws)
-    dropped = False
-    for contact in range(n):
-        if laws.state[contact] == OPEN:
-            p = contacts.impulse[contact]
-            if p[0] != 0.0 or p[1] != 0.0 or p[2] != 0.0:
-                p[:] = 0.0
-                dropped = True
-    if dropped:
+    if _drop_open_into(contacts, laws):
         velocities_into(problem, contacts, motion)
     setting, made = np.array([problem.response.dt, stiffness]), False
     if fresh or not _serves(factor, contacts, laws, setting):
         extend_into(problem, contacts, laws.state != OPEN, operator)
         factor, made = _factored(contacts, laws, setting, operator), True
-    x, closed = np.empty(factor.matrix.shape[0]), 0
-    for contact in range(n):
-        if laws.state[contact] != OPEN:
-            due = matrix_product(laws.slope[contact], motion.u[contact])
-            for axis in range(3):
-                x[3 * closed + axis] = (
-                    laws.offset[contact, axis] - due[axis] - contacts.impulse[contact, axis]
-                )
-            closed += 1
-    if factor.matrix.shape[0] != 3 * closed:
+    if factor.matrix.shape[0] != 3 * _count_closed(laws):
         return False, made, factor
-    solve_into(factor.matrix, factor.last, x)
-    closed = 0
-    for contact in range(n):
-        if laws.state[contact] != OPEN:
-            p = contacts.impulse[contact]
-            for axis in range(3):
-                p[axis] += x[3 * closed + axis]
-            p[0] = max(p[0], 0.0)
-            size = np.sqrt(p[1] * p[1] + p[2] * p[2])
-            limit = coefficient_along(contacts, contact, p[1], p[2]) * p[0]
-            if size > limit:
-                p[1], p[2] = p[1] * limit / size, p[2] * limit / size
-            closed += 1
+    x = np.empty(factor.matrix.shape[0])
+    _step_into(contacts, motion.u, laws, factor.matrix, factor.last, x)
     velocities_into(problem, contacts, motion)
     return True, made, factor

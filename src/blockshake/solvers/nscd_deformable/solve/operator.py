@@ -4,11 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.nscd.contact.contacts import W_11, W_22, W_N1, W_N2, W_NN
 from blockshake.solvers.nscd.solve.gauss_seidel import (
     apply_impulses_into,
-    contact_velocities,
+    contact_velocities_into,
     relative_velocity,
 )
 from blockshake.solvers.nscd.vectors import cross, dot, matrix_product, put_into, transposed_product
@@ -56,7 +56,7 @@ def empty_motion(n_bodies, n_points, n_contacts):
     )
 
 
-@kernel
+@borrowing_kernel
 def impulses_on_points_into(anchors, rotations, contacts, forces):
     """Share the contacts' impulses out to the lattice's points, body frames."""
     forces[:] = 0.0
@@ -74,7 +74,7 @@ def impulses_on_points_into(anchors, rotations, contacts, forces):
                         force[axis] += weight * inward[axis]
 
 
-@kernel
+@borrowing_kernel
 def elastic_velocity(anchors, rotations, contacts, contact, points):
     """Velocity of b's surface minus that of a's by deformation, along the contact's basis [m/s]."""
     R_a, R_b = rotations[contacts.body_a[contact]], rotations[contacts.body_b[contact]]
@@ -83,7 +83,7 @@ def elastic_velocity(anchors, rotations, contacts, contact, points):
     return matrix_product(contacts.basis[contact], (of_b[0] - of_a[0], of_b[1] - of_a[1], of_b[2] - of_a[2]))
 
 
-@kernel
+@borrowing_kernel
 def velocities_into(problem, contacts, motion):
     """Velocities that the contacts' impulses give: the exact operator, without a matrix for all contacts."""
     bodies, elastic, anchors = problem.bodies, problem.elastic, problem.anchors
@@ -113,7 +113,7 @@ def velocities_into(problem, contacts, motion):
             motion.u[contact, axis] = u[axis] + e[axis]
 
 
-@kernel
+@borrowing_kernel
 def _point_rows_into(problem, contacts, contact, side, G):
     """Velocity of the lattice points of a contact's body, along the contact's basis, per impulse: ``G`` (3, 3 n)."""
     anchors, elastic = problem.anchors, problem.elastic
@@ -142,7 +142,7 @@ def _point_rows_into(problem, contacts, contact, side, G):
                         G[i, at + 2] += factor * row[at + 2]
 
 
-@kernel
+@borrowing_kernel
 def _levers_into(contacts, contact, side, lever):
     """Moments about the mass centre of unit impulses along a contact's basis: rows of ``lever`` (3, 3) [m]."""
     arm = contacts.arm_b[contact] if side else contacts.arm_a[contact]
@@ -150,7 +150,7 @@ def _levers_into(contacts, contact, side, lever):
         put_into(cross(arm, contacts.basis[contact, i]), lever[i])
 
 
-@kernel
+@borrowing_kernel
 def _add_block_into(problem, contacts, one, side, G, lever, other, other_side, block):
     """Add the effect of contact ``other``'s impulse on contact ``one``'s velocity through a body of both."""
     sign = 1.0 if side == other_side else -1.0
@@ -173,17 +173,17 @@ def _add_block_into(problem, contacts, one, side, G, lever, other, other_side, b
             block[i, j] += sign * w
 
 
-@kernel
-def own_operators_into(problem, contacts):
-    """Fill in ``contacts.delassus``: what each contact's velocity makes of its own impulse."""
+@borrowing_kernel
+def _own_operators_into(problem, contacts, lever, held, W):
+    """`own_operators_into` with three arrays to work in."""
     elastic, anchors = problem.elastic, problem.anchors
-    lever = np.empty((3, 3))
     for contact in range(contacts.gap.size):
-        W, basis = np.zeros((3, 3)), contacts.basis[contact]
+        basis = contacts.basis[contact]
+        W[:] = 0.0
         for side in range(2):
             body = contacts.body_b[contact] if side else contacts.body_a[contact]
             C, first = compliance_of(elastic, problem.response, body), elastic.first_point[body]
-            held = np.zeros((3, 3))
+            held[:] = 0.0
             for corner in range(4):
                 for other in range(4):
                     weight = anchors.weights[contact, side, corner] * anchors.weights[contact, side, other]
@@ -207,9 +207,16 @@ def own_operators_into(problem, contacts):
 
 
 @kernel
+def own_operators_into(problem, contacts):
+    """Fill in ``contacts.delassus``: what each contact's velocity makes of its own impulse."""
+    _own_operators_into(problem, contacts, np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)))
+
+
+@kernel
 def working_velocities(anchors, rotations, contacts, v, points):
     """Velocities that impulses do work on: of the contacts, for velocities ``v`` of the bodies and of the points."""
-    u = contact_velocities(contacts, v)
+    u = np.empty((contacts.gap.size, 3))
+    contact_velocities_into(contacts, v, u)
     for contact in range(contacts.gap.size):
         e = elastic_velocity(anchors, rotations, contacts, contact, points)
         for axis in range(3):
@@ -245,15 +252,10 @@ def empty_operator(problem, contacts):
     return Operator(np.zeros(n, np.bool_), last, np.zeros((3 * n, 3 * n)))
 
 
-@kernel
-def extend_into(problem, contacts, wanted, operator):
-    """Bring the contacts that are ``wanted``, bool (n_contacts,), into the operator."""
-    elastic, driven, n = problem.elastic, problem.bodies.driven, contacts.gap.size
-    widest = 0
-    for body in range(driven.size):
-        widest = max(widest, 3 * (elastic.first_point[body + 1] - elastic.first_point[body]))
-    G_a, G_b, block = np.empty((3, widest)), np.empty((3, widest)), np.empty((3, 3))
-    lever_a, lever_b = np.empty((3, 3)), np.empty((3, 3))
+@borrowing_kernel
+def _extend_into(problem, contacts, wanted, operator, G_a, G_b, block, lever_a, lever_b):
+    """`extend_into` with arrays to work in."""
+    driven, n = problem.bodies.driven, contacts.gap.size
     known, W = operator.known, operator.matrix
     for one in range(n):
         if not wanted[one] or known[one]:
@@ -277,3 +279,15 @@ def extend_into(problem, contacts, wanted, operator):
                 for j in range(3):
                     W[3 * one + i, 3 * other + j] = block[i, j]
                     W[3 * other + j, 3 * one + i] = block[i, j]
+
+
+@kernel
+def extend_into(problem, contacts, wanted, operator):
+    """Bring the contacts that are ``wanted``, bool (n_contacts,), into the operator."""
+    elastic, driven = problem.elastic, problem.bodies.driven
+    widest = 0
+    for body in range(driven.size):
+        widest = max(widest, 3 * (elastic.first_point[body + 1] - elastic.first_point[body]))
+    G_a, G_b, block = np.empty((3, widest)), np.empty((3, widest)), np.empty((3, 3))
+    lever_a, lever_b = np.empty((3, 3)), np.empty((3, 3))
+    _extend_into(problem, contacts, wanted, operator, G_a, G_b, block, lever_a, lever_b)

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import borrowing_kernel
 from blockshake.solvers.nscd.contact.contacts import effective_mass
 from blockshake.solvers.nscd.contact.friction import coefficient_along
 from blockshake.solvers.nscd.solve.local_solve import contact_residual
 
 
-@kernel
+@borrowing_kernel
 def law_velocity(contacts, contact, u):
     """Velocity that the law is written in: a contact's ``u`` (3,) and its shifts, compliance in the normal [m/s]."""
     shift = contacts.shift[contact]
@@ -19,7 +19,7 @@ def law_velocity(contacts, contact, u):
     return u_n, u[1] + shift[1], u[2] + shift[2]
 
 
-@kernel
+@borrowing_kernel
 def residual_of(contacts, u, floor):
     """Root of the summed squares of `contact_residual` over that of the impulses, or over ``floor`` [N s].
 
