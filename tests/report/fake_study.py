@@ -81,6 +81,7 @@ class FakeStudy:
             "models": MODELS,
             "cases": [
                 {
+                    "name": name,
                     "structure": name,
                     "motion": "basso-tirreno",
                     "scale": 2.0,
@@ -124,7 +125,7 @@ class FakeStudy:
         write_text(self.results / "design.csv", self.design.to_csv(index=False))
         write_json(self.results / "design.json", design.summary())
         for case in self.study["cases"]:
-            self.write_stiffness(case["structure"], stiffness)
+            self.write_stiffness(case["name"], stiffness)
 
     def write_stiffness(self, case, stiffness):
         write_text(self.results / "stiffness" / f"{case}.csv", stiffness.to_csv(index=False))

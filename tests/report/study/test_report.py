@@ -2,9 +2,11 @@ import copy
 import json
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from fake_inputs import PEAK_ACCELERATION
@@ -13,7 +15,7 @@ from page import CLAIMS, Page
 
 from blockshake.errors import InputError
 from blockshake.files import load_json
-from blockshake.report.document.blocks import Table
+from blockshake.report.document.blocks import Heading, Table, Text
 from blockshake.report.document.html import write_html
 from blockshake.report.document.pdf import write_pdf
 from blockshake.report.document.wording import number
@@ -22,7 +24,7 @@ from blockshake.report.study.closing_sections import checks, limits
 from blockshake.report.study.content import load_content
 from blockshake.report.study.convergence_section import convergence as annex
 from blockshake.report.study.friction_section import friction
-from blockshake.report.study.opening_sections import samples, stiffness
+from blockshake.report.study.opening_sections import samples, stiffness, structures
 from blockshake.report.study.peer_section import peer
 from blockshake.report.study.report import compose, make_case_report, make_report
 from blockshake.report.study.result_sections import responses
@@ -266,6 +268,24 @@ def test_study_without_nscd_has_no_annex_on_lmgc90(fake):
     assert peer(load_content(study, fake.results, fake.benchmarks)) is None
 
 
+def test_a_structure_of_two_cases_is_shown_once(fake):
+    found = load_content(fake.study, fake.results, fake.benchmarks)
+    found.cases["stronger"] = replace(found.cases["configuration-1"], name="stronger")
+    blocks = structures(found).blocks
+    headings = [block.text for block in blocks if isinstance(block, Heading)]
+    assert headings[0] == "configuration-1, stronger"
+    assert len(headings) == len(fake.study["cases"])
+
+
+def test_stiffness_that_is_one_in_all_samples_is_a_number(copied):
+    alike = {"ls_dem.normal_stiffness": np.full(20, 1.8e10), "ls_dem.shear_stiffness": np.full(20, 9e9)}
+    for case in copied.study["cases"]:
+        copied.write_stiffness(case["name"], pd.DataFrame(alike))
+    blocks = stiffness(load_content(copied.study, copied.results, copied.benchmarks)).blocks
+    said = [block.text for block in blocks if isinstance(block, Text)]
+    assert any("normal stiffness k_n 18 GN/m" in words and "the same in all" in words for words in said)
+
+
 def test_own_structures_by_rigid_models_need_no_contact_stiffness(copied, monkeypatch):
     for module in (config, content):
         monkeypatch.setattr(module, "is_of_the_paper", lambda structure: False)
@@ -290,7 +310,7 @@ def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
     parsed.feed(html.read_text(encoding="utf-8"))
     said = " ".join(" ".join(parsed.words).split())
     assert "blockshake: fake, configuration-4" in said
-    assert "1 structure, 4 models" in said
+    assert "1 case, 4 models" in said
     assert "reports/fake-configuration-4.html" in said
     assert {"summary", "structures", "responses", "models", "limits", "origin"} <= set(parsed.ids)
     assert not {"statements", "convergence", "peer"} & set(parsed.ids)

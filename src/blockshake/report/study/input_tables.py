@@ -44,18 +44,18 @@ def cases_table(content):
     )  # fmt: skip
 
 
-def bodies_table(case):
-    """Bodies of a structure with size, material and mass."""
+def bodies_table(structure, names):
+    """Bodies of a structure with size, material and mass; ``names``: of its cases."""
     rows = []
-    for body, mass in zip(case.structure.file.bodies, case.structure.mass, strict=True):
-        shape = case.structure.file.shapes[body.shape]
+    for body, mass in zip(structure.file.bodies, structure.mass, strict=True):
+        shape = structure.file.shapes[body.shape]
         size = " x ".join(f"{edge:g}" for edge in shape.box) if shape.box else f"mesh {shape.mesh}"
         rows.append((
             body.name + (" (driven)" if body.driven else ""), size, f"{shape.chamfer:g}", body.material,
-            f"{body.density or case.structure.file.materials[body.material].density:g}", f"{mass:.0f}",
+            f"{body.density or structure.file.materials[body.material].density:g}", f"{mass:.0f}",
         ))  # fmt: skip
     return Table(
-        f"Bodies of {case.name}; sizes along x, y, z; masses of the chamfered shapes at nominal density.",
+        f"Bodies of {names}; sizes along x, y, z; masses of the chamfered shapes at nominal density.",
         ("Body", "Size [m]", "Chamfer [m]", "Material", f"Density [kg/m{CUBED}]", "Mass [kg]"),
         tuple(_merged(rows)), "lrrlrr",
     )  # fmt: skip

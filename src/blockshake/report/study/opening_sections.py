@@ -4,7 +4,15 @@ import numpy as np
 
 from blockshake.report.document.blocks import Figure, Heading, Items, Section, Text
 from blockshake.report.document.drawing import svg_of
-from blockshake.report.document.wording import count_words, given, model_label, number, parameter_label
+from blockshake.report.document.units import printed
+from blockshake.report.document.wording import (
+    count_words,
+    given,
+    model_label,
+    number,
+    parameter_label,
+    percent,
+)
 from blockshake.report.study.conclusions import conclusions
 from blockshake.report.study.definition_tables import definition_blocks
 from blockshake.report.study.figures.motion import plot_motions, plot_spectra
@@ -21,7 +29,10 @@ from blockshake.report.study.input_tables import (
 )
 from blockshake.report.study.probability_table import probability_table
 from blockshake.study.ensembles.outcomes import count_outcomes
+from blockshake.study.sampling.distributions import parameter_unit
 from blockshake.study.sensitivity.sensitivity import unused_variables
+
+_ALIKE = 1e-3  # of the mean: values that lie closer print alike
 
 
 def summary(content):
@@ -53,7 +64,7 @@ def summary(content):
     responses = [one for case in cases for one in case.responses.values()]
     ended = count_outcomes(np.concatenate([one.samples["status"] for one in responses]))
     items = [
-        f"{count_words(len(content.cases), 'structure')}, {count_words(len(content.study['models']), 'model')} "
+        f"{count_words(len(content.cases), 'case')}, {count_words(len(content.study['models']), 'model')} "
         f"({', '.join(model_label(model) for model in content.study['models'])}), {sum(ended)} runs: "
         f"{ended.completed} completed, {ended.collapsed} collapsed, {ended.failed} failed.",
         f"{len(content.design)} samples of {len(content.distributions)} random variables in the design (seed "
@@ -109,18 +120,22 @@ def structures(content):
         if any(case.is_shipped for case in content.cases.values())
         else Text("Sizes are those of the structure files.")
     ]
+    alike = {}
     for case in content.cases.values():
+        alike.setdefault(case.settings["structure"], []).append(case)
+    for case, *others in alike.values():
+        names = ", ".join(one.name for one in (case, *others))
         blocks += [
-            Heading(case.name, f"structure-{case.name}"),
+            Heading(names, f"structure-{case.name}"),
             Figure(
-                f"{case.name}: {case.structure.file.description}. Sizes in m"
+                f"{names}: {case.structure.file.description}. Sizes in m"
                 + (", some of them inferred (see above)" if case.is_shipped else "")
                 + ". The faces towards the reader are those at the lowest y (front view) and the largest x (side "
                 "view); sensors on hidden faces are drawn too.",
                 svg_of(plot_structure, case.structure),
                 structure_width(case.structure),
             ),
-            bodies_table(case),
+            bodies_table(case.structure, names),
         ]
     return Section("Structures", "structures", tuple(blocks))
 
@@ -232,11 +247,21 @@ def stiffness(content):
                 svg_of(plot_waves, calibrated.waves),
             ),
             waves_table(calibrated.waves, of),
-            Figure(
-                f"Stiffness per area of the {len(calibrated.stiffness)} samples{of} (after the paper's Fig. 10).",
-                svg_of(plot_stiffness, calibrated.stiffness),
-            ),
+            _stiffness_of_samples(calibrated.stiffness, of),
         ]
     if content.definitions is not None:
         blocks += definition_blocks(content.definitions)
     return Section("Contact stiffness", "stiffness", tuple(blocks))
+
+
+def _stiffness_of_samples(stiffness, of):
+    """Histograms of the stiffness of the samples, or their one value."""
+    caption = f"Stiffness per area of the {len(stiffness)} samples{of}"
+    mean, spread = stiffness.mean(), stiffness.max() - stiffness.min()
+    if (spread > _ALIKE * mean).any():
+        return Figure(f"{caption} (after the paper's Fig. 10).", svg_of(plot_stiffness, stiffness))
+    values = []
+    for name, value in mean.items():
+        factor, unit = printed(parameter_unit(name))
+        values.append(f"{parameter_label(name)} {number(factor * value)} {unit}")
+    return Text(f"{caption}: {', '.join(values)}, the same in all within {percent(_ALIKE)} %.")
