@@ -289,12 +289,13 @@ def _check_paths(config, where):
         naming.append(("convergence.structure", config.convergence.structure))
     for index, case in enumerate(config.cases):
         naming += [(f"cases.{index}.structure", case.structure), (f"cases.{index}.motion", case.motion)]
-        if not _NAME.fullmatch(case.name):
+    for key, path in [*paths, *naming]:
+        check_plain(path, where, key)
+    for index, case in enumerate(config.cases):
+        if case.name != Path(case.structure).stem and not _NAME.fullmatch(case.name):
             raise InputError(
                 where, f"cases.{index}.name", f"expected letters, digits, dots, hyphens, not '{case.name}'"
             )
-    for key, path in [*paths, *naming]:
-        check_plain(path, where, key)
     by_name = {}
     for key, path in naming:
         name = Path(path).stem
