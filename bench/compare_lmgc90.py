@@ -51,7 +51,7 @@ def main():
     write_json(options.output, result)
     sys.stdout.write(as_text(result))
     if options.record:
-        write_dataset(options.record, recorded_comparison(result), decimals=7)
+        write_dataset(options.record, recorded_comparison(result), decimals={"m": 7})
 
 
 def case(name):
