@@ -14,6 +14,8 @@ _LEVELS = 120
 _COOLING = 0.94
 _TRIALS_PER_VALUE = 24
 _FEWEST_TRIALS, _MOST_TRIALS = 2_000, 40_000
+# far above the last digits of an exponential, which differ between processors, and far below what a swap changes
+_GRID = 2.0**-30
 
 
 def arrange(columns, target, seed, effort):
@@ -34,16 +36,16 @@ def arrange(columns, target, seed, effort):
     Returns
     -------
     order : int64 array, shape (n_samples, n_variables)
-        Row of ``columns`` that goes to each place; a permutation in every column.
+        Row of ``columns`` that goes to each place; a permutation in every column, the same on any processor.
     """
     n_samples, n_variables = columns.shape
-    standard = (columns - columns.mean(axis=0)) / columns.std(axis=0)
+    standard = np.rint((columns - columns.mean(axis=0)) / columns.std(axis=0) / _GRID) * _GRID
     streams = np.random.SeedSequence(seed).spawn(effort + 1)
     order = _first_order(standard, target, streams[0])
     if n_variables == 1:
         return order
     n_trials = int(np.clip(_TRIALS_PER_VALUE * n_samples * n_variables, _FEWEST_TRIALS, _MOST_TRIALS))
-    best, least = order.copy(), correlation_error(_placed(standard, order), target)
+    best, least = order.copy(), np.inf
     for stream in streams[1:]:
         bits = np.random.PCG64(stream)
         order[:] = best
@@ -55,20 +57,6 @@ def arrange(columns, target, seed, effort):
             least = min(least, found)
             temperature *= _COOLING
     return best
-
-
-def correlation_error(standard, target):
-    """Root mean square over the pairs of variables of correlation minus target [1].
-
-    Parameters
-    ----------
-    standard : float64 array, shape (n_samples, n_variables)
-        Columns of mean 0 and standard deviation 1.
-    target : float64 array, shape (n_variables, n_variables)
-    """
-    error = standard.T @ standard / len(standard) - target
-    pairs = np.triu_indices(len(target), k=1)
-    return float(np.sqrt(np.mean(error[pairs] ** 2))) if len(pairs[0]) else 0.0
 
 
 def _placed(standard, order):
@@ -151,7 +139,9 @@ def anneal_level(target, column, first, second, chance, temperature, least, scor
             error[j, i] = error[i, j]
             squares += error[i, j] * error[i, j]
     least_squares = least * least * n_pairs
-    improved = False
+    improved = squares < least_squares
+    if improved:
+        least_squares = squares
     trail = np.empty(column.size, dtype=np.int64)
     n_trail = 0
 
