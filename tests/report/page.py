@@ -34,3 +34,12 @@ class Page(HTMLParser):
     def handle_data(self, data):
         if not {"style", "svg", "script"} & set(self.open):
             self.words.append(data)
+
+
+def texts(section):
+    """All sentences of a section but those in tables and listings."""
+    for block in section.blocks:
+        if block.kind == "text":
+            yield block.text
+        if block.kind == "items":
+            yield from block.items

@@ -1,73 +1,28 @@
-import copy
 import json
 import re
 import shutil
-from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pytest
 import xarray as xr
 from fake_inputs import PEAK_ACCELERATION
 from fake_study import COLLAPSE_REASON, CPU_TIME, MODELS
-from page import CLAIMS, Page
+from page import CLAIMS, Page, texts
 
 from blockshake.errors import InputError
 from blockshake.files import load_json
-from blockshake.report.document.blocks import Heading, Table, Text
+from blockshake.report.document.blocks import Table
 from blockshake.report.document.html import write_html
 from blockshake.report.document.pdf import write_pdf
 from blockshake.report.document.wording import number
 from blockshake.report.study import closing_sections, content
-from blockshake.report.study.closing_sections import checks, limits
+from blockshake.report.study.closing_sections import checks
 from blockshake.report.study.content import load_content
-from blockshake.report.study.convergence_section import convergence as annex
 from blockshake.report.study.friction_section import friction
-from blockshake.report.study.opening_sections import samples, stiffness, structures
-from blockshake.report.study.peer_section import peer
 from blockshake.report.study.report import compose, make_case_report, make_report
 from blockshake.report.study.result_sections import responses
 from blockshake.report.study.statements.section import findings
 from blockshake.study import config
-from blockshake.study.convergence.table import load_convergence
-from blockshake.study.peer_record import load_peer_record
-from blockshake.study.sampling.latin_hypercube import load_design
-
-
-@pytest.fixture(scope="module")
-def report(fake, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("report")
-    paths = folder / "fake.html", folder / "fake.pdf", folder / "the-paper.json"
-    make_report(fake.study, fake.results, fake.benchmarks, *paths)
-    return paths
-
-
-@pytest.fixture(scope="module")
-def document(fake):
-    """Composed a second time from the same files."""
-    return compose(load_content(fake.study, fake.results, fake.benchmarks))
-
-
-@pytest.fixture
-def copied(fake, tmp_path):
-    """The made-up study with results of its own, to be changed."""
-    own = copy.copy(fake)
-    own.results = Path(shutil.copytree(fake.results, tmp_path / "results"))
-    return own
-
-
-@pytest.fixture(scope="module")
-def page(report):
-    parsed = Page()
-    parsed.feed(report[0].read_text(encoding="utf-8"))
-    parsed.close()
-    return parsed
-
-
-@pytest.fixture(scope="module")
-def text(page):
-    return " ".join(" ".join(page.words).split())
 
 
 def test_tags_close_and_ids_are_unique(page):
@@ -230,62 +185,6 @@ def test_complete_study_says_that_all_completed(fake):
     assert section.blocks[0].text == "Every sample of every case and model completed."
 
 
-def test_annex_has_the_numbers_of_the_convergence_table_and_marks_defaults(fake, text):
-    table = load_convergence(fake.results / "convergence.csv")
-    value = table.set_index(["parameter", "setting", "observable"])["value"][
-        "node_spacing", 0.2, "peak_drift"
-    ]
-    row = text[text.index("node spacing 200 mm *") :]
-    assert f"{1e3 * value:.2f}" in row[:120]
-    assert "grid spacing exact *" in text
-    assert "node spacing 50 mm 250000.00" in text  # sink, in micrometres
-
-
-def test_study_without_convergence_has_no_annex_and_says_so(fake):
-    study = {name: value for name, value in fake.study.items() if name != "convergence"}
-    content = load_content(study, fake.results, fake.benchmarks)
-    assert annex(content) is None
-    said = texts(limits(content))
-    assert sum("The convergence with time step" in item and "annex" not in item for item in said) == 1
-
-
-def test_annex_has_the_recorded_comparison_with_lmgc90_and_its_date(text):
-    record = load_peer_record()
-    annex = text[text.rindex("Annex: NSCD rigid beside LMGC90") :]
-    assert f"side by side on {record.attrs['date']}" in annex
-    for case in record["case"].values:
-        one = record.sel(case=case)
-        theirs, ours = (number(1e6 * one["step_time"].sel(program=name)) for name in ("LMGC90", "blockshake"))
-        assert f"{case} {theirs} {ours} {number(one['times_faster'], 2)}" in annex
-    nine = record.sel(history="nine blocks")
-    peak = 1e3 * float(abs(nine["displacement"].sel(program="LMGC90")).max())
-    assert f"{peak:.1f}" in annex
-    assert number(1e3 * nine["largest_difference"], 2) in annex
-
-
-def test_study_without_nscd_has_no_annex_on_lmgc90(fake):
-    study = {**fake.study, "models": {"ls-dem": MODELS["ls-dem"]}}
-    assert peer(load_content(study, fake.results, fake.benchmarks)) is None
-
-
-def test_a_structure_of_two_cases_is_shown_once(fake):
-    found = load_content(fake.study, fake.results, fake.benchmarks)
-    found.cases["stronger"] = replace(found.cases["configuration-1"], name="stronger")
-    blocks = structures(found).blocks
-    headings = [block.text for block in blocks if isinstance(block, Heading)]
-    assert headings[0] == "configuration-1, stronger"
-    assert len(headings) == len(fake.study["cases"])
-
-
-def test_stiffness_that_is_one_in_all_samples_is_a_number(copied):
-    alike = {"ls_dem.normal_stiffness": np.full(20, 1.8e10), "ls_dem.shear_stiffness": np.full(20, 9e9)}
-    for case in copied.study["cases"]:
-        copied.write_stiffness(case["name"], pd.DataFrame(alike))
-    blocks = stiffness(load_content(copied.study, copied.results, copied.benchmarks)).blocks
-    said = [block.text for block in blocks if isinstance(block, Text)]
-    assert any("normal stiffness k_n 18 GN/m" in words and "the same in all" in words for words in said)
-
-
 def test_own_structures_by_rigid_models_need_no_contact_stiffness(copied, monkeypatch):
     for module in (config, content):
         monkeypatch.setattr(module, "is_of_the_paper", lambda structure: False)
@@ -349,33 +248,6 @@ def test_a_study_without_a_friction_calibration_has_no_such_section(fake):
     assert friction(load_content(study, fake.results, fake.benchmarks)) is None
 
 
-def texts(section):
-    """All sentences of a section but those in tables and listings."""
-    for block in section.blocks:
-        if block.kind == "text":
-            yield block.text
-        if block.kind == "items":
-            yield from block.items
-
-
-def test_findings_on_numerical_parameters_follow_the_table(fake, document):
-    section = next(one for one in document.sections if one.key == "convergence")
-    (items,) = [block.items for block in section.blocks if block.kind == "items"]
-    assert any("default node spacing of 200 mm differs from the finest setting" in one for one in items)
-    content = load_content(fake.study, fake.results, fake.benchmarks)
-    residual = content.convergence["observable"] == "energy_residual"
-    content.convergence.loc[residual, "value"] = content.convergence.loc[residual, "setting"] ** 2
-    (items,) = [block.items for block in annex(content).blocks if block.kind == "items"]
-    assert any("goes with the time step to the power 2.0" in one for one in items)
-
-
-def test_variables_without_use_are_those_of_the_models_of_the_study(fake):
-    study = {**fake.study, "models": {"ls-dem": MODELS["ls-dem"]}}
-    said = " ".join(texts(samples(load_content(study, fake.results, fake.benchmarks))))
-    assert "LS-DEM has no use for viscous modulus of concrete" in said
-    assert "NSCD rigid has no use" not in said
-
-
 def test_bands_that_are_lines_are_counted(fake):
     content = load_content(fake.study, fake.results, fake.benchmarks)
     assert not [one for one in texts(responses(content)) if "close to lines" in one]
@@ -403,15 +275,3 @@ def test_study_without_measured_tests_tells_of_its_samples_alone(fake):
     said = " ".join([table.caption + " ".join(table.header) for table in tables])
     assert "Peak displacement of the top block" in said
     assert "virtual test" not in said
-
-
-def test_cases_of_unlike_blocks_have_their_own_stiffness(copied):
-    study = copied
-    together = load_content(study.study, study.results, study.benchmarks)
-    assert [one.cases for one in together.calibrated] == [("configuration-1", "configuration-4")]
-    table = load_design(study.results / "stiffness" / "configuration-4.csv")
-    study.write_stiffness("configuration-4", 2.0 * table)
-    apart = load_content(study.study, study.results, study.benchmarks)
-    assert [one.cases for one in apart.calibrated] == [("configuration-1",), ("configuration-4",)]
-    captions = " ".join(getattr(block, "caption", "") for block in stiffness(apart).blocks)
-    assert "10 samples; configuration-4 (after" in captions
