@@ -51,8 +51,11 @@ def kept_value(store, key, make):
     return json.loads(path.read_bytes()[:-_SEAL])
 
 
-def load_made(path, without=()):
+def load_made(path, without=(), chosen=None):
     """Dataset of a netCDF file that an earlier job made, some of its variables left out.
+
+    ``chosen``: labels by dimension, such as ``{"axis": ["x"]}``; of the variables with that dimension these alone
+    are read.
 
     Raises
     ------
@@ -60,8 +63,11 @@ def load_made(path, without=()):
         The file cannot be read as such.
     """
     try:
-        return xr.load_dataset(path, drop_variables=list(without))
-    except (OSError, RuntimeError, ValueError):
+        with xr.open_dataset(path, drop_variables=list(without)) as found:
+            return found.sel(
+                {name: labels for name, labels in (chosen or {}).items() if name in found.dims}
+            ).load()
+    except (KeyError, OSError, RuntimeError, ValueError):
         raise InputError(path, "", MADE_ANEW.format("netCDF")) from None
 
 

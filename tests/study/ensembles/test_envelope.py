@@ -2,7 +2,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from blockshake.study.ensembles.envelope import QUANTILES, envelope, over_samples
+from blockshake.files import write_dataset
+from blockshake.study.ensembles import envelope as module
+from blockshake.study.ensembles.batch import DECIMALS
+from blockshake.study.ensembles.ensemble import join_batches
+from blockshake.study.ensembles.envelope import QUANTILES, envelope, envelope_of_case, over_samples
 
 ROUNDING = 1e-12  # m
 LIMIT = 0.4  # m
@@ -116,3 +120,16 @@ def test_nobody_counted_has_no_probability(make_run, gather):
     assert np.isnan(result["collapse_probability"])
     np.testing.assert_array_equal(result["collapse_probability_interval"], [0.0, 1.0])
     assert np.isnan(result["peak_interval"]).all()
+
+
+@pytest.mark.parametrize("at_hand", [1, 2**25])
+def test_files_read_some_markers_at_a_time_give_the_same(at_hand, make_run, gather, tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "_AT_HAND", at_hand)
+    runs = [make_run(level) for level in (0.01, 0.03, 0.02)]
+    together = gather([*runs, make_run(0.5, status="collapsed", end=1.0)])
+    paths = [tmp_path / "second.nc", tmp_path / "first.nc"]
+    for path, samples in zip(paths, ([2, 3], [0, 1]), strict=True):
+        write_dataset(path, together.sel(sample=samples), DECIMALS)
+    read = envelope(join_batches(paths), LIMIT)
+    xr.testing.assert_identical(envelope_of_case(paths, LIMIT), read)
+    np.testing.assert_array_equal(read["contributing"][[0, -1]], [4, 3])

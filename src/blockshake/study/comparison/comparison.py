@@ -22,7 +22,7 @@ from blockshake.study.comparison.differences import (
 from blockshake.study.comparison.twins import TWINS
 from blockshake.study.described import describe
 from blockshake.study.ensembles.case_input import measured_on_clock
-from blockshake.study.ensembles.ensemble import POSES, join_batches, relative_to_slab
+from blockshake.study.ensembles.ensemble import ALONG_X, POSES, join_batches, relative_to_slab
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.ensembles.intervals import median_interval
 
@@ -52,7 +52,7 @@ def compare_case(batches, twins, named, base):
     ``batches``: files of its samples by model; ``twins``: file from `simulate_twins` by model, or None;
     ``named`` and ``base`` as of `coverage_of_case`, None where the case is compared with no test.
     """
-    ensembles = {model: join_batches(files, POSES) for model, files in batches.items()}
+    ensembles = {model: join_batches(files, POSES, ALONG_X) for model, files in batches.items()}
     loaded = {model: xr.load_dataset(path) for model, path in twins.items() if path}
     return compare_models(ensembles, loaded, measured_on_clock(named, base) if named else None)
 

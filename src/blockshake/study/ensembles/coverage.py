@@ -8,7 +8,7 @@ import xarray as xr
 from blockshake.study.described import describe
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.distance import distances
-from blockshake.study.ensembles.ensemble import POSES, join_batches, relative_to_slab
+from blockshake.study.ensembles.ensemble import ALONG_X, POSES, join_batches, relative_to_slab
 from blockshake.study.ensembles.envelope import over_samples
 from blockshake.study.ensembles.measured import compared_curves
 
@@ -44,7 +44,7 @@ def coverage_of_case(named, base, batches):
     ``base``: file from `measured_input`; ``batches``: files of the case's samples.
     """
     measured, marker_noise = measured_on_clock(named, base)
-    return coverage(measured, join_batches(batches, POSES), marker_noise)
+    return coverage(measured, join_batches(batches, POSES, ALONG_X), marker_noise)
 
 
 def coverage(measured, ensemble, marker_noise, seed=0):

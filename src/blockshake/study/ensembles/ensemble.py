@@ -13,6 +13,7 @@ from blockshake.study.sampling.distributions import parameter_unit
 RESIDUAL_WINDOW = 0.5  # s at the end of a run, averaged for the residual so that rocking on is evened out
 FRAMES = ("inertial", "slab")
 POSES = ("position", "orientation")
+ALONG_X = {"axis": ["x"]}
 _OF_ONE_RUN = ("status", "reason", "end_time", "sample", "parameters")
 
 
@@ -85,7 +86,7 @@ def gather_ensemble(runs, samples, parameters, slab_marker):
     return ensemble.assign(_extremes(ensemble))
 
 
-def join_batches(batches, without=()):
+def join_batches(batches, without=(), chosen=None):
     """Ensemble whose samples were gathered in several batches.
 
     Parameters
@@ -94,6 +95,8 @@ def join_batches(batches, without=()):
         From `gather_ensemble`, of one structure, motion, model and design.
     without : sequence of str
         Variables that are not read from files, such as `POSES`: half of what an ensemble holds.
+    chosen : dict of str to list, optional
+        Labels by dimension that alone are read from files, such as `ALONG_X` or some markers.
 
     Returns
     -------
@@ -105,7 +108,9 @@ def join_batches(batches, without=()):
     InputError
         No batches, a sample in two of them, or times, markers, bodies or parameters that differ.
     """
-    parts = [batch if isinstance(batch, xr.Dataset) else load_made(batch, without) for batch in batches]
+    parts = [
+        batch if isinstance(batch, xr.Dataset) else load_made(batch, without, chosen) for batch in batches
+    ]
     samples = [int(sample) for part in parts for sample in part["sample"].values]
     if not samples or len(set(samples)) < len(samples):
         raise InputError("ensemble", "samples", "expected at least one batch, and every sample in one only")

@@ -6,7 +6,7 @@ import xarray as xr
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.files import content_digest
 from blockshake.simulation.joint_figures import JOINT_FIGURES
-from blockshake.study.ensembles.ensemble import in_frames
+from blockshake.study.ensembles.ensemble import POSES, in_frames, join_batches
 from blockshake.study.ensembles.intervals import (
     CONFIDENCE,
     quantile_interval,
@@ -16,6 +16,7 @@ from blockshake.study.ensembles.intervals import (
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 BOUNDS = {"lower": 0.0, "upper": 1.0}
+_AT_HAND = 2**25  # displacements read from files at a time: 256 MiB
 _SINGLE = ("peak", "residual", "peak_rotation", *JOINT_FIGURES)  # numbers of a sample
 
 
@@ -24,7 +25,16 @@ def counted_samples(ensemble):
     return ensemble.isel(sample=np.isin(ensemble["status"].values, FINISHED))
 
 
-def envelope(ensemble, largest_drift):
+def envelope_of_case(batches, largest_drift):
+    """`envelope` of the samples in these files, whose histories are read some markers at a time."""
+
+    def displacement(markers):
+        return join_batches(batches, POSES, {"marker": markers})["marker_displacement"]
+
+    return envelope(join_batches(batches, (*POSES, "marker_displacement")), largest_drift, displacement)
+
+
+def envelope(ensemble, largest_drift, displacement=None):
     """Bounds and quantiles of an ensemble over its samples.
 
     Parameters
@@ -33,6 +43,8 @@ def envelope(ensemble, largest_drift):
         From `gather_ensemble`.
     largest_drift : float
         Displacement along x relative to the slab whose exceedance is counted [m].
+    displacement : callable, optional
+        Gives ``marker_displacement`` of all samples for a list of markers; by default the ensemble's.
 
     Returns
     -------
@@ -57,12 +69,13 @@ def envelope(ensemble, largest_drift):
     counted = counted_samples(ensemble)
     probabilities = xr.DataArray(list(QUANTILES), dims="quantile", coords={"quantile": list(QUANTILES)})
     bounds = xr.DataArray(list(BOUNDS.values()), dims="bound", coords={"bound": list(BOUNDS)})
+    edges, quantiles, known = _over_markers(counted, displacement or _held(ensemble), bounds, probabilities)
     result = xr.Dataset(
         {
-            "marker_envelope": _over_markers(counted, bounds),
-            "marker_displacement": _over_markers(counted, probabilities),
+            "marker_envelope": edges,
+            "marker_displacement": quantiles,
             **{name: over_samples(counted[name], probabilities) for name in _SINGLE},
-            "contributing": counted["marker_displacement"].notnull().all(("marker", "axis")).sum("sample"),
+            "contributing": known.sum("sample"),
         }
     ).transpose("frame", "bound", "quantile", "time", "marker", "body", "joint", "axis")
     result = result.merge(_probabilities(counted, largest_drift)).merge(_intervals(counted, probabilities))
@@ -86,14 +99,29 @@ def envelope(ensemble, largest_drift):
     return result
 
 
-def _over_markers(counted, probabilities):
-    """Quantiles of the displacement of every marker in both frames; one marker at a time, for the sake of memory."""
-    slab, moved = counted.attrs["slab_marker"], counted["marker_displacement"]
-    quantiles = []
-    for marker in moved["marker"].values:
-        pair = moved.sel(marker=list(dict.fromkeys([marker, slab])))
-        quantiles.append(over_samples(in_frames(pair, slab).sel(marker=[marker]), probabilities))
-    return xr.concat(quantiles, dim="marker")
+def _held(ensemble):
+    """Displacement of some markers of an ensemble that holds the histories."""
+    return lambda markers: ensemble["marker_displacement"].sel(marker=markers)
+
+
+def _over_markers(counted, displacement, bounds, probabilities):
+    """Bounds and quantiles of the displacement of every marker in both frames, and which samples have a value when.
+
+    As many markers are read at a time as `_AT_HAND` allows, and one is worked on.
+    """
+    slab, markers = counted.attrs["slab_marker"], counted["marker"].values
+    edges, quantiles, known = [], [], True
+    count = max(1, _AT_HAND // (3 * counted.sizes["time"] * max(1, counted.sizes["sample"])))
+    for first in range(0, len(markers), count):
+        group = markers[first : first + count]
+        read = displacement(list(dict.fromkeys([*group, slab]))).sel(sample=counted["sample"].values)
+        for marker in group:
+            pair = read.sel(marker=list(dict.fromkeys([marker, slab])))
+            known = pair.sel(marker=marker, drop=True).notnull().all("axis") & known
+            both = in_frames(pair, slab).sel(marker=[marker])
+            edges.append(over_samples(both, bounds))
+            quantiles.append(over_samples(both, probabilities))
+    return xr.concat(edges, dim="marker"), xr.concat(quantiles, dim="marker"), known
 
 
 def _probabilities(counted, largest_drift):

@@ -10,7 +10,7 @@ from blockshake.errors import InputError
 from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import model_of
-from blockshake.study.ensembles.ensemble import POSES, join_batches
+from blockshake.study.ensembles.ensemble import ALONG_X, POSES, join_batches
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.sampling.latin_hypercube import load_design
 from blockshake.study.sampling.sample_parameters import sample_parameters
@@ -40,7 +40,8 @@ def sensitivity_of_case(batches, design, model, structure, linked):
     values = load_design(design)
     given = sample_parameters(values.iloc[0], load_structure(structure), linked)
     variables = list(values.columns)
-    return sensitivity(join_batches(batches, POSES), variables, unused_variables(variables, model, given))
+    ensemble = join_batches(batches, POSES, ALONG_X)
+    return sensitivity(ensemble, variables, unused_variables(variables, model, given))
 
 
 def sensitivity(ensemble, variables, controls=()):
