@@ -103,7 +103,9 @@ def yade_task(structure):
 def _block_nodes(structure):
     """Nodes of a block, and the area of the flat that it stands on [m2]."""
     block = structure.file.shapes["block"]
-    points, areas = box_nodes(block.box, block.chamfer, PARAMETERS.node_spacing, PARAMETERS.perimeter_inset)
+    points, areas = box_nodes(
+        block.box, block.chamfer, block.hollow, PARAMETERS.node_spacing, PARAMETERS.perimeter_inset
+    )
     return points, float(areas[points[:, 2] == -0.5 * block.box[2]].sum())
 
 

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from hollow_faces import HEADER as HOLLOW_HEADER
+from hollow_faces import hollow_rows
 from key_tables import HEADER as KEYS_HEADER
 from key_tables import key_rows
 from schedule import deep_diagnosis, hours, measured, planned, shares, timed_study
@@ -237,6 +239,7 @@ MAKERS = {
     "departures": departure_table,
     "published-settings": published_settings,
     "shear-damping": shear_damping,
+    "hollow-faces": lambda: markdown(HOLLOW_HEADER, hollow_rows()),
     "study-shares": study_shares,
     "cost-of-samples": cost_of_samples,
     "times-on-a-cluster": times_on_a_cluster,

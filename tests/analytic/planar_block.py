@@ -12,7 +12,7 @@ K_N, K_S, DEPTH, H, G = 2.16e10, 9.0e9, 2.4, 0.8, 9.81
 
 
 @numba.njit
-def _fall(x, area, mass, central, pivot, angle, k_n, k_s, mu, zeta, dt, end):
+def _fall(x, gap, area, mass, central, pivot, angle, k_n, k_s, mu, zeta, dt, end):
     """Angular momentum about the far pivot at lean -``end``, what gravity took since upright added again."""
     c, s = np.cos(angle), np.sin(angle)
     X, Z, lean = pivot - pivot * c + H * s, pivot * s + H * c, angle
@@ -20,7 +20,7 @@ def _fall(x, area, mass, central, pivot, angle, k_n, k_s, mu, zeta, dt, end):
     shear, before = np.zeros(x.size), np.zeros(x.size)
     while lean > -end and t < 2.0:
         c, s = np.cos(lean), np.sin(lean)
-        depth = -(Z - s * x - c * H)
+        depth = -(Z - s * x - c * (H - gap))
         touching = area[depth > 0.0].sum()
         dashpot = 2.0 * zeta * np.sqrt(mass * k_n / touching) if touching > 0.0 else 0.0
         force_x = force_z = moment = 0.0
@@ -48,13 +48,14 @@ def _fall(x, area, mass, central, pivot, angle, k_n, k_s, mu, zeta, dt, end):
     return central * w + mass * (Z * u - (X + pivot) * v) - taken
 
 
-def kept_by(rocker, x, width, restitution, angle, end, mu=0.9, dt=4e-6):
+def kept_by(rocker, x, width, restitution, angle, end, mu=0.9, dt=4e-6, gap=0.0):
     """Part of the angular momentum about the far pivot that the impact of a block let go at ``angle`` keeps.
 
-    ``x``, ``width``: rows of springs [m] over the base's half widths and what each stands for [m].
+    ``x``, ``width``: rows of springs [m] over the base's half widths and what each stands for [m]; ``gap``: how far
+    each ends above the base's edges [m].
     """
     after = _fall(
-        np.asarray(x), np.asarray(width) * DEPTH, rocker.mass, rocker.central, rocker.pivot, angle, K_N, K_S,
-        mu, float(critical_part(restitution)), dt, end,
+        np.asarray(x), np.broadcast_to(gap, np.shape(x)), np.asarray(width) * DEPTH, rocker.mass, rocker.central,
+        rocker.pivot, angle, K_N, K_S, mu, float(critical_part(restitution)), dt, end,
     )  # fmt: skip
     return after / (-rocker.inertia * rocker.speed(0.0, angle))

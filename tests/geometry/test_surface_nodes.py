@@ -35,7 +35,7 @@ def test_the_papers_layout_has_positive_areas():
     """A negative area would pull. 0.2 m spacing, 5 mm inset; also at twice and half of each."""
     for spacing in (0.1, 0.2, 0.4):
         for inset in (0.0025, 0.005, 0.01):
-            _, areas = box_nodes(SIZE, CHAMFER, spacing, inset)
+            _, areas = box_nodes(SIZE, CHAMFER, 0.0, spacing, inset)
             assert (areas > 0.0).all()
 
 
@@ -44,7 +44,7 @@ def test_the_papers_layout_has_positive_areas():
 def test_areas_and_second_moments_of_every_flat_are_exact(spacing, inset):
     """Spacing and inset then change no stiffness, in compression or rocking (docs/decisions/0001)."""
     assume(spacing > 2.0 * inset)
-    points, areas = box_nodes(SIZE, CHAMFER, spacing, inset)
+    points, areas = box_nodes(SIZE, CHAMFER, 0.0, spacing, inset)
     for axis in range(3):
         first, second = [other for other in range(3) if other != axis]
         width, depth = SIZE[first] - 2.0 * CHAMFER, SIZE[second] - 2.0 * CHAMFER
@@ -61,7 +61,7 @@ def test_areas_and_second_moments_of_every_flat_are_exact(spacing, inset):
 
 
 def test_every_node_lies_on_the_surface_where_the_normal_is_the_flats():
-    points, _ = box_nodes(SIZE, CHAMFER, 0.2, 0.005)
+    points, _ = box_nodes(SIZE, CHAMFER, 0.0, 0.2, 0.005)
     for point in points:
         # a micrometre inside, where a contact would find it: the ridge's 45 degrees must not show
         axis = np.argmin(SIZE / 2.0 - np.abs(point))
@@ -79,7 +79,9 @@ def test_flats_and_chamfers_together_have_the_area_of_the_body(spacing):
     area = trimesh.Trimesh(solid.vertices, triangles(solid), process=False).area
     points, areas = chamfer_nodes(SIZE, CHAMFER, spacing)
     assert (areas > 0.0).all()
-    assert box_nodes(SIZE, CHAMFER, 0.2, 0.005)[1].sum() + areas.sum() == pytest.approx(area, rel=ROUNDING)
+    assert box_nodes(SIZE, CHAMFER, 0.0, 0.2, 0.005)[1].sum() + areas.sum() == pytest.approx(
+        area, rel=ROUNDING
+    )
     phi = [box_distance(*point, *(SIZE / 2.0), CHAMFER)[0] for point in points]
     np.testing.assert_allclose(phi, 0.0, atol=1e-15)
 
@@ -98,7 +100,7 @@ def _sunk(rotation, chamfer, nodes):
 @pytest.mark.parametrize("inset", [0.005, 0.001])
 def test_how_deep_an_edge_sinks_into_a_plane_before_a_node_touches(inset):
     """At the tilt a the flat's ridge is inset sin(a) below its nodes, the chamfer's w/2 sin(45 - a) below its own."""
-    flat = box_nodes(SIZE, CHAMFER, 0.2, inset)[0]
+    flat = box_nodes(SIZE, CHAMFER, 0.0, 0.2, inset)[0]
     nodes = np.vstack([flat, chamfer_nodes(SIZE, CHAMFER, 0.2)[0]])
     for tilt in np.radians(np.arange(1.0, 45.5, 1.0)):
         rotation = Rotation.from_rotvec([0.0, tilt, 0.0])
@@ -115,9 +117,9 @@ def test_how_deep_a_corner_sinks_into_a_plane_before_a_node_touches():
     """
     inset = 0.005
     down, _ = Rotation.align_vectors([[0.0, 0.0, -1.0]], [[1.0, 1.0, 1.0]])
-    sharp = box_nodes(SIZE, 0.0, 0.2, inset)[0]
+    sharp = box_nodes(SIZE, 0.0, 0.0, 0.2, inset)[0]
     assert _sunk(down, 0.0, sharp) == pytest.approx(2.0 * inset / np.sqrt(3.0), abs=1e-12)
-    flat = box_nodes(SIZE, CHAMFER, 0.2, inset)[0]
+    flat = box_nodes(SIZE, CHAMFER, 0.0, 0.2, inset)[0]
     assert _sunk(down, CHAMFER, flat) == pytest.approx(
         (CHAMFER + 4.0 * inset) / (2.0 * np.sqrt(3.0)), abs=1e-12
     )

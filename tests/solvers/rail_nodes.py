@@ -5,14 +5,14 @@ import numpy as np
 from blockshake.geometry.surface_nodes import box_nodes
 
 
-def rail_nodes(size, chamfer, spacing, inset):
+def rail_nodes(size, chamfer, hollow, spacing, inset):
     """Nodes of `box_nodes`, of those below and above the two outermost rows along y alone.
 
     They share the area of the whole face, so that its stiffness in compression is kept. A face of such nodes
     is hollow, as the four contact points of nonsmooth contact dynamics are; a whole face has another impact
     (docs/rocking.md, *Why 0.86 and not 0.71*).
     """
-    points, areas = box_nodes(size, chamfer, spacing, inset)
+    points, areas = box_nodes(size, chamfer, hollow, spacing, inset)
     level = np.isclose(np.abs(points[:, 2]), 0.5 * size[2])
     kept = ~level | np.isclose(np.abs(points[:, 0]), 0.5 * size[0] - chamfer - inset)
     areas = np.where(level, areas * areas[level].sum() / areas[level & kept].sum(), areas)

@@ -1,4 +1,4 @@
-"""Level set of a chamfered box: the signed distance of Eq. (1) and its gradient, in closed form."""
+"""Level set of a chamfered box with flat or hollow faces: the distance of Eq. (1) and its gradient, in closed form."""
 
 from math import copysign
 
@@ -38,7 +38,58 @@ def box_distance(x, y, z, a, b, c, chamfer):
     choice is a select. A tie between a flat and a chamfer goes to the flat; where two flats (or two chamfers) tie, the
     normal is still a unit vector, that of the axis that comes first.
     """
-    fx, fy, fz = abs(x) - a, abs(y) - b, abs(z) - c
+    return _nearest_face(x, y, z, abs(x) - a, abs(y) - b, abs(z) - c, chamfer)
+
+
+@inline_kernel
+def hollow_depth(u, v, hollow):
+    """Depth of a hollow face below its perimeter: ``hollow (1 - u^2)^2 (1 - v^2)^2``, which ends there without a kink.
+
+    Parameters
+    ----------
+    u, v : float
+        Place across the face over its half widths [1].
+    hollow : float
+        Depth in the middle [m].
+
+    Returns
+    -------
+    float
+        [m]; zero beyond the perimeter.
+    """
+    p, q = 1.0 - u * u, 1.0 - v * v
+    p, q = p if p > 0.0 else 0.0, q if q > 0.0 else 0.0
+    return hollow * ((p * p) * (q * q))
+
+
+@inline_kernel
+def hollow_box_distance(x, y, z, a, b, c, chamfer, hollow):
+    """As `box_distance`, of a box whose six faces are hollow.
+
+    Parameters
+    ----------
+    x, y, z, a, b, c, chamfer : float
+        As of `box_distance` [m].
+    hollow : float
+        Depth of the middle of each face below its perimeter [m]: see `hollow_depth`.
+
+    Returns
+    -------
+    phi : float
+        Distance along the normal of the face that is nearest [m], negative inside.
+    nx, ny, nz : float
+        Unit outward normal of that face as if it were flat: a hollow of 1 mm tilts it by some mrad.
+    """
+    u, v, w = x * (1.0 / (a - chamfer)), y * (1.0 / (b - chamfer)), z * (1.0 / (c - chamfer))
+    fx = abs(x) - a + hollow_depth(v, w, hollow)
+    fy = abs(y) - b + hollow_depth(u, w, hollow)
+    fz = abs(z) - c + hollow_depth(u, v, hollow)
+    return _nearest_face(x, y, z, fx, fy, fz, chamfer)
+
+
+@inline_kernel
+def _nearest_face(x, y, z, fx, fy, fz, chamfer):
+    """Level-set value and normal of the face that is nearest, from the distances out of the flats' planes [m]."""
     x_over_y, x_over_z, y_over_z = fx >= fy, fx >= fz, fy >= fz
     # farthest out of the flats' planes, and the next
     larger = fx if x_over_y else fy

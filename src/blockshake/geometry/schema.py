@@ -38,6 +38,9 @@ class Shape(Strict):
         None, description="edge lengths along body x, y, z [m]"
     )
     chamfer: NotNegative = Field(0.0, description="leg of the 45-degree chamfer of a box [m]")
+    hollow: NotNegative = Field(
+        0.0, description="depth of the middle of each face of a box below the face's perimeter [m]"
+    )
     mesh: str | None = Field(None, description="file of a closed triangulated surface, coordinates in m")
 
     @model_validator(mode="after")
@@ -46,8 +49,12 @@ class Shape(Strict):
             raise ValueError("expected either box (three edge lengths) or mesh (a file)")
         if self.mesh is not None and self.chamfer:
             raise ValueError("expected a chamfer on a box only")
+        if self.mesh is not None and self.hollow:
+            raise ValueError("expected hollow faces of a box only")
         if self.box is not None and 2.0 * self.chamfer >= min(self.box):
             raise ValueError("expected a chamfer below half the smallest edge length")
+        if self.box is not None and self.hollow > 0.01 * min(self.box):
+            raise ValueError("expected a hollow of at most a hundredth of the smallest edge length")
         return self
 
 

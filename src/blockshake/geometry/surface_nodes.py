@@ -2,8 +2,10 @@
 
 import numpy as np
 
+from blockshake.geometry.level_set import hollow_depth
 
-def box_nodes(size, chamfer, spacing, inset):
+
+def box_nodes(size, chamfer, hollow, spacing, inset):
     """Nodes on the six flats of a box, evenly spaced, the outer ones just inside the perimeter.
 
     Parameters
@@ -12,6 +14,8 @@ def box_nodes(size, chamfer, spacing, inset):
         Full edge lengths along body x, y, z [m].
     chamfer : float
         Leg of the chamfer [m]; the flats end there.
+    hollow : float
+        Depth of the middle of each face below its perimeter [m]; the nodes lie on the hollow face.
     spacing : float
         Aimed distance of nodes along each edge [m]; at least two intervals an edge.
     inset : float
@@ -31,11 +35,14 @@ def box_nodes(size, chamfer, spacing, inset):
     points, areas = [], []
     for axis in range(3):
         across = [other for other in range(3) if other != axis]
-        first, first_weight = line_nodes(size[across[0]] - 2.0 * chamfer, spacing, inset)
-        second, second_weight = line_nodes(size[across[1]] - 2.0 * chamfer, spacing, inset)
+        widths = [size[other] - 2.0 * chamfer for other in across]
+        first, first_weight = line_nodes(widths[0], spacing, inset)
+        second, second_weight = line_nodes(widths[1], spacing, inset)
+        u, v = 2.0 * first / widths[0], 2.0 * second / widths[1]
+        depth = np.array([[hollow_depth(one, other, hollow) for other in v] for one in u])
         for side in (-0.5, 0.5):
             flat = np.zeros((first.size, second.size, 3))
-            flat[..., axis] = side * size[axis]
+            flat[..., axis] = side * (size[axis] - 2.0 * depth)
             flat[..., across[0]] = first[:, None]
             flat[..., across[1]] = second[None, :]
             points.append(flat.reshape(-1, 3))

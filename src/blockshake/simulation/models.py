@@ -73,7 +73,7 @@ class Model:
     own_stiffness : str or None
         ``module:function`` that gives them for a structure about which nothing is said: ``(structure)`` to a dict.
     without_effect : tuple of str
-        Properties of a material that the model has no use for.
+        Last parts of the names of parameters that the model has no use for.
     rigid : bool
         Its blocks do not deform.
     perturbation : Perturbation or None
@@ -164,7 +164,7 @@ MODELS = {
             time_step=1e-3,
             driver="blockshake.solvers.nscd.driver:simulate_nscd",
             parameters="blockshake.solvers.nscd.parameters:NscdParameters",
-            without_effect=("viscous_modulus", "youngs_modulus"),  # rigid blocks and joints
+            without_effect=("viscous_modulus", "youngs_modulus", "hollow"),  # rigid, and bearing on corners
             # a closer time step where bodies meet, as studies should: docs/nscd.md
             perturbation=Perturbation(
                 stream=1,
@@ -180,7 +180,7 @@ MODELS = {
             time_step=1e-3,
             driver="blockshake.solvers.nscd_deformable.driver:simulate_elastic",
             parameters="blockshake.solvers.nscd_deformable.parameters:DeformableParameters",
-            without_effect=("viscous_modulus",),
+            without_effect=("viscous_modulus", "hollow"),
             rigid=False,
         ),
         Model(
@@ -190,6 +190,7 @@ MODELS = {
             time_step=1e-3,
             driver="blockshake.solvers.nscd_deformable.driver:simulate_viscoelastic",
             parameters="blockshake.solvers.nscd_deformable.parameters:DeformableParameters",
+            without_effect=("hollow",),
             rigid=False,
         ),
     )

@@ -83,6 +83,7 @@ def test_config_replaces_table_2_as_a_whole():
     [
         ({"friction.concrete": {"mean": 1, "cov": 0.1}}, "friction.concrete"),
         ({"materials.concrete.densty": {"mean": 1, "cov": 0.1}}, "materials.concrete.densty"),
+        ({"shapes.block.chamfer": {"mean": 0.02, "cov": 0.1}}, "shapes.block.chamfer"),
         ({"friction.a.b": {"mean": 1, "cov": 0.1, "sd": 2}}, "friction.a.b.sd"),
         ({"friction.a.b": {"mean": 1}}, "friction.a.b.cov"),
         ({"friction.a.b": {"mean": -1, "cov": 0.1}}, "friction.a.b.mean"),
@@ -103,6 +104,7 @@ def test_units_follow_the_property():
     assert parameter_unit("friction.concrete.concrete") == "1"
     assert parameter_unit("materials.concrete.density") == "kg/m3"
     assert parameter_unit("materials.steel.viscous_modulus") == "Pa s"
+    assert parameter_unit("shapes.block.hollow") == "m"
     assert parameter_unit("ls_dem.shear_stiffness") == "N/m3"
     with pytest.raises(InputError, match=r"ls_dem\.skin: expected"):
         parameter_unit("ls_dem.skin")

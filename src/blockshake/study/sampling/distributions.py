@@ -18,7 +18,9 @@ _PROPERTIES = {
     if quantity.name.startswith("materials.MATERIAL.")
 }
 _WORD = r"[^\s./]+"
-_NAME = re.compile(rf"friction\.({_WORD})\.({_WORD})|materials\.{_WORD}\.({'|'.join(_PROPERTIES)})")
+_NAME = re.compile(
+    rf"friction\.({_WORD})\.({_WORD})|materials\.{_WORD}\.(?:{'|'.join(_PROPERTIES)})|shapes\.{_WORD}\.hollow"
+)
 
 
 class Lognormal(Strict):
@@ -93,8 +95,8 @@ def load_distributions(mapping, where):
     ----------
     mapping : dict of str to dict, or None
         ``{name: {distribution: lognormal, mean: ..., cov: ...}}``, names as
-        ``friction.MATERIAL.MATERIAL`` or ``materials.MATERIAL.PROPERTY``. It replaces Table 2 as a
-        whole: what it does not name is not random. None means Table 2.
+        ``friction.MATERIAL.MATERIAL``, ``materials.MATERIAL.PROPERTY`` or ``shapes.SHAPE.hollow``. It replaces
+        Table 2 as a whole: what it does not name is not random. None means Table 2.
     where : str
         File or option to name in an error.
 
@@ -119,8 +121,8 @@ def load_distributions(mapping, where):
             raise InputError(
                 where,
                 f"distributions.{name}",
-                "unknown parameter; expected friction.MATERIAL.MATERIAL or materials.MATERIAL.PROPERTY with "
-                f"one of the properties {', '.join(_PROPERTIES)}",
+                "unknown parameter; expected friction.MATERIAL.MATERIAL, shapes.SHAPE.hollow or "
+                f"materials.MATERIAL.PROPERTY with one of the properties {', '.join(_PROPERTIES)}",
             )
         identity = tuple(sorted(match.group(1, 2))) if match.group(1) else name
         if identity in seen:
@@ -141,10 +143,13 @@ def parameter_unit(name):
         No parameter that a design can hold.
     """
     if _NAME.fullmatch(name):
-        return "1" if name.startswith("friction.") else _PROPERTIES[name.rsplit(".", 1)[1]]
+        kind, _, key = name.split(".")
+        return {"friction": "1", "shapes": "m"}.get(kind) or _PROPERTIES[key]
     if name in CALIBRATED:
         return "N/m3"
-    raise InputError("design", name, "expected a friction coefficient, a material's property or a stiffness")
+    raise InputError(
+        "design", name, "expected a friction coefficient, a material's property, a hollow or a stiffness"
+    )
 
 
 def draw_true_parameters(seed, means):

@@ -49,8 +49,8 @@ def test_packets_give_the_bits_of_single_places(surfaces):
     R, d = np.zeros((2, 3, 3)), np.zeros((2, 3))
     R[1] = np.eye(3)
     area = locate_nodes_into(
-        packets, located, 0, N_PACKETS, 0, surfaces.half, surfaces.chamfer, surfaces.lattice, surfaces.values, shape,
-        R, d, 1,
+        packets, located, 0, N_PACKETS, 0, surfaces.half, surfaces.chamfer, surfaces.hollow, surfaces.lattice,
+        surfaces.values, shape, R, d, 1,
     )  # fmt: skip
     expected = _level_sets(surfaces, shape, points)
     np.testing.assert_array_equal(found[:, PHI // LANES].ravel(), expected)

@@ -222,7 +222,7 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
         )
         locate_nodes_into(
             packets, located, first[side], first[side + 1], first[side],
-            surfaces.half, surfaces.chamfer, surfaces.lattice, surfaces.values, surfaces.shape[other],
+            surfaces.half, surfaces.chamfer, surfaces.hollow, surfaces.lattice, surfaces.values, surfaces.shape[other],
             R, d, 0,
         )  # fmt: skip
     joint = np.full(pairs.shape[0], -1, np.int64)
@@ -261,7 +261,7 @@ def locate_pair_into(candidates, surfaces, poses, pair, R, d):
         relative_pose_into(poses.position, poses.rotation, surfaces.offset, owner, other, side, R, d)
         area += 0.5 * locate_nodes_into(
             candidates.packets, candidates.located, first[2 * pair + side], first[2 * pair + side + 1],
-            first[2 * pair], surfaces.half, surfaces.chamfer, surfaces.lattice, surfaces.values,
+            first[2 * pair], surfaces.half, surfaces.chamfer, surfaces.hollow, surfaces.lattice, surfaces.values,
             surfaces.shape[other], R, d, side,
         )  # fmt: skip
     return area

@@ -1,6 +1,6 @@
 """Places of the nodes of one side of a pair in the other body's frame, and its level set there: Eq. (1)."""
 
-from blockshake.geometry.level_set import box_distance
+from blockshake.geometry.level_set import box_distance, hollow_box_distance
 from blockshake.geometry.trilinear import corner_values, interpolate, locate
 from blockshake.jit import borrowing_kernel, inline_kernel, separate_kernel
 from blockshake.solvers.ls_dem.contact.packets import (
@@ -39,7 +39,7 @@ from blockshake.solvers.ls_dem.surfaces import (
 
 @borrowing_kernel
 def locate_nodes_into(
-    packets, located, first, last, start, half, chamfer, lattice, values, shape, R, d, side
+    packets, located, first, last, start, half, chamfer, hollow, lattice, values, shape, R, d, side
 ):
     """Locate the nodes of one side.
 
@@ -54,7 +54,7 @@ def locate_nodes_into(
         Packets of this side.
     start : int
         First packet of the pair, whose row of ``located`` is the first.
-    half, chamfer, lattice, values, shape : as in `Surfaces`, int
+    half, chamfer, hollow, lattice, values, shape : as in `Surfaces`, int
         Shape whose level set is read.
     R, d, side : float64 arrays, shape (2, 3, 3) and (2, 3), int
         Pose of the owner in the other's frame, from `relative_pose_into`.
@@ -69,10 +69,14 @@ def locate_nodes_into(
     The change is the difference of two places and not a velocity times the step: taken with the
     lever arms of the step's end, the latter would creep by ``dt / 2`` times the centripetal acceleration.
     """
-    if lattice[shape, INVERSE_SPACING] == 0.0:
-        _locate_in_box_into(packets, located, first, last, start, half, chamfer, shape, R, d, side)
-    else:
+    if lattice[shape, INVERSE_SPACING] != 0.0:
         _locate_in_lattice_into(packets, located, first, last, start, lattice, values, shape, R, d, side)
+    elif hollow[shape] != 0.0:
+        _locate_in_hollow_box_into(
+            packets, located, first, last, start, half, chamfer, hollow, shape, R, d, side
+        )
+    else:
+        _locate_in_box_into(packets, located, first, last, start, half, chamfer, shape, R, d, side)
     return _area_inside(located, first - start, last - start)
 
 
@@ -119,6 +123,18 @@ def _follow(packets, packet, located, row, lane, pose):
     return x, y, z
 
 
+@inline_kernel
+def _find(packets, packet, located, row, lane, phi, nx, ny, nz, slope):
+    """Keep what was found at a node; whether it is inside or its spring is held."""
+    located[row, PHI + lane] = phi
+    located[row, SLOPE + lane] = slope
+    located[row, NORMAL_X + lane] = nx
+    located[row, NORMAL_Y + lane] = ny
+    located[row, NORMAL_Z + lane] = nz
+    located[row, INSIDE + lane] = packets[packet, AREA + lane] if phi < 0.0 else 0.0
+    return (phi < 0.0) | (packets[packet, HELD + lane] != 0.0)
+
+
 @separate_kernel
 def _locate_in_box_into(packets, located, first, last, start, half, chamfer, shape, R, d, side):
     """Places, level-set values and normals by the exact distance."""
@@ -129,14 +145,23 @@ def _locate_in_box_into(packets, located, first, last, start, half, chamfer, sha
         for lane in range(LANES):
             x, y, z = _follow(packets, packet, located, row, lane, pose)
             phi, nx, ny, nz = box_distance(x, y, z, a, b, c, leg)
-            located[row, PHI + lane] = phi
-            located[row, SLOPE + lane] = 1.0
-            located[row, NORMAL_X + lane] = nx
-            located[row, NORMAL_Y + lane] = ny
-            located[row, NORMAL_Z + lane] = nz
-            area = packets[packet, AREA + lane]
-            located[row, INSIDE + lane] = area if phi < 0.0 else 0.0
-            busy |= (phi < 0.0) | (packets[packet, HELD + lane] != 0.0)
+            busy |= _find(packets, packet, located, row, lane, phi, nx, ny, nz, 1.0)
+        located[row, BUSY] = busy
+
+
+@separate_kernel
+def _locate_in_hollow_box_into(
+    packets, located, first, last, start, half, chamfer, hollow, shape, R, d, side
+):
+    """Places, level-set values and normals by the distance from hollow faces."""
+    a, b, c, leg, deep = half[shape, 0], half[shape, 1], half[shape, 2], chamfer[shape], hollow[shape]
+    pose = _pose(R, d, side)
+    for packet in range(first, last):
+        busy, row = False, packet - start
+        for lane in range(LANES):
+            x, y, z = _follow(packets, packet, located, row, lane, pose)
+            phi, nx, ny, nz = hollow_box_distance(x, y, z, a, b, c, leg, deep)
+            busy |= _find(packets, packet, located, row, lane, phi, nx, ny, nz, 1.0)
         located[row, BUSY] = busy
 
 
@@ -183,12 +208,5 @@ def _locate_in_lattice_into(packets, located, first, last, start, lattice, value
                 located[row, NORMAL_X + lane], located[row, NORMAL_Y + lane], located[row, NORMAL_Z + lane],
                 located[row, PHI + lane], inverse,
             )  # fmt: skip
-            located[row, SLOPE + lane] = slope
-            located[row, PHI + lane] = phi
-            located[row, NORMAL_X + lane] = nx
-            located[row, NORMAL_Y + lane] = ny
-            located[row, NORMAL_Z + lane] = nz
-            area = packets[packet, AREA + lane]
-            located[row, INSIDE + lane] = area if phi < 0.0 else 0.0
-            busy |= (phi < 0.0) | (packets[packet, HELD + lane] != 0.0)
+            busy |= _find(packets, packet, located, row, lane, phi, nx, ny, nz, slope)
         located[row, BUSY] = busy

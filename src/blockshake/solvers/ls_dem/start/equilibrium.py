@@ -17,6 +17,7 @@ from blockshake.solvers.ls_dem.start.stability import stable_time_step
 
 _MOST_ITERATIONS = 20
 _AT_REST = 1e-9  # out-of-balance force over weight; the thump it leaves is as small
+_SEATED = 1e-5  # m; nodes of a hollow joint that are open by so much more than its nearest stay open
 _SOFT = 1e-9  # of the stiffest entry; it lets a body that nothing holds move far, and is told by that
 
 
@@ -50,8 +51,8 @@ def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near):
     -----
     Newton's method on the forces of `contact_forces_into`, whose stiffness is the springs of the nodes in
     touch. At the first iteration all nodes within ``near`` count, those of an open joint across which gravity acts
-    pulling it close. Where joints open or slide it may not converge, and relaxation has more to do. Bodies
-    without inverse inertia do not turn.
+    pulling it close; of hollow faces only the nodes at the rim. Where joints open or slide it may not converge, and
+    relaxation has more to do. Bodies without inverse inertia do not turn.
     """
     n_bodies = len(bodies.mass)
     position, orientation = state.position.copy(), state.orientation.copy()
@@ -157,7 +158,7 @@ def _joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
     poses : Poses
         Those of the last force evaluation.
     reach : float
-        Nodes whose level-set value is below this are in touch [m].
+        Nodes whose level-set value is below this are in touch [m], but those in the hollow of a face.
     down : float64 array, shape (3,)
         Direction of gravity; zero without any.
 
@@ -182,18 +183,18 @@ def _joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
         locate_pair_into(candidates, surfaces, poses, pair, turn, shift)
         a, b = candidates.pairs[pair, 0], candidates.pairs[pair, 1]
         k_n, k_s = normal_stiffness(interfaces, a, b), in_series(interfaces.k_s, a, b)
-        area, weight = 0.0, 0.0
+        area, weight, closed = 0.0, 0.0, reach
+        if surfaces.hollow[surfaces.shape[a]] > 0.0 or surfaces.hollow[surfaces.shape[b]] > 0.0:
+            closed = min(reach, max(0.0, _nearest(candidates, pair) + _SEATED))
         for side in range(2):
             owner, other = candidates.pairs[pair, side], candidates.pairs[pair, 1 - side]
             R = poses.rotation[other]
             for packet in range(candidates.first[2 * pair + side], candidates.first[2 * pair + side + 1]):
-                node, found = (
-                    candidates.packets[packet],
-                    candidates.located[packet - candidates.first[2 * pair]],
-                )
+                node = candidates.packets[packet]
+                found = candidates.located[packet - candidates.first[2 * pair]]
                 for lane in range(LANES):
                     phi = found[PHI + lane]
-                    if not phi < reach:
+                    if not phi < closed:
                         continue
                     n, arm = np.zeros(3), np.zeros(3)
                     for i in range(3):
@@ -226,6 +227,16 @@ def _joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
             gamma = dashpot_coefficient(interfaces, a, b, interfaces.damping_ratio, k_n, area)
             relaxation[pair] = gamma * weight / (k_n * area)
     return stiffness, pull, touching, relaxation
+
+
+@kernel
+def _nearest(candidates, pair):
+    """Least level-set value of the nodes of a pair, as located [m]."""
+    least = np.inf
+    for row in range(candidates.first[2 * pair + 2] - candidates.first[2 * pair]):
+        for lane in range(LANES):
+            least = min(least, candidates.located[row, PHI + lane])
+    return least
 
 
 @kernel
