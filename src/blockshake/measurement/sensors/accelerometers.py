@@ -1,7 +1,6 @@
 """Readings of an accelerometer on a block: specific force along the block's own axes."""
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
 
 from blockshake.geometry.rotations import rotation_matrices
 
@@ -92,6 +91,8 @@ def low_pass(values):
     values : float64 array, shape (n_fine, n_channels)
         Finite.
     """
+    from scipy.signal import butter, sosfiltfilt  # here: a second of the start of jobs that read no accelerometer
+
     sections = butter(ORDER, CUTOFF, fs=FINE_RATE, output="sos")
     return sosfiltfilt(sections, values, axis=0, padlen=min(_PAD, len(values) - 1))
 
