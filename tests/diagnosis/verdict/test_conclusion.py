@@ -80,9 +80,12 @@ def test_findings_of_one_name_are_one_cause():
 
 
 def test_an_unknown_cause_stays_unknown_beside_a_sensor_fault():
-    verdict = _verdict(made_up_decision("unknown"), [_finding()])
+    decision = made_up_decision("unknown")
+    verdict = _verdict(decision, [_finding(p=0.1 * decision.p_none)])
     assert (verdict.decision, verdict.causes) == ("unknown", ())
-    assert any("sensor-gain" in caveat for caveat in verdict.caveats)
+    # of the corrected readings: the fault of the sensor is not the misfit
+    assert (verdict.misfit.p, verdict.misfit.where) == (decision.p_none, JUDGED.where)
+    assert any(EFFECTS["sensor-gain"].title in caveat for caveat in verdict.caveats)
 
 
 def test_little_effort_allows_no_strong_word():

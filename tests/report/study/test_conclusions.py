@@ -61,10 +61,12 @@ def test_the_joint_that_opens_most_is_that_of_the_files(content):
 def test_models_that_differ_by_more_than_their_limits_are_named(content):
     case = content.cases[FIRST]
     assert "the limits of every two of them overlap" in " ".join(told(content)[f"found-{FIRST}"])
-    differences = case.differences.copy(deep=True)
+    one = case.responses["ls-dem"]
+    envelope = one.envelope.copy(deep=True)
     for name in ("peak", "peak_interval"):
-        differences[name].loc[{"model": "ls-dem"}] += 1.0
-    words = " ".join(told(changed(content, FIRST, differences=differences))[f"found-{FIRST}"])
+        envelope[name] += 1.0
+    responses = {**case.responses, "ls-dem": replace(one, envelope=envelope)}
+    words = " ".join(told(changed(content, FIRST, responses=responses))[f"found-{FIRST}"])
     assert "do not overlap: LS-DEM and NSCD rigid. The choice of the model matters here." in words
 
 

@@ -237,7 +237,7 @@ def test_the_friction_calibration_says_what_the_test_does_not_tell(document):
     table = next(block for block in section.blocks if block.kind == "table")
     row = dict(zip(table.header, table.rows[0], strict=True))
     assert row["Mean friction is"] == "not informed above 0.4"
-    assert row["Best"] == "0.6"
+    assert row["Lowest score at"] == "0.6"
     assert row["Score [mm]"] == "3"
     assert row["Coverage"] == "0.830"
     assert row["Test"] == "synthetic"

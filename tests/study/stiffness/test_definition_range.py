@@ -11,6 +11,7 @@ def definitions(peaks):
         {
             "stiffness": (("direction", "restitution", "definition"), np.stack([stiffness, stiffness])),
             "top_peak": (("restitution", "definition"), peaks),
+            "top_peak_same_damping": (("restitution", "definition"), peaks + 0.1),
             "target_wave_speed": ("direction", [4000.0, 2000.0]),
             "free_speed": ("factor", [100.0, 500.0]),
         },
@@ -26,7 +27,7 @@ def test_ranges_are_relative_to_the_stiffness_of_the_study():
     found = definition_range(definitions(np.array([[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]])))
     assert found.at_own_damping == pytest.approx((1.0, 1.5))
     assert found.over_levels == pytest.approx((0.25, 1.25))
-    assert found.top_peak == (0.1, 0.6)
+    assert found.top_peak == pytest.approx((0.1, 0.7))
     assert (found.free_share, found.free_factor) == (0.25, 10.0)
 
 

@@ -90,7 +90,7 @@ def _reasons(effect, place, findings):
     """Reasons for which the laws strike an effect out."""
     law = law_that_holds(effect, place, findings)
     if law:
-        yield f"its law holds: {law} is as in the nominal model"
+        yield f"its law holds: {law} departs by less than counts as an effect"
     elif findings.laws and not leans_to(effect, place, findings):
         told = effect not in SIGNATURES or is_told(effect, place, findings)
         yield "no law departs its way" if told else "its law is not told"

@@ -61,7 +61,7 @@ def misfit(readings, ensembles):
 def where(found):
     """The place of the largest misfit in words."""
     if found.attrs["phase"] == "none":
-        return "no joint leaves the nominal ensemble in any phase"
+        return "no cell of the residual atlas is beyond its limit"
     phase = {
         "quiet": "before the first onset",
         "strong": "while shaken strongly",

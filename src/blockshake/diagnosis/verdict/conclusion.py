@@ -45,7 +45,8 @@ def conclude(
     Notes
     -----
     A sensor fault beside a physical cause is a combination: it was corrected first, and the tests judged again. Where
-    the physical cause is unknown, so is the whole, and the sensor fault stands among the caveats. Its entry in
+    the physical cause is unknown, so is the whole: misfit and gain are those of the corrected readings, and the sensor
+    fault stands among the caveats. Its entry in
     ``probabilities`` is 1 less the parity check's p: a score, neither a conformal p value nor a probability.
     """
     sensors = sensor_causes(findings, channels)
@@ -53,8 +54,9 @@ def conclude(
     gain, law_gain = (measured.gain, measured.laws) if measured else (None, None)
     caveats = [*caveats]
     if sensors and kind == "unknown":
-        causes, gain, law_gain = [], None, None
-        caveats.append(f"sensor faults were found and taken out: {', '.join(sensors)}")
+        causes = []
+        titles = ", ".join(EFFECTS[name].title for name in sensors)
+        caveats.append(f"faults of sensors were found and taken out: {titles}")
     elif sensors:
         kind = "named" if len(causes) == 1 else "combination"
         if decision.decision == "ambiguous":
@@ -113,9 +115,9 @@ def _read_from_laws(cause, decision):
 
 
 def _misfit(decision, sensors, where):
-    """The smaller chance of readings like these: with sound sensors, or by the nominal model."""
+    """The smaller chance of readings like these, with sound sensors or by the nominal model: the latter if unknown."""
     first = min(sensors.values(), key=lambda cause: cause.p, default=None)
-    if first is None or first.p >= decision.p_none:
+    if first is None or decision.decision == "unknown" or first.p >= decision.p_none:
         return Misfit(p=decision.p_none, where=where)
     (where,) = first.location.values() or ["the optical system"]
     return Misfit(p=first.p, where=f"readings of {where}, against the other sensors")

@@ -91,7 +91,8 @@ def low_pass(values):
     values : float64 array, shape (n_fine, n_channels)
         Finite.
     """
-    from scipy.signal import butter, sosfiltfilt  # here: a second of the start of jobs that read no accelerometer
+    # imported here: a second of the start of each job that reads no accelerometer
+    from scipy.signal import butter, sosfiltfilt
 
     sections = butter(ORDER, CUTOFF, fs=FINE_RATE, output="sos")
     return sosfiltfilt(sections, values, axis=0, padlen=min(_PAD, len(values) - 1))

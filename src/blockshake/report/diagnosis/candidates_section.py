@@ -27,7 +27,7 @@ def candidates_section(found):
         ),
         Figure(
             "Log ratio of each effect at its best place to the nominal model. Both solvers: the mean of their "
-            "likelihoods, which the better one rules. "
+            "likelihoods, which the solver rules whose nominal model fits the tests better. "
             + ("Shaded: effects that are not excluded." if causes else "No effect is a cause."),
             svg_of(plot_candidates, rows, [_words(found, row) for row in rows], causes, decision.placebo),
         ),
@@ -69,7 +69,8 @@ def _table(found, rows):
         f"probabilities that add up to 1. Adequacy: chance of as bad a best fit where it is the truth, too low "
         f"at {INADEQUATE:g} or less. Constancy: chance of sizes as different from test to test if it has one, too "
         f"low at {INCONSTANT:g} or less. "
-        "Seen: sizes that would have been called an effect in nine of ten cases of the library.",
+        "Seen: sizes that would have been called an effect in nine of ten cases of the library; none where no "
+        "simulated size was.",
         ("Effect and place", "Log ratio", "Best size", "Set", "Adequacy", "Constancy", "Seen"),
         tuple(lines),
         "lrrrrrr",

@@ -58,7 +58,13 @@ def _summary(found):
         return "The laws of the joints were not judged."
     told = len(found.decision.laws.laws)
     if not broken:
-        return f"No law of the joints is broken, of {told} that the tests tell."
+        words = f"No law of the joints is broken, of {told} that the tests tell."
+        if found.verdict.outside:
+            words += (
+                " Yet the joints would have to carry more than dry joints can, so that a force from outside is needed: "
+                "see the least unexplained force below."
+            )
+        return words
     names = ", ".join(f"{one.name} ({law_of(one.name).formula})" for one in broken[:3])
     more = f", and {len(broken) - 3} more" if len(broken) > 3 else ""
     return f"{len(broken)} of {told} laws that the tests tell are broken: {names}{more}."
@@ -133,7 +139,8 @@ def _unexplained(found):
     return Figure(
         "Least unexplained force along x: the smallest forces on the blocks that one would have to invent so that "
         "the joints carry no tension and no more than Coulomb's friction. A turned joint tells the moment of these "
-        "forces and not the block that each acts on, so that one force may appear on several blocks."
+        "forces and not the block that each acts on, so that one force may appear on several blocks. Black: "
+        "the sum over the blocks."
         + (
             " Dashed: the largest sum over the blocks that noise and numerics leave in simulated tests by the nominal "
             "model (mean and two standard deviations)."
@@ -168,7 +175,8 @@ def _table(found, laws):
         ))  # fmt: skip
     return Table(
         f"Laws of the joints, test by test ({' / '.join(found.tests)}), those that depart farthest first: measured "
-        "value, mean of the nominal draws, departure in standard deviations, and that of all tests together. "
+        "value, mean of the nominal draws, departure in standard deviations, and that of all tests together. The "
+        "scatter of the draws counts as a third of the law's usual spread at least. "
         f"{MISSING}: the test does not tell the law. Formulas are in docs/joint-forces.md.",
         ("Law", "Measured", "Nominal", "Unit", "Departure", "Together", ""),
         tuple(rows),
@@ -184,10 +192,12 @@ def described(outside):
     ]
     when = []
     for test, values in outside.tests.items():
-        words = [f"{name} {number(values[name], 3)} s" for name in ("start", "end") if name in values]
+        words = [f"{name} {values[name]:.2f} s" for name in ("start", "end") if name in values]
         if "earliest" in values:
-            words[0] += f" ({number(values['earliest'], 3)} to {number(values['latest'], 3)} s)"
+            words[0] += f" ({values['earliest']:.2f} to {values['latest']:.2f} s)"
         words += [f"gap {number(1e3 * values['gap'], 3)} mm"] if "gap" in values else []
+        if "amplitude" in values:
+            words.insert(0, f"{number(KILO * values['amplitude'], 3)} k{outside.unit}")
         when.append(f"{test}: {', '.join(words) if words else 'throughout'}")
     line = (
         f"{number(outside.height, 2)} m above the mass centre of {outside.bodies[0]}"
@@ -196,8 +206,8 @@ def described(outside):
     )
     return (
         f"A force from outside would explain what dry joints cannot carry: on {bodies}, here {line}, "
-        f"{FORCE_LAWS[outside.law]}, {force_words(outside)} (90 % interval). {'; '.join(when)}. Other forms are worse "
-        f"by the information criterion: {'; '.join(rivals)}."
+        f"{FORCE_LAWS[outside.law]}, {force_words(outside)} (90 % interval). {'; '.join(when)}. The next best forms "
+        f"are worse by the information criterion: {'; '.join(rivals)}."
     )
 
 
@@ -206,4 +216,6 @@ def force_words(outside):
     ends = " to ".join(number(KILO * one, 3) for one in (outside.lower, outside.upper))
     towards = "+x" if outside.amplitude > 0.0 else "-x"
     direction = f", towards {towards}" if outside.law in ("steady", "constant", "pulse") else ""
+    if direction and outside.lower < 0.0 < outside.upper:
+        direction = ", its direction not told"
     return f"{number(KILO * outside.amplitude, 3)} ({ends}) k{outside.unit}{direction}"

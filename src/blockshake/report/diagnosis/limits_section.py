@@ -4,6 +4,7 @@ import numpy as np
 
 from blockshake.effects.registry import EFFECTS
 from blockshake.parity.parity import LEVEL
+from blockshake.report.diagnosis.verdict import chance_words
 from blockshake.report.diagnosis.wording import title_of
 from blockshake.report.document.blocks import Items, Section, Table, Text
 from blockshake.report.document.origin import command_blocks, digests_table, versions_table
@@ -105,7 +106,7 @@ def _findings(found):
             ", ".join(one.where),
             one.quantity,
             ", ".join(number(value) for value in one.estimate),
-            number(one.p, 2),
+            chance_words(one.p).removeprefix("p = ").removeprefix("p "),
             ", ".join(one.tests),
         )
         for one in found.parity.findings

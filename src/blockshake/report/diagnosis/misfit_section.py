@@ -6,7 +6,7 @@ from blockshake.report.diagnosis.figures.atlas import plot_atlas
 from blockshake.report.diagnosis.figures.joint import plot_joints
 from blockshake.report.document.blocks import Figure, Section, Table, Text
 from blockshake.report.document.drawing import svg_of
-from blockshake.report.document.wording import number, percent
+from blockshake.report.document.wording import count_words, number, percent
 
 _MOST_JOINTS = 5  # rows that a page has room for beside its text
 _MOST_CURVES = 24
@@ -15,7 +15,7 @@ _ATLAS = (
     "Residual atlas: root mean square of each joint's motion to either side (+, -) in the quiet phase, while shaken "
     "strongly and after, less its mean over the nominal ensemble, in the ensemble's standard deviations. Red: farther "
     "than simulated, blue: less far. Numbers stand beyond the limit that any cell of a test exceeds in 5 of 100 cases "
-    "where nothing is missing. White also where there is no such phase or nobody can know."
+    "where nothing is missing. Grey: the test has no such phase, or the residual is not known."
 )
 _LAWS = {
     "proportional": "in proportion to the intensity of the tests",
@@ -54,7 +54,11 @@ def _summary(found):
     text = (
         f"Whole curves of all joints in all {len(found.tests)} tests held against the nominal ensemble at once "
         f"(extreme rank length): p = {number(float(misfit['p_curves']), 2)}. "
-        f"First misfit, in the earliest phase with a cell of the atlas beyond its limit: {where(misfit)}."
+        + (
+            "No cell of the residual atlas is beyond its limit."
+            if misfit.attrs["phase"] == "none"
+            else f"First misfit, in the earliest phase with a cell of the atlas beyond its limit: {where(misfit)}."
+        )
     )
     if misfit.attrs["law"] in _LAWS:
         text += f" It grows {_LAWS[misfit.attrs['law']]}."
@@ -83,10 +87,10 @@ def _curves_table(misfit):
         ))  # fmt: skip
     return Table(
         f"Curves that the nominal ensemble predicts worst, {len(rows)} of {worst.known}, the worst first by score over "
-        f"that of the members; joint 1 is the lowest. Of all curves, {worst.below_reference} are inside the band for "
-        "less time than 95 % of the members are. Coverage of the band from smallest to largest member, mean width of "
-        "the band over the largest measured magnitude, continuous ranked probability score (lower is better; mm or "
-        "mrad). Leave-one-out: each member against the others, 5 / 50 / 95 %.",
+        "that of the members; joint 1 is the lowest. Inside the band for less time than 95 % of the members are: "
+        f"{count_words(worst.below_reference, 'curve')}. Coverage of the band from smallest to largest member, mean "
+        "width of the band over the largest measured magnitude, continuous ranked probability score (lower is better; "
+        "mm or mrad). Leave-one-out: each member against the others, 5 / 50 / 95 %.",
         (
             "Curve",
             "Coverage [%]",

@@ -25,7 +25,7 @@ def statement(found):
         )
     if verdict.decision == "unknown":
         return (
-            f"{word}: {tests} more differs from the nominal model than by chance ({_chance_words(verdict.misfit.p)}), "
+            f"{word}: {tests} more differs from the nominal model than by chance ({chance_words(verdict.misfit.p)}), "
             f"and no effect of the registry explains it. {_first_sign(found)}"
         )
     physical = [_named(found, name) for name in verdict.causes if name in found.decision.causes]
@@ -44,7 +44,7 @@ def _first_sign(found):
     if outside is None:
         return f"First misfit: {found.verdict.misfit.where}."
     return (
-        f"A force along x on {' or '.join(outside.bodies)} would: {FORCE_LAWS[outside.law]}, "
+        f"A force along x on {' or '.join(outside.bodies)} would explain it: {FORCE_LAWS[outside.law]}, "
         f"{force_words(outside)}."
     )
 
@@ -87,16 +87,26 @@ def facts(found):
     return (
         (
             "Chance of such a misfit without a missing effect",
-            _chance_words(found.verdict.misfit.p),
-            f"by {'laws and features' if found.decision.laws else 'features alone'}; called a misfit at "
-            f"{FALSE_ALARM:g} or less",
+            chance_words(found.verdict.misfit.p),
+            f"by {_judged_by(found)}; called a misfit at {FALSE_ALARM:g} or less",
         ),
         _size_fact(found),
         _gain_fact(found),
     )
 
 
-def _chance_words(p):
+def _judged_by(found):
+    """What the smallest chance of a verdict comes from, in words."""
+    laws, p = found.decision.laws, found.verdict.misfit.p
+    if p < found.decision.p_none:
+        return "the sensors' checks"
+    if laws is None:
+        return "features alone"
+    return "the laws of the joints" if p == laws.p else "laws and features"
+
+
+def chance_words(p):
+    """A chance, as a number where it is not too small for one."""
     return f"p = {number(p, 2)}" if p > _SMALLEST_CHANCE else f"p below {_SMALLEST_CHANCE:g}"
 
 

@@ -11,6 +11,7 @@ from blockshake.report.diagnosis.wording import estimate_words, title_of
 from blockshake.report.document.blocks import Figure, Items, Section, Text
 from blockshake.report.document.box import Box
 from blockshake.report.document.drawing import svg_of
+from blockshake.report.document.wording import count_words
 
 
 def verdict_section(found):
@@ -33,10 +34,13 @@ def verdict_section(found):
     if found.verdict.missing:
         items.append(f"Not called established because {'; '.join(found.verdict.missing)}.")
     items += [_record(found, name) for name in found.decision.causes if _hidden(found, name)]
-    if found.sensor_causes:
+    if found.decision.decision == "unknown" and found.track_record:
+        items.append(_record_of_unknown(found.track_record))
+    if found.parity.findings:
+        faults = "; ".join(f"{title_of(one.effect)}, {', '.join(one.where)}" for one in found.parity.findings)
         items.append(
             "Faults of sensors were found by the sensors' checks, without any simulation, and taken out of the "
-            "readings."
+            f"readings: {faults}."
         )
     if found.decision.decision == "none":
         items.append(excluded(found))
@@ -87,6 +91,17 @@ def _record(found, name):
     )
 
 
+def _record_of_unknown(record):
+    """How often the answer that the cause is unknown was given, and how often nothing was hidden then."""
+    given = sum(row.answers.unknown for row in record.confusion)
+    empty = sum(row.answers.unknown for row in record.confusion if row.truth == "none" and not row.removed)
+    known = sum(row.answers.unknown for row in record.confusion if row.truth in EFFECTS and not row.removed)
+    return (
+        f"Track record of the procedure: of {count_words(given, 'made-up campaign')} that it answered so, {empty} hid "
+        f"nothing and {known} an effect of the registry."
+    )
+
+
 def _strongest(found):
     """The sealed test with the largest drift."""
     return str(found.consequences["test"].values[int(found.consequences["measured"].to_numpy().argmax())])
@@ -106,7 +121,7 @@ def _picture(found):
         f"{found.measured_word} curve. "
         + (
             "The extension was tried on no sealed test."
-            if found.decision.causes
+            if found.decision.causes or found.gain is not None
             else "The model was not extended."
         ),
         svg_of(plot_nominal_drift, found.misfit, found.readings, [test], found.top, found.measured_word),

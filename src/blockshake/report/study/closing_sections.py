@@ -40,8 +40,8 @@ _COMPUTATION = {
     ),
     "nscd-rigid": (
         "NSCD solves the contact problem of each step by iteration. The relative residual is the error of the solution "
-        "in the contact laws; a capped step stopped at the iteration limit before its tolerance; a run with too many "
-        "steps above a residual of 1e-4 counts as failed. Penetration is the error of the scheme in the gaps."
+        "in the contact laws; a capped step stopped at the iteration limit before its tolerance. Iterations of a step "
+        "are those of its parts together. Penetration is the error of the scheme in the gaps."
     ),
     "nscd-elastic": (
         "The blocks of this model deform, without viscosity: the steps are those of NSCD. Vibrations faster than the "
@@ -123,14 +123,25 @@ def _alike(seeds):
     return {first: seeds[first], **others}
 
 
+def _drawn_motion(cases):
+    """The slab's motion, where each sample draws it from the error of its readings."""
+    measured = [case.name for case in cases if case.settings["input"] != COMMANDED]
+    return (
+        [f"the motion of the slab within the error of its readings ({', '.join(measured)})"]
+        if measured
+        else []
+    )
+
+
 def limits(content):
     """Limits of the study."""
     cases = content.cases.values()
     items = []
     if any(case.synthetic for case in cases):
         items.append(
-            "The measured curves are virtual tests (synthetic), made by a model of this program: the comparison "
-            "exercises the method and cannot show errors of the models."
+            "The measured curves are virtual tests (synthetic), made by a model of this program, perhaps with an "
+            "effect that the models of the study lack: the comparison exercises the method and tells nothing of real "
+            "blocks."
         )
     synthetic = sorted({case.motion for case in cases if content.motions[case.motion].attrs.get("synthetic")})
     if synthetic:
@@ -143,8 +154,8 @@ def limits(content):
         )
     items += [
         "Friction is Coulomb's, with one coefficient a pair of materials, constant in time, place and rate.",
-        f"Random are {', '.join(parameter_label(name) for name in content.distributions)}. Sizes, places and the "
-        "condition of the joints are taken as known.",
+        f"Random are: {'; '.join([*map(parameter_label, content.distributions), *_drawn_motion(cases)])}. Sizes, "
+        "places and the condition of the joints are taken as known.",
         "Structures have no imperfections; responses are shown along x only.",
     ]
     commanded = [case.name for case in cases if case.settings["input"] == COMMANDED]

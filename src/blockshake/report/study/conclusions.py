@@ -56,7 +56,7 @@ def _case(case):
         _drift(case, counted, body, marker),
         _collapse(counted),
         _joints(counted),
-        *_models(case, counted, marker),
+        *_models(counted, marker),
         *_measured(case, counted, body, marker),
         *_causes(counted, body, marker),
     ]
@@ -80,8 +80,8 @@ def _drift(case, counted, body, marker):
         if (value := float(one.envelope["drift_probability"].sel(marker=marker))) > 0.0
     ]
     return (
-        f"Displacement of marker {marker} on the top block, {body}, from the slab that {quantile_percent(_UPPER)} of "
-        f"the samples stay below, with {quantile_percent(CONFIDENCE)} limits: {', '.join(told)}. "
+        f"Of the samples, {quantile_percent(_UPPER)} keep the top block ({body}, marker {marker}) nearer to its place "
+        f"on the slab than, with {quantile_percent(CONFIDENCE)} limits: {', '.join(told)}. "
         + (
             f"Of the samples, beyond {millimetres(limit)} mm or collapsed: {', '.join(beyond)}."
             if beyond
@@ -127,14 +127,17 @@ def _joints(counted):
     return f"{told[0].upper()}{told[1:]}, {quantile_percent(_UPPER)} quantile at the middle of the face."
 
 
-def _models(case, counted, marker):
+def _models(counted, marker):
     """Whether the medians of the models, of samples enough for limits, differ by more than these."""
-    found = case.differences
-    known = [model for model in counted if int(found["counted"].sel(model=model)) >= SURE_FROM]
+    at = {"frame": "slab", "marker": marker, "quantile": 0.5}
+    known = [model for model, one in counted.items() if int(one.envelope.attrs["counted"]) >= SURE_FROM]
     if len(known) < 2:
         return []
-    medians = {model: float(found["peak"].sel(model=model, marker=marker)) for model in known}
-    apart = [pair for pair in combinations(known, 2) if not _overlap(found, *pair, marker)]
+    medians = {model: float(counted[model].envelope["peak"].sel(at)) for model in known}
+    limits = {model: counted[model].envelope["peak_interval"].sel(at).to_numpy() for model in known}
+    apart = [
+        (one, other) for one, other in combinations(known, 2) if not _overlap(limits[one], limits[other])
+    ]
     low, high = min(medians, key=medians.get), max(medians, key=medians.get)
     spread = (
         f"Median peaks of the models lie between {millimetres(medians[low])} mm ({model_label(low)}) and "
@@ -146,15 +149,9 @@ def _models(case, counted, marker):
     return [f"{spread}; the limits of these do not overlap: {pairs}. The choice of the model matters here."]
 
 
-def _overlap(found, own, other, marker):
-    (low, high), (least, most) = (
-        [
-            float(found["peak_interval"].sel(model=one, marker=marker, bound=bound))
-            for bound in ("lower", "upper")
-        ]
-        for one in (own, other)
-    )
-    return low <= most and least <= high
+def _overlap(one, other):
+    """Whether two intervals have a value in common."""
+    return max(min(one), min(other)) <= min(max(one), max(other))
 
 
 def _measured(case, counted, body, marker):
@@ -168,12 +165,15 @@ def _measured(case, counted, body, marker):
         chance = float(response.comparison["curve_probability"].sel(marker=marker))
         if np.isfinite(chance):
             likely = is_likely(chance, int(response.comparison.attrs["counted"]))
-            (fits if likely else misses).append(model_label(model))
+            size = int(response.comparison.attrs["counted"])
+            (fits if likely else misses).append(
+                f"{model_label(model)} (chance {number(chance, 2)}, n = {size})"
+            )
     words = f"The {word} of {body} peaks at {peak} mm."
     if fits:
-        words += f" As a whole the curve may be one more sample of {', '.join(fits)}."
+        words += f" As a whole the curve may be one more sample: {', '.join(fits)}."
     if misses:
-        words += f" It is farther from the samples than one more would be: {', '.join(misses)}."
+        words += f" It is farther from the samples than they are from each other: {', '.join(misses)}."
     scores = case.differences["score"].dropna("model")
     if scores.size > 1:
         best = model_label(str(scores["model"].values[scores.argmin("model")]))
@@ -197,11 +197,13 @@ def _causes(counted, body, marker):
             silent.append(model_label(model))
     words = [f"{parameter_label(name)}, {', '.join(shares)}" for name, shares in told.items()]
     if words:
-        explained = f"Most of the spread of {body} that one variable explains by itself: {'; '.join(words)}."
+        explained = (
+            f"Largest share of the spread of {body} over the window by one variable: {'; '.join(words)}."
+        )
         return [
             explained + (f" No variable stands out from chance by {', '.join(silent)}." if silent else "")
         ]
-    return [f"No single variable is shown to explain the spread of {body}."] if silent else []
+    return [f"No single variable is shown to explain the spread of {body} over the window."] if silent else []
 
 
 def _unknown(content):
@@ -244,6 +246,13 @@ def _unknown(content):
     assumed = [case.name for case in cases if case.name not in content.friction]
     if assumed:
         told.append(f"The mean friction, which is assumed and not calibrated: {', '.join(assumed)}.")
+    sought = [
+        case.name
+        for case in cases
+        if content.friction.get(case.name, {"answer": ""})["answer"].startswith("unknown")
+    ]
+    if sought:
+        told.append(f"The mean friction, which was searched and not found: {', '.join(sought)}.")
     return told
 
 

@@ -27,15 +27,19 @@ def fragility(content):
     if not content.fragility:
         return None
     asked = content.study["fragility"]
+    limits = " or ".join(
+        sorted({millimetres(one.attrs["largest_drift"]) for one in content.fragility.values()})
+    )
     blocks = [
         Text(
             f"Samples that climb the ladder by {model_label(asked['model'])}: each is shaken by the case's commanded "
             "motion at rising factors, from the restored stack each time, until it collapses or the mass centre of a "
-            "block moves from the slab by more than the displacement that counts as a potential collapse. The capacity "
-            "of a sample lies between the last factor that it passed and the first that it did not. Drawn is the "
-            "lognormal distribution of largest likelihood for such bounds (incremental dynamic analysis, Vamvatsikos "
-            "and Cornell 2002; fragility by maximum likelihood, Shinozuka et al. 2000). The spread is that of the "
-            "sampled variables. The motion is one: another motion of the same peak has another fragility."
+            f"block moves from the slab by more than {limits} mm, which counts as a potential collapse. The capacity "
+            "of a sample lies between the last factor that it passed and the first that it did not. Where these tell "
+            "one, the figure has the lognormal distribution of largest likelihood for such bounds (incremental dynamic "
+            "analysis, Vamvatsikos and Cornell 2002; fragility by maximum likelihood, Shinozuka et al. 2000). The "
+            "spread is that of the sampled variables. The motion is one: another motion of the same peak has another "
+            "fragility."
         ),
         Items(tuple(words(content, name) for name in content.fragility)),
         Figure(
@@ -114,9 +118,9 @@ def _table(content):
             ))  # fmt: skip
     quantiles = " / ".join(map(quantile_percent, _SHOWN))
     return Table(
-        "Levels that the samples climbed. Not passed: share of the samples of which it is known that do not pass this "
-        "level, or did not pass a lower one, with Clopper-Pearson limits of 95 %. Displacement: the largest of the "
-        f"mass centre of any block from the slab, quantiles {quantiles} over the samples that climbed this level.",
+        "Levels that the samples climbed. Not passed: share that does not pass this level, or did not pass a lower "
+        "one, of the samples of which this is known, with Clopper-Pearson limits of 95 %. Displacement: the largest of "
+        f"the mass centre of any block from the slab, quantiles {quantiles} over the samples that climbed this level.",
         (
             "Case", "Factor", f"Peak acceleration [m/s{SQUARED}]", "Climbed", "Not passed [%]",
             f"Displacement, {quantiles} [mm]",

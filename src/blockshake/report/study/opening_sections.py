@@ -156,7 +156,7 @@ def motions(content):
         Text(
             "Motions at 100 %; the cases multiply them by their scale."
             + (
-                f" No case of this study uses {', '.join(unused)}: the ladder of intensities does."
+                f" No case of this study uses {', '.join(unused)}, which the ladder of intensities names."
                 if unused
                 else ""
             )

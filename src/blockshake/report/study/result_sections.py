@@ -81,9 +81,9 @@ def _moving(case):
     return [
         Figure(
             f"{case.name}: blocks of samples by every model{markers}. Displacement is relative to the slab's marker. "
-            f"In print: the sample of the median peak when a block is farthest, magnified {size}. "
-            "On a screen: the samples of the median and of the largest peak, moving in real time; the displacement of "
-            "each point is multiplied, so that blocks look bent where the magnification is large.",
+            f"In print: the sample of the median peak of all markers when a block is farthest, magnified {size}. "
+            "On a screen: the samples of the median and of the largest peak of all markers, moving in real time; the "
+            "displacement of each point is multiplied, so that blocks look bent where the magnification is large.",
             svg_of(plot_still, case),
             interactive=moving_samples(case),
         )

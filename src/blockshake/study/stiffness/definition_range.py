@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 from scipy.stats import kendalltau
 
 _LEVEL = 0.05  # chance of a rank correlation as large at or below which a trend is shown
@@ -73,7 +74,7 @@ def definition_range(definitions):
     return DefinitionRange(
         at_own_damping=_range(ratio.sel(restitution=own["restitution"])),
         over_levels=_range(ratio.sel(definition=levels)),
-        top_peak=_range(definitions["top_peak"]),
+        top_peak=_range(xr.concat([definitions["top_peak"], definitions["top_peak_same_damping"]], "run")),
         trend=Trend(float(found.statistic), float(found.pvalue)),
         free_share=float(definitions["free_speed"].max()) / target,
         free_factor=float(definitions["factor"].max()),

@@ -80,7 +80,7 @@ def test_energy_residual_tells_what_is_conserved(content):
     content.cases["configuration-1"].responses["nscd-rigid"].samples["energy_residual"][0] = 0.2
     found = nscd.conserves(content)
     assert found.verdict == NOT_MET
-    assert "0.200 at most" in found.words
+    assert "misses 0.200 of the energy" in found.words
 
 
 def test_mesh_is_judged_where_blocks_deform(content):

@@ -1,6 +1,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from blockshake.report.study.statements import calibration, envelopes, models, stiffness
 from blockshake.report.study.statements.statement import Verdict
@@ -31,7 +32,7 @@ def test_correlation_is_held_against_pairs_at_random(content):
 
 def test_number_of_samples(content, monkeypatch):
     assert calibration.size(content).verdict == NOT_MET
-    assert "configuration-4 6" in calibration.size(content).words
+    assert "6 of configuration-4 by NSCD rigid" in calibration.size(content).words
     monkeypatch.setattr(calibration, "SIZE", 10)
     content.cases.pop(FOURTH)
     assert calibration.size(content).verdict == MET
@@ -214,7 +215,7 @@ def test_variables_that_matter_are_those_beyond_chance(content):
             result["first_order"].loc[{"parameter": name}] = 0.8
     found = envelopes.parameters_matter(content)
     assert found.verdict == NOT_MET
-    assert "Never beyond chance: friction." in found.words
+    assert "Not so: friction." in found.words
     result["first_order"].loc[{"parameter": "friction.concrete.concrete"}] = 0.8
     assert envelopes.parameters_matter(content).verdict == MET
 
@@ -263,12 +264,19 @@ def test_the_best_model_has_the_lowest_score_of_every_test(real):
         assert models.best_model(real).verdict == verdict
 
 
-def test_models_are_alike_where_their_peaks_have_ranges_in_common(content):
-    assert models.alike(content).verdict == MET
-    content.cases[FIRST].responses["nscd-rigid"].envelope["peak"] *= 100.0
+@pytest.mark.parametrize(("beside", "verdict", "share"), [(2.0, MET, "none of"), (0.5, NOT_MET, "all")])
+def test_models_are_alike_where_chance_sets_them_as_far_apart(content, beside, verdict, share):
+    for case in content.cases.values():
+        case.differences["distance_chance"][:] = beside * case.differences["distance"]
     found = models.alike(content)
-    assert found.verdict == NOT_MET
-    assert "configuration-1 none of 3" in found.words
+    assert found.verdict == verdict
+    assert f"Farther apart than by chance in {share}" in found.words
+
+
+def test_too_few_samples_are_not_held_against_each_other(content):
+    for case in content.cases.values():
+        case.differences["distance_chance"][:] = np.nan
+    assert models.alike(content).verdict == UNJUDGED
 
 
 def test_rotations_are_held_against_the_noise_of_two_markers(real):

@@ -3,9 +3,19 @@
 import numpy as np
 
 from blockshake.diagnosis.laws.law_table import kind_of
-from blockshake.report.document.drawing import BLACK, BLUE, DARK_GREY, GREEN, ORANGE, PURPLE, RED, new_figure
+from blockshake.report.document.drawing import (
+    BLACK,
+    BLUE,
+    DARK_GREY,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    RED,
+    SKY,
+    new_figure,
+)
 
-COLOURS = (BLUE, ORANGE, GREEN, PURPLE, BLACK)
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE, SKY)
 _LEAST_BEYOND, _MOST_BEYOND = 1.6, 4.0  # half widths, at the ends of an axis of levers
 _MARGIN = 1.08
 KILO = 1e-3
@@ -79,10 +89,12 @@ def plot_unexplained(forces, usual):
         for body, colour in coloured(forces["body"].values)[::-1]:
             one = forces["unexplained"].sel(test=test, body=body)
             axes.plot(one["time"], KILO * one, color=colour, linewidth=0.7, label=body)
+        together = forces["unexplained"].sel(test=test).sum("body", min_count=1)
+        axes.plot(together["time"], KILO * together, color=BLACK, linewidth=0.5, label="sum")
         for level in (-1.0, 1.0) if test in usual else ():
             axes.axhline(KILO * level * usual[test], **DASHED)
         axes.set_ylabel(f"{test}\nforce [kN]")
-    return _finished(figure, panels, columns=forces.sizes["body"])
+    return _finished(figure, panels, columns=forces.sizes["body"] + 1)
 
 
 def _rows(forces, above, each=0.026):

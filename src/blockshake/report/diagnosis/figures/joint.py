@@ -1,5 +1,7 @@
 """Slip, rotation and opening of the joints in one test, beside the nominal ensemble."""
 
+import textwrap
+
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -44,7 +46,7 @@ def plot_joints(misfit, readings, test, joints, horizon, measured_word):
                 axes.text(0.5, 0.5, "not known", transform=axes.transAxes, ha="center", va="center")
             if horizon is not None and horizon < end:
                 axes.axvspan(horizon, end, color=LIGHT_GREY, zorder=0, linewidth=0.0)
-        row[0].set_ylabel(joint)
+        row[0].set_ylabel(textwrap.fill(joint, 10))
     for axes, label in zip(panels[0], _COLUMNS.values(), strict=True):
         axes.set_title(label)
     for axes in panels[-1]:

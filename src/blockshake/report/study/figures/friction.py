@@ -6,7 +6,7 @@ from blockshake.report.document.drawing import BLACK, BLUE, LIGHT_GREY, RED, new
 
 
 def plot_friction(calibrations):
-    """Figure of the excess score over the best candidate with its error, one panel a case; accepted ones are filled.
+    """Figure of the excess score over the best candidate with its error, one panel a case.
 
     ``calibrations``: from `friction_summary`, by case.
     """
@@ -20,7 +20,7 @@ def plot_friction(calibrations):
             mean[accepted].min(), mean[accepted].max(), color=LIGHT_GREY, label="not told from the best"
         )
         axes.errorbar(mean, excess, error, fmt="none", ecolor=BLACK, elinewidth=0.7, capsize=2.0)
-        for chosen, color, label in ((accepted, BLUE, "accepted"), (~accepted, RED, "refused")):
+        for chosen, color, label in ((accepted, BLUE, "not refused"), (~accepted, RED, "refused")):
             axes.plot(mean[chosen], excess[chosen], "o", color=color, markersize=3.5, label=label)
         axes.set(title=case, xlabel="mean coefficient of friction [1]")
     panels[0].set_ylabel("score above the best [mm]")

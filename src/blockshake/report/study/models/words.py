@@ -5,6 +5,7 @@ from itertools import combinations
 import numpy as np
 
 from blockshake.report.document.wording import (
+    count_words,
     given,
     model_label,
     number,
@@ -30,10 +31,14 @@ def case_words(case):
     judged = [pair for pair in known if np.isfinite(chance[pair])]
     if judged:
         beyond = sum(known[pair] > chance[pair] for pair in judged)
-        share = share_words(beyond, len(judged))
-        words += f"the ensembles of {share} pairs of models are farther apart than by chance."
+        if len(judged) == 1:
+            side = "farther apart than by chance" if beyond else "no farther apart than by chance"
+            words += f"the ensembles of {_both(judged[0])} are {side}."
+        else:
+            share = share_words(beyond, len(judged))
+            words += f"the ensembles of {share} pairs of models are farther apart than by chance."
         if len(judged) < len(pairs):
-            words += f" {len(pairs) - len(judged)} further pairs have too few samples to tell."
+            words += f" Too few samples to tell: {count_words(len(pairs) - len(judged), 'further pair')}."
     else:
         words += "too few samples to tell the ensembles of any two models apart."
     if len(known) > 1:

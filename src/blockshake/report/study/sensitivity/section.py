@@ -20,12 +20,13 @@ def sensitivities(content):
             "Two measures tell where the differences between samples come from. The first-order Sobol index of the "
             "history of a block is the share of the thickness of its envelope, as variance over all times, that one "
             "variable explains by itself: a correlation ratio over classes of the ranks of the variable, corrected for "
-            "its bias; five classes see 0.90 of a linear effect. The partial rank correlation with the peak tells how "
+            "its bias. Of n samples there are n^0.4 classes: five for 50, which see 0.90 of a linear effect, and two "
+            "for 8, which see less. The partial rank correlation with the peak tells how "
             "steadily, and in which direction, the peak follows a variable once the part of the others is taken out. "
             "Intervals are bootstrap intervals of 95 %. The level of chance is the largest value over all blocks and "
             "variables that 95 of 100 random pairings of results and samples stay below: only a value beyond it is "
-            "shown to matter. Variables that act together, and sensitivity of the motion to small differences, explain "
-            "the rest."
+            "shown to matter. Variables that act together, the motion of the slab where each sample draws it within "
+            "the error of its readings, and sensitivity of the motion to small differences explain the rest."
         ),
         *paper_discussion(content),
         summary_table(content),

@@ -18,6 +18,10 @@ def markers_by_height(case):
 def summary_table(content):
     """The strongest variable of every case and model, at its lowest and highest block, with interval and chance."""
     rows = []
+    marks = {
+        "line": "Line: samples that differ by less than the noise of a marker.",
+        MISSING: "None: too few samples.",
+    }
     for case in content.cases.values():
         shown = list(markers_by_height(case).items())
         for model, response in case.responses.items():
@@ -25,11 +29,12 @@ def summary_table(content):
                 at = response.sensitivity.sel(marker=marker)
                 spread = number(1e3 * at["spread"].sel(quantity="history"))
                 rows.append((case.name, model_label(model), body, spread, *_strongest(at, case.marker_noise)))
+    told = {cell for row in rows for cell in row}
     return Table(
         "Strongest variables at the lowest and the highest block. Spread: of the displacement relative to the slab, "
         "standard deviation over samples and time. Then the variable of the largest first-order share of the spread, "
         "and that of the largest partial rank correlation with the peak, each with its 95 % interval and, in round "
-        "brackets, the level of chance. Line: samples that differ by less than the noise of a marker.",
+        f"brackets, the level of chance.{''.join(f' {words}' for mark, words in marks.items() if mark in told)}",
         ("Case", "Model", "Block", "Spread [mm]", "Largest share by itself [1]", "Largest rank correlation [1]"),
         tuple(rows), "lllrll",
     )  # fmt: skip
@@ -118,7 +123,7 @@ def _growth_words(found):
             "as the paper states"
             if growth.thicker == growth.pairs
             else "against the statement of the paper"
-            if growth.thicker == 0
+            if 2 * growth.thicker < growth.pairs
             else "which bears the statement of the paper out in part"
         )
         words += (

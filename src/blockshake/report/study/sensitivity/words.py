@@ -13,7 +13,7 @@ def sentence(result, body, marker, noise):
     """
     history = result.sel(quantity="history", marker=marker)
     if not np.isfinite(history["spread"]):
-        return f"{int(history['used'])} completed samples are too few for a sensitivity of {body}."
+        return f"too few completed samples for a sensitivity of {body}: {int(history['used'])}."
     spread = "(standard deviation over samples and time)"
     if not differs(history, noise):
         return (

@@ -5,6 +5,7 @@ import numpy as np
 from blockshake.report.document.rows import face_markers
 from blockshake.report.document.wording import given, model_label, number, parameter_label, percent
 from blockshake.report.study.statements.statement import judged, unjudged
+from blockshake.study.ensembles.intervals import SURE_FROM
 from blockshake.study.sampling.distributions import TABLE_2
 
 SIZE = 50
@@ -44,13 +45,13 @@ def correlation_control(content):
 
 def size(content):
     """Number of samples."""
-    counts = {
-        f"{case.name} {one.samples.sizes['sample']}"
+    counts = [
+        f"{one.samples.sizes['sample']} of {case.name} by {model_label(model)}"
         for case in content.cases.values()
-        for one in case.responses.values()
+        for model, one in case.responses.items()
         if one.samples.sizes["sample"] != len(content.design)
-    }
-    fewer = f" Fewer: {', '.join(sorted(counts))}." if counts else ""
+    ]
+    fewer = f" Fewer: {', '.join(counts)}." if counts else ""
     return judged(len(content.design) == SIZE and not counts, f"{len(content.design)} samples.{fewer}")
 
 
@@ -60,15 +61,19 @@ def low_variability(content):
     for case in content.cases.values():
         top = next(iter(face_markers(case.structure).values()))
         for model, one in case.responses.items():
+            if int(one.envelope.attrs["counted"]) < SURE_FROM:
+                continue
             at = {"frame": "slab", "marker": top, "quantile": 0.5}
             median, limits = one.envelope["peak"].sel(at), one.envelope["peak_interval"].sel(at)
             share = float(limits.max() - limits.min()) / (2.0 * float(median))
             largest = max(largest, share)
             told.append(f"{case.name}, {model_label(model)} {percent(share)} %")
+    if not told:
+        return unjudged(f"No model has {SURE_FROM} samples.")
     return judged(
         largest < _LOW_VARIABILITY,
-        "Half of the 95 % bootstrap interval of the median peak at the top, over that median: "
-        f"{'; '.join(told)}. {percent(_LOW_VARIABILITY)} % counts as low.",
+        "Half of the 95 % bootstrap interval of the median peak at the top, over that median, of at least "
+        f"{SURE_FROM} samples: {'; '.join(told)}. {percent(_LOW_VARIABILITY)} % counts as low.",
     )
 
 
@@ -77,10 +82,10 @@ def friction_range(content):
     if not content.friction:
         return unjudged(_NO_SEARCH)
     ranges = {(found["lowest"], found["highest"]) for found in content.friction.values()}
-    words = ", ".join(f"{given(low)} to {given(high)}" for low, high in sorted(ranges))
-    return judged(
-        ranges == {(LOWEST, HIGHEST)}, f"The mean is searched from {words}, on a grid that is refined."
+    words = "; ".join(
+        f"{case}: {', '.join(map(given, found['means']['mean']))}" for case, found in content.friction.items()
     )
+    return judged(ranges == {(LOWEST, HIGHEST)}, f"Means that were run, {words}.")
 
 
 def optimum(content):
@@ -96,10 +101,12 @@ def optimum(content):
         bounded = found["lower"] is not None and found["upper"] is not None
         told_apart = told_apart and known and bounded and accepted == 1.0
         synthetic += [case] if found["synthetic"] else []
-        side = _SIDES.get(accepted, "lies between a refused mean and one that is not refused")
-        told.append(
-            f"{case}: the mean is {found['answer']}; lowest score at {given(found['best'])}; {given(OPTIMUM)} {side}"
-        )
+        words = f"{case}: the mean is {found['answer']}; lowest score at {given(found['best'])}"
+        if known:
+            words += f"; {given(OPTIMUM)} {_SIDES.get(accepted, 'lies between a refused mean and one that is not')}"
+        if np.abs(np.asarray(means["mean"]) - OPTIMUM).min() > 1e-9:
+            words += f"; {given(OPTIMUM)} itself was not run"
+        told.append(words)
     words = f"{'; '.join(told)}."
     if synthetic:
         return unjudged(

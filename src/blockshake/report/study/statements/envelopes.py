@@ -11,6 +11,7 @@ from blockshake.report.document.wording import (
 from blockshake.report.study.sensitivity.summary import markers_by_height, thickness_by_case
 from blockshake.report.study.statements.specimens import HEIGHTS
 from blockshake.report.study.statements.statement import judged, missing, unjudged
+from blockshake.study.ensembles.intervals import SURE_FROM
 from blockshake.study.sensitivity.findings import influences, is_known
 from blockshake.study.sensitivity.thickness import growth_with_structure
 
@@ -113,10 +114,18 @@ def parameters_matter(content):
     """Friction, density and stiffness behind the envelopes of LS-DEM."""
     if absent := missing(content, "ls-dem"):
         return unjudged(absent)
-    shown, known = {}, False
+    shown, seconds, known = {}, [], False
     for case in content.cases.values():
         top = list(markers_by_height(case).values())[-1]
         result = case.responses["ls-dem"].sensitivity.sel(marker=top)
+        beyond = (result["window_first_order"] > result["window_first_order_chance"]).sum("window")
+        seconds += [
+            f"{case.name} {parameter_label(str(name))} {int(count)}"
+            for name, count, control in zip(
+                result["parameter"].values, beyond.values, result["control"].values, strict=True
+            )
+            if count and not control
+        ]
         for quantity, measure in (("history", "first_order"), ("peak", "rank_correlation")):
             at = result.sel(quantity=quantity)
             if not is_known(at, measure):
@@ -133,8 +142,12 @@ def parameters_matter(content):
         for key, words in _MATTER.items()
         if not any(key in name for names in shown.values() for name in names)
     ]
-    words = f"Beyond chance at the top{_level(content)}: {told or 'no variable'}."
-    return judged(not lacking, words + (f" Never beyond chance: {', '.join(lacking)}." if lacking else ""))
+    words = f"Beyond chance at the top{_level(content)} over the whole window: {told or 'no variable'}."
+    if lacking:
+        words += f" Not so: {', '.join(lacking)}."
+    if seconds:
+        words += f" Beyond chance in so many single seconds: {'; '.join(seconds)}."
+    return judged(not lacking, words)
 
 
 def residuals(content):
@@ -147,15 +160,21 @@ def residuals(content):
         for name, case in content.cases.items():
             top = list(markers_by_height(case).values())[-1]
             at = case.responses[model].envelope["residual"].sel(frame="slab", marker=top)
-            scatter[name] = float(at.sel(quantile=0.95) - at.sel(quantile=0.05))
+            if int(case.responses[model].envelope.attrs["counted"]) >= SURE_FROM:
+                scatter[name] = float(at.sel(quantile=0.95) - at.sel(quantile=0.05))
+        if _FOURTH not in scatter or len(scatter) < 2:
+            continue  # too few samples
         holds = holds and max(scatter, key=scatter.get) == _FOURTH
         told.append(
             f"{model_label(model)} "
             + ", ".join(f"{name} {millimetres(value)} mm" for name, value in scatter.items())
         )
+    if not told:
+        return unjudged(f"No model has {SURE_FROM} samples of configuration 4 and of another case.")
     return judged(
         holds,
-        f"From the 5 to the 95 % quantile of the residual at the top{_level(content)}: {'; '.join(told)}.",
+        f"From the 5 to the 95 % quantile of the residual at the top{_level(content)}, by models with at least "
+        f"{SURE_FROM} samples: {'; '.join(told)}.",
     )
 
 

@@ -124,9 +124,11 @@ def time_step(content, model, printed):
     ]
     known = [one for one in residuals if np.isfinite(one)]
     missed = number(max(known)) if known else MISSING
+    parts = setting(content, model, "nscd.impact_parts") if model == "nscd-rigid" else 1
+    split = f", {given(parts)} times shorter where bodies meet" if parts > 1 else ""
     return judged(
-        abs(step / printed - 1.0) < _SAME,
-        f"The step is {given(step)} s; the energy residual is {missed} at most.",
+        abs(step / printed - 1.0) < _SAME and parts == 1,
+        f"The step is {given(step)} s{split}; the energy residual is {missed} at most.",
     )
 
 

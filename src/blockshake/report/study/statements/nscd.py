@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from blockshake.geometry.schema import Material
 from blockshake.report.document.wording import given, model_label, number, parameter_label
 from blockshake.report.study.statements.statement import judged, missing, setting, unjudged
 from blockshake.simulation.models import MODELS
@@ -39,8 +40,8 @@ def conserves(content):
         return unjudged("The runs of this study have no energy audit.")
     return judged(
         max(residuals) < _CONSERVED,
-        f"With theta {given(theta)} and no damping the energy residual is {number(max(residuals))} at most; "
-        f"{given(_CONSERVED)} counts as conserved.",
+        f"With theta {given(theta)} and no damping, and the energy that impacts and friction take counted, the audit "
+        f"misses {number(max(residuals))} of the energy in play at most; {given(_CONSERVED)} counts as conserved.",
     )
 
 
@@ -104,7 +105,9 @@ def no_modulus(content):
     unused = {model: MODELS[model].without_effect for model in ("ls-dem", _RIGID)}
     words = "; ".join(
         f"{model_label(model)} has no use for "
-        + " and ".join(parameter_label(f"materials.the blocks.{name}") for name in names)
+        + " and ".join(
+            parameter_label(f"materials.the blocks.{name}") for name in names if name in Material.model_fields
+        )
         for model, names in unused.items()
     )
     holds = "youngs_modulus" in unused[_RIGID] and "youngs_modulus" not in unused["ls-dem"]

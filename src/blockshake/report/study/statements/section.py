@@ -67,9 +67,9 @@ def statements(content):
             "Zhou et al. (2023), statement by statement, in the words of this program. Met: the study at hand finds or "
             "does the same. Not met: it finds or does something else. Cannot be judged: the study lacks the model, the "
             "case or the real measurement that the statement hangs on. A synthetic test judges no statement about the "
-            "real specimens. Every finding is computed from the results of this study; the last column has the "
-            "command, in which CASE is a case of the study. The command takes --configfile FILE at its end for another "
-            "study than the default one."
+            "real specimens. The numbers of a finding are computed from this study; where no result bears on a "
+            "statement, the finding says why. The last column has the command, in which CASE is a case of the study. "
+            "The command takes --configfile FILE at its end for another study than the default one."
         ),
         Text(count_words(rows_by_heading)),
     ]

@@ -64,9 +64,9 @@ def similar_velocity(content):
     reached = all(np.isfinite(one["stiffness_ratio"]).all() for one in readings)
     return judged(
         reached,
-        "Stiffness over that of the study, which reads the arrival of half the step, where the lag is read once all "
-        f"blocks move within {percent(TOLERANCES[0])} to {percent(TOLERANCES[-1])} % of each other: "
-        f"{'; '.join(told)}.",
+        "The study reads the lag when half of the step arrives. Read once the velocities of all blocks are within "
+        f"{percent(TOLERANCES[0])} to {percent(TOLERANCES[-1])} % of each other, the stiffness is so many times that "
+        f"of the study: {'; '.join(told)}.",
     )
 
 
