@@ -178,7 +178,7 @@ def test_without_a_cause_no_gain_is_shown(pages):
 
 def test_track_record_prints_its_figures_and_what_it_missed(pages):
     text = pages["named"][1]
-    assert "Goals that the procedure missed: truth named or in the set." in text
+    assert "Figures that missed the goal set beforehand: truth named or in the set." in text
     assert "1 of 60" in text
     for one in track_record().shares.values():
         assert f"{one.meaning} {100 * one.hits / one.n:.1f} %" in text

@@ -51,7 +51,7 @@ def evidence_section(found):
         ),
         Figure(
             "Size that each test finds by itself, with the sizes that are less likely by a factor e squared at most; "
-            "axes are as wide as the prior. "
+            "axes are as wide as the prior. A test without a bar leaves one of the simulated sizes. "
             + (
                 "Blue: all tests together, 90 %."
                 if caused

@@ -13,7 +13,7 @@ from blockshake.report.diagnosis.figures.forces import (
 from blockshake.report.diagnosis.figures.laws import plot_departures, plot_laws, plot_table, slips
 from blockshake.report.document.blocks import Figure, Section, Table, Text
 from blockshake.report.document.drawing import svg_of
-from blockshake.report.document.wording import MISSING, number
+from blockshake.report.document.wording import MISSING, number, sentence_case
 
 FORCE_LAWS = {
     "steady": "steady throughout",
@@ -162,6 +162,12 @@ def _usual_force(found):
     }
 
 
+def _joint_names(laws):
+    """The joints that the names of laws count, by their bodies."""
+    joints = sorted({(one.name.partition(".")[0], one.joint) for one in laws if one.joint})
+    return sentence_case("; ".join(f"{place} is {name}" for place, name in joints)) if joints else ""
+
+
 def _table(found, laws):
     def by_test(values, digits=3):
         return " / ".join(number(values[test], digits) if test in values else MISSING for test in found.tests)
@@ -177,7 +183,7 @@ def _table(found, laws):
         f"Laws of the joints, test by test ({' / '.join(found.tests)}), those that depart farthest first: measured "
         "value, mean of the nominal draws, departure in standard deviations, and that of all tests together. The "
         "scatter of the draws counts as a third of the law's usual spread at least. "
-        f"{MISSING}: the test does not tell the law. Formulas are in docs/joint-forces.md.",
+        f"{MISSING}: the test does not tell the law. {_joint_names(laws[:_MOST_LAWS])} Formulas are in docs/joint-forces.md.",
         ("Law", "Measured", "Nominal", "Unit", "Departure", "Together", ""),
         tuple(rows),
         "lrrlrrl",

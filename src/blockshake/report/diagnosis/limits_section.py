@@ -8,8 +8,11 @@ from blockshake.report.diagnosis.verdict import chance_words
 from blockshake.report.diagnosis.wording import title_of
 from blockshake.report.document.blocks import Items, Section, Table, Text
 from blockshake.report.document.origin import command_blocks, digests_table, versions_table
+from blockshake.report.document.units import quantity
 from blockshake.report.document.wording import given, number, sentence_case
 
+# of an estimate by its quantity, for a marker and for an accelerometer channel
+_UNITS = {"place": ("m", "m"), "drift": ("m/s", "m/s3"), "lag": ("s", "s"), "range": ("m", "m/s2")}
 _ROLES = {True: "judged by", False: "left out: the effort allows fewer tests"}
 
 
@@ -75,7 +78,11 @@ def _tests_table(found):
             use = "sealed: not read"
         rows.append((test.name, test.motion, given(test.scale), test.role, use))
     header = ("Test", "Motion", "Scale", "Role", "Use")
-    return Table(f"Tests of the campaign {found.campaign.name}.", header, tuple(rows), "llrll")
+    words = (
+        f"Tests of the campaign {found.campaign.name}. Role, as the campaign says: fit and select are open, to "
+        "find the cause by; sealed is kept for the gain."
+    )
+    return Table(words, header, tuple(rows), "llrll")
 
 
 def _sensors(found):
@@ -99,13 +106,24 @@ def _sensors(found):
     return text
 
 
+def _estimate(finding, channels):
+    """Estimate of a finding with its standard error, in the unit of its quantity; by axis where it is a vector."""
+    of_marker, of_channel = _UNITS.get(finding.quantity, ("1", "1"))
+    unit = of_channel if set(finding.where) <= set(channels) else of_marker
+    axes = ("x ", "y ", "z ") if len(finding.estimate) == 3 else ("",)
+    return ", ".join(
+        f"{axis}{quantity(value, unit)} ({quantity(error, unit, 2)})"
+        for axis, value, error in zip(axes, finding.estimate, finding.standard_error, strict=False)
+    )
+
+
 def _findings(found):
     rows = [
         (
             title_of(one.effect),
             ", ".join(one.where),
             one.quantity,
-            ", ".join(number(value) for value in one.estimate),
+            _estimate(one, found.parity.channels["channel"].values),
             chance_words(one.p).removeprefix("p = ").removeprefix("p "),
             ", ".join(one.tests),
         )
@@ -115,7 +133,8 @@ def _findings(found):
         return []
     return [
         Table(
-            "Faults of sensors, taken out before anything was simulated (SI units).",
+            "Faults of sensors, taken out before anything was simulated; the standard error of each estimate stands in "
+            "brackets. The place of a marker is in the frame of its body.",
             ("Fault", "Where", "Quantity", "Estimate", "p", "Tests"),
             tuple(rows),
             "lllrrl",

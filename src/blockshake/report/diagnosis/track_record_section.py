@@ -29,9 +29,9 @@ def track_record_section(found):
         Text(
             f"The procedure was run on {len(record.cases)} campaigns in which the truth was known to the scorer "
             "alone, made with other numerics and other forms of the effects than the diagnosis has "
-            f"(docs/hidden-effects.md). {record.date}, effort {record.effort}, sources {record.commit}, "
-            f"seeds {record.seeds}, {record.machine}. The figures hold for such campaigns; on another "
-            "structure they are an indication."
+            f"(docs/hidden-effects.md). It was run on {record.date} with effort {record.effort}, sources "
+            f"{record.commit}, seeds {record.seeds}, on {record.machine}. The figures hold for such campaigns; on "
+            "another structure they are an indication."
         )
     ]
     if found.effort not in record.efforts.values():
@@ -43,7 +43,7 @@ def track_record_section(found):
         )
     missed = [one.meaning for one in [*record.shares.values(), *record.medians.values()] if one.met is False]
     if missed:
-        blocks.append(Text(f"Goals that the procedure missed: {'; '.join(missed)}.", strong=True))
+        blocks.append(Text(f"Figures that missed the goal set beforehand: {'; '.join(missed)}.", strong=True))
     blocks += [_shares(record), _confusion(record)]
     return Section("Track record of the procedure", "track-record", tuple(blocks))
 

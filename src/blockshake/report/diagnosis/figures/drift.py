@@ -27,7 +27,7 @@ def plot_extended_drift(consequences, tests, body, measured_word):
             draw_band(axes, own["drift_history"].sel(kind=kind, time=measured["time"]), 1e3, _COLORS[kind])
             axes.plot(measured["time"], 1e3 * measured, **_MEASURED)
             axes.set_xlim(0.0, float(measured["time"][-1]))
-        row[0].set_ylabel(f"{test}\n[mm]")
+        row[0].set_ylabel(f"{test}\ndisplacement [mm]")
     for axes, kind in zip(panels[0], kinds, strict=True):
         axes.set_title(f"{kind} model")
     for axes in panels[-1]:
@@ -47,7 +47,7 @@ def plot_nominal_drift(misfit, readings, tests, body, measured_word):
         draw_band(axes, band, 1e3, _COLORS["nominal"])
         axes.plot(measured["time"], 1e3 * measured, **_MEASURED)
         axes.set_xlim(0.0, float(measured["time"][-1]))
-        axes.set_ylabel(f"{test}\n[mm]")
+        axes.set_ylabel(f"{test}\ndisplacement [mm]")
     panels[-1].set_xlabel("time [s]")
     figure.align_ylabels(panels)
     _add_legend(figure, [_COLORS["nominal"]], measured_word)
