@@ -183,7 +183,8 @@ def _table(found, laws):
         f"Laws of the joints, test by test ({' / '.join(found.tests)}), those that depart farthest first: measured "
         "value, mean of the nominal draws, departure in standard deviations, and that of all tests together. The "
         "scatter of the draws counts as a third of the law's usual spread at least. "
-        f"{MISSING}: the test does not tell the law. {_joint_names(laws[:_MOST_LAWS])} Formulas are in docs/joint-forces.md.",
+        f"{MISSING}: the test does not tell the law. {_joint_names(laws[:_MOST_LAWS])} Formulas are in "
+        "docs/joint-forces.md.",
         ("Law", "Measured", "Nominal", "Unit", "Departure", "Together", ""),
         tuple(rows),
         "lrrlrrl",
