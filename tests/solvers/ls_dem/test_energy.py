@@ -98,13 +98,14 @@ def test_a_pitched_slab_carries_its_block_to_second_order(make_structure, run_ls
     """Friction and damping at work, no slip: the audit's order, and no creep in the slab's frame.
 
     Shear springs that follow velocities with the lever arms of a step's end creep outwards by
-    half a step times the centripetal acceleration: 2 and 1 micrometres here.
+    half a step times the centripetal acceleration: 2 and 0.25 micrometres here.
     """
-    runs = [_pitched(make_structure, run_ls_dem, dt) for dt in (1e-4, 5e-5)]
+    # over factors of eight: the largest of the recorded residuals scatters with the places of the steps
+    runs = [_pitched(make_structure, run_ls_dem, dt) for dt in (1e-4, 1.25e-5)]
     errors, orders = _orders(runs)
     in_play = runs[0].energy[:, INPUT].max()
-    assert errors[-1] < 1e-7 * in_play
-    assert orders[0] == pytest.approx(2.0, abs=0.15)
+    assert errors[0] < 1e-7 * in_play
+    assert orders[0] / 3.0 == pytest.approx(2.0, abs=0.15)
     # at 1 s the slab is level again
     seen = []
     for run in runs:

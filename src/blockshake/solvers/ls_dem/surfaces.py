@@ -22,7 +22,8 @@ class Surfaces(NamedTuple):
 
     ``shape`` int64 (n_bodies,): shape of each body; ``offset`` (n_bodies, 3): its mass centre in the frame of the
     shape, whose origin is the centroid; ``radius`` (n_bodies,) about the mass centre [m]. ``half``, ``middle``
-    (n_shapes, 3): half edges and middle of the bounding box; ``chamfer``, ``hollow`` (n_shapes,) [m].
+    (n_shapes, 3): half edges and middle of the bounding box; ``wide`` (n_shapes,): radius of the largest
+    bodies that stand on a box without a look at its edges, see `_wide` [m]; ``chamfer``, ``hollow`` (n_shapes,) [m].
     ``lattice`` (n_shapes, N_LATTICE): that of a sampled level set, its spacing zero where the distance of
     the box is exact, first value, origin [m], counts and cells per metre; ``values`` (n_values,)
     [m]. ``steepest`` (n_shapes,): most that the level set changes per distance [1]. ``first_node`` int64
@@ -35,6 +36,7 @@ class Surfaces(NamedTuple):
     radius: np.ndarray
     half: np.ndarray
     middle: np.ndarray
+    wide: np.ndarray
     chamfer: np.ndarray
     hollow: np.ndarray
     lattice: np.ndarray
@@ -75,6 +77,7 @@ def assemble_surfaces(structure, parameters):
         middle=np.array(
             [np.zeros(3) if shapes[name].box else place for name, place in zip(names, (low + high) / 2.0, strict=True)]
         ),
+        wide=np.array([_wide(shapes[name]) for name in names]),
         chamfer=np.array([shapes[name].chamfer for name in names]),
         hollow=np.array([shapes[name].hollow for name in names]),
         lattice=np.column_stack(
@@ -87,6 +90,14 @@ def assemble_surfaces(structure, parameters):
         areas=areas,
         damping_weight=np.sqrt(areas) if parameters.damping == "node" else areas.copy(),
     )  # fmt: skip
+
+
+def _wide(shape):
+    """Half of the width that a box offers: of a plate its broad face's, of another box its narrowest; 0 for a mesh."""
+    if shape.box is None:
+        return 0.0
+    thin, narrow, _ = sorted(shape.box)
+    return 0.5 * (narrow if thin < 0.5 * narrow else thin)
 
 
 def _hollow_slope(shape):

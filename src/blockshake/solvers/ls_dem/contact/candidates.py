@@ -163,6 +163,20 @@ def _near_nodes(surfaces, owner, other, R, d, side, skin, found, count):
 
 
 @kernel
+def _share(surfaces, driven, owner, other):
+    """Share of an interface that the nodes of ``owner`` stand for, in halves: those of both bodies stand for one each.
+
+    A driven box wider than a free body counts none: its nodes, few beneath the body, are where the body's edges happen
+    to leave them, and the body's own are an integral over its face.
+    """
+    if driven[owner] and surfaces.wide[surfaces.shape[owner]] >= surfaces.radius[other]:
+        return 0.0
+    if driven[other] and surfaces.wide[surfaces.shape[other]] >= surfaces.radius[owner]:
+        return 2.0
+    return 1.0
+
+
+@kernel
 def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
     """New lists for these poses, the shear springs of nodes that stay listed carried over.
 
@@ -194,8 +208,10 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
     found, count = np.empty(1024, np.int64), np.zeros(n_sides + 1, np.int64)
     for side in range(n_sides):
         owner, other = pairs[side // 2, side % 2], pairs[side // 2, 1 - side % 2]
-        relative_pose_into(position, rotation, surfaces.offset, owner, other, 0, R, d)
-        found, count[side + 1] = _near_nodes(surfaces, owner, other, R, d, 0, skin, found, count[side])
+        count[side + 1] = count[side]
+        if _share(surfaces, driven, owner, other) > 0.0:
+            relative_pose_into(position, rotation, surfaces.offset, owner, other, 0, R, d)
+            found, count[side + 1] = _near_nodes(surfaces, owner, other, R, d, 0, skin, found, count[side])
     first = np.zeros(n_sides + 1, np.int64)
     for side in range(n_sides):
         first[side + 1] = first[side] + (count[side + 1] - count[side] + LANES - 1) // LANES
@@ -205,6 +221,7 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
     for side in range(n_sides):
         owner, other = pairs[side // 2, side % 2], pairs[side // 2, 1 - side % 2]
         e, n_nodes = surfaces.offset[owner], count[side + 1] - count[side]
+        share = _share(surfaces, driven, owner, other)
         for rank in range((first[side + 1] - first[side]) * LANES):
             place = first[side] * LANES + rank
             packet, lane = place // LANES, place % LANES
@@ -213,8 +230,8 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
                 packets[packet, lane + POINT_X] = surfaces.points[node[place], 0] - e[0]
                 packets[packet, lane + POINT_Y] = surfaces.points[node[place], 1] - e[1]
                 packets[packet, lane + POINT_Z] = surfaces.points[node[place], 2] - e[2]
-                packets[packet, lane + AREA] = surfaces.areas[node[place]]
-                packets[packet, lane + DAMPING_WEIGHT] = surfaces.damping_weight[node[place]]
+                packets[packet, lane + AREA] = share * surfaces.areas[node[place]]
+                packets[packet, lane + DAMPING_WEIGHT] = share * surfaces.damping_weight[node[place]]
             else:
                 packets[packet, lane + POINT_X] = FAR_AWAY
         relative_pose_into(

@@ -85,7 +85,8 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
     Notes
     -----
     Each body's nodes are checked against the other's level set; each side carries half of the interface's stiffness, so
-    that a face on a face has it once. The area in touch is the mean of what the two sides find.
+    that a face on a face has it once. Of a body on a wide driven box the body's own nodes carry all. The area in touch
+    is the mean of what the two sides find.
     """
     R, d, lanes, sums = loads.workspace
     pairs, bounds = candidates.pairs, candidates.first
