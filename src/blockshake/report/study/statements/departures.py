@@ -189,8 +189,8 @@ def _defaults():
 _METHOD, _NSCD = "docs/method.md", "docs/nscd.md"
 DEPARTURES = (
     Departure("LS-DEM", "The nodes of one block look for contact with the other.",
-              _words("Each pair is checked both ways, and each side has half of the stiffness; of a block on the slab the "
-                     "block's own nodes carry all."), _METHOD),
+              _words("Each pair is checked both ways, and each side has half of the stiffness; of a block on the "
+                     "slab the block's own nodes carry all."), _METHOD),
     Departure("LS-DEM", "k_n and k_s of a node.", _words("k_n and k_s per area."),
               "docs/decisions/0001-stiffness-per-area.md"),
     Departure("LS-DEM", "Nodes cover the surface, chamfer included.", _pivot, _METHOD),
