@@ -22,6 +22,7 @@ from blockshake.diagnosis.gain.consequence import consequence
 from blockshake.diagnosis.gain.gain import gain_of_verdict, gain_on
 from blockshake.diagnosis.gain.law_gain import law_contrast
 from blockshake.diagnosis.inference.decision import CauseSize, write_result
+from blockshake.diagnosis.laws.findings import LawFindings
 from blockshake.diagnosis.misfit.misfit import misfit, where
 from blockshake.diagnosis.verdict.conclusion import Judged, conclude
 from blockshake.diagnosis.verdict.frozen import freeze
@@ -57,10 +58,12 @@ class FakeDiagnosis:
     """Writes a campaign of virtual tests and the results of its diagnosis.
 
     ``extended`` is whether the sealed tests were opened; ``findings`` are sensor faults; ``gaining`` whether the
-    extended model scores better than its rivals.
+    extended model scores better than its rivals; ``force`` from outside that an unknown cause is described by.
     """
 
-    def __init__(self, folder, decision, extended=True, findings=(), effort="standard", gaining=True):
+    def __init__(
+        self, folder, decision, extended=True, findings=(), effort="standard", gaining=True, force=None
+    ):
         self.folder, self.effort = Path(folder), effort
         self.campaign, self.results = self.folder / "campaign", self.folder / "results"
         self.track_record = self.folder / "hidden-effects.json"
@@ -80,6 +83,9 @@ class FakeDiagnosis:
         write_dataset(self.results / "misfit.nc", found)
         write_json(self.results / "parity.json", parity(self.structure, findings).as_json())
         self.decision = made_up_decision(decision, self.structure)
+        if force:
+            laws = LawFindings(laws=(), isolated=(), outside=force, shares={}, p=1e-6)
+            self.decision = self.decision.model_copy(update={"laws": laws})
         write_result(self.results / "decision.json", self.decision)
         freeze(self.results / "frozen.json", self.results / "decision.json", OPEN)
         best = self.decision.candidates[0]
@@ -89,7 +95,7 @@ class FakeDiagnosis:
             )
             write_result(self.results / "size.json", size)
         write_dataset(self.results / "evidence.nc", evidence(best, readings))
-        gained = bool(self.decision.causes) and extended
+        gained = bool(self.decision.causes or self.decision.described) and extended
         caveats = [] if extended else ["no gain was measured: there is no sealed test"]
         summary = MeasuredGain(gain=None, caveats=caveats, runs=1260)
         gain = consequences = xr.Dataset()

@@ -356,8 +356,8 @@ def conclude(folder, effort, files):
     if files.gain:
         measured, scores = load_result(MeasuredGain, files.gain[0]), load_made(files.gain[1])
     else:
-        described = decision.decision == "unknown" and decision.laws and decision.laws.outside
-        caveats = plan.caveats([*decision.causes, *parity.findings, *([described] if described else [])])
+        described = [decision.described] if decision.described else []
+        caveats = plan.caveats([*decision.causes, *parity.findings, *described])
         measured, scores = MeasuredGain(gain=None, caveats=caveats, runs=0), None
     runs = plan.runs + (plan.further_runs if size else 0) + measured.runs
     channels = parity.channels["channel"].values.tolist()

@@ -1,7 +1,13 @@
 """A force from outside in words: where, when, how large, and the next best forms."""
 
+import pytest
+from fake_diagnosis import FakeDiagnosis
+from fake_findings import gain_finding
+
 from blockshake.diagnosis.laws.findings import OutsideForce
+from blockshake.report.diagnosis.content import load_diagnosed
 from blockshake.report.diagnosis.forces_section import described
+from blockshake.report.diagnosis.report import compose_diagnosis
 
 PUSH = OutsideForce(
     bodies=("block-2", "block-1"), height=0.8, law="constant", scores={"constant": 0.0, "steady": 41.0, "spring": 4e3},
@@ -26,3 +32,16 @@ def test_a_spring_through_the_mass_centre_has_a_gap_and_no_direction():
     assert "kN/m" in words
     assert "towards" not in words
     assert "t3: gap 28 mm" in words
+
+
+@pytest.mark.parametrize("findings", [[], [gain_finding()]])
+def test_the_gain_of_a_described_force_is_shown_beside_faults_of_sensors_too(findings, tmp_path):
+    """The force extends the model though the cause is unknown; the faults are taken out before."""
+    fake = FakeDiagnosis(tmp_path, "unknown", findings=findings, force=PUSH)
+    found = load_diagnosed(*fake.arguments())
+    assert found.verdict.decision == "unknown"
+    assert found.verdict.gain == fake.verdict.gain
+    assert found.verdict.gain is not None
+    section = next(one for one in compose_diagnosis(found).sections if one.key == "gain")
+    scores = next(block for block in section.blocks if block.kind == "table")
+    assert [row[0] for row in scores.rows][-1] == "extended"

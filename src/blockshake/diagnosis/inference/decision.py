@@ -112,6 +112,11 @@ class Decision(Strict):
         return next(row for row in self.candidates if row.key == key)
 
     @property
+    def described(self):
+        """Force from outside that extends the model in place of an unknown cause; None without one."""
+        return self.laws.outside if self.decision == "unknown" and self.laws else None
+
+    @property
     def first_key(self):
         """Key of the candidate that stands for the first cause, or without a cause for the strongest effect."""
         return self.places[(self.causes or tuple(self.places))[0]]

@@ -53,11 +53,11 @@ class Diagnosed:
     readings, misfit, evidence : xarray.Dataset
         From `measured_readings`, `misfit` and `deciding_features`.
     gain, consequences : xarray.Dataset or None
-        From `campaign_gain`; None where no physical cause's gain was measured.
+        From `campaign_gain`; None where the gain of no physical cause or described force was measured.
     size : CauseSize or None
         None where the effort has no further draws, or there is no physical cause.
     sensor_gain : xarray.Dataset or None
-        From `sensor_gain`; None where a sensor's fault is not the only cause.
+        From `sensor_gain`; None where a physical cause or a described force extends the model.
     horizon : dict of str to float
         By test: time for which it can be predicted [s]; empty where that was not measured.
     structure : str
@@ -154,6 +154,7 @@ def load_diagnosed(campaign, results, effort, track_record, horizons=()):
     verdict = load_verdict(results / "verdict.json")
     decision = load_result(Decision, results / "decision.json")
     physical = bool(decision.causes)
+    extended = physical or decision.described is not None
     sized = physical and bool(EFFORTS[effort].further_draws)
     measured = verdict.gain is not None  # files of an earlier gain may still lie there
     files += [results / name for name in (*_RESULTS, *(_OF_GAIN if measured else ()))]
@@ -173,10 +174,10 @@ def load_diagnosed(campaign, results, effort, track_record, horizons=()):
         forces=load_made(results / "forces.nc"),
         misfit=load_made(results / "misfit.nc"),
         evidence=load_made(results / "evidence.nc"),
-        gain=load_made(results / "gain.nc") if measured and physical else None,
-        consequences=load_made(results / "consequences.nc") if measured and physical else None,
+        gain=load_made(results / "gain.nc") if measured and extended else None,
+        consequences=load_made(results / "consequences.nc") if measured and extended else None,
         size=load_result(CauseSize, results / _OF_SIZE) if sized else None,
-        sensor_gain=load_made(results / "gain.nc") if measured and not physical else None,
+        sensor_gain=load_made(results / "gain.nc") if measured and not extended else None,
         horizon={
             name: float(load_made(path)["horizon"].min()) for name, path in zip(names, horizons, strict=False)
         },

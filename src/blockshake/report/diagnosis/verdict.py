@@ -96,7 +96,7 @@ def facts(found):
 
 
 def _judged_by(found):
-    """What the smallest chance of a verdict comes from, in words."""
+    """Source of the smallest chance of a verdict, in words."""
     laws, p = found.decision.laws, found.verdict.misfit.p
     if p < found.decision.p_none:
         return "the sensors' checks"
