@@ -23,9 +23,9 @@ WEAK, STRONG = (
 FREQUENCY, DURATION = 1.5, 1.0  # Hz, s
 SILENT = Instruments(marker_noise=0.0, accelerometer_noise=0.0)
 SLIDES = ("weak-joint", "rate-weakening-friction")
-# m, what an effect that shows only later may leave before, by the elastic joints of LS-DEM: a fifth of a marker's
-# noise, and a fifth of what it must leave later; a face that bears on a half is softer, and sways by 14 um more
-LEFT_BEFORE, SHOWN_LATER = 2e-5, 1e-4
+# m, what an effect that shows only later may leave before, by the elastic joints of LS-DEM: a tenth of a marker's
+# noise, and a tenth of what it must leave later
+LEFT_BEFORE, SHOWN_LATER = 1e-5, 1e-4
 # of the largest difference: how far the mirror image of a symmetric effect may be off; the order of contact points
 # changes with the mirror, and the solvers' sums with it
 MIRROR = 1e-3
@@ -113,6 +113,20 @@ def _added(nominal, structure, name, amplitude, model, share=1.0):
     return (read["marker_displacement"] - plain["marker_displacement"]).to_numpy()
 
 
+def _softened(effect, model):
+    """Sway at weak shaking that narrower faces add on the springs of LS-DEM, by statics [m]; zero for other effects.
+
+    Each joint leans by M / (k_n I), which moves the highest marker by the lean times its height above the joint.
+    """
+    if (effect.name, model) != ("reduced-bearing", "ls-dem"):
+        return 0.0
+    weight = WEAK * 2400.0 * 0.8 * 2.4 * 1.6  # N, of the shaking, on each of the two blocks
+    moved = weight * ((0.8 + 2.4) * 3.0 + 0.8 * 1.4)  # N m2
+    inset = effect.parameters[0].visible
+    inertia = [(2.36 - 2.0 * r) * (0.76 - 2.0 * r) ** 3 / 12.0 for r in (0.0, inset)]  # m4
+    return moved / 2.16e10 * (1.0 / inertia[1] - 1.0 / inertia[0])
+
+
 @pytest.mark.parametrize("model", STEPS)
 @pytest.mark.parametrize("name", EFFECTS)
 def test_the_null_value_gives_the_nominal_run_to_the_byte(name, model, structure, nominal):
@@ -137,7 +151,7 @@ def test_it_shows_when_its_signature_says(name, model, structure, nominal):
         # in proportion to the motion
         assert doubled == pytest.approx(2.0 * weak, rel=0.02)
     else:
-        assert weak < LEFT_BEFORE
+        assert abs(weak - _softened(effect, model)) < LEFT_BEFORE
 
 
 @pytest.mark.parametrize("model", STEPS)

@@ -136,36 +136,29 @@ def decided(wildcards):
 
     path = checkpoints.decide.get(campaign=wildcards.campaign).output.decision
     try:
-        return load_result(Decision, path).model_dump()
+        return load_result(Decision, path)
     except InputError as error:
         refuse(error)
-
-
-def described(decision):
-    """Whether the cause is unknown but described as a force from outside."""
-    return bool(
-        decision["decision"] == "unknown" and (decision["laws"] or {}).get("outside")
-    )
 
 
 def further_files(wildcards):
     """More draws with the first cause by both solvers, test by test."""
     decision = decided(wildcards)
-    if not decision["causes"]:
+    if not decision.causes:
         path = f"results/diagnosis/{wildcards.campaign}/decision.json"
         refuse(InputError(path, "causes", "expected a cause to simulate"))
-    key = decision["places"][decision["causes"][0]]
+    key = decision.first_key
     return library_files(wildcards.campaign, f"{{solver}}/{key}.nc")
 
 
 def cause_files(wildcards):
     """These draws, or none where a described force extends the model."""
-    return further_files(wildcards) if decided(wildcards)["causes"] else []
+    return further_files(wildcards) if decided(wildcards).causes else []
 
 
 def size_files(wildcards):
     """The size of the first cause and its hash, where there is one and the effort has further draws for it."""
-    causes = decided(wildcards)["causes"]
+    causes = decided(wildcards).causes
     further = causes and plan(wildcards.campaign).effort.further_draws
     names = ["size.json", "frozen-size.json"] if further else []
     return expand(f"results/diagnosis/{wildcards.campaign}/{{name}}", name=names)
@@ -176,7 +169,7 @@ def extended_files(wildcards):
     decision = decided(wildcards)
     return expand(
         f"results/diagnosis/{wildcards.campaign}/extended/{{solver}}.nc",
-        solver=NULL_MODELS if decision["causes"] or described(decision) else [],
+        solver=NULL_MODELS if decision.causes or decision.described else [],
     )
 
 
@@ -191,7 +184,7 @@ def gain_files(wildcards):
         faulty = bool(load_parity(parity).findings)
     except InputError as error:
         refuse(error)
-    physical = bool(decision["causes"]) or described(decision)
+    physical = decision.causes or decision.described
     measurable = asked.effort.members if physical else faulty
     if measurable and sealed_tests(asked.campaign):
         return expand(
