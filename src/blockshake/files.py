@@ -1,6 +1,7 @@
 """Reading and writing files: strict YAML, atomic writes, digests of contents."""
 
 import contextlib
+import errno
 import hashlib
 import json
 import os
@@ -22,6 +23,8 @@ MADE_ANEW = "expected the {} file that an earlier job made; delete it, and the s
 # no file of this kind comes near; a few lines of aliases of aliases would grow beyond any memory
 _DEEPEST, _MOST_VALUES = 50, 200_000
 _NO_NUMBER = -(2**31)  # stands for NaN in packed variables
+_FULL = (errno.ENOSPC, errno.EDQUOT)
+_FURTHER = 2**16  # bytes, more than a file system keeps in hand for a file's end
 
 
 class _StrictLoader(yaml.CSafeLoader):
@@ -231,17 +234,42 @@ def replacing(path):
     """Temporary path beside ``path`` that takes its place when the block ends well.
 
     A reader sees the whole old file or the whole new one; a failed or killed writer leaves the old one.
+
+    Raises
+    ------
+    InputError
+        The path is that of no file, or cannot be written to; or the disk is full.
     """
     path = check_output(path)
-    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=path.suffix, dir=path.parent)
+    full = InputError(path, "", "expected room to write to; the disk is full")
+    try:
+        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=path.suffix, dir=path.parent)
+    except OSError as error:
+        if error.errno in _FULL:
+            raise full from None
+        raise
     os.close(handle)
     try:
         yield Path(temporary)
         os.chmod(temporary, 0o666 & ~_umask())
         os.replace(temporary, path)
-    except BaseException:
+    except BaseException as error:
+        # asked before the temporary file gives its room back; errors of netCDF's library do not tell
+        no_room = isinstance(error, (OSError, RuntimeError)) and _is_full(path.parent)
         Path(temporary).unlink(missing_ok=True)
+        if no_room:
+            raise full from None
         raise
+
+
+def _is_full(folder):
+    """Whether a folder takes no further bytes."""
+    try:
+        with tempfile.TemporaryFile(dir=folder) as file:
+            file.write(bytes(_FURTHER))
+    except OSError as error:
+        return error.errno in _FULL
+    return False
 
 
 @contextlib.contextmanager

@@ -5,6 +5,7 @@ import re
 import pytest
 import xarray as xr
 from checkout import Checkout
+from ledger import DONE
 
 from blockshake.store import kept
 
@@ -43,6 +44,7 @@ def test_damaged_units_are_made_anew_and_the_others_are_not(finished):
     before = {path: xr.load_dataset(path) for path in batches}
     for damage, unit in zip(DAMAGES, units, strict=False):
         damage(unit)
+        DONE["study: finished unit cut, altered or exchanged"] += 1
     answer = finished.snakemake("configuration-1", "-R", "simulate_batch")
     assert answer.returncode == 0, answer.stdout + answer.stderr
     assert answer.stdout.count(", simulated:") == len(DAMAGES)
@@ -56,6 +58,7 @@ def test_a_damaged_result_is_named_and_made_anew_when_deleted(finished):
     path = finished.folder / "results" / "small" / "runs" / "nscd-rigid" / "configuration-1" / "000-004.nc"
     before = xr.load_dataset(path)
     _cut(path)
+    DONE["study: finished result cut"] += 1
     answer = finished.snakemake("configuration-1")
     assert answer.returncode == 1
     name = re.escape(str(path.relative_to(finished.folder)))

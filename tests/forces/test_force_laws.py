@@ -32,6 +32,7 @@ def history(force, seed=0):
         told=np.ones(len(TIME), dtype=bool),
         distance=np.zeros(len(TIME)),
         edge=np.zeros(len(TIME)),
+        friction=np.zeros(len(TIME)),
         lower=np.full(len(TIME), -np.inf),
         upper=np.full(len(TIME), np.inf),
         by_lever=np.zeros(len(TIME)),
@@ -125,6 +126,17 @@ def test_a_rope_is_told_from_edges_that_lie_elsewhere(further_out):
     best = fit_laws(TIME, rocking(further_out, -1e5 * moved))[0]
     assert best.name == "proportional"
     assert best.amplitude == pytest.approx(-1e5, abs=4.0 * best.error)
+
+
+@pytest.mark.parametrize("more", [0.0, 0.1, 0.15])
+def test_a_drag_is_told_from_more_friction(more):
+    """Both act against the slip: the drag by its rate, friction by the same force at every rate."""
+    friction = -30e3 * np.sign(RATE) * (np.abs(RATE) > 0.01)
+    push = replace(history(more * friction), friction=friction)
+    assert fit_laws(TIME, push)[0].name == "none"
+    best = fit_laws(TIME, replace(push, force=push.force + FORCES["damper"]))[0]
+    assert best.name == "damper"
+    assert best.amplitude == pytest.approx(-2e4, abs=4.0 * best.error)
 
 
 def test_a_stop_on_either_side_is_one_spring_with_a_second_gap():

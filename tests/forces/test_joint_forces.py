@@ -18,6 +18,7 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 
 from blockshake.diagnosis.laws.law_table import law_of
+from blockshake.diagnosis.laws.outside_force import law_of_tests
 from blockshake.forces.joint_forces import joint_forces
 from blockshake.forces.laws.friction import friction_law
 from blockshake.forces.laws.lever import lever_law
@@ -230,6 +231,16 @@ def test_a_constant_push_is_found_with_its_start_and_size(sensors):
     assert best.name == "constant"
     assert best.amplitude == pytest.approx(push, rel=0.1)
     assert best.parameters["start"] == pytest.approx(start, abs=0.1)
+
+
+@pytest.mark.parametrize("more", [0.9, 1.0, 1.1])
+def test_friction_that_is_known_to_a_tenth_asks_for_no_force(more, sensors):
+    """A block slides to and fro with another coefficient than its structure states."""
+    mu = 0.25
+    structure, poses = stack(1, friction=mu), sliding(shaken(4.0, 1.5), more * mu)
+    noisy = readings(structure, poses, sensors.marker_noise, sensors.accelerometer_noise)
+    forces = joint_forces(noisy, structure, sensors)
+    assert law_of_tests({"only": fit_laws(forces.motion.time, push_history(forces, 1))}) is None
 
 
 def test_an_impact_just_beyond_the_end_of_a_record_leaves_no_unexplained_force(sensors):

@@ -5,6 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.forces.outside.push_history import FRICTION
+
 _GRID = 40  # gaps that are tried
 _STEP = 0.05  # s, between the starts that are tried
 _WITHIN_90 = 2.71  # chi-square of one degree of freedom that nine of ten values stay below
@@ -53,16 +55,18 @@ class FittedLaw:
 
 
 class _Readings(NamedTuple):
-    """History at the known instants: the force where it is told, its ends elsewhere, and what an edge adds to both."""
+    """History at the known instants: the force where it is told, its ends elsewhere, and what else adds to both."""
 
     told: np.ndarray
     force: np.ndarray
     error: np.ndarray
-    edge: np.ndarray
+    others: (
+        np.ndarray
+    )  # (n_told, 2): force by metre that the edges lie further out, and by share of more friction
+    known: np.ndarray  # of edges and friction: standard deviations before the readings
     lower: np.ndarray
     upper: np.ndarray
     by_lever: np.ndarray
-    edge_error: float  # m, of the edges' places before the readings
 
 
 def fit_laws(time, push):
@@ -83,7 +87,8 @@ def fit_laws(time, push):
     -----
     With every law goes how far further out the edges lie than the structure has them, the same to both sides: an edge
     takes up ``shift * edge``, which the history lacks. A block that turned to one side alone tells its edge no better
-    than it is known before.
+    than it is known before. With every law goes a share of more friction too: while a joint slips, such friction is in
+    the history as a force against the slip.
     """
     bounded = ~push.told & np.isfinite(push.lower + push.error + push.displacement + push.velocity)
     if not push.told.any():
@@ -91,9 +96,10 @@ def fit_laws(time, push):
     known = push.told | bounded
     sides = [np.count_nonzero(push.told & (side * push.edge > 0.0)) for side in (1.0, -1.0)]
     readings = _Readings(
-        push.told[known], push.force[known], push.error[known], push.edge[known],
+        push.told[known], push.force[known], push.error[known],
+        np.column_stack([-push.edge, push.friction])[push.told],
+        np.array([_EDGE if min(sides) < _FEWEST else _ANYWHERE, FRICTION]),
         push.lower[known], push.upper[known], push.by_lever[known],
-        _EDGE if min(sides) < _FEWEST else _ANYWHERE,
     )  # fmt: skip
     t, u, v = time[known], push.displacement[known], push.velocity[known]
     fits = [_fitted("none", [], readings, {}, 0)]
@@ -125,19 +131,19 @@ def _stepped(t, readings):
 def _pulse(t, readings):
     """The pulse that lowers the sum of squares most where the force is told: sums over windows tell all of them."""
     told, weight = readings.told, readings.error[readings.told] ** -2
-    own, force, edge = t[told], readings.force[told], -readings.edge[told]
+    own, force, others = t[told], readings.force[told], readings.others
     starts, lengths = np.unique(own)[:, None], np.geomspace(_SHORTEST_PULSE, _LONGEST_PULSE, _LENGTHS)
     ends = np.searchsorted(own, np.stack(np.broadcast_arrays(starts, starts + lengths)))
-    of_pulse, shared, along = (
+    of_pulse, along, *shared = (
         np.diff(np.concatenate([[0.0], np.cumsum(terms)])[ends], axis=0)[0]
-        for terms in (weight, weight * edge, weight * force)
+        for terms in (weight, weight * force, *(weight * others.T))
     )
-    of_edge, along_edge = weight @ edge**2 + readings.edge_error**-2, weight @ (edge * force)
-    determinant = of_pulse * of_edge - shared**2
-    lowers = of_edge * along**2 - 2.0 * shared * along * along_edge + of_pulse * along_edge**2
-    lowers = np.where(determinant > _ALIKE * of_pulse * of_edge, lowers, 0.0) / np.maximum(
-        determinant, 1e-300
-    )
+    shared = np.stack(shared, axis=-1)
+    # edges and friction take their parts of the pulse and of the force before the two are compared
+    taken = np.linalg.inv((others.T * weight) @ others + np.diag(readings.known**-2))
+    left = of_pulse - np.einsum("sli,ij,slj->sl", shared, taken, shared)
+    along = along - shared @ (taken @ (others.T @ (weight * force)))
+    lowers = np.where(left > _ALIKE * of_pulse, along, 0.0) ** 2 / np.maximum(left, 1e-300)
     start, length = np.unravel_index(np.argmax(lowers), lowers.shape)
     first, last = float(starts[start, 0]), float(starts[start, 0] + lengths[length])
     return _fitted(
@@ -182,30 +188,33 @@ def _least(fits):
 
 
 def _fitted(name, shapes, readings, parameters, count):
-    """Amplitudes of one shape or two, with the edges' shift, by weighted least squares where the force is told.
+    """Amplitudes of one shape or two, with the edges' shift and more friction, by weighted least squares where told.
 
     None where the told instants do not tell a shape from the others or from a shift of the edges.
     """
     told, weight = readings.told, readings.error[readings.told] ** -2
-    design = np.column_stack([*(shape[told] for shape in shapes), -readings.edge[told]])
+    design = np.column_stack([*(shape[told] for shape in shapes), readings.others])
     normal = (design * weight[:, None]).T @ design
-    normal[-1, -1] += readings.edge_error**-2
+    others = np.arange(len(shapes), design.shape[1])
+    normal[others, others] += readings.known**-2
     size = np.sqrt(np.diag(normal))
     if (size == 0.0).any() or np.linalg.det(normal / np.outer(size, size)) < _ALIKE:
         return None
-    *amplitudes, shift = np.linalg.solve(normal, design.T @ (weight * readings.force[told]))
+    found = np.linalg.solve(normal, design.T @ (weight * readings.force[told]))
+    amplitudes, (shift, more) = found[: len(shapes)], found[len(shapes) :]
     force = sum((one * shape for one, shape in zip(amplitudes, shapes, strict=True)), np.zeros(len(told)))
     lower = readings.lower - shift * readings.by_lever - force
     upper = readings.upper + shift * readings.by_lever - force
-    beyond = np.maximum(np.maximum(lower, -upper), 0.0)
-    away = np.where(told, readings.force + shift * readings.edge - force, beyond) / readings.error
-    left = float(away @ away) + (shift / readings.edge_error) ** 2
+    away = np.maximum(np.maximum(lower, -upper), 0.0)
+    away[told] = readings.force[told] - design @ found
+    away /= readings.error
+    left = float(away @ away) + float((([shift, more] / readings.known) ** 2).sum())
     if len(amplitudes) == 2:
         parameters = parameters | {"other_amplitude": float(amplitudes[1])}
     return FittedLaw(
         name,
-        float(amplitudes[0]) if amplitudes else 0.0,
-        float(np.linalg.inv(normal)[0, 0] ** 0.5) if amplitudes else np.nan,
+        float(amplitudes[0]) if shapes else 0.0,
+        float(np.linalg.inv(normal)[0, 0] ** 0.5) if shapes else np.nan,
         parameters,
         left,
         left + count * float(np.log(np.count_nonzero(told))),

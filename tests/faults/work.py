@@ -1,0 +1,67 @@
+"""The two works that faults are done to: a small study, and a quick diagnosis of a small campaign."""
+
+import os
+import shutil
+import signal
+import subprocess
+import time
+
+import psutil
+import yaml
+from checkout import Checkout
+
+from blockshake.files import load_yaml
+
+# arguments of Snakemake by work
+WORKS = {
+    "study": ("all", "ladder"),
+    "diagnosis": ("diagnose", "--config", "campaign=small-campaign", "effort=quick"),
+}
+GRACE = 10.0  # s; in which jobs end with their command, on a machine that may be busy
+_SHIPPED = "data/virtual-campaign/configuration-1"
+_OPEN = ("alkion-200", "basso-tirreno-200")
+
+
+def checkout_with_campaign(folder):
+    """A checkout with a small study and, in ``small-campaign``, two open tests of the shipped campaign of one block."""
+    checkout = Checkout(folder)
+    campaign = load_yaml(folder / _SHIPPED / "campaign.yaml")
+    campaign["tests"] = [test for test in campaign["tests"] if test["name"] in _OPEN]
+    small = folder / "small-campaign"
+    small.mkdir()
+    (small / "campaign.yaml").write_text(yaml.safe_dump(campaign, sort_keys=False))
+    for test in campaign["tests"]:
+        shutil.copy(folder / _SHIPPED / test["file"], small)
+    return checkout
+
+
+def start(checkout, work):
+    """Start a work in a process group of its own."""
+    return subprocess.Popen(
+        checkout.command(*WORKS[work]), cwd=checkout.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        text=True, start_new_session=True, preexec_fn=_heed_interrupts,
+    )  # fmt: skip
+
+
+def count_orphans(folder):
+    """Processes that work in a folder though no command does; they are ended."""
+    deadline = time.monotonic() + GRACE
+    while (left := [one for one in psutil.process_iter() if _works_in(one, folder)]) and (
+        time.monotonic() < deadline
+    ):
+        time.sleep(0.1)
+    for one in left:
+        one.kill()
+    return len(left)
+
+
+def _heed_interrupts():
+    """A shell's background jobs ignore interrupts, and what they start does too."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def _works_in(process, folder):
+    try:
+        return process.cwd() == os.fspath(folder)
+    except psutil.Error:
+        return False
