@@ -8,7 +8,7 @@ import time
 import one_node
 import pytest
 from checkout import LIMIT, Checkout
-from likeness import count_unlike
+from likeness import unlike
 
 pytestmark = pytest.mark.cluster
 TARGET = "configuration-1"  # the study but for its report, its convergence and its ladder: minutes less
@@ -90,7 +90,7 @@ def test_study_with_a_killed_job_and_a_drained_node_is_the_local_one(slurm, loca
     # the killed batch went on from its finished samples
     logs = (checkout.folder / "logs" / "small" / "simulate_batch").rglob("*.log")
     assert any(", kept:" in path.read_text() for path in logs)
-    assert count_unlike(local.folder, checkout.folder) == 0
+    assert unlike(local.folder, checkout.folder) == []
 
 
 def test_jobs_of_a_killed_command_go_on_until_the_next_one_takes_the_folder(slurm, local, tmp_path):
@@ -104,4 +104,4 @@ def test_jobs_of_a_killed_command_go_on_until_the_next_one_takes_the_folder(slur
     second = _start(checkout, slurm)
     _end(second, checkout)
     assert not before.keys() & slurm.jobs("RUNNING,PENDING,COMPLETING").keys()
-    assert count_unlike(local.folder, checkout.folder) == 0
+    assert unlike(local.folder, checkout.folder) == []

@@ -9,7 +9,7 @@ import sys
 
 import pytest
 from ledger import DONE
-from likeness import count_unlike
+from likeness import unlike
 from work import WORKS, checkout_with_campaign
 
 pytestmark = pytest.mark.faults
@@ -54,4 +54,4 @@ def test_results_that_cannot_be_written(fault, mended, words, small_disk, whole_
     assert remount(mended) == 0
     answer = checkout.snakemake(*WORKS["study"])
     assert answer.returncode == 0, answer.stdout + answer.stderr
-    assert count_unlike(whole_study.folder, checkout.folder) == 0
+    assert unlike(whole_study.folder, checkout.folder) == []

@@ -19,7 +19,7 @@ import pytest
 import xarray as xr
 from checkout import LIMIT
 from ledger import DONE, LOST
-from likeness import count_unlike, files
+from likeness import files, unlike
 from work import WORKS, checkout_with_campaign, count_orphans, start
 
 from blockshake.store import kept
@@ -47,13 +47,13 @@ def test_a_work_killed_again_and_again(work, tmp_path):
         lost["orphans"] += count_orphans(killed.folder)
         finished = _judge(killed.folder, finished, lost)
         if ended:
-            lost["files unlike those of a whole run"] += count_unlike(whole.folder, killed.folder)
+            lost["files unlike those of a whole run"] += len(unlike(whole.folder, killed.folder))
             _clear(killed.folder)
             finished = {}
     answer = killed.snakemake(*WORKS[work])
     lost["commands that did not end"] += answer.returncode != 0
     finished = _judge(killed.folder, finished, lost)
-    lost["files unlike those of a whole run"] += count_unlike(whole.folder, killed.folder)
+    lost["files unlike those of a whole run"] += len(unlike(whole.folder, killed.folder))
     LOST.update({f"{work}: {name}": count for name, count in lost.items()})
     assert finished
     assert sum(lost.values()) == 0, answer.stdout + answer.stderr

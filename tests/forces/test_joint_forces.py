@@ -243,6 +243,26 @@ def test_friction_that_is_known_to_a_tenth_asks_for_no_force(more, sensors):
     assert law_of_tests({"only": fit_laws(forces.motion.time, push_history(forces, 1))}) is None
 
 
+def test_a_joint_that_closes_and_opens_to_the_same_side_bears_on_both_edges(sensors):
+    """A kink at zero, rounded by the kernel to a millirad, is an impact; a smooth turn a millirad from zero is none."""
+    structure, kinks = stack(1), [2.0, 3.0, 4.0]
+
+    def bouncing(t):
+        return 0.03 * abs(np.sin(np.pi * t)) if t > 1.0 else 0.0
+
+    def swaying(t):
+        return 1e-3 * (2.0 + np.cos(2.0 * np.pi * t)) * np.clip(t - 1.0, 0.0, 1.0) ** 2
+
+    for turn, bears in ((bouncing, True), (swaying, False)):
+        noisy = readings(
+            structure, rocking(lambda t: 0.0, turn), sensors.marker_noise, sensors.accelerometer_noise
+        )
+        forces = joint_forces(noisy, structure, sensors)
+        near = np.searchsorted(forces.motion.time, kinks if bears else [2.5, 3.5, 4.5])
+        assert (np.abs(forces.joints.rotation[near, 0]) > 3e-4).all()
+        assert (forces.joints.bears[near, 0, 0].all(axis=-1) == bears).all()
+
+
 def test_an_impact_just_beyond_the_end_of_a_record_leaves_no_unexplained_force(sensors):
     """The other edge bears within the kernel's reach of the last instant, though no reading shows it."""
     structure = stack(1)

@@ -9,8 +9,8 @@ def files(folder, *suffixes):
     return sorted(path for path in found if path.suffix in suffixes and not path.name.startswith("."))
 
 
-def count_unlike(one, other):
-    """Results of two checkouts whose variables or bytes differ, or that one of them lacks; the store's units too."""
+def unlike(one, other):
+    """Names of results of two checkouts whose variables or bytes differ, or that one lacks; the store's units too."""
     names = {
         path.relative_to(folder)
         for folder in (one, other)
@@ -18,7 +18,7 @@ def count_unlike(one, other):
         if "kernels" not in path.parts
     }
     assert names
-    return sum(not _alike(one / name, other / name) for name in names)
+    return sorted(str(name) for name in names if not _alike(one / name, other / name))
 
 
 def _alike(one, other):
