@@ -9,7 +9,7 @@ READY := $(VENV)/ready
 PEERS := .venv-peers
 SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 
-.PHONY: study quick paper examples test test-slow test-faults test-cluster test-hidden-few test-hidden bench figures-of-docs peers cluster setup lint lock clean
+.PHONY: study quick paper examples audit test test-slow test-faults test-cluster test-hidden-few test-hidden bench figures-of-docs peers cluster setup lint lock clean
 
 study: setup
 	@$(BIN)/blockshake check config/study.yaml
@@ -106,6 +106,12 @@ lint: setup
 lock:
 	uv pip compile pyproject.toml --extra test --extra build --universal --python-version 3.11 --generate-hashes \
 	  --no-annotate --no-header --no-emit-index-url --no-emit-find-links -o requirements.lock
+
+# known vulnerabilities of the locked packages, by the advisories of the Python package index: needs the network
+audit:
+	@$(PYTHON) -m venv --clear .venv-audit
+	@.venv-audit/bin/python -m pip install --quiet --disable-pip-version-check pip-audit
+	.venv-audit/bin/pip-audit --disable-pip --require-hashes --strict -r requirements.lock
 
 clean:
 	rm -rf results reports logs benchmarks .snakemake

@@ -8,12 +8,12 @@ import time
 from pathlib import Path
 
 from blockshake import __version__
-from blockshake.errors import InputError
+from blockshake.errors import INTERRUPTED, InputError
 from blockshake.files import check_output, parse_yaml, write_dataset, write_json
 from blockshake.own_files.commands import add_data_commands
 from blockshake.simulation.models import MODELS
 
-BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 2, 3, 130
+BAD_INPUT, NUMERICAL_FAILURE = 2, 3
 
 
 class _Parser(argparse.ArgumentParser):

@@ -1,5 +1,6 @@
 """The one error that a user can mend, worded in one line."""
 
+INTERRUPTED = 130  # exit code, by Ctrl-C
 _LONGEST = 1000  # characters of a line that someone reads
 
 

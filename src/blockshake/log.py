@@ -7,7 +7,7 @@ import traceback
 from importlib.metadata import version
 from pathlib import Path
 
-from blockshake.errors import InputError
+from blockshake.errors import INTERRUPTED, InputError
 from blockshake.working_folder import end_with_command
 
 _VERSIONS = ("numpy", "numba", "scipy", "xarray")
@@ -43,6 +43,9 @@ def logging_to(path):
         except InputError as error:
             log.write(traceback.format_exc())
             sys.exit(f"blockshake: {error}")
+        except KeyboardInterrupt:
+            log.write(traceback.format_exc())
+            sys.exit(INTERRUPTED)
         except BaseException:
             log.write(traceback.format_exc())
             raise

@@ -20,6 +20,7 @@ COMMAND = (
 )
 _BOOT = Path("/proc/sys/kernel/random/boot_id")  # of this machine since it was switched on
 _LOCK = Path(".snakemake") / "command.lock"  # holds the name of the command that took the folder last
+_WRITTEN = ("results", "reports", "logs", "benchmarks")  # folders of a workflow in it
 _PERIOD = 10.0  # s; between two looks at the lock from another machine
 
 
@@ -31,8 +32,12 @@ def hold(folder):
     Raises
     ------
     InputError
-        Another command works in the folder.
+        Another command works in the folder, or what a workflow writes to cannot be written to.
     """
+    for name in _WRITTEN:
+        path = Path(folder, name)
+        if path.exists() and not os.access(path, os.W_OK):
+            raise InputError(path.resolve(), "", "expected a folder to write to; permission denied")
     path = Path(folder) / _LOCK
     path.parent.mkdir(parents=True, exist_ok=True)
     held = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)

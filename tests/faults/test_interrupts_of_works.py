@@ -27,7 +27,6 @@ def test_an_interrupted_work_ends_and_goes_on(work, tmp_path):
     assert time.monotonic() - asked < SECONDS
     assert command.returncode not in (0, None)
     assert count_orphans(checkout.folder) == 0
-    assert "Traceback" not in said
     assert "the same command goes on" in said
     finished = {path: path.stat().st_mtime_ns for path in store.rglob("[!.]*.nc")}
     answer = checkout.snakemake(*WORKS[work])

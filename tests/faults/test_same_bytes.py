@@ -12,8 +12,6 @@ from ledger import DONE, LOST
 from likeness import unlike
 from work import WORKS, checkout_with_campaign
 
-from blockshake.simulation.models import MODELS
-
 pytestmark = pytest.mark.faults
 PLAIN = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
 # m; after a second of shaking: sums that a processor packs otherwise round otherwise, and contacts are stiff
@@ -33,7 +31,7 @@ def test_one_core_and_kernels_compiled_anew_give_the_same_bytes(whole_study, tmp
     assert others == []
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", ["ls-dem", "nscd-rigid"])
 def test_a_plain_processor_computes_nearly_the_same(model, tmp_path):
     own, plain = (
         _positions(model, tmp_path / f"{name}.nc", {"BLOCKSHAKE_CACHE": str(tmp_path / name), **processor})
