@@ -21,7 +21,8 @@ def fits(force, seed):
         PushHistory(
             body=1, height=0.0, force=force + np.random.default_rng(seed).normal(0.0, ERROR, len(TIME)),
             error=nothing + ERROR, told=np.ones(len(TIME), dtype=bool), distance=nothing,
-            edge=nothing, friction=nothing, lower=nothing - np.inf, upper=nothing + np.inf, by_lever=nothing, displacement=MOVED, velocity=RATE,
+            edge=nothing, friction=nothing, lower=nothing - np.inf, upper=nothing + np.inf, by_lever=nothing,
+            displacement=MOVED, velocity=RATE,
         ),
     )  # fmt: skip
 
