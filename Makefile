@@ -39,8 +39,8 @@ test: setup
 test-slow: setup
 	$(BIN)/pytest -m slow
 
-# a small study and a small diagnosis, each killed at MOMENTS moments, interrupted, damaged and on a full disk:
-# an hour; prints what was done and what was lost
+# a small study and a small diagnosis, each killed at MOMENTS moments and interrupted, the study damaged and on a
+# full disk too: long; prints what was done and what was lost
 MOMENTS ?= 20
 test-faults: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" BLOCKSHAKE_MOMENTS=$(MOMENTS) $(BIN)/pytest -m faults

@@ -23,7 +23,7 @@ _OPEN = ("alkion-200", "basso-tirreno-200")
 
 
 def checkout_with_campaign(folder):
-    """A checkout with a small study and, in ``small-campaign``, two open tests of the shipped campaign of one block."""
+    """A checkout with a small study and, in ``small-campaign``, two tests of the shipped one of configuration 1."""
     checkout = Checkout(folder)
     campaign = load_yaml(folder / _SHIPPED / "campaign.yaml")
     campaign["tests"] = [test for test in campaign["tests"] if test["name"] in _OPEN]

@@ -14,7 +14,7 @@ from blockshake.forces.transmitted import TransmittedForces, transmitted_forces
 from blockshake.geometry.structure import Structure
 from blockshake.measurement.motion.body_poses import PLANAR, POSE, TRANSLATION, body_poses
 
-STEP = 0.01  # s, between instants: less than the kernel's width
+_STEP = 0.01  # s, between instants: less than the kernel's width
 _LONGEST_STILL = 0.5  # s
 _STILL = 5.0  # standard deviations of a marker
 # noise of the best instruments: a stated noise of 0 says that there is none to speak of
@@ -94,7 +94,7 @@ def joint_forces(test, structure, sensors, width=WIDTH):
         update={name: max(getattr(sensors, name), least) for name, least in _LEAST_NOISE.items()}
     )
     test, until = _from_rest(test, structure, sensors)
-    motion = smooth_motion(test, structure, sensors, STEP, width)
+    motion = smooth_motion(test, structure, sensors, _STEP, width)
     still = motion.time <= until
     faces = find_faces(structure)
     required = required_wrenches(structure, motion)

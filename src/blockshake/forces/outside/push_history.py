@@ -5,11 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import binary_erosion
 
-from blockshake.forces.joint_forces import STEP
 from blockshake.forces.joint_motion import from_rest
 from blockshake.forces.laws.friction import SLIPS
 from blockshake.forces.least_force import least_force
-from blockshake.forces.motion import WIDTH
 
 
 @dataclass(frozen=True)
@@ -59,7 +57,7 @@ class PushHistory:
 FRICTION = 0.10  # share that a coefficient of friction is known to (Zhou et al. 2023, Table 2)
 _SURE = 4.0  # standard deviations
 _LIKELY = 2.0  # standard deviations of friction
-_NEAR = round(3.0 * WIDTH / STEP)  # instants that the kernel mixes with others
+_NEAR = 3.0  # widths of the kernel, within which it mixes instants
 
 
 def push_history(forces, body, height=0.0):
@@ -87,6 +85,7 @@ def push_history(forces, body, height=0.0):
     motion = forces.motion
     least = least_force(forces.structure, forces.faces, motion, forces.joints, forces.required, body, height)
     n_times = len(motion.time)
+    near = int(_NEAR * motion.width / np.median(np.diff(motion.time)))
     error, turned = np.full(n_times, np.inf), np.zeros(n_times, dtype=bool)
     edge, friction, more = np.zeros(n_times), np.zeros(n_times), np.zeros(n_times)
     slides = np.zeros(n_times, dtype=bool)
@@ -112,7 +111,7 @@ def push_history(forces, body, height=0.0):
         rate = forces.joints.slip_rate[:, joint]
         least_rate = max(SLIPS, _SURE * forces.joints.slip_rate_error[joint])
         runs = [side * rate > least_rate for side in (1.0, -1.0)]
-        slides |= np.any([binary_erosion(run, iterations=_NEAR) for run in runs], axis=0)
+        slides |= np.any([binary_erosion(run, iterations=near) for run in runs], axis=0)
         # the lowest joint that slips: it carries the most
         here = (runs[0] | runs[1]) & (friction == 0.0)
         friction[here] = (-np.sign(rate) * limit)[here]
