@@ -24,6 +24,7 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import load_json, load_yaml, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.report.document.wording import number
+from blockshake.report.study.calibrations.all_tests import answers_table, tests_table
 from blockshake.report.study.convergence_section import numbers_table
 from blockshake.report.study.statements.section import DEPARTURES_HEADER, HEADER, count_words, departures
 from blockshake.simulation.energy_residual import energy_residual
@@ -193,6 +194,16 @@ def times_on_a_cluster():
     return markdown(("what", "jobs", *heads, "longest job"), rows)
 
 
+def joint_calibration():
+    """Answers of the default study's open tests; None where the study has not been run."""
+    path = STUDY.with_name("calibration.json")
+    if not path.is_file():
+        return None
+    found = load_json(path)
+    tables = answers_table(found), tests_table(found)
+    return "\n\n".join(markdown(table.header, table.rows) for table in tables)
+
+
 def shear_damping():
     """Table of twins by the damping of the shear springs, and how often it keeps them together."""
     rows = shear_damping_rows()
@@ -239,6 +250,7 @@ MAKERS = {
     "departures": departure_table,
     "published-settings": published_settings,
     "shear-damping": shear_damping,
+    "joint-calibration": joint_calibration,
     "hollow-faces": lambda: markdown(HOLLOW_HEADER, hollow_rows()),
     "study-shares": study_shares,
     "cost-of-samples": cost_of_samples,

@@ -18,6 +18,7 @@ from statistics import mean
 from blockshake.diagnosis.libraries.null_model import MODELS
 from blockshake.diagnosis.libraries.plan import plan_diagnosis
 from blockshake.files import load_json
+from blockshake.measurement.campaigns.campaign import load_campaign
 
 _JOB = re.compile(r"^(?:localrule|rule|checkpoint) (\w+):\n((?:    .+\n)+)", re.MULTILINE)
 _TWINS = 3  # runs that twins cost: one, and one of twice the steps
@@ -94,7 +95,8 @@ def timed_study(jobs, config, done, times):
     """Give the jobs of a study their times, from those of the study that was done.
 
     Runs and climbs take as long as there by sample and by step, climbs of a case that did not climb as those that did;
-    twins and a search of the mean friction as their runs; all other jobs as there, whatever the number of samples.
+    twins, a search of the mean friction and open tests as their runs; all other jobs as there, whatever the number of
+    samples.
     """
     for job in jobs:
         if job.rule in ("simulate_batch", "run_twins"):
@@ -105,6 +107,13 @@ def timed_study(jobs, config, done, times):
             known = times.get((job.rule, job.key))
             each = known or times[job.rule, ()] / done.samples_per_job
             job.seconds = job.samples * each * _steps(config, done, config.fragility.model, case)
+        elif job.rule == "compare_open_tests":
+            model, case = job.key
+            tests = load_campaign(config.case(case).measured.campaign).tests.values()
+            runs = config.calibration.size * sum(test.role != "sealed" for test in tests)
+            # the records are as long as the windows of the study that was done
+            steps = done.models[model].time_step / config.models[model].time_step
+            job.seconds = runs * times["simulate_batch", job.key] * steps
         elif job.rule == "calibrate_friction":
             (case,) = job.key
             run = _run_of_search(done, done.friction_calibration.cases[0], times)

@@ -28,7 +28,7 @@ def test_every_figure_has_its_maker_and_its_page(figures):
 
 
 def test_a_page_holds_the_figures_of_today(figures):
-    page = ROOT / "docs" / "friction-calibration.md"
+    page = ROOT / "docs" / "calibration.md"
     assert figures.blocks(page)["slenderness"] == figures.slenderness()
 
 

@@ -29,8 +29,9 @@ def test_every_run_of_the_default_study_is_counted(monkeypatch):
     samples = 4 * 50 + 50 + 50 + 20 + 10 + 2 * (8 + 8 + 8 + 1)
     twins = 2 * 4 + 2 * 3  # of every model and case but configuration 4 with deformable blocks
     climbs = 2 * 20 * 23  # two cases, 20 samples, 0.5 to 6 by 0.25
+    opened = 30 * (4 + 2) * 7  # four cases by LS-DEM, two by rigid blocks; seven open tests each
     parts = study_cost.study_cost("config/study.yaml")
-    runs = samples + 3 * twins + search.runs + climbs
+    runs = samples + 3 * twins + search.runs + climbs + opened
     assert sum(part.seconds for part in parts) == pytest.approx(runs * 10.0)
 
 

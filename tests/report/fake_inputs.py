@@ -3,6 +3,9 @@
 import numpy as np
 import xarray as xr
 
+from blockshake.study.calibration.calibration import calibrate
+from blockshake.study.calibration.scores import chance_of_test, distances
+
 PEAK_ACCELERATION = 1.234  # m/s2
 
 
@@ -89,3 +92,33 @@ def definitions():
             "study_restitution": 0.5,
         },
     )
+
+
+def calibrated(study):
+    """Joint calibration of two tests by two models: friction acts on the readings, restitution and stiffness do not."""
+    size, used = 24, ("friction.concrete.concrete", "restitution", "stiffness_factor")
+    generator = np.random.default_rng(9)
+    shares = np.array([generator.permutation((np.arange(size) + 0.5) / size) for _ in used])
+    compared = []
+    for model, kept in (("ls-dem", 3), ("nscd-rigid", 1)):
+        found = [
+            distances(shares[0][:, None] + 0.05 * generator.normal(size=(size, 8)), np.full(8, truth))
+            for truth in (0.7, 9.0)  # the second test is like no sample
+        ]
+        compared.append(
+            xr.Dataset(
+                {
+                    "to_test": (("test", "reading", "sample"), [[one.to_test] for one in found]),
+                    "between": (("test", "reading", "sample", "other"), [[one.between] for one in found]),
+                    "chance": (("test", "reading"), [[chance_of_test(one)] for one in found]),
+                    "share": (("parameter", "sample"), shares[:kept]),
+                    "motion": ("test", ["alkion", "alkion"]),
+                    "scale": ("test", [1.0, 2.0]),
+                    "synthetic": ("test", [1, 1]),
+                    "unsolved": ("test", [0, 2]),
+                },
+                {"test": ["weak", "strong"], "reading": ["displacement"], "parameter": list(used[:kept])},
+                {"case": "configuration-1", "model": model},
+            )
+        )
+    return calibrate(compared, study)

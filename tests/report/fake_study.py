@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import xarray as xr
-from fake_inputs import definitions, motion, waves
+from fake_inputs import calibrated, definitions, motion, waves
 
 from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
@@ -101,8 +101,13 @@ class FakeStudy:
             "ladder": {"motions": ["alkion", "basso-tirreno"], "first": 0.5, "increment": 0.25},
             "fragility": {"model": "nscd-rigid", "cases": ["configuration-1"], "size": 5},
             "friction_calibration": {"cases": ["configuration-1"]},
+            "calibration": {
+                "cases": {"ls-dem": ["configuration-1"], "nscd-rigid": ["configuration-1"]},
+                "size": 24,
+            },
             "convergence": {"structure": "configuration-1"},
         }
+        write_json(self.results / "calibration.json", calibrated(self.study))
         write_json(self.results / "friction" / "configuration-1.json", friction())
         write_dataset(self.results / "fragility" / "configuration-1.nc", climbed_and_fitted())
         for place, name in enumerate(("basso-tirreno", "alkion")):

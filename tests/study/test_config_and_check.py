@@ -1,6 +1,7 @@
 """Files of a user: allowed content, and the one line that says what is wrong."""
 
 import copy
+import re
 
 import numpy as np
 import pytest
@@ -225,6 +226,32 @@ def test_friction_is_calibrated_against_a_measured_test_alone(mapping):
         check_config(mapping, "study.yaml")
 
 
+@pytest.mark.parametrize(
+    ("calibration", "line"),
+    [
+        (
+            {"cases": {"ls-dem": ["configuration-7"]}},
+            "calibration.cases.ls-dem: expected cases with a measured test: configuration-1",
+        ),
+        (
+            {
+                "cases": {"ls-dem": ["configuration-1"]},
+                "ranges": {"density": {"lowest": 1.0, "highest": 2.0}},
+            },
+            "calibration.ranges.density: expected one of friction.concrete.concrete, ",
+        ),
+        (
+            {"cases": {"ls-dem": ["configuration-1"]}, "ranges": {"hollow": {"lowest": 2.0, "highest": 1.0}}},
+            "calibration.ranges.hollow: expected `highest` above `lowest`",
+        ),
+    ],
+)
+def test_a_calibration_names_models_measured_cases_and_parameters(mapping, calibration, line):
+    mapping["calibration"] = calibration
+    with pytest.raises(InputError, match=re.escape(line)):
+        check_config(mapping, "study.yaml")
+
+
 def test_check_says_what_a_good_file_is(monkeypatch):
     monkeypatch.chdir(ROOT)
     assert "3 blocks of 22091 kg" in check_file("configuration-1")
@@ -329,7 +356,7 @@ def own_study(mapping, folder, structure, **changes):
     """The default study with an own structure alone, by rigid contact dynamics and without what hangs on others."""
     (folder / "own.yaml").write_text(yaml.safe_dump(structure))
     case = {"structure": str(folder / "own.yaml"), "motion": "alkion", "scale": 1.0, "duration": 5.0}
-    for key in ("friction_calibration", "fragility", "convergence", "diagnosis"):
+    for key in ("friction_calibration", "calibration", "fragility", "convergence", "diagnosis"):
         del mapping[key]
     return {**mapping, "models": {"nscd-rigid": {"time_step": 1e-3}}, "cases": [case]} | changes
 

@@ -93,7 +93,19 @@ def beside(path):
 def campaign_files(case):
     """The test that a case is compared with and what describes it; never another, which may be sealed."""
     campaign = load_campaign(CASES[case]["measured"]["campaign"])
-    test = campaign.tests[CASES[case]["measured"]["test"]]
+    return test_files(campaign, campaign.tests[CASES[case]["measured"]["test"]])
+
+
+def open_files(case):
+    """The tests of a case's campaign that are not sealed, and what describes them."""
+    campaign = load_campaign(CASES[case]["measured"]["campaign"])
+    opened = [test for test in campaign.tests.values() if test.role != "sealed"]
+    files = [file for test in opened for file in test_files(campaign, test)]
+    return list(dict.fromkeys(files))
+
+
+def test_files(campaign, test):
+    """The file of a campaign, that of one of its tests, and others that describe the test, as far as they are there."""
     files = [campaign.folder / "campaign.yaml", campaign.folder / test.file]
     beside = [
         campaign.folder / f"{Path(test.file).stem}-acc.csv",
@@ -177,6 +189,9 @@ def files_of_report(cases):
             "friction/{case}.json",
             case=[case for case in FRICTION_SEARCH.get("cases", []) if case in cases],
         ),
+        "calibration": (
+            results("calibration.json") if CALIBRATION and cases == list(CASES) else []
+        ),
         "fragility": results(
             "fragility/{case}.nc",
             case=[case for case in FRAGILITY.get("cases", []) if case in cases],
@@ -259,6 +274,7 @@ MODELS = list(config["models"])
 CASES = {case["name"]: case for case in config["cases"]}
 MEASURED = [name for name, case in CASES.items() if case["measured"]]
 FRICTION_SEARCH = config.get("friction_calibration") or {}
+CALIBRATION = config.get("calibration") or {}
 FRAGILITY = config.get("fragility") or {}
 LADDER_MOTIONS = config["ladder"]["motions"] or list(
     dict.fromkeys(case["motion"] for case in config["cases"])

@@ -9,6 +9,7 @@ from blockshake.cost.trial import run_seconds
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import HOME
 from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.study.config import load_config
 
 _TWINS = 3  # runs that twins cost: one of the usual step, one of half
@@ -49,6 +50,11 @@ def study_cost(path):
             search = config.friction_calibration
             if search is not None and search.model == model and case.name in search.cases:
                 parts.append(Part(f"mean friction of {case.name}", search.runs, search.runs * each))
+            asked = config.calibration
+            if asked is not None and case.name in asked.cases.get(model, ()):
+                tests = load_campaign(case.measured.campaign).tests.values()
+                count = asked.size * sum(test.role != "sealed" for test in tests)
+                parts.append(Part(f"calibration of {case.name}, {model}", count, count * each))
             climbs = config.fragility
             if climbs is not None and climbs.model == model and case.name in climbs.cases:
                 count = climbs.size * len(config.ladder.scales)

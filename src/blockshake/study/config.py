@@ -1,6 +1,5 @@
 """The configuration of a study: every key, its type and its limits, checked before the first job."""
 
-import re
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -11,21 +10,28 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaigns.campaign import load_campaign, load_test
-from blockshake.measurement.sensors.markers import RATE, block_markers, driven_marker
-from blockshake.paths import check_plain
-from blockshake.simulation.models import MODELS, ModelName, split_parameters
+from blockshake.measurement.campaigns.campaign import load_campaign
+from blockshake.measurement.sensors.markers import RATE
+from blockshake.simulation.models import MODELS, ModelName
+from blockshake.study.calibration.settings import CalibrationSettings
 from blockshake.study.comparison.differences import FEWEST
+from blockshake.study.config_checks import (
+    check_calibration,
+    check_fragility,
+    check_friction_search,
+    check_measured,
+    check_parameters,
+    check_paths,
+    check_structure,
+)
 from blockshake.study.convergence.settings import Convergence
-from blockshake.study.ensembles.case_input import COMMANDED, MEASURED, check_record
+from blockshake.study.ensembles.case_input import COMMANDED, MEASURED
 from blockshake.study.fragility.settings import FragilitySettings
 from blockshake.study.friction.settings import FrictionSearch
 from blockshake.study.sampling.correlation_target import load_correlation
 from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, load_distributions
 from blockshake.study.sampling.latin_hypercube import SMALLEST_SIZE
 from blockshake.validation import Positive, Strict, validated
-
-_NAME = re.compile(r"\w[\w.-]*")  # of a structure or a motion: it names results
 
 
 def _links(ensemble):
@@ -185,6 +191,9 @@ class StudyConfig(Strict):
     ladder: Ladder = Ladder()
     fragility: FragilitySettings | None = Field(None, description="none: no sample climbs the ladder")
     friction_calibration: FrictionSearch | None = None
+    calibration: CalibrationSettings | None = Field(
+        None, description="none: friction, restitution and contact stiffness are taken as they are"
+    )
     convergence: Convergence | None = Field(None, description="none: no study of the numerical parameters")
     diagnosis: Diagnosis = Field(Diagnosis(), description="none: no campaign is diagnosed")
 
@@ -227,10 +236,10 @@ def load_config(path):
 def check_config(mapping, where):
     """Configuration from a mapping, checked with all that it names; ``where`` is its file."""
     config = validated(StudyConfig, mapping, where)
-    _check_paths(config, where)
+    check_paths(config, where)
     names = [case.name for case in config.cases]
     for model, settings in config.models.items():
-        _check_parameters(model, settings, f"models.{model}.parameters", where)
+        check_parameters(model, settings, f"models.{model}.parameters", where)
     for motion in dict.fromkeys([*(case.motion for case in config.cases), *config.ladder.motions]):
         load_motion(motion)
     for index, case in enumerate(config.cases):
@@ -244,16 +253,17 @@ def check_config(mapping, where):
                 raise InputError(
                     where, f"{key}.samples.{model}", f"expected 1 to {config.ensemble.size}, not {count}"
                 )
-        _check_structure(case.structure, where, key)
+        check_structure(case.structure, where, key)
         if case.measured is not None:
-            _check_measured(case, where, f"{key}.measured")
+            check_measured(case, where, f"{key}.measured")
     for target, source in config.ensemble.linked.items():
         if source not in config.ensemble.distributions:
             raise InputError(
                 where, f"ensemble.linked.{target}", f"expected one of the random variables, not {source}"
             )
-    _check_friction_search(config, where)
-    _check_fragility(config, where)
+    check_friction_search(config, where)
+    check_fragility(config, where)
+    check_calibration(config, where)
     if config.ensemble.correlation is not None:
         load_correlation(config.ensemble.correlation)
     if config.convergence is not None:
@@ -261,129 +271,3 @@ def check_config(mapping, where):
     for folder in config.diagnosis.campaigns:
         load_campaign(folder)
     return config
-
-
-def _check_structure(name, where, key):
-    """A structure that can be read, with a marker on a driven body and on a free one."""
-    try:
-        structure = load_structure(name)
-    except InputError as error:
-        raise InputError(where, f"{key}.structure", str(error)) from None
-    driven_marker(structure)
-    if not block_markers(structure):
-        raise InputError(structure.source, "markers", "expected a marker on a body that is not driven")
-
-
-def _check_paths(config, where):
-    """Refuse paths that the workflow reads as patterns, and structures and motions whose names cannot name results."""
-    paths = [("diagnosis.campaigns", folder) for folder in config.diagnosis.campaigns]
-    if config.ensemble.correlation is not None:
-        paths.append(("ensemble.correlation", config.ensemble.correlation))
-    paths += [
-        (f"cases.{index}.measured.campaign", case.measured.campaign)
-        for index, case in enumerate(config.cases)
-        if case.measured
-    ]
-    naming = [("ladder.motions", motion) for motion in config.ladder.motions]
-    if config.convergence is not None:
-        naming.append(("convergence.structure", config.convergence.structure))
-    for index, case in enumerate(config.cases):
-        naming += [(f"cases.{index}.structure", case.structure), (f"cases.{index}.motion", case.motion)]
-    for key, path in [*paths, *naming]:
-        check_plain(path, where, key)
-    for index, case in enumerate(config.cases):
-        if case.name != Path(case.structure).stem and not _NAME.fullmatch(case.name):
-            raise InputError(
-                where, f"cases.{index}.name", f"expected letters, digits, dots, hyphens, not '{case.name}'"
-            )
-    by_name = {}
-    for key, path in naming:
-        name = Path(path).stem
-        if not _NAME.fullmatch(name):
-            raise InputError(
-                where, key, f"expected letters, digits, dots, hyphens in the name of the file, not '{name}'"
-            )
-        if "motion" in key and by_name.setdefault(name, path) != path:
-            raise InputError(
-                where, key, f"expected motions of different names, not {by_name[name]} and {path}"
-            )
-
-
-def _check_parameters(model, settings, key, where):
-    """Refuse parameters shared by all samples that are not the solver's."""
-    try:
-        physical, _ = split_parameters(settings.parameters, model)
-    except InputError as error:
-        raise InputError(where, key, str(error).removeprefix("--set: ")) from None
-    if physical:
-        raise InputError(where, f"{key}.{next(iter(physical))}", "expected a parameter of the solver")
-
-
-def _check_measured(case, where, key):
-    """The test a case is compared with: of its structure, motion and scale, and not sealed."""
-    campaign = load_campaign(case.measured.campaign)
-    if not load_structure(campaign.structure).same_as(load_structure(case.structure)):
-        raise InputError(
-            where,
-            f"{key}.campaign",
-            f"expected a campaign of the structure {case.name}, not another one's content",
-        )
-    open_tests = [name for name, test in campaign.tests.items() if test.role != "sealed"]
-    if case.measured.test not in open_tests:
-        raise InputError(where, f"{key}.test", f"expected a test that is not sealed: {', '.join(open_tests)}")
-    test = campaign.tests[case.measured.test]
-    if (Path(test.motion).stem, test.scale) != (Path(case.motion).stem, case.scale):
-        raise InputError(
-            where,
-            f"{key}.test",
-            f"expected one of {case.motion} at {case.scale:g}, not {test.motion} at {test.scale:g}",
-        )
-    if case.input == MEASURED:
-        time = load_test(campaign, case.measured.test)["time"].to_numpy()
-        check_record(time[-1] - time[0], case.duration, where, f"{key.removesuffix('measured')}duration")
-
-
-def _check_fragility(config, where):
-    asked = config.fragility
-    if asked is None:
-        return
-    known = [case.name for case in config.cases]
-    for name in asked.cases:
-        if name not in known:
-            raise InputError(where, "fragility.cases", f"expected one of {', '.join(known)}, not {name}")
-    if asked.model not in config.models:
-        raise InputError(where, "fragility.model", f"expected a model of the study, not {asked.model}")
-    if asked.size > config.ensemble.size:
-        raise InputError(where, "fragility.size", f"expected at most ensemble.size, {config.ensemble.size}")
-
-
-def _check_friction_search(config, where):
-    search = config.friction_calibration
-    if search is None:
-        return
-    for kind, names, known in (
-        ("cases", search.cases, [case.name for case in config.cases]),
-        (
-            "variables",
-            search.variables,
-            [name for name in config.ensemble.distributions if name.startswith("friction.")],
-        ),
-    ):
-        for name in names:
-            if name not in known:
-                raise InputError(
-                    where, f"friction_calibration.{kind}", f"expected one of {', '.join(known)}, not {name}"
-                )
-    for name in search.cases:
-        if config.case(name).measured is None:
-            raise InputError(
-                where, "friction_calibration.cases", f"expected cases with a measured test, not {name}"
-            )
-    if search.model not in config.models:
-        raise InputError(
-            where, "friction_calibration.model", f"expected a model of the study, not {search.model}"
-        )
-    if search.lowest + search.step > search.highest + 1e-9:
-        raise InputError(
-            where, "friction_calibration.step", "expected at least two candidates between lowest and highest"
-        )

@@ -16,9 +16,10 @@ from blockshake.report.document.html import write_html
 from blockshake.report.document.pdf import write_pdf
 from blockshake.report.document.wording import number
 from blockshake.report.study import closing_sections, content
+from blockshake.report.study.calibrations.all_tests import calibration
+from blockshake.report.study.calibrations.friction import friction
 from blockshake.report.study.closing_sections import checks
 from blockshake.report.study.content import load_content
-from blockshake.report.study.friction_section import friction
 from blockshake.report.study.report import compose, make_case_report, make_report
 from blockshake.report.study.result_sections import responses
 from blockshake.report.study.statements.section import findings
@@ -246,6 +247,28 @@ def test_the_friction_calibration_says_what_the_test_does_not_tell(document):
 def test_a_study_without_a_friction_calibration_has_no_such_section(fake):
     study = {name: value for name, value in fake.study.items() if name != "friction_calibration"}
     assert friction(load_content(study, fake.results, fake.benchmarks)) is None
+
+
+def test_the_calibration_says_what_all_tests_tell_and_what_they_do_not(document):
+    section = next(section for section in document.sections if section.key == "calibration")
+    said = next(block.items for block in section.blocks if block.kind == "items")
+    assert said[0].startswith("friction, concrete on concrete: between 0.")
+    assert (
+        said[1] == "restitution C_res: the tests tell nothing about it; 0.5 is neither borne out nor refused."
+    )
+    assert said[-1].startswith("2 tests of 2 are synthetic")
+    answers, tests = (block for block in section.blocks if block.kind == "table")
+    row = dict(zip(answers.header, answers.rows[1], strict=True))
+    assert row["NSCD rigid"] == "has no use for it"
+    assert row["All"].startswith("not told (p ")
+    assert "2 of 4 are below 0.05" in tests.caption
+    assert "4 runs ended for a numerical reason" in tests.caption
+    assert len(tests.rows) == 4
+
+
+def test_a_study_without_a_calibration_has_no_such_section(fake):
+    study = {name: value for name, value in fake.study.items() if name != "calibration"}
+    assert calibration(load_content(study, fake.results, fake.benchmarks)) is None
 
 
 def test_bands_that_are_lines_are_counted(fake):

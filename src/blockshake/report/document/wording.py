@@ -15,9 +15,12 @@ _PROPERTIES = {
     "viscous_modulus": "viscous modulus",
     "poisson_ratio": "Poisson's ratio",
 }
-_STIFFNESS = {
+_NAMES = {
     "ls_dem.normal_stiffness": "normal stiffness k_n",
     "ls_dem.shear_stiffness": "shear stiffness k_s",
+    "restitution": "restitution C_res",
+    "hollow": "hollow of the faces over their edge",
+    "stiffness_factor": "contact stiffness over that of the wave speed",
 }
 
 
@@ -28,8 +31,8 @@ def model_label(model):
 
 def parameter_label(name):
     """A parameter's dotted name in words, such as ``friction, concrete on steel``."""
-    if name in _STIFFNESS:
-        return _STIFFNESS[name]
+    if name in _NAMES:
+        return _NAMES[name]
     kind, *rest = name.split(".")
     if kind == "friction":
         return f"friction, {rest[0]} on {rest[1]}"

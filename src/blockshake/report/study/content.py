@@ -128,6 +128,8 @@ class Content:
         Of the study's first case; none where that is not reported, or where the study tells of no contact stiffness.
     friction : dict of str to dict
         Friction calibrations by case; empty where the study asks for none.
+    calibration : dict or None
+        From `calibrate`, where the study asks for one; a case alone has none.
     fragility : dict of str to xarray.Dataset
         From `fragility`, by case; empty where the study asks for none.
     convergence : pandas.DataFrame or None
@@ -151,6 +153,7 @@ class Content:
     calibrated: tuple
     definitions: xr.Dataset | None
     friction: dict
+    calibration: dict | None
     fragility: dict
     convergence: pd.DataFrame | None
     peer: xr.Dataset | None
@@ -221,6 +224,7 @@ def load_content(study, results, benchmarks, only=None):
             for name in (study.get("friction_calibration") or {}).get("cases", ())
             if name in cases
         },
+        calibration=load_json(results / "calibration.json") if study.get("calibration") and not only else None,
         fragility={
             name: load_made(results / "fragility" / f"{name}.nc")
             for name in (study.get("fragility") or {}).get("cases", ())

@@ -4,11 +4,12 @@ from blockshake.files import write_json
 from blockshake.report.document.blocks import Document, numbered
 from blockshake.report.document.html import write_html
 from blockshake.report.document.pdf import write_pdf
+from blockshake.report.study.calibrations.all_tests import calibration
+from blockshake.report.study.calibrations.friction import friction
 from blockshake.report.study.closing_sections import checks, limits, origin, timings
 from blockshake.report.study.content import load_content
 from blockshake.report.study.convergence_section import convergence
 from blockshake.report.study.fragility_section import fragility
-from blockshake.report.study.friction_section import friction
 from blockshake.report.study.models.section import models
 from blockshake.report.study.opening_sections import motions, samples, stiffness, structures, summary
 from blockshake.report.study.peer_section import peer
@@ -27,6 +28,7 @@ _SECTIONS = (
     models,
     sensitivities,
     friction,
+    calibration,
     statements,
     checks,
     timings,
@@ -36,7 +38,7 @@ _SECTIONS = (
     peer,
 )
 # these judge the study as a whole
-_NOT_OF_A_CASE = (statements, convergence, peer)
+_NOT_OF_A_CASE = (calibration, statements, convergence, peer)
 
 
 def make_report(study, results, benchmarks, html, pdf, paper):

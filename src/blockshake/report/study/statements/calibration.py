@@ -4,7 +4,9 @@ import numpy as np
 
 from blockshake.report.document.rows import face_markers
 from blockshake.report.document.wording import given, model_label, number, parameter_label, percent
+from blockshake.report.study.calibrations.all_tests import answer_words
 from blockshake.report.study.statements.statement import judged, unjudged
+from blockshake.study.calibration.calibration import ALL
 from blockshake.study.ensembles.intervals import SURE_FROM
 from blockshake.study.sampling.distributions import TABLE_2
 
@@ -77,6 +79,19 @@ def low_variability(content):
     )
 
 
+def judged_by_tests(found, parameter, words):
+    """Finding on a value that the joint calibration tells of, after other words."""
+    one = found["parameters"][parameter]
+    answer = one["answers"][ALL]
+    words = f"By all open tests, {answer_words(parameter, one)} {words}"
+    if any(test["synthetic"] for test in found["tests"]):
+        return unjudged(f"Tests are synthetic and tell nothing of the specimens. {words}")
+    if answer["assumed_is_refused"]:
+        return judged(False, words)
+    bounded = answer["lower"] is not None and answer["upper"] is not None
+    return judged(True, words) if bounded else unjudged(words)
+
+
 def friction_range(content):
     """Range in which the mean friction is searched."""
     if not content.friction:
@@ -108,6 +123,12 @@ def optimum(content):
             words += f"; {given(OPTIMUM)} itself was not run"
         told.append(words)
     words = f"{'; '.join(told)}."
+    if content.calibration is not None:
+        words += " By all open tests: " + " ".join(
+            answer_words(name, one)
+            for name, one in content.calibration["parameters"].items()
+            if name.startswith("friction.")
+        )
     if synthetic:
         return unjudged(
             f"The tests of {', '.join(synthetic)} are synthetic and tell nothing of the specimens. {words}"

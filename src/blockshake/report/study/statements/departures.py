@@ -228,7 +228,7 @@ DEPARTURES = (
     Departure("Statistics", "Slab, and steel on steel and on the slab, are not in Table 2.", _linked,
               "docs/configuration.md"),
     Departure("Statistics", "The mean friction whose envelope contains the test.", _friction,
-              "docs/friction-calibration.md"),
+              "docs/calibration.md"),
     Departure("Statistics", "Envelopes are held against the tests by eye.",
               _words("Coverage stands beside that of each sample by the others, with a distance and its chance."),
               "docs/sampling.md"),

@@ -6,7 +6,9 @@ from scipy.stats import pearsonr, spearmanr
 from blockshake.geometry.reference_block import reference_body
 from blockshake.report.document.units import printed
 from blockshake.report.document.wording import given, millimetres, number, percent
+from blockshake.report.study.statements.calibration import judged_by_tests
 from blockshake.report.study.statements.statement import judged, unjudged
+from blockshake.study.calibration.settings import RESTITUTION as CALIBRATED
 from blockshake.study.stiffness.definition_range import definition_range
 from blockshake.study.stiffness.similar_velocity import TOLERANCES, read_at_similar_velocity
 from blockshake.study.stiffness.wave_speed import speed_deviation
@@ -152,9 +154,11 @@ def restitution(content):
     )
     if used != {RESTITUTION}:
         return judged(False, words)
-    return unjudged(
-        f"C_res is taken as printed and not calibrated, so that no result tells the need. {words}"
-    )
+    if content.calibration is None or CALIBRATED not in content.calibration["parameters"]:
+        return unjudged(
+            f"C_res is taken as printed and not calibrated, so that no result tells the need. {words}"
+        )
+    return judged_by_tests(content.calibration, CALIBRATED, words)
 
 
 def _material(content, calibrated):

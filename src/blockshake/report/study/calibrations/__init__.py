@@ -1,0 +1,1 @@
+"""Sections on calibrations against measured tests."""

@@ -1,0 +1,134 @@
+"""Section on the joint calibration of friction, restitution and contact stiffness."""
+
+from blockshake.report.document.blocks import Figure, Items, Section, Table, Text
+from blockshake.report.document.drawing import svg_of
+from blockshake.report.document.wording import (
+    count_words,
+    given,
+    model_label,
+    number,
+    parameter_label,
+    share_words,
+)
+from blockshake.report.study.figures.calibration import plot_calibration
+from blockshake.study.calibration.answers import LEVEL
+from blockshake.study.calibration.calibration import ALL, models_of
+
+_UNLIKE = 0.05  # chance of a test, below which no sample resembles it
+_NOT_TOLD = "not told"
+
+
+def calibration(content):
+    """Answers of all open tests on friction, restitution and stiffness; None where the study asks for none."""
+    found = content.calibration
+    if found is None:
+        return None
+    text = (
+        f"All open tests of the cases, each simulated with {found['size']} samples of the measured motion. Friction, "
+        "restitution, contact stiffness and the hollow of the faces are drawn evenly over wide ranges, the other "
+        "variables as in the study. The samples near a value are scored by the continuous ranked probability score of "
+        "two readings: the markers' displacement relative to the slab, and the spectrum of the blocks' accelerations. "
+        "A parameter is told where the scores of its values differ by more than those of shuffled samples, at "
+        f"{100 * LEVEL:.0f} % over all parameters and models together. The range holds every value whose score exceeds "
+        "the lowest by no more than the score of the true value does where samples stand for the tests, in "
+        f"{100 * LEVEL:.0f} % of them."
+    )
+    synthetic = [one for one in found["tests"] if one["synthetic"]]
+    sentences = [answer_words(name, one) for name, one in found["parameters"].items()]
+    if synthetic:
+        count = len({(one["case"], one["test"]) for one in synthetic})
+        sentences.append(
+            f"{count_words(count, 'test')} of {len({(one['case'], one['test']) for one in found['tests']})} are "
+            "synthetic: the answers on these tell of the program that made them, not of concrete."
+        )
+    blocks = [
+        Text(text),
+        Items(tuple(sentences)),
+        Figure(
+            "Scores of values, mean over the tests, above the lowest of the same line. Thick: parameters that are "
+            "told. Dotted: the value that the study takes.",
+            svg_of(plot_calibration, found),
+        ),
+        answers_table(found),
+        tests_table(found),
+    ]
+    return Section("Calibration by all open tests", "calibration", tuple(blocks))
+
+
+def answer_words(name, one):
+    """Answer of all tests on one parameter beside the value that the study takes, as a sentence."""
+    answer, assumed = one["answers"][ALL], given(one["assumed"])
+    if not answer["told"]:
+        return f"{parameter_label(name)}: the tests tell nothing about it; {assumed} is neither borne out nor refused."
+    verdict = "is refused" if answer["assumed_is_refused"] else "lies in that range"
+    found = f"{span(answer)}, best {number(answer['best'], 2)}"
+    return f"{parameter_label(name)}: {found}; {assumed}, which the study takes, {verdict}."
+
+
+def span(answer):
+    """Range of an answer in words."""
+    lower, upper = answer["lower"], answer["upper"]
+    if not answer["told"]:
+        return _NOT_TOLD
+    if lower is None and upper is None:
+        return "no value is refused"
+    if upper is None:
+        return f"above {number(lower, 2)}"
+    if lower is None:
+        return f"below {number(upper, 2)}"
+    return f"between {number(lower, 2)} and {number(upper, 2)}"
+
+
+def answers_table(found):
+    """Table of the answers of all open tests, by model and together."""
+    models = models_of(found)
+    groups = [*models, ALL]
+
+    def cell(one, group):
+        answer = one["answers"].get(group)
+        return f"{span(answer)} (p {number(answer['chance'], 2)})" if answer else "has no use for it"
+
+    rows = tuple(
+        (
+            parameter_label(name),
+            f"{given(one['lowest'])} to {given(one['highest'])}",
+            given(one["assumed"]),
+            *(cell(one, group) for group in groups),
+        )
+        for name, one in found["parameters"].items()
+    )
+    header = ("Parameter", "Range", "Study", *map(model_label, models), "All")
+    return Table(
+        "Answers of all open tests by model and together. p: chance that scores differ as much where no test depends "
+        "on any parameter. Restitution, stiffness and flatness belong to the contact springs of LS-DEM.",
+        header, rows, "lrr" + "l" * len(groups), (0.22, 0.12, 0.08, *(0.58 / len(groups) for _ in groups)),
+    )  # fmt: skip
+
+
+def tests_table(found):
+    """Table of the answers of each test by each model."""
+    rows = []
+    for one in found["tests"]:
+        told = [
+            f"{parameter_label(name)} {span(answer)}"
+            for name, answer in one["answers"].items()
+            if answer["told"]
+        ]
+        rows.append((
+            one["case"], one["test"], model_label(one["model"]), one["reading"], number(one["chance"], 2),
+            "; ".join(told) or "tells nothing by itself",
+        ))  # fmt: skip
+    unlike = sum(one["chance"] < _UNLIKE for one in found["tests"])
+    unsolved = sum(
+        {(one["case"], one["model"], one["test"]): one["unsolved"] for one in found["tests"]}.values()
+    )
+    tail = (
+        f" {count_words(unsolved, 'run')} ended for a numerical reason and count nowhere." if unsolved else ""
+    )
+    return Table(
+        "Every test by itself. Chance: rank of the test's distance from the samples among those of the samples from "
+        f"each other; {share_words(unlike, len(found['tests']))} are below {_UNLIKE:g}, tests that no sample "
+        f"resembles.{tail}",
+        ("Case", "Test", "Model", "Reading", "Chance", "Tells, at the level of all tests together"),
+        tuple(rows), "llllrl", (0.15, 0.15, 0.11, 0.16, 0.08, 0.35),
+    )  # fmt: skip

@@ -1,0 +1,1 @@
+"""Friction, restitution, stiffness and flatness of contacts calibrated at once, against all open tests."""

@@ -1,0 +1,134 @@
+"""Answers of tests on parameters: scores by value, whether these differ beyond chance, and values that are not refused.
+
+Chance comes from shuffling: with the parameters of the samples dealt anew among their runs, no score knows a value.
+The values that are not refused come from samples that stand for the test: their parameters are known.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from blockshake.study.calibration.scores import Distances, weighted_scores, weights_near
+
+LEVEL = 0.95  # of a whole family of questions, and of each range of values that are not refused
+SHARES = np.linspace(0.0, 1.0, 41)  # of a parameter's range, at which scores are taken
+_SHUFFLES = 999
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Answer of some tests on a parameter.
+
+    Attributes
+    ----------
+    score : float64 array, shape (n_shares,)
+        Mean over the tests, as they count, at `SHARES` of the range [1].
+    limit : float
+        By which the score of the true value exceeds the lowest one at most, at `LEVEL` [1].
+    chance : float
+        That scores differ as much where no test depends on the parameter, all questions taken together [1].
+    lower, upper : float
+        Shares of the range between which no value is refused; 0 and 1 where nothing is told [1].
+    """
+
+    score: np.ndarray
+    limit: float
+    chance: float
+    lower: float
+    upper: float
+
+    @property
+    def told(self):
+        """Whether the tests tell of the parameter at all."""
+        return self.chance <= 1.0 - LEVEL
+
+    @property
+    def best(self):
+        """Share of the range with the lowest score [1]."""
+        return float(SHARES[np.argmin(self.score)])
+
+
+def answer_questions(questions, seed):
+    """Answers of groups of tests on parameters, the level of what is told kept over all questions together.
+
+    Parameters
+    ----------
+    questions : dict of hashable to (float64 array, list of Distances)
+        Shares of the parameter's range at which the samples lie, shape (n_samples,), and the tests that are asked.
+        The samples are the same in all.
+    seed : int
+        Of the shuffles.
+
+    Returns
+    -------
+    dict of hashable to Answer
+
+    Notes
+    -----
+    A question's statistic is the spread of its scores over the range, in standard deviations of the shuffled ones from
+    their mean. Its chance is the share of the shuffles in which the largest statistic of all questions is as large
+    (Westfall and Young 1993). Tests count by one over the standard deviation of their shuffled scores: a reading that
+    follows other parameters, or no parameter at all, scatters more and counts for less.
+    """
+    if not questions:
+        return {}
+    size = len(next(iter(questions.values()))[0])
+    generator = np.random.default_rng(seed)
+    deals = np.array([generator.permutation(size) for _ in range(_SHUFFLES)])
+    scores, counts, told, shuffled = {}, {}, {}, []
+    for name, (shares, tests) in questions.items():
+        weights = weights_near(shares, SHARES)
+        dealt = weights[:, deals].transpose(1, 0, 2)
+        by_test = np.array([weighted_scores(dealt, test) for test in tests])
+        counts[name] = 1.0 / np.maximum(by_test.std(axis=1).mean(axis=1), np.finfo(float).tiny)
+        scores[name] = np.average([weighted_scores(weights, test) for test in tests], 0, counts[name])
+        spreads = np.ptp(np.average(by_test, 0, counts[name]), axis=-1)
+        mean, deviation = spreads.mean(), max(spreads.std(), np.finfo(float).tiny)
+        told[name] = (np.ptp(scores[name]) - mean) / deviation
+        shuffled.append((spreads - mean) / deviation)
+    largest = np.max(shuffled, axis=0)
+    answers = {}
+    for name, (shares, tests) in questions.items():
+        chance = float((1 + (largest >= told[name]).sum()) / (1 + _SHUFFLES))
+        answers[name] = _answer(scores[name], chance, shares, tests, counts[name])
+    return answers
+
+
+def _answer(score, chance, shares, tests, counts):
+    limit, lower, upper = np.inf, 0.0, 1.0
+    if chance <= 1.0 - LEVEL:
+        limit = excess_of_truth(shares, tests, counts)
+        kept = np.flatnonzero(score - score.min() <= limit)
+        lower, upper = float(SHARES[kept[0]]), float(SHARES[kept[-1]])
+    return Answer(score, limit, chance, lower, upper)
+
+
+def excess_of_truth(shares, tests, counts):
+    """By how much the score of a true value exceeds the lowest one at most, at `LEVEL` [1].
+
+    ``shares`` and ``tests`` as of a question of `answer_questions`; ``counts``: how much each test counts.
+
+    Notes
+    -----
+    Every sample stands for the tests once, the others predict its readings, and its own value is the truth. Readings of
+    the measured test are one more of the kind where the model is right, so that the true value is kept with the chance
+    `LEVEL` whatever the model (conformal inference: Vovk, Gammerman and Shafer 2005). The limit is infinite with too
+    few samples for that level.
+    """
+    weights = weights_near(shares, SHARES)
+    excesses = []
+    for sample, truth in enumerate(shares):
+        there = [place for place, test in enumerate(tests) if np.isfinite(test.to_test[sample])]
+        if there:
+            scores = [weighted_scores(weights, _standing(sample, tests[place])) for place in there]
+            score = np.average(scores, 0, counts[there])
+            excesses.append(np.interp(truth, SHARES, score) - score.min())
+    place = int(np.ceil(LEVEL * (len(excesses) + 1)))
+    return float(np.sort(excesses)[place - 1]) if place <= len(excesses) else np.inf
+
+
+def _standing(sample, test):
+    """Distances of a test for which one of the samples stands."""
+    to_sample = test.between[sample].copy()
+    to_sample[sample] = np.nan
+    return Distances(to_sample, test.between)

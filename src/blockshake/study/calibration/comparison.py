@@ -1,0 +1,154 @@
+"""Open tests of a case against the samples of the calibration: how far all readings are from each other."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from blockshake.geometry.reference_block import reference_block
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign import load_campaign
+from blockshake.simulation.models import model_of
+from blockshake.sources import script_sources, source_digest
+from blockshake.study.calibration.readings import (
+    acceleration_spectra,
+    displacement_curves,
+    open_test,
+    simulate_readings,
+)
+from blockshake.study.calibration.scores import Distances, chance_of_test, distances
+from blockshake.study.calibration.settings import HOLLOW, OF_CONTACT_SPRINGS, STIFFNESS, CalibrationSettings
+from blockshake.study.friction.replicates import replicate_seed
+from blockshake.study.sampling.distributions import load_distributions
+from blockshake.study.sampling.latin_hypercube import draw_samples
+from blockshake.study.sampling.sample_parameters import has_parameter
+from blockshake.study.stiffness.wave_speed import calibrate_design
+
+_CURVES, _SPECTRA = "displacement", "acceleration spectrum"
+
+
+def compare_open_tests(case, campaign, model, given, store, progress):
+    """Distances of the samples' readings of all open tests of a case from the measured ones and from each other.
+
+    Parameters
+    ----------
+    case : dict
+        ``name``, ``structure`` and ``duration`` [s] of a case of the configuration.
+    campaign : str
+        Folder of its tests; the sealed ones are not read.
+    model : str
+    given : dict
+        Entries ``calibration``, ``ensemble``, ``models`` and ``output_rate`` of the configuration.
+    store : str or path
+        Of finished samples, from which a job that was cut goes on.
+    progress : callable
+        Called with a line of text after each sample.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``to_test(test, reading, sample)`` and ``between(test, reading, sample, other)`` [1], NaN where a test or a
+        sample has no such reading; ``chance(test, reading)`` of `chance_of_test` [1]; ``share(parameter, sample)``,
+        where a sample lies in the range of each parameter that structure and model have a use for [1]; by test
+        ``motion``, ``scale`` [1], ``synthetic`` and ``unsolved``, the number of samples that ended for a numerical
+        reason. ``reading``: the displacement, and the spectrum of the acceleration. Attributes ``case``, ``model``.
+    """
+    settings = CalibrationSettings(**given["calibration"])
+    ensemble = {**given["ensemble"], "seed": replicate_seed(given["ensemble"]["seed"], 0)}
+    variables = load_distributions(ensemble["distributions"], "ensemble")
+    ranges = settings.ranges_of(variables)
+    drawn = draw_samples(settings.size, ensemble["seed"], variables | ranges).values
+    rows = _as_parameters(drawn, case["structure"], store)
+    run_settings = {**given["models"][model], "output_rate": given["output_rate"]}
+    steps = _time_steps(model, drawn, run_settings["time_step"])
+    source = source_digest(*script_sources("compare_open_tests", model))
+    tests = {}
+    for name, listed in load_campaign(campaign).tests.items():
+        if listed.role != "sealed":
+            test = open_test(case, campaign, name)
+            progress(
+                f"{name}: {test.case['motion']} at {test.case['scale']:g}, {test.case['duration']:.4g} s"
+            )
+            run = run_settings, rows, steps, ensemble, store, source, progress
+            tests[name] = _compared(test, simulate_readings(test, model, *run))
+    structure = load_structure(case["structure"])
+    used = [one for one in ranges if has_use(model, structure, one)]
+    shares = [ranges[one].share(drawn[one].to_numpy()) for one in used]
+    found = xr.concat(tests.values(), dim=xr.Variable("test", list(tests)))
+    found = found.assign(share=(("parameter", "sample"), shares)).assign_coords(parameter=used)
+    found.attrs = {
+        "title": "open tests of a case against the samples of the calibration",
+        "case": case["name"],
+        "model": model,
+    }
+    return found
+
+
+def _compared(test, files):
+    """Distances of one test by reading, NaN where it or all samples have none."""
+    read = {}
+    if sum(path is not None for path in files) > 1:
+        read = {_CURVES: displacement_curves(test, files), _SPECTRA: acceleration_spectra(test, files)}
+    nothing = np.full(1, np.nan), np.full((len(files), 1), np.nan)
+    found = [distances(*reversed(read.get(kind) or nothing)) for kind in (_CURVES, _SPECTRA)]
+    return xr.Dataset(
+        {
+            "to_test": (("reading", "sample"), [one.to_test for one in found]),
+            "between": (("reading", "sample", "other"), [one.between for one in found]),
+            "chance": ("reading", [chance_of_test(one) for one in found]),
+            "motion": ((), Path(test.case["motion"]).stem),
+            "scale": ((), test.case["scale"]),
+            "synthetic": ((), int(test.measured.attrs.get("synthetic", 0))),
+            "unsolved": ((), sum(path is None for path in files)),
+        },
+        {"reading": [_CURVES, _SPECTRA], "sample": np.arange(len(files))},
+    )
+
+
+def has_use(model, structure, parameter):
+    """Whether a model has a use for a parameter of the calibration in a structure."""
+    if parameter == HOLLOW and hollow_shape(structure)[0] is None:
+        return False
+    if parameter in OF_CONTACT_SPRINGS:
+        return bool(model_of(model).calibrated)
+    return has_parameter(structure, parameter)
+
+
+def hollow_shape(structure):
+    """Name of the shape of a structure's upright blocks, and its smallest edge [m]; two None where it is no box."""
+    name = structure.file.bodies[reference_block(structure).body].shape
+    box = structure.file.shapes[name].box
+    return (name, min(box)) if box else (None, None)
+
+
+def read_distances(compared):
+    """`Distances` by test and reading, those that there are, of a Dataset of `compare_open_tests`."""
+    found = {}
+    for test in map(str, compared["test"].values):
+        for reading in map(str, compared["reading"].values):
+            one = compared.sel(test=test, reading=reading)
+            if np.isfinite(one["to_test"]).any():
+                found[test, reading] = Distances(one["to_test"].to_numpy(), one["between"].to_numpy())
+    return found
+
+
+def _as_parameters(drawn, structure, store):
+    """Rows by dotted name: the factor times the stiffness of the nominal wave test, the depth of the blocks' hollow."""
+    source = source_digest(*script_sources("calibrate_stiffness"))
+    wave = calibrate_design(structure, pd.DataFrame(index=[0]), {}, store, source).iloc[0]
+    rows = {name: value * drawn[STIFFNESS] for name, value in wave.items()}
+    loaded = load_structure(structure)
+    shape, edge = hollow_shape(loaded)
+    if shape is not None:
+        rows[f"shapes.{shape}.hollow"] = drawn[HOLLOW] * edge
+    return drawn.drop(columns=[STIFFNESS, HOLLOW]).assign(**rows)
+
+
+def _time_steps(model, drawn, usual):
+    """Time steps of the samples [s]: the usual one, cut into parts where contact springs are stiffer than usual.
+
+    The largest stable step goes with the period of the springs.
+    """
+    factor = drawn[STIFFNESS] if model_of(model).calibrated else 0.0 * drawn[STIFFNESS]
+    return usual / np.ceil(np.sqrt(factor.clip(lower=1.0)))

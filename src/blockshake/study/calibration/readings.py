@@ -1,0 +1,232 @@
+"""Readings of the instruments of an open test, of the specimen and of every sample alike: curves and spectra."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from blockshake.dynamics.system import FINISHED
+from blockshake.files import content_digest, shipped_names
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign import load_campaign
+from blockshake.measurement.modes.channel_histories import accelerometer_histories
+from blockshake.measurement.motion.compared_curves import curves_along_x
+from blockshake.measurement.sensors.accelerometers import CUTOFF
+from blockshake.measurement.sensors.instruments import Instruments, observe
+from blockshake.measurement.sensors.markers import driven_marker
+from blockshake.simulation.simulate import simulate
+from blockshake.simulation.structure_digest import structure_digest
+from blockshake.store import keep_dataset, kept, load_made
+from blockshake.study.ensembles.case_input import MEASURED, driving_motions, measured_input, measured_on_clock
+from blockshake.study.sampling.sample_parameters import sample_parameters
+
+_SEGMENT = 1.0  # s, of the spectra: lines 1 Hz apart
+_DECIMALS = {"m": 7, "1": 5}  # a thousandth of the markers' noise; of a logarithm
+
+
+class OpenTest(NamedTuple):
+    """An open test of a case's campaign, as the models are driven and read in it.
+
+    Attributes
+    ----------
+    case : dict
+        ``structure``, ``motion``, ``scale``, ``duration`` [s] and ``input``, the measured one, as `driving_motions`
+        takes them.
+    base : xarray.Dataset
+        From `measured_input`.
+    measured : xarray.Dataset
+        Readings, time 0 where the input starts; markers that measure x, and accelerometers where there are any.
+    instruments : Instruments
+        Noise of the campaign's sensors.
+    """
+
+    case: dict
+    base: xr.Dataset
+    measured: xr.Dataset
+    instruments: Instruments
+
+
+def open_test(case, campaign, name):
+    """`OpenTest` of a case of the configuration, of the test ``name`` in the folder ``campaign``.
+
+    The simulated window is the case's, or the record where that is shorter.
+    """
+    loaded = load_campaign(campaign)
+    listed = loaded.tests[name]
+    motion = (
+        listed.motion if listed.motion in shipped_names("motions") else str(loaded.folder / listed.motion)
+    )
+    named = {"campaign": campaign, "test": name}
+    case = {**case, "motion": motion, "scale": listed.scale, "input": MEASURED}
+    base = measured_input({**case, "duration": 0.0}, named)
+    duration = min(case["duration"], float(base.attrs["end"] - base.attrs["start"]))
+    measured, _ = measured_on_clock(named, base)
+    if "time_acc" in measured.coords:
+        since = measured["time_acc"] - base.attrs["start"]
+        measured = measured.assign_coords(time_acc=since).isel(time_acc=(since >= 0.0).to_numpy())
+    sensors = loaded.sensors
+    instruments = Instruments(
+        marker_noise=sensors.marker_noise, accelerometer_noise=sensors.accelerometer_noise
+    )
+    return OpenTest({**case, "duration": duration}, base, measured, instruments)
+
+
+def simulate_readings(test, model, settings, rows, time_steps, ensemble, store, source, progress):
+    """Synthetic readings of every sample, simulated where the store has not got them.
+
+    Parameters
+    ----------
+    test : OpenTest
+    model : str
+    settings : dict
+        ``parameters`` of the solver by dotted name, ``output_rate`` [Hz].
+    rows : pandas.DataFrame
+        Sampled values, index the sample, columns dotted names.
+    time_steps : pandas.Series
+        Of the samples [s].
+    ensemble : dict
+        ``seed`` of the design, of which the motions' draws are, and ``linked``, parameters that take another's value.
+    store : str or path
+        Of finished samples; one that was cut goes on from its checkpoint there.
+    source : str
+        Digest of the sources that compute.
+    progress : callable
+        Called with a line of text after each sample.
+
+    Returns
+    -------
+    list of Path or None
+        By sample; none for a run that ended for a numerical reason.
+    """
+    case, structure = test.case, load_structure(test.case["structure"])
+    motions = driving_motions(case, test.base, ensemble["seed"])
+    found = []
+    for sample, row in rows.iterrows():
+        motion = motions(sample)
+        parameters = settings["parameters"] | sample_parameters(row, structure, ensemble["linked"])
+        key = content_digest(
+            source, "readings", model, structure_digest(structure), *(part.tobytes() for part in motion.table),
+            case["duration"], settings["output_rate"], time_steps[sample], parameters, int(sample),
+            test.instruments.model_dump(),
+        )  # fmt: skip
+        path = Path(store) / f"{key}.nc"
+        how = "kept"
+        if not kept(path):
+            run = simulate(
+                structure, motion, model, parameters, time_step=time_steps[sample],
+                duration=case["duration"], output_rate=settings["output_rate"],
+                checkpoint=path.with_suffix(".checkpoint"),
+            )  # fmt: skip
+            read = observe(run, structure, test.instruments, int(key, 16))
+            along = read[["marker_displacement"]].sel(axis=["x"]).drop_encoding()
+            along = along.assign(log_spectrum=log_spectrum(read, structure, case["duration"]))
+            keep_dataset(path, along.assign_attrs(status=run.attrs["status"]), _DECIMALS)
+            how = "simulated"
+        status = load_made(path, ("marker_displacement", "log_spectrum")).attrs["status"]
+        progress(f"{structure.file.name} {model} sample {sample}, {how}: {status}")
+        found.append(path if status in FINISHED else None)
+    return found
+
+
+def displacement_curves(test, files):
+    """Displacement along x relative to the slab's marker, of the test and of the samples.
+
+    Parameters
+    ----------
+    test : OpenTest
+    files : list of Path or None
+        From `simulate_readings`, at least one run.
+
+    Returns
+    -------
+    measured : float64 array, shape (n_times, n_markers)
+        [m]; NaN is a gap.
+    samples : float64 array, shape (n_samples, n_times, n_markers)
+        [m]; NaN all over without a run. After a collapse the last displacement stands: a fallen block is no nearer.
+    """
+    runs = [load_made(path, ("log_spectrum",)) for path in files if path]
+    read, curves = curves_along_x(test.measured, xr.concat(runs, dim="sample", combine_attrs="drop"))
+    slab = driven_marker(load_structure(test.case["structure"]), read["marker"].values)
+    blocks = [name for name in read["marker"].values if name != slab]
+    read, curves = (one.sel(marker=blocks) - one.sel(marker=slab, drop=True) for one in (read, curves))
+    moved = [
+        pd.DataFrame(curve).ffill().to_numpy()
+        for curve in curves.transpose("sample", "time", "marker").to_numpy()
+    ]
+    return read.transpose("time", "marker").to_numpy(), _at_places(np.array(moved), files)
+
+
+def acceleration_spectra(test, files):
+    """Spectra of the blocks' accelerometers, of the test and of the samples; None where the test has none.
+
+    Parameters
+    ----------
+    test : OpenTest
+    files : list of Path or None
+        From `simulate_readings`, at least one run.
+
+    Returns
+    -------
+    measured : float64 array, shape (n_lines, n_channels)
+        As of `log_spectrum`.
+    samples : float64 array, shape (n_samples, n_lines, n_channels)
+        NaN all over without a run.
+    """
+    structure = load_structure(test.case["structure"])
+    measured = log_spectrum(test.measured, structure, test.case["duration"])
+    runs = [load_made(path, ("marker_displacement",))["log_spectrum"] for path in files if path]
+    measured, *runs = xr.align(measured, *runs, join="inner")
+    if not measured.size:
+        return None
+    return measured.to_numpy(), _at_places(np.array([run.to_numpy() for run in runs]), files)
+
+
+def log_spectrum(test, structure, duration):
+    """Logarithm of the spectra of all accelerometer channels on blocks, ``(line, channel)``; empty without any.
+
+    Parameters
+    ----------
+    test : xarray.Dataset
+        As in a campaign's test file, its accelerometers' time from the start of the input on [s].
+    structure : Structure
+    duration : float
+        Of the window [s].
+
+    Returns
+    -------
+    xarray.DataArray
+        Natural logarithm of the power spectral density in m2/s3, by Welch's method (1967) with segments of a second.
+        ``line`` is the frequency, 1 Hz to the low-pass.
+
+    Notes
+    -----
+    A spectrum has the frequencies of a test of low amplitude as its peaks, and in a strong test what impacts excite. It
+    does not know when: late rocking, whose phase nobody predicts, counts as far as it has the same strength.
+    """
+    # imported here: a second of the start of each job that reads no spectrum
+    from scipy.signal import welch
+
+    empty = xr.DataArray(
+        np.empty((0, 0)), {"line": np.empty(0, dtype=int), "channel": np.empty(0, dtype=str)}
+    )
+    read = accelerometer_histories(test, structure)
+    if read is None or read.driven.all():
+        return empty
+    inside = read.time <= duration
+    rate = (len(read.time) - 1) / (read.time[-1] - read.time[0])
+    if inside.sum() < 2.0 * _SEGMENT * rate:
+        return empty
+    _, power = welch(read.values[inside][:, ~read.driven], rate, nperseg=round(_SEGMENT * rate), axis=0)
+    power = np.log(np.maximum(power[1:], np.finfo(float).tiny))[: round(CUTOFF * _SEGMENT)]
+    names = ["-".join(name) for name, driven in zip(read.names, read.driven, strict=True) if not driven]
+    lines = np.arange(1, len(power) + 1)
+    return xr.DataArray(power, {"line": lines, "channel": names}, attrs={"units": "1"})
+
+
+def _at_places(values, files):
+    """Values of the runs at the places of their samples, NaN at the others."""
+    table = np.full((len(files), *values.shape[1:]), np.nan)
+    table[[place for place, path in enumerate(files) if path]] = values
+    return table

@@ -1,0 +1,80 @@
+"""Settings of the joint calibration in a configuration: which runs, and between which ends the parameters lie."""
+
+from typing import Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from blockshake.simulation.models import ModelName
+from blockshake.study.sampling.latin_hypercube import SMALLEST_SIZE
+from blockshake.validation import Positive, Strict
+
+RESTITUTION = "restitution"
+STIFFNESS = "stiffness_factor"  # of k_n and k_s together, over those of the wave speed
+HOLLOW = "hollow"  # of the faces of the structure's upright blocks, over their smallest edge
+OF_CONTACT_SPRINGS = (RESTITUTION, STIFFNESS, HOLLOW)  # models without contact springs have no use for them
+
+
+class Range(Strict):
+    """Ends of a parameter about which nothing else is supposed."""
+
+    lowest: Positive = Field(description="in the parameter's unit")
+    highest: Positive = Field(description="in the parameter's unit")
+    scale: Literal["linear", "log"] = Field("linear", description="on which values are drawn evenly")
+
+    @model_validator(mode="after")
+    def _rises(self):
+        if self.highest <= self.lowest:
+            raise ValueError("expected `highest` above `lowest`")
+        return self
+
+    def value(self, share):
+        """Values that lie at shares, 0 to 1, of the way from the lowest to the highest."""
+        share = np.asarray(share, dtype=float)
+        if self.scale == "log":
+            return self.lowest * (self.highest / self.lowest) ** share
+        return self.lowest + (self.highest - self.lowest) * share
+
+    def share(self, value):
+        """Inverse of `value`."""
+        value = np.asarray(value, dtype=float)
+        if self.scale == "log":
+            return np.log(value / self.lowest) / np.log(self.highest / self.lowest)
+        return (value - self.lowest) / (self.highest - self.lowest)
+
+    def stratum_medians(self, size):
+        """Medians of ``size`` strata of equal probability, rising, shape (size,)."""
+        return self.value((np.arange(size) + 0.5) / size)
+
+
+FRICTION = Range(lowest=0.2, highest=1.0)
+FRICTION_OF_STEEL = Range(lowest=0.1, highest=0.8)
+OTHERS = {
+    RESTITUTION: Range(lowest=0.05, highest=0.95),
+    STIFFNESS: Range(lowest=0.03, highest=3.0, scale="log"),
+    HOLLOW: Range(lowest=1e-5, highest=3e-3, scale="log"),
+}
+
+
+class CalibrationSettings(Strict):
+    """Friction, restitution, stiffness and flatness of contacts by all open tests of some cases, by some models."""
+
+    cases: dict[ModelName, tuple[str, ...]] = Field(
+        min_length=1, description="by model, one of the study's: names of cases with a measured test"
+    )
+    size: int = Field(40, ge=SMALLEST_SIZE, description="samples by which every test is simulated [1]")
+    ranges: dict[str, Range] = Field(
+        {},
+        description="by parameter: a friction of `ensemble.distributions`, `restitution`, `stiffness_factor`, of k_n "
+        "and k_s over those of the wave speed, or `hollow` of the blocks' faces over their edge; by default friction "
+        "0.2 to 1, of steel 0.1 to 0.8, restitution 0.05 to 0.95, stiffness 0.03 to 3, hollow 1e-5 to 3e-3",
+    )
+
+    def ranges_of(self, variables):
+        """Ranges of all that is calibrated, by name: of every friction among the ``variables``, and of the others."""
+        usual = {
+            name: FRICTION_OF_STEEL if "steel" in name else FRICTION
+            for name in variables
+            if name.startswith("friction.")
+        }
+        return {**usual, **OTHERS, **self.ranges}

@@ -1,0 +1,152 @@
+"""The joint calibration on synthetic tests of one block, whose friction or contact stiffness is known."""
+
+import numpy as np
+import pytest
+import xarray as xr
+import yaml
+
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.files import write_dataset
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.sensors.instruments import Instruments, observe
+from blockshake.simulation.simulate import simulate
+from blockshake.study.calibration.calibration import ALL, calibrate, models_of
+from blockshake.study.calibration.comparison import compare_open_tests
+from blockshake.study.calibration.settings import RESTITUTION, STIFFNESS
+from blockshake.study.stiffness.wave_speed import calibrate_stiffness
+
+FRICTION = "friction.stone.stone"
+STRUCTURE = """
+name: one-block
+materials: {{stone: {{density: 2400.0, youngs_modulus: 3.45e+10, poisson_ratio: 0.2}}}}
+shapes: {{slab: {{box: [6.0, 3.0, 0.4]}}, block: {{box: {box}}}}}
+bodies:
+  - {{name: slab, shape: slab, material: stone, position: [0.0, 0.0, -0.2], driven: true}}
+  - {{name: block, shape: block, material: stone, position: [0.0, 0.0, {half}]}}
+friction: [{{pair: [stone, stone], coefficient: 0.6}}]
+markers:
+  - {{name: slab, body: slab, position: [0.0, 0.0, 0.2]}}
+  - {{name: top, body: block, position: [0.0, 0.0, {half}]}}
+accelerometers:
+  - {{name: slab-acc, body: slab, position: [0.0, 0.0, 0.2], axes: [x]}}
+  - {{name: top-acc, body: block, position: [0.0, 0.0, {half}], axes: [x]}}
+"""
+SQUAT = {"box": [2.0, 1.0, 0.5], "half": 0.25}  # b/h = 4: slides, never rocks
+SLENDER = {
+    "box": [0.4, 1.0, 1.6],
+    "half": 0.8,
+}  # on its springs it rocks at some 40 Hz times the root of their factor
+MODELS = {
+    "ls-dem": {"time_step": 5e-5, "parameters": {}},
+    "nscd-rigid": {"time_step": 1e-3, "parameters": {}},
+}
+DENSITY = {"materials.stone.density": {"distribution": "lognormal", "mean": 2400.0, "cov": 0.04}}
+
+
+def _study(cases, size):
+    distributions = {FRICTION: {"distribution": "lognormal", "mean": 0.6, "cov": 0.1}, **DENSITY}
+    return {
+        "calibration": {"cases": cases, "size": size},
+        "ensemble": {"seed": 1, "distributions": distributions, "linked": {}},
+        "models": MODELS,
+        "output_rate": 200.0,
+    }
+
+
+def _noise(seed, amplitude, duration, highest):
+    """Base acceleration with all frequencies up to a highest one, at rest for half a second before and after."""
+    time = np.arange(0.0, duration + 1e-9, 0.005)
+    generator = np.random.default_rng(seed)
+    lines = np.arange(1.0, highest, 0.25)
+    wave = np.sin(2.0 * np.pi * (np.outer(time, lines) + generator.uniform(size=len(lines)))).sum(axis=1)
+    wave *= amplitude * np.sqrt(2.0 / len(lines)) * ((time > 0.5) & (time < duration - 0.5))
+    return "time_s,acceleration_x\n" + "".join(f"{t:.3f},{a:.8f}\n" for t, a in zip(time, wave, strict=True))
+
+
+@pytest.fixture
+def campaign(tmp_path):
+    """Folder of synthetic tests of one block by LS-DEM with true parameters, one under each motion."""
+
+    def made(block, truth, motions, duration):
+        structure = tmp_path / "one-block.yaml"
+        structure.write_text(STRUCTURE.format(**block))
+        tests = []
+        for place, motion in enumerate(motions):
+            name = f"t{place}"
+            (tmp_path / f"{name}.csv").write_text(motion)
+            run = simulate(
+                structure,
+                load_motion(tmp_path / f"{name}.csv"),
+                "ls-dem",
+                truth,
+                time_step=2e-5,
+                duration=duration,
+            )
+            write_dataset(
+                tmp_path / f"{name}.nc", observe(run, load_structure(structure), Instruments(), place)
+            )
+            tests.append(
+                {"name": name, "file": f"{name}.nc", "motion": f"{name}.csv", "scale": 1.0, "role": "fit"}
+            )
+        tests[-1]["role"] = "sealed"
+        file = {"name": "made", "structure": "one-block.yaml", "tests": tests}
+        (tmp_path / "campaign.yaml").write_text(yaml.safe_dump(file))
+        return tmp_path
+
+    return made
+
+
+def _answers(folder, models, size, duration, tmp_path):
+    case = {"name": "one-block", "structure": str(folder / "one-block.yaml"), "duration": duration}
+    study = _study({model: ("one-block",) for model in models}, size) | {"cases": [case]}
+    compared = [
+        compare_open_tests(case, str(folder), model, study, tmp_path / "store", print) for model in models
+    ]
+    return compared, calibrate(compared, study)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("truth", [0.35, 0.55])
+def test_the_friction_of_a_sliding_block_is_told_by_the_other_solver(truth, campaign, tmp_path):
+    motions = [_noise(seed, 5.0, 4.0, 4.0) for seed in range(3)]
+    folder = campaign(SQUAT, {FRICTION: truth}, motions, 4.0)
+    _, found = _answers(folder, ["nscd-rigid"], 40, 4.0, tmp_path)
+    answer = found["parameters"][FRICTION]["answers"][ALL]
+    assert answer["told"]
+    assert (answer["lower"] or 0.2) <= truth <= (answer["upper"] or 1.0)
+    assert answer["upper"] - (answer["lower"] or 0.2) < 0.3
+    assert set(found["parameters"]) == {FRICTION}  # rigid contact has no springs
+
+
+@pytest.mark.slow
+def test_contact_stiffness_is_told_by_a_noise_test_of_low_amplitude(campaign, tmp_path):
+    """The block stays closed: friction and restitution of impacts are not told, the stiffness is, by its frequency."""
+    truth = 0.3
+    (tmp_path / "nominal.yaml").write_text(STRUCTURE.format(**SLENDER))
+    wave = calibrate_stiffness(tmp_path / "nominal.yaml")
+    true = {f"ls_dem.{name}": truth * wave[name] for name in ("normal_stiffness", "shear_stiffness")}
+    motions = [_noise(seed, 0.3, 6.0, 45.0) for seed in range(3)]
+    folder = campaign(SLENDER, true, motions, 6.0)
+    _, found = _answers(folder, ["ls-dem"], 40, 6.0, tmp_path)
+    stiffness = found["parameters"][STIFFNESS]["answers"][ALL]
+    assert stiffness["told"]
+    assert (stiffness["lower"] or 0.03) <= truth <= (stiffness["upper"] or 3.0)
+    assert stiffness["assumed_is_refused"]
+    assert not found["parameters"][FRICTION]["answers"][ALL]["told"]
+
+
+def test_both_models_answer_and_the_sealed_test_is_not_read(campaign, tmp_path):
+    folder = campaign(SQUAT, {FRICTION: 0.4}, [_noise(seed, 4.0, 2.5, 4.0) for seed in range(2)], 2.5)
+    (folder / "t1.nc").write_bytes(b"sealed")
+    compared, found = _answers(folder, list(MODELS), 20, 2.5, tmp_path)
+    assert models_of(found) == list(MODELS)
+    assert {one["test"] for one in found["tests"]} == {"t0"}
+    assert [one["test"].values.tolist() for one in compared] == [["t0"], ["t0"]]
+    assert set(found["parameters"][RESTITUTION]["answers"]) == {"ls-dem", ALL}
+    assert set(found["parameters"][FRICTION]["answers"]) == {*MODELS, ALL}
+    kept = {path: path.stat().st_mtime_ns for path in (tmp_path / "store").glob("*.nc")}
+    assert len(kept) == 2 * 20
+    again, _ = _answers(folder, list(MODELS), 20, 2.5, tmp_path)
+    for one, other in zip(compared, again, strict=True):
+        xr.testing.assert_identical(one, other)
+    assert {path: path.stat().st_mtime_ns for path in (tmp_path / "store").glob("*.nc")} == kept
