@@ -45,8 +45,8 @@ def calibration(content):
         Text(text),
         Items(tuple(sentences)),
         Figure(
-            "Scores of values, mean over the tests, above the lowest of the same line. Thick: parameters that are "
-            "told. Dotted: the value that the study takes.",
+            "Scores of values, mean over the tests, above the lowest of the same line. Grey: values that all tests "
+            "together do not refuse, where they tell of the parameter at all. Dotted: the value that the study takes.",
             svg_of(plot_calibration, found),
         ),
         answers_table(found),
