@@ -93,22 +93,23 @@ def beside(path):
 def campaign_files(case):
     """The test that a case is compared with and what describes it; never another, which may be sealed."""
     campaign = load_campaign(CASES[case]["measured"]["campaign"])
-    return test_files(campaign, campaign.tests[CASES[case]["measured"]["test"]])
+    return files_of_test(campaign, campaign.tests[CASES[case]["measured"]["test"]])
 
 
 def open_files(case):
     """The tests of a case's campaign that are not sealed, and what describes them."""
     campaign = load_campaign(CASES[case]["measured"]["campaign"])
     opened = [test for test in campaign.tests.values() if test.role != "sealed"]
-    files = [file for test in opened for file in test_files(campaign, test)]
+    files = [file for test in opened for file in files_of_test(campaign, test)]
     return list(dict.fromkeys(files))
 
 
-def test_files(campaign, test):
+def files_of_test(campaign, test):
     """The file of a campaign, that of one of its tests, and others that describe the test, as far as they are there."""
     files = [campaign.folder / "campaign.yaml", campaign.folder / test.file]
     beside = [
         campaign.folder / f"{Path(test.file).stem}-acc.csv",
+        campaign.folder / test.motion,
         Path(campaign.structure),
     ]
     return [str(path) for path in (*files, *filter(Path.is_file, beside))]

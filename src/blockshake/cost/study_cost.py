@@ -9,7 +9,7 @@ from blockshake.cost.trial import run_seconds
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import HOME
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaigns.campaign import load_campaign
+from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.study.config import load_config
 
 _TWINS = 3  # runs that twins cost: one of the usual step, one of half
@@ -52,9 +52,11 @@ def study_cost(path):
                 parts.append(Part(f"mean friction of {case.name}", search.runs, search.runs * each))
             asked = config.calibration
             if asked is not None and case.name in asked.cases.get(model, ()):
-                tests = load_campaign(case.measured.campaign).tests.values()
-                count = asked.size * sum(test.role != "sealed" for test in tests)
-                parts.append(Part(f"calibration of {case.name}, {model}", count, count * each))
+                # a test is simulated for its record where that is shorter than the case
+                shares = [min(record / case.duration, 1.0) for record in _open_records(case)]
+                runs = asked.size * len(shares)
+                seconds = asked.size * sum(shares) * each
+                parts.append(Part(f"calibration of {case.name}, {model}", runs, seconds))
             climbs = config.fragility
             if climbs is not None and climbs.model == model and case.name in climbs.cases:
                 count = climbs.size * len(config.ladder.scales)
@@ -67,3 +69,10 @@ def study_cost(path):
         "--configfile", str(path),
     ]  # fmt: skip
     return [*parts, planned_jobs(command).as_part()]
+
+
+def _open_records(case):
+    """Lengths of the open tests of a case's campaign [s]."""
+    campaign = load_campaign(case.measured.campaign)
+    opened = [load_test(campaign, name) for name, test in campaign.tests.items() if test.role != "sealed"]
+    return [float(test["time"][-1] - test["time"][0]) for test in opened]
