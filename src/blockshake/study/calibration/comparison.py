@@ -25,7 +25,7 @@ from blockshake.study.sampling.latin_hypercube import draw_samples
 from blockshake.study.sampling.sample_parameters import has_parameter
 from blockshake.study.stiffness.wave_speed import calibrate_design
 
-_CURVES, _SPECTRA = "displacement", "acceleration spectrum"
+_CURVES, _SPECTRA = "displacement", "acceleration"
 
 
 def compare_open_tests(case, campaign, model, given, store, progress):

@@ -3,6 +3,7 @@
 from blockshake.report.document.blocks import Figure, Items, Section, Table, Text
 from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.wording import (
+    MISSING,
     count_words,
     given,
     model_label,
@@ -107,28 +108,30 @@ def answers_table(found):
 
 def tests_table(found):
     """Table of the answers of each test by each model."""
-    rows = []
+    by_test = {}
     for one in found["tests"]:
+        by_test.setdefault((one["case"], one["test"], one["model"]), {})[one["reading"]] = one
+    readings = list(dict.fromkeys(one["reading"] for one in found["tests"]))
+    rows = []
+    for (case, test, model), read in by_test.items():
+        chances = (number(read[one]["chance"], 2) if one in read else MISSING for one in readings)
         told = [
-            f"{parameter_label(name)} {span(answer)}"
+            f"{one['reading']}: {parameter_label(name)} {span(answer)}"
+            for one in read.values()
             for name, answer in one["answers"].items()
             if answer["told"]
         ]
-        rows.append((
-            one["case"], one["test"], model_label(one["model"]), one["reading"], number(one["chance"], 2),
-            "; ".join(told) or "tells nothing by itself",
-        ))  # fmt: skip
+        rows.append((case, test, model_label(model), *chances, "; ".join(told) or "nothing by itself"))
     unlike = sum(one["chance"] < _UNLIKE for one in found["tests"])
-    unsolved = sum(
-        {(one["case"], one["model"], one["test"]): one["unsolved"] for one in found["tests"]}.values()
-    )
+    unsolved = sum(next(iter(read.values()))["unsolved"] for read in by_test.values())
     tail = (
         f" {count_words(unsolved, 'run')} ended for a numerical reason and count nowhere." if unsolved else ""
     )
     return Table(
-        "Every test by itself. Chance: rank of the test's distance from the samples among those of the samples from "
-        f"each other; {share_words(unlike, len(found['tests']))} are below {_UNLIKE:g}, tests that no sample "
-        f"resembles.{tail}",
-        ("Case", "Test", "Model", "Reading", "Chance", "Tells, at the level of all tests together"),
-        tuple(rows), "llllrl", (0.15, 0.15, 0.11, 0.16, 0.08, 0.35),
+        "Every test by itself. Chance, by the two readings: rank of the test's distance from the samples among those "
+        f"of the samples from each other; {share_words(unlike, len(found['tests']))} are below {_UNLIKE:g}, readings "
+        f"that no sample resembles. Tells: at the level of all tests together.{tail}",
+        ("Case", "Test", "Model", *(f"Chance, {one}" for one in readings), "Tells"),
+        tuple(rows), "lll" + "r" * len(readings) + "l",
+        (0.17, 0.16, 0.12, *(0.24 / len(readings) for _ in readings), 0.31),
     )  # fmt: skip
