@@ -75,7 +75,7 @@ def made_by():
     )
 
 
-def make_case(seed, name, size, folder, truth_folder, sealed=True, structure_name="two-blocks"):
+def make_case(seed, name, size, folder, truth_folder, sealed=True, structure_name="two-blocks", hollow=0.0):
     """Write the campaign, then its truth, then the README that commits to the truth.
 
     Parameters
@@ -91,6 +91,8 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True, structure_nam
         Whether there are sealed tests too, on which a gain can be measured.
     structure_name : str
         File of `STRUCTURES`, without its suffix.
+    hollow : float
+        Depth of the true blocks' faces in their middle, which the campaign's structure does not state [m].
     """
     plan = [test for test in PLAN if sealed or test[2] != "sealed"]
     folder.mkdir(parents=True, exist_ok=True)
@@ -100,6 +102,7 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True, structure_nam
     effect = true_effect(name, size, structure, len(plan), seed)
     parameters, wider = true_parameters(structure, seed)
     physical, own = part_parameters(parameters)
+    physical |= {"shapes.block.hollow": hollow} if hollow else {}
     model, time_step, numerics = true_numerics(seed)
     table, noise = true_table(seed), true_noise(seed)
     happened = {}
@@ -128,7 +131,7 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True, structure_nam
         "form": _words(name), "seed": seed, "structure": structure_name,
         "sealed": sealed, "model": model, "time_step": time_step,
         "numerics": numerics, "parameters": parameters, "wider": wider, "table": table, "noise": noise,
-        "tests": happened, "made_by": made_by(),
+        "hollow": hollow, "tests": happened, "made_by": made_by(),
     }  # fmt: skip
     write_json(truth_folder / "truth.json", truth)
     committed = hashlib.sha256((truth_folder / "truth.json").read_bytes()).hexdigest()
