@@ -18,7 +18,7 @@ _AT_HAND = 2**12  # rows beyond the end of a run that are written at a time
 
 
 def reduced(structure, rows, coarse, fine):
-    """What a run file takes of some rows of a run, tuples of arrays by name.
+    """Parts of a run file that some rows of a run give, tuples of arrays by name.
 
     Parameters
     ----------

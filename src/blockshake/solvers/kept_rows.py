@@ -1,4 +1,4 @@
-"""What is kept on disk of the rows that a long run has handed over, so that its memory does not grow with them."""
+"""Rows on disk that a long run has handed over, so that its memory does not grow with them."""
 
 import shutil
 from pathlib import Path

@@ -14,7 +14,7 @@ def _kept_reading(planned, draw, effects, store, source, histories):
     reading = xr.Dataset({"value": ("feature", [float(draw)]), "status": "completed"}, {"feature": ["peak"]})
     if histories:
         moved = {name: ("time", np.full(4, float(draw))) for name in ("slip", "rotation", "opening", "drift")}
-        reading = reading.assign(moved, law_value=("law", [float(draw)]))
+        reading = reading.assign(moved | {"law_value": ("law", [float(draw)])})
     return KeptReading(reading, "kept")
 
 
