@@ -9,7 +9,7 @@ from pathlib import Path
 
 from blockshake import __version__
 from blockshake.errors import INTERRUPTED, InputError
-from blockshake.files import check_output, parse_yaml, write_dataset, write_json
+from blockshake.files import check_output, parse_yaml, write_json
 from blockshake.own_files.commands import add_data_commands
 from blockshake.simulation.models import MODELS
 
@@ -188,12 +188,14 @@ def _simulate(options):
     check_output(options.output)
     if Path(options.output).suffix != ".nc":
         raise InputError("--output", options.output, "expected a netCDF file, RUN.nc")
+    import xarray as xr
+
     from blockshake.dynamics.load_motion import load_motion
     from blockshake.dynamics.system import FINISHED
     from blockshake.geometry.structure import load_structure
     from blockshake.jit import CACHE_FOLDER
     from blockshake.simulation.ending import ending
-    from blockshake.simulation.simulate import simulate
+    from blockshake.simulation.simulate import simulate_to_file
 
     _show_progress()
     begin = time.monotonic()
@@ -202,7 +204,8 @@ def _simulate(options):
         logging.getLogger("blockshake").info("%s is there and will be replaced", options.output)
     if not CACHE_FOLDER.exists():
         logging.getLogger("blockshake").info("compiles the solver first, once, for one to three minutes")
-    run = simulate(
+    simulate_to_file(
+        options.output,
         structure,
         load_motion(options.motion, options.scale),
         options.model,
@@ -210,13 +213,13 @@ def _simulate(options):
         time_step=options.time_step,
         duration=options.duration,
         output_rate=options.output_rate,
-        checkpoint=f"{options.output}.checkpoint",
     )
-    write_dataset(options.output, run)
-    print(f"{options.output}: {ending(run, structure)}; took {time.monotonic() - begin:.3g} s")
-    if run.attrs["status"] in FINISHED:
+    with xr.open_dataset(options.output, decode_times=False) as run:
+        told, status, reason = ending(run, structure), run.attrs["status"], run.attrs["reason"]
+    print(f"{options.output}: {told}; took {time.monotonic() - begin:.3g} s")
+    if status in FINISHED:
         return 0
-    print(f"blockshake: {run.attrs['status']}: {run.attrs['reason']}", file=sys.stderr)
+    print(f"blockshake: {status}: {reason}", file=sys.stderr)
     return NUMERICAL_FAILURE
 
 

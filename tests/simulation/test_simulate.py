@@ -9,7 +9,7 @@ import xarray as xr
 from blockshake.dynamics.motion import ground_motion
 from blockshake.errors import InputError
 from blockshake.files import write_dataset
-from blockshake.simulation.energy_residual import energy_residual
+from blockshake.simulation.energy_residual import energy_extremes, energy_residual, residual_of
 from blockshake.simulation.models import MODELS, split_parameters
 from blockshake.simulation.simulate import simulate
 
@@ -108,6 +108,20 @@ def test_energy_residual_of_a_known_leak():
     energy[:, 0] = [0.0, 50.0, 90.0]
     assert energy_residual(energy) == pytest.approx(0.1)
     assert energy_residual(np.zeros((3, 7))) == 0.0
+
+
+def test_energy_residual_of_parts_is_that_of_the_whole_to_the_bit():
+    energy = np.random.default_rng(1).normal(size=(50, 7)).cumsum(axis=0)
+    energy[0, 3:] = 0.0  # nothing is dissipated or put in at the start
+    energy[45:] = np.nan
+    parts = [energy_extremes(part) for part in np.split(energy, [7, 8, 30, 46])]
+    assert residual_of(parts) == energy_residual(energy)
+    # the definition, term by term
+    kinetic, potential, elastic, *lost, given = energy[:45].T
+    missing = kinetic + potential + elastic + sum(lost) - given
+    in_play = max(np.abs(given).max(), kinetic.max(), elastic.max(), 1e-6 * np.abs(potential).max())
+    assert residual_of(parts) == pytest.approx(np.abs(missing - missing[0]).max() / in_play, rel=1e-12)
+    assert np.isnan(residual_of([energy_extremes(energy[45:])]))
 
 
 def test_parameters_go_where_they_belong():

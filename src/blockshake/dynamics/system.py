@@ -1,6 +1,6 @@
 """Bodies, their state, their energy and the record of a run, for both solvers."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -81,8 +81,8 @@ class Stoppers(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Trajectory:
-    """Record of a run at the times asked for; NaN after an abort.
+class Rows:
+    """Record of a run at some of the times asked for, in their order; NaN after an abort.
 
     Attributes
     ----------
@@ -95,16 +95,9 @@ class Trajectory:
     energy : float64 array, shape (n_times, 7)
         `ENERGY_TERMS`, of the bodies that are not driven [J].
     joints : int64 array, shape (n_joints, 2)
-        Pairs of bodies that touched, by index.
+        Pairs of bodies that touched so far, by index.
     joint_force : float64 array, shape (n_times, n_joints, 3)
         Resultant on the second body of each pair [N].
-    status : Status
-    reason : str
-        Why the run ended early or is not to be trusted; empty when completed.
-    end_time : float
-        Time reached [s].
-    numerics : dict of str to float
-        Figures of the computation: steps, residuals, iterations and the like.
     """
 
     time: np.ndarray
@@ -115,6 +108,30 @@ class Trajectory:
     energy: np.ndarray
     joints: np.ndarray
     joint_force: np.ndarray
+
+    def at(self, rows):
+        """Some of these rows; a slice, numbers or a mask."""
+        taken = {
+            field.name: getattr(self, field.name)[rows] for field in fields(Rows) if field.name != "joints"
+        }
+        return Rows(joints=self.joints, **taken)
+
+
+@dataclass(frozen=True)
+class Trajectory(Rows):
+    """Rows until the last time asked for, and how the run ended.
+
+    Attributes
+    ----------
+    status : Status
+    reason : str
+        Why the run ended early or is not to be trusted; empty when completed.
+    end_time : float
+        Time reached [s].
+    numerics : dict of str to float
+        Figures of the computation: steps, residuals, iterations and the like.
+    """
+
     status: Status
     reason: str
     end_time: float

@@ -6,6 +6,8 @@ from blockshake.dynamics.system import FINISHED
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.simulation.run_histories import drift_histories
 
+_AT_HAND = 2**14  # times that are read at once
+
 
 def ending(run, structure):
     """Status of a run, the time that it reached, and its largest drift, in words.
@@ -13,7 +15,7 @@ def ending(run, structure):
     Parameters
     ----------
     run : xarray.Dataset
-        A run file.
+        A run file, open or loaded.
     structure : Structure
         The run's.
 
@@ -22,15 +24,28 @@ def ending(run, structure):
     str
         The drift is that of the mass centre that moved farthest along x, y and z against the first driven body.
     """
-    reached = np.isfinite(run["position"]).all(("body", "axis")).to_numpy()
     words = f"{run.attrs['status']} at {run.attrs['end_time']:.4g} s"
     if run.attrs["status"] in FINISHED and run.attrs["reason"]:
         words += f" ({run.attrs['reason']})"
-    if not reached.any() or structure.driven.all():
+    largest = None
+    for begin in range(0, 0 if structure.driven.all() else run.sizes["time"], _AT_HAND):
+        rows = np.append(0, np.arange(begin, min(begin + _AT_HAND, run.sizes["time"])))
+        found = _largest_drift(run[["position", "orientation"]].isel(time=rows).load(), structure)
+        if found is not None and (largest is None or found[0] > largest[0]):
+            largest = found
+    if largest is None:
         return words
+    size, body, when = largest
+    return f"{words}; largest drift {1e3 * size:.3g} mm, of {structure.body_names[body]} at {when:.4g} s"
+
+
+def _largest_drift(run, structure):
+    """Largest drift [m], the body's number and the time [s] in a part of a run that begins with its start, or None."""
+    reached = np.isfinite(run["position"]).all(("body", "axis")).to_numpy()
+    if not reached.any():
+        return None
     moved = run.isel(time=reached)
     drift = drift_histories(structure, moved["position"].to_numpy(), rotation_matrices(moved["orientation"]))
     size = np.where(structure.driven, 0.0, np.linalg.norm(drift, axis=-1))
     row, body = np.unravel_index(size.argmax(), size.shape)
-    name, when = structure.body_names[body], float(moved["time"][row])
-    return f"{words}; largest drift {1e3 * size[row, body]:.3g} mm, of {name} at {when:.4g} s"
+    return size[row, body], body, float(moved["time"][row])

@@ -5,44 +5,46 @@ import xarray as xr
 
 from blockshake.dynamics.system import ENERGY_TERMS
 from blockshake.geometry.schema import AXES, QUATERNION
-from blockshake.measurement.sensors.accelerometers import accelerometer_readings
+from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.markers import marker_displacement
 from blockshake.simulation.models import model_of
 
 
-def run_dataset(structure, trajectory, rows):
-    """A trajectory as the run file's Dataset, at some of its rows, without accelerometers and attributes."""
+def run_dataset(structure, rows, start=None):
+    """Rows of a run as the run file's Dataset, without accelerometers and attributes.
+
+    ``start``: position and orientation at the run's first time, as of `marker_displacement`.
+    """
     names = structure.body_names
-    lower, upper = ([names[body] for body in trajectory.joints[:, side]] for side in (0, 1))
+    lower, upper = ([names[body] for body in rows.joints[:, side]] for side in (0, 1))
     markers = np.array([marker.name for marker in structure.file.markers], dtype=str)
-    position, orientation = trajectory.position[rows], trajectory.orientation[rows]
 
     def variable(dims, values, units, long_name):
         return (dims.split(), values, {"units": units, "long_name": long_name})
 
     return xr.Dataset(
         {
-            "position": variable("time body axis", position, "m", "mass centre, inertial frame"),
+            "position": variable("time body axis", rows.position, "m", "mass centre, inertial frame"),
             "orientation": variable(
-                "time body quaternion", orientation, "1", "unit quaternion, body to inertial frame"
+                "time body quaternion", rows.orientation, "1", "unit quaternion, body to inertial frame"
             ),
             "velocity": variable(
-                "time body axis", trajectory.velocity[rows], "m s-1", "velocity of the mass centre, inertial frame"
+                "time body axis", rows.velocity, "m s-1", "velocity of the mass centre, inertial frame"
             ),
             "angular_velocity": variable(
-                "time body axis", trajectory.angular_velocity[rows], "rad s-1", "angular velocity, inertial frame"
+                "time body axis", rows.angular_velocity, "rad s-1", "angular velocity, inertial frame"
             ),
             "marker_displacement": variable(
-                "time marker axis", marker_displacement(structure, position, orientation), "m",
+                "time marker axis", marker_displacement(structure, rows.position, rows.orientation, start), "m",
                 "displacement of the marker since the start, inertial frame",
             ),
-            "energy": variable("time term", trajectory.energy[rows], "J", "energy audit of the free bodies"),
+            "energy": variable("time term", rows.energy, "J", "energy audit of the free bodies"),
             "joint_force": variable(
-                "time joint axis", trajectory.joint_force[rows], "N", "resultant contact force on the upper body"
+                "time joint axis", rows.joint_force, "N", "resultant contact force on the upper body"
             ),
         },
         coords={
-            "time": variable("time", trajectory.time[rows], "s", "time since the start of the motion"),
+            "time": variable("time", rows.time, "s", "time since the start of the motion"),
             "body": names,
             "axis": list(AXES),
             "quaternion": list(QUATERNION),
@@ -55,22 +57,15 @@ def run_dataset(structure, trajectory, rows):
     )  # fmt: skip
 
 
-def add_accelerometers(run, structure, trajectory, rows):
-    """Add ``accelerometer(time_acc, channel)`` [m/s2] to a run, read at the fine times of its trajectory."""
-    times, values, channels = accelerometer_readings(
-        structure,
-        trajectory.time[rows],
-        trajectory.orientation[rows],
-        trajectory.velocity[rows],
-        trajectory.angular_velocity[rows],
-    )
+def add_accelerometers(run, structure, times, values):
+    """Add readings ``accelerometer(time_acc, channel)`` [m/s2] to a run, at their times [s]."""
     run["accelerometer"] = (
         ("time_acc", "channel"),
         values,
         {"units": "m s-2", "long_name": "specific force along the body's axis, 50 Hz low-pass"},
     )
     run["time_acc"] = ("time_acc", times, {"units": "s", "long_name": "time since the start of the motion"})
-    run["channel"] = channels
+    run["channel"] = accelerometer_channels(structure)
 
 
 def effective_parameters(structure, model, numerical):

@@ -1,18 +1,20 @@
-"""One simulation: structure, motion and parameters in, a run Dataset out."""
+"""One simulation: structure, motion and parameters in, a run Dataset or a run file out."""
 
 import json
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import blockshake
 from blockshake.dynamics.load_motion import load_motion
-from blockshake.dynamics.motion import GroundMotion
+from blockshake.dynamics.motion import PITCH, GroundMotion
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.errors import InputError
 from blockshake.geometry.overlap import penetration_depth
 from blockshake.geometry.rotations import rotate_into
-from blockshake.geometry.structure import START_TOLERANCE, load_structure
-from blockshake.measurement.sensors.accelerometers import FINE_RATE
+from blockshake.geometry.structure import START_TOLERANCE, Structure, load_structure
+from blockshake.measurement.sensors.accelerometers import FINE_RATE, accelerometer_readings
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.models import model_of, split_parameters
@@ -22,6 +24,9 @@ from blockshake.simulation.run_dataset import (
     plain_attribute,
     run_dataset,
 )
+from blockshake.simulation.run_parts import RunParts, reduced
+from blockshake.simulation.write_run import write_run
+from blockshake.solvers.kept_rows import KeptRows
 from blockshake.sources import module_sources, source_digest
 
 _LONGEST_STEP = 0.01  # s
@@ -73,6 +78,104 @@ def simulate(
     InputError
         Unknown model or parameter, or a structure that is wrong.
     """
+    of = _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers)
+    trajectory = of.solve(checkpoint=checkpoint)
+    times = trajectory.time
+    run = run_dataset(of.structure, trajectory.at(np.searchsorted(times, of.coarse)))
+    if of.fine.size:
+        fine = trajectory.at(np.searchsorted(times, of.fine))
+        states = fine.orientation, fine.velocity, fine.angular_velocity
+        readings = accelerometer_readings(of.structure, fine.time, *states)
+        add_accelerometers(run, of.structure, *readings[:2])
+    run.attrs = of.attributes(trajectory, energy_residual(trajectory.energy))
+    return run
+
+
+def simulate_to_file(
+    path, structure, motion, model, parameters=None, time_step=None, duration=None, output_rate=None
+):
+    """Simulate one structure under one motion to a run file, in memory that hardly grows with the duration.
+
+    The run goes on from ``PATH.checkpoint`` if it was cut short, with the rows in ``PATH.checkpoint.rows``; both are
+    taken away once the run file is whole.
+
+    Parameters
+    ----------
+    path : str or path
+        To write, whole or not at all: what `simulate` returns, to the bit.
+    structure, motion, model, parameters, time_step, duration, output_rate
+        As of `simulate`.
+
+    Raises
+    ------
+    InputError
+        As `simulate`; or the file cannot be written.
+    """
+    of = _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers=True)
+    checkpoint = Path(f"{path}.checkpoint")
+    kept = KeptRows(f"{checkpoint}.rows", lambda rows: reduced(of.structure, rows, of.coarse, of.fine))
+    trajectory = of.solve(checkpoint=checkpoint, kept=kept)
+    parts = RunParts(of.structure, of.coarse, of.fine, kept, trajectory)
+    write_run(path, parts, of.attributes(trajectory, parts.energy_residual()))
+    checkpoint.unlink(missing_ok=True)
+    kept.remove()
+
+
+class _SetUp(NamedTuple):
+    """A simulation before its first step; times are ``coarse`` of histories and ``fine`` of accelerometers [s]."""
+
+    structure: Structure
+    motion: GroundMotion
+    model: str
+    numerical: Any
+    time_step: float
+    output_rate: float
+    coarse: np.ndarray
+    fine: np.ndarray
+
+    def solve(self, **options):
+        """`Trajectory` of the simulation."""
+        times = np.union1d(self.coarse, self.fine)
+        return model_of(self.model).solve(
+            self.structure, self.motion, self.numerical, times, self.time_step, **options
+        )
+
+    def attributes(self, trajectory, residual):
+        """Attributes of the run file, from how the run ended and its `energy_residual`."""
+        file, motion = self.structure.file, self.motion
+        status, reason = trajectory.status, trajectory.reason
+        if status in FINISHED and residual > _WORST_RESIDUAL:
+            reason = f"the energy audit misses {residual:.0%} of the energy in play: take a smaller time step; {reason}"
+            status, reason = Status.NOT_CONVERGED, reason.removesuffix("; ")
+        return {
+            "Conventions": "CF-1.11",
+            "title": f"{file.name} under {motion.name}, {self.model}",
+            "model": self.model,
+            "structure": file.name,
+            "motion": motion.name,
+            "status": str(status),
+            "reason": reason,
+            "end_time": trajectory.end_time,
+            "energy_residual": residual,
+            "time_step": self.time_step,
+            "output_rate": self.output_rate,
+            "seed": "none: a run is deterministic",
+            "structure_file": file.model_dump_json(),
+            "motion_scale": 1.0,
+            "motion_synthetic": 0,
+            **{f"motion_{name}": plain_attribute(value) for name, value in motion.attributes.items()},
+            "parameters": json.dumps(
+                effective_parameters(self.structure, self.model, self.numerical), sort_keys=True
+            ),
+            **{f"numerics_{name}": value for name, value in trajectory.numerics.items()},
+            "blockshake_version": blockshake.__version__,
+            "source_digest": source_digest(*module_sources("simulation/simulate.py", self.model)),
+            "history": "made by blockshake simulate",
+        }
+
+
+def _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers):
+    """`_SetUp` from the arguments of `simulate`."""
     solver = model_of(model)
     physical, _ = split_parameters(parameters or {}, model)
     built = load_structure(structure, physical)
@@ -93,44 +196,12 @@ def simulate(
     fine = np.empty(0)
     if accelerometers and built.file.accelerometers:
         fine = np.arange(int(np.floor(duration * FINE_RATE + 1e-9)) + 1) / FINE_RATE
-    times = np.union1d(coarse, fine)
-    trajectory = solver.solve(built, motion, numerical, times, time_step, checkpoint=checkpoint)
-    run = run_dataset(built, trajectory, np.searchsorted(times, coarse))
-    if fine.size:
-        add_accelerometers(run, built, trajectory, np.searchsorted(times, fine))
-    status, reason, residual = trajectory.status, trajectory.reason, energy_residual(trajectory.energy)
-    if status in FINISHED and residual > _WORST_RESIDUAL:
-        reason = f"the energy audit misses {residual:.0%} of the energy in play: take a smaller time step; {reason}"
-        status, reason = Status.NOT_CONVERGED, reason.removesuffix("; ")
-    run.attrs = {
-        "Conventions": "CF-1.11",
-        "title": f"{built.file.name} under {motion.name}, {model}",
-        "model": model,
-        "structure": built.file.name,
-        "motion": motion.name,
-        "status": str(status),
-        "reason": reason,
-        "end_time": trajectory.end_time,
-        "energy_residual": residual,
-        "time_step": time_step,
-        "output_rate": output_rate,
-        "seed": "none: a run is deterministic",
-        "structure_file": built.file.model_dump_json(),
-        "motion_scale": 1.0,
-        "motion_synthetic": 0,
-        **{f"motion_{name}": plain_attribute(value) for name, value in motion.attributes.items()},
-        "parameters": json.dumps(effective_parameters(built, model, numerical), sort_keys=True),
-        **{f"numerics_{name}": value for name, value in trajectory.numerics.items()},
-        "blockshake_version": blockshake.__version__,
-        "source_digest": source_digest(*module_sources("simulation/simulate.py", model)),
-        "history": "made by blockshake simulate",
-    }
-    return run
+    return _SetUp(built, motion, model, numerical, time_step, output_rate, coarse, fine)
 
 
 def _check_start(structure, motion):
     """Refuse a first pitch that pushes the driven body into what stands on it."""
-    pitch = float(motion.evaluate(np.zeros(1))[0, 3])
+    pitch = float(motion.table.coefficients[0, PITCH, 0])
     if pitch == 0.0:
         return
     orientation = structure.orientation.copy()

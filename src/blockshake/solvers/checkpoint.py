@@ -65,7 +65,7 @@ def run_key(structure, ground, parameters, record_times, time_step, *choices):
     for solid in structure.solids.values():
         digest.update(solid.vertices.tobytes() + solid.triangles.tobytes())
     for values in (*ground, record_times):
-        digest.update(np.ascontiguousarray(values).tobytes())
+        digest.update(np.ascontiguousarray(values))
     return digest.hexdigest()
 
 
@@ -78,8 +78,11 @@ def save_parts(path, key, parts):
         np.savez(file, **arrays)
 
 
-def load_parts(path, key):
-    """Lists of arrays by name, or None where there is no file of this very run that can be read."""
+def load_parts(path, key, names=None):
+    """Lists of arrays by name, or None where there is no file of this very run that can be read.
+
+    ``names``: those that alone are read; all by default.
+    """
     parts = {}
     try:
         with np.load(path) as arrays:
@@ -87,7 +90,7 @@ def load_parts(path, key):
                 return None
             for entry in arrays.files:
                 name, _, index = entry.rpartition("_")
-                if name:
+                if name and (names is None or name in names):
                     parts.setdefault(name, {})[int(index)] = arrays[entry]
     except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile):
         return None

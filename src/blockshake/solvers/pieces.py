@@ -1,10 +1,12 @@
-"""A run in pieces of bounded wall time: between two pieces come news, checkpoints and interrupts."""
+"""A run in pieces of bounded wall time: between two pieces come news, checkpoints, interrupts, and rows are kept."""
 
 import logging
 import time
 
 from blockshake.solvers.interrupts import held_interrupts
-from blockshake.solvers.status import PAUSED, STEP
+from blockshake.solvers.kept_rows import AT_HAND
+from blockshake.solvers.record import empty_record, last_step, rows_at_hand
+from blockshake.solvers.status import NEXT_RECORD, PAUSED, STEP
 
 _log = logging.getLogger(__name__)
 _NEWS = 10.0  # s of wall time between lines of progress
@@ -30,25 +32,33 @@ class Due:
         return True
 
 
-def run_in_pieces(start, integrate, time_step, end_time, checkpoint):
+def run_in_pieces(start, integrate, rows_of, times, time_step, checkpoint, kept=None):
     """Run a solver to its end, from its checkpoint where there is one and from the start elsewhere.
 
     Parameters
     ----------
     start : callable
-        ``start()`` gives the parts of the run before its first step: a tuple whose first entry is the
-        solver's progress, with its ``clock``.
+        ``start()`` gives the parts of the run before its first step, but for the record: a tuple whose first entry is
+        the solver's progress, with its ``clock``.
     integrate : callable
         ``integrate(pause, *parts)`` goes on to step ``pause`` at most and gives ``code, culprit, parts``: a code of
-        `blockshake.solvers.status`, the body that ended the run or -1, and the parts as they are then.
-    time_step, end_time : float
-        [s], for the news.
+        `blockshake.solvers.status`, the body that ended the run or -1, and the parts as they are then. The last part is
+        the record.
+    rows_of : callable
+        ``rows_of(*parts)`` gives the record as `Rows`.
+    times : float64 array, shape (n_times,)
+        Of the record [s].
+    time_step : float
+        [s]
     checkpoint : Checkpoint
+    kept : KeptRows, optional
+        Where the record goes whenever some rows of it are full. By default it is in memory to the end.
 
     Returns
     -------
     code, culprit, parts
-        As from the last piece. The checkpoint is taken away.
+        As from the last piece, the record with the rows that were not handed over. The checkpoint is taken away,
+        unless rows are kept: they and the checkpoint are of use until the run file is written.
 
     Raises
     ------
@@ -60,27 +70,44 @@ def run_in_pieces(start, integrate, time_step, end_time, checkpoint):
     A piece has twice the steps of the one before, or half of them, where that took less than `_PIECE` or more
     than twice as long. No result depends on where the pieces end.
     """
+    most = len(times) if kept is None else AT_HAND
+
+    def record_from(first, progress, room=0):
+        n_rows = rows_at_hand(times, first, progress.clock[STEP], time_step, most)
+        return empty_record(first, n_rows, len(progress.state.position), room)
+
     with held_interrupts() as interrupted:
         parts = checkpoint.load()
-        if parts is None:
-            parts = start()
-        else:
+        if parts is not None and (kept is None or kept.goes_on(checkpoint.key, int(parts[-1].first[0]))):
             _log.info("goes on from %.3f s", parts[0].clock[STEP] * time_step)
+        else:
+            if kept is not None:
+                kept.begin(checkpoint.key)
+            parts = start()
+            parts = (*parts, record_from(0, parts[0]))
         news, saving = Due(_NEWS), Due(checkpoint.interval)
-        code, steps = PAUSED, _FIRST_PIECE
+        code, steps, full = PAUSED, _FIRST_PIECE, last_step(times, parts[-1], time_step)
         while code == PAUSED:
-            began = time.monotonic()
-            code, culprit, parts = integrate(int(parts[0].clock[STEP]) + steps, *parts)
-            steps = _next_piece(steps, time.monotonic() - began)
-            reached = parts[0].clock[STEP] * time_step
+            began, before = time.monotonic(), int(parts[0].clock[STEP])
+            pause = min(before + steps, full)
+            code, culprit, parts = integrate(pause, *parts)
+            steps = _next_piece(pause - before, time.monotonic() - began)
+            progress, record = parts[0], parts[-1]
+            if code == PAUSED and progress.clock[STEP] == full:
+                first, until = int(record.first[0]), int(progress.clock[NEXT_RECORD])
+                kept.put(first, rows_of(*parts).at(slice(until - first)))
+                parts = (*parts[:-1], record_from(until, progress, record.joint_force.shape[1]))
+                full = last_step(times, parts[-1], time_step)
+            reached = progress.clock[STEP] * time_step
             if news():
-                _log.info("%.3f of %.3f s", reached, end_time)
+                _log.info("%.3f of %.3f s", reached, times[-1])
             stop = interrupted()
             if code == PAUSED and (stop or saving()):
                 checkpoint.save(parts)
             if stop:
                 raise KeyboardInterrupt(f"interrupted at {reached:.3f} s; {checkpoint.advice()}")
-    checkpoint.remove()
+    if kept is None:
+        checkpoint.remove()
     return code, culprit, parts
 
 

@@ -1,5 +1,6 @@
 """Record of a run at the times asked for: both solvers fill it in as they go."""
 
+import sys
 from typing import NamedTuple
 
 import numpy as np
@@ -8,10 +9,14 @@ from blockshake.dynamics.system import ENERGY_TERMS
 from blockshake.jit import kernel
 
 _SPARE_JOINTS = 16
+_LEAST_STEPS = 3  # of a record that is not of all times: a step in which it is filled, and one before
 
 
 class Record(NamedTuple):
-    """Arrays as in `Trajectory`, ``joint_force`` for all joints; NaN at times that the run did not reach."""
+    """Rows of `Rows` that are at hand, ``joint_force`` for all joints; NaN at times that the run did not reach.
+
+    ``first`` int64 (1,): number of the first of these rows among the times asked for.
+    """
 
     position: np.ndarray
     orientation: np.ndarray
@@ -19,18 +24,32 @@ class Record(NamedTuple):
     angular_velocity: np.ndarray
     energy: np.ndarray
     joint_force: np.ndarray
+    first: np.ndarray
 
 
-def empty_record(n_times, n_bodies):
-    """Record before the first time, without room for joints."""
+def empty_record(first, n_rows, n_bodies, room=0):
+    """Record of some rows before the first of them, with room for so many joints."""
     return Record(
-        position=np.full((n_times, n_bodies, 3), np.nan),
-        orientation=np.full((n_times, n_bodies, 4), np.nan),
-        velocity=np.full((n_times, n_bodies, 3), np.nan),
-        angular_velocity=np.full((n_times, n_bodies, 3), np.nan),
-        energy=np.full((n_times, len(ENERGY_TERMS)), np.nan),
-        joint_force=np.zeros((n_times, 0, 3)),
+        position=np.full((n_rows, n_bodies, 3), np.nan),
+        orientation=np.full((n_rows, n_bodies, 4), np.nan),
+        velocity=np.full((n_rows, n_bodies, 3), np.nan),
+        angular_velocity=np.full((n_rows, n_bodies, 3), np.nan),
+        energy=np.full((n_rows, len(ENERGY_TERMS)), np.nan),
+        joint_force=np.zeros((n_rows, room, 3)),
+        first=np.array([first]),
     )
+
+
+def rows_at_hand(times, first, step, time_step, most):
+    """Number of rows of a record that begins with row ``first`` at step ``step``: ``most``, or those of three steps."""
+    needed = np.searchsorted(times, (step + _LEAST_STEPS) * time_step, "right") - first
+    return int(min(max(most, needed), len(times) - first))
+
+
+def last_step(times, record, time_step):
+    """Number of steps that surely fit into a record; without end for one that reaches the last time."""
+    until = int(record.first[0]) + len(record.energy)
+    return int(times[until] / time_step) - 1 if until < len(times) else sys.maxsize
 
 
 @kernel
@@ -42,5 +61,11 @@ def with_room(record, n_joints):
     force = np.zeros((n_times, n_joints + n_joints // 4 + _SPARE_JOINTS, 3))
     force[:, :room] = record.joint_force
     return Record(
-        record.position, record.orientation, record.velocity, record.angular_velocity, record.energy, force
+        record.position,
+        record.orientation,
+        record.velocity,
+        record.angular_velocity,
+        record.energy,
+        force,
+        record.first,
     )

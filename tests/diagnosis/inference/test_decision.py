@@ -6,6 +6,7 @@ Features are Gaussian: a nominal scatter with a few strong directions; an effect
 import numpy as np
 import pytest
 
+from blockshake.diagnosis.inference import calibration
 from blockshake.diagnosis.inference.calibration import NONE, as_case, chance_of_none, library_cases
 from blockshake.diagnosis.inference.candidate_scores import ScoreLibrary
 from blockshake.diagnosis.inference.decide import decide
@@ -92,6 +93,13 @@ def test_a_clear_effect_is_named_with_its_place_and_size(key, world, library, ca
         # a grid step of 0.12, and 5 % that an effect differs from model to model
         assert best.size == pytest.approx(1.3, abs=0.25)
         assert np.dot(best.weights, best.sizes) == pytest.approx(1.3, abs=0.25)
+
+
+def test_of_many_draws_the_first_are_judged_by_all(library, cases, monkeypatch):
+    monkeypatch.setattr(calibration, "MOST_JUDGED", 3)
+    judged = library_cases(library)
+    by_model = [[case for case in cases if case.truth == NONE][place : place + 3] for place in (0, N_NOMINAL)]
+    assert [case for case in judged if case.truth == NONE] == by_model[0] + by_model[1]
 
 
 def test_what_no_candidate_explains_is_unknown(world, library, cases):

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from blockshake.files import write_dataset
+from blockshake.study.comparison import comparison
 from blockshake.study.comparison.comparison import compare_models
 from blockshake.study.comparison.twins import TWINS
 
@@ -75,6 +77,17 @@ def test_medians_and_width_of_a_block(compared):
     assert float(at["width"]) == pytest.approx(STANDING * np.mean(pairs), rel=1e-9)
     assert at["width_interval"][0] <= at["width"] <= at["width_interval"][1]
     assert "slab-face" not in compared["marker"].values
+
+
+def test_of_many_samples_the_first_are_compared(ensembles, tmp_path, monkeypatch):
+    monkeypatch.setattr(comparison, "MOST", 3)
+    whole = ensembles["ls-dem"]
+    files = [tmp_path / f"{first}.nc" for first in (0, 2)]
+    for first, file in zip((0, 2), files, strict=True):
+        write_dataset(file, whole.isel(sample=slice(first, first + 2)))
+    found = comparison.compare_case({"ls-dem": files}, {}, None, None)
+    xr.testing.assert_equal(found, compare_models({"ls-dem": whole.isel(sample=slice(3))}, {}, None))
+    assert int(found["counted"].sel(model="ls-dem")) == 3
 
 
 def test_floor_and_horizon_are_those_of_the_twins(compared):

@@ -2,7 +2,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from blockshake.study.ensembles.shown_samples import FRAME_RATE, shown_markers, shown_samples
+from blockshake.files import write_dataset
+from blockshake.study.ensembles.ensemble import join_batches
+from blockshake.study.ensembles.shown_samples import FRAME_RATE, shown_markers, shown_of_case, shown_samples
 
 ROUNDING = 1e-12  # m
 
@@ -35,6 +37,16 @@ def test_motion_is_relative_to_the_slab_since_the_start(ensemble):
 def test_run_that_ended_early_stands_still(ensemble):
     shown = shown_samples(ensemble).sel(sample=3, body="block-1", axis="x")
     np.testing.assert_allclose(shown["shift"][1:], 0.02, atol=ROUNDING)
+
+
+@pytest.mark.parametrize("status", ["completed", "failed"])
+def test_of_files_the_samples_shown_are_the_same(make_run, gather, tmp_path, status):
+    whole = gather([make_run(peak, status=status) for peak in (0.03, 0.01, 0.09, 0.02)])
+    files = []
+    for first in (0, 2):
+        files.append(tmp_path / f"{first}.nc")
+        write_dataset(files[-1], whole.isel(sample=slice(first, first + 2)))
+    xr.testing.assert_identical(shown_of_case(files), shown_samples(join_batches(files)))
 
 
 def test_one_sample_is_shown_once_and_none_not_at_all(make_run, gather):

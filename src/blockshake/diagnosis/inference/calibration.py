@@ -10,6 +10,7 @@ from blockshake.diagnosis.libraries.candidates import effect_of
 from blockshake.files import load_made_json, write_json
 
 NONE = "none"
+MOST_JUDGED = 500  # draws of a model: each is judged by all others, and ranked among those judged
 _CASES_NEEDED = 10  # cases with which a chance below 10 % can be told
 _SHOWN_CASES_NEEDED = 5  # cases that must say so: fewer are seen by chance
 _SHOWN_SHARE = 0.9  # share of the cases of a size and larger ones that must be detected
@@ -102,12 +103,13 @@ def as_case(scores, key="", size=0.0):
 def library_cases(library, progress=None, keep=None):
     """Every draw of a `ScoreLibrary` in turn as a measurement, itself left out of the library that judges it.
 
+    Of more than `MOST_JUDGED` draws of a model the first are judged, by all of them.
     A list of `ScoredReadings`. ``progress`` is called with a line of text after each draw. ``keep`` is called with
     model, draw and a function without arguments that gives the draw's cases, and gives these or the same from before.
     """
     cases = []
     for model in library.models:
-        draws = len(library.tamed[0][model]["nominal"])
+        draws = min(len(library.tamed[0][model]["nominal"]), MOST_JUDGED)
         for draw in range(draws):
             judge = partial(_cases_of_draw, library, model, draw)
             cases += keep(model, draw, judge) if keep else judge()

@@ -9,9 +9,13 @@ from blockshake.diagnosis.libraries.candidates import NOMINAL
 from blockshake.diagnosis.libraries.designed_test import kept_reading
 from blockshake.diagnosis.libraries.null_model import draw_nominal
 
+MOST_HISTORIES = (
+    500  # nominal draws of which histories are kept: a chance is then known to a fifth of a percent
+)
+
 
 class Library(NamedTuple):
-    """Features of all runs of a library, and histories of the nominal ones."""
+    """Features of all runs of a library, and histories of the first nominal ones."""
 
     features: xr.Dataset
     histories: xr.Dataset
@@ -41,8 +45,8 @@ def library(planned, model, candidates, nominal_draws, own_draws, store, source,
     Library
         ``features`` along ``run``: ``value(run, feature)``; coordinates ``candidate(run)``, its key or ``nominal``;
         ``draw(run)``; ``size(run)``, the effect's in units of the visible one [1]; ``status(run)``. ``histories``:
-        ``slip``, ``rotation``, ``opening`` and ``drift(draw, time, ...)`` of the nominal runs, as from `read_off`;
-        NaN after a run that ended early; and ``law_value(draw, law)``.
+        ``slip``, ``rotation``, ``opening`` and ``drift(draw, time, ...)`` of the first nominal runs, `MOST_HISTORIES`
+        at most, as from `read_off`; NaN after a run that ended early; and ``law_value(draw, law)``.
     """
     parts, moved = [], []
     jobs = [(None, number) for number in range(nominal_draws)]
@@ -51,7 +55,8 @@ def library(planned, model, candidates, nominal_draws, own_draws, store, source,
         values, size = candidate.values(number) if candidate else ({}, 0.0)
         effects = [candidate.as_effect(values)] if candidate else []
         draw = draw_nominal(planned.structure, model, number)
-        reading, how = kept_reading(planned, draw, effects, store, source, histories=candidate is None)
+        moves = candidate is None and number < MOST_HISTORIES
+        reading, how = kept_reading(planned, draw, effects, store, source, histories=moves)
         name = candidate.key if candidate else NOMINAL
         progress(
             f"{planned.motion.name} {model} {done}/{len(jobs)} {name} {number} {how}: {reading['status'].item()}"
@@ -59,12 +64,12 @@ def library(planned, model, candidates, nominal_draws, own_draws, store, source,
         labels = {"candidate": name, "draw": number, "size": size, "status": reading["status"].item()}
         one = reading[["value"]].expand_dims("run")
         parts.append(one.assign_coords({label: ("run", [value]) for label, value in labels.items()}))
-        if candidate is None:
+        if moves:
             moved.append(
                 reading[["slip", "rotation", "opening", "drift", "law_value"]].reset_coords(drop=True)
             )
     whole = xr.concat(
         parts, dim="run", coords="minimal", compat="override", join="exact", data_vars="minimal"
     )
-    histories = xr.concat(moved, dim="draw", join="outer").assign_coords(draw=np.arange(nominal_draws))
+    histories = xr.concat(moved, dim="draw", join="outer").assign_coords(draw=np.arange(len(moved)))
     return Library(whole.assign_attrs(model=model), histories.assign_attrs(model=model))

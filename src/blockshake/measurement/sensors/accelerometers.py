@@ -58,16 +58,37 @@ def accelerometer_readings(structure, time, orientation, velocity, angular_veloc
     """
     if len(time) > 1 and not np.allclose(np.diff(time), 1.0 / FINE_RATE, rtol=1e-6, atol=0.0):
         raise ValueError(f"accelerometers need states at a uniform {FINE_RATE:g} Hz")
-    sensors = structure.file.accelerometers
     channels = accelerometer_channels(structure)
-    time_acc = time[0] + np.arange((len(time) - 1) // _SKIP + 1) / RATE
+    time_acc = reading_times(time)
     readings = np.full((len(time_acc), len(channels)), np.nan)
-    if not channels:
-        return time_acc, readings, channels
+    if channels:
+        force = specific_forces(structure, orientation, velocity, angular_velocity)
+        smooth = readings_of(force)
+        readings[: len(smooth)] = smooth
+    return time_acc, readings, channels
+
+
+def reading_times(time):
+    """Times of the readings from those of the states, as of `accelerometer_readings` [s]."""
+    return time[0] + np.arange((len(time) - 1) // _SKIP + 1) / RATE
+
+
+def specific_forces(structure, orientation, velocity, angular_velocity):
+    """Mean specific force of every channel between each two states, until the last whole one.
+
+    Parameters
+    ----------
+    structure, orientation, velocity, angular_velocity
+        As of `accelerometer_readings`.
+
+    Returns
+    -------
+    float64 array, shape (n_intervals, n_channels)
+        In the axes of the bodies in the middle of the interval [m/s2].
+    """
+    sensors = structure.file.accelerometers
     bodies = structure.carriers(sensors)
     whole = _whole_states(orientation[:, bodies], velocity[:, bodies], angular_velocity[:, bodies])
-    if whole < 2:
-        return time_acc, readings, channels
     force = _specific_force(
         structure.arms(sensors),
         np.array(structure.file.gravity),
@@ -75,12 +96,14 @@ def accelerometer_readings(structure, time, orientation, velocity, angular_veloc
         velocity[:whole, bodies],
         angular_velocity[:whole, bodies],
     )
-    columns = [
-        force[:, sensor, "xyz".index(axis)] for sensor, item in enumerate(sensors) for axis in item.axes
-    ]
-    smooth = low_pass(_at_states(np.column_stack(columns)))[::_SKIP]
-    readings[: len(smooth)] = smooth
-    return time_acc, readings, channels
+    return np.column_stack(
+        [force[:, sensor, "xyz".index(axis)] for sensor, item in enumerate(sensors) for axis in item.axes]
+    )
+
+
+def readings_of(forces):
+    """Readings of the states around `specific_forces` of a whole run, (n_readings, n_channels) [m/s2]."""
+    return low_pass(_at_states(forces))[::_SKIP] if len(forces) else forces
 
 
 def low_pass(values):
@@ -118,4 +141,10 @@ def _specific_force(arms, gravity, orientation, velocity, angular_velocity):
 def _at_states(middles):
     """Values at the states from values in the middle of the intervals, one more row."""
     padded = np.pad(middles, ((2, 2), (0, 0)), mode="edge")
-    return (9.0 * (padded[1:-2] + padded[2:-1]) - padded[:-3] - padded[3:]) / 16.0
+    # in place: an hour of one channel is 56 MiB
+    values = padded[1:-2] + padded[2:-1]
+    values *= 9.0
+    values -= padded[:-3]
+    values -= padded[3:]
+    values /= 16.0
+    return values

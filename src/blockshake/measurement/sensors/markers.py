@@ -31,7 +31,7 @@ def marker_position(structure, position, orientation):
     return position[..., bodies, :] + np.einsum("...mij,mj->...mi", turn, structure.arms(markers))
 
 
-def marker_displacement(structure, position, orientation):
+def marker_displacement(structure, position, orientation, start=None):
     """Displacement of every marker since the first time.
 
     Parameters
@@ -41,14 +41,16 @@ def marker_displacement(structure, position, orientation):
         Of the mass centres, inertial frame [m].
     orientation : float64 array, shape (n_times, n_bodies, 4)
         Unit quaternions (w, x, y, z), body to world.
+    start : tuple of float64 arrays, shapes (1, n_bodies, 3) and (1, n_bodies, 4), optional
+        Position and orientation at the first time; by default the first of those given.
 
     Returns
     -------
     float64 array, shape (n_times, n_markers, 3)
         Inertial frame [m], zero at the first time; NaN where the body's pose is.
     """
-    places = marker_position(structure, position, orientation)
-    return places - places[:1]
+    start = (position[:1], orientation[:1]) if start is None else start
+    return marker_position(structure, position, orientation) - marker_position(structure, *start)
 
 
 def directions_read(displacement):

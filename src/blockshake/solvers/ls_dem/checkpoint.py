@@ -8,7 +8,7 @@ from blockshake.solvers.ls_dem.progress import Progress
 from blockshake.solvers.record import Record
 
 
-def pack(progress, candidates, joints, record, started):
+def pack(progress, candidates, joints, started, record):
     """Tuples of arrays by name."""
     return {
         "state": progress.state,
@@ -16,8 +16,8 @@ def pack(progress, candidates, joints, record, started):
         "progress": progress[2:],
         "candidates": candidates,
         "joints": joints,
-        "record": record,
         "started": (started,),
+        "record": record,
     }
 
 
@@ -29,6 +29,6 @@ def unpack(arrays):
         Progress(state, poses, *arrays["progress"]),
         Candidates(*arrays["candidates"]),
         Joints(*arrays["joints"]),
-        Record(*arrays["record"]),
         arrays["started"][0],
+        Record(*arrays["record"]),
     )

@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.dynamics.collapse import collapse_limits
 from blockshake.dynamics.motion import PITCH, rest_table
-from blockshake.dynamics.system import Trajectory, assemble_bodies, place_driven_into
+from blockshake.dynamics.system import Rows, Trajectory, assemble_bodies, place_driven_into
 from blockshake.solvers.checkpoint import Checkpoint, run_key
 from blockshake.solvers.external_forces import assemble_external_forces
 from blockshake.solvers.ls_dem import checkpoint as layout
@@ -14,7 +14,6 @@ from blockshake.solvers.ls_dem.progress import SEARCHES, start_progress
 from blockshake.solvers.ls_dem.start.settled_start import settled_start
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces
 from blockshake.solvers.pieces import run_in_pieces
-from blockshake.solvers.record import empty_record
 from blockshake.solvers.status import COLLAPSED, DIVERGED, NEXT_RECORD, SPEED_LIMIT, STATUS, STEP
 
 
@@ -27,6 +26,7 @@ def simulate_ls_dem(
     rotations_blocked=False,
     checkpoint=None,
     checkpoint_interval=60.0,
+    kept=None,
 ):
     """Run LS-DEM.
 
@@ -46,6 +46,8 @@ def simulate_ls_dem(
         File that a run which was cut short goes on from, see `run_in_pieces`.
     checkpoint_interval : float
         Wall time between savings [s].
+    kept : KeptRows, optional
+        Where rows of the record go as the run goes on; the trajectory then has the last ones alone.
 
     Returns
     -------
@@ -77,32 +79,26 @@ def simulate_ls_dem(
         candidates, joints, started = settled_start(
             structure, bodies, surfaces, interfaces, parameters.skin, time_step, state
         )
-        record = empty_record(len(record_times), len(structure.mass))
-        return start_progress(bodies, state), candidates, joints, record, started
+        return start_progress(bodies, state), candidates, joints, started
 
-    def go_on(pause, progress, candidates, joints, record, started):
+    def go_on(pause, progress, candidates, joints, started, record):
         code, culprit, candidates, joints, record = integrate(
             bodies, surfaces, interfaces, stoppers, forces, ground, *limits, parameters.skin, time_step,
             n_steps, pause, record_times, progress, candidates, joints, record,
         )  # fmt: skip
-        return code, culprit, (progress, candidates, joints, record, started)
+        return code, culprit, (progress, candidates, joints, started, record)
+
+    def rows(progress, _, joints, started, record):
+        return _rows_of(structure, record_times, progress, joints, record)
 
     key = run_key(structure, ground, parameters, record_times, time_step, rotations_blocked)
     saving = Checkpoint(checkpoint, checkpoint_interval, key, layout)
-    code, body, parts = run_in_pieces(start, go_on, time_step, record_times[-1], saving)
-    progress, _, joints, record, started = parts
+    code, body, parts = run_in_pieces(start, go_on, rows, record_times, time_step, saving, kept)
+    progress, _, _, started, _ = parts
     end_time = min(min(int(progress.clock[STEP]), n_steps) * time_step, float(record_times[-1]))
     status, reason = _status(code, structure, body, end_time)
-    pairs, joint_force = _joints(structure, joints, record.joint_force, int(progress.clock[NEXT_RECORD]))
     return Trajectory(
-        time=record_times,
-        position=record.position,
-        orientation=record.orientation,
-        velocity=record.velocity,
-        angular_velocity=record.angular_velocity,
-        energy=record.energy,
-        joints=pairs,
-        joint_force=joint_force,
+        **vars(rows(*parts)),
         status=status,
         reason=reason,
         end_time=end_time,
@@ -123,6 +119,22 @@ def _status(code, structure, body, time):
     if code == DIVERGED:
         reason = f"a velocity grew beyond {SPEED_LIMIT:.0f} m/s or was no number at {time:.6f} s"
     return STATUS[code], reason
+
+
+def _rows_of(structure, times, progress, joints, record):
+    """`Rows` of a run's record."""
+    first, n_rows = int(record.first[0]), len(record.energy)
+    pairs, force = _joints(structure, joints, record.joint_force, int(progress.clock[NEXT_RECORD]) - first)
+    return Rows(
+        time=times[first : first + n_rows],
+        position=record.position,
+        orientation=record.orientation,
+        velocity=record.velocity,
+        angular_velocity=record.angular_velocity,
+        energy=record.energy,
+        joints=pairs,
+        joint_force=force,
+    )
 
 
 def _joints(structure, joints, force, n_recorded):

@@ -214,8 +214,8 @@ def _advance(
         if _has_diverged(state.velocity):
             return DIVERGED, -1
         while clock[NEXT_RECORD] < times.size and times[clock[NEXT_RECORD]] < t + 0.5 * dt:
-            row = clock[NEXT_RECORD]
-            _record_into(bodies, loads, times[row] - t, dt, progress, turn, row, record)
+            row, offset = clock[NEXT_RECORD] - record.first[0], times[clock[NEXT_RECORD]] - t
+            _record_into(bodies, loads, offset, dt, progress, turn, row, record)
             clock[NEXT_RECORD] += 1
             collapsed = find_collapsed(bodies, state, supported, drop_limit)
             if collapsed >= 0:

@@ -170,10 +170,10 @@ def record_until_into(
     """
     clock = progress.clock
     while clock[NEXT_RECORD] < times.size and times[clock[NEXT_RECORD]] <= (place + 1 + _ROUNDING) * dt:
-        row = clock[NEXT_RECORD]
-        share = min(max(times[row] / dt - place, 0.0), 1.0)
+        row, time = clock[NEXT_RECORD] - record.first[0], times[clock[NEXT_RECORD]]
+        share = min(max(time / dt - place, 0.0), 1.0)
         record_into(bodies, before, progress.state, energy_before, progress.energy, share, row, record)
-        move_ground_into(ground, times[row])
+        move_ground_into(ground, time)
         record_driven_into(bodies, ground, row, record)
         record_forces_into(contacts, n_contacts, joints, dt, row, record)
         clock[NEXT_RECORD] += 1

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.dynamics.system import Status, Trajectory
+from blockshake.dynamics.system import Rows, Status, Trajectory
 from blockshake.solvers.nscd.progress import (
     BAD_STEPS,
     CAPPED_STEPS,
@@ -21,21 +21,32 @@ _MOST_BAD_STEPS = 0.01
 
 
 def trajectory_of(structure, order, times, time_step, code, culprit, progress, joints, record):
-    """`Trajectory` of a run from what `integrate` leaves at its end.
+    """`Trajectory` of a run from what `integrate` leaves at its end, with the rows of the record.
 
     ``order`` int64 (n_bodies,) from `order_of_bodies`; ``times`` (n_times,) and ``time_step`` [s].
     """
-    place = np.argsort(order)
     end_time = min(int(progress.clock[STEP]) * time_step, float(times[-1]))
     name = structure.body_names[order[culprit]]
     status, reason = _status(code, name, end_time, progress.clock)
+    return Trajectory(
+        **vars(rows_of(order, times, progress, joints, record)),
+        status=status,
+        reason=reason,
+        end_time=end_time,
+        numerics=_numerics(progress),
+    )
+
+
+def rows_of(order, times, progress, joints, record):
+    """`Rows` of a run's record, bodies in the order of the file; arguments as of `trajectory_of`."""
+    place, first, n_rows = np.argsort(order), int(record.first[0]), len(record.energy)
     # a run that ends in its first step has found its joints and made no room for them
-    joint_force = np.zeros((len(times), len(joints.slip), 3))
+    joint_force = np.zeros((n_rows, len(joints.slip), 3))
     recorded = record.joint_force[:, : len(joints.slip)]
     joint_force[:, : recorded.shape[1]] = recorded
-    joint_force[progress.clock[NEXT_RECORD] :] = np.nan
-    return Trajectory(
-        time=times,
+    joint_force[progress.clock[NEXT_RECORD] - first :] = np.nan
+    return Rows(
+        time=times[first : first + n_rows],
         position=record.position[:, place],
         orientation=record.orientation[:, place],
         velocity=record.velocity[:, place],
@@ -43,10 +54,6 @@ def trajectory_of(structure, order, times, time_step, code, culprit, progress, j
         energy=record.energy,
         joints=order[joints.pair],
         joint_force=joint_force,
-        status=status,
-        reason=reason,
-        end_time=end_time,
-        numerics=_numerics(progress),
     )
 
 

@@ -8,7 +8,7 @@ from blockshake.dynamics.system import assemble_bodies
 from blockshake.solvers.checkpoint import Checkpoint, run_key
 from blockshake.solvers.nscd.contact.contacts import empty_contacts
 from blockshake.solvers.nscd.joints import no_joints
-from blockshake.solvers.nscd.outcome import trajectory_of
+from blockshake.solvers.nscd.outcome import rows_of, trajectory_of
 from blockshake.solvers.nscd.progress import start_progress
 from blockshake.solvers.nscd.scene import order_of_bodies, reordered
 from blockshake.solvers.nscd_deformable import checkpoint as layout
@@ -17,20 +17,21 @@ from blockshake.solvers.nscd_deformable.model import assemble_model
 from blockshake.solvers.nscd_deformable.solve.newton import no_factor
 from blockshake.solvers.nscd_deformable.start import settled_state
 from blockshake.solvers.pieces import run_in_pieces
-from blockshake.solvers.record import empty_record
 
 
-def simulate_elastic(structure, motion, parameters, record_times, time_step=1e-3, checkpoint=None):
+def simulate_elastic(structure, motion, parameters, record_times, time_step=1e-3, checkpoint=None, kept=None):
     """Motion of elastic boxes; as `simulate_deformable`, without viscosity."""
     return simulate_deformable(
-        structure, motion, parameters, record_times, time_step, checkpoint, viscous=False
+        structure, motion, parameters, record_times, time_step, checkpoint, kept=kept, viscous=False
     )
 
 
-def simulate_viscoelastic(structure, motion, parameters, record_times, time_step=1e-3, checkpoint=None):
+def simulate_viscoelastic(
+    structure, motion, parameters, record_times, time_step=1e-3, checkpoint=None, kept=None
+):
     """Motion of boxes of Kelvin and Voigt's material; as `simulate_deformable`, with viscosity."""
     return simulate_deformable(
-        structure, motion, parameters, record_times, time_step, checkpoint, viscous=True
+        structure, motion, parameters, record_times, time_step, checkpoint, kept=kept, viscous=True
     )
 
 
@@ -42,6 +43,7 @@ def simulate_deformable(
     time_step=1e-3,
     checkpoint=None,
     checkpoint_interval=60.0,
+    kept=None,
     *,
     viscous,
 ):
@@ -49,7 +51,7 @@ def simulate_deformable(
 
     Parameters
     ----------
-    structure, motion, record_times, time_step, checkpoint, checkpoint_interval
+    structure, motion, record_times, time_step, checkpoint, checkpoint_interval, kept
         As of `simulate_nscd`; the driven bodies are rigid.
     parameters : DeformableParameters
     viscous : bool
@@ -81,16 +83,18 @@ def simulate_deformable(
     def start():
         touching = structure.touching[np.ix_(order, order)]
         state, deformation = settled_state(model, touching, reordered(given, order))
-        joints, record = no_joints(len(order)), empty_record(len(times), len(order))
-        return start_progress(state), deformation, empty_contacts(0), joints, no_factor(), record
+        return start_progress(state), deformation, empty_contacts(0), no_joints(len(order)), no_factor()
 
     def go_on(pause, progress, deformation, *parts):
         code, culprit, *parts = integrate(model, times, pause, progress, deformation, *parts)
         return code, culprit, (progress, deformation, *parts)
 
+    def rows(progress, deformation, contacts, joints, factor, record):
+        return rows_of(order, times, progress, joints, record)
+
     key = run_key(structure, model.scene.table, parameters, times, time_step, viscous)
     saving = Checkpoint(checkpoint, checkpoint_interval, key, layout)
-    code, culprit, parts = run_in_pieces(start, go_on, time_step, times[-1], saving)
+    code, culprit, parts = run_in_pieces(start, go_on, rows, times, time_step, saving, kept)
     progress, deformation, _, joints, _, record = parts
     trajectory = trajectory_of(structure, order, times, time_step, code, culprit, progress, joints, record)
     figures = {"energy_lost_to_scheme": float(deformation.lost[0]), "elastic_shapes": len(deformation.rate)}

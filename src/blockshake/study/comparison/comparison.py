@@ -8,6 +8,7 @@ import xarray as xr
 from blockshake.files import content_digest
 from blockshake.measurement.motion.compared_curves import curves_along_x
 from blockshake.measurement.sensors import markers
+from blockshake.store import load_made
 from blockshake.study.comparison.differences import (
     FEWEST,
     chance_distance,
@@ -26,6 +27,7 @@ from blockshake.study.ensembles.ensemble import ALONG_X, POSES, join_batches, re
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.ensembles.intervals import median_interval
 
+MOST = 400  # samples of a model that are compared: each is held against each
 TOLD_APART_BY = 3.0  # standard deviations of a marker's noise that curves are apart when they have parted
 _DESCRIBED = {
     "counted": ("completed or collapsed samples", "1"),
@@ -49,12 +51,25 @@ _DESCRIBED = {
 def compare_case(batches, twins, named, base):
     """`compare_models` of a case, from files.
 
-    ``batches``: files of its samples by model; ``twins``: file from `simulate_twins` by model, or None;
-    ``named`` and ``base`` as of `coverage_of_case`, None where the case is compared with no test.
+    ``batches``: files of its samples by model, of which the first `MOST` are compared; ``twins``: file from
+    `simulate_twins` by model, or None; ``named`` and ``base`` as of `coverage_of_case`, None where the case is
+    compared with no test.
     """
-    ensembles = {model: join_batches(files, POSES, ALONG_X) for model, files in batches.items()}
+    ensembles = {model: _first_samples(files) for model, files in batches.items()}
     loaded = {model: xr.load_dataset(path) for model, path in twins.items() if path}
     return compare_models(ensembles, loaded, measured_on_clock(named, base) if named else None)
+
+
+def _first_samples(files):
+    """Ensemble of the first samples in files that follow each other, `MOST` at most."""
+    parts, count = [], 0
+    for file in files:
+        part = load_made(file, POSES, ALONG_X).isel(sample=slice(MOST - count))
+        parts.append(part)
+        count += part.sizes["sample"]
+        if count == MOST:
+            break
+    return join_batches(parts)
 
 
 def compare_models(ensembles, twins, measured):

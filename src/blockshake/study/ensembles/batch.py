@@ -63,8 +63,9 @@ def simulate_samples(case, motions, model, settings, output_rate, rows, linked, 
             case["duration"], output_rate, settings["time_step"], parameters, int(sample), row.to_dict(),
         )  # fmt: skip
         path = Path(store) / f"{key}.nc"
-        how = "kept"
-        if not kept(path):
+        if kept(path):
+            how, outcome = "kept", sample_outcome(path)
+        else:
             run = simulate(
                 structure, motion, model, parameters,
                 time_step=settings["time_step"], duration=case["duration"], output_rate=output_rate,
@@ -72,8 +73,7 @@ def simulate_samples(case, motions, model, settings, output_rate, rows, linked, 
             )  # fmt: skip
             member = run.drop_dims("joint").merge(joint_figures(run, structure))
             keep_dataset(path, gather_ensemble([member], [sample], rows, driven_marker(structure)), DECIMALS)
-            how = "simulated"
-        outcome = sample_outcome(path)
+            how, outcome = "simulated", f"{run.attrs['status']} {run.attrs['reason']}".rstrip()
         progress(f"{structure.file.name} {model} sample {sample}, {how}: {outcome}")
         finished.append(path)
     return finished

@@ -5,9 +5,28 @@ import xarray as xr
 from scipy.spatial.transform import Rotation
 
 from blockshake.measurement.sensors.markers import unread_directions
+from blockshake.store import load_made
+from blockshake.study.ensembles.ensemble import POSES, join_batches
 from blockshake.study.ensembles.envelope import counted_samples
 
 FRAME_RATE = 25.0  # Hz
+
+
+def shown_of_case(batches):
+    """`shown_samples` of the samples in these files, of which the histories of those shown alone are read."""
+    figures = join_batches(batches, (*POSES, "marker_displacement"))
+    counted = counted_samples(figures)
+    wanted = counted["sample"].values[list(_words(_peaks(counted)))]
+    if not wanted.size:  # of any sample it comes out that none is shown
+        wanted = figures["sample"].values[:1]
+    parts = []
+    for batch in batches:
+        own = np.intersect1d(load_made(batch, (*POSES, "marker_displacement"))["sample"], wanted)
+        if own.size:
+            parts.append(load_made(batch, chosen={"sample": own}))
+    ensemble = join_batches(parts)
+    ensemble.attrs = figures.attrs
+    return shown_samples(ensemble)
 
 
 def shown_samples(ensemble):
@@ -33,12 +52,8 @@ def shown_samples(ensemble):
     Of an even number of samples the median one is that below the middle.
     """
     counted = counted_samples(ensemble)
-    peak = counted["peak"].sel(frame="slab", drop=True).max("marker")
-    order = np.argsort(peak.to_numpy(), kind="stable")
-    words = {}
-    if len(order):
-        words[order[-1]] = "largest peak"
-        words[order[(len(order) - 1) // 2]] = "median peak" if len(order) > 1 else "the only sample"
+    peak = _peaks(counted)
+    words = _words(peak)
     rows = sorted(words, reverse=True, key=lambda row: words[row])  # the median one first
     chosen = counted.isel(sample=rows)
     moved = [_motion(chosen.isel(sample=place), ensemble.attrs["slab_marker"]) for place in range(len(rows))]
@@ -59,6 +74,20 @@ def shown_samples(ensemble):
         attrs={**ensemble.attrs, "title": "samples of an ensemble that a report shows moving"},
     )
     return result.drop_encoding()
+
+
+def _peaks(counted):
+    """Largest displacement of any marker along x relative to the slab, by sample [m]."""
+    return counted["peak"].sel(frame="slab", drop=True).max("marker")
+
+
+def _words(peak):
+    """Why samples are shown, by their place."""
+    order, words = np.argsort(peak.to_numpy(), kind="stable"), {}
+    if len(order):
+        words[order[-1]] = "largest peak"
+        words[order[(len(order) - 1) // 2]] = "median peak" if len(order) > 1 else "the only sample"
+    return words
 
 
 def shown_markers(test, times):

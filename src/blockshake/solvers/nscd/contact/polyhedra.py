@@ -122,13 +122,13 @@ def _edges(solid):
 
 
 def _directions(solid, edges):
-    kept = []
+    kept = np.empty((0, 3))
     for start, end in edges:
         direction = solid.vertices[end] - solid.vertices[start]
         direction = direction / np.linalg.norm(direction)
-        if all(np.linalg.norm(np.cross(direction, other)) > _SAME_DIRECTION for other in kept):
-            kept.append(direction)
-    return np.array(kept)
+        if (np.linalg.norm(np.cross(direction, kept), axis=1) > _SAME_DIRECTION).all():
+            kept = np.vstack([kept, direction])
+    return kept
 
 
 @kernel

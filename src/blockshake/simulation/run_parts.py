@@ -1,0 +1,136 @@
+"""A long run part by part, as its run file takes it, while the rest of it is on disk."""
+
+import dataclasses
+
+import numpy as np
+
+from blockshake.dynamics.system import Rows
+from blockshake.measurement.sensors.accelerometers import (
+    accelerometer_channels,
+    reading_times,
+    readings_of,
+    specific_forces,
+)
+from blockshake.simulation.energy_residual import energy_extremes, residual_of
+from blockshake.simulation.run_dataset import run_dataset
+
+_AT_HAND = 2**12  # rows beyond the end of a run that are written at a time
+
+
+def reduced(structure, rows, coarse, fine):
+    """Parts of a run file that some rows of a run give, tuples of arrays by name.
+
+    Parameters
+    ----------
+    structure : Structure
+    rows : Rows
+    coarse, fine : float64 arrays
+        Times of the histories, and of the states that accelerometers are read from; empty without them [s].
+
+    Returns
+    -------
+    dict
+        ``rows``: fields of `Rows` at coarse times. ``energy``: `energy_extremes`. ``ends``: orientation, velocity and
+        angular velocity at the first and the last fine time. ``force-K``: `specific_forces` of channel K between fine
+        times.
+    """
+    kept = rows.at(_rows_at(rows.time, coarse))
+    parts = {"rows": tuple(vars(kept).values()), "energy": (energy_extremes(rows.energy),)}
+    if not fine.size:
+        return parts
+    states = rows.at(_rows_at(rows.time, fine))
+    motion = states.orientation, states.velocity, states.angular_velocity
+    forces = specific_forces(structure, *motion)
+    ends = tuple(np.concatenate([part[:1], part[-1:]]) for part in motion)
+    return parts | {"ends": ends} | {f"force-{k}": (column,) for k, column in enumerate(forces.T)}
+
+
+def _rows_at(times, wanted):
+    """Numbers of the rows at those of the wanted times that these rows span."""
+    begin, end = np.searchsorted(wanted, times[0]), np.searchsorted(wanted, times[-1], "right")
+    return np.searchsorted(times, wanted[begin:end])
+
+
+class RunParts:
+    """The parts of a run in their order: those kept on disk, and the rows that the solver ended with.
+
+    ``structure``, ``coarse`` and ``fine`` as of `reduced`, ``kept`` a `KeptRows` and ``trajectory`` the last rows.
+    """
+
+    def __init__(self, structure, coarse, fine, kept, trajectory):
+        self.structure, self._coarse, self._fine, self._kept = structure, coarse, fine, kept
+        self.channels = accelerometer_channels(structure)
+        self._joints = trajectory.joints
+        self._last = reduced(structure, trajectory, coarse, fine)
+
+    def _read(self, *names):
+        yield from self._kept.read(*names)
+        yield self._last
+
+    def energy_residual(self):
+        """As of the whole run."""
+        return residual_of([part["energy"][0] for part in self._read("energy")])
+
+    def histories(self):
+        """Yield the Datasets of `run_dataset`, which follow each other in time, the first of them without a time."""
+        start, done = None, 0
+        for part in self._read("rows"):
+            rows = self._with_all_joints(Rows(*part["rows"]))
+            if start is None:
+                start = rows.position[:1], rows.orientation[:1]
+                yield run_dataset(self.structure, rows.at(slice(0)), start)
+            done += len(rows.time)
+            yield run_dataset(self.structure, rows, start)
+        for begin in range(done, len(self._coarse), _AT_HAND):
+            lost = _lost(rows, self._coarse[begin : begin + _AT_HAND])
+            yield run_dataset(self.structure, lost, start)
+
+    def _with_all_joints(self, rows):
+        """Rows with all joints of the run; one that was not touched yet carried nothing."""
+        places = {pair: place for place, pair in enumerate(map(tuple, self._joints.tolist()))}
+        force = np.zeros((len(rows.time), len(places), 3))
+        force[:, [places[pair] for pair in map(tuple, rows.joints.tolist())]] = rows.joint_force
+        return dataclasses.replace(rows, joints=self._joints, joint_force=force)
+
+    def reading_times(self):
+        """Times of the accelerometers' readings [s]; empty without any."""
+        return reading_times(self._fine) if self._fine.size else self._fine
+
+    def readings(self):
+        """Yield the readings of every channel, float64 (n_readings,) [m/s2]: the low-pass wants a whole record."""
+        for channel in range(len(self.channels)):
+            readings = np.full(len(self.reading_times()), np.nan)
+            smooth = readings_of(self._forces(channel)[:, None])[:, 0]
+            readings[: len(smooth)] = smooth
+            yield readings
+
+    def _forces(self, channel):
+        """Specific forces of a channel between all fine times that the run reached, float64 (n_intervals,) [m/s2]."""
+        forces, done = np.empty(len(self._fine)), 0
+        for part in self._forces_by_part(channel):
+            forces[done : done + len(part)] = part
+            done += len(part)
+        return forces[:done]
+
+    def _forces_by_part(self, channel):
+        """Yield those of each part, and between two parts those across their ends."""
+        name, before = f"force-{channel}", None
+        for part in self._read("ends", name):
+            ends = part["ends"]
+            if not len(ends[0]):
+                continue
+            if before is not None:
+                across = [np.stack([old[-1], new[0]]) for old, new in zip(before, ends, strict=True)]
+                yield specific_forces(self.structure, *across)[:, channel]
+            yield part[name][0]
+            before = ends
+
+
+def _lost(like, times):
+    """Rows at times that a run did not reach, of the shapes of others."""
+    fields = {
+        name: np.full((len(times), *part.shape[1:]), np.nan)
+        for name, part in vars(like).items()
+        if name not in ("time", "joints")
+    }
+    return Rows(time=times, joints=like.joints, **fields)
