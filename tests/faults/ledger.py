@@ -1,8 +1,13 @@
-"""Ledger of the fault tests: what was done to the program, and what was lost by it."""
+"""Ledger of the fault tests: what was done to the program, what was lost by it, and how long all of it took."""
 
 from collections import Counter
 
+from blockshake.files import PACKAGE, write_json
+
 DONE, LOST = Counter(), Counter()
+RECORD = (
+    PACKAGE.parents[1] / "results" / "faults.json"
+)  # a page of docs shows it, see bench/figures_of_docs.py
 
 
 def tables():
@@ -12,5 +17,12 @@ def tables():
     return [*_table("done to the program", DONE), "", *_table("lost", LOST)]
 
 
+def record(outcomes, minutes):
+    """Write the ledger to `RECORD`, with the number of tests by outcome and the minutes that they took."""
+    done, lost = (dict(sorted(counts.items())) for counts in (DONE, LOST))
+    RECORD.parent.mkdir(exist_ok=True)
+    write_json(RECORD, {"done": done, "lost": lost, "outcomes": outcomes, "minutes": minutes})
+
+
 def _table(title, counts):
-    return [f"{title:64}times", *(f"{name:64}{count:5}" for name, count in sorted(counts.items()))]
+    return [f"{title:84}times", *(f"{name:84}{count:5}" for name, count in sorted(counts.items()))]
