@@ -223,7 +223,7 @@ def faults():
         return None
     found = load_json(FAULTS)
     outcomes = ", ".join(f"{count} {name}" for name, count in found["outcomes"].items())
-    words = f"Tests: {outcomes}, in {found['minutes']:.0f} min."
+    words = f"Tests: {outcomes}, in {found['minutes']:.0f} min, {found['cpu_minutes']:.0f} CPU min."
     tables = [
         markdown((head, "times"), found[key].items()) for key, head in (("done", "done"), ("lost", "lost"))
     ]

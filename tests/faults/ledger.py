@@ -1,5 +1,6 @@
 """Ledger of the fault tests: what was done to the program, what was lost by it, and how long all of it took."""
 
+import os
 from collections import Counter
 
 from blockshake.files import PACKAGE, write_json
@@ -18,10 +19,14 @@ def tables():
 
 
 def record(outcomes, minutes):
-    """Write the ledger to `RECORD`, with the number of tests by outcome and the minutes that they took."""
+    """Write the ledger to `RECORD`, with the number of tests by outcome, and the minutes and CPU minutes of all."""
+    spent = os.times()
+    cpu = (spent.user + spent.system + spent.children_user + spent.children_system) / 60.0
     done, lost = (dict(sorted(counts.items())) for counts in (DONE, LOST))
     RECORD.parent.mkdir(exist_ok=True)
-    write_json(RECORD, {"done": done, "lost": lost, "outcomes": outcomes, "minutes": minutes})
+    write_json(
+        RECORD, {"done": done, "lost": lost, "outcomes": outcomes, "minutes": minutes, "cpu_minutes": cpu}
+    )
 
 
 def _table(title, counts):

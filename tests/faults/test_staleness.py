@@ -26,6 +26,7 @@ EDITS = {
         "report/diagnosis/evidence_section.py",
     ),
 }  # fmt: skip
+OF_LIBRARIES = ("simulate_cause", "extend_model", "predict_twins")
 GATHER = {"all", "ladder", "diagnose"}  # rules without a script
 
 
@@ -84,15 +85,15 @@ def runs_module(job, module):
     )
     if job.rule == "compile_kernels":
         return module in modules_of(None, *models)
-    # every rule that simulates tests is one of the store's
-    scripts = {job.rule, "simulate_library"} if job.rule in ("extend_model", "simulate_cause") else {job.rule}
+    # the names of libraries, which these rules take, hold the sources that both solvers share
+    scripts = {job.rule, "simulate_library"} if job.rule in OF_LIBRARIES else {job.rule}
     return any(module in modules_of(script, *models) for script in scripts)
 
 
 def named(jobs):
     """Rules and wildcards of jobs, without the digests in names."""
     kept = ("study", "model", "solver", "case", "batch", "motion", "campaign")
-    return sorted((job.rule, *(job.wildcards.get(key, "") for key in kept)) for job in jobs)
+    return {(job.rule, *(job.wildcards.get(key, "") for key in kept)) for job in jobs}
 
 
 @pytest.mark.parametrize(
@@ -109,9 +110,11 @@ def test_an_edit_reruns_what_runs_the_module_and_what_follows(work, module, copi
         due = with_scripts(checkout.due(*WORKS[work]))
     DONE[f"{work}: a constant of a module edited, the jobs due held against its users"] += 1
     own = [job for job in due if "Params have changed" in job.reason or "Missing output" in job.reason]
-    follow = [job for job in due if job not in own]
-    assert named(own) == named(job for job in jobs_of(work) if runs_module(job, module))
-    assert all("Input files updated by another job" in job.reason for job in follow), follow
+    follow = [job for job in due if "Input files updated by another job" in job.reason]
+    wanted = named(job for job in jobs_of(work) if runs_module(job, module))
+    assert wanted <= named(due), "less is run again than runs the module"
+    assert named(own) <= wanted, "more is run again than runs the module"
+    assert named(due) <= wanted | named(follow), "a job is run again that follows from nothing"
 
 
 @pytest.mark.parametrize("work", BOTH)
