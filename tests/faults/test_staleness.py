@@ -172,7 +172,7 @@ def test_an_edit_of_the_decision_simulates_nothing_and_decides_anew(copied):
     }
     decision = results / "diagnosis" / "small-campaign" / "decision.json"
     before = decision.read_bytes()
-    with edited(checkout, **{"diagnosis/inference/decide.py": exchanged("PLACEBOS = 19", "PLACEBOS = 9")}):
+    with edited(checkout, **{"diagnosis/inference/decide.py": exchanged("PLACEBOS = 19", "PLACEBOS = 1")}):
         answer = checkout.snakemake(*WORKS["diagnosis"])
         assert answer.returncode == 0, answer.stdout + answer.stderr
         assert decision.read_bytes() != before
