@@ -9,7 +9,7 @@ READY := $(VENV)/ready
 PEERS := .venv-peers
 SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 
-.PHONY: study quick paper examples audit test test-slow test-faults test-cluster test-hidden-few test-hidden bench figures-of-docs peers cluster setup lint lock clean
+.PHONY: study quick paper examples audit test test-slow test-faults test-faults-few test-cluster test-hidden-few test-hidden bench figures-of-docs peers cluster setup lint lock clean
 
 study: setup
 	@$(BIN)/blockshake check config/study.yaml
@@ -39,11 +39,16 @@ test: setup
 test-slow: setup
 	$(BIN)/pytest -m slow
 
-# a small study and a small diagnosis, each killed at MOMENTS moments and interrupted, the study damaged and on a
-# full disk too: long; prints what was done and what was lost
+# a small study and a small diagnosis, each killed at MOMENTS moments, interrupted and edited, the study damaged and on
+# a full disk too: long; prints what was done and what was lost, and writes it to docs/faults.md
 MOMENTS ?= 20
 test-faults: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" BLOCKSHAKE_MOMENTS=$(MOMENTS) $(BIN)/pytest -m faults
+	$(BIN)/python bench/figures_of_docs.py faults
+
+# the shorter half of these tests, on a study, with two kills: minutes
+test-faults-few: setup
+	PATH="$(CURDIR)/$(BIN):$$PATH" BLOCKSHAKE_MOMENTS=2 $(BIN)/pytest -m short_faults
 
 # a small study through a SLURM of one node on this machine, from Debian's slurmctld, slurmd, slurm-client and munge:
 # tens of minutes; skipped where they are not installed
@@ -107,11 +112,11 @@ lock:
 	uv pip compile pyproject.toml --extra test --extra build --universal --python-version 3.11 --generate-hashes \
 	  --no-annotate --no-header --no-emit-index-url --no-emit-find-links -o requirements.lock
 
-# known vulnerabilities of the locked packages, by the advisories of the Python package index: needs the network
+# known vulnerabilities of the locked packages, by the advisories of the Python package index; says so where it has none
 audit:
 	@$(PYTHON) -m venv --clear .venv-audit
-	@.venv-audit/bin/python -m pip install --quiet --disable-pip-version-check pip-audit
-	.venv-audit/bin/pip-audit --disable-pip --require-hashes --strict -r requirements.lock
+	@.venv-audit/bin/python -m pip install --quiet --disable-pip-version-check pip-audit==2.10.1
+	@.venv-audit/bin/python .ci/audit.py
 
 clean:
 	rm -rf results reports logs benchmarks .snakemake

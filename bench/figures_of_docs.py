@@ -49,6 +49,7 @@ _CHANGES = {
     "friction 0.12": dict.fromkeys(_CONCRETE, 0.12),
 }
 STUDY = Path("results/study/the-paper.json")
+FAULTS = Path("results/faults.json")  # of `make test-faults`
 _STEPS = {"nscd-rigid": 1e-3, "ls-dem": 5e-5}  # s
 DEFAULT = DOCS.parent / "config" / "study.yaml"
 DIAGNOSED = DOCS.parent / "data" / "virtual-campaign" / "configuration-2"
@@ -227,6 +228,19 @@ def study_shares():
     return markdown(("rule", "jobs", "CPU min", "share [%]"), rows)
 
 
+def faults():
+    """Ledger of the fault tests; None where they have not been run."""
+    if not FAULTS.is_file():
+        return None
+    found = load_json(FAULTS)
+    outcomes = ", ".join(f"{count} {name}" for name, count in found["outcomes"].items())
+    words = f"Tests: {outcomes}, in {found['minutes']:.0f} min, {found['cpu_minutes']:.0f} CPU min."
+    tables = [
+        markdown((head, "times"), found[key].items()) for key, head in (("done", "done"), ("lost", "lost"))
+    ]
+    return "\n\n".join([words, *tables])
+
+
 def keys_of(kind):
     """Maker of the table of the keys of a kind of file."""
     return lambda: markdown(KEYS_HEADER, key_rows(kind))
@@ -255,6 +269,7 @@ MAKERS = {
     "study-shares": study_shares,
     "cost-of-samples": cost_of_samples,
     "times-on-a-cluster": times_on_a_cluster,
+    "faults": faults,
     "structure-keys": keys_of("structure"),
     "study-keys": keys_of("study"),
     "campaign-keys": keys_of("campaign"),
@@ -282,7 +297,7 @@ def main(names):
                 continue
             made = MAKERS[name]()
             if made is None:
-                sys.stdout.write(f"{page.name}: {name} stays, there is no {STUDY}\n")
+                sys.stdout.write(f"{page.name}: {name} stays, its results are not there\n")
                 continue
             text = page.read_text(encoding="utf-8")
             write_text(page, text.replace(BLOCK.format(name, old), BLOCK.format(name, made)))

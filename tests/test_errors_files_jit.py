@@ -1,3 +1,4 @@
+import json
 import os
 import shutil
 import subprocess
@@ -14,6 +15,7 @@ from blockshake import files, jit
 from blockshake.errors import InputError
 from blockshake.files import (
     content_digest,
+    load_made_json,
     load_yaml,
     parse_yaml,
     replacing,
@@ -214,3 +216,10 @@ def test_a_damaged_or_foreign_kernel_is_compiled_anew(tmp_path):
     assert cache.load("signature") == "code"
     # other sources
     assert _cache(tmp_path, "edited").load("signature") is None
+
+
+@pytest.mark.parametrize("value", [{}, {"x": [1]}, {"x": 10**400}, {"x": "one"}])
+def test_json_of_an_earlier_job_that_is_something_else_is_refused(tmp_path, value):
+    (tmp_path / "a.json").write_text(json.dumps(value))
+    with pytest.raises(InputError, match=r"a\.json"):
+        load_made_json(tmp_path / "a.json", lambda read: float(read["x"]))

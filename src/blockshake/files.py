@@ -178,7 +178,7 @@ def load_made_json(path, read):
     value = load_json(path)
     try:
         return read(value)
-    except (KeyError, TypeError, ValueError, AttributeError):
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
         raise InputError(path, "", MADE_ANEW.format("JSON")) from None
 
 

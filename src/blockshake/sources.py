@@ -11,10 +11,10 @@ from typing import NamedTuple
 from blockshake.files import HOME, PACKAGE
 
 _SCRIPTS = HOME / "workflow" / "scripts"
-# These name things, write logs, or decide what is in the names of the files made: they compute nothing.
+# These write logs, or decide what is in the names of the files made and in the parameters of rules: they compute
+# nothing else.
 _COMPUTE_NOTHING = (
     "log.py",
-    "quantities.py",
     "sources.py",
     "diagnosis/libraries/efforts.py",
     "diagnosis/libraries/plan.py",

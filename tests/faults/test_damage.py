@@ -4,12 +4,11 @@ import re
 
 import pytest
 import xarray as xr
-from checkout import Checkout
 from ledger import DONE
 
 from blockshake.store import kept
 
-pytestmark = pytest.mark.faults
+pytestmark = [pytest.mark.faults, pytest.mark.short_faults]
 
 
 def _cut(path):
@@ -30,11 +29,9 @@ def _exchange(path):
 DAMAGES = (_cut, _flip, _exchange)
 
 
-@pytest.fixture(scope="module")
-def finished(tmp_path_factory):
-    checkout = Checkout(tmp_path_factory.mktemp("damaged"))
-    assert checkout.snakemake("configuration-1").returncode == 0
-    return checkout
+@pytest.fixture
+def finished(whole, tmp_path):
+    return whole("study").checkout.copied(tmp_path / "damaged")
 
 
 def test_damaged_units_are_made_anew_and_the_others_are_not(finished):

@@ -6,13 +6,13 @@ import time
 
 import pytest
 from ledger import DONE
-from work import WORKS, checkout_with_campaign, count_orphans, start
+from work import BOTH, WORKS, checkout_with_campaign, count_orphans, start
 
 pytestmark = pytest.mark.faults
 SECONDS = 15.0  # on a machine that may be busy
 
 
-@pytest.mark.parametrize("work", WORKS)
+@pytest.mark.parametrize("work", BOTH)
 def test_an_interrupted_work_ends_and_goes_on(work, tmp_path):
     checkout = checkout_with_campaign(tmp_path)
     command = start(checkout, work)

@@ -18,14 +18,14 @@ PLAIN = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
 LARGEST_DIFFERENCE = 1e-9
 
 
-def test_one_core_and_kernels_compiled_anew_give_the_same_bytes(whole_study, tmp_path):
+def test_one_core_and_kernels_compiled_anew_give_the_same_bytes(whole, tmp_path):
     checkout = checkout_with_campaign(tmp_path / "one-core")
     answer = subprocess.run(
         checkout.command(*WORKS["study"], engine=("--cores", "1")), cwd=checkout.folder, capture_output=True,
         text=True, timeout=LIMIT, check=False, env={**os.environ, "BLOCKSHAKE_CACHE": str(tmp_path / "cache")},
     )  # fmt: skip
     assert answer.returncode == 0, answer.stdout + answer.stderr
-    others = unlike(whole_study.folder, checkout.folder)
+    others = unlike(whole("study").checkout.folder, checkout.folder)
     DONE["study: one core, kernels compiled anew"] += 1
     LOST["study: files unlike those of two cores"] += len(others)
     assert others == []
@@ -34,8 +34,8 @@ def test_one_core_and_kernels_compiled_anew_give_the_same_bytes(whole_study, tmp
 @pytest.mark.parametrize("model", ["ls-dem", "nscd-rigid"])
 def test_a_plain_processor_computes_nearly_the_same(model, tmp_path):
     own, plain = (
-        _positions(model, tmp_path / f"{name}.nc", {"BLOCKSHAKE_CACHE": str(tmp_path / name), **processor})
-        for name, processor in (("own", {}), ("plain", PLAIN))
+        _positions(model, tmp_path / f"{name}.nc", processor)
+        for name, processor in (("own", {}), ("plain", PLAIN | {"BLOCKSHAKE_CACHE": str(tmp_path / "plain")}))
     )
     DONE[f"{model}: run compiled for a plain processor"] += 1
     assert np.abs(own - own[0]).max() > 1e-3  # it moves

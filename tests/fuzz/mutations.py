@@ -3,6 +3,7 @@
 import contextlib
 import copy
 import datetime
+import sys
 
 import numpy as np
 from hypothesis import HealthCheck, settings
@@ -82,7 +83,7 @@ def _change(draw, mapping, path, odd):
     place, key = at(mapping, path[:-1]), path[-1]
     what = draw(st.sampled_from(("odd", "odd", "odd", "scale", "lose", "rename", "double", "other", "add")))
     value = place[key]
-    if what == "scale" and isinstance(value, (int, float)) and not isinstance(value, bool):
+    if what == "scale" and _can_be_scaled(value):
         factor = draw(st.sampled_from((-1.0, 1e-9, 1e-3, 0.1, 0.999, 1.001, 2.0, 10.0, 1e3, 1e6, 1e12)))
         place[key] = float(value) * factor
     elif what == "lose":
@@ -97,6 +98,12 @@ def _change(draw, mapping, path, odd):
         value[draw(st.sampled_from(ODD_TEXTS))] = copy.deepcopy(draw(st.sampled_from(odd)))
     else:
         place[key] = copy.deepcopy(draw(st.sampled_from(odd)))
+
+
+def _can_be_scaled(value):
+    """Whether it is a number that a float can hold."""
+    numbers = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return numbers and abs(value) <= sys.float_info.max
 
 
 ODD_WORDS = (

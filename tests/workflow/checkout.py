@@ -1,10 +1,12 @@
 """A copy of the checkout with a small study, as a user has one."""
 
+import copy
 import re
 import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import yaml
 
@@ -14,6 +16,14 @@ ROOT = PACKAGE.parents[1]
 COPIED = ("Snakefile", "config", "data", "profiles", "src", "workflow")
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")
 LIMIT = 1200  # s; against a study that hangs, not a measure of speed: other jobs may share the machine
+
+
+class Job(NamedTuple):
+    """A job of a dry run."""
+
+    rule: str
+    wildcards: dict
+    reason: str
 
 
 class Checkout:
@@ -38,6 +48,13 @@ class Checkout:
         config["fragility"]["size"], config["ladder"]["highest"] = 3, 1.0
         config["name"] = "small"
         self.write_config(config | changes)
+
+    def copied(self, folder):
+        """The same in another folder, with all that was made in this one."""
+        shutil.copytree(self.folder, folder)
+        other = copy.copy(self)
+        other.folder = folder
+        return other
 
     def write_config(self, config):
         self.config = config
@@ -65,6 +82,21 @@ class Checkout:
             for name, count in re.findall(r"^(\w[\w-]*) +(\d+)$", answer.stdout, flags=re.MULTILINE)
         }
 
+    def due(self, *arguments):
+        """Jobs that a dry run would run: rule, wildcards by name, and why."""
+        answer = self.snakemake("-n", *arguments, "--quiet", "progress")
+        assert answer.returncode == 0, answer.stdout + answer.stderr
+        jobs = []
+        for block in re.split(r"^(?:rule|checkpoint|localrule) ", answer.stdout, flags=re.MULTILINE)[1:]:
+            of = dict(re.findall(r"^    (\w+): (.*)$", block, flags=re.MULTILINE))
+            wildcards = dict(pair.split("=", 1) for pair in of.get("wildcards", "").split(", ") if pair)
+            jobs.append(Job(block.partition(":")[0], wildcards, of.get("reason", "")))
+        return jobs
+
     def append(self, source, text):
-        path = self.folder / "src" / "blockshake" / source
+        path = self.source(source)
         path.write_text(path.read_text() + text)
+
+    def source(self, name):
+        """Path of a file of the package."""
+        return self.folder / "src" / "blockshake" / name

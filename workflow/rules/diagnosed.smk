@@ -38,7 +38,10 @@ config["diagnosed"], config["diagnosis_effort"] = list(CAMPAIGNS.values()), EFFO
 
 
 def solver_source(wildcards):
-    """Digest of all that a solver's simulated tests follow from: an edit of one solver reruns no other's."""
+    """Digest of all that a solver's simulated tests follow from: an edit of one solver reruns no other's.
+
+    Every rule that simulates tests has it, for the store. What else it runs is in a digest of its own.
+    """
     return source_of("simulate_library", wildcards.solver)
 
 
@@ -96,11 +99,11 @@ def considered_effects():
     return considered(WITHOUT)
 
 
-def further_draws():
-    """Draws with a cause beyond those of a library."""
+def effort():
+    """Amounts of simulation. The plan is no source of a rule: its numbers are in names of files and in parameters."""
     from blockshake.diagnosis.libraries.efforts import EFFORTS
 
-    return EFFORTS[EFFORT].further_draws
+    return EFFORTS[EFFORT]
 
 
 def test_files(campaign, role):

@@ -150,7 +150,8 @@ rule simulate_cause:
         shared=LIBRARY_SOURCE,
         source=solver_source,
         store="results/store/diagnosis",
-        further_draws=lambda wildcards: further_draws(),
+        further_draws=lambda wildcards: effort().further_draws,
+        asked_by=lambda wildcards: source_of("simulate_cause", wildcards.solver),
     script:
         "../scripts/simulate_cause.py"
 
@@ -205,6 +206,7 @@ rule extend_model:
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
+        members=lambda wildcards: effort().members,
         effects=lambda wildcards: considered_effects(),
         store="results/store/diagnosis",
         source=solver_source,
@@ -260,6 +262,10 @@ rule conclude:
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
+        runs=lambda wildcards: [
+            plan(wildcards.campaign).runs,
+            plan(wildcards.campaign).further_runs,
+        ],
         source=source_of("conclude"),
     script:
         "../scripts/conclude.py"
@@ -282,6 +288,7 @@ rule predict_twins:
         "../envs/blockshake.yaml"
     params:
         shared=LIBRARY_SOURCE,
+        twins=lambda wildcards: effort().twins,
         source=source_of("predict_twins", *NULL_MODELS),
     script:
         "../scripts/predict_twins.py"

@@ -346,7 +346,7 @@ def conclude(folder, effort, files):
     from blockshake.diagnosis.inference.decision import CauseSize, Decision, load_result
     from blockshake.diagnosis.libraries.plan import plan_diagnosis
     from blockshake.diagnosis.misfit.misfit import where
-    from blockshake.diagnosis.verdict.conclusion import Judged, conclude
+    from blockshake.diagnosis.verdict.conclusion import Judged, conclude, no_gain
     from blockshake.diagnosis.verdict.verdict import MeasuredGain
     from blockshake.parity.parity import load_parity
 
@@ -357,7 +357,7 @@ def conclude(folder, effort, files):
         measured, scores = load_result(MeasuredGain, files.gain[0]), load_made(files.gain[1])
     else:
         described = [decision.described] if decision.described else []
-        caveats = plan.caveats([*decision.causes, *parity.findings, *described])
+        caveats = no_gain(plan.campaign, [*decision.causes, *parity.findings, *described])
         measured, scores = MeasuredGain(gain=None, caveats=caveats, runs=0), None
     runs = plan.runs + (plan.further_runs if size else 0) + measured.runs
     channels = parity.channels["channel"].values.tolist()

@@ -7,7 +7,6 @@ from blockshake.diagnosis.libraries.plan import (
     considered,
     plan_diagnosis,
     plan_of_library,
-    planned_sealed,
     sealed_tests,
 )
 from blockshake.errors import InputError
@@ -56,19 +55,6 @@ def test_a_copy_of_a_campaign_has_the_same_library(tmp_path):
     assert plan.calibration("s") != plan_diagnosis(copy, "quick", ["weak-joint"]).calibration("s")
     found, name = plan_of_library(plan.library(test, "s"), [str(copy)], "quick", "s")
     assert (name, found.campaign.folder) == (test, copy)
-
-
-def test_a_sealed_test_is_planned_without_its_file(tmp_path):
-    copy = tmp_path / "campaign"
-    shutil.copytree(CAMPAIGN, copy)
-    campaign = load_campaign(copy)
-    for name in sealed_tests(campaign):
-        (copy / campaign.tests[name].file).write_bytes(b"nobody may read this")
-    plan = plan_diagnosis(copy, "quick")
-    like = next(iter(plan.tests.values()))
-    for name in sealed_tests(campaign):
-        planned = planned_sealed(campaign, name, like)
-        assert (planned.duration, planned.markers) == (like.duration, like.markers)
 
 
 @pytest.mark.parametrize(

@@ -6,9 +6,9 @@ import xarray as xr
 from blockshake.diagnosis.gain.extension import extended_members, open_features, open_responses
 from blockshake.diagnosis.gain.recalibration import posterior_draws
 from blockshake.diagnosis.libraries.candidates import NOMINAL
-from blockshake.diagnosis.libraries.designed_test import kept_reading
+from blockshake.diagnosis.libraries.designed_test import PlannedTest, kept_reading
 from blockshake.diagnosis.libraries.null_model import draw_nominal
-from blockshake.diagnosis.libraries.plan import planned_sealed, sealed_tests
+from blockshake.diagnosis.libraries.plan import planned_motion, sealed_tests
 
 RECALIBRATED, EXTENDED = "recalibrated", "extended"
 
@@ -60,6 +60,19 @@ def members_with_cause(plan, model, decision, size, library, left):
         (draw, [*effects, second.as_effect(second.values_at(beside, number))])
         for number, (draw, effects) in enumerate(members)
     ]
+
+
+def planned_sealed(campaign, name, like):
+    """A sealed test as it is simulated, its file unread: as long and with the sensors as a test that was read."""
+    return PlannedTest(
+        structure=like.structure,
+        motion=planned_motion(campaign, name),
+        duration=like.duration,
+        sensors=campaign.sensors,
+        markers=like.markers,
+        channels=like.channels,
+        unread=like.unread,
+    )
 
 
 def extended_runs(plan, model, extended, known, features, store, source, progress):

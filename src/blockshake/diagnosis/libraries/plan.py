@@ -43,7 +43,7 @@ def planned_test(campaign, name, structure):
     time = test["time"].to_numpy()
     return PlannedTest(
         structure=structure,
-        motion=_commanded(campaign, name),
+        motion=planned_motion(campaign, name),
         duration=float(np.round(time[-1] - time[0], 3)),
         sensors=campaign.sensors,
         markers=tuple(map(str, test["marker"].values)),
@@ -52,20 +52,14 @@ def planned_test(campaign, name, structure):
     )
 
 
-def planned_sealed(campaign, name, like):
-    """A sealed test as it is simulated, its file unread: as long and with the sensors as a test that was read."""
-    return PlannedTest(
-        structure=like.structure,
-        motion=_commanded(campaign, name),
-        duration=like.duration,
-        sensors=campaign.sensors,
-        markers=like.markers,
-        channels=like.channels,
-        unread=like.unread,
-    )
+def planned_motion(campaign, name):
+    """Commanded `Motion` of a test.
 
-
-def _commanded(campaign, name):
+    Raises
+    ------
+    InputError
+        It is neither shipped nor in the campaign's folder.
+    """
     motion = commanded_motion(campaign, campaign.tests[name])
     if motion is None:
         raise InputError(
@@ -113,14 +107,6 @@ class Plan:
     def further_runs(self):
         """Simulated tests with a cause that was found, beyond those of the libraries."""
         return len(MODELS) * len(self.tests) * self.effort.further_draws
-
-    def caveats(self, causes):
-        """Reason why no gain was measured, where there are causes, or a description of an unknown one."""
-        if not causes:
-            return []
-        if not sealed_tests(self.campaign):
-            return ["no gain was measured: there is no sealed test"]
-        return ["no gain was measured: an extension is not simulated at quick effort"]
 
     def library(self, test, source):
         """Name of the library of a test: equal content and sources that both solvers share, equal name."""

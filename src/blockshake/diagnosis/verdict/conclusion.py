@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from blockshake.diagnosis.inference.lawful_decision import READ
 from blockshake.diagnosis.libraries.candidates import effect_of
+from blockshake.diagnosis.libraries.plan import sealed_tests
 from blockshake.diagnosis.verdict.ladder import rung
 from blockshake.diagnosis.verdict.sensor_causes import sensor_causes
 from blockshake.diagnosis.verdict.verdict import BrokenLaw, Estimate, Misfit, Verdict
@@ -15,6 +16,15 @@ class Judged(NamedTuple):
 
     where: str
     tests: int
+
+
+def no_gain(campaign, causes):
+    """Reason why no gain was measured, where there are causes, or a description of an unknown one."""
+    if not causes:
+        return []
+    if not sealed_tests(campaign):
+        return ["no gain was measured: there is no sealed test"]
+    return ["no gain was measured: an extension is not simulated at quick effort"]
 
 
 def conclude(

@@ -1,0 +1,38 @@
+"""The sources that a rule watches are those that its script imports, by Python's own account: no more, no fewer."""
+
+import dataclasses
+
+import pytest
+from watched import SCRIPTS, modules_of
+
+from blockshake.diagnosis.libraries.efforts import EFFORTS
+from blockshake.diagnosis.libraries.plan import plan_diagnosis
+from blockshake.files import PACKAGE
+from blockshake.simulation.models import MODELS
+from blockshake.sources import kernel_sources, script_sources
+
+BY_MODEL = ("simulate_batch", "run_twins", "simulate_library", "simulate_cause")
+CAMPAIGN = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-1"
+
+
+@pytest.mark.parametrize("script", sorted(path.stem for path in SCRIPTS.glob("*.py")))
+def test_a_rule_watches_the_modules_that_its_script_imports(script):
+    for models in [(), *((model,) for model in MODELS if script in BY_MODEL)]:
+        assert set(script_sources(script, *models)) == modules_of(script, *models)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_kernels_follow_the_modules_of_their_driver(model):
+    assert set(kernel_sources(model)) == modules_of(None, model)
+
+
+@pytest.mark.parametrize("name", [field.name for field in dataclasses.fields(EFFORTS["quick"])])
+def test_every_number_of_an_effort_is_in_a_name_or_a_parameter(name):
+    """The file of the efforts is no source: an edit there may leave no result as it was."""
+    plan = plan_diagnosis(CAMPAIGN, "quick")
+    effort = dataclasses.replace(plan.effort, **{name: getattr(plan.effort, name) + 1})
+    other = dataclasses.replace(plan, effort=effort)
+    named = [plan.library(test, "") != other.library(test, "") for test in plan.tests]
+    rules = "".join(path.read_text() for path in (PACKAGE.parents[1] / "workflow" / "rules").glob("*.smk"))
+    # the number of tests is that of the libraries, and the limit of runs gives the number of own draws, which is named
+    assert all(named) or f"effort().{name}" in rules or name in ("tests", "runs", "own_draws")
