@@ -5,13 +5,14 @@ import xarray as xr
 
 from blockshake.dynamics.system import ENERGY_TERMS
 from blockshake.geometry.schema import AXES, QUATERNION
-from blockshake.measurement.sensors.accelerometers import accelerometer_readings
+from blockshake.measurement.sensors.accelerometers import SKIP, accelerometer_readings
 from blockshake.measurement.sensors.markers import marker_displacement
+from blockshake.measurement.sensors.transducers import transducer_displacement, transducer_names
 from blockshake.simulation.models import model_of
 
 
 def run_dataset(structure, trajectory, rows):
-    """A trajectory as the run file's Dataset, at some of its rows, without accelerometers and attributes."""
+    """A trajectory as the run file's Dataset, at some of its rows, without the readings at 512 Hz and attributes."""
     names = structure.body_names
     lower, upper = ([names[body] for body in trajectory.joints[:, side]] for side in (0, 1))
     markers = np.array([marker.name for marker in structure.file.markers], dtype=str)
@@ -71,6 +72,20 @@ def add_accelerometers(run, structure, trajectory, rows):
     )
     run["time_acc"] = ("time_acc", times, {"units": "s", "long_name": "time since the start of the motion"})
     run["channel"] = channels
+
+
+def add_transducers(run, structure, trajectory, rows):
+    """Add ``transducer_displacement(time_acc, transducer)`` [m] to a run, read at the fine times of its trajectory."""
+    rows = rows[::SKIP]
+    run["transducer_displacement"] = (
+        ("time_acc", "transducer"),
+        transducer_displacement(structure, trajectory.position[rows], trajectory.orientation[rows]),
+        {"units": "m", "long_name": "lengthening of the displacement transducer since the start"},
+    )
+    run["time_acc"] = (
+        "time_acc", trajectory.time[rows], {"units": "s", "long_name": "time since the start of the motion"},
+    )  # fmt: skip
+    run["transducer"] = transducer_names(structure)
 
 
 def effective_parameters(structure, model, numerical):

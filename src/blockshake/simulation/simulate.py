@@ -18,6 +18,7 @@ from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.models import model_of, split_parameters
 from blockshake.simulation.run_dataset import (
     add_accelerometers,
+    add_transducers,
     effective_parameters,
     plain_attribute,
     run_dataset,
@@ -59,7 +60,7 @@ def simulate(
     output_rate : float, optional
         [Hz]; the optical system's by default.
     accelerometers : bool
-        Compute the accelerometer channels, which takes a fine record.
+        Compute the accelerometer channels, which takes a fine record, and the displacement transducers beside them.
     checkpoint : path, optional
         Where a long run is saved every minute, and from where it goes on, bit-identical, if it was cut short.
 
@@ -91,13 +92,17 @@ def simulate(
         )
     coarse = np.arange(int(np.floor(duration * output_rate + 1e-9)) + 1) / output_rate
     fine = np.empty(0)
-    if accelerometers and built.file.accelerometers:
+    if accelerometers and (built.file.accelerometers or built.file.displacement_transducers):
         fine = np.arange(int(np.floor(duration * FINE_RATE + 1e-9)) + 1) / FINE_RATE
     times = np.union1d(coarse, fine)
     trajectory = solver.solve(built, motion, numerical, times, time_step, checkpoint=checkpoint)
     run = run_dataset(built, trajectory, np.searchsorted(times, coarse))
     if fine.size:
-        add_accelerometers(run, built, trajectory, np.searchsorted(times, fine))
+        rows = np.searchsorted(times, fine)
+        if built.file.accelerometers:
+            add_accelerometers(run, built, trajectory, rows)
+        if built.file.displacement_transducers:
+            add_transducers(run, built, trajectory, rows)
     status, reason, residual = trajectory.status, trajectory.reason, energy_residual(trajectory.energy)
     if status in FINISHED and residual > _WORST_RESIDUAL:
         reason = f"the energy audit misses {residual:.0%} of the energy in play: take a smaller time step; {reason}"

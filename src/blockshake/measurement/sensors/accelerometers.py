@@ -10,7 +10,7 @@ FINE_RATE = 4.0 * RATE  # Hz, of the states they are made from
 CUTOFF = 50.0  # Hz, where each of the two passes is 3 dB down
 ORDER = 4
 
-_SKIP = round(FINE_RATE / RATE)
+SKIP = round(FINE_RATE / RATE)  # states from one reading to the next
 _PAD = round(0.25 * FINE_RATE)  # a quarter second: the filter has forgotten its start after 0.1 s
 
 
@@ -60,7 +60,7 @@ def accelerometer_readings(structure, time, orientation, velocity, angular_veloc
         raise ValueError(f"accelerometers need states at a uniform {FINE_RATE:g} Hz")
     sensors = structure.file.accelerometers
     channels = accelerometer_channels(structure)
-    time_acc = time[0] + np.arange((len(time) - 1) // _SKIP + 1) / RATE
+    time_acc = time[0] + np.arange((len(time) - 1) // SKIP + 1) / RATE
     readings = np.full((len(time_acc), len(channels)), np.nan)
     if not channels:
         return time_acc, readings, channels
@@ -78,7 +78,7 @@ def accelerometer_readings(structure, time, orientation, velocity, angular_veloc
     columns = [
         force[:, sensor, "xyz".index(axis)] for sensor, item in enumerate(sensors) for axis in item.axes
     ]
-    smooth = low_pass(_at_states(np.column_stack(columns)))[::_SKIP]
+    smooth = low_pass(_at_states(np.column_stack(columns)))[::SKIP]
     readings[: len(smooth)] = smooth
     return time_acc, readings, channels
 
