@@ -87,10 +87,10 @@ def held_readings(structure, test, bodies, faults, lag):
         if item.name not in names or not {item.body, item.reference} <= known:
             continue
         expected, places = _expectation(structure, item, poses)
-        for point, direction in zip((item, item.anchor), np.split(places[0], 2), strict=True):
-            expected[~_seen(bodies[point.body].points, poses[point.body][3], point.position, direction)] = (
-                np.nan
-            )
+        first = places[np.isfinite(places).all(axis=1).argmax()]
+        for point, direction in zip((item, item.anchor), np.split(first, 2), strict=True):
+            seen = _seen(bodies[point.body].points, poses[point.body][3], point.position, direction)
+            expected[~seen] = np.nan
         reading = between_readings(clock, read.to_numpy()[names.index(item.name)])
         found = _held(poses[item.body][0], expected, places, reading, lag)
         if found is not None:

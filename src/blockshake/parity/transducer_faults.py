@@ -122,7 +122,7 @@ def _chance_of_sign(left, turned):
     own, other = (left**2).sum(), (turned**2).sum()
     if other > _REVERSED * own:
         return 1.0
-    return float(np.exp(-(own - other) / (2.0 * other / len(left))))
+    return float(np.exp(-(own - other) / (2.0 * max(other / len(left), _NOTHING**2))))
 
 
 def _without_lag(values, held):
