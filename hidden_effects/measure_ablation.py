@@ -126,13 +126,13 @@ def answers(case, results, effort):
         }
     )
     decisions = lawful(features), lawful(nothing), features, lawful(by_features(*_few(files, effects)))
-    truth, channels = load_json(truth_of(results, case.name) / "truth.json"), parity.channels["channel"]
+    truth = load_json(truth_of(results, case.name) / "truth.json")
     judged = Judged("", len(plan.tests))
     return {
         way: Scored(
             case.name,
             truth,
-            conclude(decision, parity.findings, channels.values.tolist(), judged, 0, [], effort),
+            conclude(decision, parity.findings, parity.recorder_sensors, judged, 0, [], effort),
         )
         for way, decision in zip(WAYS, decisions, strict=True)
     }

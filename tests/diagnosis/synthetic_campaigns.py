@@ -10,8 +10,9 @@ from scipy.spatial.transform import Rotation
 
 from blockshake.files import load_yaml, shipped
 from blockshake.geometry.structure import build_structure
-from blockshake.measurement.sensors.accelerometers import FINE_RATE, accelerometer_readings
+from blockshake.measurement.sensors.accelerometers import FINE_RATE, SKIP, accelerometer_readings
 from blockshake.measurement.sensors.instruments import Instruments, observe
+from blockshake.measurement.sensors.transducers import transducer_displacement, transducer_names
 
 DURATION = 10.0  # s
 HALF_WIDTH = 0.4  # m
@@ -19,9 +20,10 @@ HALF_WIDTH = 0.4  # m
 ROCKING = (0.0, 8e-3, 16e-3)
 
 
-def structure_of_three(face_markers_only=False):
+def structure_of_three(face_markers_only=False, transducers=()):
     """Configuration 1: four markers a body as shipped, or only those on one face, which lie on a line."""
     mapping = copy.deepcopy(load_yaml(shipped("structures", "configuration-1")))
+    mapping["displacement_transducers"] = list(transducers)
     if face_markers_only:
         mapping["markers"] = [marker for marker in mapping["markers"] if not marker["name"].endswith("-end")]
     return build_structure(mapping, "three.yaml", ".")
@@ -57,7 +59,7 @@ def make_run(structure, rocking, seed, pitch=0.0, survey=3e-4):
     turns = _quaternions_to_rotation(fine_orientation)
     spin = np.stack([np.gradient(turn, fine, axis=0) for turn in turns], axis=1)
     time_acc, readings, channels = accelerometer_readings(structure, fine, fine_orientation, velocity, spin)
-    return xr.Dataset(
+    run = xr.Dataset(
         {
             "position": (("time", "body", "axis"), position),
             "orientation": (("time", "body", "quaternion"), orientation),
@@ -65,6 +67,11 @@ def make_run(structure, rocking, seed, pitch=0.0, survey=3e-4):
         },
         {"time": markers, "time_acc": time_acc, "channel": channels},
     )
+    if structure.file.displacement_transducers:
+        moved = transducer_displacement(structure, fine_position[::SKIP], fine_orientation[::SKIP])
+        run["transducer_displacement"] = (("time_acc", "transducer"), moved, {"units": "m"})
+        run["transducer"] = transducer_names(structure)
+    return run
 
 
 def make_test(structure, run, seed, colour=0.0, mounting=0.0, outliers=0.0, **faults):
@@ -77,7 +84,9 @@ def make_test(structure, run, seed, colour=0.0, mounting=0.0, outliers=0.0, **fa
         shift = mounted.uniform(-mounting, mounting, 3)
         places[marker.name] = tuple(shift + np.array(places.get(marker.name, (0.0, 0.0, 0.0))))
     sigma, sigma_acc = faults.pop("marker_noise", 1e-4), faults.pop("accelerometer_noise", 0.02)
-    silent = Instruments(marker_noise=0.0, accelerometer_noise=0.0, marker_offset=places, **faults)
+    silent = Instruments(
+        marker_noise=0.0, accelerometer_noise=0.0, transducer_noise=0.0, marker_offset=places, **faults
+    )
     test = observe(run, structure, silent, seed)
     noise = coloured(generator, test["marker_displacement"].shape, colour, sigma)
     hit = generator.random(noise.shape[:2]) < outliers
@@ -86,6 +95,9 @@ def make_test(structure, run, seed, colour=0.0, mounting=0.0, outliers=0.0, **fa
     test["accelerometer"] = test["accelerometer"] + coloured(
         generator, test["accelerometer"].shape, colour, sigma_acc
     )
+    if "transducer_displacement" in test:
+        noise = coloured(generator, test["transducer_displacement"].shape, colour, sigma)
+        test["transducer_displacement"] = test["transducer_displacement"] + noise - noise[:1]
     return test
 
 

@@ -108,7 +108,7 @@ class FakeDiagnosis:
         write_dataset(self.results / "consequences.nc", consequences)
         write_result(self.results / "gain.json", summary)
         self.verdict = conclude(
-            self.decision, findings, (), Judged(where(found), len(OPEN)), 1260, summary.caveats, effort,
+            self.decision, findings, {}, Judged(where(found), len(OPEN)), 1260, summary.caveats, effort,
             measured=summary, scores=gain,
         )  # fmt: skip
         assert isinstance(self.verdict, Verdict)

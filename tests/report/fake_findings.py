@@ -169,6 +169,7 @@ def parity(structure, findings):
         "markers": markers,
         "clock": {name: {"lag": 3e-5, "lag_error": 1e-4} for name in OPEN},
         "channels": {},
+        "transducers": {"wire-1": {"gain": 2e-3, "gain_error": 1e-3}, "wire-2": {"gain": None, "gain_error": None}},
         "looked_at": 214,
         "falls": {},
     })  # fmt: skip

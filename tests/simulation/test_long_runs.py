@@ -7,9 +7,10 @@ import sys
 import numpy as np
 import pytest
 import xarray as xr
+import yaml
 
 from blockshake.dynamics.motion import ground_motion
-from blockshake.files import write_dataset
+from blockshake.files import load_yaml, shipped, write_dataset
 from blockshake.simulation.simulate import simulate, simulate_to_file
 from blockshake.solvers import kept_rows, pieces
 from blockshake.solvers.checkpoint import Checkpoint
@@ -61,6 +62,25 @@ def test_a_run_file_is_the_run_in_memory_to_the_bit(model, shake, few_rows_at_ha
     simulate_to_file(tmp_path / "run.nc", *arguments, time_step=STEP[model], duration=DURATION)
     _assert_same_file(tmp_path / "run.nc", run, tmp_path)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["memory.nc", "run.nc"]
+
+
+@pytest.mark.parametrize("accelerometers", [True, False])
+def test_transducers_read_the_same_part_by_part(accelerometers, few_rows_at_hand, tmp_path):
+    mapping = load_yaml(shipped("structures", "configuration-1"))
+    mapping["displacement_transducers"] = [
+        {"name": "wire", "body": "block-3", "position": [-0.4, 0.0, 0.0], "reference": "slab",
+         "reference_position": [-1.5, 0.0, 0.1]},
+    ]  # fmt: skip
+    if not accelerometers:
+        del mapping["accelerometers"]
+    path = tmp_path / "wired.yaml"
+    path.write_text(yaml.safe_dump(mapping))
+    for shake in SHAKES.values():
+        arguments = path, shake, "nscd-rigid"
+        run = simulate(*arguments, time_step=STEP["nscd-rigid"], duration=DURATION)
+        assert float(np.abs(run["transducer_displacement"]).max()) > 1e-3
+        simulate_to_file(tmp_path / "run.nc", *arguments, time_step=STEP["nscd-rigid"], duration=DURATION)
+        _assert_same_file(tmp_path / "run.nc", run, tmp_path)
 
 
 @pytest.mark.parametrize("model", sorted(STEP))

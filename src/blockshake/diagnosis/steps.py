@@ -360,14 +360,13 @@ def conclude(folder, effort, files):
         caveats = no_gain(plan.campaign, [*decision.causes, *parity.findings, *described])
         measured, scores = MeasuredGain(gain=None, caveats=caveats, runs=0), None
     runs = plan.runs + (plan.further_runs if size else 0) + measured.runs
-    channels = parity.channels["channel"].values.tolist()
     judged = Judged(where(misfit), misfit.sizes["test"])
     fell = [
         f"{test} is judged until {one.body} falls, at {one.time:.2f} s" for test, one in parity.falls.items()
     ]
     caveats = [*measured.caveats, *fell]
     return conclude(
-        decision, parity.findings, channels, judged, runs, caveats, effort, size, measured, scores,
+        decision, parity.findings, parity.recorder_sensors, judged, runs, caveats, effort, size, measured, scores,
     )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 from blockshake.validation import Finite, Fraction, NotNegative, Positive, Strict
 
 AXES = ("x", "y", "z")  # order of every vector
+SIGNED_AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
 QUATERNION = ("w", "x", "y", "z")  # order of every quaternion
 Vector = tuple[Finite, Finite, Finite]
 Quaternion = tuple[Finite, Finite, Finite, Finite]
@@ -105,7 +106,7 @@ class Stopper(Strict):
 
     body: str = Field(description="the body that is stopped")
     position: Vector = Field(description="point of the body, body frame, from the centroid [m]")
-    axis: Literal["+x", "-x", "+y", "-y", "+z", "-z"] = Field(description="side on which the stop stands")
+    axis: Literal[SIGNED_AXES] = Field(description="side on which the stop stands")
     gap: NotNegative = Field(description="clearance at the start [m]")
     stiffness: NotNegative = Field(
         description="force per closure beyond the gap, 0 for a stop that is not there [N/m]"
@@ -146,6 +147,28 @@ class Accelerometer(Strict):
     axes: tuple[Literal[AXES], ...] = Field(min_length=1, description="of the body that it measures along")
 
 
+class DisplacementTransducer(Strict):
+    """A wire between points of two bodies, or a rod that the reference carries and that bears on the body's face."""
+
+    name: Name = Field(description="of its readings")
+    body: str = Field(description="the body whose motion is read")
+    position: Vector = Field(
+        description="where the wire is hooked on, or a point of the face; body frame, from the centroid [m]"
+    )
+    reference: str = Field(description="the body that carries the transducer")
+    reference_position: Vector = Field(
+        description="where the wire leaves it, or a point of the rod; frame of the reference, from its centroid [m]"
+    )
+    axis: Literal[SIGNED_AXES] | None = Field(
+        None, description="of the reference, along which the rod points to the face; none: a wire"
+    )
+
+    @property
+    def anchor(self):
+        """The end at the reference, as a point of it."""
+        return Marker(name=self.name, body=self.reference, position=self.reference_position)
+
+
 class StructureFile(Strict):
     """The whole file."""
 
@@ -163,3 +186,7 @@ class StructureFile(Strict):
     external_forces: tuple[ExternalForce, ...] = ()
     markers: tuple[Marker, ...] = ()
     accelerometers: tuple[Accelerometer, ...] = ()
+    displacement_transducers: tuple[DisplacementTransducer, ...] = Field(
+        (),
+        exclude_if=lambda given: not given,  # a structure without any keeps its digest
+    )

@@ -22,7 +22,13 @@ from blockshake.geometry.polyhedron import (
 )
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import StructureFile
-from blockshake.geometry.structure_file import check_names, friction_matrix, replace_into, unit_quaternions
+from blockshake.geometry.structure_file import (
+    check_names,
+    check_transducers,
+    friction_matrix,
+    replace_into,
+    unit_quaternions,
+)
 from blockshake.paths import file_below
 from blockshake.validation import validated
 
@@ -154,7 +160,7 @@ class Structure:
         return offset_solid(self.solids[one.shape], np.array(one.mass_offset))
 
     def carriers(self, points):
-        """Bodies of markers, accelerometers, stoppers or external forces: int64 array, shape (n_points,)."""
+        """Bodies of markers, accelerometers, stoppers and the like: int64 array, shape (n_points,)."""
         names = self.body_names
         return np.array([names.index(point.body) for point in points], dtype=np.int64)
 
@@ -213,6 +219,7 @@ def build_structure(mapping, source, folder, known=None):
     mass, inertia = _masses(file, solids)
     centroid = np.array([body.position for body in file.bodies])
     orientation = unit_quaternions(file, source)
+    check_transducers(file, orientation, source)
     offset = np.array([body.mass_offset for body in file.bodies])
     lever = np.einsum("bij,bj->bi", rotation_matrices(orientation), offset)
     angular_velocity = np.array([body.angular_velocity for body in file.bodies])

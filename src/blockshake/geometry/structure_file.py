@@ -5,6 +5,11 @@ from collections import Counter
 import numpy as np
 
 from blockshake.errors import InputError
+from blockshake.geometry.rotations import rotation_matrices
+from blockshake.geometry.schema import AXES
+
+_SHORTEST_WIRE = 1e-3  # m; a shorter one has no direction
+_BEHIND = 0.02  # m, by which a face may lie behind the point given of the rod, as blocks out of place make it
 
 
 def replace_into(mapping, key, value, source):
@@ -64,7 +69,7 @@ def _entry_of_pair(mapping, kind, named, parts):
 
 def check_names(file, source):
     """Check that names stand once and that what they point at exists, or raise `InputError`."""
-    for kind in ("bodies", "markers", "accelerometers"):
+    for kind in ("bodies", "markers", "accelerometers", "displacement_transducers"):
         for name, count in Counter(item.name for item in getattr(file, kind)).items():
             if count > 1:
                 raise InputError(source, f"{kind}.{name}", "expected every name once")
@@ -81,7 +86,7 @@ def check_names(file, source):
             raise InputError(
                 source, f"bodies.{body.name}", "expected no velocity of a driven body: it follows the motion"
             )
-    for kind in ("stoppers", "external_forces", "markers", "accelerometers"):
+    for kind in ("stoppers", "external_forces", "markers", "accelerometers", "displacement_transducers"):
         for index, item in enumerate(getattr(file, kind)):
             if item.body not in bodies:
                 name = getattr(item, "name", index)
@@ -103,6 +108,51 @@ def check_names(file, source):
             raise InputError(source, f"external_forces.{index}.body", "expected a body that is not driven")
     if file.stoppers and not any(body.driven for body in file.bodies):
         raise InputError(source, "stoppers", "expected a driven body to fix the stoppers to")
+
+
+def check_transducers(file, orientation, source):
+    """Refuse displacement transducers that read nothing, or whose name is another sensor's.
+
+    Parameters
+    ----------
+    file : StructureFile
+    orientation : float64 array, shape (n_bodies, 4)
+        Unit quaternions (w, x, y, z), body to world.
+    source : str
+
+    Raises
+    ------
+    InputError
+        A reference that is no other body of the structure; a wire without length; a rod that points away from its face.
+    """
+    names = [body.name for body in file.bodies]
+    taken = {item.name for item in file.markers}
+    taken |= {f"{item.name}-{axis}" for item in file.accelerometers for axis in item.axes}
+    turn = rotation_matrices(orientation)
+    for item in file.displacement_transducers:
+        key = f"displacement_transducers.{item.name}"
+        if item.name in taken:
+            raise InputError(source, key, "expected a name that no marker and no accelerometer channel has")
+        if item.reference not in names or item.reference == item.body:
+            raise InputError(
+                source, f"{key}.reference", f"expected another body of this structure, not '{item.reference}'"
+            )
+        body, carrier = names.index(item.body), names.index(item.reference)
+        gap = file.bodies[body].position + turn[body] @ item.position
+        gap -= file.bodies[carrier].position + turn[carrier] @ item.reference_position
+        if item.axis is None and np.linalg.norm(gap) < _SHORTEST_WIRE:
+            raise InputError(source, f"{key}.reference_position", "expected ends of the wire that lie apart")
+        if item.axis is not None and gap @ turn[carrier] @ signed_axis(item.axis) < -_BEHIND:
+            raise InputError(
+                source,
+                f"{key}.axis",
+                f"expected a rod that points to its face, which lies against {item.axis}",
+            )
+
+
+def signed_axis(name):
+    """Unit vector of a name of `SIGNED_AXES`: float64 array, shape (3,)."""
+    return np.where([axis == name[1] for axis in AXES], -1.0 if name[0] == "-" else 1.0, 0.0)
 
 
 def unit_quaternions(file, source):

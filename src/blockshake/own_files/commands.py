@@ -51,7 +51,7 @@ def add_data_commands(commands):
         command.add_argument(option.split()[0], metavar=option.split()[1], help=words)
     command.add_argument(
         "--column", action="append", default=[], metavar="READING=COLUMN",
-        help="such as block-1-face.x=LVDT3 or slab-acc-x=A1, repeatable",
+        help="such as block-1-face.x=LVDT3, slab-acc-x=A1 or wire-1=W1, repeatable",
     )  # fmt: skip
     command.add_argument("--fill-gaps", action="store_true", help="rows that the clock lacks become gaps")
     _add_layout(command)

@@ -17,8 +17,8 @@ _SLOW_GAUSSIAN = 0.25  # s, of the Gaussian that shows drifts
 _KERNEL_SUPPORT = 5.0  # standard deviations
 _LARGEST_GAP = 2  # readings that interpolation bridges
 _LARGEST_ROTATION = 0.3  # rad
-_LARGEST_MAGNIFICATION = 3.0  # noise of the sensor's point over a marker's, above which nothing is compared
-_LARGEST_UNSEEN_ARM = 0.1  # m per rad
+LARGEST_MAGNIFICATION = 3.0  # noise of the sensor's point over a marker's, above which nothing is compared
+LARGEST_UNSEEN_ARM = 0.1  # m per rad
 
 
 @dataclass(frozen=True)
@@ -75,18 +75,20 @@ def channel_pairs(structure, test, bodies, faults, accelerometer_noise):
     """
     time_acc = test["time_acc"].to_numpy()
     read = {str(name): test["accelerometer"].sel(channel=name).to_numpy() for name in test["channel"].values}
-    poses = {name: _pose(body, faults[name]) for name, body in bodies.items()}
+    poses = {name: measured_pose(body, faults[name]) for name, body in bodies.items()}
     pairs = []
     for sensor in structure.file.accelerometers:
         if sensor.body not in poses:
             continue
-        time, position, rotation = poses[sensor.body]
+        time, position, rotation, _ = poses[sensor.body]
         for axis in sensor.axes:
             name = f"{sensor.name}-{axis}"
             if name not in read or len(time) < 2:
                 continue
-            magnified, unseen = _sight(bodies[sensor.body].points, sensor.position, "xyz".index(axis))
-            if magnified > _LARGEST_MAGNIFICATION:
+            magnified, unseen = sight(
+                bodies[sensor.body].points, sensor.position, np.eye(3)["xyz".index(axis)]
+            )
+            if magnified > LARGEST_MAGNIFICATION:
                 continue
             point = position + rotation @ np.array(sensor.position, dtype=float)
             own = rotation[:, :, "xyz".index(axis)]
@@ -101,29 +103,29 @@ def channel_pairs(structure, test, bodies, faults, accelerometer_noise):
             )  # colour: 3 at a coefficient of 0.5
             pairs.append(ChannelPair(
                 name, sensor.name, time, expected, slow, _filtered(time_acc, read[name], _band, _LONG_GAUSSIAN),
-                _filtered(time_acc, read[name], _low, _SLOW_GAUSSIAN), noise, unseen > _LARGEST_UNSEEN_ARM,
+                _filtered(time_acc, read[name], _low, _SLOW_GAUSSIAN), noise, unseen > LARGEST_UNSEEN_ARM,
             ))  # fmt: skip
     return pairs
 
 
-def _sight(points, place, axis):
-    """Noise and visibility of a point's motion, as the markers give it.
+def sight(points, place, direction):
+    """Noise and visibility of a point's motion along a direction of its body, as the markers give it.
 
     Returns
     -------
     magnified : float
         Its noise over that of a marker [1].
     unseen : float
-        Its motion along the axis in a unit turn that the markers do not show [m].
+        Its motion along the direction in a unit turn that the markers do not show [m].
     """
     jacobian = rigid_jacobian(points - points.mean(axis=0))
-    row = rigid_jacobian((np.array(place, dtype=float) - points.mean(axis=0))[None])[axis]
+    row = direction @ rigid_jacobian((np.array(place, dtype=float) - points.mean(axis=0))[None])
     inverse = np.linalg.pinv(jacobian, rcond=ON_LINE)
     return np.linalg.norm(row @ inverse), np.linalg.norm(row - row @ inverse @ jacobian)
 
 
-def _pose(body, faults):
-    """Even times, position and rotation of a body; NaN where gaps are too long."""
+def measured_pose(body, faults):
+    """Even times, position and rotation of a body, NaN where gaps are too long; and whether each marker was read."""
     time, displacement = body.readings[0]
     points = body.points + faults.place
     places = body.position + points @ body.rotation.T
@@ -140,10 +142,10 @@ def _pose(body, faults):
     even = np.linspace(time[0], time[-1], len(time))
     flat = np.concatenate([pose.position, pose.rotation.reshape(-1, 9)], axis=1)
     if known.sum() < 2:
-        return even[:0], flat[:0, :3], flat[:0, 3:].reshape(-1, 3, 3)
+        return even[:0], flat[:0, :3], flat[:0, 3:].reshape(-1, 3, 3), np.empty((0, len(points)), dtype=bool)
     filled = np.stack([np.interp(even, time[known], column[known]) for column in flat.T], axis=1)
     filled[_far_from(even, time[known], time[1] - time[0])] = np.nan
-    return even, filled[:, :3], filled[:, 3:].reshape(-1, 3, 3)
+    return even, filled[:, :3], filled[:, 3:].reshape(-1, 3, 3), np.isfinite(readings).all(axis=2)
 
 
 def _far_from(even, known, step):
@@ -212,11 +214,15 @@ def _convolved(values, weights):
 def _filtered(time, values, kernel, spread):
     rate = (len(time) - 1) / (time[-1] - time[0])
     level = np.nanmedian(values)
-    smooth = _convolved(values - level, kernel(_lags(spread, rate), 0) / rate)
-    known = np.isfinite(smooth)
+    return between_readings(time, _convolved(values - level, kernel(_lags(spread, rate), 0) / rate))
+
+
+def between_readings(time, values):
+    """Callable of times: the cubic spline through readings (n_times,), NaN beside a gap and outside of the record."""
+    known = np.isfinite(values)
     if known.sum() < 4:
         return lambda times: np.full(len(times), np.nan)
-    spline = make_interp_spline(time[known], smooth[known], k=3)
+    spline = make_interp_spline(time[known], values[known], k=3)
 
     def at(times):
         found = spline(np.clip(times, time[known][0], time[known][-1]))

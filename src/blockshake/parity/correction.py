@@ -44,13 +44,26 @@ def corrected(test, name, structure, findings):
     Notes
     -----
     A marker at a wrong place is moved to where it is said to be, which needs its body's rotation: where fewer than
-    three markers are read, its reading becomes a gap.
+    three markers are read, its reading becomes a gap. An end of a displacement transducer at a wrong place stays: its
+    reading is right, of other points than the structure says.
     """
     test = test.transpose("time", "marker", "axis", ...).copy(deep=True)
     own = [finding for finding in findings if name in finding.tests]
-    order = ("range", "swap", "axes", "polarity", "drift", "gain", "place", "lag", "skew")
+    order = (
+        "range",
+        "swap",
+        "axes",
+        "polarity",
+        "slip",
+        "drift",
+        "gain",
+        "place",
+        "reference place",
+        "lag",
+        "skew",
+    )
     for finding in sorted(own, key=lambda finding: order.index(finding.quantity)):
-        if finding.quantity == "place":
+        if "place" in finding.quantity:
             continue
         _TAKE[finding.quantity](test, finding)
     places = {finding.where[0]: finding.estimate for finding in own if finding.quantity == "place"}
@@ -59,7 +72,9 @@ def corrected(test, name, structure, findings):
 
 
 def _column(test, where):
-    """Variable and selection of a marker or channel."""
+    """Variable and selection of a marker, channel or displacement transducer."""
+    if "transducer" in test.coords and where in test["transducer"].values:
+        return "transducer_displacement", {"transducer": where}
     if "channel" in test.coords and where in test["channel"].values:
         return "accelerometer", {"channel": where}
     return "marker_displacement", {"marker": where}
@@ -89,6 +104,12 @@ def _take_polarity(test, finding):
     if variable == "marker_displacement":
         place = place | {"axis": finding.where[1]}
     test[variable].loc[place] = -test[variable].loc[place]
+
+
+def _take_slip(test, finding):
+    variable, place = _column(test, finding.where[0])
+    size, time = finding.estimate
+    test[variable].loc[place] -= size * (test["time_acc"].to_numpy() > time)
 
 
 def _take_drift(test, finding):
@@ -131,6 +152,7 @@ _TAKE = {
     "swap": _take_swap,
     "axes": _take_axes,
     "polarity": _take_polarity,
+    "slip": _take_slip,
     "drift": _take_drift,
     "gain": _take_gain,
     "lag": _take_lag,

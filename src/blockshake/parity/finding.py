@@ -17,11 +17,14 @@ class Finding:
         Registry name: ``sensor-gain``, ``marker-offset``, ``sensor-drift``, ``channel-swap``, ``clock-lag`` or
         ``sensor-saturation``.
     where : tuple of str
-        Markers or channels; ``("optical clock",)`` and ``("optical frame",)`` for faults of all markers.
+        Markers, channels or displacement transducers; ``("optical clock",)`` and ``("optical frame",)`` for faults of
+        all markers.
     quantity : str
         Estimated quantity: ``gain`` (reading over truth, less 1) [1], ``place`` (where the marker is less where it is
-        said to be, body frame) [m], ``drift`` [m/s or m/s3], ``lag`` [s], ``skew`` [1], ``range`` (largest reading),
-        and without an estimate ``swap``, ``axes`` and ``polarity``.
+        said to be, body frame) [m], ``drift`` [m/s or m/s3], ``lag`` [s], ``skew`` [1], ``range`` (largest reading);
+        of a displacement transducer ``place`` of its end at the body, ``reference place`` of the other end, and
+        ``slip`` (step of the reading [m] and its time [s]); and without an estimate ``swap``, ``axes`` and
+        ``polarity``.
     estimate, covariance : float64 arrays, shapes (n,), (n, n)
         n is 3 for a vector in the inertial or body frame.
     p : float

@@ -14,12 +14,12 @@ from blockshake.parity.marker_equations import (
     columns,
     marker_equations,
 )
+from blockshake.parity.posterior import VAGUE, data_alone, posterior
 
 # What a sound marker may have; its standard deviation is half of it.
 GAIN_TOLERANCE = 2e-3
 PLACE_TOLERANCE = 2e-3  # m, along any direction; markers are mounted within 1 mm along each axis
 _CONSTANT_SPREAD = 5e-3  # m, of the first reading's own error: as good as unknown
-_VAGUE = 1e3  # times a tolerance: as good as unknown
 _SOUND_MARKERS_NEEDED = (
     2  # markers of a body that must be left without a fault, or nothing says which is at fault
 )
@@ -116,7 +116,7 @@ def check_body(body, marker_noise, level, looked_at):
             equations = body.equations(faults)
             if not named:
                 break
-            mean = _posterior(equations, _freed(body, spread, named))[0]
+            mean = posterior(equations, _freed(body, spread, named))[0]
             change = np.zeros(len(mean))
             for hypothesis in named:
                 place = _places(body, hypothesis)
@@ -156,50 +156,31 @@ def _places(body, hypothesis):
 def _freed(body, spread, named):
     spread = spread.copy()
     for hypothesis in named:
-        spread[_places(body, hypothesis)] *= _VAGUE
+        spread[_places(body, hypothesis)] *= VAGUE
     return spread
-
-
-def _weighted(equations, spread, variance):
-    return equations.normal / variance + np.diag(1.0 / spread**2), equations.right / variance
-
-
-def _posterior(equations, spread):
-    information, right = _weighted(equations, spread, equations.variance)
-    covariance = np.linalg.inv(information)
-    return covariance @ right, covariance
 
 
 def _judge(body, equations, spread, drift_tolerance, named):
     """(gain in the sum of squares less twice the parameters, chance within the tolerance, hypothesis) of each."""
-    mean, covariance = _posterior(equations, spread)
+    mean, covariance = posterior(equations, spread)
     tolerance = {GAIN: GAIN_TOLERANCE, PLACE: PLACE_TOLERANCE, DRIFT: drift_tolerance}
     judged = []
     for hypothesis in body.hypotheses:
         if hypothesis in named:
             continue
         place = _places(body, hypothesis)
-        estimate, own = _data_alone(mean[place], covariance[np.ix_(place, place)], spread[place])
+        estimate, own = data_alone(mean[place], covariance[np.ix_(place, place)], spread[place])
         tied = own + np.diag(spread[place] ** 2)
         gained = estimate @ np.linalg.solve(tied, estimate) - 2.0 * len(place)
         judged.append((gained, chance_within(estimate, own, tolerance[hypothesis[0]]), hypothesis))
     return judged
 
 
-def _data_alone(mean, covariance, spread):
-    """Estimate and covariance of a marker's parameters with their own prior made vague; the others keep theirs."""
-    information = np.linalg.inv(covariance)
-    right = information @ mean
-    vague = information - np.diag(1.0 / spread**2) + np.diag(1.0 / (_VAGUE * spread) ** 2)
-    own = np.linalg.inv(vague)
-    return own @ right, own
-
-
 def _updated(body, faults, equations, spread, named, hypothesis, finding):
     """The finding with the estimate and covariance that hold with all that is named."""
     p, rivals = finding if isinstance(finding, tuple) else (finding.p, finding.rivals)
     kind, marker, test = hypothesis
-    covariance = _posterior(equations, _freed(body, spread, named))[1]
+    covariance = posterior(equations, _freed(body, spread, named))[1]
     place = _places(body, hypothesis)
     covariance = covariance[np.ix_(place, place)]
     if kind == DRIFT:

@@ -19,13 +19,15 @@ from blockshake.parity.frame_drift import frame_drift
 from blockshake.parity.marker_equations import MarkerFaults
 from blockshake.parity.marker_faults import BodyMarkers, check_body
 from blockshake.parity.marker_swaps import unswapped
-from blockshake.parity.saturation import saturated
+from blockshake.parity.saturation import without_saturation
+from blockshake.parity.transducer_equations import held_readings
+from blockshake.parity.transducer_faults import check_transducer, hypotheses
 
 LEVEL = 0.01  # chance of any finding on a campaign of sound sensors
 _FEWEST_MARKERS = 3
 _MARKER_UNITS = {"noise": "m", "misfit": "m"}
 _CLOCK_UNITS = {"lag": "s", "lag_error": "s"}
-_CHANNEL_UNITS = {"gain": "1", "gain_error": "1"}
+_GAIN_UNITS = {"gain": "1", "gain_error": "1"}
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,8 @@ class Parity:
         ``lag(test)`` of the optical clock, with ``lag_error(test)`` [s].
     channels : xarray.Dataset
         ``gain(channel)``, reading over truth less 1, with ``gain_error(channel)`` [1].
+    transducers : xarray.Dataset
+        The same of displacement transducers; NaN where markers do not see the ends, or the bodies hardly moved apart.
     looked_at : int
         Number of hypotheses.
     falls : dict of str to Fall
@@ -52,18 +56,30 @@ class Parity:
     markers: xr.Dataset
     clock: xr.Dataset
     channels: xr.Dataset
+    transducers: xr.Dataset
     looked_at: int
     falls: dict
 
     def as_json(self):
         """As JSON-like values, NaN as null."""
+        transducers = _columns(self.transducers, "transducer")
         return {
             "findings": [finding.as_json() for finding in self.findings],
             "markers": _columns(self.markers, "marker"),
             "clock": _columns(self.clock, "test"),
             "channels": _columns(self.channels, "channel"),
+            **({"transducers": transducers} if transducers else {}),
             "looked_at": self.looked_at,
             "falls": {name: fall._asdict() for name, fall in self.falls.items()},
+        }
+
+    @property
+    def recorder_sensors(self):
+        """Kind of each sensor of the recorder by its name, ``channel`` or ``transducer``; all others are markers."""
+        return {
+            str(name): kind
+            for table, kind in ((self.channels, "channel"), (self.transducers, "transducer"))
+            for name in table[kind].values
         }
 
     @classmethod
@@ -73,7 +89,8 @@ class Parity:
             findings=tuple(map(Finding.from_json, values["findings"])),
             markers=_table(values["markers"], "marker", _MARKER_UNITS),
             clock=_table(values["clock"], "test", _CLOCK_UNITS),
-            channels=_table(values["channels"], "channel", _CHANNEL_UNITS),
+            channels=_table(values["channels"], "channel", _GAIN_UNITS),
+            transducers=_table(values.get("transducers", {}), "transducer", _GAIN_UNITS),
             looked_at=values["looked_at"],
             falls={name: Fall(**fall) for name, fall in values["falls"].items()},
         )
@@ -155,12 +172,12 @@ def check_parity(tests, structure, sensors, level=LEVEL):
 
     Notes
     -----
-    Markers are checked body by body against a rigid motion first; the accelerometers are then compared with the
-    markers as corrected.
+    Markers are checked body by body against a rigid motion first; accelerometers and displacement transducers are then
+    compared with the markers as corrected.
     """
     tests, findings = dict(tests), []
     for name, test in tests.items():
-        tests[name], found = _without_saturation(test, name, level, 2 * len(tests) * _channel_count(tests))
+        tests[name], found = without_saturation(test, name, level, 2 * len(tests) * _channel_count(tests))
         findings += found
     bodies = _bodies(structure, tests)
     looked_at = _looked_at(bodies, tests)
@@ -171,16 +188,23 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     findings += [finding for check in checks.values() for finding in check.findings]
     findings += frame_drift(structure, tests, sensors.marker_noise, level, looked_at)
     pairs = {
-        name: _pairs(structure, name, test, bodies, checks, sensors)
+        name: channel_pairs(structure, test, *_of_one_test(name, bodies, checks), sensors.accelerometer_noise)
         for name, test in tests.items()
         if "accelerometer" in test
     }
     lags, gains, found = channel_findings(pairs, sensors.accelerometer_noise, level, looked_at)
+    transducers = _transducer_checks(structure, tests, bodies, checks, lags, level, looked_at)
+    found += [finding for check in transducers.values() for finding in check.findings]
     return Parity(
         findings=tuple(findings + found),
         markers=_table(_marker_rows(bodies, checks, tests), "marker", _MARKER_UNITS),
         clock=_table(_scored_rows(lags, "lag"), "test", _CLOCK_UNITS),
-        channels=_table(_scored_rows(gains, "gain"), "channel", _CHANNEL_UNITS),
+        channels=_table(_scored_rows(gains, "gain"), "channel", _GAIN_UNITS),
+        transducers=_table(
+            {name: {key: getattr(check, key) for key in _GAIN_UNITS} for name, check in transducers.items()},
+            "transducer",
+            _GAIN_UNITS,
+        ),
         looked_at=looked_at,
         falls={},
     )
@@ -216,50 +240,45 @@ def _bodies(structure, tests):
     return bodies
 
 
-def _pairs(structure, name, test, bodies, checks, sensors):
-    """Channel pairs of one test, with the markers' faults taken out."""
+def _of_one_test(name, bodies, checks):
+    """Bodies as one test shows them, and the faults of their markers in it."""
     single, faults = {}, {}
     for key, body in bodies.items():
         place, found = body.tests.index(name), checks[key].faults
         single[key] = replace(body, tests=(name,), readings=[body.readings[place]])
         faults[key] = MarkerFaults(found.gain, found.place, found.drift[[place]])
-    return channel_pairs(structure, test, single, faults, sensors.accelerometer_noise)
+    return single, faults
 
 
-def _without_saturation(test, name, level, looked_at):
-    """Test with saturated readings as gaps, and the findings."""
-    findings = []
-    test = test.copy()
-    for variable, dimension in (("marker_displacement", "marker"), ("accelerometer", "channel")):
-        if variable not in test:
-            continue
-        time = "time" if dimension == "marker" else "time_acc"
-        values = test[variable].transpose(time, dimension, ...)
-        array = values.to_numpy().copy()
-        for index, where in enumerate(values[dimension].values):
-            columns = array[:, index] if array.ndim == 3 else array[:, [index]]
-            for column in range(columns.shape[1]):
-                at_end, p = saturated(columns[:, column])
-                if p * looked_at >= level:
-                    continue
-                largest = np.abs(columns[at_end, column]).max(keepdims=True)
-                findings.append(Finding(
-                    "sensor-saturation", (str(where),), "range", largest, np.zeros((1, 1)), p * looked_at, (name,),
-                ))  # fmt: skip
-                array[at_end, index] = np.nan
-        test[variable] = values.copy(data=array)
-    return test, findings
+def _transducer_checks(structure, tests, bodies, checks, lags, level, looked_at):
+    """`TransducerCheck` by name of every one that was read, the markers' faults taken out."""
+    held = {}
+    for name, test in tests.items():
+        if "transducer_displacement" in test:
+            for transducer in test["transducer"].values:
+                held.setdefault(str(transducer), {})
+            lag = lags[name].estimate[0] if name in lags else 0.0
+            of_test = held_readings(structure, test, *_of_one_test(name, bodies, checks), lag)
+            for transducer, one in of_test.items():
+                held[transducer][name] = one
+    return {name: check_transducer(name, one, level, looked_at) for name, one in held.items()}
 
 
 def _channel_count(tests):
-    return sum(3 * test.sizes["marker"] + test.sizes.get("channel", 0) for test in tests.values())
+    return sum(
+        3 * test.sizes["marker"] + test.sizes.get("channel", 0) + test.sizes.get("transducer", 0)
+        for test in tests.values()
+    )
 
 
 def _looked_at(bodies, tests):
-    """Hypotheses: of markers, of the optical frame, of the clock, and of channels and their pairs."""
-    channels = max(test.sizes.get("channel", 0) for test in tests.values())
+    """Hypotheses: of markers, the optical frame and the clock, of channels and their pairs, and of transducers."""
+    channels, transducers = (
+        max(test.sizes.get(name, 0) for test in tests.values()) for name in ("channel", "transducer")
+    )
     of_markers = sum(len(body.hypotheses) for body in bodies.values())
-    return of_markers + 2 + 2 * len(tests) + channels * (1 + channels + len(tests))
+    of_channels = channels * (1 + channels + len(tests)) + transducers * hypotheses(len(tests))
+    return of_markers + 2 + 2 * len(tests) + of_channels
 
 
 def _marker_rows(bodies, checks, tests):

@@ -4,6 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.parity.finding import Finding
+
 _LEVEL_WIDTH = 1e-6  # of the range: readings this near are the same
 _EQUAL_READINGS_NEEDED = 4
 
@@ -49,3 +51,44 @@ def saturated(values):
         if p < chance:
             best, chance = at_end, p
     return Saturation(best, chance)
+
+
+def without_saturation(test, name, level, looked_at):
+    """A test with saturated readings as gaps, and its findings.
+
+    Parameters
+    ----------
+    test : xarray.Dataset
+        As in a campaign.
+    name : str
+        Of the test.
+    level : float
+        Of all hypotheses together.
+    looked_at : int
+        Number of columns of all tests, times two ends.
+    """
+    findings = []
+    test = test.copy()
+    for variable, dimension in (
+        ("marker_displacement", "marker"),
+        ("accelerometer", "channel"),
+        ("transducer_displacement", "transducer"),
+    ):
+        if variable not in test:
+            continue
+        time = "time" if dimension == "marker" else "time_acc"
+        values = test[variable].transpose(time, dimension, ...)
+        array = values.to_numpy().copy()
+        for index, where in enumerate(values[dimension].values):
+            columns = array[:, index] if array.ndim == 3 else array[:, [index]]
+            for column in range(columns.shape[1]):
+                at_end, p = saturated(columns[:, column])
+                if p * looked_at >= level:
+                    continue
+                largest = np.abs(columns[at_end, column]).max(keepdims=True)
+                findings.append(Finding(
+                    "sensor-saturation", (str(where),), "range", largest, np.zeros((1, 1)), p * looked_at, (name,),
+                ))  # fmt: skip
+                array[at_end, index] = np.nan
+        test[variable] = values.copy(data=array)
+    return test, findings

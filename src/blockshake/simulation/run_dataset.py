@@ -7,6 +7,7 @@ from blockshake.dynamics.system import ENERGY_TERMS
 from blockshake.geometry.schema import AXES, QUATERNION
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.markers import marker_displacement
+from blockshake.measurement.sensors.transducers import transducer_names
 from blockshake.simulation.models import model_of
 
 
@@ -66,6 +67,17 @@ def add_accelerometers(run, structure, times, values):
     )
     run["time_acc"] = ("time_acc", times, {"units": "s", "long_name": "time since the start of the motion"})
     run["channel"] = accelerometer_channels(structure)
+
+
+def add_transducers(run, structure, times, values):
+    """Add readings ``transducer_displacement(time_acc, transducer)`` [m] to a run, at their times [s]."""
+    run["transducer_displacement"] = (
+        ("time_acc", "transducer"),
+        values,
+        {"units": "m", "long_name": "lengthening of the displacement transducer since the start"},
+    )
+    run["time_acc"] = ("time_acc", times, {"units": "s", "long_name": "time since the start of the motion"})
+    run["transducer"] = transducer_names(structure)
 
 
 def effective_parameters(structure, model, numerical):

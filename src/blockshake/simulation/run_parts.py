@@ -6,11 +6,13 @@ import numpy as np
 
 from blockshake.dynamics.system import Rows
 from blockshake.measurement.sensors.accelerometers import (
+    SKIP,
     accelerometer_channels,
     reading_times,
     readings_of,
     specific_forces,
 )
+from blockshake.measurement.sensors.transducers import transducer_lengths, transducer_names
 from blockshake.simulation.energy_residual import energy_extremes, residual_of
 from blockshake.simulation.run_dataset import run_dataset
 
@@ -32,7 +34,7 @@ def reduced(structure, rows, coarse, fine):
     dict
         ``rows``: fields of `Rows` at coarse times. ``energy``: `energy_extremes`. ``ends``: orientation, velocity and
         angular velocity at the first and the last fine time. ``force-K``: `specific_forces` of channel K between fine
-        times.
+        times. ``lengths``: `transducer_lengths` at the times of the readings.
     """
     kept = rows.at(_rows_at(rows.time, coarse))
     parts = {"rows": tuple(vars(kept).values()), "energy": (energy_extremes(rows.energy),)}
@@ -42,7 +44,10 @@ def reduced(structure, rows, coarse, fine):
     motion = states.orientation, states.velocity, states.angular_velocity
     forces = specific_forces(structure, *motion)
     ends = tuple(np.concatenate([part[:1], part[-1:]]) for part in motion)
-    return parts | {"ends": ends} | {f"force-{k}": (column,) for k, column in enumerate(forces.T)}
+    read = rows.at(_rows_at(rows.time, fine[::SKIP]))
+    lengths = transducer_lengths(structure, read.position, read.orientation)
+    forces = {f"force-{k}": (column,) for k, column in enumerate(forces.T)}
+    return parts | forces | {"ends": ends, "lengths": (lengths,)}
 
 
 def _rows_at(times, wanted):
@@ -59,7 +64,7 @@ class RunParts:
 
     def __init__(self, structure, coarse, fine, kept, trajectory):
         self.structure, self._coarse, self._fine, self._kept = structure, coarse, fine, kept
-        self.channels = accelerometer_channels(structure)
+        self.channels, self.transducers = accelerometer_channels(structure), transducer_names(structure)
         self._joints = trajectory.joints
         self._last = reduced(structure, trajectory, coarse, fine)
 
@@ -93,7 +98,7 @@ class RunParts:
         return dataclasses.replace(rows, joints=self._joints, joint_force=force)
 
     def reading_times(self):
-        """Times of the accelerometers' readings [s]; empty without any."""
+        """Times of the readings of accelerometers and transducers [s]; empty without any."""
         return reading_times(self._fine) if self._fine.size else self._fine
 
     def readings(self):
@@ -103,6 +108,17 @@ class RunParts:
             smooth = readings_of(self._forces(channel)[:, None])[:, 0]
             readings[: len(smooth)] = smooth
             yield readings
+
+    def lengthenings(self):
+        """Yield the readings of all transducers since the start, which follow each other in time [m]."""
+        start, done = None, 0
+        for part in self._read("lengths"):
+            (lengths,) = part["lengths"]
+            if len(lengths):
+                start = lengths[:1] if start is None else start
+                done += len(lengths)
+                yield lengths - start
+        yield np.full((len(self.reading_times()) - done, len(self.transducers)), np.nan)
 
     def _forces(self, channel):
         """Specific forces of a channel between all fine times that the run reached, float64 (n_intervals,) [m/s2]."""

@@ -14,12 +14,14 @@ from blockshake.errors import InputError
 from blockshake.geometry.overlap import penetration_depth
 from blockshake.geometry.rotations import rotate_into
 from blockshake.geometry.structure import START_TOLERANCE, Structure, load_structure
-from blockshake.measurement.sensors.accelerometers import FINE_RATE, accelerometer_readings
+from blockshake.measurement.sensors.accelerometers import FINE_RATE, SKIP, accelerometer_readings
 from blockshake.measurement.sensors.markers import RATE
+from blockshake.measurement.sensors.transducers import transducer_displacement
 from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.models import model_of, split_parameters
 from blockshake.simulation.run_dataset import (
     add_accelerometers,
+    add_transducers,
     effective_parameters,
     plain_attribute,
     run_dataset,
@@ -64,7 +66,7 @@ def simulate(
     output_rate : float, optional
         [Hz]; the optical system's by default.
     accelerometers : bool
-        Compute the accelerometer channels, which takes a fine record.
+        Compute the accelerometer channels, which takes a fine record, and the displacement transducers beside them.
     checkpoint : path, optional
         Where a long run is saved every minute, and from where it goes on, bit-identical, if it was cut short.
 
@@ -85,8 +87,14 @@ def simulate(
     if of.fine.size:
         fine = trajectory.at(np.searchsorted(times, of.fine))
         states = fine.orientation, fine.velocity, fine.angular_velocity
-        readings = accelerometer_readings(of.structure, fine.time, *states)
-        add_accelerometers(run, of.structure, *readings[:2])
+        file = of.structure.file
+        if file.accelerometers:
+            readings = accelerometer_readings(of.structure, fine.time, *states)
+            add_accelerometers(run, of.structure, *readings[:2])
+        if file.displacement_transducers:
+            read = fine.at(slice(None, None, SKIP))
+            lengthened = transducer_displacement(of.structure, read.position, read.orientation)
+            add_transducers(run, of.structure, read.time, lengthened)
     run.attrs = of.attributes(trajectory, energy_residual(trajectory.energy))
     return run
 
@@ -194,7 +202,7 @@ def _set_up(structure, motion, model, parameters, time_step, duration, output_ra
         )
     coarse = np.arange(int(np.floor(duration * output_rate + 1e-9)) + 1) / output_rate
     fine = np.empty(0)
-    if accelerometers and built.file.accelerometers:
+    if accelerometers and (built.file.accelerometers or built.file.displacement_transducers):
         fine = np.arange(int(np.floor(duration * FINE_RATE + 1e-9)) + 1) / FINE_RATE
     return _SetUp(built, motion, model, numerical, time_step, output_rate, coarse, fine)
 

@@ -4,7 +4,7 @@ import netCDF4
 import numpy as np
 
 from blockshake.files import replacing
-from blockshake.simulation.run_dataset import add_accelerometers
+from blockshake.simulation.run_dataset import add_accelerometers, add_transducers
 
 _CHUNK = 2**12  # times that are compressed together
 _CACHE = 2**22  # bytes of a variable that wait for more to be compressed with
@@ -27,8 +27,10 @@ def write_run(path, parts, attributes):
     """
     pieces, times = parts.histories(), parts.reading_times()
     empty = next(pieces).assign_attrs(attributes)
-    if times.size:
+    if parts.channels:
         add_accelerometers(empty, parts.structure, times[:0], np.empty((0, len(parts.channels))))
+    if parts.transducers:
+        add_transducers(empty, parts.structure, times[:0], np.empty((0, len(parts.transducers))))
     grows = [name for name in ("time", "time_acc") if name in empty.dims]
     encoding = _encoding(empty, grows)
     with replacing(path) as temporary:
@@ -47,6 +49,11 @@ def write_run(path, parts, attributes):
                 file["time_acc"][: len(times)] = times
                 for channel, readings in enumerate(parts.readings()):
                     file["accelerometer"][: len(times), channel] = readings
+            if parts.transducers:
+                done = 0
+                for lengthened in parts.lengthenings():
+                    file["transducer_displacement"][done : done + len(lengthened)] = lengthened
+                    done += len(lengthened)
 
 
 def _encoding(empty, grows):

@@ -69,6 +69,8 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
     entries = [*({**entry, "role": "fit"} for entry in gentle), *with_roles(tests)]
     noise = settings.instruments
     sensors = {"marker_noise": noise.marker_noise, "accelerometer_noise": noise.accelerometer_noise}
+    if loaded.file.displacement_transducers:
+        sensors["transducer_noise"] = noise.transducer_noise
     write_campaign_file(folder, _HEADER, settings.name, called_structure, sensors, entries)
     write_json(
         truth / "truth.json",

@@ -17,7 +17,9 @@ def _finding(effect="sensor-gain", where=("block-1-face",), quantity="gain", est
 
 
 def _verdict(decision, findings=(), effort="standard"):
-    return conclude(decision, findings, ["block-1-acc-x"], JUDGED, 100, [], effort)
+    return conclude(
+        decision, findings, {"block-1-acc-x": "channel", "wire-1": "transducer"}, JUDGED, 100, [], effort
+    )
 
 
 def test_nothing_found_says_what_would_have_been_seen():
@@ -50,10 +52,11 @@ def test_a_sensor_fault_alone_is_named_with_its_marker():
     )
 
 
-def test_a_channel_is_not_called_a_marker():
-    verdict = _verdict(made_up_decision(), [_finding(where=("block-1-acc-x",))])
-    assert verdict.location["sensor-gain"] == {"channel": "block-1-acc-x"}
-    assert verdict.misfit.where == "readings of block-1-acc-x, against the other sensors"
+@pytest.mark.parametrize(("sensor", "kind"), [("block-1-acc-x", "channel"), ("wire-1", "transducer")])
+def test_a_sensor_of_the_recorder_is_not_called_a_marker(sensor, kind):
+    verdict = _verdict(made_up_decision(), [_finding(where=(sensor,))])
+    assert verdict.location["sensor-gain"] == {kind: sensor}
+    assert verdict.misfit.where == f"readings of {sensor}, against the other sensors"
 
 
 def test_the_size_from_all_draws_with_the_cause_takes_the_place_of_the_decision_s():
@@ -61,7 +64,7 @@ def test_the_size_from_all_draws_with_the_cause_takes_the_place_of_the_decision_
     size = CauseSize(
         key="table-pitch", sizes=(), posterior=(), error=0.1, draws=18, parameters={"coefficient": refined}
     )
-    verdict = conclude(made_up_decision("named", ["table-pitch"]), (), (), JUDGED, 100, [], "standard", size)
+    verdict = conclude(made_up_decision("named", ["table-pitch"]), (), {}, JUDGED, 100, [], "standard", size)
     assert verdict.parameters["table-pitch"]["coefficient"].lower == 4e-4
 
 

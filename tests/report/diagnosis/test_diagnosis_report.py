@@ -200,6 +200,8 @@ def test_tests_sensors_and_files_are_accounted_for(pages, found):
         assert f"{name} alkion 1 sealed sealed: read for the gain alone" in text
     assert "214 hypotheses on" in text
     assert "Not checked against others" in text
+    assert "whose gain the markers of their bodies tell: wire-1." in text
+    assert "these hardly moved apart: wire-2." in text
     assert found["named"].frozen["digest"] in text
     assert f"decision.json {found['named'].frozen['digest']}" in text
     assert not [path for path in found["named"].digests if any(name in path for name in SEALED)]

@@ -43,6 +43,17 @@ def test_curves_are_those_of_the_run_in_printed_units(figure, leaning_run):
     assert any("4.3e-02" in text.get_text() for axes in figure.axes for text in axes.texts)
 
 
+def test_displacement_transducers_have_a_panel_over_their_own_times(leaning_run):
+    run, structure = leaning_run
+    read = np.array([[0.0, 0.0], [1e-3, -2e-3], [np.nan, np.nan]])
+    read_run = run.assign(transducer_displacement=(("time_acc", "transducer"), read, {"units": "m"}))
+    read_run = read_run.assign_coords(time_acc=[0.0, 0.1, 0.2], transducer=["wire", "rod"])
+    wire, rod = panel(plot_run(read_run, run_histories(read_run, structure)), "transducers\n[mm]").lines
+    assert [wire.get_label(), rod.get_label()] == ["wire", "rod"]
+    np.testing.assert_allclose(wire.get_xydata(), [[0.0, 0.0], [0.1, 1.0]])
+    np.testing.assert_allclose(rod.get_ydata(), [0.0, -2.0])
+
+
 def test_a_peak_of_an_impact_is_cut_off_and_said(leaning_run):
     run, structure = leaning_run
     struck = run.copy(deep=True)

@@ -59,6 +59,20 @@ def test_accelerometers_have_times_of_their_own(leaning_run, tmp_path):
     assert table["acceleration_m_s2"].tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
 
 
+def test_displacement_transducers_have_those_times_and_no_row_after_the_end(leaning_run, tmp_path):
+    run, structure = leaning_run
+    read = np.array([[0.0, 0.0], [1e-3, -2e-3], [np.nan, np.nan]])
+    run = run.assign(transducer_displacement=(("time_acc", "transducer"), read, {"units": "m"}))
+    run = run.assign_coords(time_acc=[0.0, 0.1, 0.2], transducer=["wire", "rod"])
+    *_, file = write_tables(tmp_path / "run.csv", run, run_histories(run, structure))
+    table = pd.read_csv(file)
+    assert (file.name, table.columns.tolist()) == (
+        "run-transducers.csv",
+        ["time_s", "transducer", "displacement_m"],
+    )
+    assert table["displacement_m"].tolist() == [0.0, 0.0, 1e-3, -2e-3]
+
+
 def test_a_suffix_that_is_no_format_is_refused(leaning_run, tmp_path):
     run, structure = leaning_run
     with pytest.raises(InputError, match=r"expected one of the suffixes \.csv"):

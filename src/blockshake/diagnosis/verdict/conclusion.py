@@ -27,9 +27,7 @@ def no_gain(campaign, causes):
     return ["no gain was measured: an extension is not simulated at quick effort"]
 
 
-def conclude(
-    decision, findings, channels, judged, runs, caveats, effort, size=None, measured=None, scores=None
-):
+def conclude(decision, findings, kinds, judged, runs, caveats, effort, size=None, measured=None, scores=None):
     """`Verdict` of a campaign.
 
     Parameters
@@ -37,8 +35,8 @@ def conclude(
     decision : Decision
     findings : sequence of Finding
         Sensor faults, which were taken out before anything was simulated.
-    channels : sequence of str
-        Names of the accelerometer channels; any other sensor with a fault is a marker.
+    kinds : dict of str to str
+        ``channel`` or ``transducer`` by the name of the recorder's sensor; any other sensor with a fault is a marker.
     judged : Judged
         Largest misfit and number of tests.
     runs : int
@@ -59,7 +57,7 @@ def conclude(
     fault stands among the caveats. Its entry in
     ``probabilities`` is 1 less the parity check's p: a score, neither a conformal p value nor a probability.
     """
-    sensors = sensor_causes(findings, channels)
+    sensors = sensor_causes(findings, kinds)
     kind, causes = decision.decision, [*sensors, *decision.causes]
     gain, law_gain = (measured.gain, measured.laws) if measured else (None, None)
     caveats = [*caveats]

@@ -19,8 +19,8 @@ class SensorCause(NamedTuple):
     p: float
 
 
-def sensor_causes(findings, channels):
-    """`SensorCause` by registry name, from findings and the names of the accelerometer channels.
+def sensor_causes(findings, kinds):
+    """`SensorCause` by registry name, from findings and the kinds of the recorder's sensors by name.
 
     Of several findings of one name the one with the smallest chance stands for all.
     """
@@ -29,15 +29,15 @@ def sensor_causes(findings, channels):
         if finding.effect in causes:
             continue
         causes[finding.effect] = SensorCause(
-            _estimates(finding), _location(finding.where[0], channels), finding.p
+            _estimates(finding), _location(finding.where[0], kinds), finding.p
         )
     return causes
 
 
-def _location(sensor, channels):
+def _location(sensor, kinds):
     if sensor.startswith("optical "):
         return {}
-    return {"channel" if sensor in channels else "marker": sensor}
+    return {kinds.get(sensor, "marker"): sensor}
 
 
 def _estimates(finding):

@@ -11,7 +11,7 @@ from blockshake.errors import InputError
 from blockshake.files import load_yaml, shipped_names
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.recorded_test import read_test
-from blockshake.measurement.sensors import accelerometers, markers
+from blockshake.measurement.sensors import accelerometers, markers, transducers
 from blockshake.paths import check_plain, file_below
 from blockshake.validation import Finite, NotNegative, Strict, validated
 
@@ -31,6 +31,11 @@ class Sensors(Strict):
     marker_noise: NotNegative = Field(markers.NOISE, description="of a marker's reading [m]")
     accelerometer_noise: NotNegative = Field(
         accelerometers.NOISE, description="of a channel's reading [m/s2]"
+    )
+    transducer_noise: NotNegative = Field(
+        transducers.NOISE,
+        description="of a displacement transducer's reading [m]",
+        exclude_if=lambda noise: noise == transducers.NOISE,  # sensors without it keep their digest
     )
 
 

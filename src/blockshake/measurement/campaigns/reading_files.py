@@ -19,6 +19,7 @@ _VARIABLES = {
     "marker_displacement": (("time", "marker", "axis"), _METRES),
     "marker_initial_position": (("marker", "axis"), _METRES),
     "accelerometer": (("time_acc", "channel"), _ACCELERATION),
+    "transducer_displacement": (("time_acc", "transducer"), _METRES),
     "table_displacement": (("time",), _METRES),
     "initial_offset": (("body", "axis"), _METRES),
     "initial_rotation": (("body", "axis"), _RADIANS),
@@ -94,8 +95,14 @@ def _check_numbers(variable, path, units):
         raise InputError(path, f"{variable.name}.units", f"expected {units[0]}, not '{stated}'")
 
 
-def read_tables(path):
+def read_tables(path, transducers):
     """The same from ``NAME.csv`` and, where it lies beside, ``NAME-acc.csv``.
+
+    Parameters
+    ----------
+    path : Path
+    transducers : sequence of str
+        Columns of ``NAME-acc.csv`` that are readings of displacement transducers [m]; others are channels [m/s2].
 
     Raises
     ------
@@ -116,11 +123,16 @@ def read_tables(path):
     coordinates = {"time": time, "marker": markers, "axis": list(AXES)}
     wanted = f"{path.stem}-acc.csv".lower()
     for beside in sorted(item for item in path.parent.iterdir() if item.name.lower() == wanted)[:1]:
-        time_acc, channels = _table(file_below(path.parent, beside.name, path, "accelerometers"))
-        variables["accelerometer"] = (
-            ("time_acc", "channel"), np.column_stack(list(channels.values())), {"units": "m s-2"},
-        )  # fmt: skip
-        coordinates |= {"time_acc": time_acc, "channel": list(channels)}
+        time_acc, read = _table(file_below(path.parent, beside.name, path, "accelerometers"))
+        coordinates["time_acc"] = time_acc
+        for variable, dimension, own, unit in (
+            ("accelerometer", "channel", [name for name in read if name not in transducers], "m s-2"),
+            ("transducer_displacement", "transducer", [name for name in read if name in transducers], "m"),
+        ):
+            if own:
+                values = np.column_stack([read[name] for name in own])
+                variables[variable] = (("time_acc", dimension), values, {"units": unit})
+                coordinates[dimension] = own
     return xr.Dataset(variables, coordinates)
 
 

@@ -9,6 +9,7 @@ from blockshake.geometry.schema import AXES
 from blockshake.measurement.campaigns.initial_places import check_initial_places
 from blockshake.measurement.campaigns.reading_files import read_netcdf, read_tables
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
+from blockshake.measurement.sensors.transducers import transducer_names
 
 _FARTHEST = 20.0  # m; no table moves so far, a file in millimetres does
 # Readings a second. Shaking has 0.5 to 50 Hz, most of it below 10 Hz, which takes 20 readings a second. 10 kHz are
@@ -21,6 +22,10 @@ _FIRST = (
 _START_LIMIT = 0.01  # m; far beyond noise, far less than a marker's distance from the origin
 _START_NOISE = 5.0  # times the channel's own noise
 _OVERLAP = 0.5  # of the shorter record, that both clocks must share
+_ON_THE_RECORDER = {
+    "accelerometer": ("channel", "accelerometer channel", accelerometer_channels),
+    "transducer_displacement": ("transducer", "displacement transducer", transducer_names),
+}
 
 
 def read_test(path, structure):
@@ -30,10 +35,10 @@ def read_test(path, structure):
     ----------
     path : str or path
         A netCDF file, or ``NAME.csv`` with columns ``time_s`` and ``MARKER.AXIS`` [m]; beside it may lie
-        ``NAME-acc.csv`` with ``time_s`` and one column a channel [m/s2]. An empty cell is a gap. A direction without a
-        column, or without any reading in a netCDF file, was not measured.
+        ``NAME-acc.csv`` with ``time_s`` and one column a channel [m/s2] or displacement transducer [m]. An empty cell
+        is a gap. A direction without a column, or without any reading in a netCDF file, was not measured.
     structure : Structure
-        Whose markers and accelerometers are read.
+        Whose markers, accelerometers and displacement transducers are read.
 
     Returns
     -------
@@ -44,14 +49,18 @@ def read_test(path, structure):
     Raises
     ------
     InputError
-        Not readable; times that do not increase or are not in seconds; unknown or doubled markers, channels or
-        bodies; no marker on the driven body that measures x; a marker or channel without any reading; axes that are
+        Not readable; times that do not increase or are not in seconds; unknown or doubled markers, channels,
+        transducers or bodies; no marker on the driven body that measures x; a sensor without any reading; axes that are
         swapped; another unit;
         readings that are infinite or not since the first.
     """
     path = Path(path)
     return checked_test(
-        read_tables(path) if path.suffix.lower() == ".csv" else read_netcdf(path), structure, path
+        read_tables(path, transducer_names(structure))
+        if path.suffix.lower() == ".csv"
+        else read_netcdf(path),
+        structure,
+        path,
     )
 
 
@@ -117,18 +126,20 @@ def _check_markers(test, structure, path):
 
 
 def _check_channels(test, structure, path):
-    """Accelerometer channels are the structure's, once each, and on a clock that runs beside the markers'."""
-    if "accelerometer" not in test:
+    """Channels and transducers are the structure's, once each, and on a clock that runs beside the markers'."""
+    for variable, (dimension, words, known_in) in _ON_THE_RECORDER.items():
+        if variable not in test:
+            continue
+        known, read = known_in(structure), [str(name) for name in test[dimension].values]
+        for name in read:
+            if name not in known:
+                raise InputError(
+                    path, name, f"expected {words}s of the structure: {', '.join(known) or 'none'}"
+                )
+            if read.count(name) > 1:
+                raise InputError(path, name, f"expected every {words} once")
+    if "time_acc" not in test.coords:
         return
-    known = accelerometer_channels(structure)
-    read = [str(name) for name in test["channel"].values]
-    for name in read:
-        if name not in known:
-            raise InputError(
-                path, name, f"expected accelerometer channels of the structure: {', '.join(known) or 'none'}"
-            )
-        if read.count(name) > 1:
-            raise InputError(path, name, "expected every accelerometer channel once")
     clocks = [(time[0], time[-1]) for time in (test["time"].to_numpy(), test["time_acc"].to_numpy())]
     shared = min(end for _, end in clocks) - max(begin for begin, _ in clocks)
     if shared < _OVERLAP * min(end - begin for begin, end in clocks):
@@ -150,36 +161,41 @@ def _check_readings(test, path):
         raise InputError(
             path, str(displacement["marker"].values[np.argmax(silent)]), "expected readings; all are missing"
         )
-    if (
-        "accelerometer" in test
-        and (silent := test["accelerometer"].isnull().all("time_acc").to_numpy()).any()
-    ):
-        raise InputError(
-            path, str(test["channel"].values[np.argmax(silent)]), "expected readings; all are missing"
-        )
-    farthest = float(np.abs(displacement).max())
-    if farthest > _FARTHEST:
-        raise InputError(
-            path,
-            "marker_displacement",
-            f"expected metres; a displacement of {farthest:g} looks like millimetres",
-        )
+    for variable, (dimension, _, _) in _ON_THE_RECORDER.items():
+        if variable in test and (silent := test[variable].isnull().all("time_acc").to_numpy()).any():
+            raise InputError(
+                path, str(test[dimension].values[np.argmax(silent)]), "expected readings; all are missing"
+            )
+    for variable in ("marker_displacement", "transducer_displacement"):
+        farthest = float(np.abs(test[variable]).max()) if variable in test else 0.0
+        if farthest > _FARTHEST:
+            raise InputError(
+                path,
+                variable,
+                f"expected metres; a displacement of {farthest:g} looks like millimetres",
+            )
 
 
 def _check_start(test, path):
     """Displacements count from the first reading; channels whose first readings are lost are left out."""
-    time = test["time"].to_numpy()
-    readings = test["marker_displacement"].to_numpy()[time <= time[0] + _START]
-    for marker, name in enumerate(test["marker"].values):
-        for axis in range(3):
-            channel = readings[np.isfinite(readings[:, marker, axis]), marker, axis]
-            if len(channel) < 2:
-                continue
-            start = float(np.median(channel[:_FIRST]))
-            noise = np.sqrt(np.mean(np.diff(channel) ** 2) / 2.0)  # large where the unit is another
-            if abs(start) > max(_START_LIMIT, _START_NOISE * noise):
-                raise InputError(
-                    path,
-                    f"{name}.{AXES[axis]}",
-                    f"expected displacements since the first reading; it starts at {start:.3g} m",
-                )
+    time, readings = test["time"].to_numpy(), test["marker_displacement"].to_numpy()
+    columns = [
+        (f"{name}.{AXES[axis]}", time, readings[:, marker, axis])
+        for marker, name in enumerate(test["marker"].values)
+        for axis in range(3)
+    ]
+    if "transducer_displacement" in test:
+        time, readings = test["time_acc"].to_numpy(), test["transducer_displacement"]
+        columns += [
+            (str(name), time, readings.sel(transducer=name).to_numpy()) for name in test["transducer"].values
+        ]
+    for name, time, channel in columns:
+        channel = channel[(time <= time[0] + _START) & np.isfinite(channel)]
+        if len(channel) < 2:
+            continue
+        start = float(np.median(channel[:_FIRST]))
+        noise = np.sqrt(np.mean(np.diff(channel) ** 2) / 2.0)  # large where the unit is another
+        if abs(start) > max(_START_LIMIT, _START_NOISE * noise):
+            raise InputError(
+                path, name, f"expected displacements since the first reading; it starts at {start:.3g} m"
+            )

@@ -16,13 +16,14 @@ from blockshake.measurement.checks.carried_blocks import carried_remarks
 from blockshake.measurement.checks.quiet_noise import (
     accelerometer_noise,
     accelerometer_remarks,
-    check_marker_unit,
+    check_unit,
+    displacement_remarks,
     marker_noise,
-    marker_remarks,
 )
 from blockshake.measurement.checks.slab_accelerometer import clock_remarks
 from blockshake.measurement.motion.fall import find_fall
 from blockshake.measurement.sensors.markers import directions_read, marker_bodies, unread_directions
+from blockshake.measurement.sensors.transducers import transducer_names
 
 _QUIET = 0.5  # s at most that are taken as the quiet start
 _QUIET_PART = 0.02  # of the commanded peak displacement: the record is quiet until the command reaches it
@@ -53,10 +54,17 @@ def campaign_lines(folder):
         f"campaign {campaign.name} on {campaign.structure}: {len(campaign.tests)} tests; stated noise of markers "
         f"{campaign.sensors.marker_noise:g} m, of accelerometers {campaign.sensors.accelerometer_noise:g} m/s2"
     ]
+    if structure.file.displacement_transducers:
+        lines[0] += f", of displacement transducers {campaign.sensors.transducer_noise:g} m"
     remarks, read = [], set()
     for entry in campaign.tests.values():
         test = load_test(campaign, entry.name)
-        read.update(str(name) for name in test["marker"].values)
+        read.update(
+            str(name)
+            for kind in ("marker", "transducer")
+            if kind in test.coords
+            for name in test[kind].values
+        )
         described = _Described(campaign, structure, entry, test)
         lines.append(f"  {entry.name} ({entry.role}): {', '.join(described.facts)}")
         remarks += [f"  {entry.name}: {remark}" for remark in described.remarks]
@@ -68,6 +76,9 @@ def campaign_lines(folder):
     for marker in structure.file.markers:
         if marker.name not in read:
             remarks.append(f"  marker {marker.name} of the structure is in no test")
+    for name in transducer_names(structure):
+        if name not in read:
+            remarks.append(f"  displacement transducer {name} of the structure is in no test")
     return lines + (["remarks:", *remarks] if remarks else ["no inconsistency found"])
 
 
@@ -108,6 +119,12 @@ class _Described:
             self.facts.append(f"{test.sizes['channel']} accelerometer channels at {rate_acc:.4g} Hz")
         else:
             self.facts.append("no accelerometers")
+        if "transducer_displacement" in test:
+            read, clock = test["transducer_displacement"], test["time_acc"].to_numpy()
+            self.facts.append(
+                f"{read.sizes['transducer']} displacement transducers at {1.0 / np.median(np.diff(clock)):.4g} Hz with "
+                f"{100.0 * float(read.isnull().mean()):.2g} % gaps"
+            )
         if np.ptp(np.diff(time)) > 0.01 * np.median(np.diff(time)):
             self.remarks.append("the marker times are not even")
 
@@ -130,17 +147,25 @@ class _Described:
         quiet = self.time < quiet_end
         noise = marker_noise(self.readings[quiet])
         if np.isfinite(noise).any():
-            check_marker_unit(names, noise, stated, self.path)
+            check_unit(names, noise, stated, self.path)
             usual = np.sqrt(np.nanmean(noise**2))
             self.facts.append(
                 f"marker noise {1e3 * usual:.3g} mm in the quiet {1e3 * (quiet_end - self.time[0]):.3g} ms"
             )
-            self.remarks += marker_remarks(names, noise, stated)
+            self.remarks += displacement_remarks("marker", names, noise, stated)
             self._hold_start(quiet)
         else:
             self.facts.append("no quiet start to find the noise in")
+        if "time_acc" not in self.test.coords:
+            return
+        quiet = (self.test["time_acc"] >= self.time[0]) & (self.test["time_acc"] < quiet_end)
+        if "transducer_displacement" in self.test:
+            read = self.test["transducer_displacement"].transpose("time_acc", "transducer")
+            names, stated = read["transducer"].values, self.sensors.transducer_noise
+            noise = marker_noise(read.to_numpy()[quiet.to_numpy(), :, None])
+            check_unit(names, noise, stated, self.path)
+            self.remarks += displacement_remarks("displacement transducer", names, noise, stated)
         if "accelerometer" in self.test:
-            quiet = (self.test["time_acc"] >= self.time[0]) & (self.test["time_acc"] < quiet_end)
             fast, whole = accelerometer_noise(self.test["accelerometer"].to_numpy()[quiet.to_numpy()])
             if np.isfinite(fast).any():
                 self.facts.append(f"accelerometer noise {np.nanmedian(fast):.3g} m/s2")

@@ -18,7 +18,7 @@ def marker_noise(readings):
     """Standard deviation of each marker's readings [m], (n_markers,), from the differences of neighbours.
 
     No slow motion enters. ``readings`` (n_times, n_markers, 3) of the quiet start [m], gaps are NaN; NaN where there
-    are too few.
+    are too few. Displacement transducers read one direction: (n_times, n_transducers, 1).
     """
     steps = np.diff(readings, axis=0)
     known = np.isfinite(steps)
@@ -28,8 +28,8 @@ def marker_noise(readings):
         return np.where(count >= _FEWEST, np.sqrt(total.sum(axis=(0, 2)) / count / 2.0), np.nan)
 
 
-def check_marker_unit(names, noise, stated, path):
-    """Refuse markers with the noise of readings in millimetres, the only trace of them where nothing moves.
+def check_unit(names, noise, stated, path):
+    """Refuse markers and transducers with the noise of readings in millimetres, the only trace where nothing moves.
 
     Raises
     ------
@@ -45,10 +45,10 @@ def check_marker_unit(names, noise, stated, path):
             )
 
 
-def marker_remarks(names, noise, stated):
-    """Remarks on markers whose noise is beyond twice, or below half, the stated one."""
+def displacement_remarks(what, names, noise, stated):
+    """Remarks on markers or displacement transducers whose noise is beyond twice, or below half, the stated one."""
     wrong = (noise > _FACTOR * stated) | (noise < stated / _FACTOR)
-    return _remark("marker", names, noise, wrong, 1e3, "mm", stated)
+    return _remark(what, names, noise, wrong, 1e3, "mm", stated)
 
 
 def accelerometer_noise(readings):

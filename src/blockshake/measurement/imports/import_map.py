@@ -33,7 +33,8 @@ class ImportedTest(MeasuredTest):
 
     file: str = Field(description="text file or workbook, FILE#SHEET of one with several sheets")
     accelerometers: str | None = Field(
-        None, description="the same of the accelerometers, where they are in another file or sheet"
+        None,
+        description="the same of accelerometers and displacement transducers, where they are in another file or sheet",
     )
 
 
@@ -51,7 +52,8 @@ class ImportMap(Strict):
     )
     columns: dict[str, ColumnEntry] = Field(
         min_length=1,
-        description="by MARKER.x and the like, or by accelerometer channel: a column's name, or an entry",
+        description="by MARKER.x and the like, accelerometer channel or displacement transducer: a column's name, or "
+        "an entry",
     )
     rest: NotNegative = Field(
         0.0,

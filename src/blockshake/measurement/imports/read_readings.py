@@ -6,6 +6,7 @@ import xarray as xr
 from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
+from blockshake.measurement.sensors.transducers import transducer_names
 from blockshake.tables.table_file import read_table
 from blockshake.tables.units import unit_size
 
@@ -20,7 +21,7 @@ def read_readings(test, asked, structure, where):
     test : ImportedTest
     asked : ImportMap
     structure : Structure
-        Whose accelerometer channels are told from markers.
+        Whose accelerometer channels and displacement transducers are told from markers.
     where : str
         Map that an error names.
 
@@ -35,7 +36,8 @@ def read_readings(test, asked, structure, where):
         A column that is missing or holds text, an unknown unit, times that go back, a clock with gaps.
     """
     channels = [name for name in asked.columns if name in accelerometer_channels(structure)]
-    markers = [name for name in asked.columns if name not in channels]
+    transducers = [name for name in asked.columns if name in transducer_names(structure)]
+    markers = [name for name in asked.columns if name not in (*channels, *transducers)]
     if not markers:
         raise InputError(where, "columns", "expected a column of a marker, MARKER.x")
     time, readings = _readings(test.file, markers, asked, "displacement", where)
@@ -45,18 +47,26 @@ def read_readings(test, asked, structure, where):
         name, _, axis = key.rpartition(".")
         if axis not in AXES or not name:
             raise InputError(
-                where, f"columns.{key}", "expected MARKER.x, MARKER.y, MARKER.z or an accelerometer channel"
+                where,
+                f"columns.{key}",
+                "expected MARKER.x, MARKER.y, MARKER.z, an accelerometer channel or a displacement transducer",
             )
         values[:, names.index(name), AXES.index(axis)] = column - _rest(
             time, column, asked.rest, test.file, key
         )
     variables = {"marker_displacement": (("time", "marker", "axis"), values, {"units": "m"})}
     coordinates = {"time": ("time", time, {"units": "s"}), "marker": names, "axis": list(AXES)}
+    source = test.accelerometers or test.file
     if channels:
-        source = test.accelerometers or test.file
         time_acc, read = _readings(source, channels, asked, "acceleration", where)
         variables["accelerometer"] = (("time_acc", "channel"), read, {"units": "m s-2"})
         coordinates |= {"time_acc": ("time_acc", time_acc, {"units": "s"}), "channel": channels}
+    if transducers:
+        time_acc, read = _readings(source, transducers, asked, "displacement", where)
+        for column, key in zip(read.T, transducers, strict=True):
+            column -= _rest(time_acc, column, asked.rest, source, key)
+        variables["transducer_displacement"] = (("time_acc", "transducer"), read, {"units": "m"})
+        coordinates |= {"time_acc": ("time_acc", time_acc, {"units": "s"}), "transducer": transducers}
     return xr.Dataset(variables, coordinates)
 
 

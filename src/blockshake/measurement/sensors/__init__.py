@@ -1,1 +1,1 @@
-"""Markers and accelerometers: what they read of a motion, and their noise."""
+"""Markers, accelerometers and displacement transducers: what they read of a motion, and their noise."""

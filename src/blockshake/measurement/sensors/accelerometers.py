@@ -10,7 +10,7 @@ FINE_RATE = 4.0 * RATE  # Hz, of the states they are made from
 CUTOFF = 50.0  # Hz, where each of the two passes is 3 dB down
 ORDER = 4
 
-_SKIP = round(FINE_RATE / RATE)
+SKIP = round(FINE_RATE / RATE)  # states from one reading to the next
 _PAD = round(0.25 * FINE_RATE)  # a quarter second: the filter has forgotten its start after 0.1 s
 
 
@@ -70,7 +70,7 @@ def accelerometer_readings(structure, time, orientation, velocity, angular_veloc
 
 def reading_times(time):
     """Times of the readings from those of the states, as of `accelerometer_readings` [s]."""
-    return time[0] + np.arange((len(time) - 1) // _SKIP + 1) / RATE
+    return time[0] + np.arange((len(time) - 1) // SKIP + 1) / RATE
 
 
 def specific_forces(structure, orientation, velocity, angular_velocity):
@@ -87,6 +87,8 @@ def specific_forces(structure, orientation, velocity, angular_velocity):
         In the axes of the bodies in the middle of the interval [m/s2].
     """
     sensors = structure.file.accelerometers
+    if not sensors:
+        return np.empty((max(len(orientation) - 1, 0), 0))
     bodies = structure.carriers(sensors)
     whole = _whole_states(orientation[:, bodies], velocity[:, bodies], angular_velocity[:, bodies])
     force = _specific_force(
@@ -103,7 +105,7 @@ def specific_forces(structure, orientation, velocity, angular_velocity):
 
 def readings_of(forces):
     """Readings of the states around `specific_forces` of a whole run, (n_readings, n_channels) [m/s2]."""
-    return low_pass(_at_states(forces))[::_SKIP] if len(forces) else forces
+    return low_pass(_at_states(forces))[::SKIP] if len(forces) else forces
 
 
 def low_pass(values):

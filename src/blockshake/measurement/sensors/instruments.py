@@ -9,7 +9,7 @@ from scipy.signal import lfilter
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import AXES
-from blockshake.measurement.sensors import accelerometers, markers
+from blockshake.measurement.sensors import accelerometers, markers, transducers
 from blockshake.measurement.sensors.markers import marker_position
 from blockshake.validation import Finite, NotNegative, ProperFraction, Strict
 
@@ -26,6 +26,11 @@ class Instruments(Strict):
     )
     accelerometer_noise: NotNegative = Field(
         accelerometers.NOISE, description="standard deviation of a reading [m/s2]"
+    )
+    transducer_noise: NotNegative = Field(
+        transducers.NOISE,
+        description="standard deviation of a displacement transducer's reading [m]",
+        exclude_if=lambda noise: noise == transducers.NOISE,  # settings without it keep their digest
     )
     noise_memory: ProperFraction = Field(
         0.0, description="correlation of the noise of one reading with the next [1]"
@@ -56,7 +61,7 @@ def observe(run, structure, instruments, seed):
     Parameters
     ----------
     run : xarray.Dataset
-        A run file's content; with ``accelerometer`` these are read too.
+        A run file's content; with ``accelerometer`` and ``transducer_displacement`` these are read too.
     structure : Structure
         Of the run.
     instruments : Instruments
@@ -124,6 +129,16 @@ def observe(run, structure, instruments, seed):
         test["accelerometer"] = (("time_acc", "channel"), values, dict(run["accelerometer"].attrs))
         test = test.assign_coords(
             time_acc=("time_acc", run["time_acc"].to_numpy(), {"units": "s"}), channel=channels
+        )
+    if "transducer_displacement" in run:
+        values = run["transducer_displacement"].to_numpy()
+        values = values + _noise(noise, values.shape, memory) * instruments.transducer_noise
+        test["transducer_displacement"] = (
+            ("time_acc", "transducer"), values - values[:1], dict(run["transducer_displacement"].attrs),
+        )  # fmt: skip
+        test = test.assign_coords(
+            time_acc=("time_acc", run["time_acc"].to_numpy(), {"units": "s"}),
+            transducer=[str(name) for name in run["transducer"].values],
         )
     return test
 

@@ -25,10 +25,14 @@ def marker_position(structure, position, orientation):
     float64 array, shape (..., n_markers, 3)
         Inertial frame [m], markers in file order; NaN where the body's pose is.
     """
-    markers = structure.file.markers
-    bodies = structure.carriers(markers)
+    return point_position(structure, structure.file.markers, position, orientation)
+
+
+def point_position(structure, points, position, orientation):
+    """The same of any points of bodies: entries of the structure file with ``body`` and ``position``."""
+    bodies = structure.carriers(points)
     turn = rotation_matrices(orientation[..., bodies, :])
-    return position[..., bodies, :] + np.einsum("...mij,mj->...mi", turn, structure.arms(markers))
+    return position[..., bodies, :] + np.einsum("...mij,mj->...mi", turn, structure.arms(points))
 
 
 def marker_displacement(structure, position, orientation, start=None):

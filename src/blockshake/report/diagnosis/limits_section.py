@@ -11,8 +11,11 @@ from blockshake.report.document.origin import command_blocks, digests_table, ver
 from blockshake.report.document.units import quantity
 from blockshake.report.document.wording import given, number, sentence_case
 
-# of an estimate by its quantity, for a marker and for an accelerometer channel
-_UNITS = {"place": ("m", "m"), "drift": ("m/s", "m/s3"), "lag": ("s", "s"), "range": ("m", "m/s2")}
+# of an estimate by its quantity, for a marker or a displacement transducer, and for an accelerometer channel
+_UNITS = {
+    "place": ("m", "m"), "reference place": ("m", "m"), "slip": ("m", "m"), "drift": ("m/s", "m/s3"),
+    "lag": ("s", "s"), "range": ("m", "m/s2"),
+}  # fmt: skip
 _ROLES = {True: "judged by", False: "left out: the effort allows fewer tests"}
 
 
@@ -101,6 +104,15 @@ def _sensors(found):
     lags = np.abs(parity.clock["lag"])
     if lags.size:
         text += f"Largest lag between markers and accelerometers {number(1e3 * lags.max(), 2)} ms. "
+    gains = parity.transducers["gain"]
+    told, others = (gains["transducer"].values[known].tolist() for known in (gains.notnull(), gains.isnull()))
+    if told:
+        text += f"Displacement transducers whose gain the markers of their bodies tell: {', '.join(told)}. "
+    if others:
+        text += (
+            f"Displacement transducers whose gain nothing tells, as the markers do not see their ends or these hardly "
+            f"moved apart: {', '.join(others)}. "
+        )
     if not parity.findings:
         text += "No fault was found."
     return text
@@ -134,7 +146,7 @@ def _findings(found):
     return [
         Table(
             "Faults of sensors, taken out before anything was simulated; the standard error of each estimate stands in "
-            "brackets. The place of a marker is in the frame of its body.",
+            "brackets. The place of a marker or of an end of a displacement transducer is in the frame of its body.",
             ("Fault", "Where", "Quantity", "Estimate", "p", "Tests"),
             tuple(rows),
             "lllrrl",

@@ -67,11 +67,17 @@ def plot_run(run, histories):
     Returns
     -------
     matplotlib.figure.Figure
-        Drift of every block that is not driven, along y only where it is a tenth of that along x; joints that had
-        a face at the start, without the peaks of their impacts; energy, the potential one since the start. More than
-        seven blocks or joints are a map: one row each, the value a colour.
+        Drift of every block that is not driven, along y only where it is a tenth of that along x; displacement
+        transducers, where there are any; joints that had a face at the start, without the peaks of their impacts;
+        energy, the potential one since the start. More than seven blocks, transducers or joints are a map: one row
+        each, the value a colour.
     """
-    panels = [*_drift_panels(histories), *_joint_panels(histories), *_energy_panels(run, histories)]
+    panels = [
+        *_drift_panels(histories),
+        *_transducer_panels(run),
+        *_joint_panels(histories),
+        *_energy_panels(run, histories),
+    ]
     heights = [_MAP_ROW if panel.is_map else _ROW for panel in panels]
     figure = new_figure(_TITLE + sum(heights))
     rows = figure.subplots(
@@ -112,6 +118,12 @@ def _drift_panels(histories):
     yield _Panel("drift along x\n[mm]", along)
     if np.abs(aside).max() > _SIDEWAYS * np.abs(along).max():
         yield _Panel("drift along y\n[mm]", aside)
+
+
+def _transducer_panels(run):
+    if "transducer_displacement" in run:
+        reached = run["transducer_displacement"].dropna("time_acc", how="all")
+        yield _Panel("transducers\n[mm]", _MILLI * reached.rename(time_acc="time"))
 
 
 def _joint_panels(histories):

@@ -17,8 +17,8 @@ def write_tables(path, run, histories):
     Parameters
     ----------
     path : str or path
-        ``run.csv`` gives ``run-bodies.csv``, ``run-joints.csv``, ``run-markers.csv``, ``run-energy.csv`` and
-        ``run-accelerometers.csv``, those without a row left out.
+        ``run.csv`` gives ``run-bodies.csv``, ``run-joints.csv``, ``run-markers.csv``, ``run-energy.csv``,
+        ``run-accelerometers.csv`` and ``run-transducers.csv``, those without a row left out.
     run, histories : xarray.Dataset
         From `load_run` and `run_histories`.
 
@@ -52,6 +52,9 @@ def _tables(run, histories):
     if "accelerometer" in run:
         reached = run["accelerometer"].dropna("time_acc", how="all").rename(time_acc="time")
         yield "accelerometers", _table("channel", [reached.rename("acceleration")])
+    if "transducer_displacement" in run:
+        reached = run["transducer_displacement"].dropna("time_acc", how="all").rename(time_acc="time")
+        yield "transducers", _table("transducer", [reached.rename("displacement")])
 
 
 def _table(thing, variables, also=()):

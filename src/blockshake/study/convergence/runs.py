@@ -144,7 +144,14 @@ def _kicked(structure, strength):
     reach = structure.solid(seated[0]).vertices
     spin = _KICK * strength
     bodies = [structure.file.bodies[body] for body in kept]
-    others = ("joints", "stoppers", "external_forces", "markers", "accelerometers")
+    others = (
+        "joints",
+        "stoppers",
+        "external_forces",
+        "markers",
+        "accelerometers",
+        "displacement_transducers",
+    )
     apart = {"bodies": tuple(bodies)} | dict.fromkeys(others, ())
     velocity, angular_velocity = np.zeros((2, len(kept), 3))
     velocity[-1] = [-spin * reach[:, 2].min(), 0.0, spin * reach[:, 0].max()]

@@ -8,7 +8,8 @@ from matplotlib.patches import Polygon
 from scipy.spatial import ConvexHull
 
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.report.document.drawing import BLUE, DARK_GREY, ORANGE, new_figure
+from blockshake.measurement.sensors.markers import point_position
+from blockshake.report.document.drawing import BLUE, DARK_GREY, GREEN, ORANGE, new_figure
 
 _METRE = 0.0115  # m of paper
 _ASIDE, _BELOW, _ABOVE = 0.95, 1.05, 0.6  # m of space for sizes around the drawing
@@ -20,8 +21,8 @@ _FILL = ("#eceff1", "#f7dfc0", "#cfd8dc", "#d9e8d0")
 def plot_structure(structure):
     """Figure of a structure at its start: front view (x, z) and side view (y, z) at the same scale.
 
-    Sizes in m; circles are markers, triangles accelerometers. Nearer parts hide those behind; sensors are drawn where
-    they face the eye or not.
+    Sizes in m; circles are markers, triangles accelerometers, lines displacement transducers. Nearer parts hide those
+    behind; sensors are drawn where they face the eye or not.
     """
     corners = _corners(structure)
     together = np.vstack(corners)
@@ -124,7 +125,6 @@ def _joint_name(names):
 
 
 def _draw_sensors(axes, structure, across):
-    turns = rotation_matrices(structure.orientation)
     kinds = (
         (structure.file.markers, "marker", {"marker": "o", "color": BLUE, "markersize": 2.2}),
         (
@@ -134,12 +134,19 @@ def _draw_sensors(axes, structure, across):
         ),
     )
     for sensors, label, style in kinds:
-        bodies = structure.carriers(sensors)
-        points = structure.position[bodies] + np.einsum("sij,sj->si", turns[bodies], structure.arms(sensors))
+        points = point_position(structure, sensors, structure.position, structure.orientation)
         if len(points):
             axes.plot(
                 points[:, across], points[:, 2], linestyle="none", markeredgewidth=0.3, label=label, **style
             )
+    items = structure.file.displacement_transducers
+    ends, anchors = (
+        point_position(structure, points, structure.position, structure.orientation)[:, [across, 2]]
+        for points in (items, [item.anchor for item in items])
+    )
+    for place, (end, anchor) in enumerate(zip(ends, anchors, strict=True)):
+        label = None if place else "displacement transducer"
+        axes.plot(*np.transpose([anchor, end]), color=GREEN, linewidth=1.0, label=label)
 
 
 def _draw_sizes(axes, structure, corners, across):
