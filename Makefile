@@ -9,7 +9,7 @@ READY := $(VENV)/ready
 PEERS := .venv-peers
 SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 
-.PHONY: study quick paper examples audit test test-slow test-faults test-faults-few test-cluster test-hidden-few test-hidden bench figures-of-docs peers cluster setup lint lock clean
+.PHONY: study quick paper examples audit test test-slow test-faults test-faults-few test-cluster test-hidden-few test-hidden bench bench-scale figures-of-docs peers cluster setup lint lock clean
 
 study: setup
 	@$(BIN)/blockshake check config/study.yaml
@@ -67,6 +67,11 @@ test-hidden: setup
 # ARGUMENTS=--accept keeps the figures
 bench: setup
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/bench.py $(ARGUMENTS)
+
+# the largest works on one machine, their memory and CPU time: ten thousand samples, an hour of motion, 2,000 blocks,
+# 10,000 draws; ARGUMENTS=--accept keeps the table
+bench-scale: setup
+	PATH="$(CURDIR)/$(BIN):$$PATH" OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/scale.py $(ARGUMENTS)
 
 # the figures in docs/ that the program makes, written to their pages: minutes; findings on the paper after a study
 figures-of-docs: setup

@@ -8,19 +8,22 @@ from blockshake.files import load_json, write_json, write_text
 PAGE = Path(__file__).parents[1] / "docs" / "bench.md"
 COUNTS = Path(__file__).with_name("accepted.json")
 LARGEST_LOSS = 1.3  # operations over the accepted ones
-_BEGIN, _END = "<!-- make bench: begin -->\n", "<!-- make bench: end -->"
 
 
 def accept(result, table):
     """Put the table of a whole bench on its page, and the operations of its kernel beside those of other processors."""
-    text = PAGE.read_text(encoding="utf-8")
-    before, _, rest = text.partition(_BEGIN)
-    _, _, after = rest.partition(_END)
-    block = f"Measured {datetime.now(UTC):%Y-%m-%d}.\n\n```\n{table}```\n"
-    write_text(PAGE, before + _BEGIN + block + _END + after)
+    put("make bench", f"```\n{table}```\n")
     known = load_json(COUNTS) if COUNTS.exists() else {}
     own = {result["machine"]["instruction_set"]: total_operations(result["arithmetic"])}
     write_json(COUNTS, dict(sorted({**known, **own}.items())))
+
+
+def put(command, figures):
+    """Put figures that a command measured on its page, with the date, in place of those from before."""
+    begin, end = (f"<!-- {command}: {word} -->" for word in ("begin", "end"))
+    before, _, rest = PAGE.read_text(encoding="utf-8").partition(begin + "\n")
+    _, _, after = rest.partition(end)
+    write_text(PAGE, f"{before}{begin}\nMeasured {datetime.now(UTC):%Y-%m-%d}.\n\n{figures}{end}{after}")
 
 
 def accepted_operations(instruction_set):

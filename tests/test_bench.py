@@ -43,6 +43,20 @@ def test_the_smallest_run_reports_every_part(result):
         assert heading in result["table"]
 
 
+@pytest.mark.slow
+def test_the_smallest_works_of_scale_report_every_part(tmp_path):
+    command = [sys.executable, BENCH / "scale.py", "--quick", "--output", tmp_path / "scale.json"]
+    table = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    found = json.loads((tmp_path / "scale.json").read_text())
+    assert set(found) == {"samples", "hours", "blocks", "draws"}
+    for rows in found.values():
+        assert all(
+            np.isfinite(figure) and figure > 0.0 for _, name, figure, _ in rows if "beside" not in name
+        )
+    for work in ("40 samples", "h of motion", "10 blocks", "200 draws"):
+        assert work in table
+
+
 def test_spread_gives_the_median_and_the_quartiles():
     from measuring import spread
 

@@ -78,7 +78,7 @@ def run_in_pieces(start, integrate, rows_of, times, time_step, checkpoint, kept=
 
     with held_interrupts() as interrupted:
         parts = checkpoint.load()
-        if parts is not None and (kept is None or kept.goes_on(checkpoint.key, int(parts[-1].first[0]))):
+        if parts is not None and _has_all_rows(parts[-1], times, checkpoint, kept):
             _log.info("goes on from %.3f s", parts[0].clock[STEP] * time_step)
         else:
             if kept is not None:
@@ -109,6 +109,13 @@ def run_in_pieces(start, integrate, rows_of, times, time_step, checkpoint, kept=
     if kept is None:
         checkpoint.remove()
     return code, culprit, parts
+
+
+def _has_all_rows(record, times, checkpoint, kept):
+    """Whether the record of a checkpoint is whole, or all rows before it are kept."""
+    if kept is None:
+        return len(record.energy) == len(times)
+    return kept.goes_on(checkpoint.key, int(record.first[0]))
 
 
 def _next_piece(steps, spent):
