@@ -46,7 +46,7 @@ test-faults: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" BLOCKSHAKE_MOMENTS=$(MOMENTS) $(BIN)/pytest -m faults
 	$(BIN)/python bench/figures_of_docs.py faults
 
-# the shorter half of these tests, on a study, with two kills: minutes
+# the shorter ones of these tests, on a study, with two kills: minutes
 test-faults-few: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" BLOCKSHAKE_MOMENTS=2 $(BIN)/pytest -m short_faults
 

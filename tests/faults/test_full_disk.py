@@ -42,7 +42,7 @@ def _lines(answer):
         ("ro", "rw,size=200m", "expected a folder to write to"),
     ],
 )
-def test_results_that_cannot_be_written(fault, mended, words, small_disk, whole_study):
+def test_results_that_cannot_be_written(fault, mended, words, small_disk, whole):
     checkout, remount = small_disk
     assert remount(fault) == 0
     answer = checkout.snakemake(*WORKS["study"])
@@ -54,4 +54,4 @@ def test_results_that_cannot_be_written(fault, mended, words, small_disk, whole_
     assert remount(mended) == 0
     answer = checkout.snakemake(*WORKS["study"])
     assert answer.returncode == 0, answer.stdout + answer.stderr
-    assert unlike(whole_study.folder, checkout.folder) == []
+    assert unlike(whole("study").checkout.folder, checkout.folder) == []

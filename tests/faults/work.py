@@ -18,7 +18,7 @@ WORKS = {
     "study": ("all", "ladder"),
     "diagnosis": ("diagnose", "--config", "campaign=small-campaign", "effort=quick"),
 }
-# the shorter half of the tests is of the study: `make test-faults-few`
+# the shorter tests are those of the study: `make test-faults-few`
 BOTH = (pytest.param("study", marks=pytest.mark.short_faults), "diagnosis")
 GRACE = 10.0  # s; in which jobs end with their command, on a machine that may be busy
 _SHIPPED = "data/virtual-campaign/configuration-1"
