@@ -85,7 +85,8 @@ def as_table(rows):
     """Markdown."""
     lines = ["| work | measure | figure | target |", "| --- | --- | --- | --- |"]
     for what, name, figure, target in rows:
-        lines.append(f"| {what} | {name} | {figure:,.3g} | {'' if target is None else f'{target:,g}'} |")
+        shown = f"{figure:,.0f}" if figure >= 100.0 else f"{figure:.3g}"
+        lines.append(f"| {what} | {name} | {shown} | {'' if target is None else f'{target:,g}'} |")
     return "\n".join(lines) + "\n"
 
 

@@ -102,7 +102,7 @@ def simulate(
 def simulate_to_file(
     path, structure, motion, model, parameters=None, time_step=None, duration=None, output_rate=None
 ):
-    """Simulate one structure under one motion to a run file, in memory that hardly grows with the duration.
+    """Simulate one structure under one motion to a run file, its record on disk as it grows.
 
     The run goes on from ``PATH.checkpoint`` if it was cut short, with the rows in ``PATH.checkpoint.rows``; both are
     taken away once the run file is whole.
