@@ -11,12 +11,12 @@ from pathlib import Path
 
 from case_files import PAGE, ROOT, campaign_of, truth_of, verdict_of
 from case_truth import NONE, true_numerics
-from make_case import make_case
+from make_case import made_by, make_case
 from measure_track_record import Log, diagnose
 from track_record_text import with_block
 
 from blockshake.diagnosis.verdict.verdict import load_verdict
-from blockshake.files import write_text
+from blockshake.files import load_json, write_text
 
 DEPTHS = (1e-4, 3e-4, 1e-3, 3e-3)  # m; flat faces to what DIN 18202 allows on a metre
 EACH = 6
@@ -46,6 +46,15 @@ def table(verdicts):
     return "\n".join(rows)
 
 
+def _is_made(folder, truth_folder, seed, depth):
+    """Whether a case is there whole and of today's sources."""
+    truth = truth_folder / "truth.json"
+    if not truth.is_file() or not (folder / "README").is_file():
+        return False
+    told = load_json(truth)
+    return (told["made_by"], told["seed"], told.get("hollow")) == (made_by(), seed, depth)
+
+
 def main(arguments):
     """Make, diagnose and tabulate the cases."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -55,7 +64,7 @@ def main(arguments):
     cases, log = planned(), Log(asked.output / "log.jsonl")
     for name, seed, depth in cases:
         places = campaign_of(asked.output, name), truth_of(asked.output, name)
-        if not (places[0] / "README").is_file():
+        if not _is_made(*places, seed, depth):
             make_case(seed, NONE, "large", *places, sealed=False, hollow=depth)
             log("made", case=name)
     diagnose([name for name, *_ in cases], asked.output, EFFORT, asked.cores, None, log)

@@ -8,6 +8,21 @@ from blockshake.study.ensembles.ensemble import gather_ensemble
 
 TIME = np.arange(401) / 200.0
 MARKERS = ["slab-face", "block-1-face"]
+ONE_BLOCK = """
+name: one-block
+materials: {{stone: {{density: 2400.0, youngs_modulus: 3.45e+10, poisson_ratio: 0.2}}}}
+shapes: {{slab: {{box: [6.0, 3.0, 0.4]}}, block: {{box: {box}}}}}
+bodies:
+  - {{name: slab, shape: slab, material: stone, position: [0.0, 0.0, -0.2], driven: true}}
+  - {{name: block, shape: block, material: stone, position: [0.0, 0.0, {half}]}}
+friction: [{{pair: [stone, stone], coefficient: 0.6}}]
+markers:
+  - {{name: slab, body: slab, position: [0.0, 0.0, 0.2]}}
+  - {{name: top, body: block, position: [0.0, 0.0, {half}]}}
+accelerometers:
+  - {{name: slab-acc, body: slab, position: [0.0, 0.0, 0.2], axes: [x]}}
+  - {{name: top-acc, body: block, position: [0.0, 0.0, {half}], axes: [x]}}
+"""
 
 
 @pytest.fixture
@@ -81,3 +96,16 @@ def read_with_noise():
         return xr.Dataset({"marker_displacement": noisy}, attrs={"synthetic": 1})
 
     return read
+
+
+@pytest.fixture
+def one_block(tmp_path):
+    """Writer of a structure file of one block on a slab, from the edge lengths of the block [m]."""
+
+    def written(box, accelerometers=True):
+        text = ONE_BLOCK.format(box=box, half=0.5 * box[2])
+        path = tmp_path / "one-block.yaml"
+        path.write_text(text if accelerometers else text.split("accelerometers:")[0])
+        return path
+
+    return written

@@ -10,32 +10,15 @@ from blockshake.files import write_dataset
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.simulation.simulate import simulate
+from blockshake.study.calibration import comparison
 from blockshake.study.calibration.calibration import ALL, calibrate, models_of
 from blockshake.study.calibration.comparison import compare_open_tests
 from blockshake.study.calibration.settings import RESTITUTION, STIFFNESS
 from blockshake.study.stiffness.wave_speed import calibrate_stiffness
 
 FRICTION = "friction.stone.stone"
-STRUCTURE = """
-name: one-block
-materials: {{stone: {{density: 2400.0, youngs_modulus: 3.45e+10, poisson_ratio: 0.2}}}}
-shapes: {{slab: {{box: [6.0, 3.0, 0.4]}}, block: {{box: {box}}}}}
-bodies:
-  - {{name: slab, shape: slab, material: stone, position: [0.0, 0.0, -0.2], driven: true}}
-  - {{name: block, shape: block, material: stone, position: [0.0, 0.0, {half}]}}
-friction: [{{pair: [stone, stone], coefficient: 0.6}}]
-markers:
-  - {{name: slab, body: slab, position: [0.0, 0.0, 0.2]}}
-  - {{name: top, body: block, position: [0.0, 0.0, {half}]}}
-accelerometers:
-  - {{name: slab-acc, body: slab, position: [0.0, 0.0, 0.2], axes: [x]}}
-  - {{name: top-acc, body: block, position: [0.0, 0.0, {half}], axes: [x]}}
-"""
-SQUAT = {"box": [2.0, 1.0, 0.5], "half": 0.25}  # b/h = 4: slides, never rocks
-SLENDER = {
-    "box": [0.4, 1.0, 1.6],
-    "half": 0.8,
-}  # on its springs it rocks at some 40 Hz times the root of their factor
+SQUAT = [2.0, 1.0, 0.5]  # b/h = 4: slides, never rocks
+SLENDER = [0.4, 1.0, 1.6]  # on its springs it rocks at some 40 Hz times the root of their factor
 MODELS = {
     "ls-dem": {"time_step": 5e-5, "parameters": {}},
     "nscd-rigid": {"time_step": 1e-3, "parameters": {}},
@@ -64,12 +47,11 @@ def _noise(seed, amplitude, duration, highest):
 
 
 @pytest.fixture
-def campaign(tmp_path):
+def campaign(tmp_path, one_block):
     """Folder of synthetic tests of one block by LS-DEM with true parameters, one under each motion."""
 
-    def made(block, truth, motions, duration):
-        structure = tmp_path / "one-block.yaml"
-        structure.write_text(STRUCTURE.format(**block))
+    def made(block, truth, motions, duration, **options):
+        structure = one_block(block, **options)
         tests = []
         for place, motion in enumerate(motions):
             name = f"t{place}"
@@ -119,11 +101,10 @@ def test_the_friction_of_a_sliding_block_is_told_by_the_other_solver(truth, camp
 
 
 @pytest.mark.slow
-def test_contact_stiffness_is_told_by_a_noise_test_of_low_amplitude(campaign, tmp_path):
+def test_contact_stiffness_is_told_by_a_noise_test_of_low_amplitude(campaign, one_block, tmp_path):
     """The block stays closed: friction and restitution of impacts are not told, the stiffness is, by its frequency."""
     truth = 0.3
-    (tmp_path / "nominal.yaml").write_text(STRUCTURE.format(**SLENDER))
-    wave = calibrate_stiffness(tmp_path / "nominal.yaml")
+    wave = calibrate_stiffness(one_block(SLENDER))
     true = {f"ls_dem.{name}": truth * wave[name] for name in ("normal_stiffness", "shear_stiffness")}
     motions = [_noise(seed, 0.3, 6.0, 45.0) for seed in range(3)]
     folder = campaign(SLENDER, true, motions, 6.0)
@@ -133,6 +114,31 @@ def test_contact_stiffness_is_told_by_a_noise_test_of_low_amplitude(campaign, tm
     assert (stiffness["lower"] or 0.03) <= truth <= (stiffness["upper"] or 3.0)
     assert stiffness["assumed_is_refused"]
     assert not found["parameters"][FRICTION]["answers"][ALL]["told"]
+
+
+def test_rigid_contact_needs_no_wave_test_and_a_test_no_accelerometers(campaign, tmp_path, monkeypatch):
+    motions = [_noise(seed, 4.0, 2.5, 4.0) for seed in range(2)]
+    folder = campaign(SQUAT, {FRICTION: 0.4}, motions, 2.5, accelerometers=False)
+    monkeypatch.setattr("blockshake.study.calibration.comparison.calibrate_design", None)
+    compared, found = _answers(folder, ["nscd-rigid"], 20, 2.5, tmp_path)
+    assert compared[0]["parameter"].values.tolist() == [FRICTION]
+    assert [one["reading"] for one in found["tests"]] == ["displacement"]
+    assert found["left_out"] == []
+
+
+def test_a_test_that_many_samples_do_not_end_is_not_asked(campaign, tmp_path, monkeypatch):
+    """Corners of the ranges without any sample would pass for values that are told."""
+    folder = campaign(SQUAT, {FRICTION: 0.4}, [_noise(seed, 4.0, 2.5, 4.0) for seed in range(2)], 2.5)
+    solved = comparison.simulate_readings
+
+    def failing(*arguments):
+        return [None if place % 5 == 0 else path for place, path in enumerate(solved(*arguments))]
+
+    monkeypatch.setattr(comparison, "simulate_readings", failing)
+    _, found = _answers(folder, ["nscd-rigid"], 20, 2.5, tmp_path)
+    assert found["left_out"] == ["one-block t0, nscd-rigid"]
+    assert found["parameters"] == {}
+    assert found["tests"] == []
 
 
 def test_both_models_answer_and_the_sealed_test_is_not_read(campaign, tmp_path):

@@ -10,20 +10,8 @@ from blockshake.study.sampling.distributions import Lognormal
 
 NOISE = 1e-4
 VARIABLE = "friction.stone.stone"
-STRUCTURE = """
-name: one-block
-materials: {{stone: {{density: 2400.0, youngs_modulus: 3.45e+10, poisson_ratio: 0.2}}}}
-shapes: {{slab: {{box: [6.0, 3.0, 0.4]}}, block: {{box: {box}}}}}
-bodies:
-  - {{name: slab, shape: slab, material: stone, position: [0.0, 0.0, -0.2], driven: true}}
-  - {{name: block, shape: block, material: stone, position: [0.0, 0.0, {height}]}}
-friction: [{{pair: [stone, stone], coefficient: 0.6}}]
-markers:
-  - {{name: slab, body: slab, position: [0.0, 0.0, 0.2]}}
-  - {{name: top, body: block, position: [0.0, 0.0, {height}]}}
-"""
-SQUAT = {"box": [2.0, 1.0, 0.5], "height": 0.25}  # b/h = 4: slides, never rocks
-SLENDER = {"box": [0.4, 1.0, 1.6], "height": 0.8}  # b/h = 0.25: rocks before it slides
+SQUAT = [2.0, 1.0, 0.5]  # b/h = 4: slides, never rocks
+SLENDER = [0.4, 1.0, 1.6]  # b/h = 0.25: rocks before it slides
 DISTRIBUTIONS = {
     VARIABLE: Lognormal(mean=0.6, cov=0.02),
     "materials.stone.density": Lognormal(mean=2400.0, cov=0.04),
@@ -35,10 +23,9 @@ SEARCH = {
 
 
 @pytest.fixture
-def search(tmp_path, read_with_noise):
+def search(tmp_path, one_block, read_with_noise):
     def run(block, motion, truth, duration=2.0, **changes):
-        structure = tmp_path / "one-block.yaml"
-        structure.write_text(STRUCTURE.format(**block))
+        structure = one_block(block)
         (tmp_path / "motion.csv").write_text(motion)
         case = {
             "structure": str(structure),

@@ -20,7 +20,7 @@ _NAMES = {
     "ls_dem.shear_stiffness": "shear stiffness k_s",
     "restitution": "restitution C_res",
     "hollow": "hollow of the faces over their edge",
-    "stiffness_factor": "contact stiffness over the wave speed's",
+    "stiffness_factor": "factor of contact stiffness",
 }
 
 

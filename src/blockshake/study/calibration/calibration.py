@@ -7,8 +7,8 @@ from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import MODELS
 from blockshake.store import load_made
 from blockshake.study.calibration.answers import SHARES, answer_questions
-from blockshake.study.calibration.comparison import hollow_shape, read_distances
-from blockshake.study.calibration.settings import HOLLOW, RESTITUTION, CalibrationSettings
+from blockshake.study.calibration.comparison import hollow_shape, left_out, read_distances
+from blockshake.study.calibration.settings import RESTITUTION, STIFFNESS, CalibrationSettings
 from blockshake.study.sampling.distributions import load_distributions
 
 ALL = "all"  # models together
@@ -27,7 +27,8 @@ def calibrate(compared, study):
     Returns
     -------
     dict
-        JSON-like. ``size`` of the design. ``parameters`` by name: ``lowest``, ``highest`` and ``scale`` of the range
+        JSON-like. ``size`` of the design. ``left_out``: tests that are not asked, since too many samples have no
+        reading of them. ``parameters`` by name: ``lowest``, ``highest`` and ``scale`` of the range
         [1], ``assumed``, the value that the study takes, ``values`` at which scores are taken, and ``answers`` by
         model and of `ALL`. ``tests``: a list with ``case``, ``model``, ``test``, ``motion``, ``scale``, ``reading``,
         ``synthetic``, ``unsolved``, ``chance`` of the test [1], and ``answers`` by parameter. An answer has ``told``,
@@ -53,21 +54,22 @@ def calibrate(compared, study):
     alone, together = answer_questions(single, seed), answer_questions(grouped, seed)
     parameters = {}
     for name, span in ranges.items():
-        assumed = _assumed(name, study)
+        if not any(parameter == name for parameter, _ in together):
+            continue
+        assumed = _assumed(name, study, [one.attrs["case"] for one in compared])
         answers = {
             group: _told(answer, span, assumed) | {"score": answer.score.tolist()}
             for (parameter, group), answer in together.items()
             if parameter == name
         }
-        if answers:
-            parameters[name] = {
-                "lowest": span.lowest,
-                "highest": span.highest,
-                "scale": span.scale,
-                "assumed": assumed,
-                "values": span.value(SHARES).tolist(),
-                "answers": answers,
-            }
+        parameters[name] = {
+            "lowest": span.lowest,
+            "highest": span.highest,
+            "scale": span.scale,
+            "assumed": assumed,
+            "values": span.value(SHARES).tolist(),
+            "answers": answers,
+        }
     tests = [
         _of_test(compared[place], test, reading)
         | {
@@ -78,7 +80,8 @@ def calibrate(compared, study):
         }
         for place, test, reading in dict.fromkeys(key[1:] for key in single)
     ]
-    return {"size": settings.size, "parameters": parameters, "tests": tests}
+    lost = [f"{one.attrs['case']} {test}, {one.attrs['model']}" for one in compared for test in left_out(one)]
+    return {"size": settings.size, "parameters": parameters, "tests": tests, "left_out": lost}
 
 
 def _of_test(compared, test, reading):
@@ -102,17 +105,21 @@ def models_of(found):
     return [model for model in MODELS if model in groups]
 
 
-def _assumed(name, study):
-    """Value that the study takes: a mean friction, a structure's restitution and hollow, the wave speed's stiffness."""
+def _assumed(name, study, cases):
+    """Value that the study takes: a mean friction, the wave speed's stiffness, restitution and hollow of a structure.
+
+    The structure is the first one of the ``cases``, for a hollow the first of boxes.
+    """
     if name.startswith("friction."):
         return float(load_distributions(study["ensemble"]["distributions"], "ensemble")[name].mean)
-    structure = load_structure(study["cases"][0]["structure"])
+    if name == STIFFNESS:
+        return 1.0
+    structures = [load_structure(case["structure"]) for case in study["cases"] if case["name"] in cases]
     if name == RESTITUTION:
-        return float(structure.file.restitution)
-    if name == HOLLOW:
-        shape, edge = hollow_shape(structure)
-        return structure.file.shapes[shape].hollow / edge
-    return 1.0
+        return float(structures[0].file.restitution)
+    structure = next(one for one in structures if hollow_shape(one)[0])
+    shape, edge = hollow_shape(structure)
+    return structure.file.shapes[shape].hollow / edge
 
 
 def _told(answer, span, assumed):

@@ -18,7 +18,13 @@ from blockshake.study.calibration.readings import (
     simulate_readings,
 )
 from blockshake.study.calibration.scores import Distances, chance_of_test, distances
-from blockshake.study.calibration.settings import HOLLOW, OF_CONTACT_SPRINGS, STIFFNESS, CalibrationSettings
+from blockshake.study.calibration.settings import (
+    HOLLOW,
+    OF_CONTACT_SPRINGS,
+    RESTITUTION,
+    STIFFNESS,
+    CalibrationSettings,
+)
 from blockshake.study.friction.replicates import replicate_seed
 from blockshake.study.sampling.distributions import load_distributions
 from blockshake.study.sampling.latin_hypercube import draw_samples
@@ -26,6 +32,7 @@ from blockshake.study.sampling.sample_parameters import has_parameter
 from blockshake.study.stiffness.wave_speed import calibrate_design
 
 _CURVES, _SPECTRA = "displacement", "acceleration"
+_FEWEST = 0.9  # of the samples, that have a reading: with fewer some values would have none near them
 
 
 def compare_open_tests(case, campaign, model, given, store, progress):
@@ -59,9 +66,11 @@ def compare_open_tests(case, campaign, model, given, store, progress):
     variables = load_distributions(ensemble["distributions"], "ensemble")
     ranges = settings.ranges_of(variables)
     drawn = draw_samples(settings.size, ensemble["seed"], variables | ranges).values
-    rows = _as_parameters(drawn, case["structure"], store)
+    structure = load_structure(case["structure"])
+    used = [one for one in ranges if has_use(model, structure, one)]
+    rows = _as_parameters(drawn, used, structure, case["structure"], store)
     run_settings = {**given["models"][model], "output_rate": given["output_rate"]}
-    steps = _time_steps(model, drawn, run_settings["time_step"])
+    steps = _time_steps(drawn, used, run_settings["time_step"])
     source = source_digest(*script_sources("compare_open_tests", model))
     tests = {}
     for name, listed in load_campaign(campaign).tests.items():
@@ -72,8 +81,6 @@ def compare_open_tests(case, campaign, model, given, store, progress):
             )
             run = run_settings, rows, steps, ensemble, store, source, progress
             tests[name] = _compared(test, simulate_readings(test, model, *run))
-    structure = load_structure(case["structure"])
-    used = [one for one in ranges if has_use(model, structure, one)]
     shares = [ranges[one].share(drawn[one].to_numpy()) for one in used]
     found = xr.concat(tests.values(), dim=xr.Variable("test", list(tests)))
     found = found.assign(share=(("parameter", "sample"), shares)).assign_coords(parameter=used)
@@ -123,32 +130,42 @@ def hollow_shape(structure):
 
 
 def read_distances(compared):
-    """`Distances` by test and reading, those that there are, of a Dataset of `compare_open_tests`."""
+    """`Distances` by test and reading of a Dataset of `compare_open_tests`, without those of `left_out`."""
     found = {}
     for test in map(str, compared["test"].values):
         for reading in map(str, compared["reading"].values):
             one = compared.sel(test=test, reading=reading)
-            if np.isfinite(one["to_test"]).any():
+            if np.isfinite(one["to_test"]).mean() >= _FEWEST:
                 found[test, reading] = Distances(one["to_test"].to_numpy(), one["between"].to_numpy())
     return found
 
 
-def _as_parameters(drawn, structure, store):
-    """Rows by dotted name: the factor times the stiffness of the nominal wave test, the depth of the blocks' hollow."""
-    source = source_digest(*script_sources("calibrate_stiffness"))
-    wave = calibrate_design(structure, pd.DataFrame(index=[0]), {}, store, source).iloc[0]
-    rows = {name: value * drawn[STIFFNESS] for name, value in wave.items()}
-    loaded = load_structure(structure)
-    shape, edge = hollow_shape(loaded)
-    if shape is not None:
-        rows[f"shapes.{shape}.hollow"] = drawn[HOLLOW] * edge
-    return drawn.drop(columns=[STIFFNESS, HOLLOW]).assign(**rows)
+def left_out(compared):
+    """Tests of a Dataset of `compare_open_tests` of which too many samples have no reading, list of str."""
+    answered = np.isfinite(compared["to_test"]).mean("sample").max("reading")
+    return [str(test) for test in compared["test"].values[(answered < _FEWEST).to_numpy()]]
 
 
-def _time_steps(model, drawn, usual):
+def _as_parameters(drawn, used, structure, named, store):
+    """Rows by dotted name: stiffness as the factor times that of the nominal wave test, the hollow as its depth.
+
+    Parameters of contact springs are left out where the model has none: rigid contact needs no wave test.
+    """
+    rows = drawn.drop(columns=[one for one in OF_CONTACT_SPRINGS if one not in used or one != RESTITUTION])
+    if STIFFNESS in used:
+        source = source_digest(*script_sources("calibrate_stiffness"))
+        wave = calibrate_design(named, pd.DataFrame(index=[0]), {}, store, source).iloc[0]
+        rows = rows.assign(**{name: value * drawn[STIFFNESS] for name, value in wave.items()})
+    if HOLLOW in used:
+        shape, edge = hollow_shape(structure)
+        rows = rows.assign(**{f"shapes.{shape}.hollow": drawn[HOLLOW] * edge})
+    return rows
+
+
+def _time_steps(drawn, used, usual):
     """Time steps of the samples [s]: the usual one, cut into parts where contact springs are stiffer than usual.
 
     The largest stable step goes with the period of the springs.
     """
-    factor = drawn[STIFFNESS] if model_of(model).calibrated else 0.0 * drawn[STIFFNESS]
+    factor = drawn[STIFFNESS] if STIFFNESS in used else 0.0 * drawn[STIFFNESS]
     return usual / np.ceil(np.sqrt(factor.clip(lower=1.0)))

@@ -8,6 +8,7 @@ import pandas as pd
 import xarray as xr
 
 from blockshake.dynamics.system import FINISHED
+from blockshake.errors import InputError
 from blockshake.files import content_digest, shipped_names
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
@@ -31,6 +32,7 @@ class OpenTest(NamedTuple):
 
     Attributes
     ----------
+    name : str
     case : dict
         ``structure``, ``motion``, ``scale``, ``duration`` [s] and ``input``, the measured one, as `driving_motions`
         takes them.
@@ -42,6 +44,7 @@ class OpenTest(NamedTuple):
         Noise of the campaign's sensors.
     """
 
+    name: str
     case: dict
     base: xr.Dataset
     measured: xr.Dataset
@@ -70,7 +73,7 @@ def open_test(case, campaign, name):
     instruments = Instruments(
         marker_noise=sensors.marker_noise, accelerometer_noise=sensors.accelerometer_noise
     )
-    return OpenTest({**case, "duration": duration}, base, measured, instruments)
+    return OpenTest(name, {**case, "duration": duration}, base, measured, instruments)
 
 
 def simulate_readings(test, model, settings, rows, time_steps, ensemble, store, source, progress):
@@ -101,13 +104,14 @@ def simulate_readings(test, model, settings, rows, time_steps, ensemble, store, 
         By sample; none for a run that ended for a numerical reason.
     """
     case, structure = test.case, load_structure(test.case["structure"])
+    identity = structure_digest(structure)
     motions = driving_motions(case, test.base, ensemble["seed"])
     found = []
     for sample, row in rows.iterrows():
         motion = motions(sample)
         parameters = settings["parameters"] | sample_parameters(row, structure, ensemble["linked"])
         key = content_digest(
-            source, "readings", model, structure_digest(structure), *(part.tobytes() for part in motion.table),
+            source, "readings", test.name, model, identity, *(part.tobytes() for part in motion.table),
             case["duration"], settings["output_rate"], time_steps[sample], parameters, int(sample),
             test.instruments.model_dump(),
         )  # fmt: skip
@@ -119,7 +123,8 @@ def simulate_readings(test, model, settings, rows, time_steps, ensemble, store, 
                 duration=case["duration"], output_rate=settings["output_rate"],
                 checkpoint=path.with_suffix(".checkpoint"),
             )  # fmt: skip
-            read = observe(run, structure, test.instruments, int(key, 16))
+            noise = content_digest("noise", test.name, model, identity, ensemble["seed"], int(sample))
+            read = observe(run, structure, test.instruments, int(noise, 16))
             along = read[["marker_displacement"]].sel(axis=["x"]).drop_encoding()
             along = along.assign(log_spectrum=log_spectrum(read, structure, case["duration"]))
             keep_dataset(path, along.assign_attrs(status=run.attrs["status"]), _DECIMALS)
@@ -172,19 +177,20 @@ def acceleration_spectra(test, files):
     measured : float64 array, shape (n_lines, n_channels)
         As of `log_spectrum`.
     samples : float64 array, shape (n_samples, n_lines, n_channels)
-        NaN all over without a run.
+        NaN all over without a run, and for one that fell too soon to have a spectrum.
     """
     structure = load_structure(test.case["structure"])
     measured = log_spectrum(test.measured, structure, test.case["duration"])
-    runs = [load_made(path, ("marker_displacement",))["log_spectrum"] for path in files if path]
-    measured, *runs = xr.align(measured, *runs, join="inner")
-    if not measured.size:
+    runs = [load_made(path, ("marker_displacement",))["log_spectrum"] if path else None for path in files]
+    long = [run if run is not None and run.size else None for run in runs]
+    measured, *read = xr.align(measured, *(run for run in long if run is not None), join="inner")
+    if not measured.size or not read:
         return None
-    return measured.to_numpy(), _at_places(np.array([run.to_numpy() for run in runs]), files)
+    return measured.to_numpy(), _at_places(np.array([run.to_numpy() for run in read]), long)
 
 
 def log_spectrum(test, structure, duration):
-    """Logarithm of the spectra of all accelerometer channels on blocks, ``(line, channel)``; empty without any.
+    """Logarithm of the spectra of the accelerometer channels on blocks, ``(line, channel)``; empty without whole ones.
 
     Parameters
     ----------
@@ -211,7 +217,10 @@ def log_spectrum(test, structure, duration):
     empty = xr.DataArray(
         np.empty((0, 0)), {"line": np.empty(0, dtype=int), "channel": np.empty(0, dtype=str)}
     )
-    read = accelerometer_histories(test, structure)
+    try:
+        read = accelerometer_histories(test, structure)
+    except InputError:  # no channel without long gaps
+        return empty
     if read is None or read.driven.all():
         return empty
     inside = read.time <= duration
@@ -225,8 +234,8 @@ def log_spectrum(test, structure, duration):
     return xr.DataArray(power, {"line": lines, "channel": names}, attrs={"units": "1"})
 
 
-def _at_places(values, files):
-    """Values of the runs at the places of their samples, NaN at the others."""
-    table = np.full((len(files), *values.shape[1:]), np.nan)
-    table[[place for place, path in enumerate(files) if path]] = values
+def _at_places(values, samples):
+    """Values of the samples that are there at their places, NaN where there is none."""
+    table = np.full((len(samples), *values.shape[1:]), np.nan)
+    table[[place for place, one in enumerate(samples) if one is not None]] = values
     return table

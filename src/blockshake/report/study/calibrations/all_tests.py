@@ -42,9 +42,12 @@ def calibration(content):
             f"{count_words(count, 'test')} of {len({(one['case'], one['test']) for one in found['tests']})} are "
             "synthetic: the answers on these tell of the program that made them, not of concrete."
         )
-    blocks = [
-        Text(text),
-        Items(tuple(sentences)),
+    if found["left_out"]:
+        sentences.append(f"Not asked, as too many samples have no reading: {'; '.join(found['left_out'])}.")
+    blocks = [Text(text), Items(tuple(sentences))]
+    if not found["parameters"]:
+        return Section("Calibration by all open tests", "calibration", tuple(blocks))
+    blocks += [
         Figure(
             "Scores of values, mean over the tests, above the lowest of the same line. Grey: values that all tests "
             "together do not refuse, where they tell of the parameter at all. Dotted: the value that the study takes.",
@@ -101,7 +104,8 @@ def answers_table(found):
     header = ("Parameter", "Range", "Study", *map(model_label, models), "All")
     return Table(
         "Answers of all open tests by model and together. p: chance that scores differ as much where no test depends "
-        "on any parameter. Restitution, stiffness and flatness belong to the contact springs of LS-DEM.",
+        "on any parameter. The factor of contact stiffness is over that of the wave speed. Restitution, stiffness and "
+        "flatness belong to the contact springs of LS-DEM.",
         header, rows, "lrr" + "l" * len(groups), (0.22, 0.12, 0.08, *(0.58 / len(groups) for _ in groups)),
     )  # fmt: skip
 
