@@ -191,6 +191,9 @@ DEPARTURES = (
     Departure("LS-DEM", "The nodes of one block look for contact with the other.",
               _words("Each pair is checked both ways, and each side has half of the stiffness; of a block on the "
                      "slab the block's own nodes carry all."), _METHOD),
+    Departure("LS-DEM", "A node stands for its part of its own surface.",
+              _words("Where flats overlap in part, the nodes of both integrate over the overlap."),
+              "docs/decisions/0013-areas-of-a-joint.md"),
     Departure("LS-DEM", "k_n and k_s of a node.", _words("k_n and k_s per area."),
               "docs/decisions/0001-stiffness-per-area.md"),
     Departure("LS-DEM", "Nodes cover the surface, chamfer included.", _pivot, _METHOD),

@@ -6,11 +6,11 @@ import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrix_into
 from blockshake.jit import borrowing_kernel, kernel
+from blockshake.solvers.ls_dem.contact.facing_flats import N_KEY, facing_key
+from blockshake.solvers.ls_dem.contact.joint_areas import joint_areas_into
 from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
 from blockshake.solvers.ls_dem.contact.packets import (
-    AREA,
     CLOSED,
-    DAMPING_WEIGHT,
     FAR_AWAY,
     HELD,
     LANES,
@@ -26,6 +26,8 @@ from blockshake.solvers.ls_dem.contact.packets import (
 from blockshake.solvers.ls_dem.contact.relative_pose import relative_pose_into
 from blockshake.solvers.ls_dem.joints import add_joints, find_joint
 from blockshake.solvers.ls_dem.surfaces import level_set
+
+_FRESH = -2  # no key begins so
 
 
 class Candidates(NamedTuple):
@@ -44,6 +46,8 @@ class Candidates(NamedTuple):
     first: np.ndarray
     node: np.ndarray
     packets: np.ndarray
+    share: np.ndarray
+    key: np.ndarray
     located: np.ndarray
     position: np.ndarray
     orientation: np.ndarray
@@ -54,7 +58,8 @@ def empty_candidates(n_bodies):
     """Lists before the first search."""
     return Candidates(
         np.empty((0, 2), np.int64), np.empty(0, np.int64), np.zeros(1, np.int64), np.empty(0, np.int64),
-        np.empty((0, PACKET)), np.empty((0, LOCATED)), np.full((n_bodies, 3), np.inf), np.zeros((n_bodies, 4)),
+        np.empty((0, PACKET)), np.empty(0), np.empty((0, N_KEY), np.int64), np.empty((0, LOCATED)),
+        np.full((n_bodies, 3), np.inf), np.zeros((n_bodies, 4)),
     )  # fmt: skip
 
 
@@ -206,10 +211,12 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
     n_sides = 2 * pairs.shape[0]
     R, d = np.empty((2, 3, 3)), np.empty((2, 3))
     found, count = np.empty(1024, np.int64), np.zeros(n_sides + 1, np.int64)
+    share = np.empty(n_sides)
     for side in range(n_sides):
         owner, other = pairs[side // 2, side % 2], pairs[side // 2, 1 - side % 2]
         count[side + 1] = count[side]
-        if _share(surfaces, driven, owner, other) > 0.0:
+        share[side] = _share(surfaces, driven, owner, other)
+        if share[side] > 0.0:
             relative_pose_into(position, rotation, surfaces.offset, owner, other, 0, R, d)
             found, count[side + 1] = _near_nodes(surfaces, owner, other, R, d, 0, skin, found, count[side])
     first = np.zeros(n_sides + 1, np.int64)
@@ -221,7 +228,6 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
     for side in range(n_sides):
         owner, other = pairs[side // 2, side % 2], pairs[side // 2, 1 - side % 2]
         e, n_nodes = surfaces.offset[owner], count[side + 1] - count[side]
-        share = _share(surfaces, driven, owner, other)
         for rank in range((first[side + 1] - first[side]) * LANES):
             place = first[side] * LANES + rank
             packet, lane = place // LANES, place % LANES
@@ -230,8 +236,6 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
                 packets[packet, lane + POINT_X] = surfaces.points[node[place], 0] - e[0]
                 packets[packet, lane + POINT_Y] = surfaces.points[node[place], 1] - e[1]
                 packets[packet, lane + POINT_Z] = surfaces.points[node[place], 2] - e[2]
-                packets[packet, lane + AREA] = share * surfaces.areas[node[place]]
-                packets[packet, lane + DAMPING_WEIGHT] = share * surfaces.damping_weight[node[place]]
             else:
                 packets[packet, lane + POINT_X] = FAR_AWAY
         relative_pose_into(
@@ -243,7 +247,10 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
             R, d, 0,
         )  # fmt: skip
     joint = np.full(pairs.shape[0], -1, np.int64)
-    new = Candidates(pairs, joint, first, node, packets, located, position.copy(), orientation.copy())
+    key = np.full((pairs.shape[0], N_KEY), _FRESH, np.int64)
+    new = Candidates(
+        pairs, joint, first, node, packets, share, key, located, position.copy(), orientation.copy()
+    )
     _carry_over_into(old, new)
     return new, _name_joints(new, joints)
 
@@ -272,16 +279,29 @@ def locate_pair_into(candidates, surfaces, poses, pair, R, d):
         Overwritten by `relative_pose_into`.
     """
     pairs, first = candidates.pairs, candidates.first
-    area = 0.0
     for side in range(2):
         owner, other = pairs[pair, side], pairs[pair, 1 - side]
         relative_pose_into(poses.position, poses.rotation, surfaces.offset, owner, other, side, R, d)
+    _renew_areas_into(candidates, surfaces, pair, R, d)
+    area = 0.0
+    for side in range(2):
         area += 0.5 * locate_nodes_into(
             candidates.packets, candidates.located, first[2 * pair + side], first[2 * pair + side + 1],
             first[2 * pair], surfaces.half, surfaces.chamfer, surfaces.hollow, surfaces.lattice, surfaces.values,
-            surfaces.shape[other], R, d, side,
+            surfaces.shape[pairs[pair, 1 - side]], R, d, side,
         )  # fmt: skip
     return area
+
+
+@borrowing_kernel
+def _renew_areas_into(candidates, surfaces, pair, R, d):
+    """New areas of a pair's nodes where one body has come to another place on the other since they were made."""
+    a, b = candidates.pairs[pair, 0], candidates.pairs[pair, 1]
+    code, u, v, turn = facing_key(surfaces, a, b, R, d)
+    key = candidates.key[pair]
+    if code != key[0] or u != key[1] or v != key[2] or turn != key[3]:
+        key[0], key[1], key[2], key[3] = code, u, v, turn
+        joint_areas_into(candidates, surfaces, pair, key)
 
 
 @kernel
