@@ -125,7 +125,7 @@ def simulate_readings(test, model, settings, rows, time_steps, ensemble, store, 
             )  # fmt: skip
             noise = content_digest("noise", test.name, model, identity, ensemble["seed"], int(sample))
             read = observe(run, structure, test.instruments, int(noise, 16))
-            along = read[["marker_displacement"]].sel(axis=["x"]).drop_encoding()
+            along = read[["marker_displacement"]].sel(axis=["x"])
             along = along.assign(log_spectrum=log_spectrum(read, structure, case["duration"]))
             keep_dataset(path, along.assign_attrs(status=run.attrs["status"]), _DECIMALS)
             how = "simulated"

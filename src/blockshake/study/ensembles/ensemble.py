@@ -119,8 +119,6 @@ def join_batches(batches, without=(), chosen=None):
     joined = xr.concat(
         parts, dim="sample", data_vars="all", coords="minimal", compat="override", join="override"
     ).sortby("sample")
-    # a part read from a file remembers how long its texts were, and would cut the others' to that on writing
-    joined = joined.drop_encoding()
     joined.attrs = _common([part.attrs for part in parts])
     return joined
 

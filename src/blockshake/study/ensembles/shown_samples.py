@@ -61,7 +61,7 @@ def shown_samples(ensemble):
     shape = (len(rows), len(time), ensemble.sizes["body"], 3)
     shift, turn = (np.reshape([one[part] for one in moved], shape) for part in (0, 1))
     dims = ("sample", "time", "body", "axis")
-    result = xr.Dataset(
+    return xr.Dataset(
         {
             "shift": (dims, shift, {"long_name": "displacement relative to the slab's marker", "units": "m"}),
             "turn": (dims, turn, {"long_name": "rotation vector since the start", "units": "rad"}),
@@ -73,7 +73,6 @@ def shown_samples(ensemble):
         coords={"sample": chosen["sample"], "time": time, "body": ensemble["body"], "axis": ensemble["axis"]},
         attrs={**ensemble.attrs, "title": "samples of an ensemble that a report shows moving"},
     )
-    return result.drop_encoding()
 
 
 def _peaks(counted):

@@ -33,7 +33,7 @@ def fragility_of_case(batches, case):
     """`fragility` of a case from the files of its samples' climbs."""
     climbed = [load_made(batch) for batch in batches]
     joined = xr.concat(climbed, dim="sample", data_vars="minimal", coords="minimal", combine_attrs="override")
-    return fragility(joined.drop_encoding(), (case,))
+    return fragility(joined, (case,))
 
 
 def fragility(climbed, identity):
