@@ -17,7 +17,7 @@ from case_files import PAGE, ROOT, TRACK_RECORD, load_plan, truth_of, verdict_of
 from score_figures import Scored, figures
 from track_record_text import as_markdown, with_block
 
-from blockshake.diagnosis.verdict.track_record import TrackRecord, write_track_record
+from blockshake.diagnosis.verdict.track_record import TrackRecord, procedure_digest, write_track_record
 from blockshake.diagnosis.verdict.verdict import load_verdict
 from blockshake.errors import InputError
 from blockshake.files import write_text
@@ -59,6 +59,7 @@ def make_track_record(scored, efforts, seeds):
     return TrackRecord(
         date=datetime.date.today().isoformat(),
         commit=commit.stdout.strip() or "not under version control",
+        procedure=procedure_digest(),
         machine=f"{os.cpu_count()} cores",
         efforts=efforts,
         seeds=seeds,

@@ -199,8 +199,8 @@ def track_record():
                     )
                 )
     return TrackRecord(
-        date="2026-11-20", commit="0123456789ab", machine="two cores", efforts={"two-blocks": "standard"},
-        seeds="fedcba987654",
+        date="2026-11-20", commit="0123456789ab", procedure="ba9876543210", machine="two cores",
+        efforts={"two-blocks": "standard"}, seeds="fedcba987654",
         shares={
             "false-alarm": Share(
                 meaning="clean campaigns called an effect", hits=1, n=60, lower=0.0004, upper=0.0894, goal=0.05,

@@ -1,4 +1,5 @@
 import re
+from types import SimpleNamespace
 
 import pytest
 from fake_diagnosis import FakeDiagnosis
@@ -6,11 +7,14 @@ from fake_findings import CAUSES, OPEN, SEALED, track_record, write_horizons, wr
 from page import CLAIMS, Page
 
 from blockshake.diagnosis.verdict.ladder import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN
+from blockshake.diagnosis.verdict.track_record import procedure_digest
 from blockshake.diagnosis.verdict.verdict import load_verdict
 from blockshake.errors import InputError
 from blockshake.report.diagnosis.content import load_diagnosed
 from blockshake.report.diagnosis.report import compose_diagnosis, make_diagnosis_report
+from blockshake.report.diagnosis.track_record_section import track_record_section
 from blockshake.report.diagnosis.verdict import statement
+from blockshake.report.document.blocks import Text
 from blockshake.report.document.html import write_html
 
 WORDS = {
@@ -174,6 +178,14 @@ def test_drift_before_and_after_is_that_of_the_strongest_sealed_test(found, page
 
 def test_without_a_cause_no_gain_is_shown(pages):
     assert "No gain was measured" in pages["none"][1]
+
+
+def test_a_track_record_of_an_earlier_program_is_called_so(pages):
+    today = track_record().model_copy(update={"procedure": procedure_digest()})
+    of_today = track_record_section(SimpleNamespace(track_record=today, effort="standard"))
+    words = "changed since: the track record is that of an earlier one"
+    assert words in pages["named"][1]
+    assert not any(words in block.text for block in of_today.blocks if isinstance(block, Text))
 
 
 def test_track_record_prints_its_figures_and_what_it_missed(pages):

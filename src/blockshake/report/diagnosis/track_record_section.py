@@ -1,6 +1,6 @@
 """Seventh page of a diagnosis: how often the procedure was right where the truth was known."""
 
-from blockshake.diagnosis.verdict.track_record import Answers
+from blockshake.diagnosis.verdict.track_record import Answers, procedure_digest
 from blockshake.report.document.blocks import Section, Table, Text
 from blockshake.report.document.wording import MISSING, number, percent
 
@@ -34,6 +34,14 @@ def track_record_section(found):
             "another structure they are an indication."
         )
     ]
+    if record.procedure != procedure_digest():
+        blocks.append(
+            Text(
+                "The program that simulates libraries and decides has been changed since: the track record is that of "
+                "an earlier one.",
+                strong=True,
+            )
+        )
     if found.effort not in record.efforts.values():
         blocks.append(
             Text(
