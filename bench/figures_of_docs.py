@@ -23,9 +23,12 @@ from shear_damping import shear_damping_rows, shear_damping_words
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import load_json, load_yaml, write_text
 from blockshake.geometry.structure import load_structure
-from blockshake.report.document.wording import number
+from blockshake.report.document.wording import model_label, number
 from blockshake.report.study.calibrations.all_tests import answers_table, tests_table
+from blockshake.report.study.content import load_content
 from blockshake.report.study.convergence_section import numbers_table
+from blockshake.report.study.sensitivity.summary import markers_by_height
+from blockshake.report.study.sensitivity.words import sentence
 from blockshake.report.study.statements.section import DEPARTURES_HEADER, HEADER, count_words, departures
 from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.simulate import simulate
@@ -211,6 +214,22 @@ def shear_damping():
     return f"{markdown(SHEAR_HEADER, rows)}\n\n{shear_damping_words(rows)}"
 
 
+def study_sensitivities():
+    """Sentences of the default study's report on what makes its envelopes thick; None where it has not been run."""
+    if not STUDY.is_file():
+        return None
+    content = load_content(load_config(DEFAULT).model_dump(), STUDY.parent, "benchmarks/study")
+    lines = []
+    for case in content.cases.values():
+        chosen = markers_by_height(case)
+        body, marker = list(chosen.items())[-1]
+        for model, response in case.responses.items():
+            words = sentence(response.sensitivity, body, marker, case.marker_noise)
+            told = f"- **{case.name}, {model_label(model)}:** {words}"
+            lines += textwrap.wrap(told, 100, subsequent_indent="  ", break_on_hyphens=False)
+    return "\n".join(lines)
+
+
 def study_shares():
     """CPU time of the default study by rule; None where it has not been run."""
     if not STUDY.is_file():
@@ -266,6 +285,7 @@ MAKERS = {
     "shear-damping": shear_damping,
     "joint-calibration": joint_calibration,
     "hollow-faces": lambda: markdown(HOLLOW_HEADER, hollow_rows()),
+    "study-sensitivities": study_sensitivities,
     "study-shares": study_shares,
     "cost-of-samples": cost_of_samples,
     "times-on-a-cluster": times_on_a_cluster,
