@@ -14,6 +14,7 @@ from pathlib import Path
 import yaml
 
 from blockshake.errors import InputError
+from blockshake.interrupts import delayed_interrupts
 
 PACKAGE = Path(__file__).parent
 _INSTALLED = PACKAGE / "shipped"
@@ -328,7 +329,7 @@ def write_dataset(path, dataset, decimals=None):
                 encoding[name] |= {
                     "dtype": "int32", "scale_factor": 10.0 ** -decimals[unit], "_FillValue": _NO_NUMBER,
                 }  # fmt: skip
-    with replacing(path) as temporary:
+    with replacing(path) as temporary, delayed_interrupts():
         dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding, unlimited_dims=[])
 
 

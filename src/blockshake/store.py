@@ -8,6 +8,7 @@ import xarray as xr
 
 from blockshake.errors import InputError
 from blockshake.files import MADE_ANEW, replacing, write_dataset, write_json
+from blockshake.interrupts import delayed_interrupts
 
 _SEAL = 64  # bytes at the end of a kept file: the digest of its name and of all before them
 
@@ -63,7 +64,7 @@ def load_made(path, without=(), chosen=None):
         The file cannot be read as such.
     """
     try:
-        with xr.open_dataset(path, drop_variables=list(without)) as found:
+        with delayed_interrupts(), xr.open_dataset(path, drop_variables=list(without)) as found:
             return found.sel(
                 {name: labels for name, labels in (chosen or {}).items() if name in found.dims}
             ).load()

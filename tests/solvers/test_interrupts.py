@@ -10,7 +10,6 @@ import pytest
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import MODELS
 from blockshake.solvers import pieces
-from blockshake.solvers.interrupts import held_interrupts
 
 TIMES = np.arange(0.0, 60.0, 0.005)
 
@@ -59,36 +58,6 @@ def test_a_function_call_says_how_to_go_on(model, tmp_path, interrupted_under_wa
 def test_without_a_checkpoint_it_says_so(model, interrupted_under_way):
     with pytest.raises(KeyboardInterrupt, match="nothing of it is saved"):
         _run(model)
-
-
-def test_interrupts_wait_until_asked_for():
-    with held_interrupts() as interrupted:
-        assert not interrupted()
-        _interrupt()
-        assert interrupted()
-    with pytest.raises(KeyboardInterrupt):
-        _interrupt()
-
-
-def test_ignored_interrupts_stay_ignored():
-    """As in a background job of a shell."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    with held_interrupts() as interrupted:
-        _interrupt()
-        assert not interrupted()
-
-
-def test_another_thread_is_left_alone():
-    seen = []
-
-    def work():
-        with held_interrupts() as interrupted:
-            seen.append(interrupted())
-
-    thread = threading.Thread(target=work)
-    thread.start()
-    thread.join()
-    assert seen == [False]
 
 
 @pytest.mark.parametrize(("spent", "steps"), [(0.0, 200), (0.3, 100), (0.6, 50), (100.0, 50)])

@@ -10,6 +10,7 @@ from blockshake.dynamics.system import ENERGY_TERMS
 from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES, QUATERNION
 from blockshake.geometry.structure import build_structure
+from blockshake.interrupts import delayed_interrupts
 
 _VARIABLES = {
     "position": ("time", "body", "axis"),
@@ -59,7 +60,8 @@ def load_run(path, meshes=None):
     if not Path(path).is_file():
         raise InputError(path, "", "expected a run file of blockshake simulate; there is no such file")
     try:
-        run = xr.load_dataset(path, engine="netcdf4", decode_times=False)
+        with delayed_interrupts():
+            run = xr.load_dataset(path, engine="netcdf4", decode_times=False)
     except (
         OSError,
         ValueError,

@@ -3,7 +3,8 @@
 import logging
 import time
 
-from blockshake.solvers.interrupts import held_interrupts
+from blockshake.interrupts import held_interrupts
+from blockshake.jit import compiling
 from blockshake.solvers.kept_rows import AT_HAND
 from blockshake.solvers.record import empty_record, last_step, rows_at_hand
 from blockshake.solvers.status import NEXT_RECORD, PAUSED, STEP
@@ -76,7 +77,7 @@ def run_in_pieces(start, integrate, rows_of, times, time_step, checkpoint, kept=
         n_rows = rows_at_hand(times, first, progress.clock[STEP], time_step, most)
         return empty_record(first, n_rows, len(progress.state.position), room)
 
-    with held_interrupts() as interrupted:
+    with held_interrupts(at_once=compiling) as interrupted:
         parts = checkpoint.load()
         if parts is not None and _has_all_rows(parts[-1], times, checkpoint, kept):
             _log.info("goes on from %.3f s", parts[0].clock[STEP] * time_step)

@@ -22,7 +22,7 @@ from blockshake.simulation.models import part_parameters
 from blockshake.simulation.placement import placed
 from blockshake.simulation.simulate import simulate
 from blockshake.simulation.structure_digest import structure_digest
-from blockshake.store import keep_dataset, kept
+from blockshake.store import keep_dataset, kept, load_made
 
 _SLOW = 0.04  # s, standard deviation of a Gaussian that is some 0.1 s wide at half its height
 
@@ -151,7 +151,7 @@ def kept_reading(planned, draw, effects, store, source, histories=True):
     )  # fmt: skip
     path = Path(store) / f"{key}.nc"
     if kept(path):
-        return KeptReading(xr.load_dataset(path), "kept")
+        return KeptReading(load_made(path), "kept")
     test, status = simulated_test(planned, draw, effects)
     reading = read_off(test, planned.structure, planned.sensors, laws=histories).assign(status=status)
     if not histories:

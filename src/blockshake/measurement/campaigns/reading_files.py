@@ -9,6 +9,7 @@ import xarray as xr
 from blockshake.errors import InputError
 from blockshake.files import read_text
 from blockshake.geometry.schema import AXES
+from blockshake.interrupts import delayed_interrupts
 from blockshake.paths import file_below
 
 _METRES = ("m", "metre", "metres", "meter", "meters")
@@ -69,7 +70,8 @@ def _dataset(path):
         content = path.read_bytes()
         if content[:4] in _CLASSIC:
             return xr.load_dataset(io.BytesIO(content), engine="scipy", decode_times=False)
-        return xr.load_dataset(path, decode_times=False)
+        with delayed_interrupts():
+            return xr.load_dataset(path, decode_times=False)
     except _DAMAGE:
         raise InputError(path, "", "expected a netCDF file; this is cut, damaged or something else") from None
 

@@ -56,7 +56,7 @@ def compare_case(batches, twins, named, base):
     compared with no test.
     """
     ensembles = {model: _first_samples(files) for model, files in batches.items()}
-    loaded = {model: xr.load_dataset(path) for model, path in twins.items() if path}
+    loaded = {model: load_made(path) for model, path in twins.items() if path}
     return compare_models(ensembles, loaded, measured_on_clock(named, base) if named else None)
 
 

@@ -4,6 +4,7 @@ import xarray as xr
 
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import model_of, split_parameters
+from blockshake.store import load_made
 from blockshake.study.convergence.convergence import NUDGE
 from blockshake.study.convergence.runs import housner_ratio, rocking_block
 from blockshake.study.described import describe
@@ -34,7 +35,7 @@ def simulate_twins(case, motions, model, settings, output_rate, row, linked, sto
     runs = []
     for moved, own in ((lambda sample: motions(sample).scaled(1.0 + NUDGE), settings), (motions, half)):
         (path,) = simulate_samples(case, moved, model, own, output_rate, row, linked, store, source, progress)
-        runs.append(xr.load_dataset(path)[["marker_displacement"]].isel(sample=0, drop=True))
+        runs.append(load_made(path)[["marker_displacement"]].isel(sample=0, drop=True))
     structure, solver = load_structure(case["structure"]), model_of(model)
     given = solver.stiffness_of(structure) | settings.get("parameters", {})
     numerical = split_parameters(given, model)[1]

@@ -8,6 +8,7 @@ import xarray as xr
 from blockshake.errors import InputError
 from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
+from blockshake.interrupts import delayed_interrupts
 from blockshake.measurement.sensors.markers import driven_marker
 from blockshake.simulation.joint_figures import joint_figures
 from blockshake.simulation.simulate import simulate
@@ -81,7 +82,7 @@ def simulate_samples(case, motions, model, settings, output_rate, rows, linked, 
 
 def sample_outcome(path):
     """Status and reason of a stored sample, as one line."""
-    with xr.open_dataset(path) as kept:
+    with delayed_interrupts(), xr.open_dataset(path) as kept:
         return f"{kept['status'].item()} {kept['reason'].item()}".rstrip()
 
 

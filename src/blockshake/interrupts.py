@@ -1,15 +1,18 @@
-"""Interrupts (Ctrl-C) that wait until no compiled kernel is handing results back to Python."""
+"""Interrupts (Ctrl-C) that wait while code runs which an exception out of nowhere would break."""
 
 import contextlib
 import signal
 import threading
 
-from blockshake.jit import compiling
-
 
 @contextlib.contextmanager
-def held_interrupts():
+def held_interrupts(at_once=lambda: False):
     """Context in which an interrupt is noted and not raised; its value is a function that says whether one came.
+
+    Parameters
+    ----------
+    at_once : callable
+        Says whether an interrupt is to be raised nevertheless.
 
     Notes
     -----
@@ -25,7 +28,7 @@ def held_interrupts():
     noted = []
 
     def note(number, frame):
-        if compiling():
+        if at_once():
             handler(number, frame)
         noted.append(number)
 
@@ -34,3 +37,16 @@ def held_interrupts():
         yield lambda: bool(noted)
     finally:
         signal.signal(signal.SIGINT, handler)
+
+
+@contextlib.contextmanager
+def delayed_interrupts():
+    """Context at whose end an interrupt is raised that came in it.
+
+    Xarray takes locks around netCDF's library. An interrupt between a lock that is taken and the block that gives it
+    back leaves the lock taken, and the file is then closed under the same lock: the process waits for itself.
+    """
+    with held_interrupts() as interrupted:
+        yield
+    if interrupted():
+        signal.raise_signal(signal.SIGINT)
