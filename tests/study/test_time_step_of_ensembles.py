@@ -16,7 +16,7 @@ from blockshake.study.sampling.distributions import LINKED
 from blockshake.study.sampling.latin_hypercube import draw_samples
 from blockshake.study.stiffness.wave_speed import calibrate_design
 
-SIZE, SEED = 50, 1  # of the study's design
+SIZE, SEEDS = 50, (1, 2, 3)  # of designs like the study's, whose is the first
 CASE = {
     "structure": "configuration-1",
     "motion": "basso-tirreno",
@@ -35,7 +35,7 @@ _log = logging.getLogger(__name__)
 def simulated(step, rows, linked, store):
     """Drift of the top block's marker at one time step [m], shape (sample, time)."""
     structure = load_structure(CASE["structure"])
-    motions = driving_motions(CASE, None, SEED)
+    motions = driving_motions(CASE, None, SEEDS[0])
     files = simulate_samples(
         CASE, motions, "ls-dem", {"time_step": step}, 200.0, rows, linked, store, "", _log.info
     )
@@ -97,7 +97,8 @@ def rms(values):
 @pytest.fixture(scope="module")
 def drifts(tmp_path_factory):
     linked = LINKED
-    design = draw_samples(SIZE, SEED).values
+    design = pd.concat([draw_samples(SIZE, seed).values for seed in SEEDS], ignore_index=True)
+    design.index.name = "sample"
     stiffness = calibrate_design("configuration-2", design, linked, tmp_path_factory.mktemp("store"), "")
     rows = pd.concat([design, stiffness], axis=1)
     return [simulated(step, rows, linked, tmp_path_factory.mktemp("store")) for step in STEPS]
