@@ -1,4 +1,5 @@
 import copy
+import signal
 
 import numpy as np
 import pytest
@@ -45,6 +46,14 @@ def make_structure(make_mapping):
         return build_structure(make_mapping(bodies, **keys), "test.yaml", ".")
 
     return make
+
+
+@pytest.fixture
+def heeded_interrupts():
+    """Interrupts raise, also where the tests run in a shell's background and would ignore them."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 @pytest.fixture(scope="session")

@@ -9,18 +9,14 @@ import xarray as xr
 
 from blockshake.files import write_dataset
 from blockshake.interrupts import delayed_interrupts, held_interrupts
+from blockshake.store import load_made
+
+pytestmark = pytest.mark.usefixtures("heeded_interrupts")
+DATASET = xr.Dataset({"a": ("x", [1.0, 2.0])})
 
 
 def _interrupt():
     os.kill(os.getpid(), signal.SIGINT)
-
-
-@pytest.fixture(autouse=True)
-def heeded_interrupts():
-    """Interrupts raise, also where the tests run in a shell's background and would ignore them."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
 
 
 def test_interrupts_wait_until_asked_for():
@@ -67,18 +63,32 @@ def test_a_delayed_interrupt_is_raised_at_the_end():
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
-def test_an_interrupt_while_a_file_is_written_leaves_no_lock(tmp_path, monkeypatch):
-    """One that came among xarray's locks left a lock taken, and the process waited for itself for ever."""
-    written = xr.Dataset.to_netcdf
+def _interrupted(called, ended):
+    """A function that is interrupted as it begins, and notes that it ended."""
 
-    def interrupted(self, *given, **named):
+    def run(*given, **named):
         _interrupt()
-        return written(self, *given, **named)
+        result = called(*given, **named)
+        ended.append(called.__name__)
+        return result
 
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", interrupted)
+    return run
+
+
+def test_an_interrupt_waits_until_a_file_is_written_and_leaves_no_part_of_it(tmp_path, monkeypatch):
+    """Among xarray's locks it left a lock taken, and the process waited for itself for ever."""
+    ended = []
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", _interrupted(xr.Dataset.to_netcdf, ended))
     with pytest.raises(KeyboardInterrupt):
-        write_dataset(tmp_path / "a.nc", xr.Dataset({"a": ("x", [1.0, 2.0])}))
+        write_dataset(tmp_path / "a.nc", DATASET)
+    assert ended == ["to_netcdf"]
     assert list(tmp_path.iterdir()) == []
-    monkeypatch.undo()
-    write_dataset(tmp_path / "a.nc", xr.Dataset({"a": ("x", [1.0, 2.0])}))
-    assert xr.load_dataset(tmp_path / "a.nc")["a"].values.tolist() == [1.0, 2.0]
+
+
+def test_an_interrupt_waits_until_a_file_is_read(tmp_path, monkeypatch):
+    ended = []
+    write_dataset(tmp_path / "a.nc", DATASET)
+    monkeypatch.setattr(xr, "open_dataset", _interrupted(xr.open_dataset, ended))
+    with pytest.raises(KeyboardInterrupt):
+        load_made(tmp_path / "a.nc")
+    assert ended == ["open_dataset"]

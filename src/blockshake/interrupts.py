@@ -16,9 +16,6 @@ def held_interrupts(at_once=lambda: False):
 
     Notes
     -----
-    Numba builds the named tuples that a kernel returns by calling Python, and an interrupt that came during the
-    kernel is raised in that call. Numba does not look for the exception: it goes on with a null pointer, and the
-    process dies of a segmentation fault. Numba's compiler is ordinary Python, in which an interrupt is raised at once.
     Outside the main thread, and where interrupts are ignored, nothing changes.
     """
     handler = signal.getsignal(signal.SIGINT)

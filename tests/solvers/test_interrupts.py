@@ -11,6 +11,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import MODELS
 from blockshake.solvers import pieces
 
+pytestmark = pytest.mark.usefixtures("heeded_interrupts")
 TIMES = np.arange(0.0, 60.0, 0.005)
 
 
@@ -21,14 +22,6 @@ def _interrupt():
 def _run(model, **options):
     row = MODELS[model]
     row.solve(load_structure("configuration-1"), None, row.schema(), TIMES, row.time_step, **options)
-
-
-@pytest.fixture(autouse=True)
-def heeded_interrupts():
-    """Interrupts raise, also where the tests run in a shell's background and would ignore them."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
 
 
 @pytest.fixture

@@ -70,6 +70,11 @@ def run_in_pieces(start, integrate, rows_of, times, time_step, checkpoint, kept=
     -----
     A piece has twice the steps of the one before, or half of them, where that took less than `_PIECE` or more
     than twice as long. No result depends on where the pieces end.
+
+    Interrupts are held meanwhile. Numba builds the named tuples that a kernel returns by calling Python, and an
+    interrupt that came during the kernel is raised in that call. Numba does not look for the exception: it goes on with
+    a null pointer, and the process dies of a segmentation fault. Numba's compiler is ordinary Python, in which an
+    interrupt is raised at once.
     """
     most = len(times) if kept is None else AT_HAND
 

@@ -89,8 +89,8 @@ def test_two_blocks_have_the_stiffness_and_moment_of_their_overlap(lower, upper,
     assert worst_miss(lower, upper, shift, yaw, make_structure)[0] < 0.02
 
 
-def test_so_have_two_blocks_anywhere_whose_overlap_is_wider_than_the_nodes_are_apart(make_structure):
-    """A hundred places drawn at random, straight and turned, of which some overlap in a strip alone."""
+def test_so_have_two_blocks_anywhere_with_enough_in_common(make_structure):
+    """A hundred places drawn at random, straight and turned; the smallest overlaps have too few nodes."""
     generator = np.random.default_rng(1)
     found = []
     for count in range(100):
@@ -102,10 +102,11 @@ def test_so_have_two_blocks_anywhere_whose_overlap_is_wider_than_the_nodes_are_a
         if overlap(FLATS[lower], FLATS[upper], shift, yaw, cells=100)[0].size > 0:
             found.append(worst_miss(lower, upper, shift, yaw, make_structure))
     missed, area = np.array(found).T
-    assert len(found) > 90
+    assert (area > 0.3).sum() > 80
     assert missed[area > 0.3].max() < 0.02
-    assert (area > 0.3).sum() > 50
+    assert missed.max() < 0.1
     assert np.median(missed) < 0.002
+    assert (missed < 0.02).mean() > 0.95
 
 
 FLATS, HEIGHTS = {"block": (0.76, 2.36), "cube": (1.0, 1.0)}, {"block": 1.6, "cube": 1.0}  # m

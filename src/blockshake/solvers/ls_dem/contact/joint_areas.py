@@ -72,7 +72,8 @@ def _fit_into(candidates, surfaces, pair, key, factors, centre):
     a, b = candidates.pairs[pair, 0], candidates.pairs[pair, 1]
     facing = facing_of(surfaces, a, b, key)
     polygon, n_corners = _overlap(surfaces, a, b, facing)
-    area = _integral_into(polygon, n_corners, np.zeros(3), np.zeros(6))
+    wanted = np.zeros(6)
+    area = _integral_into(polygon, n_corners, np.array([0.0, 0.0, 1.0]), wanted)
     flats = _flat_areas(surfaces, a, b, facing)
     whole = True
     for side in range(2):
@@ -80,8 +81,6 @@ def _fit_into(candidates, surfaces, pair, key, factors, centre):
             whole = False
     if whole or area <= 1e-9 * min(flats[0], flats[1]):
         return False
-    wanted = np.zeros(6)
-    _integral_into(polygon, n_corners, np.array([0.0, 0.0, 1.0]), wanted)
     centre[0], centre[1], centre[2] = wanted[1] / area, wanted[2] / area, 1.0 / np.sqrt(area)
     wanted[:] = 0.0
     _integral_into(polygon, n_corners, centre, wanted)
