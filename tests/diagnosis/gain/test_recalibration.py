@@ -1,5 +1,7 @@
 """Recalibration in worlds where features are linear in Gaussian parameters, so that the posterior is known."""
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.special import ndtr, ndtri
 
@@ -169,3 +171,20 @@ def test_a_misfit_of_all_features_does_not_move_parameters_out_of_their_prior():
     for draw in result.draws:
         assert 0.75 < draw.parameters[NAMES[0]] < 0.75 * np.exp(4.0 * FRICTION)
         assert SPACING[0] * 0.9 < draw.parameters[NAMES[2]] < SPACING[1] * 1.1
+
+
+def test_what_is_drawn_evenly_in_its_logarithm_stays_between_its_ends():
+    generator = np.random.default_rng(8)
+    share = generator.uniform(size=40)
+    draws = [
+        replace(draw, parameters={"shapes.block.hollow": float(1e-5 * 300.0**one)})
+        for draw, one in zip(draws_of(np.zeros((40, 4))), share, strict=True)
+    ]
+    features = ndtri(share)[:, None] + generator.normal(0.0, 0.3, (40, 1))
+    result = posterior_draws(draws, features, np.array([2.5]))
+    assert result.informed["informed"].sel(parameter="shapes.block.hollow")
+    found = np.array([draw.parameters["shapes.block.hollow"] for draw in result.draws])
+    reach = 300.0 ** ((share.max() - share.min()) / 39)  # the ends as 40 draws tell them
+    assert found.max() < 1e-5 * 300.0 ** share.max() * reach
+    # theory: a score of 2.5 / (1 + 0.3^2), 0.989 of the way up
+    assert np.median(np.log(found / 1e-5) / np.log(300.0)) > 0.9

@@ -9,8 +9,8 @@ from scipy.special import ndtr, ndtri
 from blockshake.diagnosis.libraries.null_model import MODELS
 from blockshake.simulation.models import model_of
 
-# in `draw_nominal`
-_UNIFORM_LAWS = {one.name for name in MODELS for one in model_of(name).perturbation.uncertain}
+# drawn evenly in `draw_nominal`; hollows are so in their logarithm, and all others log-normally
+_EVEN = {one.name for name in MODELS for one in model_of(name).perturbation.uncertain}
 _REGULARISATION = np.logspace(-2.0, 3.0, 11)  # over the mean square that a draw's features have
 _SHUFFLES = 199
 _INFORMED_CHANCE = 0.01  # below which a parameter is held to be informed
@@ -57,8 +57,8 @@ def posterior_draws(draws, features, measured, added=None):
     Conditional simulation of a joint Gaussian, ``theta_i + K (measured - added_i - y_i)`` with
     ``K = C_ty (C_yy + lambda I)^-1``: Matheron's rule, which is one step of an ensemble Kalman filter with perturbed
     observations (Evensen 2003, Ocean Dynamics 53; Iglesias, Law and Stuart 2013, Inverse Problems 29), as draws with
-    noise in their features are. ``theta`` is the logarithm of a parameter, or the normal score of one with a
-    uniform law, whose ends follow from the draws.
+    noise in their features are. ``theta`` is the logarithm of a parameter, or the normal score of one that is drawn
+    evenly, itself or in its logarithm, between ends that follow from the draws.
 
     Features outnumber draws, so chance correlations would move parameters that the tests do not know. Three guards:
     ``lambda`` is the one that predicts left-out draws best, by parameter; a parameter without more skill than it has
@@ -75,7 +75,9 @@ def posterior_draws(draws, features, measured, added=None):
     names = _varied(draws)
     values = np.array([[_value(draw, name) for name in names] for draw in draws])
     ends = [_ends(name, column) for name, column in zip(names, values.T, strict=True)]
-    scores = np.column_stack([_score(column, end) for column, end in zip(values.T, ends, strict=True)])
+    scores = np.column_stack(
+        [_score(name, column, end) for name, column, end in zip(names, values.T, ends, strict=True)]
+    )
     strength, skill, chance = _regularisation(scores, features)
     informed = chance <= _INFORMED_CHANCE
 
@@ -86,7 +88,9 @@ def posterior_draws(draws, features, measured, added=None):
     moved[:, informed] += _shifts(scores[:, informed], features, innovations, strength[informed])
     mean, deviation = scores.mean(axis=0), scores.std(axis=0, ddof=1)
     kept = np.where(informed, np.clip(moved, mean - _REACH * deviation, mean + _REACH * deviation), moved)
-    posterior = np.column_stack([_unscore(column, end) for column, end in zip(kept.T, ends, strict=True)])
+    posterior = np.column_stack(
+        [_unscore(name, column, end) for name, column, end in zip(names, kept.T, ends, strict=True)]
+    )
     posterior = np.where(informed, posterior, values[: len(added)])
     return Recalibration(
         draws=[
@@ -126,25 +130,34 @@ def _with_values(draw, values):
 
 
 def _ends(name, values):
-    """Ends of a uniform law as its draws tell them without bias, at least 0; None for the others."""
-    if name not in _UNIFORM_LAWS:
+    """Ends of what is drawn evenly, as its draws tell them without bias; None for the others."""
+    if name not in _EVEN and not name.endswith(".hollow"):
         return None
+    values = _evened(name, values)
     beyond = (values.max() - values.min()) / (len(values) - 1)
-    return max(0.0, values.min() - beyond), values.max() + beyond
+    lower = values.min() - beyond
+    return max(0.0, lower) if name in _EVEN else lower, values.max() + beyond
 
 
-def _score(values, ends):
+def _evened(name, values):
+    """A parameter on the scale on which its prior is even or Gaussian."""
+    return values if name in _EVEN else np.log(values)
+
+
+def _score(name, values, ends):
     """A parameter on the scale on which its prior is Gaussian."""
+    values = _evened(name, values)
     if ends is None:
-        return np.log(values)
+        return values
     lower, upper = ends
     # the lowest draw may stand on an end that was cut off at 0
     share = np.clip((values - lower) / (upper - lower), 0.1 / len(values), 1.0 - 0.1 / len(values))
     return ndtri(share)
 
 
-def _unscore(scores, ends):
-    return np.exp(scores) if ends is None else ends[0] + (ends[1] - ends[0]) * ndtr(scores)
+def _unscore(name, scores, ends):
+    values = scores if ends is None else ends[0] + (ends[1] - ends[0]) * ndtr(scores)
+    return values if name in _EVEN else np.exp(values)
 
 
 def _regularisation(scores, features):

@@ -1,11 +1,12 @@
 """The nominal model with its uncertainty: parameters, numerics, input, starting places, sensors."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from blockshake.simulation.models import MODELS as SOLVERS
 from blockshake.simulation.models import model_of
+from blockshake.study.calibration.settings import HOLLOW, OTHERS
 from blockshake.study.sampling.distributions import TABLE_2, Lognormal
 
 MODELS = tuple(name for name, model in SOLVERS.items() if model.perturbation is not None)
@@ -77,6 +78,9 @@ def draw_nominal(structure, model, number):
     discretisation is uncertain too, since no measurement says which one is right: each model's `Perturbation` has its
     parameters. A diagnosis with one fixed discretisation calls every other one an effect; so does one with white noise
     alone, once readings have a memory, gaps and outliers.
+
+    Nobody knows how flat faces are. Models that have a use for it draw the hollow of the blocks, one share of the
+    smallest edge for all, with the prior of the calibration; a hollow that the structure file states is kept.
     """
     generator = np.random.default_rng([number, model_of(model).perturbation.stream])
     file = structure.file
@@ -98,7 +102,7 @@ def draw_nominal(structure, model, number):
     places = np.zeros((len(file.bodies), 3))
     free = np.array([not body.driven for body in file.bodies])
     places[free] = generator.normal(0.0, [_PLACE_SPREAD, _PLACE_SPREAD, _YAW_SPREAD], (free.sum(), 3))
-    return Draw(
+    draw = Draw(
         model=model,
         time_step=time_step,
         parameters=drawn | numerics,
@@ -113,6 +117,20 @@ def draw_nominal(structure, model, number):
         places=places,
         seed=int(generator.integers(2**31)),
     )
+    return replace(draw, parameters=draw.parameters | _hollows(generator, model_of(model), file))
+
+
+def _hollows(generator, model, file):
+    """Depths of the faces of all boxes that can move and state none [m], by dotted name; empty without a use."""
+    if HOLLOW in model.without_effect:
+        return {}
+    share = float(OTHERS[HOLLOW].value(generator.random()))
+    moved = {body.shape for body in file.bodies if not body.driven}
+    return {
+        f"shapes.{name}.hollow": share * min(shape.box)
+        for name, shape in file.shapes.items()
+        if name in moved and shape.box is not None and not shape.hollow
+    }
 
 
 def _perturbed(generator, model, softer, structure):
