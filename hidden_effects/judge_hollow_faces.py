@@ -1,4 +1,4 @@
-"""Clean campaigns whose blocks have hollow faces, diagnosed with the flat faces of the null hypothesis.
+"""Clean campaigns whose blocks have hollow faces, each depth by itself; the null hypothesis draws hollows of its own.
 
 ``python hidden_effects/judge_hollow_faces.py --cores 2`` makes the campaigns by LS-DEM, diagnoses them by the ordinary
 rules with the effort ``quick``, and writes the decisions to the page. The seeds are of this program alone.
