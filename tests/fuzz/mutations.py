@@ -186,7 +186,8 @@ def mutated_datasets(draw, good):
         what = draw(
             st.sampled_from((_value, _value, _label, _lose, _cut, _turn, _retype, _rename, _attribute, _unit))
         )
-        name = draw(st.sampled_from([name for name in dataset.variables if dataset[name].ndim] or [None]))
+        filled = [name for name in dataset.variables if dataset[name].ndim and dataset[name].size]
+        name = draw(st.sampled_from(filled or [None]))
         # a change that cannot be, such as a name twice, is none
         with contextlib.suppress(ValueError, TypeError, KeyError):
             dataset = dataset if name is None else what(draw, dataset, name)
@@ -207,7 +208,7 @@ def _label(draw, dataset, name):
 
 
 def _place(draw, values):
-    return tuple(draw(st.integers(0, max(size - 1, 0))) for size in values.shape)
+    return tuple(draw(st.integers(0, size - 1)) for size in values.shape)
 
 
 def _lose(draw, dataset, name):
