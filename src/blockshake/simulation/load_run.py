@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from blockshake.damaged_hdf5 import has_endless_heap
 from blockshake.dynamics.system import ENERGY_TERMS
 from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES, QUATERNION
@@ -60,6 +61,8 @@ def load_run(path, meshes=None):
     if not Path(path).is_file():
         raise InputError(path, "", "expected a run file of blockshake simulate; there is no such file")
     try:
+        if has_endless_heap(Path(path)):
+            raise ValueError("it is damaged")
         with delayed_interrupts():
             run = xr.load_dataset(path, engine="netcdf4", decode_times=False)
     except (

@@ -6,6 +6,7 @@ import io
 import numpy as np
 import xarray as xr
 
+from blockshake.damaged_hdf5 import has_endless_heap
 from blockshake.errors import InputError
 from blockshake.files import read_text
 from blockshake.geometry.schema import AXES
@@ -70,6 +71,8 @@ def _dataset(path):
         content = path.read_bytes()
         if content[:4] in _CLASSIC:
             return xr.load_dataset(io.BytesIO(content), engine="scipy", decode_times=False)
+        if has_endless_heap(path):
+            raise ValueError
         with delayed_interrupts():
             return xr.load_dataset(path, decode_times=False)
     except _DAMAGE:
