@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
+import numpy as np
+
 from blockshake.files import HOME, load_yaml
 from blockshake.geometry.reference_block import reference_block
 from blockshake.geometry.structure import load_structure
@@ -14,8 +16,10 @@ from blockshake.solvers.ls_dem.interfaces import damping_ratio
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.nscd.parameters import NscdParameters
 from blockshake.solvers.nscd_deformable.parameters import DeformableParameters
+from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 from blockshake.study.friction.settings import FrictionSearch
 from blockshake.study.sampling.distributions import LINKED, TABLE_2
+from blockshake.study.stiffness.wave_step import STEP_VELOCITY
 
 
 class Departure(NamedTuple):
@@ -60,6 +64,17 @@ def _no_pull():
     return (
         f"The force is cut at zero. A flat impact at C_res {given(restitution)} rebounds at {number(rebound)} of its "
         "velocity."
+    )
+
+
+def _logarithm():
+    """Ratio of the damping to the critical one by (ln C_res)^2, and by ln(C_res^2) as printed."""
+    restitution = load_structure("configuration-1").file.restitution
+    decay = -np.log(restitution)
+    return (
+        f"Read as (ln C_res)^2, as the restitution asks for: {number(damping_ratio(restitution))} of the critical "
+        f"damping for C_res {given(restitution)}, where ln(C_res^2) gives "
+        f"{number(decay / np.sqrt(np.pi**2 - 2.0 * decay))}."
     )
 
 
@@ -111,8 +126,8 @@ def _steps():
 def _parts():
     parts = _study()["models"]["nscd-rigid"]["parameters"]["nscd.impact_parts"]
     return (
-        f"A step in which bodies meet is taken in {parts} parts in the shipped studies, in "
-        f"{NscdParameters().impact_parts} where nothing is said."
+        f"A step in which rigid bodies meet is taken in {parts} parts in config/study.yaml and config/paper.yaml, in "
+        f"{NscdParameters().impact_parts} where nothing is said and by deformable blocks."
     )
 
 
@@ -140,6 +155,19 @@ def _inputs():
     return f"Smoothed displacement and pitch of the slab, drawn anew for each sample from its uncertainty.{words}"
 
 
+def _shaking():
+    told = sorted({f"{case['motion']} at {given(case['scale'])}" for case in _study()["cases"]})
+    return f"{', '.join(told)}, the strongest of that motion in the shipped campaign that is not sealed."
+
+
+def _levels():
+    rise = load_yaml(HOME / "config" / "virtual-campaign.yaml")["intensities"]["increment"]
+    return (
+        f"The simulated ladder rises by {percent(_study()['ladder']['increment'])} %, the shipped synthetic tests by "
+        f"{percent(rise)} %."
+    )
+
+
 def _strata():
     size = _study()["ensemble"]["size"]
     short = []
@@ -154,6 +182,17 @@ def _strata():
 
 def _linked():
     return f"{len(LINKED)} further parameters take sampled values: {', '.join(LINKED)}."
+
+
+def _search():
+    told = []
+    for name in ("study", "paper"):
+        own = load_yaml(HOME / "config" / f"{name}.yaml")["friction_calibration"]
+        told.append(
+            f"{own['size']} samples in {own['replicates']} designs of {', '.join(own['cases'])} by "
+            f"{model_label(own['model'])} in config/{name}.yaml"
+        )
+    return f"Even steps between the same ends: {'; '.join(told)}."
 
 
 def _friction():
@@ -171,7 +210,10 @@ def _fewer():
         for model, count in case.get("samples", {}).items()
     ]
     window = sorted({case["duration"] for case in _study()["cases"]})
-    return f"In config/study.yaml windows of {', '.join(map(given, window))} s and fewer samples: {', '.join(told)}."
+    return (
+        f"In config/study.yaml windows of {', '.join(map(given, window))} s and fewer samples, the first rows of the "
+        f"whole design: {', '.join(told)}."
+    )
 
 
 def _defaults():
@@ -194,21 +236,31 @@ DEPARTURES = (
     Departure("LS-DEM", "A node stands for its part of its own surface.",
               _words("Where flats overlap in part, the nodes of both integrate over the overlap."),
               "docs/decisions/0013-areas-of-a-joint.md"),
-    Departure("LS-DEM", "k_n and k_s of a node.", _words("k_n and k_s per area."),
+    Departure("LS-DEM", "k_n and k_s of a block, at each node.", _words("k_n and k_s per area."),
               "docs/decisions/0001-stiffness-per-area.md"),
     Departure("LS-DEM", "Nodes cover the surface, chamfer included.", _pivot, _METHOD),
     Departure("LS-DEM", "Eq. (3) with the mass of the block, at each node.",
               _words("One dashpot for the interface, with the reduced mass of the two bodies."), _METHOD),
+    Departure("LS-DEM", "ln C_res^2 in Eq. (3).", _logarithm, _METHOD),
     Departure("LS-DEM", "Eq. (2), which can pull.", _no_pull, _METHOD),
+    Departure("LS-DEM", "Eq. (4) adds k_s v dt along the tangential velocity.",
+              _words("The sign is read as opposing the velocity."), _METHOD),
     Departure("LS-DEM", "The distance on a lattice.", _words("The distance to a box by its formula."), _METHOD),
     Departure("LS-DEM", "Steps of 1e-5 s.", _steps, _METHOD),
     Departure("Stiffness", "No Poisson's ratio is stated.", _poisson, _METHOD),
     Departure("Stiffness", "Waves are read at a similar velocity of all blocks.",
               _words("Waves are read at half of the step's velocity."), "docs/uncertainty.md"),
+    Departure("Stiffness", "A unit step of velocity is given to the ground of the tower.",
+              lambda: f"The step has {given(STEP_VELOCITY)} m/s, so that no joint opens or slips; shear waves are sent "
+                      "with the blocks' rotations blocked.", "docs/uncertainty.md"),
     Departure("Stiffness", "Nothing is said of lying blocks and beams.", _lying, _METHOD),
     Departure("Structures", "The section of the steel beams is not stated.", _beams,
               "config/structures/configuration-4.yaml"),
-    Departure("Structures", "Length of the blocks, slab, gap of the walls and places of sensors are not stated.",
+    Departure("Structures", "Stoppers and retaining systems stand around the specimens.",
+              _words("Not in the structure files: their places and gaps are not published."),
+              "config/structures/configuration-1.yaml"),
+    Departure("Structures", "Width and length of the blocks, the direction of shaking over them, slab, gap of the "
+                            "walls and places of sensors are not stated.",
               _words("Inferred; each structure file marks them."), "config/structures/configuration-1.yaml"),
     Departure("NSCD", "Steps are taken whole.", _parts, _NSCD),
     Departure("NSCD", "Nonlinear Gauss-Seidel.", _solver, _NSCD),
@@ -223,6 +275,8 @@ DEPARTURES = (
     Departure("Input", "Recorded ground motions and measured tests.",
               _words("Those that ship are synthetic; records and tests of a user take their place."),
               "docs/motions.md"),
+    Departure("Input", "Record and level of Figs. 11 to 14 are not stated.", _shaking, "docs/configuration.md"),
+    Departure("Input", "Tests start at 50 % and rise by about 25 %.", _levels, "docs/campaigns.md"),
     Departure("Input", "Mass centres of the models are plotted beside face markers.",
               _words("The models are read at the markers."), "docs/sampling.md"),
     Departure("Statistics", "The values of the strata are not stated.", _strata, "docs/sampling.md"),
@@ -230,11 +284,19 @@ DEPARTURES = (
               "docs/sampling.md"),
     Departure("Statistics", "Slab, and steel on steel and on the slab, are not in Table 2.", _linked,
               "docs/configuration.md"),
+    Departure("Statistics", "The mean friction is drawn at random from 0.3 to 0.8, with 50 samples by both models.",
+              _search, "docs/calibration.md"),
     Departure("Statistics", "The mean friction whose envelope contains the test.", _friction,
               "docs/calibration.md"),
     Departure("Statistics", "Envelopes are held against the tests by eye.",
               _words("Coverage stands beside that of each sample by the others, with a distance and its chance."),
               "docs/sampling.md"),
+    Departure("Statistics", "Envelopes are the largest and the smallest of all samples.",
+              _words("Thickness is judged by the standard deviation over samples and time, which hangs less on single "
+                     "samples and on their number."), "docs/sampling.md"),
+    Departure("Statistics", "Residual displacements after a test.",
+              lambda: f"The mean over the last {given(RESIDUAL_WINDOW)} s of the window, at which blocks may still "
+                      "rock.", "docs/sampling.md"),
     Departure("Statistics", "50 samples over whole records.", _fewer, "docs/configuration.md"),
     Departure("Defaults", "Calibrated stiffness everywhere.", _defaults, _METHOD),
 )  # fmt: skip
