@@ -45,6 +45,10 @@ class TooLong(BaseException):
     """More CPU time than a refusal may take."""
 
 
+# asked for now: matplotlib makes the folder, which a watch would watch
+_PICTURES = Path(matplotlib.get_cachedir()).resolve()
+
+
 class _Watch:
     """Deeds that Python reports while a reader runs: writes outside of a folder, reads of secrets, programs."""
 
@@ -71,7 +75,7 @@ class _Watch:
             self.seen.append(f"{event} {arguments}")
 
     def _own(self, path):
-        kept = self.folder, CACHE_FOLDER.resolve(), "/dev", Path(matplotlib.get_cachedir()).resolve()
+        kept = self.folder, CACHE_FOLDER.resolve(), "/dev", _PICTURES
         return "__pycache__" in path or any(Path(path).is_relative_to(own) for own in kept)
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from contract import run_command, scratch
+from contract import BAD_INPUT, run_command, scratch
 from good_campaign import CAMPAIGN, CHANNELS, IMPORT, MARKERS, READINGS, files, netcdf, workbook
 from hypothesis import given
 from hypothesis import strategies as st
@@ -136,3 +136,10 @@ def test_many_mutated_campaigns(kind, data):
 @given(st.data())
 def test_many_mutated_imports(kind, data):
     imported(data.draw(IMPORTS[kind]))
+
+
+def test_an_encoding_that_is_none_is_refused():
+    good = netcdf(READINGS.assign_attrs(x="y"), CLASSIC)
+    odd = good.replace(b"utf-8", b"xtf-8")
+    assert odd != good
+    assert checked({"t2.nc": odd}) == BAD_INPUT

@@ -69,7 +69,7 @@ def load_run(path, meshes=None):
         OSError,
         ValueError,
         RuntimeError,
-        KeyError,
+        LookupError,
         TypeError,
         MemoryError,
     ) as error:  # of a damaged file

@@ -28,7 +28,7 @@ _VARIABLES = {
 }
 _CLASSIC = (b"CDF\x01", b"CDF\x02")  # whose missing end the netCDF library reads as zeros, and scipy refuses
 # what the reader of a damaged file may raise
-_DAMAGE = (OSError, ValueError, RuntimeError, KeyError, TypeError, IndexError, AttributeError, MemoryError)
+_DAMAGE = (OSError, ValueError, RuntimeError, LookupError, TypeError, AttributeError, MemoryError)
 
 
 def read_netcdf(path):

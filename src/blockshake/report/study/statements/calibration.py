@@ -100,7 +100,13 @@ def friction_range(content):
     words = "; ".join(
         f"{case}: {', '.join(map(given, found['means']['mean']))}" for case, found in content.friction.items()
     )
-    return judged(ranges == {(LOWEST, HIGHEST)}, f"Means that were run, {words}.")
+    sizes = {found["size"] for found in content.friction.values()}
+    models = sorted({model_label(found["model"]) for found in content.friction.values()})
+    return judged(
+        ranges == {(LOWEST, HIGHEST)},
+        f"Means that were run, {words}; samples of each: {', '.join(map(given, sorted(sizes)))}; by "
+        f"{' and '.join(models)}.",
+    )
 
 
 def optimum(content):

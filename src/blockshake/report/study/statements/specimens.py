@@ -186,6 +186,11 @@ def measured_input(content):
     """The measured displacement of the slab as the input."""
     inputs = {case.name: case.settings["input"] for case in content.cases.values()}
     words = ", ".join(f"{name} by the {kind} motion" for name, kind in inputs.items())
+    if MEASURED in inputs.values():
+        words += (
+            ". The measured displacement is smoothed, has its pitch with it, and is drawn anew for each sample from "
+            "its uncertainty, which envelopes hold too"
+        )
     return judged(set(inputs.values()) == {MEASURED}, f"The models are driven: {words}.")
 
 
