@@ -100,7 +100,7 @@ def dashpot_coefficient(interfaces, a, b, ratio, stiffness, area):
     Zhou et al. (2023), Eq. (3). The damping belongs to the interface: ``2 zeta sqrt(m k / A)`` for the
     mass m effective in a central impact of the two bodies, half of it on each side, so that a face rebounds
     alike however many nodes carry it. Literally, each node has the dashpot ``2 zeta sqrt(m k_node)`` of
-    its own stiffness, half of the interface's, and of the whole mass.
+    its own stiffness, half of the interface's, and of the same mass.
     """
     if area == 0.0 or ratio == 0.0:
         return 0.0

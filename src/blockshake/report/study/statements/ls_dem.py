@@ -69,7 +69,7 @@ def rebound_without_pull(ratio):
 
 
 def damping(content):
-    """Eq. (3), for each node and the whole mass."""
+    """Eq. (3), for each node; its mass is a departure."""
     if absent := missing(content, "ls-dem"):
         return unjudged(absent)
     of = setting(content, "ls-dem", "ls_dem.damping")
