@@ -21,14 +21,14 @@ def has_endless_heap(path):
     Notes
     -----
     A global heap is a row of objects: index, references, length, content (HDF5 File Format Specification, version 3.0,
-    section III.E). Index 0 is free space, whose length counts its own header. HDF5 2.0 takes that length for the way
+    section III.E). Index 0 is free space, whose length counts its own header. HDF5 2.2 takes that length for the way
     to the next object, so that a length of 0, as zeroed bytes have it, holds the library at one place; a length near
     2^64 of another object does so too. Lengths that lead out of the heap are refused by the library itself.
     """
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         if content[:8] != _SIGNATURE or len(content) < _HEADER:
             return False
-        if content[_PLACE_OF_LENGTHS.get(content[8], 8)] != _BYTES:
+        if content[8] not in _PLACE_OF_LENGTHS or content[_PLACE_OF_LENGTHS[content[8]]] != _BYTES:
             return False
         start = content.find(_HEAP)
         while start >= 0:

@@ -77,6 +77,14 @@ def test_steps_at_the_iteration_limit_are_counted(content):
     assert "3.50e-06" in found.words
 
 
+def test_samples_that_never_ended_tell_nothing_of_convergence(content):
+    for case in content.cases.values():
+        case.responses["nscd-rigid"].samples["numerics_steps"][:] = np.nan
+    found = nscd.converged(content)
+    assert found.verdict == UNJUDGED
+    assert "no sample has figures of its steps" in found.words
+
+
 def test_energy_residual_tells_what_is_conserved(content):
     assert nscd.conserves(content).verdict == MET
     content.cases["configuration-1"].responses["nscd-rigid"].samples["energy_residual"][0] = 0.2

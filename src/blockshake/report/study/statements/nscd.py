@@ -18,19 +18,22 @@ def converged(content):
     models = _models(content)
     if not models:
         return unjudged("This study has no nonsmooth model.")
-    told, capped = [], 0
+    told, capped, counted = [], 0, 0
     for model in models:
+        steps = sum(_figure(content, model, "numerics_steps", np.sum))
+        if not steps:
+            told.append(f"{model_label(model)}: no sample has figures of its steps.")
+            continue
         at_cap = sum(_figure(content, model, "numerics_capped_steps", np.sum))
         worst = max(_figure(content, model, "numerics_max_residual", np.max), default=np.nan)
-        steps = sum(_figure(content, model, "numerics_steps", np.sum))
         tolerance = setting(content, model, f"{MODELS[model].prefix}.tolerance")
-        capped += at_cap
+        capped, counted = capped + at_cap, counted + steps
         told.append(
             f"{model_label(model)}: {at_cap:.0f} steps of all samples, {number(100.0 * at_cap / steps, 2)} %, stopped "
             f"at the iteration limit before the tolerance of {given(tolerance)}, which the paper does not state; "
             f"largest relative residual {number(worst)}."
         )
-    return judged(capped == 0, " ".join(told))
+    return judged(capped == 0, " ".join(told)) if counted else unjudged(" ".join(told))
 
 
 def conserves(content):
