@@ -98,7 +98,12 @@ class FakeStudy:
                 "distributions": {name: one.model_dump() for name, one in TABLE_2.items()},
             },
             "output_rate": 200.0,
-            "ladder": {"motions": ["alkion", "basso-tirreno"], "first": 0.5, "increment": 0.25},
+            "ladder": {
+                "motions": ["alkion", "basso-tirreno"],
+                "first": 0.5,
+                "increment": 0.25,
+                "largest_drift": 0.4,
+            },
             "fragility": {"model": "nscd-rigid", "cases": ["configuration-1"], "size": 5},
             "friction_calibration": {"cases": ["configuration-1"]},
             "calibration": {

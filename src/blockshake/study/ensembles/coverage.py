@@ -14,7 +14,7 @@ from blockshake.study.ensembles.measured import compared_curves
 
 REFERENCE_QUANTILES = (0.05, 0.5, 0.95)
 _FEWEST_MEMBERS = 3
-_UNLIKELY = 0.05  # chance of a whole curve at or below which an ensemble does not fit
+UNLIKELY = 0.05  # chance of a whole curve at or below which an ensemble does not fit
 _DESCRIBED = {
     "coverage": ("fraction of the time that the measured curve is within the bounds", "1"),
     "reference": ("the same of the members, each in the bounds of the others", "1"),
@@ -146,7 +146,7 @@ def is_likely(chance, members):
     >>> is_likely(0.09, 50), is_likely(1.0 / 11.0, 10)
     (True, False)
     """
-    return bool(chance > max(_UNLIKELY, 1.0 / (1.0 + members)))
+    return bool(chance > max(UNLIKELY, 1.0 / (1.0 + members)))
 
 
 def relative_width(comparison, peak):

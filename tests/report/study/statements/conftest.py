@@ -28,8 +28,13 @@ def content(loaded):
             )
             for model, one in case.responses.items()
         }
-        base = case.base.copy(deep=True)
-        cases[name] = replace(case, settings=dict(case.settings), base=base, responses=responses)
+        cases[name] = replace(
+            case,
+            settings=dict(case.settings),
+            base=case.base.copy(deep=True),
+            differences=case.differences.copy(deep=True),
+            responses=responses,
+        )
     models = {name: {**one, "parameters": {}} for name, one in loaded.study["models"].items()}
     return replace(
         loaded,

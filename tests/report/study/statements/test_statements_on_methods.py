@@ -86,6 +86,11 @@ def test_samples_that_never_ended_tell_nothing_of_convergence(content):
 
 
 def test_energy_residual_tells_what_is_conserved(content):
+    found = nscd.conserves(content)
+    assert found.verdict == NOT_MET
+    assert "failures: 1 of 16 samples" in found.words
+    for case in content.cases.values():
+        case.responses["nscd-rigid"].samples["status"][:] = "completed"
     assert nscd.conserves(content).verdict == MET
     content.cases["configuration-1"].responses["nscd-rigid"].samples["energy_residual"][0] = 0.2
     found = nscd.conserves(content)
@@ -183,21 +188,57 @@ def test_a_synthetic_test_judges_nothing_of_the_specimens(real):
 
 
 def test_motions_are_judged_by_their_peaks(content):
+    found = specimens.peaks(content)
+    assert found.verdict == UNJUDGED
+    assert "Synthetic, and scaled to those peaks: " in found.words
+    assert specimens.records(content).verdict == UNJUDGED
+    for name in specimens.PEAKS:
+        content.motions[name].attrs["synthetic"] = 0
     assert specimens.peaks(content).verdict == NOT_MET
     for name, peak in specimens.PEAKS.items():
         content.motions[name].attrs["peak_acceleration"] = peak
-    found = specimens.peaks(content)
-    assert found.verdict == MET
-    assert "Synthetic" in found.words
-    assert specimens.records(content).verdict == UNJUDGED
+    assert specimens.peaks(content).verdict == MET
 
 
-def test_ladder_is_that_of_the_paper(content):
+def test_ladder_and_levels_are_those_of_the_paper(content, tmp_path):
     found = specimens.ladder(content)
-    assert found.verdict == MET
+    assert found.verdict == NOT_MET
     assert "configuration-4 at 2, NSCD rigid: 20.0 %" in found.words  # 1 of the 5 that count
+    assert "at a drift of 0.4 m" in found.words
+    assert "Tests of configuration-1: 2." in found.words
+    (tmp_path / "virtual.nc").touch()
+    tests = "".join(
+        f"  - {{name: t{level:03.0f}, file: virtual.nc, motion: alkion, scale: {level / 100}, role: fit}}\n"
+        for level in (50, 75, 100)
+    )
+    (tmp_path / "campaign.yaml").write_text(f"name: other\nstructure: configuration-1\ntests:\n{tests}")
+    for case in content.cases.values():
+        case.settings["measured"] = {"campaign": str(tmp_path), "test": "t050"}
+    assert specimens.ladder(content).verdict == MET
     content.study["ladder"]["increment"] = 0.5
     assert specimens.ladder(content).verdict == NOT_MET
+
+
+def test_walls_blocks_and_beams_are_those_of_the_paper(content, monkeypatch):
+    found = specimens.make_up(content)
+    assert found.verdict == MET
+    assert "configuration-4 2, 9 and 4" in found.words
+    monkeypatch.setitem(specimens.MAKE_UP, "configuration-3", (2, 8, 0))
+    assert specimens.make_up(content).verdict == NOT_MET
+
+
+def test_four_points_of_an_overlap_are_kept(content, monkeypatch):
+    found = nscd.four_points(content)
+    assert found.verdict == MET
+    assert "with 8 corners 4 are kept" in found.words
+    monkeypatch.setattr(nscd, "choose_four_into", lambda *given: 5)
+    assert nscd.four_points(content).verdict == NOT_MET
+
+
+def test_a_shear_spring_that_takes_up_the_normal_motion_breaks_the_equation(content, monkeypatch):
+    monkeypatch.setattr(ls_dem, "trial_stretch", lambda *given: (given[3], given[4], given[5], 0.0, 0.0))
+    found = ls_dem.shear_law(content)
+    assert found.verdict == NOT_MET
 
 
 def test_low_tests_and_the_strongest_are_those_of_the_campaign(content, tmp_path):

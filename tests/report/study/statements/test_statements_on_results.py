@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from blockshake.report.study.statements import calibration, envelopes, models, stiffness
+from blockshake.report.study.statements import calibration, envelopes, models, rocking, stiffness
 from blockshake.report.study.statements.statement import Verdict
 from blockshake.study.sampling.distributions import Lognormal
 
@@ -48,6 +48,7 @@ def test_variability_is_that_of_the_median_peak(content):
         found = calibration.low_variability(content)
         assert found.verdict == verdict
         assert f"configuration-1, LS-DEM {100 * half:.1f} %" in found.words
+        assert "not judged: configuration-4, NSCD rigid 5." in found.words
 
 
 def search(content, **changes):
@@ -177,32 +178,71 @@ def test_envelopes_thicken_upward_or_not(content):
     assert "1 of 2 cases" in found.words
 
 
-def test_envelopes_at_the_top_are_compared(content):
-    thicken(content, "ls-dem", {FIRST: 0.01, FOURTH: 0.02})
-    assert envelopes.than_first(content, "ls-dem").verdict == MET
-    thicken(content, "nscd-rigid", {FIRST: 0.02, FOURTH: 0.01})
-    found = envelopes.than_first(content, "nscd-rigid")
-    assert found.verdict == NOT_MET
-    assert "configuration-1 20.0 mm, configuration-4 10.0 mm" in found.words
-    assert envelopes.with_structure(content, ("nscd-rigid",)).verdict == NOT_MET
-    assert envelopes.with_structure(content, ("ls-dem",)).verdict == MET
+def widen(content, model, tops):
+    """Give the cases mean differences of two samples at the top, with limits 10 % off [m]."""
+    for name, top in tops.items():
+        differences = content.cases[name].differences
+        differences["width"].loc[{"model": model}] = top
+        for bound, factor in (("lower", 0.9), ("upper", 1.1)):
+            differences["width_interval"].loc[{"model": model, "bound": bound}] = factor * top
+
+
+def test_envelopes_at_the_top_are_compared_by_their_limits(content):
+    for top, verdict, counts in (
+        (0.02, MET, "in 1, and thinner in 0"), (0.011, UNJUDGED, "in 0, and thinner in 0"),
+        (0.005, NOT_MET, "in 0, and thinner in 1"),
+    ):  # fmt: skip
+        widen(content, "ls-dem", {FIRST: 0.01, FOURTH: top})
+        found = envelopes.than_first(content, "ls-dem")
+        assert found.verdict == verdict
+        assert counts in found.words
+        assert "configuration-1 10.0 [9.0, 11.0] mm" in found.words
+        assert envelopes.with_structure(content, ("ls-dem",)).verdict == verdict
+    widen(content, "nscd-rigid", {FIRST: 0.01, FOURTH: 0.02})
+    assert envelopes.with_structure(content, ("nscd-rigid",)).verdict == MET
+    assert envelopes.with_structure(content, ("nscd-rigid", "ls-dem")).verdict == NOT_MET
     assert "no NSCD elastic" in envelopes.with_structure(content, ("ls-dem", "nscd-elastic")).words
     assert envelopes.fourth_than_third(content, "ls-dem").verdict == UNJUDGED
     content.cases[FOURTH].settings["scale"] = 1.25
     assert envelopes.than_first(content, "ls-dem").verdict == UNJUDGED
 
 
-def test_rocking_and_residuals_by_configuration(content):
-    for turned, verdict in ((0.02, MET), (0.005, NOT_MET)):
-        content.cases[FIRST].responses["ls-dem"].samples["peak_rotation"][:] = 0.01
-        content.cases[FOURTH].responses["ls-dem"].samples["peak_rotation"][:] = turned
-        assert envelopes.rocking(content).verdict == verdict
+def move(content, name, counts):
+    """Let so many joints of the cases open or slip by 1 mm in all samples, and the others not at all."""
+    for case, count in counts.items():
+        for one in content.cases[case].responses.values():
+            one.samples[name][:] = 0.0
+            one.samples[name].loc[{"joint": one.samples["joint"].values[:count]}] = 1e-3
+
+
+def test_rocking_and_sliding_are_those_of_joints_that_move(content):
+    for first, fourth, verdict in ((2, 3, MET), (3, 3, NOT_MET)):
+        move(content, "joint_uplift", {FIRST: first, FOURTH: fourth})
+        found = rocking.occurrences(content)
+        assert found.verdict == verdict
+        assert f"configuration-1 {first}, configuration-4 {fourth}. Largest" in found.words
+    move(content, "joint_uplift", {FIRST: 2, FOURTH: 3})
+    for slid, verdict in ((2, MET), (1, NOT_MET)):
+        move(content, "joint_slip", {FIRST: 1, FOURTH: slid})
+        found = rocking.complicated(content)
+        assert found.verdict == verdict
+        assert f"NSCD rigid, that slip configuration-1 1, configuration-4 {slid}" in found.words
+    del content.cases[FOURTH]
+    assert rocking.occurrences(content).verdict == UNJUDGED
+    assert rocking.complicated(content).verdict == UNJUDGED
+
+
+def test_residuals_are_judged_once_the_shaking_has_ended(content):
+    found = envelopes.residuals(content)
+    assert found.verdict == UNJUDGED
+    assert "still shakes: configuration-1 at" in found.words
+    for case in content.cases.values():
+        case.settings["duration"] = float(content.motions[case.motion]["time"][-1])
     for factor, verdict in ((100.0, MET), (1e-3, NOT_MET)):
         for one in content.cases[FOURTH].responses.values():
             one.envelope["residual"] *= factor
         assert envelopes.residuals(content).verdict == verdict
     del content.cases[FOURTH]
-    assert envelopes.rocking(content).verdict == UNJUDGED
     assert envelopes.residuals(content).verdict == UNJUDGED
 
 
@@ -216,8 +256,8 @@ def test_variables_that_matter_are_those_beyond_chance(content):
         for name in ("materials.concrete.density", "materials.concrete.youngs_modulus"):
             result["first_order"].loc[{"parameter": name}] = 0.8
     found = envelopes.parameters_matter(content)
-    assert found.verdict == NOT_MET
-    assert "Not so: friction." in found.words
+    assert found.verdict == UNJUDGED  # no evidence of an influence is none against it
+    assert "Not so: friction. Chance alone makes a share or a correlation of 0.50 to 0.50" in found.words
     result["first_order"].loc[{"parameter": "friction.concrete.concrete"}] = 0.8
     assert envelopes.parameters_matter(content).verdict == MET
 
@@ -266,13 +306,25 @@ def test_the_best_model_has_the_lowest_score_of_every_test(real):
         assert models.best_model(real).verdict == verdict
 
 
-@pytest.mark.parametrize(("beside", "verdict", "share"), [(2.0, MET, "none of"), (0.5, NOT_MET, "all")])
-def test_models_are_alike_where_chance_sets_them_as_far_apart(content, beside, verdict, share):
+@pytest.mark.parametrize(("beside", "verdict", "share"), [(2.0, MET, "none of 2"), (0.5, NOT_MET, "all 2")])
+def test_models_are_alike_where_two_samples_are_as_far_apart(content, beside, verdict, share):
     for case in content.cases.values():
-        case.differences["distance_chance"][:] = beside * case.differences["distance"]
+        apart = float(case.differences["distance"].sel(model="ls-dem", other="nscd-rigid"))
+        case.differences["width"][:] = beside * apart
+        case.differences["distance_chance"][:] = 0.0
     found = models.alike(content)
     assert found.verdict == verdict
-    assert f"Farther apart than by chance in {share}" in found.words
+    assert (
+        f"larger one in {share} comparisons, and beyond that of samples exchanged at random in all 2."
+        in found.words
+    )
+
+
+def test_viscoelastic_blocks_are_held_against_ls_dem_too(content):
+    content.study["models"]["nscd-viscoelastic"] = {"time_step": 1e-3}
+    for case in content.cases.values():
+        case.responses["nscd-viscoelastic"] = case.responses["nscd-rigid"]
+    assert "configuration-4, NSCD viscoelastic" in models.alike(content).words
 
 
 def test_too_few_samples_are_not_held_against_each_other(content):

@@ -62,7 +62,7 @@ def thickness_by_case(content, model):
     return {
         case.name: thickness(
             case.responses[model].sensitivity, markers_by_height(case).values(), (~case.structure.driven).sum(),
-            _shaking(case),
+            shaking(case),
         )
         for case in content.cases.values()
     }  # fmt: skip
@@ -84,12 +84,13 @@ def paper_discussion(content):
     ]
 
 
-def _shaking(case):
+def shaking(case):
+    """Whatever tells the shaking of two cases apart: motion, scale, window."""
     return case.motion, case.settings["scale"], case.settings["duration"]
 
 
 def _shaking_words(cases):
-    shaken = {case.name: _shaking(case) for case in cases}
+    shaken = {case.name: shaking(case) for case in cases}
     if len(set(shaken.values())) == 1:
         motion, scale, _ = next(iter(shaken.values()))
         return (

@@ -7,7 +7,6 @@ from blockshake.report.document.wording import given, model_label, number, param
 from blockshake.report.study.calibrations.all_tests import answer_words
 from blockshake.report.study.statements.statement import judged, unjudged
 from blockshake.study.calibration.calibration import ALL
-from blockshake.study.ensembles.intervals import SURE_FROM
 from blockshake.study.sampling.distributions import TABLE_2
 
 SIZE = 50
@@ -58,24 +57,27 @@ def size(content):
 
 
 def low_variability(content):
-    """Estimates of small designs that vary little."""
-    told, largest = [], 0.0
+    """Estimates of small designs that vary little: of ensembles of the whole design."""
+    told, largest, fewer = [], 0.0, []
     for case in content.cases.values():
         top = next(iter(face_markers(case.structure).values()))
         for model, one in case.responses.items():
-            if int(one.envelope.attrs["counted"]) < SURE_FROM:
+            counted = int(one.envelope.attrs["counted"])
+            if counted < len(content.design):
+                fewer.append(f"{case.name}, {model_label(model)} {counted}")
                 continue
             at = {"frame": "slab", "marker": top, "quantile": 0.5}
             median, limits = one.envelope["peak"].sel(at), one.envelope["peak_interval"].sel(at)
             share = float(limits.max() - limits.min()) / (2.0 * float(median))
             largest = max(largest, share)
             told.append(f"{case.name}, {model_label(model)} {percent(share)} %")
+    smaller = f" Of fewer samples and not judged: {'; '.join(fewer)}." if fewer else ""
     if not told:
-        return unjudged(f"No model has {SURE_FROM} samples.")
+        return unjudged(f"No model has all {len(content.design)} samples of a case.{smaller}")
     return judged(
         largest < _LOW_VARIABILITY,
-        "Half of the 95 % bootstrap interval of the median peak at the top, over that median, of at least "
-        f"{SURE_FROM} samples: {'; '.join(told)}. {percent(_LOW_VARIABILITY)} % counts as low.",
+        "Half of the 95 % bootstrap interval of the median peak at the top, over that median, of "
+        f"{len(content.design)} samples: {'; '.join(told)}. {percent(_LOW_VARIABILITY)} % counts as low.{smaller}",
     )
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.report.document.wording import MISSING, given, number
 from blockshake.report.study.statements.statement import judged, missing, setting, unjudged
-from blockshake.solvers.ls_dem.contact.contact_law import Law, kept_stretch, normal_force
+from blockshake.solvers.ls_dem.contact.contact_law import Law, kept_stretch, normal_force, trial_stretch
 from blockshake.solvers.ls_dem.interfaces import damping_ratio
 from blockshake.study.ensembles.outcomes import numerical_figure
 
@@ -85,9 +85,11 @@ def shear_law(content):
     normal = _STIFFNESS * _DEPTH
     law = Law(_STIFFNESS, _STIFFNESS, 0.0, _FRICTION, 0.0, 0.0, 0.0, 0.0, 0.0)
     shares = []
-    for stretch in (0.5 * _DEPTH, 2.0 * _DEPTH):
-        kept, _ = _plain(kept_stretch)(stretch, 0.0, 0.0, normal, _STIFFNESS, law)
-        shares.append(kept * _STIFFNESS * stretch / min(_FRICTION * normal, _STIFFNESS * stretch))
+    for moved in (0.5 * _DEPTH, 2.0 * _DEPTH):
+        # a step along x and toward the other body, whose normal is z: the stretch takes up the tangential part alone
+        stretch, *rest = _plain(trial_stretch)(0.0, 0.0, 0.0, moved, 0.0, -_DEPTH, 0.0, 0.0, 1.0)
+        kept, _ = _plain(kept_stretch)(stretch, *rest[:2], normal, _STIFFNESS, law)
+        shares.append(kept * _STIFFNESS * stretch / min(_FRICTION * normal, _STIFFNESS * moved))
     ratio = setting(content, "ls-dem", "ls_dem.shear_damping_ratio")
     words = (
         f"The force of a shear spring is {number(shares[0])} times that of the equations below Coulomb's limit and "

@@ -8,10 +8,11 @@ from blockshake.report.study.models.words import order_words
 from blockshake.report.study.statements.specimens import HEIGHTS
 from blockshake.report.study.statements.statement import against_tests, compared, judged, missing, unjudged
 from blockshake.study.comparison.ranking import CLAIMS, MET, OPEN, judge
-from blockshake.study.ensembles.coverage import is_likely
+from blockshake.study.ensembles.coverage import UNLIKELY, is_likely
 
 _RIGID, _ELASTIC, _VISCOELASTIC = "nscd-rigid", "nscd-elastic", "nscd-viscoelastic"
 _NO_TEST = "This study has no measured test."
+_NO_FIT = f"A chance of {percent(UNLIKELY)} % or less, or the lowest that the samples tell, counts as no fit."
 
 
 def resemblance(content):
@@ -31,7 +32,9 @@ def resemblance(content):
                 f"{case.name}, {model_label(model)}: {percent(found['coverage'].median())} % of the time inside "
                 f"(members {percent(found['reference'].sel(quantile=0.5).median())} %), chance {number(chance, 2)}"
             )
-    return against_tests(cases, holds, f"Medians over the markers of the blocks: {'; '.join(told)}.")
+    return against_tests(
+        cases, holds, f"Medians over the markers of the blocks: {'; '.join(told)}. {_NO_FIT}"
+    )
 
 
 def best_model(content):
@@ -69,39 +72,40 @@ def satisfactory(content, model, fits, fails=()):
         told.append(f"{case.name} {number(chance, 2)}")
     absent = sorted(set(expected) - {case.name for case in cases})
     words = f"Chance of the measured curves, median over the markers of the blocks: {', '.join(told)}."
-    return against_tests(
-        cases,
-        holds,
-        words
-        + (f" Not in this study, or of fewer than three samples: {', '.join(absent)}." if absent else ""),
-    )
+    if absent:
+        words += f" Not in this study, or of fewer than three samples: {', '.join(absent)}."
+    return against_tests(cases, holds, f"{words} {_NO_FIT}")
 
 
 def alike(content):
-    """LS-DEM beside rigid blocks in contact dynamics."""
-    if absent := missing(content, "ls-dem", _RIGID):
+    """LS-DEM beside rigid and viscoelastic blocks in contact dynamics."""
+    others = [model for model in (_RIGID, _VISCOELASTIC) if model in content.study["models"]]
+    if absent := missing(content, "ls-dem", *([] if others else [_RIGID])):
         return unjudged(absent)
-    told, apart = [], []
+    told, apart, beyond = [], 0, 0
     for case in content.cases.values():
-        pair = case.differences.sel(model="ls-dem", other=_RIGID)
-        distance, chance = float(pair["distance"]), float(pair["distance_chance"])
-        if not np.isfinite(chance):
-            continue  # too few samples
-        if distance > chance:
-            apart.append(case.name)
-        marker = next(iter(face_markers(case.structure).values()))
-        at = {"frame": "slab", "marker": marker, "quantile": 0.5}
-        top = [case.responses[model].envelope["peak"].sel(at) for model in ("ls-dem", _RIGID)]
-        told.append(
-            f"{case.name} {number(1e3 * distance)} mm beside {number(1e3 * chance)} mm, median peaks at the top "
-            f"{number(1e3 * float(top[0]))} and {number(1e3 * float(top[1]))} mm"
-        )
+        for other in others:
+            pair = case.differences.sel(model="ls-dem", other=other)
+            distance, chance = float(pair["distance"]), float(pair["distance_chance"])
+            width = float(case.differences["width"].sel(model=["ls-dem", other]).mean("marker").max())
+            if not np.isfinite(chance):
+                continue  # too few samples
+            apart, beyond = apart + (distance > width), beyond + (distance > chance)
+            marker = next(iter(face_markers(case.structure).values()))
+            at = {"frame": "slab", "marker": marker, "quantile": 0.5}
+            top = [case.responses[model].envelope["peak"].sel(at) for model in ("ls-dem", other)]
+            told.append(
+                f"{case.name}, {model_label(other)} {number(1e3 * distance)} mm beside {number(1e3 * width)} mm, "
+                f"median peaks at the top {number(1e3 * float(top[0]))} and {number(1e3 * float(top[1]))} mm"
+            )
     if not told:
-        return unjudged("The samples are too few to hold the two models against each other.")
+        return unjudged("The samples are too few to hold the models against each other.")
     return judged(
         not apart,
-        "Distance of the ensembles of LS-DEM and of rigid NSCD beside the one that chance makes of samples exchanged "
-        f"between them: {'; '.join(told)}. Farther apart than by chance in {share_words(len(apart), len(told))} cases.",
+        "Energy distance of an ensemble of NSCD from that of LS-DEM, beside the mean difference of two samples of "
+        f"the wider of both: {'; '.join(told)}. Alike counts where the distance is the smaller one. It is the larger "
+        f"one in {share_words(apart, len(told))} comparisons, and beyond that of samples exchanged at random in "
+        f"{share_words(beyond, len(told))}.",
     )
 
 

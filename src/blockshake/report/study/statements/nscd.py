@@ -6,7 +6,8 @@ from blockshake.geometry.schema import Material
 from blockshake.report.document.wording import given, model_label, number, parameter_label
 from blockshake.report.study.statements.statement import judged, missing, setting, unjudged
 from blockshake.simulation.models import MODELS
-from blockshake.study.ensembles.outcomes import numerical_figure
+from blockshake.solvers.nscd.contact.overlap_polygon import choose_four_into
+from blockshake.study.ensembles.outcomes import count_outcomes, numerical_figure
 
 _CONSERVED = 0.01  # of the energy in play: a residual below it counts as none
 DEFORMABLE = ("nscd-elastic", "nscd-viscoelastic")
@@ -44,10 +45,29 @@ def conserves(content):
     residuals = _figure(content, _RIGID, "energy_residual", np.max)
     if not residuals:
         return unjudged("The runs of this study have no energy audit.")
+    outcomes = [
+        count_outcomes(case.responses[_RIGID].samples["status"].values) for case in content.cases.values()
+    ]
+    failed, every = sum(one.failed for one in outcomes), sum(sum(one) for one in outcomes)
     return judged(
-        max(residuals) < _CONSERVED,
+        max(residuals) < _CONSERVED and not failed,
         f"With theta {given(theta)} and no damping, and the energy that impacts and friction take counted, the audit "
-        f"misses {number(max(residuals))} of the energy in play at most; {given(_CONSERVED)} counts as conserved.",
+        f"misses {number(max(residuals))} of the energy in play at most; {given(_CONSERVED)} counts as conserved. "
+        f"Numerical failures: {failed} of {every} samples.",
+    )
+
+
+def four_points(content):
+    """Contact points of an overlap of eight corners."""
+    del content
+    turns = 0.25 * np.pi * np.arange(8)
+    corners = np.column_stack([np.cos(turns), np.sin(turns), np.zeros(8)])
+    chosen = np.empty(4, dtype=np.int64)
+    kept = choose_four_into(corners, np.zeros(8), len(corners), np.array([0.0, 0.0, 1.0]), chosen)
+    return judged(
+        kept <= 4,
+        f"Of an overlap with {len(corners)} corners {kept} are kept. The rigid blocks here are polyhedra without a "
+        "mesh; a joint with an elastic layer has its middle as one more.",
     )
 
 

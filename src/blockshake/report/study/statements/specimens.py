@@ -1,5 +1,7 @@
 """Statements on the specimens, the ground motions, the tests and their instruments."""
 
+from itertools import pairwise
+
 from blockshake.dynamics.motion import CHANNELS
 from blockshake.geometry.reference_block import reference_body
 from blockshake.geometry.structure import load_structure
@@ -10,6 +12,12 @@ from blockshake.report.study.statements.statement import against_tests, compared
 from blockshake.study.ensembles.case_input import MEASURED
 
 HEIGHTS = {"configuration-1": 4.8, "configuration-2": 6.4, "configuration-3": 7.2, "configuration-4": 7.4}
+MAKE_UP = {  # walls, blocks and beams, in the text of the section
+    "configuration-1": (1, 3, 0),
+    "configuration-2": (1, 4, 0),
+    "configuration-3": (2, 9, 0),
+    "configuration-4": (2, 9, 4),
+}
 TALLEST, MOST_BLOCKS = 7.6, 9  # m and 1, in the text of the section
 PEAKS = {"alkion": 1.176, "basso-tirreno": 1.585}  # m/s2, Table 1
 FIRST_LEVEL, INCREMENT = 0.5, 0.25
@@ -111,7 +119,7 @@ def peaks(content):
     words = ", ".join(f"{name} {number(peak, 4)} m/s2" for name, peak in found.items())
     words = f"Peak accelerations at 100 %: {words}."
     if synthetic:
-        words += f" Synthetic, and scaled to those peaks: {', '.join(synthetic)}."
+        return unjudged(f"{words} Synthetic, and scaled to those peaks: {', '.join(synthetic)}.")
     holds = all(abs(peak / PEAKS[name] - 1.0) < _SAME for name, peak in found.items())
     return judged(holds and len(found) == len(PEAKS), words)
 
@@ -127,7 +135,7 @@ def records(content):
 
 
 def ladder(content):
-    """Levels of the tests, and collapse at the level of the study."""
+    """Levels of the ladder and of the tests, and collapse at the level of the study."""
     settings = content.study["ladder"]
     first, increment = settings["first"], settings["increment"]
     told = []
@@ -140,10 +148,39 @@ def ladder(content):
                 f"{case.name} at {given(case.settings['scale'])}, {model_label(model)}: {percent(share)} % "
                 f"[{percent(low)}, {percent(high)}]"
             )
+    limit = settings["largest_drift"]
+    words = (
+        f"The ladder starts at {given(first)} and rises by {given(increment)}. The paper names no criterion of a "
+        f"potential collapse; the ladder ends at a drift of {given(limit)} m. Share of the samples that collapse at "
+        f"the level of the study: {'; '.join(told)}."
+    )
+    holds = (first, increment) == (FIRST_LEVEL, INCREMENT)
+    for case in compared(content):
+        levels = sorted(
+            {round(abs(test.scale), 6) for test in _tests(case) if test.motion in content.motions}
+        )
+        steps = {round(after - before, 6) for before, after in pairwise(levels)}
+        holds = holds and levels[0] == FIRST_LEVEL and steps <= {INCREMENT}
+        words += f" Tests of {case.name}: {', '.join(map(given, levels))}."
+    return judged(holds, words)
+
+
+def make_up(content):
+    """Walls, their blocks and beams."""
+    del content
+    told, found = [], {}
+    for name in MAKE_UP:
+        structure = load_structure(name)
+        blocks = _blocks(structure)
+        lowest = min(structure.position[~structure.driven, 2])
+        walls = sum(
+            structure.position[structure.body_names.index(body.name), 2] < lowest + 1e-6 for body in blocks
+        )
+        others = int((~structure.driven).sum()) - len(blocks)
+        found[name] = (walls, len(blocks), others)
+        told.append(f"{name} {walls}, {len(blocks)} and {others}")
     return judged(
-        (first, increment) == (FIRST_LEVEL, INCREMENT),
-        f"The ladder starts at {given(first)} and rises by {given(increment)}. The paper names no level of collapse. "
-        f"Share of the samples that collapse at the level of the study: {'; '.join(told)}.",
+        found == MAKE_UP, f"Walls, concrete blocks and beams of the structure files: {', '.join(told)}."
     )
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple
 
-from blockshake.report.document.wording import model_label
+from blockshake.report.document.wording import given, model_label
 from blockshake.simulation.models import MODELS
 
 
@@ -89,3 +89,9 @@ def setting(content, model, name):
 def compared(content):
     """Cases that have a measured test."""
     return [case for case in content.cases.values() if case.measured is not None]
+
+
+def scale_words(content):
+    """Level of shaking of the cases, in words after a quantity."""
+    scales = sorted({case.settings["scale"] for case in content.cases.values()})
+    return f" at scale {' and '.join(map(given, scales))}"

@@ -135,7 +135,11 @@ def heavier_blocks(content):
             f"k_n / E differs by {number(100.0 * spread, 2)} % at most over densities from {number(density.min(), 4)} "
             f"to {number(density.max(), 4)} kg/m3"
         )
-    return judged(all(rises), f"{'; '.join(told)}.")
+    return judged(
+        all(rises),
+        f"At an equal modulus {'; '.join(told)}. At an equal speed of the waves the modulus grows as the density, and "
+        "k_n with it.",
+    )
 
 
 def restitution(content):
