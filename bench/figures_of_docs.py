@@ -20,6 +20,7 @@ from schedule import deep_diagnosis, hours, measured, planned, shares, timed_stu
 from shear_damping import HEADER as SHEAR_HEADER
 from shear_damping import shear_damping_rows, shear_damping_words
 
+from blockshake.cost.study_cost import study_cost
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import load_json, load_yaml, write_text
 from blockshake.geometry.structure import load_structure
@@ -52,12 +53,20 @@ _CHANGES = {
     "friction 0.12": dict.fromkeys(_CONCRETE, 0.12),
 }
 STUDY = Path("results/study/the-paper.json")
+PAPER = Path("results/paper/the-paper.json")
 FAULTS = Path("results/faults.json")  # of `make test-faults`
 _STEPS = {"nscd-rigid": 1e-3, "ls-dem": 5e-5}  # s
 DEFAULT = DOCS.parent / "config" / "study.yaml"
 DIAGNOSED = DOCS.parent / "data" / "virtual-campaign" / "configuration-2"
 PROFILE = DOCS.parent / "profiles" / "slurm" / "profile.yaml"
 _CORES = (1, 64, 1024)
+_KINDS = {  # of the jobs of a study, in the words of `blockshake estimate`, by rule
+    "simulate_batch": "samples",
+    "run_twins": "twins",
+    "calibrate_friction": "mean friction",
+    "compare_open_tests": "calibration",
+    "climb_samples": "fragility",
+}
 _SHOWN = 8  # rules that take most of the time
 LITERAL = DOCS.parent / "config" / "literal.yaml"
 _FINE_IMPACTS = {"nscd.impact_parts": 20}  # as in config/study.yaml
@@ -234,7 +243,7 @@ def study_shares():
     """CPU time of the default study by rule; None where it has not been run."""
     if not STUDY.is_file():
         return None
-    found = shares(DOCS.parent)
+    found = shares("benchmarks")
     total = sum(seconds for *_, seconds in found)
     rest = [sum(row[column] for row in found[_SHOWN:]) for column in (1, 2)]
     rows = [
@@ -245,6 +254,31 @@ def study_shares():
         ]
     ]
     return markdown(("rule", "jobs", "CPU min", "share [%]"), rows)
+
+
+def paper_run():
+    """CPU time of the paper's study, estimated and taken, by kind of job; None where it has not been run."""
+    if not PAPER.is_file():
+        return None
+    rest = "jobs beside their runs"
+    taken, estimated, jobs = (
+        dict.fromkeys((*_KINDS.values(), rest), 0.0),
+        {},
+        dict.fromkeys((*_KINDS.values(), rest), 0),
+    )
+    for rule, count, seconds in shares("benchmarks/paper"):
+        kind = _KINDS.get(rule, rest)
+        taken[kind], jobs[kind] = taken[kind] + seconds, jobs[kind] + count
+    for part in study_cost(DEFAULT.with_name("paper.yaml")):
+        kind = part.name.split(" of ")[0]
+        estimated[kind] = estimated.get(kind, 0.0) + part.seconds
+    rows = [(kind, jobs[kind], estimated[kind], taken[kind]) for kind in taken]
+    rows.append(("all", *(sum(row[column] for row in rows) for column in (1, 2, 3))))
+    cells = [
+        (kind, count, *(f"{one / 60.0:.1f}" for one in pair), f"{pair[1] / pair[0]:.2f}")
+        for kind, count, *pair in rows
+    ]
+    return markdown(("what", "jobs", "estimated [CPU min]", "taken [CPU min]", "taken over estimated"), cells)
 
 
 def faults():
@@ -289,6 +323,7 @@ MAKERS = {
     "study-shares": study_shares,
     "cost-of-samples": cost_of_samples,
     "times-on-a-cluster": times_on_a_cluster,
+    "paper-run": paper_run,
     "faults": faults,
     "structure-keys": keys_of("structure"),
     "study-keys": keys_of("study"),

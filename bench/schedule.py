@@ -17,7 +17,7 @@ from statistics import mean
 
 from blockshake.diagnosis.libraries.null_model import MODELS
 from blockshake.diagnosis.libraries.plan import plan_diagnosis
-from blockshake.files import load_json
+from blockshake.files import HOME, load_json
 from blockshake.measurement.campaigns.campaign import load_campaign
 
 _JOB = re.compile(r"^(?:localrule|rule|checkpoint) (\w+):\n((?:    .+\n)+)", re.MULTILINE)
@@ -72,11 +72,11 @@ def measured(folder):
     return {key: mean(values) for key, values in spent.items()}
 
 
-def shares(folder):
-    """Jobs and CPU seconds of every rule of the finished study in a folder, the dearest first, from its benchmarks."""
-    rules = {path.stem for path in Path(folder, "workflow", "scripts").glob("*.py")}
+def shares(benchmarks):
+    """Jobs and CPU seconds of every rule with benchmarks in a folder or below, the dearest first."""
+    rules = {path.stem for path in (HOME / "workflow" / "scripts").glob("*.py")}
     spent = defaultdict(list)
-    for path in Path(folder, "benchmarks").rglob("*.jsonl"):
+    for path in Path(benchmarks).rglob("*.jsonl"):
         (rule,) = rules & set(path.with_suffix("").parts)
         spent[rule].append(json.loads(path.read_text(encoding="utf-8").splitlines()[-1])["cpu_time"])
     return sorted(((rule, len(each), sum(each)) for rule, each in spent.items()), key=lambda row: -row[2])

@@ -78,3 +78,13 @@ def test_departures_name_their_reasons():
     if (HOME / "docs").is_dir():
         for row in rows:
             assert (HOME / row[3]).exists(), row[3]
+
+
+def test_structures_of_a_user_do_not_bear_on_the_paper(content):
+    own = content.cases.pop("configuration-4")
+    alone = judge_statements(content)
+    settings = {**own.settings, "structure": "own/wall.yaml"}
+    content.cases["wall"] = replace(own, name="wall", settings=settings)
+    assert judge_statements(content) == alone
+    del content.cases["configuration-1"]
+    assert judge_statements(content) == {}

@@ -74,11 +74,12 @@ def low_variability(content):
     smaller = f" Of fewer samples and not judged: {'; '.join(fewer)}." if fewer else ""
     if not told:
         return unjudged(f"No model has all {len(content.design)} samples of a case.{smaller}")
-    return judged(
-        largest < _LOW_VARIABILITY,
+    words = (
         "Half of the 95 % bootstrap interval of the median peak at the top, over that median, of "
-        f"{len(content.design)} samples: {'; '.join(told)}. {percent(_LOW_VARIABILITY)} % counts as low.{smaller}",
+        f"{len(content.design)} samples: {'; '.join(told)}. {percent(_LOW_VARIABILITY)} % counts as low. The "
+        f"bootstrap takes the samples as independent; those of a Latin hypercube vary less.{smaller}"
     )
+    return judged(True, words) if largest < _LOW_VARIABILITY else unjudged(words)
 
 
 def judged_by_tests(found, parameter, words):
@@ -117,17 +118,22 @@ def optimum(content):
         return unjudged(_NO_SEARCH)
     told, told_apart, refused, synthetic = [], True, False, []
     for case, found in content.friction.items():
-        means = found["means"]
-        accepted = float(np.interp(OPTIMUM, means["mean"], np.asarray(means["accepted"], dtype=float)))
+        means, accepted = found["means"]["mean"], np.asarray(found["means"]["accepted"], dtype=float)
+        within = min(means) <= OPTIMUM <= max(means)
+        side = float(np.interp(OPTIMUM, means, accepted)) if within else None
         known = not found["answer"].startswith("unknown")
-        refused = refused or (known and accepted == 0.0)
+        refused = refused or (known and side == 0.0)
         bounded = found["lower"] is not None and found["upper"] is not None
-        told_apart = told_apart and known and bounded and accepted == 1.0
+        told_apart = told_apart and known and bounded and side == 1.0
         synthetic += [case] if found["synthetic"] else []
         words = f"{case}: the mean is {found['answer']}; lowest score at {given(found['best'])}"
-        if known:
-            words += f"; {given(OPTIMUM)} {_SIDES.get(accepted, 'lies between a refused mean and one that is not')}"
-        if np.abs(np.asarray(means["mean"]) - OPTIMUM).min() > 1e-9:
+        if not within:
+            words += f"; {given(OPTIMUM)} lies outside the means that were run"
+        elif known:
+            words += (
+                f"; {given(OPTIMUM)} {_SIDES.get(side, 'lies between a refused mean and one that is not')}"
+            )
+        if within and np.abs(np.asarray(means) - OPTIMUM).min() > 1e-9:
             words += f"; {given(OPTIMUM)} itself was not run"
         told.append(words)
     words = f"{'; '.join(told)}."
@@ -143,4 +149,5 @@ def optimum(content):
         )
     if refused:
         return judged(False, words)
+    words = f"{words} A mean counts as the best where it is not refused and the range has both ends."
     return judged(True, words) if told_apart else unjudged(f"The tests do not tell the mean. {words}")

@@ -97,7 +97,7 @@ def _lying():
 
     (top, top_here), (beam, beam_here) = stiffer("top"), stiffer("beam-1")
     return (
-        f"A joint's stiffness per area follows the modulus and not the block's own height: a lying block has "
+        f"A body's stiffness per area follows the modulus and not its own height: a lying block has "
         f"{number(top_here)} and a beam {number(beam_here)} times that of the upright blocks, where E/h would give "
         f"{number(top)} and {number(beam)} times."
     )
@@ -152,7 +152,10 @@ def _inputs():
         case["structure"] for case in load_yaml(HOME / "config" / "paper.yaml")["cases"] if "input" in case
     ]
     words = f" Commanded in config/paper.yaml: {', '.join(commanded)}." if commanded else ""
-    return f"Smoothed displacement and pitch of the slab, drawn anew for each sample from its uncertainty.{words}"
+    return (
+        "Displacement along x, y and z and pitch of the slab, smoothed together with its accelerometer and drawn anew "
+        f"for each sample from their uncertainty.{words}"
+    )
 
 
 def _shaking():
@@ -223,8 +226,8 @@ def _defaults():
         f"{given(MODELS[name].time_step)} s for {model_label(name)}" for name in ("ls-dem", "nscd-rigid")
     )
     return (
-        f"`blockshake simulate` and the nominal model of a diagnosis take k_n {k_n} and k_s {k_s} from E/h and G/h of "
-        f"configuration-1, not from a wave test, and steps of {steps}."
+        f"`blockshake simulate` and the nominal model of a diagnosis take stiffness from E/h and G/h of the "
+        f"structure's own block, not from a wave test (configuration-1: k_n {k_n} and k_s {k_s}), and steps of {steps}."
     )
 
 
@@ -239,6 +242,8 @@ DEPARTURES = (
     Departure("LS-DEM", "k_n and k_s of a block, at each node.", _words("k_n and k_s per area."),
               "docs/decisions/0001-stiffness-per-area.md"),
     Departure("LS-DEM", "Nodes cover the surface, chamfer included.", _pivot, _METHOD),
+    Departure("LS-DEM", "Nothing is said of the start.",
+              _words("Runs by both solvers start from a computed state of rest."), _METHOD),
     Departure("LS-DEM", "Eq. (3) with the mass of the block, at each node.",
               _words("One dashpot for the interface, with the reduced mass of the two bodies."), _METHOD),
     Departure("LS-DEM", "ln C_res^2 in Eq. (3).", _logarithm, _METHOD),
@@ -251,8 +256,8 @@ DEPARTURES = (
     Departure("Stiffness", "Waves are read at a similar velocity of all blocks.",
               _words("Waves are read at half of the step's velocity."), "docs/uncertainty.md"),
     Departure("Stiffness", "A unit step of velocity is given to the ground of the tower.",
-              lambda: f"The step has {given(STEP_VELOCITY)} m/s, so that no joint opens or slips; shear waves are sent "
-                      "with the blocks' rotations blocked.", "docs/uncertainty.md"),
+              lambda: f"The step has {given(STEP_VELOCITY)} m/s, so that no joint opens; shear waves are sent with the "
+                      "blocks' rotations blocked and a friction at which no joint slips.", "docs/uncertainty.md"),
     Departure("Stiffness", "Nothing is said of lying blocks and beams.", _lying, _METHOD),
     Departure("Structures", "The section of the steel beams is not stated.", _beams,
               "config/structures/configuration-4.yaml"),
@@ -292,8 +297,13 @@ DEPARTURES = (
               _words("Coverage stands beside that of each sample by the others, with a distance and its chance."),
               "docs/sampling.md"),
     Departure("Statistics", "Envelopes are the largest and the smallest of all samples.",
-              _words("Thickness is judged by the standard deviation over samples and time, which hangs less on single "
-                     "samples and on their number."), "docs/sampling.md"),
+              _words("Thickness is the standard deviation over samples and time, or the mean difference of two "
+                     "samples, which hang less on single samples and on their number."), "docs/sampling.md"),
+    Departure("Statistics", "Displacements are absolute.",
+              _words("Envelopes and their widths, peaks and distances are relative to the slab; the absolute ones "
+                     "stand beside them."), "docs/sampling.md"),
+    Departure("Statistics", "Nothing is said of a run that ends in a collapse.",
+              _words("A run ends at its collapse and counts as one that is over every limit."), "docs/sampling.md"),
     Departure("Statistics", "Residual displacements after a test.",
               lambda: f"The mean over the last {given(RESIDUAL_WINDOW)} s of the window, at which blocks may still "
                       "rock.", "docs/sampling.md"),

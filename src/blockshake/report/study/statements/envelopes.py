@@ -1,10 +1,12 @@
 """Statements on envelopes: their thickness, residuals, and the variables behind them."""
 
 from itertools import combinations
-from typing import NamedTuple
 
 import numpy as np
+from scipy.stats import bootstrap
 
+from blockshake.files import content_digest
+from blockshake.geometry.structure import load_structure
 from blockshake.report.document.wording import (
     given,
     millimetres,
@@ -12,29 +14,30 @@ from blockshake.report.document.wording import (
     parameter_label,
     share_words,
 )
-from blockshake.report.study.sensitivity.summary import markers_by_height, shaking, thickness_by_case
+from blockshake.report.study.sensitivity.summary import markers_by_height, thickness_by_case
+from blockshake.report.study.statements.order import Limited, all_of, ordered
 from blockshake.report.study.statements.specimens import HEIGHTS
-from blockshake.report.study.statements.statement import (
-    Finding,
-    Verdict,
-    judged,
-    missing,
-    scale_words,
-    unjudged,
-)
-from blockshake.study.comparison.differences import FEWEST
+from blockshake.report.study.statements.statement import judged, missing, scale_words, unjudged
+from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
+from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.ensembles.intervals import SURE_FROM
 from blockshake.study.sensitivity.findings import influences, is_known
 
 _FIRST, _THIRD, _FOURTH = "configuration-1", "configuration-3", "configuration-4"
 _MATTER = {"friction": "friction", "density": "density", "youngs_modulus": "stiffness"}
+_BRACKET = 0.05 * 9.81  # m/s2; shaking beyond it is strong
+_DRAWS = 400  # of the bootstrap
 
 
 def upward(content, model):
     """Thickness from block to block."""
     if absent := missing(content, model):
         return unjudged(absent)
-    known = {name: one for name, one in thickness_by_case(content, model).items() if one.known}
+    known = {
+        name: one
+        for name, one in thickness_by_case(content, model).items()
+        if one.known and len(one.spread) > 1
+    }
     if not known:
         return unjudged("Too few samples completed.")
     grows = [name for name, one in known.items() if one.grows_upward]
@@ -44,90 +47,50 @@ def upward(content, model):
     return judged(
         len(grows) == len(known),
         f"Standard deviation from the lowest block up{scale_words(content)}: {told}. It grows from each block to the "
-        f"next in {share_words(len(grows), len(known))} cases.",
+        f"next in {share_words(len(grows), len(known))} cases. There are no limits: "
+        "the blocks of a structure move together in each sample.",
     )
 
 
 def than_first(content, model):
     """Thickness at the top of configurations 2 to 4 against configuration 1."""
-    return _tops(content, model, [(_FIRST, name) for name in content.cases if name != _FIRST])
+    if absent := missing(content, model):
+        return unjudged(absent)
+    return _tops(content, model, [(_FIRST, other) for other in HEIGHTS if other != _FIRST])
 
 
 def fourth_than_third(content, model):
     """Thickness at the top of configuration 4 against configuration 3."""
-    return _tops(content, model, [(_THIRD, _FOURTH)])
+    return (
+        unjudged(absent)
+        if (absent := missing(content, model))
+        else _tops(content, model, [(_THIRD, _FOURTH)])
+    )
 
 
 def with_structure(content, models):
     """Thickness at the top with the number of blocks, model by model."""
-    own = [model for model in models if model in content.study["models"]]
-    if not own:
-        return unjudged(missing(content, *models))
-    blocks = {name: int((~case.structure.driven).sum()) for name, case in content.cases.items()}
-    pairs = [
-        (less, more)
-        for less, more in combinations(sorted(blocks, key=blocks.get), 2)
-        if blocks[less] < blocks[more]
-    ]
-    found = {model: _tops(content, model, pairs) for model in own}
-    verdicts = {one.verdict for one in found.values()}
-    words = " ".join(f"{model_label(model)}: {one.words}" for model, one in found.items())
-    if absent := missing(content, *models):
-        words += f" {absent}"
-    for verdict in (Verdict.NOT_MET, Verdict.UNJUDGED):
-        if verdict in verdicts:
-            return Finding(verdict, words)
-    return judged(True, words)
+    blocks = {name: int((~load_structure(name).driven).sum()) for name in HEIGHTS}
+    pairs = [pair for pair in combinations(HEIGHTS, 2) if blocks[pair[0]] < blocks[pair[1]]]
+    return all_of(
+        {
+            model_label(model): unjudged(absent)
+            if (absent := missing(content, model))
+            else _tops(content, model, pairs)
+            for model in models
+        }
+    )
 
 
 def _tops(content, model, pairs):
-    """Finding that of each pair of cases the second has the thicker envelope at its top.
-
-    The thickness is the mean difference of two samples, whose limits tell an order from chance.
-    """
-    if absent := missing(content, model):
-        return unjudged(absent)
-    tops = {name: _top_width(case, model) for name, case in content.cases.items() if name in HEIGHTS}
-    known = {name: one for name, one in tops.items() if np.isfinite(one).all()}
-    pairs = [pair for pair in pairs if set(pair) <= set(known)]
-    if not pairs:
-        return unjudged(
-            "This study lacks one of the cases to compare, or samples of it: it has "
-            f"{', '.join(known) or 'none'} with at least {FEWEST} samples."
-        )
-    compared = dict.fromkeys(name for pair in pairs for name in pair)
-    if len({shaking(content.cases[name]) for name in compared}) > 1:
-        return unjudged("The cases are shaken differently, which the structures cannot be told from.")
-    thicker = sum(known[more].lower > known[less].upper for less, more in pairs)
-    thinner = sum(known[more].upper < known[less].lower for less, more in pairs)
-    told = ", ".join(
-        f"{name} {millimetres(one.width)} [{millimetres(one.lower)}, {millimetres(one.upper)}] mm"
-        for name, one in known.items()
-        if name in compared
-    )
-    words = (
-        f"Mean difference of two samples at the top{scale_words(content)}, with 95 % limits: {told}. Of {len(pairs)} "
-        f"pairs the one that is to be thicker is so beyond the limits in {thicker}, and thinner in {thinner}. Another "
-        "level may have another order."
-    )
-    if thinner:
-        return judged(False, words)
-    return judged(True, words) if thicker == len(pairs) else unjudged(words)
-
-
-class _Width(NamedTuple):
-    """Mean difference of two samples and its limits [m]."""
-
-    width: float
-    lower: float
-    upper: float
-
-
-def _top_width(case, model):
-    """`_Width` at the highest marker of a block; NaN of fewer than three samples."""
-    at = case.differences.sel(model=model, marker=list(markers_by_height(case).values())[-1])
-    limits = (float(at["width_interval"].sel(bound=bound)) for bound in ("lower", "upper"))
-    return _Width(float(at["width"]), *limits)
+    """Finding that of each pair of cases the second has the thicker envelope at its top."""
+    found = {}
+    for name, case in content.cases.items():
+        if int(case.differences["counted"].sel(model=model)) >= SURE_FROM:
+            top = list(markers_by_height(case).values())[-1]
+            at = case.differences.sel(model=model, marker=top)
+            found[name] = Limited(float(at["width"]), *map(float, at["width_interval"].transpose("bound")))
+    return ordered(content, found, pairs, "Mean difference of two samples at the top in mm", millimetres)
 
 
 def parameters_matter(content):
@@ -178,39 +141,46 @@ def parameters_matter(content):
 
 def residuals(content):
     """Scatter of the residual displacement, largest in configuration 4."""
-    if _FOURTH not in content.cases or len(content.cases) < 2:
-        return unjudged(f"This study lacks one of the cases to compare: it has {', '.join(content.cases)}.")
-    shaken = [
-        f"{name} at {given(case.settings['duration'])} of {given(_motion_end(content, case))} s"
-        for name, case in content.cases.items()
-        if case.settings["duration"] < _motion_end(content, case)
-    ]
+    shaken = [name for name, case in content.cases.items() if _still_shaken(content, case)]
     if shaken:
-        return unjudged(f"The runs end while the table still shakes: {', '.join(shaken)}.")
-    told, holds = [], True
-    for model in content.study["models"]:
-        scatter = {}
-        for name, case in content.cases.items():
-            top = list(markers_by_height(case).values())[-1]
-            at = case.responses[model].envelope["residual"].sel(frame="slab", marker=top)
-            if int(case.responses[model].envelope.attrs["counted"]) >= SURE_FROM:
-                scatter[name] = float(at.sel(quantile=0.95) - at.sel(quantile=0.05))
-        if _FOURTH not in scatter or len(scatter) < 2:
-            continue  # too few samples
-        holds = holds and max(scatter, key=scatter.get) == _FOURTH
-        told.append(
-            f"{model_label(model)} "
-            + ", ".join(f"{name} {millimetres(value)} mm" for name, value in scatter.items())
+        return unjudged(
+            f"The table shakes by more than {given(_BRACKET / 9.81)} g, the bracket of Bolt (1969), in the last "
+            f"{given(RESIDUAL_WINDOW)} s of the runs, whose mean is the residual: {', '.join(shaken)}."
         )
-    if not told:
-        return unjudged(f"No model has {SURE_FROM} samples of configuration 4 and of another case.")
-    return judged(
-        holds,
-        f"From the 5 to the 95 % quantile of the residual at the top{scale_words(content)}, by models with at least "
-        f"{SURE_FROM} samples: {'; '.join(told)}.",
-    )
+    pairs = [(other, _FOURTH) for other in HEIGHTS if other != _FOURTH]
+    return all_of(
+        {
+            model_label(model): ordered(
+                content, _scatter(content, model), pairs,
+                "From the 5 to the 95 % quantile of the residual at the top in mm", millimetres,
+            )
+            for model in content.study["models"]
+        }
+    )  # fmt: skip
 
 
-def _motion_end(content, case):
-    """Time at which a case's motion ends [s]."""
-    return float(content.motions[case.motion]["time"][-1])
+def _still_shaken(content, case):
+    """Whether strong shaking lasts into the window of the residual."""
+    motion = content.motions[case.motion]["acceleration"]
+    end = case.settings["duration"]
+    last = motion.sel(time=slice(end - RESIDUAL_WINDOW, end))
+    return bool((abs(case.settings["scale"] * last) > _BRACKET).any())
+
+
+def _scatter(content, model):
+    """Range of the residual at the top by case, with bootstrap limits [m]."""
+    found = {}
+    for name, case in content.cases.items():
+        samples = counted_samples(case.responses[model].samples)
+        top = list(markers_by_height(case).values())[-1]
+        values = samples["residual"].sel(frame="slab", marker=top).dropna("sample").values
+        if len(values) >= SURE_FROM:
+            rng = np.random.default_rng(int(content_digest("scatter", name, model), 16))
+            drawn = bootstrap((values,), _range, method="percentile", n_resamples=_DRAWS, rng=rng)
+            found[name] = Limited(float(_range(values)), *map(float, drawn.confidence_interval))
+    return found
+
+
+def _range(values, axis=-1):
+    lower, upper = np.quantile(values, (0.05, 0.95), axis=axis)
+    return upper - lower

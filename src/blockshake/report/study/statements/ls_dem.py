@@ -69,13 +69,17 @@ def rebound_without_pull(ratio):
 
 
 def damping(content):
-    """Eq. (3), for each node; its mass is a departure."""
+    """Eq. (3), for each node or interface: never with the mass of one block alone."""
     if absent := missing(content, "ls-dem"):
         return unjudged(absent)
     of = setting(content, "ls-dem", "ls_dem.damping")
     restitution = sorted({case.structure.file.restitution for case in content.cases.values()})
     ratios = ", ".join(f"{number(damping_ratio(one))} for C_res {given(one)}" for one in restitution)
-    return judged(of == "node", f"The dashpot is that of each {of}; its ratio to critical is {ratios}.")
+    return judged(
+        False,
+        f"The dashpot is that of each {of}, with the reduced mass of the two bodies, half of it on each side; its "
+        f"ratio to critical is {ratios}.",
+    )
 
 
 def shear_law(content):
@@ -110,7 +114,8 @@ def stable_step(content):
         return unjudged("The runs of this study do not say which step is stable.")
     return judged(
         step <= limit,
-        f"The step is {given(step)} s, and the smallest limit of stability among the samples is {number(limit)} s. "
+        f"The step is {given(step)} s, and the smallest limit of stability among the samples, with the joints of "
+        f"the start, is {number(limit)} s. "
         f"The energy audit, in which forces and moments work, misses {number(residual)} of the energy in play at most.",
     )
 
@@ -119,7 +124,8 @@ def time_step(content, model, printed):
     """Step of a model."""
     if absent := missing(content, model):
         return unjudged(absent)
-    step = content.study["models"][model]["time_step"]
+    alike = [name for name in content.study["models"] if name.split("-")[0] == model.split("-")[0]]
+    steps = {content.study["models"][name]["time_step"] for name in alike}
     residuals = [
         numerical_figure(case.responses[model].samples, "energy_residual", np.max)
         for case in content.cases.values()
@@ -129,8 +135,8 @@ def time_step(content, model, printed):
     parts = setting(content, model, "nscd.impact_parts") if model == "nscd-rigid" else 1
     split = f", {given(parts)} times shorter where bodies meet" if parts > 1 else ""
     return judged(
-        abs(step / printed - 1.0) < _SAME and parts == 1,
-        f"The step is {given(step)} s{split}; the energy residual is {missed} at most.",
+        all(abs(one / printed - 1.0) < _SAME for one in steps) and parts == 1,
+        f"The step is {' and '.join(map(given, sorted(steps)))} s{split}; the energy residual is {missed} at most.",
     )
 
 

@@ -9,6 +9,7 @@ from blockshake.report.study.statements.specimens import HEIGHTS
 from blockshake.report.study.statements.statement import against_tests, compared, judged, missing, unjudged
 from blockshake.study.comparison.ranking import CLAIMS, MET, OPEN, judge
 from blockshake.study.ensembles.coverage import UNLIKELY, is_likely
+from blockshake.study.ensembles.envelope import counted_samples
 
 _RIGID, _ELASTIC, _VISCOELASTIC = "nscd-rigid", "nscd-elastic", "nscd-viscoelastic"
 _NO_TEST = "This study has no measured test."
@@ -32,6 +33,8 @@ def resemblance(content):
                 f"{case.name}, {model_label(model)}: {percent(found['coverage'].median())} % of the time inside "
                 f"(members {percent(found['reference'].sel(quantile=0.5).median())} %), chance {number(chance, 2)}"
             )
+    if not told:
+        return unjudged("The samples are too few to hold the curves against them.")
     return against_tests(
         cases, holds, f"Medians over the markers of the blocks: {'; '.join(told)}. {_NO_FIT}"
     )
@@ -74,7 +77,8 @@ def satisfactory(content, model, fits, fails=()):
     words = f"Chance of the measured curves, median over the markers of the blocks: {', '.join(told)}."
     if absent:
         words += f" Not in this study, or of fewer than three samples: {', '.join(absent)}."
-    return against_tests(cases, holds, f"{words} {_NO_FIT}")
+    words = f"{words} {_NO_FIT}"
+    return unjudged(words) if absent and holds else against_tests(cases, holds, words)
 
 
 def alike(content):
@@ -123,31 +127,29 @@ def _of_blocks(case, model):
 
 def rotations(content):
     """Rotations within the noise of the measurement."""
-    told, holds = [], True
+    told, holds, cases = [], True, []
     for case in compared(content):
-        floors, turned = [], []
+        shown = []
         for body, driven in zip(case.structure.body_names, case.structure.driven, strict=True):
             places = [np.array(one.position) for one in case.structure.file.markers if one.body == body]
-            if driven or len(places) < 2:
+            reach = max((np.hypot(*(a - b)[[0, 2]]) for a in places for b in places), default=0.0)
+            if driven or reach == 0.0:
                 continue
-            reach = max(np.hypot(*(a - b)[[0, 2]]) for a in places for b in places)
-            floors.append(np.sqrt(2.0) * case.marker_noise / reach)
-            turned.append(
-                max(
-                    float(one.samples["peak_rotation"].sel(body=body).median("sample"))
-                    for one in case.responses.values()
-                )
+            turned = max(
+                float(counted_samples(one.samples)["peak_rotation"].sel(body=body).median("sample"))
+                for one in case.responses.values()
             )
-        if floors:
-            holds = holds and max(floors) > max(turned)
-            told.append(
-                f"{case.name} {number(1e3 * max(floors), 2)} mrad beside {number(1e3 * max(turned))} mrad"
-            )
+            shown.append(turned / (np.sqrt(2.0) * case.marker_noise / reach))
+        if shown:
+            cases.append(case)
+            holds = holds and max(shown) < 1.0
+            told.append(f"{case.name} {number(min(shown), 2)} to {number(max(shown), 2)} times")
     if not told:
-        return unjudged("No block of a measured test has two markers.")
+        return unjudged("No block of a measured test has two markers apart.")
     return against_tests(
-        compared(content),
+        cases,
         holds,
-        "Standard deviation of a rotation from the two markers of a block that are furthest apart, beside the largest "
-        f"rotation of the models, median over samples: {'; '.join(told)}.",
+        "Largest rotation of a block, the largest of the models' medians over samples, over the standard deviation of "
+        "a rotation from the two markers of the block that are furthest apart, from block to block: "
+        f"{'; '.join(told)}. Below 1 for all blocks counts as lost in the noise.",
     )

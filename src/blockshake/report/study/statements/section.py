@@ -1,5 +1,7 @@
 """Section on the statements of the paper, one by one, and the same as values for other pages."""
 
+from dataclasses import replace
+
 from blockshake.report.document.blocks import Heading, Section, Table, Text
 from blockshake.report.document.wording import given, model_label
 from blockshake.report.study.statements.departures import DEPARTURES
@@ -15,11 +17,26 @@ _WIDTHS, _DEPARTURES_WIDTHS = (6, 9, 5, 17, 9), (4, 10, 18, 10)
 def judge_statements(content):
     """Findings of a study on all statements: rows of text under `HEADER`, by heading; none without the structures of
     the paper, which the statements are about."""
-    if not any(case.is_shipped for case in content.cases.values()):
+    content = _of_the_paper(content)
+    if not content.cases:
         return {}
     return {
         heading: tuple(_row(content, one) for one in statements) for heading, statements in STATEMENTS.items()
     }
+
+
+def _of_the_paper(content):
+    """The content without the cases of other structures."""
+    cases = {name: case for name, case in content.cases.items() if case.is_shipped}
+    calibrated = [
+        replace(one, cases=tuple(name for name in one.cases if name in cases)) for one in content.calibrated
+    ]
+    return replace(
+        content,
+        cases=cases,
+        calibrated=tuple(one for one in calibrated if one.cases),
+        friction={name: one for name, one in content.friction.items() if name in cases},
+    )
 
 
 def _row(content, statement):
@@ -83,7 +100,8 @@ def statements(content):
     blocks += [
         Heading("Departures from the paper", "paper-departures"),
         Table(
-            "Choices that differ from the paper, or that it leaves open.",
+            "Choices that differ from the paper, or that it leaves open, by the defaults of this program and of its "
+            "own studies; settings of this study stand in the findings.",
             DEPARTURES_HEADER,
             departures(),
             "llll",

@@ -33,7 +33,9 @@ def wave_speeds(content):
             told.append(
                 f"{direction} {number(formula, 4)} m/s by the equation, tower within {1e6 * deviation:.0f} ppm"
             )
-        told.append(f"Poisson's ratio {given(material.poisson_ratio)}, which the paper does not state")
+        told.append(
+            f"nominal materials; Poisson's ratio {given(material.poisson_ratio)}, which the paper does not state"
+        )
     return judged(largest < _MATCHED, f"{'; '.join(told)}.")
 
 
@@ -76,7 +78,7 @@ def definitions(content):
     found = definition_range(content.definitions)
     own, levels = found.at_own_damping, found.over_levels
     return unjudged(
-        "The paper states no instant. By definition of arrival k_n is "
+        "The paper names no difference of the velocities that counts as similar. By definition of arrival k_n is "
         f"{own.lowest:.2f} to {own.highest:.2f} times that of the study, and {levels.lowest:.2f} to "
         f"{levels.highest:.2f} times over levels of velocity and dampings."
     )
