@@ -16,11 +16,12 @@ from hollow_faces import HEADER as HOLLOW_HEADER
 from hollow_faces import hollow_rows
 from key_tables import HEADER as KEYS_HEADER
 from key_tables import key_rows
+from paper_run import HEADER as PAPER_HEADER
+from paper_run import paper_rows
 from schedule import deep_diagnosis, hours, measured, planned, shares, timed_study
 from shear_damping import HEADER as SHEAR_HEADER
 from shear_damping import shear_damping_rows, shear_damping_words
 
-from blockshake.cost.study_cost import study_cost
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import load_json, load_yaml, write_text
 from blockshake.geometry.structure import load_structure
@@ -53,20 +54,12 @@ _CHANGES = {
     "friction 0.12": dict.fromkeys(_CONCRETE, 0.12),
 }
 STUDY = Path("results/study/the-paper.json")
-PAPER = Path("results/paper/the-paper.json")
 FAULTS = Path("results/faults.json")  # of `make test-faults`
 _STEPS = {"nscd-rigid": 1e-3, "ls-dem": 5e-5}  # s
 DEFAULT = DOCS.parent / "config" / "study.yaml"
 DIAGNOSED = DOCS.parent / "data" / "virtual-campaign" / "configuration-2"
 PROFILE = DOCS.parent / "profiles" / "slurm" / "profile.yaml"
 _CORES = (1, 64, 1024)
-_KINDS = {  # of the jobs of a study, in the words of `blockshake estimate`, by rule
-    "simulate_batch": "samples",
-    "run_twins": "twins",
-    "calibrate_friction": "mean friction",
-    "compare_open_tests": "calibration",
-    "climb_samples": "fragility",
-}
 _SHOWN = 8  # rules that take most of the time
 LITERAL = DOCS.parent / "config" / "literal.yaml"
 _FINE_IMPACTS = {"nscd.impact_parts": 20}  # as in config/study.yaml
@@ -257,28 +250,9 @@ def study_shares():
 
 
 def paper_run():
-    """CPU time of the paper's study, estimated and taken, by kind of job; None where it has not been run."""
-    if not PAPER.is_file():
-        return None
-    rest = "jobs beside their runs"
-    taken, estimated, jobs = (
-        dict.fromkeys((*_KINDS.values(), rest), 0.0),
-        {},
-        dict.fromkeys((*_KINDS.values(), rest), 0),
-    )
-    for rule, count, seconds in shares("benchmarks/paper"):
-        kind = _KINDS.get(rule, rest)
-        taken[kind], jobs[kind] = taken[kind] + seconds, jobs[kind] + count
-    for part in study_cost(DEFAULT.with_name("paper.yaml")):
-        kind = part.name.split(" of ")[0]
-        estimated[kind] = estimated.get(kind, 0.0) + part.seconds
-    rows = [(kind, jobs[kind], estimated[kind], taken[kind]) for kind in taken]
-    rows.append(("all", *(sum(row[column] for row in rows) for column in (1, 2, 3))))
-    cells = [
-        (kind, count, *(f"{one / 60.0:.1f}" for one in pair), f"{pair[1] / pair[0]:.2f}")
-        for kind, count, *pair in rows
-    ]
-    return markdown(("what", "jobs", "estimated [CPU min]", "taken [CPU min]", "taken over estimated"), cells)
+    """Finished parts of the paper's study; None where there is none."""
+    rows = paper_rows()
+    return markdown(PAPER_HEADER, rows) if rows else None
 
 
 def faults():

@@ -1,0 +1,60 @@
+"""The paper's study as it was run: CPU time of each finished part beside its estimate, and what identifies its result.
+
+A part is finished where its result is in results/paper; the study may stop and go on, and its parts are here as they
+come. CPU times are those of Snakemake's benchmarks: a job's own work, without the seconds of its start.
+"""
+
+import json
+from pathlib import Path
+
+from blockshake.cost.study_cost import study_cost
+from blockshake.files import HOME, file_digest
+
+HEADER = (
+    "part",
+    "runs",
+    "estimated [CPU min]",
+    "taken [CPU min]",
+    "taken over estimated",
+    "digest of the result",
+)
+# benchmarks of the jobs and result, by kind of part
+_KINDS = {
+    "samples": ("simulate_batch/{model}/{case}/*.jsonl", "samples/{model}/{case}.nc"),
+    "twins": ("run_twins/{model}/{case}.jsonl", "twins/{model}/{case}.nc"),
+    "calibration": ("compare_open_tests/{model}/{case}.jsonl", "open-tests/{model}/{case}.nc"),
+    "mean friction": ("calibrate_friction/{case}.jsonl", "friction/{case}.json"),
+    "fragility": ("climb_samples/{case}/*.jsonl", "fragility/{case}.nc"),
+}
+
+
+def paper_rows(folder="."):
+    """Rows under `HEADER` of the finished parts of the paper's study in a folder, the last of all together; none where
+    nothing is finished."""
+    benchmarks, results = Path(folder, "benchmarks", "paper"), Path(folder, "results", "paper")
+    if not results.is_dir():
+        return []
+    rows, estimated, taken, runs = [], 0.0, 0.0, 0
+    for part in study_cost(HOME / "config" / "paper.yaml"):
+        kind, _, of = part.name.partition(" of ")
+        if kind not in _KINDS:
+            continue
+        case, _, model = of.partition(", ")
+        jobs, made = (one.format(case=case, model=model) for one in _KINDS[kind])
+        if not (results / made).is_file():
+            continue
+        seconds = sum(_cpu_time(path) for path in benchmarks.glob(jobs))
+        rows.append(
+            (part.name, part.count, *_cells(part.seconds, seconds), f"`{file_digest(results / made)}`")
+        )
+        estimated, taken, runs = estimated + part.seconds, taken + seconds, runs + part.count
+    return [*rows, ("all of these", runs, *_cells(estimated, taken), "")] if rows else []
+
+
+def _cells(estimated, taken):
+    return f"{estimated / 60.0:.1f}", f"{taken / 60.0:.1f}", f"{taken / estimated:.2f}"
+
+
+def _cpu_time(path):
+    """CPU seconds of the last run of a job."""
+    return json.loads(path.read_text(encoding="utf-8").splitlines()[-1])["cpu_time"]
