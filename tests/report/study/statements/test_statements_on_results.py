@@ -276,6 +276,7 @@ def test_rocking_and_sliding_are_those_of_joints_that_move(four):
         found = rocking.occurrences(four)
         assert found.verdict == verdict
         assert f"configuration-1 {first} [{first}, {first}]" in found.words
+        assert "Joints (3 of configuration-1, " in found.words
     # a rocking block's joint slips a little too, and counts once
     for name in ("joint_uplift", "joint_slip"):
         move(four, name, dict(zip(names, (1, 1, 2, 2), strict=True)))

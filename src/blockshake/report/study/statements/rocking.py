@@ -17,7 +17,7 @@ def occurrences(content):
         content,
         _moved_joints(content, "ls-dem", "joint_uplift"),
         [(_FIRST, other) for other in (_SECOND, _THIRD, _FOURTH)],
-        "Joints whose middle opens by more than a marker's noise, median over the samples",
+        f"Joints ({_all_joints(content)}) whose middle opens by more than a marker's noise, median over the samples",
         given,
     )
 
@@ -25,18 +25,27 @@ def occurrences(content):
 def complicated(content):
     """Joints that open or slip, by configuration and model: more of them in configurations 3 and 4."""
     pairs = [(simple, walls) for simple in (_FIRST, _SECOND) for walls in (_THIRD, _FOURTH)]
+    words = (
+        f"Joints ({_all_joints(content)}) at whose middle the faces part or slip by more than a marker's noise, median "
+        "over the samples"
+    )
     return all_of(
         {
             model_label(model): ordered(
-                content,
-                _moved_joints(content, model, "joint_uplift", "joint_slip"),
-                pairs,
-                "Joints at whose middle the faces part or slip by more than a marker's noise, median over the samples",
-                given,
+                content, _moved_joints(content, model, "joint_uplift", "joint_slip"), pairs, words, given
             )
             for model in content.study["models"]
         }
     )
+
+
+def _all_joints(content):
+    """Numbers of the joints of the structures, in words."""
+    counts = {
+        name: next(iter(case.responses.values())).samples.sizes["joint"]
+        for name, case in content.cases.items()
+    }
+    return ", ".join(f"{count} of {name}" for name, count in counts.items())
 
 
 def _moved_joints(content, model, *figures):
