@@ -176,7 +176,7 @@ def deep_diagnosis(campaign, times):
         return Job(rule, (), 1, needs, makes, seconds)
 
     def as_there(rule, needs, makes, factor=1.0):
-        return job(rule, factor * times[rule, ()], needs, makes)
+        return job(rule, factor * times.get((rule, ()), _START), needs, makes)
 
     libraries = [f"{test} {model}" for test in plan.tests for model in MODELS]
     further = [f"further {name}" for name in libraries]

@@ -284,7 +284,7 @@ def test_rocking_and_sliding_are_those_of_joints_that_move(four):
     move(four, "joint_slip", {FIRST: 3})
     found = rocking.complicated(four)
     assert found.verdict == NOT_MET
-    assert "NSCD rigid: Joints at whose middle" in found.words
+    assert "NSCD rigid: Joints (3 of configuration-1" in found.words
     four.cases[FOURTH].responses["ls-dem"].samples["status"][0] = "not-converged"
     assert "of too few samples: configuration-4" in rocking.occurrences(four).words
 
