@@ -236,7 +236,7 @@ def study_shares():
     """CPU time of the default study by rule; None where it has not been run."""
     if not STUDY.is_file():
         return None
-    found = shares("benchmarks")
+    found = shares(".")
     total = sum(seconds for *_, seconds in found)
     rest = [sum(row[column] for row in found[_SHOWN:]) for column in (1, 2)]
     rows = [

@@ -4,8 +4,9 @@ A part is finished where its result is in results/paper; the study may stop and 
 come. CPU times are those of Snakemake's benchmarks: a job's own work, without the seconds of its start.
 """
 
-import json
 from pathlib import Path
+
+from schedule import cpu_time
 
 from blockshake.cost.study_cost import study_cost
 from blockshake.files import HOME, file_digest
@@ -43,7 +44,7 @@ def paper_rows(folder="."):
         jobs, made = (one.format(case=case, model=model) for one in _KINDS[kind])
         if not (results / made).is_file():
             continue
-        seconds = sum(_cpu_time(path) for path in benchmarks.glob(jobs))
+        seconds = sum(cpu_time(path) for path in benchmarks.glob(jobs))
         rows.append(
             (part.name, part.count, *_cells(part.seconds, seconds), f"`{file_digest(results / made)}`")
         )
@@ -53,8 +54,3 @@ def paper_rows(folder="."):
 
 def _cells(estimated, taken):
     return f"{estimated / 60.0:.1f}", f"{taken / 60.0:.1f}", f"{taken / estimated:.2f}"
-
-
-def _cpu_time(path):
-    """CPU seconds of the last run of a job."""
-    return json.loads(path.read_text(encoding="utf-8").splitlines()[-1])["cpu_time"]

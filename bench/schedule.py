@@ -1,8 +1,8 @@
 """How long a study takes on more cores: its jobs begun one after the other as cores get free, by measured job times.
 
-The jobs and what each waits for are those of a dry run. The times are those that Snakemake keeps of a finished default
-study, start-up of a job included: of the same rule, model and configuration, by sample and by step. They may have been
-measured on a busy machine: then they are too long, all by about the same factor.
+The jobs and what each waits for are those of a dry run. The times are the CPU times of a finished default study in
+Snakemake's benchmarks, and the start of a job, which no benchmark counts: of the same rule, model and configuration, by
+sample and by step.
 """
 
 import heapq
@@ -17,11 +17,12 @@ from statistics import mean
 
 from blockshake.diagnosis.libraries.null_model import MODELS
 from blockshake.diagnosis.libraries.plan import plan_diagnosis
-from blockshake.files import HOME, load_json
+from blockshake.files import HOME
 from blockshake.measurement.campaigns.campaign import load_campaign
 
 _JOB = re.compile(r"^(?:localrule|rule|checkpoint) (\w+):\n((?:    .+\n)+)", re.MULTILINE)
 _TWINS = 3  # runs that twins cost: one, and one of twice the steps
+_BEFORE = 5.0  # CPU s of a job before its benchmark begins, as in src/blockshake/cost/jobs.py
 _START = 10.0  # s; of a job of which no time is known
 
 
@@ -58,37 +59,47 @@ def read_plan(text):
 
 def measured(folder):
     """Mean seconds of the jobs of a finished study, by rule, model and case; of batches those of a sample."""
-    found = {}
-    for path in Path(folder, ".snakemake", "metadata").rglob("*"):
-        if path.is_file():
-            record = load_json(path)
-            found[record["log"][0] if record["log"] else path.name] = record
     spent = defaultdict(list)
-    for log, record in found.items():
-        key, samples = _who(log)
-        seconds = record["endtime"] - record["starttime"]
-        spent[record["rule"], key].append(seconds / samples)
-        spent[record["rule"], ()].append(seconds)
+    for rule, path in _benchmarks(folder):
+        parts = path.with_suffix("").parts
+        key, samples = _batch(parts[parts.index(rule) + 1 :])
+        seconds = cpu_time(path) + _BEFORE
+        spent[rule, key].append(seconds / samples)
+        if key:
+            spent[rule, ()].append(seconds)
     return {key: mean(values) for key, values in spent.items()}
 
 
-def shares(benchmarks):
-    """Jobs and CPU seconds of every rule with benchmarks in a folder or below, the dearest first."""
-    rules = {path.stem for path in (HOME / "workflow" / "scripts").glob("*.py")}
+def shares(folder):
+    """Jobs and CPU seconds of every rule of the finished study in a folder, the dearest first."""
     spent = defaultdict(list)
-    for path in Path(benchmarks).rglob("*.jsonl"):
-        (rule,) = rules & set(path.with_suffix("").parts)
-        spent[rule].append(json.loads(path.read_text(encoding="utf-8").splitlines()[-1])["cpu_time"])
+    for rule, path in _benchmarks(folder):
+        spent[rule].append(cpu_time(path))
     return sorted(((rule, len(each), sum(each)) for rule, each in spent.items()), key=lambda row: -row[2])
+
+
+def _benchmarks(folder):
+    """Rules and benchmarks of the jobs of the studies in a folder, one each."""
+    rules = {path.stem for path in (HOME / "workflow" / "scripts").glob("*.py")}
+    for path in sorted(Path(folder, "benchmarks").rglob("*.jsonl")):
+        (rule,) = rules & set(path.with_suffix("").parts)
+        yield rule, path
+
+
+def cpu_time(path):
+    """CPU seconds of the last run of a job."""
+    return json.loads(path.read_text(encoding="utf-8").splitlines()[-1])["cpu_time"]
 
 
 def _who(log):
     """Model and case of a job, and the number of its samples, from the path of its log."""
-    parts = log.removesuffix(".log").split("/")[3:]
+    return _batch(tuple(log.removesuffix(".log").split("/")[3:]))
+
+
+def _batch(parts):
+    """Model and case of a job, and the number of its samples, from the end of a path of its own."""
     batch = re.fullmatch(r"(\d+)-(\d+)", parts[-1]) if parts else None
-    if batch is None:
-        return tuple(parts), 1
-    return tuple(parts[:-1]), int(batch[2]) - int(batch[1]) + 1
+    return (parts[:-1], int(batch[2]) - int(batch[1]) + 1) if batch else (parts, 1)
 
 
 def timed_study(jobs, config, done, times):
