@@ -1,8 +1,8 @@
 """How long a study takes on more cores: its jobs begun one after the other as cores get free, by measured job times.
 
 The jobs and what each waits for are those of a dry run. The times are the CPU times of a finished default study in
-Snakemake's benchmarks, and the start of a job, which no benchmark counts: of the same rule, model and configuration, by
-sample and by step.
+Snakemake's benchmarks, of the same rule, model and configuration, by sample and by step. A job's imports are in them, the
+start of Snakemake for it is not.
 """
 
 import heapq
@@ -22,7 +22,6 @@ from blockshake.measurement.campaigns.campaign import load_campaign
 
 _JOB = re.compile(r"^(?:localrule|rule|checkpoint) (\w+):\n((?:    .+\n)+)", re.MULTILINE)
 _TWINS = 3  # runs that twins cost: one, and one of twice the steps
-_BEFORE = 5.0  # CPU s of a job before its benchmark begins, as in src/blockshake/cost/jobs.py
 _START = 10.0  # s; of a job of which no time is known
 
 
@@ -63,7 +62,7 @@ def measured(folder):
     for rule, path in _benchmarks(folder):
         parts = path.with_suffix("").parts
         key, samples = _batch(parts[parts.index(rule) + 1 :])
-        seconds = cpu_time(path) + _BEFORE
+        seconds = cpu_time(path)
         spent[rule, key].append(seconds / samples)
         if key:
             spent[rule, ()].append(seconds)
