@@ -124,4 +124,4 @@ audit:
 	@.venv-audit/bin/python .ci/audit.py
 
 clean:
-	rm -rf results reports logs benchmarks .snakemake
+	rm -rf results reports logs .snakemake

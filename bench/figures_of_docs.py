@@ -220,7 +220,7 @@ def study_sensitivities():
     """Sentences of the default study's report on what makes its envelopes thick; None where it has not been run."""
     if not STUDY.is_file():
         return None
-    content = load_content(load_config(DEFAULT).model_dump(), STUDY.parent, "benchmarks/study")
+    content = load_content(load_config(DEFAULT).model_dump(), STUDY.parent, "logs/study")
     lines = []
     for case in content.cases.values():
         chosen = markers_by_height(case)

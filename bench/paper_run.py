@@ -1,15 +1,14 @@
 """The paper's study as it was run: CPU time of each finished part beside its estimate, and what identifies its result.
 
 A part is finished where its result is in results/paper; the study may stop and go on, and its parts are here as they
-come. CPU times are those of Snakemake's benchmarks: a job's own work, without the seconds of its start.
+come. CPU times are those of the jobs' logs, without the start of a job and its imports.
 """
 
 from pathlib import Path
 
-from schedule import cpu_time
-
 from blockshake.cost.study_cost import study_cost
 from blockshake.files import HOME, file_digest
+from blockshake.log import read_cost
 
 HEADER = (
     "part",
@@ -19,20 +18,20 @@ HEADER = (
     "taken over estimated",
     "digest of the result",
 )
-# benchmarks of the jobs and result, by kind of part
+# logs of the jobs and result, by kind of part
 _KINDS = {
-    "samples": ("simulate_batch/{model}/{case}/*.jsonl", "samples/{model}/{case}.nc"),
-    "twins": ("run_twins/{model}/{case}.jsonl", "twins/{model}/{case}.nc"),
-    "calibration": ("compare_open_tests/{model}/{case}.jsonl", "open-tests/{model}/{case}.nc"),
-    "mean friction": ("calibrate_friction/{case}.jsonl", "friction/{case}.json"),
-    "fragility": ("climb_samples/{case}/*.jsonl", "fragility/{case}.nc"),
+    "samples": ("simulate_batch/{model}/{case}/*.log", "samples/{model}/{case}.nc"),
+    "twins": ("run_twins/{model}/{case}.log", "twins/{model}/{case}.nc"),
+    "calibration": ("compare_open_tests/{model}/{case}.log", "open-tests/{model}/{case}.nc"),
+    "mean friction": ("calibrate_friction/{case}.log", "friction/{case}.json"),
+    "fragility": ("climb_samples/{case}/*.log", "fragility/{case}.nc"),
 }
 
 
 def paper_rows(folder="."):
     """Rows under `HEADER` of the finished parts of the paper's study in a folder, the last of all together; none where
     nothing is finished."""
-    benchmarks, results = Path(folder, "benchmarks", "paper"), Path(folder, "results", "paper")
+    logs, results = Path(folder, "logs", "paper"), Path(folder, "results", "paper")
     if not results.is_dir():
         return []
     rows, estimated, taken, runs = [], 0.0, 0.0, 0
@@ -44,7 +43,7 @@ def paper_rows(folder="."):
         jobs, made = (one.format(case=case, model=model) for one in _KINDS[kind])
         if not (results / made).is_file():
             continue
-        seconds = sum(cpu_time(path) for path in benchmarks.glob(jobs))
+        seconds = sum(read_cost(path).cpu_time for path in logs.glob(jobs))
         rows.append(
             (part.name, part.count, *_cells(part.seconds, seconds), f"`{file_digest(results / made)}`")
         )

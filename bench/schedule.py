@@ -1,12 +1,11 @@
 """How long a study takes on more cores: its jobs begun one after the other as cores get free, by measured job times.
 
-The jobs and what each waits for are those of a dry run. The times are the CPU times of a finished default study in
-Snakemake's benchmarks, of the same rule, model and configuration, by sample and by step. A job's imports are in them, the
-start of Snakemake for it is not.
+The jobs and what each waits for are those of a dry run. The times are the CPU times in the logs of a finished default
+study, of the same rule, model and configuration, by sample and by step. The start of a job and its imports, some 7 CPU
+seconds, are not in them.
 """
 
 import heapq
-import json
 import re
 import subprocess
 import sys
@@ -18,6 +17,7 @@ from statistics import mean
 from blockshake.diagnosis.libraries.null_model import MODELS
 from blockshake.diagnosis.libraries.plan import plan_diagnosis
 from blockshake.files import HOME
+from blockshake.log import read_cost
 from blockshake.measurement.campaigns.campaign import load_campaign
 
 _JOB = re.compile(r"^(?:localrule|rule|checkpoint) (\w+):\n((?:    .+\n)+)", re.MULTILINE)
@@ -59,10 +59,9 @@ def read_plan(text):
 def measured(folder):
     """Mean seconds of the jobs of a finished study, by rule, model and case; of batches those of a sample."""
     spent = defaultdict(list)
-    for rule, path in _benchmarks(folder):
+    for rule, path, seconds in _jobs_done(folder):
         parts = path.with_suffix("").parts
         key, samples = _batch(parts[parts.index(rule) + 1 :])
-        seconds = cpu_time(path)
         spent[rule, key].append(seconds / samples)
         if key:
             spent[rule, ()].append(seconds)
@@ -72,22 +71,19 @@ def measured(folder):
 def shares(folder):
     """Jobs and CPU seconds of every rule of the finished study in a folder, the dearest first."""
     spent = defaultdict(list)
-    for rule, path in _benchmarks(folder):
-        spent[rule].append(cpu_time(path))
+    for rule, _, seconds in _jobs_done(folder):
+        spent[rule].append(seconds)
     return sorted(((rule, len(each), sum(each)) for rule, each in spent.items()), key=lambda row: -row[2])
 
 
-def _benchmarks(folder):
-    """Rules and benchmarks of the jobs of the studies in a folder, one each."""
+def _jobs_done(folder):
+    """Rule, log and CPU seconds of the jobs of the studies in a folder, one by one."""
     rules = {path.stem for path in (HOME / "workflow" / "scripts").glob("*.py")}
-    for path in sorted(Path(folder, "benchmarks").rglob("*.jsonl")):
-        (rule,) = rules & set(path.with_suffix("").parts)
-        yield rule, path
-
-
-def cpu_time(path):
-    """CPU seconds of the last run of a job."""
-    return json.loads(path.read_text(encoding="utf-8").splitlines()[-1])["cpu_time"]
+    for path in sorted(Path(folder, "logs").rglob("*.log")):
+        named, cost = rules & set(path.with_suffix("").parts), read_cost(path)
+        if named and cost is not None:
+            (rule,) = named
+            yield rule, path, cost.cpu_time
 
 
 def _who(log):

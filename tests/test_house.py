@@ -85,7 +85,7 @@ def test_every_page_is_linked_from_another():
 
 
 PATH = re.compile(r"[\w.-]+(?:/[\w.-]+)*/?")
-MADE = ("results", "reports", "logs", "benchmarks", "~", ".venv", ".venv-peers", ".snakemake")
+MADE = ("results", "reports", "logs", "~", ".venv", ".venv-peers", ".snakemake")
 
 
 def is_path(word):

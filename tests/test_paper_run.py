@@ -1,6 +1,5 @@
-"""The paper's run beside its estimate: finished parts alone, by the benchmarks of their jobs."""
+"""The paper's run beside its estimate: finished parts alone, by the logs of their jobs."""
 
-import json
 import sys
 from pathlib import Path
 
@@ -26,20 +25,20 @@ def paper_run(monkeypatch):
     sys.modules.pop("paper_run")
 
 
+def _took(seconds):
+    return f"python 3\nTook 100.0 s, {seconds} CPU s, at most 300 MiB.\n"
+
+
 def _write(path, text):
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)
 
 
 def test_finished_parts_stand_beside_their_estimate(paper_run, tmp_path):
-    benchmarks, results = tmp_path / "benchmarks" / "paper", tmp_path / "results" / "paper"
+    logs, results = tmp_path / "logs" / "paper", tmp_path / "results" / "paper"
     for place, seconds in enumerate((60.0, 90.0)):
-        # the first line is of a job that was killed
-        lines = [json.dumps({"cpu_time": one}) for one in (1000.0, seconds)]
-        _write(
-            benchmarks / "simulate_batch" / "ls-dem" / "configuration-1" / f"{place}.jsonl", "\n".join(lines)
-        )
-    _write(benchmarks / "calibrate_friction" / "configuration-1.jsonl", json.dumps({"cpu_time": 30.0}))
+        _write(logs / "simulate_batch" / "ls-dem" / "configuration-1" / f"{place}.log", _took(seconds))
+    _write(logs / "calibrate_friction" / "configuration-1.log", _took(30.0))
     assert paper_run.paper_rows(tmp_path) == []
     _write(results / "samples" / "ls-dem" / "configuration-1.nc", "samples")
     _write(results / "friction" / "configuration-1.json", "{}")

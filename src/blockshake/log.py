@@ -2,15 +2,28 @@
 
 import contextlib
 import logging
+import os
+import re
+import resource
 import sys
 import traceback
 from importlib.metadata import version
 from pathlib import Path
+from typing import NamedTuple
 
 from blockshake.errors import INTERRUPTED, InputError
 from blockshake.working_folder import end_with_command
 
 _VERSIONS = ("numpy", "numba", "scipy", "xarray")
+_COST = re.compile(r"^Took ([\d.]+) s, ([\d.]+) CPU s, at most ([\d.]+) MiB\.$", re.MULTILINE)
+
+
+class Cost(NamedTuple):
+    """Cost of a job, without its imports: wall time and CPU time [s], and peak memory [MiB]."""
+
+    wall_time: float
+    cpu_time: float
+    memory: float
 
 
 @contextlib.contextmanager
@@ -19,9 +32,10 @@ def logging_to(path):
 
     Yields a function that says one line of progress, in the log and on the terminal. Python warnings and logging go to
     the log; so does the traceback of an error, which is raised on, but for bad input: that ends the job with one line.
-    The job ends with the command that started it.
+    The last line is what the block cost, see `read_cost`. The job ends with the command that started it.
     """
     end_with_command()
+    before = os.times()
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     with open(path, "w", encoding="utf-8", buffering=1) as log:
         handler = logging.StreamHandler(log)
@@ -51,3 +65,24 @@ def logging_to(path):
             raise
         finally:
             root.removeHandler(handler)
+            log.write(_cost_since(before))
+
+
+def read_cost(path):
+    """`Cost` in the log of a job; None where the job was killed or has no log.
+
+    Its processes' CPU times are all in it: Snakemake's own benchmarks look every 30 s at a job of more than 15 s, and
+    lose what it did after the last look.
+    """
+    try:
+        found = _COST.findall(Path(path).read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return None
+    return Cost(*map(float, found[-1])) if found else None
+
+
+def _cost_since(before):
+    now = os.times()
+    spent = sum(now[:4]) - sum(before[:4])  # of this process and of those it started
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+    return f"Took {now.elapsed - before.elapsed:.2f} s, {spent:.2f} CPU s, at most {memory:.0f} MiB.\n"

@@ -20,7 +20,7 @@ COMMAND = (
 )
 _BOOT = Path("/proc/sys/kernel/random/boot_id")  # of this machine since it was switched on
 _LOCK = Path(".snakemake") / "command.lock"  # holds the name of the command that took the folder last
-_WRITTEN = ("results", "reports", "logs", "benchmarks")  # folders of a workflow in it
+_WRITTEN = ("results", "reports", "logs")  # folders of a workflow in it
 _PERIOD = 10.0  # s; between two looks at the lock from another machine
 
 

@@ -21,7 +21,9 @@ def _in_the_checkout(monkeypatch):
 
 def test_every_run_of_the_default_study_is_counted(monkeypatch):
     """Every run costs a CPU second a second of motion: CPU seconds are then the simulated seconds."""
-    monkeypatch.setattr(study_cost, "run_seconds", lambda structure, motion, settings, duration: duration)
+    monkeypatch.setattr(
+        study_cost, "run_seconds", lambda structure, motion, settings, duration, runs: duration
+    )
     monkeypatch.setattr(study_cost, "diagnosis_cost", lambda folder, effort, tried: [])
     monkeypatch.setattr(study_cost, "planned_jobs", lambda command: Jobs({}, 1.0))
     search = load_config("config/study.yaml").friction_calibration

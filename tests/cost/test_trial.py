@@ -21,9 +21,10 @@ def test_the_strongest_part_has_the_accelerations_of_the_motion_and_starts_at_re
     assert np.abs(strong.evaluate(np.zeros(1), 2)).max() == pytest.approx(largest)
 
 
-@pytest.mark.parametrize(("rate", "expected"), [(0.5, 7.0), (20.0, 200.0)])
-def test_a_slow_run_is_tried_in_part(monkeypatch, rate, expected):
-    """A run of 10 s costs 2 CPU s to set up and 0.5 a second: tried whole. At 20 a second: by its strongest part."""
+@pytest.mark.parametrize(("rate", "runs", "expected"), [(0.5, 1, 7.0), (20.0, 49, 200.0), (20.0, 50, 202.0)])
+def test_a_slow_run_of_few_is_tried_in_part(monkeypatch, rate, runs, expected):
+    """A run of 10 s costs 2 CPU s to set up and 0.5 a second: tried whole. At 20 a second: by its strongest part, but
+    for many."""
 
     def seconds(call):
         asked.clear()
@@ -34,4 +35,4 @@ def test_a_slow_run_is_tried_in_part(monkeypatch, rate, expected):
     monkeypatch.setattr(trial, "cpu_seconds", seconds)
     monkeypatch.setattr(trial, "simulate", lambda *given, duration, **others: asked.update(duration=duration))
     structure, motion = load_structure("configuration-1"), load_motion("alkion")
-    assert trial.run_seconds(structure, motion, {"model": "ls-dem"}, 10.0) == pytest.approx(expected)
+    assert trial.run_seconds(structure, motion, {"model": "ls-dem"}, 10.0, runs) == pytest.approx(expected)

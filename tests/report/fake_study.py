@@ -1,6 +1,5 @@
 """A small study whose results are made up: right in form, never simulated."""
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -70,7 +69,7 @@ class FakeStudy:
 
     def __init__(self, folder, size=10, duration=2.0, rate=50.0):
         self.folder, self.size = Path(folder), size
-        self.results, self.benchmarks = self.folder / "results", self.folder / "benchmarks"
+        self.results, self.logs = self.folder / "results", self.folder / "logs"
         self.time = np.arange(round(duration * rate) + 1) / rate
         names = ("configuration-1", "configuration-4")
         self.study = {
@@ -177,8 +176,8 @@ class FakeStudy:
                 ("sensitivities", sensitivity(ensemble, list(self.design.columns))),
             ):
                 write_dataset(self.results / kind / model / f"{name}.nc", result)
-            record = self.benchmarks / "simulate_batch" / model / name / f"000-{count - 1:03d}.jsonl"
-            write_text(record, json.dumps({"cpu_time": CPU_TIME, "s": 50.0}) + "\n")
+            log = self.logs / "simulate_batch" / model / name / f"000-{count - 1:03d}.log"
+            write_text(log, f"Took 50.0 s, {CPU_TIME} CPU s, at most 300 MiB.\n")
 
         differences = compare_models(ensembles, twins, (test, 1e-4))
         write_dataset(self.results / "differences" / f"{name}.nc", differences)

@@ -10,8 +10,6 @@ rule compare_open_tests:
         "results/{study}/open-tests/{model}/{case}.nc",
     log:
         "logs/{study}/compare_open_tests/{model}/{case}.log",
-    benchmark:
-        "benchmarks/{study}/compare_open_tests/{model}/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     threads: 1
@@ -46,8 +44,6 @@ rule calibrate_jointly:
         "results/{study}/calibration.json",
     log:
         "logs/{study}/calibrate_jointly.log",
-    benchmark:
-        "benchmarks/{study}/calibrate_jointly.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -12,8 +12,6 @@ rule make_virtual_campaign:
         truth="results/virtual-truth/{structure}/truth.json",
     log:
         "logs/make_virtual_campaign/{structure}.log",
-    benchmark:
-        "benchmarks/make_virtual_campaign/{structure}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

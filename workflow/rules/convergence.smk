@@ -7,8 +7,6 @@ rule study_convergence:
         "results/{study}/convergence.csv",
     log:
         "logs/{study}/study_convergence.log",
-    benchmark:
-        "benchmarks/{study}/study_convergence.jsonl"
     conda:
         "../envs/blockshake.yaml"
     resources:

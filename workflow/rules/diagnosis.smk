@@ -39,8 +39,6 @@ rule simulate_library:
         histories="results/libraries/{library}/{solver}-histories.nc",
     log:
         "logs/simulate_library/{library}-{solver}.log",
-    benchmark:
-        "benchmarks/simulate_library/{library}-{solver}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     threads: 1
@@ -63,8 +61,6 @@ rule calibrate_decision:
         "results/libraries/calibrations/{calibration}.json",
     log:
         "logs/calibrate_decision/{calibration}.log",
-    benchmark:
-        "benchmarks/calibrate_decision/{calibration}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     resources:
@@ -87,8 +83,6 @@ rule read_measured:
         forces="results/diagnosis/{campaign}/forces.nc",
     log:
         "logs/diagnosis/{campaign}/read_measured.log",
-    benchmark:
-        "benchmarks/diagnosis/{campaign}/read_measured.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -117,8 +111,6 @@ checkpoint decide:
         frozen="results/diagnosis/{campaign}/frozen.json",
     log:
         "logs/diagnosis/{campaign}/decide.log",
-    benchmark:
-        "benchmarks/diagnosis/{campaign}/decide.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -138,8 +130,6 @@ rule simulate_cause:
         "results/libraries/{library}/{solver}/{candidate}.nc",
     log:
         "logs/simulate_cause/{library}-{solver}-{candidate}.log",
-    benchmark:
-        "benchmarks/simulate_cause/{library}-{solver}-{candidate}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     threads: 1
@@ -169,8 +159,6 @@ rule size_cause:
         frozen="results/diagnosis/{campaign}/frozen-size.json",
     log:
         "logs/diagnosis/{campaign}/size_cause.log",
-    benchmark:
-        "benchmarks/diagnosis/{campaign}/size_cause.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -195,8 +183,6 @@ rule extend_model:
         "results/diagnosis/{campaign}/extended/{solver}.nc",
     log:
         "logs/diagnosis/{campaign}/extend_model/{solver}.log",
-    benchmark:
-        "benchmarks/diagnosis/{campaign}/extend_model/{solver}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     threads: 1
@@ -232,8 +218,6 @@ rule measure_gain:
         summary="results/diagnosis/{campaign}/gain.json",
     log:
         "logs/diagnosis/{campaign}/measure_gain.log",
-    benchmark:
-        "benchmarks/diagnosis/{campaign}/measure_gain.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -255,8 +239,6 @@ rule conclude:
         "results/diagnosis/{campaign}/verdict.json",
     log:
         "logs/diagnosis/{campaign}/conclude.log",
-    benchmark:
-        "benchmarks/diagnosis/{campaign}/conclude.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -282,8 +264,6 @@ rule predict_twins:
         "results/libraries/{library}/predictability.nc",
     log:
         "logs/predict_twins/{library}.log",
-    benchmark:
-        "benchmarks/predict_twins/{library}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -324,8 +304,6 @@ rule make_diagnosis_report:
         pdf=report("reports/diagnosis-{campaign}.pdf", category="Diagnosis"),
     log:
         "logs/diagnosis/{campaign}/make_diagnosis_report.log",
-    benchmark:
-        "benchmarks/diagnosis/{campaign}/make_diagnosis_report.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

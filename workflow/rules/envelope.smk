@@ -10,8 +10,6 @@ rule make_envelope:
         samples="results/{study}/samples/{model}/{case}.nc",
     log:
         "logs/{study}/make_envelope/{model}/{case}.log",
-    benchmark:
-        "benchmarks/{study}/make_envelope/{model}/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -30,8 +28,6 @@ rule show_samples:
         "results/{study}/shown/{model}/{case}.nc",
     log:
         "logs/{study}/show_samples/{model}/{case}.log",
-    benchmark:
-        "benchmarks/{study}/show_samples/{model}/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -50,8 +46,6 @@ rule compare_with_measurement:
         "results/{study}/comparisons/{model}/{case}.nc",
     log:
         "logs/{study}/compare_with_measurement/{model}/{case}.log",
-    benchmark:
-        "benchmarks/{study}/compare_with_measurement/{model}/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -73,8 +67,6 @@ rule measure_sensitivity:
         "results/{study}/sensitivities/{model}/{case}.nc",
     log:
         "logs/{study}/measure_sensitivity/{model}/{case}.log",
-    benchmark:
-        "benchmarks/{study}/measure_sensitivity/{model}/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -101,8 +93,6 @@ rule compare_models:
         "results/{study}/differences/{case}.nc",
     log:
         "logs/{study}/compare_models/{case}.log",
-    benchmark:
-        "benchmarks/{study}/compare_models/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

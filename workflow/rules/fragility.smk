@@ -14,8 +14,6 @@ rule climb_samples:
         "results/{study}/climbs/{case}/{batch}.nc",
     log:
         "logs/{study}/climb_samples/{case}/{batch}.log",
-    benchmark:
-        "benchmarks/{study}/climb_samples/{case}/{batch}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     threads: 1
@@ -50,8 +48,6 @@ rule fit_fragility:
         "results/{study}/fragility/{case}.nc",
     log:
         "logs/{study}/fit_fragility/{case}.log",
-    benchmark:
-        "benchmarks/{study}/fit_fragility/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -12,8 +12,6 @@ rule calibrate_friction:
         "results/{study}/friction/{case}.json",
     log:
         "logs/{study}/calibrate_friction/{case}.log",
-    benchmark:
-        "benchmarks/{study}/calibrate_friction/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     threads: 1

@@ -10,8 +10,6 @@ rule measure_input:
         "results/{study}/inputs/{case}.nc",
     log:
         "logs/{study}/measure_input/{case}.log",
-    benchmark:
-        "benchmarks/{study}/measure_input/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -6,8 +6,6 @@ rule describe_motion:
         "results/{study}/motions/{motion}.nc",
     log:
         "logs/{study}/describe_motion/{motion}.log",
-    benchmark:
-        "benchmarks/{study}/describe_motion/{motion}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -20,14 +20,12 @@ rule make_report:
         paper="results/{study}/the-paper.json",
     log:
         "logs/{study}/make_report.log",
-    benchmark:
-        "benchmarks/{study}/make_report.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
         study=CHECKED.model_dump(mode="json"),
         results="results/{study}",
-        benchmarks="benchmarks/{study}",
+        logs="logs/{study}",
         source=source_of("make_report"),
     script:
         "../scripts/make_report.py"
@@ -42,15 +40,13 @@ rule make_case_report:
         pdf=report("reports/{study}-{case}.pdf", category="Study"),
     log:
         "logs/{study}/make_case_report/{case}.log",
-    benchmark:
-        "benchmarks/{study}/make_case_report/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
         study=CHECKED.model_dump(mode="json"),
         case="{case}",
         results="results/{study}",
-        benchmarks="benchmarks/{study}",
+        logs="logs/{study}",
         source=source_of("make_case_report"),
     script:
         "../scripts/make_case_report.py"

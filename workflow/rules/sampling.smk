@@ -5,8 +5,6 @@ rule draw_samples:
         summary="results/{study}/design.json",
     log:
         "logs/{study}/draw_samples.log",
-    benchmark:
-        "benchmarks/{study}/draw_samples.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

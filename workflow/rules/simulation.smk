@@ -4,8 +4,6 @@ rule compile_kernels:
         "results/kernels/{model}-{digest}.json",
     log:
         "logs/compile_kernels/{model}-{digest}.log",
-    benchmark:
-        "benchmarks/compile_kernels/{model}-{digest}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     script:
@@ -31,8 +29,6 @@ rule simulate_batch:
         "results/{study}/runs/{model}/{case}/{batch}.nc",
     log:
         "logs/{study}/simulate_batch/{model}/{case}/{batch}.log",
-    benchmark:
-        "benchmarks/{study}/simulate_batch/{model}/{case}/{batch}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     threads: 1
@@ -66,8 +62,6 @@ rule run_twins:
         "results/{study}/twins/{model}/{case}.nc",
     log:
         "logs/{study}/run_twins/{model}/{case}.log",
-    benchmark:
-        "benchmarks/{study}/run_twins/{model}/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     threads: 1
@@ -98,8 +92,6 @@ rule climb_ladder:
         "results/{study}/ladder.json",
     log:
         "logs/{study}/climb_ladder.log",
-    benchmark:
-        "benchmarks/{study}/climb_ladder.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -11,8 +11,6 @@ rule calibrate_stiffness:
         waves="results/{study}/waves/{case}.nc",
     log:
         "logs/{study}/calibrate_stiffness/{case}.log",
-    benchmark:
-        "benchmarks/{study}/calibrate_stiffness/{case}.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -34,8 +32,6 @@ rule compare_definitions:
         "results/{study}/stiffness-definitions.nc",
     log:
         "logs/{study}/compare_definitions.log",
-    benchmark:
-        "benchmarks/{study}/compare_definitions.jsonl"
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -42,25 +42,10 @@ def study_cost(path):
         for case in config.cases:
             structure, motion = load_structure(case.structure), load_motion(case.motion, case.scale)
             trial = {"model": model, **settings.model_dump()}
-            each = run_seconds(structure, motion, trial, case.duration)
-            samples = config.samples(model, case.name)
-            parts.append(Part(f"samples of {case.name}, {model}", samples, samples * each))
-            if config.has_twins(model, case.name):
-                parts.append(Part(f"twins of {case.name}, {model}", _TWINS, _TWINS * each))
-            search = config.friction_calibration
-            if search is not None and search.model == model and case.name in search.cases:
-                parts.append(Part(f"mean friction of {case.name}", search.runs, search.runs * each))
-            asked = config.calibration
-            if asked is not None and case.name in asked.cases.get(model, ()):
-                # a test is simulated for its record where that is shorter than the case
-                shares = [min(record / case.duration, 1.0) for record in _open_records(case)]
-                runs = asked.size * len(shares)
-                seconds = asked.size * sum(shares) * each
-                parts.append(Part(f"calibration of {case.name}, {model}", runs, seconds))
-            climbs = config.fragility
-            if climbs is not None and climbs.model == model and case.name in climbs.cases:
-                count = climbs.size * len(config.ladder.scales)
-                parts.append(Part(f"fragility of {case.name}", count, count * each))
+            asked = _runs(config, model, case)
+            runs = sum(count for count, _ in asked.values())
+            each = run_seconds(structure, motion, trial, case.duration, runs)
+            parts += [Part(name, count, whole * each) for name, (count, whole) in asked.items()]
     tried = {}
     for folder in config.diagnosis.campaigns:
         parts += diagnosis_cost(folder, config.diagnosis.effort, tried)
@@ -69,6 +54,27 @@ def study_cost(path):
         "--configfile", str(path),
     ]  # fmt: skip
     return [*parts, planned_jobs(command).as_part()]
+
+
+def _runs(config, model, case):
+    """Runs of a case by a model, by the part of the study: their number, and that of whole motions in them."""
+    samples = config.samples(model, case.name)
+    found = {f"samples of {case.name}, {model}": (samples, samples)}
+    if config.has_twins(model, case.name):
+        found[f"twins of {case.name}, {model}"] = _TWINS, _TWINS
+    search = config.friction_calibration
+    if search is not None and search.model == model and case.name in search.cases:
+        found[f"mean friction of {case.name}"] = search.runs, search.runs
+    asked = config.calibration
+    if asked is not None and case.name in asked.cases.get(model, ()):
+        # a test is simulated for its record where that is shorter than the case
+        shares = [min(record / case.duration, 1.0) for record in _open_records(case)]
+        found[f"calibration of {case.name}, {model}"] = asked.size * len(shares), asked.size * sum(shares)
+    climbs = config.fragility
+    if climbs is not None and climbs.model == model and case.name in climbs.cases:
+        count = climbs.size * len(config.ladder.scales)
+        found[f"fragility of {case.name}"] = count, count
+    return found
 
 
 def _open_records(case):

@@ -33,6 +33,8 @@ from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, 
 from blockshake.study.sampling.latin_hypercube import SMALLEST_SIZE
 from blockshake.validation import Positive, Strict, validated
 
+_OF_THE_PAPER = tuple(f"configuration-{place}" for place in (1, 2, 3, 4))
+
 
 def _links(ensemble):
     """Links of Table 2 to the variables that an ensemble samples."""
@@ -219,7 +221,7 @@ def shows_stiffness(study):
 
 def is_of_the_paper(structure):
     """Whether a structure is one of Zhou et al. (2023), by its shipped name."""
-    return structure.startswith("configuration-")
+    return structure in _OF_THE_PAPER
 
 
 def load_config(path):

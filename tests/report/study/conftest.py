@@ -15,14 +15,14 @@ from blockshake.report.study.report import compose, make_report
 def report(fake, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     paths = folder / "fake.html", folder / "fake.pdf", folder / "the-paper.json"
-    make_report(fake.study, fake.results, fake.benchmarks, *paths)
+    make_report(fake.study, fake.results, fake.logs, *paths)
     return paths
 
 
 @pytest.fixture(scope="session")
 def document(fake):
     """Composed a second time from the same files."""
-    return compose(load_content(fake.study, fake.results, fake.benchmarks))
+    return compose(load_content(fake.study, fake.results, fake.logs))
 
 
 @pytest.fixture

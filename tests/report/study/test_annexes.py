@@ -23,7 +23,7 @@ def test_annex_has_the_numbers_of_the_convergence_table_and_marks_defaults(fake,
 
 def test_study_without_convergence_has_no_annex_and_says_so(fake):
     study = {name: value for name, value in fake.study.items() if name != "convergence"}
-    content = load_content(study, fake.results, fake.benchmarks)
+    content = load_content(study, fake.results, fake.logs)
     assert annex(content) is None
     said = texts(limits(content))
     assert sum("The convergence with time step" in item and "annex" not in item for item in said) == 1
@@ -33,7 +33,7 @@ def test_findings_on_numerical_parameters_follow_the_table(fake, document):
     section = next(one for one in document.sections if one.key == "convergence")
     (items,) = [block.items for block in section.blocks if block.kind == "items"]
     assert any("default node spacing of 200 mm differs from the finest setting" in one for one in items)
-    content = load_content(fake.study, fake.results, fake.benchmarks)
+    content = load_content(fake.study, fake.results, fake.logs)
     residual = content.convergence["observable"] == "energy_residual"
     content.convergence.loc[residual, "value"] = content.convergence.loc[residual, "setting"] ** 2
     (items,) = [block.items for block in annex(content).blocks if block.kind == "items"]
@@ -56,4 +56,4 @@ def test_annex_has_the_recorded_comparison_with_lmgc90_and_its_date(text):
 
 def test_study_without_nscd_has_no_annex_on_lmgc90(fake):
     study = {**fake.study, "models": {"ls-dem": MODELS["ls-dem"]}}
-    assert peer(load_content(study, fake.results, fake.benchmarks)) is None
+    assert peer(load_content(study, fake.results, fake.logs)) is None

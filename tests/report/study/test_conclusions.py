@@ -13,7 +13,7 @@ FIRST, FOURTH = "configuration-1", "configuration-4"
 
 @pytest.fixture(scope="module")
 def content(fake):
-    return load_content(fake.study, fake.results, fake.benchmarks)
+    return load_content(fake.study, fake.results, fake.logs)
 
 
 def told(content):

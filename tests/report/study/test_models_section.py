@@ -17,7 +17,7 @@ FIRST, LAST = "configuration-1", "configuration-4"
 
 @pytest.fixture
 def content(fake):
-    return load_content(fake.study, fake.results, fake.benchmarks)
+    return load_content(fake.study, fake.results, fake.logs)
 
 
 def test_every_block_has_its_numbers_by_every_model(content):
@@ -119,10 +119,10 @@ def test_the_ranking_is_computed_where_tests_are_real(content):
 
 def test_a_study_without_tests_has_no_ranking_and_one_of_one_model_no_section(fake, content):
     untested = {**fake.study, "cases": [{**case, "measured": None} for case in fake.study["cases"]]}
-    section = models(load_content(untested, fake.results, fake.benchmarks))
+    section = models(load_content(untested, fake.results, fake.logs))
     assert "ranking" not in [block.key for block in section.blocks if block.kind == "heading"]
     alone = {**fake.study, "models": {"ls-dem": fake.study["models"]["ls-dem"]}}
-    assert models(load_content(alone, fake.results, fake.benchmarks)) is None
+    assert models(load_content(alone, fake.results, fake.logs)) is None
 
 
 def test_figure_has_the_distances_in_millimetres(content):

@@ -16,7 +16,7 @@ from blockshake.study.ensembles.shown_samples import shown_markers
 
 @pytest.fixture(scope="module")
 def case(fake):
-    return load_content(fake.study, fake.results, fake.benchmarks, "configuration-4").cases["configuration-4"]
+    return load_content(fake.study, fake.results, fake.logs, "configuration-4").cases["configuration-4"]
 
 
 def unpacked(packed, shape):
@@ -66,6 +66,6 @@ def test_still_has_a_panel_for_every_model_with_markers(case):
 
 def test_case_without_a_test_has_blocks_alone(fake):
     study = {**fake.study, "cases": [{**case, "measured": None} for case in fake.study["cases"]]}
-    untested = load_content(study, fake.results, fake.benchmarks, "configuration-1").cases["configuration-1"]
+    untested = load_content(study, fake.results, fake.logs, "configuration-1").cases["configuration-1"]
     assert json.loads(moving_samples(untested))["moving"]["measured"] is None
     assert not any(axes.lines for axes in plot_still(untested).axes)

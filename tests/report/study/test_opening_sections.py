@@ -12,7 +12,7 @@ from blockshake.study.sampling.latin_hypercube import load_design
 
 
 def test_a_structure_of_two_cases_is_shown_once(fake):
-    found = load_content(fake.study, fake.results, fake.benchmarks)
+    found = load_content(fake.study, fake.results, fake.logs)
     found.cases["stronger"] = replace(found.cases["configuration-1"], name="stronger")
     blocks = structures(found).blocks
     headings = [block.text for block in blocks if isinstance(block, Heading)]
@@ -24,18 +24,18 @@ def test_stiffness_that_is_one_in_all_samples_is_a_number(copied):
     alike = {"ls_dem.normal_stiffness": np.full(20, 1.8e10), "ls_dem.shear_stiffness": np.full(20, 9e9)}
     for case in copied.study["cases"]:
         copied.write_stiffness(case["name"], pd.DataFrame(alike))
-    blocks = stiffness(load_content(copied.study, copied.results, copied.benchmarks)).blocks
+    blocks = stiffness(load_content(copied.study, copied.results, copied.logs)).blocks
     said = [block.text for block in blocks if isinstance(block, Text)]
     assert any("normal stiffness k_n 18 GN/m" in words and "the same in all" in words for words in said)
 
 
 def test_cases_of_unlike_blocks_have_their_own_stiffness(copied):
     study = copied
-    together = load_content(study.study, study.results, study.benchmarks)
+    together = load_content(study.study, study.results, study.logs)
     assert [one.cases for one in together.calibrated] == [("configuration-1", "configuration-4")]
     table = load_design(study.results / "stiffness" / "configuration-4.csv")
     study.write_stiffness("configuration-4", 2.0 * table)
-    apart = load_content(study.study, study.results, study.benchmarks)
+    apart = load_content(study.study, study.results, study.logs)
     assert [one.cases for one in apart.calibrated] == [("configuration-1",), ("configuration-4",)]
     captions = " ".join(getattr(block, "caption", "") for block in stiffness(apart).blocks)
     assert "10 samples; configuration-4 (after" in captions
@@ -43,6 +43,6 @@ def test_cases_of_unlike_blocks_have_their_own_stiffness(copied):
 
 def test_variables_without_use_are_those_of_the_models_of_the_study(fake):
     study = {**fake.study, "models": {"ls-dem": MODELS["ls-dem"]}}
-    said = " ".join(texts(samples(load_content(study, fake.results, fake.benchmarks))))
+    said = " ".join(texts(samples(load_content(study, fake.results, fake.logs))))
     assert "LS-DEM has no use for viscous modulus of concrete" in said
     assert "NSCD rigid has no use" not in said

@@ -3,7 +3,7 @@ from blockshake.report.study.probability_table import probability_table
 
 
 def test_collapse_and_quantiles_are_those_of_the_files_with_limits(fake):
-    content = load_content(fake.study, fake.results, fake.benchmarks)
+    content = load_content(fake.study, fake.results, fake.logs)
     table = probability_table(content)
     rows = {row[:2]: row[2:] for row in table.rows}
     # one collapsed and one failed of six: 1 of 5 counts, limits of Clopper and Pearson

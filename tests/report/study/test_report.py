@@ -88,7 +88,7 @@ def test_peaks_are_those_of_the_files(fake, text):
 
 def test_measured_peak_is_that_of_the_simulated_window(fake, tmp_path):
     study = {**fake.study, "cases": [{**fake.study["cases"][0], "duration": 1.0}]}
-    case = load_content(study, fake.results, fake.benchmarks).cases["configuration-1"]
+    case = load_content(study, fake.results, fake.logs).cases["configuration-1"]
     test = xr.load_dataset(f"{study['cases'][0]['measured']['campaign']}/virtual.nc")
     along = test["marker_displacement"].sel(axis="x")
     relative = np.abs(along.sel(marker="block-3-face") - along.sel(marker="slab-face"))
@@ -132,7 +132,7 @@ def test_figures_of_motion_computation_and_cost(text):
 
 def test_a_model_without_words_of_its_own_has_its_figures(fake, monkeypatch):
     monkeypatch.setattr(closing_sections, "_COMPUTATION", {})
-    made = checks(load_content(fake.study, fake.results, fake.benchmarks))
+    made = checks(load_content(fake.study, fake.results, fake.logs))
     titles = [block.caption for block in made.blocks if block.kind == "table"]
     assert [f"{label}: figures" in " ".join(titles) for label in ("LS-DEM", "NSCD rigid")] == [True, True]
 
@@ -175,14 +175,14 @@ def test_same_results_same_bytes(document, report, tmp_path):
 
 def test_findings_on_the_paper_are_left_as_values(fake, report):
     left = load_json(report[2])
-    assert left == json.loads(json.dumps(findings(load_content(fake.study, fake.results, fake.benchmarks))))
+    assert left == json.loads(json.dumps(findings(load_content(fake.study, fake.results, fake.logs))))
     assert left["study"] == "fake"
     assert "basso-tirreno at 2" in left["cases"][0]
 
 
 def test_complete_study_says_that_all_completed(fake):
     study = {**fake.study, "cases": fake.study["cases"][:1]}
-    section = checks(load_content(study, fake.results, fake.benchmarks))
+    section = checks(load_content(study, fake.results, fake.logs))
     assert section.blocks[0].text == "Every sample of every case and model completed."
 
 
@@ -193,7 +193,7 @@ def test_own_structures_by_rigid_models_need_no_contact_stiffness(copied, monkey
         shutil.rmtree(copied.results / name)
     (copied.results / "stiffness-definitions.nc").unlink()
     study = {**copied.study, "models": {"nscd-rigid": MODELS["nscd-rigid"]}}
-    found = load_content(study, copied.results, copied.benchmarks)
+    found = load_content(study, copied.results, copied.logs)
     assert not {"stiffness", "statements"} & {section.key for section in compose(found).sections}
     assert findings(found)["findings"] == {}
 
@@ -204,7 +204,7 @@ def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
     for path in [*others, fake.results / "motions" / "alkion.nc", fake.results / "stiffness-definitions.nc"]:
         path.unlink()
     html, pdf = tmp_path / "case.html", tmp_path / "case.pdf"
-    make_case_report(fake.study, "configuration-4", fake.results, fake.benchmarks, html, pdf)
+    make_case_report(fake.study, "configuration-4", fake.results, fake.logs, html, pdf)
     assert pdf.read_bytes().startswith(b"%PDF")
     parsed = Page()
     parsed.feed(html.read_text(encoding="utf-8"))
@@ -229,7 +229,7 @@ def test_missing_results_are_named(copied, tmp_path):
     missing.unlink()
     made = [tmp_path / f"a.{kind}" for kind in ("html", "pdf", "json")]
     with pytest.raises(InputError, match=r"envelopes/ls-dem/configuration-1\.nc"):
-        make_report(fake.study, fake.results, fake.benchmarks, *made)
+        make_report(fake.study, fake.results, fake.logs, *made)
     assert not (tmp_path / "a.html").exists()
 
 
@@ -246,7 +246,7 @@ def test_the_friction_calibration_says_what_the_test_does_not_tell(document):
 
 def test_a_study_without_a_friction_calibration_has_no_such_section(fake):
     study = {name: value for name, value in fake.study.items() if name != "friction_calibration"}
-    assert friction(load_content(study, fake.results, fake.benchmarks)) is None
+    assert friction(load_content(study, fake.results, fake.logs)) is None
 
 
 def test_the_calibration_says_what_all_tests_tell_and_what_they_do_not(document):
@@ -268,11 +268,11 @@ def test_the_calibration_says_what_all_tests_tell_and_what_they_do_not(document)
 
 def test_a_study_without_a_calibration_has_no_such_section(fake):
     study = {name: value for name, value in fake.study.items() if name != "calibration"}
-    assert calibration(load_content(study, fake.results, fake.benchmarks)) is None
+    assert calibration(load_content(study, fake.results, fake.logs)) is None
 
 
 def test_bands_that_are_lines_are_counted(fake):
-    content = load_content(fake.study, fake.results, fake.benchmarks)
+    content = load_content(fake.study, fake.results, fake.logs)
     assert not [one for one in texts(responses(content)) if "close to lines" in one]
     spread = content.cases["configuration-1"].responses["nscd-rigid"].sensitivity["spread"]
     spread.loc[{"quantity": "history", "marker": "block-1-face"}] = 1e-6
@@ -281,7 +281,7 @@ def test_bands_that_are_lines_are_counted(fake):
 
 
 def test_a_window_that_ends_with_the_motion_has_no_remark(fake):
-    content = load_content(fake.study, fake.results, fake.benchmarks)
+    content = load_content(fake.study, fake.results, fake.logs)
     remarks = [
         one for one in texts(responses(content)) if one.startswith("The window ends before the motion")
     ]
@@ -293,7 +293,7 @@ def test_a_window_that_ends_with_the_motion_has_no_remark(fake):
 
 def test_study_without_measured_tests_tells_of_its_samples_alone(fake):
     study = {**fake.study, "cases": [{**case, "measured": None} for case in fake.study["cases"]]}
-    document = compose(load_content(study, fake.results, fake.benchmarks))
+    document = compose(load_content(study, fake.results, fake.logs))
     tables = [block for section in document.sections for block in section.blocks if isinstance(block, Table)]
     said = " ".join([table.caption + " ".join(table.header) for table in tables])
     assert "Peak displacement of the top block" in said

@@ -25,7 +25,7 @@ from blockshake.study.peer_record import load_peer_record
 
 @pytest.fixture(scope="module")
 def case(fake):
-    return load_content(fake.study, fake.results, fake.benchmarks).cases["configuration-4"]
+    return load_content(fake.study, fake.results, fake.logs).cases["configuration-4"]
 
 
 def drawn(case, markers, frame):

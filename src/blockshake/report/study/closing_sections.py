@@ -58,10 +58,9 @@ def timings(content):
     """Cost of the simulations."""
     blocks = (
         Text(
-            "CPU time includes the start of each job and the loading of compiled code. It is that of the last run of "
-            "each job: samples that this run took from the store of finished samples cost almost nothing, and the "
-            "figures are then too low. "
-            f"'{MISSING}' stands where a benchmark file is missing."
+            "CPU time includes the loading of compiled code, not the start of each job and its imports. It is that of "
+            "the last run of each job: samples that this run took from the store of finished samples cost almost "
+            f"nothing, and the figures are then too low. '{MISSING}' stands where no log tells it."
         ),
         timings_table(content),
     )

@@ -175,15 +175,15 @@ class Content:
         return [case.name for case in self.cases.values() if has_parameter(case.structure, variable)]
 
 
-def load_content(study, results, benchmarks, only=None):
+def load_content(study, results, logs, only=None):
     """Read the `Content` of a finished study, or of one of its cases.
 
     Parameters
     ----------
     study : dict
         Its configuration, checked.
-    results, benchmarks : str or path
-        Folders of its results and of its jobs' benchmarks.
+    results, logs : str or path
+        Folders of its results and of its jobs' logs.
     only : str, optional
         Name of the case that is reported alone: nothing of the others is read.
 
@@ -235,7 +235,7 @@ def load_content(study, results, benchmarks, only=None):
         ),
         peer=None if only else load_peer_record(),
         timings=read_timings(
-            benchmarks,
+            logs,
             {(model, case.name): one.samples for case in loaded.values() for model, one in case.responses.items()},
         ),
         digests={

@@ -41,15 +41,15 @@ _SECTIONS = (
 _NOT_OF_A_CASE = (calibration, statements, convergence, peer)
 
 
-def make_report(study, results, benchmarks, html, pdf, paper):
+def make_report(study, results, logs, html, pdf, paper):
     """Write the report of a finished study.
 
     Parameters
     ----------
     study : dict
         Its configuration, checked.
-    results, benchmarks : str or path
-        Folders of its results and of its jobs' benchmarks.
+    results, logs : str or path
+        Folders of its results and of its jobs' logs.
     html, pdf : str or path
         To write, each whole or not at all. Same results, same bytes.
     paper : str or path
@@ -60,16 +60,16 @@ def make_report(study, results, benchmarks, html, pdf, paper):
     InputError
         A results file is missing or holds something else.
     """
-    content = load_content(study, results, benchmarks)
+    content = load_content(study, results, logs)
     document = compose(content)
     write_html(html, document)
     write_pdf(pdf, document)
     write_json(paper, findings(content))
 
 
-def make_case_report(study, case, results, benchmarks, html, pdf):
+def make_case_report(study, case, results, logs, html, pdf):
     """Write the report of one case of a study, from the results of this case alone; parameters as of `make_report`."""
-    document = compose(load_content(study, results, benchmarks, case))
+    document = compose(load_content(study, results, logs, case))
     write_html(html, document)
     write_pdf(pdf, document)
 

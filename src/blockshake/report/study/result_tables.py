@@ -157,7 +157,7 @@ def timings_table(content):
     rows = [_timing(one.case, model_label(one.model), one) for one in content.timings]
     rows.append((*_timing("all", "", total_timing(content.timings))[:-1], ""))
     return Table(
-        "Cost of the simulations on one core each, from the jobs' benchmark files.",
+        "Cost of the simulations on one core each, from the jobs' logs.",
         (
             "Case", "Model", "Jobs", "Samples", "Simulated [s]", "CPU [s]", "Wall [s]",
             "CPU per simulated second [1]",

@@ -1,10 +1,11 @@
-"""Cost of the simulations, from Snakemake's benchmark files."""
+"""Cost of the simulations, from the logs of their jobs."""
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+
+from blockshake.log import read_cost
 
 
 @dataclass(frozen=True)
@@ -15,10 +16,10 @@ class Timing:
     ----------
     model, case : str
     jobs, samples : int
-        Jobs with a benchmark file, and the samples in their batches.
+        Jobs whose log tells their cost, and the samples in their batches.
     simulated, cpu_time, wall_time : float
-        Time simulated in those samples and spent on them, start of the jobs included [s]; NaN
-        where there is no benchmark file.
+        Time simulated in those samples and spent on them, start of the jobs and imports left out [s]; NaN where no
+        log tells it.
     """
 
     model: str
@@ -35,13 +36,13 @@ class Timing:
         return self.cpu_time / self.simulated if self.simulated > 0.0 else np.nan
 
 
-def read_timings(benchmarks, samples):
+def read_timings(logs, samples):
     """Costs of all cases and models.
 
     Parameters
     ----------
-    benchmarks : str or path
-        Folder with ``simulate_batch/MODEL/CASE/FIRST-LAST.jsonl``.
+    logs : str or path
+        Folder with ``simulate_batch/MODEL/CASE/FIRST-LAST.log``.
     samples : dict of (str, str) to xarray.Dataset
         By model and case, with ``end_time(sample)`` [s].
 
@@ -52,16 +53,16 @@ def read_timings(benchmarks, samples):
     timings = []
     for (model, case), figures in samples.items():
         jobs, covered, cpu_time, wall_time = 0, [], 0.0, 0.0
-        for path in sorted(Path(benchmarks, "simulate_batch", model, case).glob("*-*.jsonl")):
+        for path in sorted(Path(logs, "simulate_batch", model, case).glob("*-*.log")):
             first, last = (int(part) for part in path.stem.split("-"))
-            record = json.loads(path.read_text(encoding="utf-8").splitlines()[-1])
+            cost = read_cost(path)
             inside = [int(one) for one in figures["sample"].values if first <= one <= last]
-            if not inside:
-                continue  # of a batch of an earlier configuration
+            if not inside or cost is None:
+                continue  # of a batch of an earlier configuration, or killed
             jobs += 1
             covered += inside
-            cpu_time += _seconds(record["cpu_time"])
-            wall_time += _seconds(record["s"])
+            cpu_time += cost.cpu_time
+            wall_time += cost.wall_time
         end = figures["end_time"].sel(sample=sorted(set(covered)))
         known = jobs > 0
         timings.append(Timing(
@@ -76,8 +77,3 @@ def total_timing(timings):
     known = [one for one in timings if np.isfinite(one.cpu_time)]
     names = ("jobs", "samples", "simulated", "cpu_time", "wall_time")
     return Timing("", "", *(sum(getattr(one, name) for one in known) for name in names))
-
-
-def _seconds(value):
-    """Seconds of a benchmark; NaN where the job was too short for a measurement."""
-    return float(value) if isinstance(value, (int, float)) else np.nan

@@ -119,7 +119,7 @@ def test_columns_are_one_body_of_each_height_from_the_lowest():
 
 
 def test_summary_has_the_lowest_and_the_highest_block_of_every_case_and_model(fake):
-    content = load_content(fake.study, fake.results, fake.benchmarks)
+    content = load_content(fake.study, fake.results, fake.logs)
     table = summary_table(content)
     assert [row[:3] for row in table.rows[:2]] == [
         ("configuration-1", "LS-DEM", f"block-{place}") for place in (1, 3)
@@ -140,7 +140,7 @@ def with_scales(content, *scales):
 
 
 def test_the_shaking_of_the_cases_is_compared_not_asserted(fake):
-    content = load_content(fake.study, fake.results, fake.benchmarks)
+    content = load_content(fake.study, fake.results, fake.logs)
     alike, _ = paper_discussion(content)
     assert "All cases are shaken alike (basso-tirreno, scale 2)" in alike.text
     other, _ = paper_discussion(with_scales(content, 2.0, 1.5))
@@ -149,7 +149,7 @@ def test_the_shaking_of_the_cases_is_compared_not_asserted(fake):
 
 
 def test_the_statement_of_the_paper_is_judged_by_the_spreads(fake):
-    content = load_content(fake.study, fake.results, fake.benchmarks)
+    content = load_content(fake.study, fake.results, fake.logs)
     _, told = paper_discussion(content)
     ls_dem, nscd, *_ = told.items
     # blocks of the made-up runs sway in proportion to their height, and configuration 4 is the higher one

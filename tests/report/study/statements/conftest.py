@@ -10,7 +10,7 @@ from blockshake.simulation.models import MODELS
 def loaded(fake):
     """Content of the made-up study by its models of rigid blocks alone."""
     rigid = {name: one for name, one in fake.study["models"].items() if MODELS[name].rigid}
-    return load_content({**fake.study, "models": rigid}, fake.results, fake.benchmarks)
+    return load_content({**fake.study, "models": rigid}, fake.results, fake.logs)
 
 
 @pytest.fixture

@@ -158,7 +158,7 @@ def dear_steps(content):
         }
         ratios.append((name, by_step[_RIGID] / by_step["ls-dem"], cost[_RIGID] / cost["ls-dem"]))
     if not all(np.isfinite(ratio) for _, *pair in ratios for ratio in pair):
-        return unjudged("Benchmark files of this study's jobs are missing.")
+        return unjudged("Logs of this study's jobs do not tell their cost.")
     told = ", ".join(
         f"{name} {number(step)} times a step and {number(whole)} times a simulated second"
         for name, step, whole in ratios
