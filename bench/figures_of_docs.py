@@ -165,7 +165,7 @@ def cost_of_samples():
     """Core hours of 1,000 samples of the default study, by model and configuration; None where it has not been run."""
     if not STUDY.is_file():
         return None
-    config, times = load_config(DEFAULT), measured(".")
+    config, times = load_config(DEFAULT), measured(".", STUDY.parent.name)
     cases = [case.name for case in config.cases]
     rows = [
         (
@@ -182,7 +182,7 @@ def times_on_a_cluster():
     """Hours of the studies and of a deep diagnosis by the number of cores; None where no study has been run."""
     if not STUDY.is_file():
         return None
-    done, times = load_config(DEFAULT), measured(".")
+    done, times = load_config(DEFAULT), measured(".", STUDY.parent.name)
     plans = {}
     for words, path in (
         ("the default study", DEFAULT),
@@ -236,7 +236,7 @@ def study_shares():
     """CPU time of the default study by rule; None where it has not been run."""
     if not STUDY.is_file():
         return None
-    found = shares(".")
+    found = shares(".", STUDY.parent.name)
     total = sum(seconds for *_, seconds in found)
     rest = [sum(row[column] for row in found[_SHOWN:]) for column in (1, 2)]
     rows = [

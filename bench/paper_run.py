@@ -1,7 +1,8 @@
 """The paper's study as it was run: CPU time of each finished part beside its estimate, and what identifies its result.
 
 A part is finished where its result is in results/paper; the study may stop and go on, and its parts are here as they
-come. CPU times are those of the jobs' logs, without the start of a job and its imports.
+come. CPU times are those of the jobs' logs, without the start of a job and its imports. A
+job that was killed and went on has the CPU time of its last run alone.
 """
 
 from pathlib import Path
@@ -43,7 +44,8 @@ def paper_rows(folder="."):
         jobs, made = (one.format(case=case, model=model) for one in _KINDS[kind])
         if not (results / made).is_file():
             continue
-        seconds = sum(read_cost(path).cpu_time for path in logs.glob(jobs))
+        costs = [read_cost(path) for path in logs.glob(jobs)]
+        seconds = sum(cost.cpu_time for cost in costs if cost is not None)
         rows.append(
             (part.name, part.count, *_cells(part.seconds, seconds), f"`{file_digest(results / made)}`")
         )

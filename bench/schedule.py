@@ -56,10 +56,10 @@ def read_plan(text):
     return jobs
 
 
-def measured(folder):
+def measured(folder, study):
     """Mean seconds of the jobs of a finished study, by rule, model and case; of batches those of a sample."""
     spent = defaultdict(list)
-    for rule, path, seconds in _jobs_done(folder):
+    for rule, path, seconds in _jobs_done(folder, study):
         parts = path.with_suffix("").parts
         key, samples = _batch(parts[parts.index(rule) + 1 :])
         spent[rule, key].append(seconds / samples)
@@ -68,20 +68,22 @@ def measured(folder):
     return {key: mean(values) for key, values in spent.items()}
 
 
-def shares(folder):
-    """Jobs and CPU seconds of every rule of the finished study in a folder, the dearest first."""
+def shares(folder, study):
+    """Jobs and CPU seconds of every rule of a finished study, the dearest first."""
     spent = defaultdict(list)
-    for rule, _, seconds in _jobs_done(folder):
+    for rule, _, seconds in _jobs_done(folder, study):
         spent[rule].append(seconds)
     return sorted(((rule, len(each), sum(each)) for rule, each in spent.items()), key=lambda row: -row[2])
 
 
-def _jobs_done(folder):
-    """Rule, log and CPU seconds of the jobs of the studies in a folder, one by one."""
+def _jobs_done(folder, study):
+    """Rule, log and CPU seconds of the jobs of a study in a folder, its diagnoses and libraries included."""
     rules = {path.stem for path in (HOME / "workflow" / "scripts").glob("*.py")}
-    for path in sorted(Path(folder, "logs").rglob("*.log")):
-        named, cost = rules & set(path.with_suffix("").parts), read_cost(path)
-        if named and cost is not None:
+    logs = Path(folder, "logs")
+    for path in sorted(logs.rglob("*.log")):
+        parts, cost = path.relative_to(logs).with_suffix("").parts, read_cost(path)
+        named = rules & set(parts)
+        if parts[0] in {study, "diagnosis", *rules} and named and cost is not None:
             (rule,) = named
             yield rule, path, cost.cpu_time
 

@@ -50,7 +50,14 @@ def test_zeroed_bytes_in_a_heap_are_found(good):
 
 
 @pytest.mark.parametrize(
-    "content", [b"x", b"\x89HDF\r\n\x1a\n\x00", HEAP, b"\x89HDF\r\n\x1a\n\x02\x08\x08" + HEAP]
+    "content",
+    [
+        b"\x89HDF\r\n\x1a\n\x09\x08\x08" + HEAP + bytes(64),
+        b"x",
+        b"\x89HDF\r\n\x1a\n\x00",
+        HEAP,
+        b"\x89HDF\r\n\x1a\n\x02\x08\x08" + HEAP,
+    ],
 )
 def test_other_and_cut_files_are_left_to_their_readers(tmp_path, content):
     path = tmp_path / "odd.nc"

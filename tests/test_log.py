@@ -22,7 +22,6 @@ def test_a_job_and_the_programs_that_it_starts_are_counted(tmp_path):
     cost = read_cost(tmp_path / "job.log")
     assert 1.05 <= cost.cpu_time < 3.0
     assert cost.wall_time > 0.9
-    assert cost.memory > 20.0
 
 
 def test_a_job_that_fails_has_its_cost_and_one_that_was_killed_has_none(tmp_path):

@@ -26,7 +26,7 @@ def paper_run(monkeypatch):
 
 
 def _took(seconds):
-    return f"python 3\nTook 100.0 s, {seconds} CPU s, at most 300 MiB.\n"
+    return f"python 3\nTook 100.0 s, {seconds} CPU s.\n"
 
 
 def _write(path, text):

@@ -4,7 +4,6 @@ import contextlib
 import logging
 import os
 import re
-import resource
 import sys
 import traceback
 from importlib.metadata import version
@@ -15,15 +14,14 @@ from blockshake.errors import INTERRUPTED, InputError
 from blockshake.working_folder import end_with_command
 
 _VERSIONS = ("numpy", "numba", "scipy", "xarray")
-_COST = re.compile(r"^Took ([\d.]+) s, ([\d.]+) CPU s, at most ([\d.]+) MiB\.$", re.MULTILINE)
+_COST = re.compile(r"^Took ([\d.]+) s, ([\d.]+) CPU s\.$", re.MULTILINE)
 
 
 class Cost(NamedTuple):
-    """Cost of a job, without its imports: wall time and CPU time [s], and peak memory [MiB]."""
+    """Cost of a job, without its imports [s]."""
 
     wall_time: float
     cpu_time: float
-    memory: float
 
 
 @contextlib.contextmanager
@@ -71,8 +69,8 @@ def logging_to(path):
 def read_cost(path):
     """`Cost` in the log of a job; None where the job was killed or has no log.
 
-    Its processes' CPU times are all in it: Snakemake's own benchmarks look every 30 s at a job of more than 15 s, and
-    lose what it did after the last look.
+    The CPU time is that of the job's process and of the programs that the process started and waited for. Snakemake's
+    own benchmarks look every 30 s at a job of more than 15 s, and lose the CPU time after the last look.
     """
     try:
         found = _COST.findall(Path(path).read_text(encoding="utf-8"))
@@ -83,6 +81,4 @@ def read_cost(path):
 
 def _cost_since(before):
     now = os.times()
-    spent = sum(now[:4]) - sum(before[:4])  # of this process and of those it started
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
-    return f"Took {now.elapsed - before.elapsed:.2f} s, {spent:.2f} CPU s, at most {memory:.0f} MiB.\n"
+    return f"Took {now.elapsed - before.elapsed:.2f} s, {sum(now[:4]) - sum(before[:4]):.2f} CPU s.\n"

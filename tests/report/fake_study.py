@@ -177,7 +177,7 @@ class FakeStudy:
             ):
                 write_dataset(self.results / kind / model / f"{name}.nc", result)
             log = self.logs / "simulate_batch" / model / name / f"000-{count - 1:03d}.log"
-            write_text(log, f"Took 50.0 s, {CPU_TIME} CPU s, at most 300 MiB.\n")
+            write_text(log, f"Took 50.0 s, {CPU_TIME} CPU s.\n")
 
         differences = compare_models(ensembles, twins, (test, 1e-4))
         write_dataset(self.results / "differences" / f"{name}.nc", differences)

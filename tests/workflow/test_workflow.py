@@ -62,9 +62,7 @@ def test_every_simulating_rule_leaves_a_log_with_its_cost(finished):
         batch = f"small/simulate_batch/{model}/configuration-1/000-004"
         log = finished.folder / "logs" / f"{batch}.log"
         assert "numba" in log.read_text()
-        cost = read_cost(log)
-        assert cost.cpu_time > 0.0
-        assert 50.0 < cost.memory < 2048.0
+        assert read_cost(log).cpu_time > 0.0
 
 
 @pytest.mark.parametrize(

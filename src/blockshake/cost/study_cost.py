@@ -57,7 +57,7 @@ def study_cost(path):
 
 
 def _runs(config, model, case):
-    """Runs of a case by a model, by the part of the study: their number, and that of whole motions in them."""
+    """Runs of a case by a model, by the part of the study: their number, and the whole motions in them."""
     samples = config.samples(model, case.name)
     found = {f"samples of {case.name}, {model}": (samples, samples)}
     if config.has_twins(model, case.name):

@@ -7,8 +7,8 @@ import numpy as np
 from blockshake.dynamics.motion import GroundMotion, MotionTable
 from blockshake.simulation.simulate import simulate
 
-_LONGEST = 10.0  # CPU s; a run that takes longer is tried in part, unless
-_MANY = 50  # or more runs are asked for: trying one of them costs 2 % of them at most
+_LONGEST = 10.0  # CPU s; a run that takes longer is tried in part, where few are asked for
+_MANY = 50  # runs; trying one of so many costs 2 % of them
 _PARTS = 0.2, 0.4  # s of strong motion; the second less the first is free of a run's set-up
 
 
@@ -45,11 +45,12 @@ def run_seconds(structure, motion, settings, duration, runs):
         )
 
     seconds(motion, 0.01)  # loads the kernels
+    if runs >= _MANY:
+        return seconds(motion, duration)
     strong = from_strongest(motion)
     first, second = (seconds(strong, min(part, duration)) for part in _PARTS)
     rate = (second - first) / (_PARTS[1] - _PARTS[0])
-    whole = rate * duration < _LONGEST or runs >= _MANY
-    return seconds(motion, duration) if whole else rate * duration
+    return seconds(motion, duration) if rate * duration < _LONGEST else rate * duration
 
 
 def from_strongest(motion):

@@ -60,7 +60,7 @@ def timings(content):
         Text(
             "CPU time includes the loading of compiled code, not the start of each job and its imports. It is that of "
             "the last run of each job: samples that this run took from the store of finished samples cost almost "
-            f"nothing, and the figures are then too low. '{MISSING}' stands where no log tells it."
+            f"nothing, and the figures are then too low. '{MISSING}' stands where no log tells the cost."
         ),
         timings_table(content),
     )

@@ -19,7 +19,7 @@ class Timing:
         Jobs whose log tells their cost, and the samples in their batches.
     simulated, cpu_time, wall_time : float
         Time simulated in those samples and spent on them, start of the jobs and imports left out [s]; NaN where no
-        log tells it.
+        log tells the cost.
     """
 
     model: str

@@ -210,7 +210,7 @@ def test_ladder_and_levels_are_those_of_the_paper(content, tmp_path):
     assert "do not bear the statement out" in found.words
     assert "configuration-4 at 2, NSCD rigid: 20.0 %" in found.words  # 1 of the 5 that count
     assert "at a drift of 0.4 m" in found.words
-    assert "Tests of configuration-1: 2." in found.words
+    assert "Tests of configuration-1 by basso-tirreno: 2." in found.words
     (tmp_path / "virtual.nc").touch()
     tests = "".join(
         f"  - {{name: t{level:03.0f}, file: virtual.nc, motion: alkion, scale: {level / 100}, role: fit}}\n"
@@ -223,6 +223,8 @@ def test_ladder_and_levels_are_those_of_the_paper(content, tmp_path):
     for name, case in content.cases.items():
         content.cases[name] = replace(case, synthetic=False)
     assert specimens.ladder(content).verdict == MET
+    content.study["ladder"]["largest_drift"] = None
+    assert "at a drift of half a block's smaller width" in specimens.ladder(content).words
     for increment, verdict in ((0.2, MET), (0.5, NOT_MET)):
         content.study["ladder"]["increment"] = increment
         assert specimens.ladder(content).verdict == verdict

@@ -38,8 +38,10 @@ def test_number_of_samples(content, monkeypatch):
     assert calibration.size(content).verdict == MET
 
 
-def test_variability_is_that_of_the_median_peak(content):
-    for half, verdict in ((0.05, MET), (0.2, UNJUDGED)):
+def test_variability_is_that_of_the_median_peak(content, monkeypatch):
+    assert "has 10 samples, not 50" in calibration.low_variability(content).words
+    monkeypatch.setattr(calibration, "SIZE", 10)
+    for half, verdict in ((0.05, MET), (0.2, UNJUDGED), (np.nan, UNJUDGED)):
         for case in content.cases.values():
             for one in case.responses.values():
                 peak = one.envelope["peak"]
@@ -47,7 +49,7 @@ def test_variability_is_that_of_the_median_peak(content):
                 one.envelope["peak_interval"].loc[{"bound": "upper"}] = (1.0 + half) * peak
         found = calibration.low_variability(content)
         assert found.verdict == verdict
-        assert f"configuration-1, LS-DEM {100 * half:.1f} %" in found.words
+        assert np.isnan(half) or f"configuration-1, LS-DEM {100 * half:.1f} %" in found.words
         assert "not judged: configuration-4, NSCD rigid 5." in found.words
 
 
@@ -270,21 +272,21 @@ def move(content, name, counts):
 
 
 def test_rocking_and_sliding_are_those_of_joints_that_move(four):
-    names = (FIRST, "configuration-2", "configuration-3", FOURTH)
-    for first, others, verdict in ((2, 3, MET), (3, 3, UNJUDGED), (3, 2, NOT_MET)):
+    names = (FIRST, "configuration-2", "configuration-3", FOURTH)  # of 3 joints, and of 20 by the copies
+    for first, others, verdict in ((1, 10, MET), (3, 20, UNJUDGED), (3, 19, NOT_MET)):
         move(four, "joint_uplift", dict(zip(names, (first, others, others, others), strict=True)))
         found = rocking.occurrences(four)
         assert found.verdict == verdict
-        assert f"configuration-1 {first} [{first}, {first}]" in found.words
-        assert "Joints (3 of configuration-1, " in found.words
+        assert f"configuration-4 {5 * others}.0 [{5 * others}.0, {5 * others}.0]" in found.words
+        assert "Share of the joints (3 of configuration-1, " in found.words
     # a rocking block's joint slips a little too, and counts once
     for name in ("joint_uplift", "joint_slip"):
-        move(four, name, dict(zip(names, (1, 1, 2, 2), strict=True)))
+        move(four, name, dict(zip(names, (1, 1, 8, 8), strict=True)))
     assert rocking.complicated(four).verdict == MET
     move(four, "joint_slip", {FIRST: 3})
     found = rocking.complicated(four)
     assert found.verdict == NOT_MET
-    assert "NSCD rigid: Joints (3 of configuration-1" in found.words
+    assert "NSCD rigid: Share of the joints" in found.words
     four.cases[FOURTH].responses["ls-dem"].samples["status"][0] = "not-converged"
     assert "of too few samples: configuration-4" in rocking.occurrences(four).words
 

@@ -58,7 +58,9 @@ def size(content):
 
 def low_variability(content):
     """Estimates of small designs that vary little: of ensembles of the whole design."""
-    told, largest, fewer = [], 0.0, []
+    if len(content.design) != SIZE:
+        return unjudged(f"This study has {len(content.design)} samples, not {SIZE}.")
+    told, halves, fewer = [], [], []
     for case in content.cases.values():
         top = next(iter(face_markers(case.structure).values()))
         for model, one in case.responses.items():
@@ -69,7 +71,7 @@ def low_variability(content):
             at = {"frame": "slab", "marker": top, "quantile": 0.5}
             median, limits = one.envelope["peak"].sel(at), one.envelope["peak_interval"].sel(at)
             share = float(limits.max() - limits.min()) / (2.0 * float(median))
-            largest = max(largest, share)
+            halves.append(share)
             told.append(f"{case.name}, {model_label(model)} {percent(share)} %")
     smaller = f" Of fewer samples and not judged: {'; '.join(fewer)}." if fewer else ""
     if not told:
@@ -79,7 +81,7 @@ def low_variability(content):
         f"{len(content.design)} samples: {'; '.join(told)}. {percent(_LOW_VARIABILITY)} % counts as low. The "
         f"bootstrap takes the samples as independent; those of a Latin hypercube vary less.{smaller}"
     )
-    return judged(True, words) if largest < _LOW_VARIABILITY else unjudged(words)
+    return judged(True, words) if np.max(halves) < _LOW_VARIABILITY else unjudged(words)
 
 
 def judged_by_tests(found, parameter, words):

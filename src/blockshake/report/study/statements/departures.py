@@ -153,8 +153,8 @@ def _inputs():
     ]
     words = f" Commanded in config/paper.yaml: {', '.join(commanded)}." if commanded else ""
     return (
-        "Displacement along x, y and z and pitch of the slab, smoothed together with its accelerometer and drawn anew "
-        f"for each sample from their uncertainty.{words}"
+        "Displacement of the slab along x with its accelerometer, along y and z, and pitch, each smoothed by itself "
+        f"and drawn anew for each sample from its uncertainty.{words}"
     )
 
 

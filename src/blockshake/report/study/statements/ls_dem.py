@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.report.document.wording import MISSING, given, number
+from blockshake.report.document.wording import MISSING, given, model_label, number
 from blockshake.report.study.statements.statement import judged, missing, setting, unjudged
 from blockshake.solvers.ls_dem.contact.contact_law import Law, kept_stretch, normal_force, trial_stretch
 from blockshake.solvers.ls_dem.interfaces import damping_ratio
@@ -136,7 +136,8 @@ def time_step(content, model, printed):
     split = f", {given(parts)} times shorter where bodies meet" if parts > 1 else ""
     return judged(
         all(abs(one / printed - 1.0) < _SAME for one in steps) and parts == 1,
-        f"The step is {' and '.join(map(given, sorted(steps)))} s{split}; the energy residual is {missed} at most.",
+        f"The step is {' and '.join(map(given, sorted(steps)))} s{split}; the energy "
+        f"residual of {model_label(model)} is {missed} at most.",
     )
 
 

@@ -6,7 +6,14 @@ from blockshake.report.document.rows import face_markers
 from blockshake.report.document.wording import model_label, number, percent, share_words
 from blockshake.report.study.models.words import order_words
 from blockshake.report.study.statements.specimens import HEIGHTS
-from blockshake.report.study.statements.statement import against_tests, compared, judged, missing, unjudged
+from blockshake.report.study.statements.statement import (
+    Verdict,
+    against_tests,
+    compared,
+    judged,
+    missing,
+    unjudged,
+)
 from blockshake.study.comparison.ranking import CLAIMS, MET, OPEN, judge
 from blockshake.study.ensembles.coverage import UNLIKELY, is_likely
 from blockshake.study.ensembles.envelope import counted_samples
@@ -78,7 +85,8 @@ def satisfactory(content, model, fits, fails=()):
     if absent:
         words += f" Not in this study, or of fewer than three samples: {', '.join(absent)}."
     words = f"{words} {_NO_FIT}"
-    return unjudged(words) if absent and holds else against_tests(cases, holds, words)
+    found = against_tests(cases, holds, words)
+    return unjudged(words) if absent and found.verdict == Verdict.MET else found
 
 
 def alike(content):
@@ -107,7 +115,8 @@ def alike(content):
     return judged(
         not apart,
         "Energy distance of an ensemble of NSCD from that of LS-DEM, beside the mean difference of two samples of "
-        f"the wider of both: {'; '.join(told)}. Alike counts where the distance is the smaller one. It is the larger "
+        f"the wider of both: {'; '.join(told)}. Alike counts where the distance is the smaller one: two "
+        f"equal normal distributions may be about two standard deviations apart. It is the larger "
         f"one in {share_words(apart, len(told))} comparisons, and beyond that of samples exchanged at random in "
         f"{share_words(beyond, len(told))}.",
     )

@@ -1,6 +1,6 @@
 """Statements on the joints that open and slip."""
 
-from blockshake.report.document.wording import given, model_label
+from blockshake.report.document.wording import model_label, percent
 from blockshake.report.study.statements.order import Limited, all_of, ordered
 from blockshake.report.study.statements.statement import missing, unjudged
 from blockshake.study.ensembles.envelope import counted_samples
@@ -10,29 +10,30 @@ _FIRST, _SECOND, _THIRD, _FOURTH = (f"configuration-{place}" for place in (1, 2,
 
 
 def occurrences(content):
-    """Joints that open, by configuration: the first has the fewest, LS-DEM."""
+    """Joints that open, by configuration: the smallest share in the first, LS-DEM."""
     if absent := missing(content, "ls-dem"):
         return unjudged(absent)
     return ordered(
         content,
         _moved_joints(content, "ls-dem", "joint_uplift"),
         [(_FIRST, other) for other in (_SECOND, _THIRD, _FOURTH)],
-        f"Joints ({_all_joints(content)}) whose middle opens by more than a marker's noise, median over the samples",
-        given,
+        f"Share of the joints ({_all_joints(content)}) whose middle opens by more than a marker's noise in %, median "
+        "over the samples",
+        percent,
     )
 
 
 def complicated(content):
-    """Joints that open or slip, by configuration and model: more of them in configurations 3 and 4."""
+    """Joints that open or slip, by configuration and model: a larger share of them in configurations 3 and 4."""
     pairs = [(simple, walls) for simple in (_FIRST, _SECOND) for walls in (_THIRD, _FOURTH)]
     words = (
-        f"Joints ({_all_joints(content)}) at whose middle the faces part or slip by more than a marker's noise, median "
-        "over the samples"
+        f"Share of the joints ({_all_joints(content)}) at whose middle the faces part or slip by more than a marker's "
+        "noise in %, median over the samples"
     )
     return all_of(
         {
             model_label(model): ordered(
-                content, _moved_joints(content, model, "joint_uplift", "joint_slip"), pairs, words, given
+                content, _moved_joints(content, model, "joint_uplift", "joint_slip"), pairs, words, percent
             )
             for model in content.study["models"]
         }
@@ -49,14 +50,15 @@ def _all_joints(content):
 
 
 def _moved_joints(content, model, *figures):
-    """Number of joints any of whose figures is beyond the markers' noise, by case.
+    """Share of the joints any of whose figures is beyond the markers' noise, by case.
 
-    A block that rocks moves the middle of its joint along the face too, so that slip alone would count it.
+    A larger structure has more joints, so that their number would follow from the structure alone. A block that rocks
+    moves the middle of its joint along the face too, so that slip alone would count it.
     """
     found = {}
     for name, case in content.cases.items():
         samples = counted_samples(case.responses[model].samples)
         if samples.sizes["sample"] >= SURE_FROM:
             beyond = samples[list(figures)].to_dataarray().max("variable") > case.marker_noise
-            found[name] = Limited(*median_interval(beyond.sum("joint").values))
+            found[name] = Limited(*median_interval(beyond.mean("joint").values))
     return found

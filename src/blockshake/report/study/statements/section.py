@@ -26,7 +26,7 @@ def judge_statements(content):
 
 
 def _of_the_paper(content):
-    """The content without the cases of other structures."""
+    """The content without the cases of other structures, and without a calibration that they take part in."""
     cases = {name: case for name, case in content.cases.items() if case.is_shipped}
     calibrated = [
         replace(one, cases=tuple(name for name in one.cases if name in cases)) for one in content.calibrated
@@ -36,6 +36,7 @@ def _of_the_paper(content):
         cases=cases,
         calibrated=tuple(one for one in calibrated if one.cases),
         friction={name: one for name, one in content.friction.items() if name in cases},
+        calibration=content.calibration if len(cases) == len(content.cases) else None,
     )
 
 

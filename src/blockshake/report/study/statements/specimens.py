@@ -1,6 +1,7 @@
 """Statements on the specimens, the ground motions, the tests and their instruments."""
 
 from itertools import pairwise
+from pathlib import Path
 
 from blockshake.dynamics.motion import CHANNELS
 from blockshake.geometry.reference_block import reference_body
@@ -153,9 +154,10 @@ def ladder(content):
                 f"[{percent(low)}, {percent(high)}]"
             )
     limit = settings["largest_drift"]
+    drift = f"{given(limit)} m" if limit else "half a block's smaller width"
     words = (
         f"The ladder starts at {given(first)} and rises by {given(increment)}. The paper names no criterion of a "
-        f"potential collapse; the ladder ends at a drift of {given(limit)} m. Share of the samples that collapse at "
+        f"potential collapse; the ladder ends at a drift of {drift}. Share of the samples that collapse at "
         f"the level of the study: {'; '.join(told)}."
     )
     near = f"Steps of {given(INCREMENT - _ABOUT)} to {given(INCREMENT + _ABOUT)} count as about {given(INCREMENT)}."
@@ -163,12 +165,15 @@ def ladder(content):
         return judged(False, f"{words} {near}")
     cases, holds = compared(content), True
     for case in cases:
-        levels = sorted(
-            {round(abs(test.scale), 6) for test in _tests(case) if test.motion in content.motions}
-        )
-        steps = [after - before for before, after in pairwise(levels)]
-        holds = holds and levels[0] == FIRST_LEVEL and all(abs(one - INCREMENT) <= _ABOUT for one in steps)
-        words += f" Tests of {case.name}: {', '.join(map(given, levels))}."
+        for motion in sorted({test.motion for test in _tests(content, case)}):
+            levels = sorted(
+                {round(abs(test.scale), 6) for test in _tests(content, case) if test.motion == motion}
+            )
+            steps = [after - before for before, after in pairwise(levels)]
+            holds = (
+                holds and levels[0] == FIRST_LEVEL and all(abs(one - INCREMENT) <= _ABOUT for one in steps)
+            )
+            words += f" Tests of {case.name} by {motion}: {', '.join(map(given, levels))}."
     return against_tests(cases, holds, f"{words} {near}")
 
 
@@ -196,7 +201,11 @@ def low_tests(content):
     cases = compared(content)
     if not cases:
         return unjudged("This study has no measured test.")
-    found = {case.name: [test for test in _tests(case) if test.motion == "sine"] for case in cases}
+    campaigns = {case.name: load_campaign(case.settings["measured"]["campaign"]) for case in cases}
+    found = {
+        name: [test for test in campaign.tests.values() if test.motion == "sine"]
+        for name, campaign in campaigns.items()
+    }
     words = ", ".join(f"{name} {len(tests)}" for name, tests in found.items())
     words = f"Sinusoidal tests in the campaigns: {words}."
     if all(found.values()):
@@ -250,8 +259,7 @@ def strongest_tests(content):
         return unjudged("This study has no measured test.")
     told, holds = [], True
     for case in cases:
-        known = [test for test in _tests(case) if test.motion in content.motions]
-        strongest = max(known, key=lambda test: abs(test.scale) * _peak(content, test.motion))
+        strongest = max(_tests(content, case), key=lambda test: abs(test.scale) * _peak(content, test.motion))
         chosen = case.settings["measured"]["test"]
         own, most = content.peak_acceleration(case), abs(strongest.scale) * _peak(content, strongest.motion)
         holds = holds and own >= (1.0 - _SAME) * most
@@ -262,9 +270,11 @@ def strongest_tests(content):
     return judged(holds, f"Commanded peaks: {'; '.join(told)}.")
 
 
-def _tests(case):
-    return load_campaign(case.settings["measured"]["campaign"]).tests.values()
+def _tests(content, case):
+    """Tests of a case's campaign by the motions of the study, the case's own among them."""
+    tests = load_campaign(case.settings["measured"]["campaign"]).tests.values()
+    return [test for test in tests if Path(test.motion).stem in content.motions]
 
 
 def _peak(content, motion):
-    return content.motions[motion].attrs["peak_acceleration"]
+    return content.motions[Path(motion).stem].attrs["peak_acceleration"]
