@@ -262,7 +262,7 @@ def test_low_tests_and_the_strongest_are_those_of_the_campaign(content, tmp_path
         "name: other\nstructure: configuration-1\ntests:\n"
         "  - {name: virtual, file: virtual.nc, motion: basso-tirreno, scale: 2.0, role: fit}\n"
         "  - {name: low, file: virtual.nc, motion: sine, scale: 1.0, role: fit}\n"
-        "  - {name: strong, file: virtual.nc, motion: alkion, scale: 3.0, role: sealed}\n"
+        "  - {name: strong, file: virtual.nc, motion: own/alkion.yaml, scale: -3.0, role: sealed}\n"
     )
     case = content.cases["configuration-1"]
     case.settings["measured"] = {"campaign": str(tmp_path), "test": "virtual"}
@@ -273,6 +273,7 @@ def test_low_tests_and_the_strongest_are_those_of_the_campaign(content, tmp_path
     found = specimens.strongest_tests(content)
     assert found.verdict == NOT_MET
     assert "strong (sealed)" in found.words
+    assert "by own/alkion.yaml: 3." in specimens.ladder(content).words
 
 
 def test_sensors_are_counted(content, monkeypatch):
