@@ -1,8 +1,8 @@
 """The paper's study as it was run: CPU time of each finished part beside its estimate, and what identifies its result.
 
 A part is finished where its result is in results/paper; the study may stop and go on, and its parts are here as they
-come. CPU times are those of the jobs' logs, without the start of a job and its imports. A
-job that was killed and went on has the CPU time of its last run alone.
+come. CPU times are those of the jobs' logs, without the start of a job and its imports. A job that was killed and went
+on has the CPU time of its last run alone.
 """
 
 from pathlib import Path

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from blockshake.report.study.statements import calibration, envelopes, models, rocking, stiffness
+from blockshake.report.study.statements import calibration, envelopes, models, stiffness
 from blockshake.report.study.statements.statement import Verdict
 from blockshake.study.sampling.distributions import Lognormal
 
@@ -182,133 +182,6 @@ def test_envelopes_thicken_upward_or_not(content):
     found = envelopes.upward(content, "ls-dem")
     assert found.verdict == NOT_MET
     assert "1 of 2 cases" in found.words
-
-
-@pytest.fixture
-def four(content):
-    """The content with copies of configuration 4 as configurations 2 and 3, and six samples by every model."""
-    for name, case in list(content.cases.items()):
-        for model, one in case.responses.items():
-            samples = one.samples.isel(sample=slice(6)).copy(deep=True)
-            samples["status"][:] = "completed"
-            case.responses[model] = replace(one, samples=samples)
-        case.differences["counted"][:] = 6
-        content.cases[name] = case
-    last = content.cases[FOURTH]
-    for name in ("configuration-2", "configuration-3"):
-        responses = {
-            model: replace(one, samples=one.samples.copy(deep=True), envelope=one.envelope.copy(deep=True))
-            for model, one in last.responses.items()
-        }
-        content.cases[name] = replace(
-            last, name=name, responses=responses, differences=last.differences.copy(deep=True)
-        )
-    return content
-
-
-def widen(content, model, tops):
-    """Give the cases mean differences of two samples at the top, with limits 10 % off [m]."""
-    for name, top in tops.items():
-        differences = content.cases[name].differences
-        differences["width"].loc[{"model": model}] = top
-        for bound, factor in (("lower", 0.9), ("upper", 1.1)):
-            differences["width_interval"].loc[{"model": model, "bound": bound}] = factor * top
-
-
-def test_envelopes_at_the_top_are_compared_by_their_limits(four):
-    others = ("configuration-2", "configuration-3", FOURTH)
-    for top, verdict, counts in (
-        (0.02, MET, "limits: 3 of 3; in the opposite one: 0."),
-        (0.011, UNJUDGED, "limits: 0 of 3; in the opposite one: 0."),
-        (0.005, NOT_MET, "limits: 0 of 3; in the opposite one: 3."),
-    ):
-        widen(four, "ls-dem", {FIRST: 0.01, **dict.fromkeys(others, top)})
-        found = envelopes.than_first(four, "ls-dem")
-        assert found.verdict == verdict
-        assert counts in found.words
-        assert "configuration-1 10.0 [9.0, 11.0]" in found.words
-    assert envelopes.fourth_than_third(four, "ls-dem").verdict == UNJUDGED
-    widen(four, "ls-dem", {FOURTH: 0.007})
-    assert envelopes.fourth_than_third(four, "ls-dem").verdict == MET
-
-
-def test_a_case_that_is_missing_lets_no_order_be_met(four):
-    widen(four, "ls-dem", {FIRST: 0.01, "configuration-2": 0.02, "configuration-3": 0.02, FOURTH: 0.02})
-    four.cases[FOURTH].differences["counted"][:] = 5
-    found = envelopes.than_first(four, "ls-dem")
-    assert found.verdict == UNJUDGED
-    assert "of too few samples: configuration-4." in found.words
-    widen(four, "ls-dem", {"configuration-2": 0.005})
-    assert envelopes.than_first(four, "ls-dem").verdict == NOT_MET
-    del four.cases["configuration-2"]
-    assert envelopes.than_first(four, "ls-dem").verdict == UNJUDGED
-
-
-def test_cases_that_are_shaken_differently_are_not_compared(four):
-    four.cases[FOURTH] = replace(four.cases[FOURTH], settings={**four.cases[FOURTH].settings, "scale": 1.25})
-    assert "shaken differently" in envelopes.than_first(four, "ls-dem").words
-
-
-def test_thickness_grows_with_the_structure_by_every_kind_of_block(four):
-    tops = {FIRST: 0.01, "configuration-2": 0.02, "configuration-3": 0.03, FOURTH: 0.04}
-    for model in ("ls-dem", "nscd-rigid"):
-        widen(four, model, tops)
-    assert envelopes.with_structure(four, ("ls-dem", "nscd-rigid")).verdict == MET
-    found = envelopes.with_structure(four, ("ls-dem", "nscd-elastic"))
-    assert found.verdict == UNJUDGED
-    assert "NSCD elastic: This study has no NSCD elastic." in found.words
-    widen(four, "nscd-rigid", {FOURTH: 0.01})
-    found = envelopes.with_structure(four, ("ls-dem", "nscd-rigid"))
-    assert found.verdict == NOT_MET
-    assert "limits: 3 of 6; in the opposite one: 2." in found.words
-
-
-def move(content, name, counts):
-    """Let so many joints of the cases open or slip by 1 mm in all samples, and the others not at all."""
-    for case, count in counts.items():
-        for one in content.cases[case].responses.values():
-            one.samples[name][:] = 0.0
-            one.samples[name].loc[{"joint": one.samples["joint"].values[:count]}] = 1e-3
-
-
-def test_rocking_and_sliding_are_those_of_joints_that_move(four):
-    names = (FIRST, "configuration-2", "configuration-3", FOURTH)  # of 3 joints, and of 20 by the copies
-    for first, others, verdict in ((1, 10, MET), (3, 20, UNJUDGED), (3, 19, NOT_MET)):
-        move(four, "joint_uplift", dict(zip(names, (first, others, others, others), strict=True)))
-        found = rocking.occurrences(four)
-        assert found.verdict == verdict
-        assert f"configuration-4 {5 * others}.0 [{5 * others}.0, {5 * others}.0]" in found.words
-        assert "Share of the joints (3 of configuration-1, " in found.words
-    # a rocking block's joint slips a little too, and counts once
-    for name in ("joint_uplift", "joint_slip"):
-        move(four, name, dict(zip(names, (1, 1, 8, 8), strict=True)))
-    assert rocking.complicated(four).verdict == MET
-    move(four, "joint_slip", {FIRST: 3})
-    found = rocking.complicated(four)
-    assert found.verdict == NOT_MET
-    assert "NSCD rigid: Share of the joints" in found.words
-    four.cases[FOURTH].responses["ls-dem"].samples["status"][0] = "not-converged"
-    assert "of too few samples: configuration-4" in rocking.occurrences(four).words
-
-
-def test_residuals_are_judged_once_the_shaking_has_ended(four):
-    for motion in four.motions.values():
-        motion["acceleration"][:] = 1.0
-    found = envelopes.residuals(four)
-    assert found.verdict == UNJUDGED
-    assert "0.05 g, the bracket of Bolt (1969), in the last 0.5 s" in found.words
-    for motion in four.motions.values():
-        motion["acceleration"][:] = 0.01
-    for width, verdict in ((1.0, MET), (0.1, UNJUDGED), (0.01, NOT_MET)):
-        for name, case in four.cases.items():
-            for one in case.responses.values():
-                spread = np.linspace(-1.0, 1.0, 6)[:, None, None]
-                one.samples["residual"][:] = spread * (width if name == FOURTH else 0.1)
-        assert envelopes.residuals(four).verdict == verdict
-    for case in four.cases.values():
-        for one in case.responses.values():
-            one.samples["status"][0] = "not-converged"
-    assert envelopes.residuals(four).verdict == UNJUDGED
 
 
 def test_variables_that_matter_are_those_beyond_chance(content):
