@@ -116,7 +116,7 @@ def alike(content):
         not apart,
         "Energy distance of an ensemble of NSCD from that of LS-DEM, beside the mean difference of two samples of "
         f"the wider of both: {'; '.join(told)}. Alike counts where the distance is the smaller one: two "
-        f"equal normal distributions may be about two standard deviations apart. It is the larger "
+        "equal normal distributions may be about two standard deviations apart. It is the larger "
         f"one in {share_words(apart, len(told))} comparisons, and beyond that of samples exchanged at random in "
         f"{share_words(beyond, len(told))}.",
     )
