@@ -198,7 +198,7 @@ def _assemble_into(bodies, inertia, contacts, stiffness, v, newton):
 
 @borrowing_kernel
 def newton_step_into(bodies, inertia, inverse_inertia, contacts, stiffness, v_free, v, newton):
-    """Replace the impulses by those of one Newton step, inside Coulomb's cone, and the velocities with them.
+    """Replace the impulses by those of one Newton step, and the velocities with them.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def newton_step_into(bodies, inertia, inverse_inertia, contacts, stiffness, v_fr
     _assemble_into(bodies, inertia, contacts, stiffness, v, newton)
     if not solve_blocks_into(system):
         return False
-    # the change of the velocities, until impulses inside the cone give the velocities themselves
+    # the change of the velocities, until the impulses give the velocities themselves
     for body in range(system.rank.size):
         rank = system.rank[body]
         for i in range(6):
@@ -235,10 +235,6 @@ def newton_step_into(bodies, inertia, inverse_inertia, contacts, stiffness, v_fr
     for contact in range(contacts.gap.size):
         c, p = newton.offset[contact], contacts.impulse[contact]
         due = matrix_product(newton.slope[contact], relative_velocity(contacts, contact, v))
-        p[0], p[1], p[2] = max(c[0] - due[0], 0.0), c[1] - due[1], c[2] - due[2]
-        size = np.sqrt(p[1] * p[1] + p[2] * p[2])
-        limit = coefficient_along(contacts, contact, p[1], p[2]) * p[0]
-        if size > limit:
-            p[1], p[2] = p[1] * limit / size, p[2] * limit / size
+        p[0], p[1], p[2] = c[0] - due[0], c[1] - due[1], c[2] - due[2]
     apply_impulses_into(bodies, inverse_inertia, contacts, v_free, v)
     return True

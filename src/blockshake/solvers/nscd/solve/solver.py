@@ -7,38 +7,15 @@ from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into, rela
 from blockshake.solvers.nscd.solve.newton import newton_space, newton_step_into
 
 # Newton settles within a few steps, or wanders among states that do not fit together: the stiffer the
-# proximal term the faster, the softer the surer. Tried in turn, each with its limit of steps.
-_STIFFNESS = (1e6, 1e4, 1e3, 1e2)
-_NEWTON_STEPS = (10, 15, 25, 50)
-# Shares of a Newton step that are looked at when the whole step does not end the search.
-_SHARES = (0.5, 0.25, 0.125)
+# proximal term the faster, the softer the surer. Tried in turn, each with its limit of steps, which are
+# whole: docs/decisions/0002-nscd-newton.md.
+STIFFNESS = (1e6, 1e4, 1e3, 1e2, 1e1, 1e5)
+NEWTON_STEPS = (10, 15, 20, 20, 20, 20)
 # Sweeps before Newton is tried again from the start; they double after each failure.
-_FIRST_SWEEPS = 8
+FIRST_SWEEPS = 8
 # A relative residual above which an answer is not trusted, and the sweeps from no impulse that it is held against.
 _TRUSTED = 1e-4
 _LAST_SWEEPS = 200
-
-
-@kernel
-def _shorten_into(contacts, v, floor, old_impulse, old_v, tolerance):
-    """Go back along a Newton step to the share of it with the least residual, which is returned.
-
-    Impulses inside Coulomb's cone stay inside it, and velocities belong to them, all along the way.
-    """
-    residual = relative_residual(contacts, v, floor)
-    if residual <= tolerance:
-        return residual
-    new_impulse, new_v = contacts.impulse.copy(), v.copy()
-    best, best_share = residual, 1.0
-    for share in _SHARES:
-        contacts.impulse[:] = old_impulse + share * (new_impulse - old_impulse)
-        v[:] = old_v + share * (new_v - old_v)
-        residual = relative_residual(contacts, v, floor)
-        if residual < best:
-            best, best_share = residual, share
-    contacts.impulse[:] = old_impulse + best_share * (new_impulse - old_impulse)
-    v[:] = old_v + best_share * (new_v - old_v)
-    return best
 
 
 @kernel
@@ -102,23 +79,20 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
         return 0, 0.0
     v_free = v.copy()
     apply_impulses_into(bodies, inverse_inertia, contacts, v_free, v)
-    old_impulse, old_v = np.empty((n_contacts, 3)), np.empty(v.shape)
     best, best_impulse, best_v = relative_residual(contacts, v, floor), contacts.impulse.copy(), v.copy()
-    iterations, sweeps = 0, _FIRST_SWEEPS
+    iterations, sweeps = 0, FIRST_SWEEPS
     newton = newton_space(bodies.driven, contacts.body_a, contacts.body_b)
     while True:
-        for attempt in range(len(_STIFFNESS)):
-            for _ in range(_NEWTON_STEPS[attempt]):
+        for attempt in range(len(STIFFNESS)):
+            for _ in range(NEWTON_STEPS[attempt]):
                 if iterations == max_iterations:
                     break
                 iterations += 1
-                old_impulse[:] = contacts.impulse
-                old_v[:] = v
                 if not newton_step_into(
-                    bodies, inertia, inverse_inertia, contacts, _STIFFNESS[attempt], v_free, v, newton
+                    bodies, inertia, inverse_inertia, contacts, STIFFNESS[attempt], v_free, v, newton
                 ):
                     break
-                residual = _shorten_into(contacts, v, floor, old_impulse, old_v, tolerance)
+                residual = relative_residual(contacts, v, floor)
                 if residual < best:
                     best = residual
                     best_impulse[:] = contacts.impulse

@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.jit import borrowing_kernel, kernel
-from blockshake.solvers.nscd.contact.friction import coefficient_along
 from blockshake.solvers.nscd.solve.newton import linear_law_into
 from blockshake.solvers.nscd.vectors import matrix_product
 from blockshake.solvers.nscd_deformable.solve.band_elimination import factor_into, solve_into
@@ -157,7 +156,7 @@ def _count_closed(laws):
 
 @borrowing_kernel
 def _step_into(contacts, u, laws, matrix, last, x):
-    """Impulses of the closed contacts after the step, cut at Coulomb's cone; ``x``, three a contact, is worked in."""
+    """Impulses of the closed contacts after the step; ``x``, three a contact, is worked in."""
     closed = 0
     for contact in range(contacts.gap.size):
         if laws.state[contact] != OPEN:
@@ -174,17 +173,12 @@ def _step_into(contacts, u, laws, matrix, last, x):
             p = contacts.impulse[contact]
             for axis in range(3):
                 p[axis] += x[3 * closed + axis]
-            p[0] = max(p[0], 0.0)
-            size = np.sqrt(p[1] * p[1] + p[2] * p[2])
-            limit = coefficient_along(contacts, contact, p[1], p[2]) * p[0]
-            if size > limit:
-                p[1], p[2] = p[1] * limit / size, p[2] * limit / size
             closed += 1
 
 
 @kernel
 def newton_step_into(problem, contacts, stiffness, fresh, operator, motion, laws, factor):
-    """Replace the impulses by those of one Newton step, inside Coulomb's cone, and the velocities with them.
+    """Replace the impulses by those of one Newton step, and the velocities with them.
 
     Parameters
     ----------

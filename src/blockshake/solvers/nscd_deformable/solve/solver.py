@@ -3,6 +3,7 @@
 import numpy as np
 
 from blockshake.jit import kernel
+from blockshake.solvers.nscd.solve.solver import FIRST_SWEEPS, NEWTON_STEPS, STIFFNESS
 from blockshake.solvers.nscd_deformable.solve.gauss_seidel import sweep_into
 from blockshake.solvers.nscd_deformable.solve.newton import empty_laws, newton_step_into
 from blockshake.solvers.nscd_deformable.solve.operator import (
@@ -13,32 +14,8 @@ from blockshake.solvers.nscd_deformable.solve.operator import (
 )
 from blockshake.solvers.nscd_deformable.solve.residual import residual_of
 
-# As in `blockshake.solvers.nscd.solve.solver`: the stiffer the proximal term the faster, the softer the surer.
-_STIFFNESS = (1e6, 1e4, 1e3, 1e2)
-_NEWTON_STEPS = (15, 15, 25, 50)
-_SHARES = (0.5, 0.25, 0.125)
-_FIRST_SWEEPS = 8
 # A kept factorisation that lowers the residual by less than this is made anew.
 _SLOW = 0.1
-
-
-@kernel
-def _shorten_into(contacts, motion, floor, old_impulse, old_u, tolerance):
-    """Go back along a Newton step to the share of it with the least residual, which is returned."""
-    residual = residual_of(contacts, motion.u, floor)
-    if residual <= tolerance:
-        return residual
-    new_impulse, new_u = contacts.impulse.copy(), motion.u.copy()
-    best, best_share = residual, 1.0
-    for share in _SHARES:
-        contacts.impulse[:] = old_impulse + share * (new_impulse - old_impulse)
-        motion.u[:] = old_u + share * (new_u - old_u)
-        residual = residual_of(contacts, motion.u, floor)
-        if residual < best:
-            best, best_share = residual, share
-    contacts.impulse[:] = old_impulse + best_share * (new_impulse - old_impulse)
-    motion.u[:] = old_u + best_share * (new_u - old_u)
-    return best
 
 
 @kernel
@@ -75,25 +52,22 @@ def solve_contacts_into(problem, contacts, floor, tolerance, max_iterations, mot
     if n == 0:
         return 0, 0.0, factor
     best, best_impulse = residual_of(contacts, motion.u, floor), contacts.impulse.copy()
-    old_impulse, old_u = np.empty((n, 3)), np.empty((n, 3))
     operator, laws = empty_operator(problem, contacts), empty_laws(n)
-    iterations, sweeps = 0, _FIRST_SWEEPS
+    iterations, sweeps = 0, FIRST_SWEEPS
     while True:
-        for attempt in range(len(_STIFFNESS)):
+        for attempt in range(len(STIFFNESS)):
             fresh = False
-            for _ in range(_NEWTON_STEPS[attempt]):
+            for _ in range(NEWTON_STEPS[attempt]):
                 if iterations == max_iterations:
                     break
                 iterations += 1
-                old_impulse[:] = contacts.impulse
-                old_u[:] = motion.u
                 before = residual_of(contacts, motion.u, floor)
                 done, made, factor = newton_step_into(
-                    problem, contacts, _STIFFNESS[attempt], fresh, operator, motion, laws, factor
+                    problem, contacts, STIFFNESS[attempt], fresh, operator, motion, laws, factor
                 )
                 if not done:
                     break
-                residual = _shorten_into(contacts, motion, floor, old_impulse, old_u, tolerance)
+                residual = residual_of(contacts, motion.u, floor)
                 fresh = not made and residual > _SLOW * before
                 if residual < best:
                     best = residual
