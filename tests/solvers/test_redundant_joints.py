@@ -12,7 +12,7 @@ from blockshake.simulation.simulate import simulate
     [
         # steps cut at Coulomb's cone and shortened took 77 and 60 iterations: docs/decisions/0002-nscd-newton.md
         ("nscd-rigid", {"nscd.impact_parts": 20}, 10.0, 15.0, 0.01),
-        ("nscd-viscoelastic", {}, 0.3, 20.0, 0.0),
+        ("nscd-viscoelastic", {}, 0.3, 20.0, 0.01),
     ],
 )
 def test_newton_settles_on_beams_and_walls(model, parameters, duration, iterations, capped):
