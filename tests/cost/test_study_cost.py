@@ -28,10 +28,10 @@ def test_every_run_of_the_default_study_is_counted(monkeypatch):
     monkeypatch.setattr(study_cost, "planned_jobs", lambda command: Jobs({}, 1.0))
     search = load_config("config/study.yaml").friction_calibration
     assert search.runs == (6 + 2 * 2) * 10 * 3
-    samples = 2 * 4 * 50 + 2 * (8 + 8 + 8 + 4)
+    samples = 2 * 4 * 50 + 2 * (8 + 8 + 8 + 3)
     twins = 4 * 4  # of every model and case
     climbs = 2 * 20 * 23  # two cases, 20 samples, 0.5 to 6 by 0.25
-    opened = 30 * (4 + 4) * 7  # four cases by LS-DEM and by rigid blocks; seven open tests each
+    opened = 30 * (4 + 3) * 7  # four cases by LS-DEM, three by rigid blocks; seven open tests each
     parts = study_cost.study_cost("config/study.yaml")
     runs = samples + 3 * twins + search.runs + climbs + opened
     assert sum(part.seconds for part in parts) == pytest.approx(runs * 10.0)

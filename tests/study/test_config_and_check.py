@@ -233,7 +233,7 @@ def test_check_says_what_a_good_file_is(monkeypatch):
     assert "a motion of 25 s, given as acceleration; peaks along x: " in check_file("alkion")
     said = check_file("config/study.yaml")
     assert said.startswith(
-        "a study of 4 cases by ls-dem (50 samples), nscd-rigid (50 samples), nscd-elastic (4 to 8 samples), "
+        "a study of 4 cases by ls-dem (50 samples), nscd-rigid (50 samples), nscd-elastic (3 to 8 samples), "
     )
 
 
