@@ -30,9 +30,9 @@ def converged(content):
         tolerance = setting(content, model, f"{MODELS[model].prefix}.tolerance")
         capped, counted = capped + at_cap, counted + steps
         told.append(
-            f"{model_label(model)}: {at_cap:.0f} steps of all samples, {number(100.0 * at_cap / steps, 2)} %, stopped "
-            f"at the iteration limit before the tolerance of {given(tolerance)}, which the paper does not state; "
-            f"largest relative residual {number(worst)}."
+            f"{model_label(model)}: of the steps of all samples {number(100.0 * at_cap / steps, 2)} %, {at_cap:.0f}, "
+            f"stopped at the iteration limit before the tolerance of {given(tolerance)}, which the paper does not "
+            f"state; largest relative residual {number(worst)}."
         )
     return judged(capped == 0, " ".join(told)) if counted else unjudged(" ".join(told))
 
