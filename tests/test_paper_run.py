@@ -1,18 +1,20 @@
-"""The paper's run beside its estimate: finished parts alone, by the logs of their jobs."""
+"""The paper's run beside its estimate: finished parts alone and the whole, by the logs of the jobs."""
 
+import os
 import sys
 from pathlib import Path
 
 import pytest
 
-from blockshake.cost.part import Part
-
-PARTS = (
-    Part("samples of configuration-1, ls-dem", 20, 120.0),
-    Part("samples of configuration-2, ls-dem", 20, 60.0),
-    Part("mean friction of configuration-1", 200, 60.0),
-    Part("jobs beside their runs", 30, 600.0),
-)
+TOLD = """\
+part                                runs  CPU min
+samples of configuration-1, ls-dem  20    2.0
+samples of configuration-2, ls-dem  20    1.0
+twins of configuration-1, ls-dem    3     0.2
+mean friction of configuration-1    200   1.0
+jobs beside their runs              30    10.0
+config/paper.yaml: about 14 CPU minutes on this machine, 7 min on 2 cores
+"""
 
 
 @pytest.fixture
@@ -20,13 +22,26 @@ def paper_run(monkeypatch):
     monkeypatch.syspath_prepend(str(Path(__file__).parents[1] / "bench"))
     import paper_run
 
-    monkeypatch.setattr(paper_run, "study_cost", lambda path: list(PARTS))
     yield paper_run
     sys.modules.pop("paper_run")
 
 
-def _took(seconds):
-    return f"python 3\nTook 100.0 s, {seconds} CPU s.\n"
+@pytest.fixture
+def study(tmp_path):
+    """A study whose jobs have ended, without results."""
+    logs = tmp_path / "logs" / "paper"
+    _write(logs / "estimate.txt", TOLD)
+    samples = logs / "simulate_batch" / "ls-dem" / "configuration-1"
+    _log(samples / "0.log", cpu=60.0, begin=1000.0, end=1200.0)
+    _log(samples / "1.log", cpu=90.0, begin=1100.0, end=1300.0)
+    _log(logs / "run_twins" / "ls-dem" / "configuration-1.log", cpu=24.0, begin=1320.0, end=1345.0)
+    _log(logs / "calibrate_friction" / "configuration-1.log", cpu=30.0, begin=9000.0, end=9135.0)
+    return tmp_path
+
+
+def _log(path, *, cpu, begin, end):
+    _write(path, f"python 3\nTook {end - begin:.2f} s, {cpu} CPU s.\n")
+    os.utime(path, (end, end))
 
 
 def _write(path, text):
@@ -34,17 +49,28 @@ def _write(path, text):
     path.write_text(text)
 
 
-def test_finished_parts_stand_beside_their_estimate(paper_run, tmp_path):
-    logs, results = tmp_path / "logs" / "paper", tmp_path / "results" / "paper"
-    for place, seconds in enumerate((60.0, 90.0)):
-        _write(logs / "simulate_batch" / "ls-dem" / "configuration-1" / f"{place}.log", _took(seconds))
-    _write(logs / "calibrate_friction" / "configuration-1.log", _took(30.0))
-    assert paper_run.paper_rows(tmp_path) == []
+def test_nothing_stands_there_before_a_part_is_finished(paper_run, study):
+    assert paper_run.paper_rows(study) == []
+
+
+def test_finished_parts_stand_beside_their_estimate(paper_run, study):
+    results = study / "results" / "paper"
     _write(results / "samples" / "ls-dem" / "configuration-1.nc", "samples")
+    _write(results / "twins" / "ls-dem" / "configuration-1.nc", "twins")
     _write(results / "friction" / "configuration-1.json", "{}")
-    first, second, whole = paper_run.paper_rows(tmp_path)
-    assert first[:5] == ("samples of configuration-1, ls-dem", 20, "2.0", "2.5", "1.25")
-    assert second[:5] == ("mean friction of configuration-1", 200, "1.0", "0.5", "0.50")
-    assert first[5] != second[5]
-    assert whole == ("all of these", 220, "3.0", "3.0", "1.00", "")
-    assert len(first) == len(paper_run.HEADER)
+    samples, twins, friction, whole = paper_run.paper_rows(study)
+    assert samples[:5] == ("samples of configuration-1, ls-dem", "20", "2.0", "2.5", "1.25")
+    # 0.2 min may be 0.15 or 0.25: no ratio
+    assert twins[:5] == ("twins of configuration-1, ls-dem", "3", "0.2", "0.4", "")
+    assert friction[:5] == ("mean friction of configuration-1", "200", "1.0", "0.5", "0.50")
+    assert len({samples[5], twins[5], friction[5]}) == 3
+    assert whole == ("CPU time of all of these", 223, "3.2", "3.4", "1.06", "")
+    assert len(samples) == len(paper_run.HEADER)
+
+
+def test_whole_study_counts_the_time_in_which_jobs_ran(paper_run, study):
+    (study / "results" / "paper").mkdir(parents=True)
+    _write(study / "reports" / "paper.pdf", "report")
+    [whole] = paper_run.paper_rows(study)
+    # 1000 to 1345 s with 20 s between two jobs; the hours until the command was typed again do not count
+    assert whole[:5] == ("duration of the whole study on 2 cores", "", "7.0", "8.0", "1.14")
