@@ -29,6 +29,7 @@ from blockshake.report.document.wording import model_label, number
 from blockshake.report.study.calibrations.all_tests import answers_table, tests_table
 from blockshake.report.study.content import load_content
 from blockshake.report.study.convergence_section import numbers_table
+from blockshake.report.study.definition_tables import definition_table, definition_words
 from blockshake.report.study.sensitivity.summary import markers_by_height
 from blockshake.report.study.sensitivity.words import sentence
 from blockshake.report.study.statements.section import DEPARTURES_HEADER, HEADER, count_words, departures
@@ -159,6 +160,17 @@ def published_settings():
             rows.append((model, words, f"{np.abs(drift).max():.1f}", f"{drift[-1]:.1f}", number(residual, 2)))
     heads = "model", "settings", "peak drift [mm]", "drift at 10 s [mm]", "energy not explained [%]"
     return markdown(heads, rows)
+
+
+def arrival_definitions():
+    """Stiffness of the default study by the definition of a wave's arrival; None where it has not been run."""
+    path = STUDY.with_name("stiffness-definitions.nc")
+    if not path.is_file():
+        return None
+    found = load_made(path)
+    table = definition_table(found)
+    words = textwrap.wrap(definition_words(found), 100, break_on_hyphens=False)
+    return "\n".join([*words, "", markdown(table.header, table.rows)])
 
 
 def cost_of_samples():
@@ -295,6 +307,7 @@ MAKERS = {
     "hollow-faces": lambda: markdown(HOLLOW_HEADER, hollow_rows()),
     "study-sensitivities": study_sensitivities,
     "study-shares": study_shares,
+    "arrival-definitions": arrival_definitions,
     "cost-of-samples": cost_of_samples,
     "times-on-a-cluster": times_on_a_cluster,
     "paper-run": paper_run,

@@ -10,16 +10,17 @@ _STIFFNESS = printed("N/m3")
 
 def definition_blocks(definitions):
     """Blocks of the stiffness section on the definition of arrival, from `compare_definitions`."""
-    found = definition_range(definitions)
     return [
         Heading("Influence of the definition of arrival and of the damping", "stiffness-definitions"),
-        Text(_words(definitions.attrs, found)),
-        _definition_table(definitions),
-        _free_table(definitions, found),
+        Text(definition_words(definitions)),
+        definition_table(definitions),
+        _free_table(definitions, definition_range(definitions)),
     ]
 
 
-def _words(attributes, found):
+def definition_words(definitions):
+    """How far the stiffness and the peak hang on the definition and on the damping, in sentences."""
+    attributes, found = definitions.attrs, definition_range(definitions)
     tau = f"(Kendall's tau {found.trend.tau:.2f}, p = {number(found.trend.p, 2)})"
     follows = "rises" if found.trend.tau > 0.0 else "falls"
     trend = (
@@ -42,7 +43,8 @@ def _ratios(found):
     return f"{found.lowest:.2f} to {found.highest:.2f}"
 
 
-def _definition_table(definitions):
+def definition_table(definitions):
+    """`Table` of the stiffness, the speed read and the peak, by restitution and definition."""
     rows = []
     for restitution in definitions["restitution"].values:
         for definition in definitions["definition"].values:

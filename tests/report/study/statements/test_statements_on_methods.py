@@ -273,6 +273,7 @@ def test_low_tests_and_the_strongest_are_those_of_the_campaign(content, tmp_path
     found = specimens.strongest_tests(content)
     assert found.verdict == NOT_MET
     assert "strong (sealed)" in found.words
+    assert "of its open tests virtual with 2.47 m/s2" in found.words
     assert "by own/alkion.yaml: 3." in specimens.ladder(content).words
 
 

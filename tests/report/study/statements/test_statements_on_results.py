@@ -259,6 +259,7 @@ def test_models_are_alike_where_two_samples_are_as_far_apart(content, beside, ve
         apart = float(case.differences["distance"].sel(model="ls-dem", other="nscd-rigid"))
         case.differences["width"][:] = beside * apart
         case.differences["distance_chance"][:] = 0.0
+        case.differences["counted"][:] = 6
     found = models.alike(content)
     assert found.verdict == verdict
     assert (
@@ -271,12 +272,19 @@ def test_viscoelastic_blocks_are_held_against_ls_dem_too(content):
     content.study["models"]["nscd-viscoelastic"] = {"time_step": 1e-3}
     for case in content.cases.values():
         case.responses["nscd-viscoelastic"] = case.responses["nscd-rigid"]
+        case.differences["counted"][:] = 6
     assert "configuration-4, NSCD viscoelastic" in models.alike(content).words
 
 
 def test_too_few_samples_are_not_held_against_each_other(content):
     for case in content.cases.values():
-        case.differences["distance_chance"][:] = np.nan
+        case.differences["counted"][:] = 6
+    content.cases["configuration-4"].differences["counted"].loc[{"model": "nscd-rigid"}] = 5
+    found = models.alike(content)
+    assert (
+        "configuration-4, NSCD rigid" not in found.words.split("Of fewer than 6 samples, and not judged:")[0]
+    )
+    content.cases[FIRST].differences["counted"][:] = 5
     assert models.alike(content).verdict == UNJUDGED
 
 

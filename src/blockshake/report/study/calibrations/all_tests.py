@@ -120,7 +120,7 @@ def tests_table(found):
     for (case, test, model), read in by_test.items():
         chances = (number(read[one]["chance"], 2) if one in read else MISSING for one in readings)
         told = [
-            f"{one['reading']}: {parameter_label(name)} {span(answer)}"
+            f"{one['reading']}: {parameter_label(name)}, {span(answer)}"
             for one in read.values()
             for name, answer in one["answers"].items()
             if answer["told"]

@@ -243,7 +243,8 @@ DEPARTURES = (
               "docs/decisions/0001-stiffness-per-area.md"),
     Departure("LS-DEM", "Nodes cover the surface, chamfer included.", _pivot, _METHOD),
     Departure("LS-DEM", "Nothing is said of the start.",
-              _words("Runs by both solvers start from a computed state of rest."), _METHOD),
+              _words("LS-DEM and deformable blocks start from a computed state of rest; rigid blocks start as given, "
+                     "unless a joint is soft."), _METHOD),
     Departure("LS-DEM", "Eq. (3) with the mass of the block, at each node.",
               _words("One dashpot for the interface, with the reduced mass of the two bodies."), _METHOD),
     Departure("LS-DEM", "ln C_res^2 in Eq. (3).", _logarithm, _METHOD),

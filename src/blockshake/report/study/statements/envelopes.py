@@ -23,7 +23,7 @@ from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.ensembles.intervals import SURE_FROM
 from blockshake.study.sensitivity.findings import influences, is_known
 
-_FIRST, _THIRD, _FOURTH = "configuration-1", "configuration-3", "configuration-4"
+_FIRST, _SECOND, _THIRD, _FOURTH = (f"configuration-{place}" for place in (1, 2, 3, 4))
 _MATTER = {"friction": "friction", "density": "density", "youngs_modulus": "stiffness"}
 _BRACKET = 0.05 * 9.81  # m/s2; shaking beyond it is strong
 _DRAWS = 400  # of the bootstrap
@@ -65,6 +65,15 @@ def fourth_than_third(content, model):
         unjudged(absent)
         if (absent := missing(content, model))
         else _tops(content, model, [(_THIRD, _FOURTH)])
+    )
+
+
+def walls_than_stacks(content, model):
+    """Thickness at the top of the walls, configurations 3 and 4, against the stacks, 1 and 2."""
+    if absent := missing(content, model):
+        return unjudged(absent)
+    return _tops(
+        content, model, [(stack, walls) for stack in (_FIRST, _SECOND) for walls in (_THIRD, _FOURTH)]
     )
 
 

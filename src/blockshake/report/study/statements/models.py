@@ -17,6 +17,7 @@ from blockshake.report.study.statements.statement import (
 from blockshake.study.comparison.ranking import CLAIMS, MET, OPEN, judge
 from blockshake.study.ensembles.coverage import UNLIKELY, is_likely
 from blockshake.study.ensembles.envelope import counted_samples
+from blockshake.study.ensembles.intervals import SURE_FROM
 
 _RIGID, _ELASTIC, _VISCOELASTIC = "nscd-rigid", "nscd-elastic", "nscd-viscoelastic"
 _NO_TEST = "This study has no measured test."
@@ -94,14 +95,15 @@ def alike(content):
     others = [model for model in (_RIGID, _VISCOELASTIC) if model in content.study["models"]]
     if absent := missing(content, "ls-dem", *([] if others else [_RIGID])):
         return unjudged(absent)
-    told, apart, beyond = [], 0, 0
+    told, few, apart, beyond = [], [], 0, 0
     for case in content.cases.values():
         for other in others:
             pair = case.differences.sel(model="ls-dem", other=other)
             distance, chance = float(pair["distance"]), float(pair["distance_chance"])
             width = float(case.differences["width"].sel(model=["ls-dem", other]).mean("marker").max())
-            if not np.isfinite(chance):
-                continue  # too few samples
+            if int(case.differences["counted"].sel(model=["ls-dem", other]).min()) < SURE_FROM:
+                few.append(f"{case.name}, {model_label(other)}")
+                continue
             apart, beyond = apart + (distance > width), beyond + (distance > chance)
             marker = next(iter(face_markers(case.structure).values()))
             at = {"frame": "slab", "marker": marker, "quantile": 0.5}
@@ -115,11 +117,15 @@ def alike(content):
     return judged(
         not apart,
         "Energy distance of an ensemble of NSCD from that of LS-DEM, beside the mean difference of two samples of "
-        f"the wider of both: {'; '.join(told)}. Alike counts where the distance is the smaller one: two "
-        "equal normal distributions may be about two standard deviations apart. It is the larger "
-        f"one in {share_words(apart, len(told))} comparisons, and beyond that of samples exchanged at random in "
-        f"{share_words(beyond, len(told))}.",
+        f"the wider of both, means over times and the markers of all blocks: {'; '.join(told)}. Alike counts where "
+        "the distance is the smaller one: two equal normal distributions may be about two standard deviations apart. "
+        f"It is the larger one in {share_words(apart, len(told))} comparisons, and beyond that of samples "
+        f"exchanged at random in {share_words(beyond, len(told))}.{_too_few(few)}",
     )
+
+
+def _too_few(names):
+    return f" Of fewer than {SURE_FROM} samples, and not judged: {'; '.join(names)}." if names else ""
 
 
 def _of_blocks(case, model):

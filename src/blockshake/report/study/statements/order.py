@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from blockshake.report.study.sensitivity.summary import shaking
 from blockshake.report.study.statements.statement import Finding, Verdict, judged, unjudged
 
@@ -14,10 +16,11 @@ class Limited(NamedTuple):
     upper: float
 
 
-def ordered(content, found, pairs, words, written):
+def ordered(content, found, pairs, words, written, ceiling=np.inf):
     """Finding that of each pair of cases the second has the larger quantity.
 
-    Met where it is so beyond the limits in every pair, not met where it is smaller beyond them in any.
+    Met where it is so beyond the limits in every pair, not met where it is smaller beyond them in any. A first case
+    whose quantity is at its ceiling has no larger one: its pairs say nothing.
 
     Parameters
     ----------
@@ -29,6 +32,8 @@ def ordered(content, found, pairs, words, written):
         The quantity.
     written : callable
         Writes a value.
+    ceiling : float
+        Largest value that the quantity can have.
     """
     lacking = sorted({name for pair in pairs for name in pair} - set(found))
     pairs = [pair for pair in pairs if not set(pair) & set(lacking)]
@@ -38,6 +43,8 @@ def ordered(content, found, pairs, words, written):
         return unjudged(f"This study lacks the cases to compare.{absent}")
     if len({shaking(content.cases[name]) for name in names}) > 1:
         return unjudged("The cases are shaken differently, which the structures cannot be told from.")
+    full = sorted({less for less, _ in pairs if found[less].value >= ceiling})
+    pairs = [pair for pair in pairs if pair[0] not in full]
     larger = sum(found[more].lower > found[less].upper for less, more in pairs)
     smaller = sum(found[more].upper < found[less].lower for less, more in pairs)
     told = ", ".join(
@@ -45,24 +52,29 @@ def ordered(content, found, pairs, words, written):
         for name in sorted(names)
     )
     scale = content.cases[names[0]].settings["scale"]
-    words = (
-        f"{words} at scale {scale:g}, with 95 % limits: {told}. Pairs of structures in the stated order beyond the "
-        f"limits: {larger} of {len(pairs)}; in the opposite one: {smaller}.{absent}"
+    words = f"{words} at scale {scale:g}, with 95 % limits: {told}. "
+    if full:
+        words += f"Nothing can be larger than that of {', '.join(full)}. "
+    words += (
+        f"Pairs of structures in the stated order beyond the limits, all of which met asks for: {larger} of "
+        f"{len(pairs)}; in the opposite one, of which one is enough for not met: {smaller}.{absent}"
     )
     if smaller:
         return judged(False, words)
-    return judged(True, words) if larger == len(pairs) and not lacking else unjudged(words)
+    return judged(True, words) if larger == len(pairs) and not (lacking or full) else unjudged(words)
 
 
 def all_of(findings):
-    """Finding that each of several findings, by model, is met.
+    """Finding that each of several findings, by model, is met: the worst verdict is that of all.
 
     Parameters
     ----------
     findings : dict of str to Finding
         By the name that stands before the words of each; not empty.
     """
-    words = " ".join(f"{name}: {one.words}" for name, one in findings.items())
+    words = " ".join(
+        [*(f"{name}: {one.words}" for name, one in findings.items()), "The worst of the models counts."]
+    )
     verdicts = {one.verdict for one in findings.values()}
     worst = next(one for one in (Verdict.NOT_MET, Verdict.UNJUDGED, Verdict.MET) if one in verdicts)
     return Finding(worst, words)

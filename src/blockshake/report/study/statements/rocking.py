@@ -20,6 +20,7 @@ def occurrences(content):
         f"Share of the joints ({_all_joints(content)}) whose middle opens by more than a marker's noise in %, median "
         "over the samples",
         percent,
+        ceiling=1.0,
     )
 
 
@@ -33,7 +34,12 @@ def complicated(content):
     return all_of(
         {
             model_label(model): ordered(
-                content, _moved_joints(content, model, "joint_uplift", "joint_slip"), pairs, words, percent
+                content,
+                _moved_joints(content, model, "joint_uplift", "joint_slip"),
+                pairs,
+                words,
+                percent,
+                ceiling=1.0,
             )
             for model in content.study["models"]
         }

@@ -91,7 +91,10 @@ STATEMENTS = {
         Statement(
             "LMGC90",
             "Implicit steps find a state of rest, which explicit ones may miss.",
-            _not_judged("Both solvers here look for the state of rest before a run: docs/method.md, docs/nscd.md."),
+            _not_judged(
+                "LS-DEM and deformable blocks look for the state of rest before a run, and rigid blocks where a joint "
+                "is soft: docs/method.md, docs/nscd.md."
+            ),
             _PARAMETERS,
         ),
         Statement(
@@ -269,8 +272,8 @@ STATEMENTS = {
             "blockshake check CAMPAIGN",
         ),
         Statement(
-            _CALIBRATION, "The displacement of the slab, as its marker reads it, drives the models.",
-            specimens.measured_input, _INPUT,
+            _CALIBRATION, "The measured displacement of the base slab drives the models.", specimens.measured_input,
+            _INPUT,
         ),
     ),
     "Results of LS-DEM": (
@@ -314,6 +317,10 @@ STATEMENTS = {
             _LMGC90, "Elastic blocks are satisfactory for configurations 1 and 2 and deviate much for 3 and 4.",
             partial(models.satisfactory, model="nscd-elastic", fits=(1, 2), fails=(3, 4)),
             _OF_MODEL.format("nscd-elastic"),
+        ),
+        Statement(
+            _LMGC90, "Runs by elastic blocks deviate more from each other in configurations 3 and 4.",
+            partial(envelopes.walls_than_stacks, model="nscd-elastic"), _NSCD_SENSITIVITY,
         ),
         Statement(
             _LMGC90, "Rigid blocks are satisfactory for all configurations.",
