@@ -35,6 +35,7 @@ from blockshake.report.study.sensitivity.words import sentence
 from blockshake.report.study.statements.section import DEPARTURES_HEADER, HEADER, count_words, departures
 from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.simulate import simulate
+from blockshake.store import load_made
 from blockshake.study.config import load_config
 from blockshake.study.convergence.convergence import study_convergence
 from blockshake.study.convergence.settings import Convergence
