@@ -30,7 +30,7 @@ def converged(content):
         tolerance = setting(content, model, f"{MODELS[model].prefix}.tolerance")
         capped, counted = capped + at_cap, counted + steps
         told.append(
-            f"{model_label(model)}: of the steps of all samples {number(100.0 * at_cap / steps, 2)} %, {at_cap:.0f}, "
+            f"{model_label(model)}: of the steps of all samples {number(100.0 * at_cap / steps, 2)} % ({at_cap:.0f}) "
             f"stopped at the iteration limit before the tolerance of {given(tolerance)}, which the paper does not "
             f"state; largest relative residual {number(worst)}."
         )

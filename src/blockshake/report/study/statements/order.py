@@ -58,6 +58,8 @@ def ordered(content, found, pairs, words, written, ceiling=np.inf):
     words += (
         f"Pairs of structures in the stated order beyond the limits, all of which met asks for: {larger} of "
         f"{len(pairs)}; in the opposite one, of which one is enough for not met: {smaller}.{absent}"
+        if pairs
+        else f"No pair of structures is left.{absent}"
     )
     if smaller:
         return judged(False, words)
