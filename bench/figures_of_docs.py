@@ -55,7 +55,7 @@ _CHANGES = {
     "friction 0.25": dict.fromkeys(_CONCRETE, 0.25),
     "friction 0.12": dict.fromkeys(_CONCRETE, 0.12),
 }
-STUDY = Path("results/study/the-paper.json")
+STUDY, PAPER = Path("results/study/the-paper.json"), Path("results/paper/the-paper.json")
 FAULTS = Path("results/faults.json")  # of `make test-faults`
 _STEPS = {"nscd-rigid": 1e-3, "ls-dem": 5e-5}  # s
 DEFAULT = DOCS.parent / "config" / "study.yaml"
@@ -120,9 +120,18 @@ def single_changes():
 
 def statements():
     """Findings of the default study on the statements of the paper; None where the study has not been run."""
-    if not STUDY.is_file():
+    return _findings(STUDY)
+
+
+def paper_statements():
+    """The same of the paper's study."""
+    return _findings(PAPER)
+
+
+def _findings(path):
+    if not path.is_file():
         return None
-    found = load_json(STUDY)
+    found = load_json(path)
     cases, models = "; ".join(found["cases"]), ", ".join(found["models"])
     words = (
         f"Study `{found['study']}` (blockshake {found['version']}): {found['description']}. "
@@ -301,6 +310,7 @@ MAKERS = {
     "slenderness": slenderness,
     "single-changes": single_changes,
     "statements": statements,
+    "paper-statements": paper_statements,
     "departures": departure_table,
     "published-settings": published_settings,
     "shear-damping": shear_damping,
