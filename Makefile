@@ -62,7 +62,7 @@ test-faults-few: setup
 test-cluster: cluster
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest -m cluster
 
-# five campaigns with and without a hidden effect, diagnosed by the ordinary rules: minutes
+# four campaigns with and without a hidden effect, one of them twice, diagnosed by the ordinary rules: minutes
 test-hidden-few: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest -m hidden_effects
 

@@ -16,6 +16,7 @@ COPIED = (
     "README.md",
     "config",
     "data",
+    "profiles",
     "pyproject.toml",
     "setup.py",
     "src",
@@ -65,6 +66,19 @@ def test_commands_find_what_is_shipped(run, tmp_path):
     assert run("blockshake", "sample", "--size", 10, "--output", "design.csv").returncode == 0
     assert run("blockshake", "parameters").returncode == 0
     assert [path.name for path in tmp_path.iterdir()] == ["design.csv"]
+
+
+def test_a_study_is_planned_in_the_current_folder(run, installed):
+    assert run("blockshake", "new", "study", "my-study.yaml").returncode == 0
+    answer = run(
+        "snakemake", "-n", "--cores", 1, "--snakefile", installed / "blockshake" / "shipped" / "Snakefile",
+        "--configfile", "my-study.yaml",
+    )  # fmt: skip
+    assert answer.returncode == 0, answer.stderr
+    assert "make_report" in answer.stdout
+    # with it a killed command leaves no lock
+    assert "profiles/default" in answer.stderr
+    assert not any(str(ROOT / name) in answer.stdout for name in COPIED)
 
 
 def test_a_diagnosis_is_planned_in_the_current_folder(run, installed, tmp_path):
