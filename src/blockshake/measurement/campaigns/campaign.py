@@ -43,7 +43,7 @@ class MeasuredTest(Strict):
     """One test of the list: what was commanded, where it was recorded, what it may be used for."""
 
     name: str = Field(description="unique in the campaign")
-    file: str = Field(description="readings: a CSV or netCDF file in the folder; import-campaign makes it of a spreadsheet")
+    file: str = Field(description="readings: a CSV or netCDF file in the folder")
     motion: str = Field(description="commanded motion: a shipped name, or a file in the folder")
     scale: Scale = Field(description="multiplies the motion; not 0 [1]")
     role: Literal["fit", "select", "sealed"] = Field(
