@@ -28,14 +28,16 @@ _PAUSE = 60.0  # s; between jobs of one command less passes
 
 
 def paper_rows(folder="."):
-    """Rows under `HEADER` of the finished parts of the paper's study in a folder; none where nothing is finished.
+    """Rows under `HEADER` of the finished parts of the paper's study in a folder; none where none is finished or
+    nothing was estimated.
 
     Then come the CPU time of all of these and, where the report is there, the duration of the whole study.
     """
     logs, results = Path(folder, "logs", "paper"), Path(folder, "results", "paper")
-    if not results.is_dir():
+    estimate = logs / "estimate.txt"
+    if not estimate.is_file():
         return []
-    told = (logs / "estimate.txt").read_text(encoding="utf-8")
+    told = estimate.read_text(encoding="utf-8")
     rows, estimated, taken, runs = [], 0.0, 0.0, 0
     for part, count, minutes in _PART.findall(told):
         kind, _, of = part.partition(" of ")

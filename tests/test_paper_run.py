@@ -53,6 +53,12 @@ def test_nothing_stands_there_before_a_part_is_finished(paper_run, study):
     assert paper_run.paper_rows(study) == []
 
 
+def test_nothing_stands_there_without_an_estimate(paper_run, study):
+    _write(study / "results" / "paper" / "samples" / "ls-dem" / "configuration-1.nc", "samples")
+    (study / "logs" / "paper" / "estimate.txt").unlink()
+    assert paper_run.paper_rows(study) == []
+
+
 def test_finished_parts_stand_beside_their_estimate(paper_run, study):
     results = study / "results" / "paper"
     _write(results / "samples" / "ls-dem" / "configuration-1.nc", "samples")
@@ -69,7 +75,6 @@ def test_finished_parts_stand_beside_their_estimate(paper_run, study):
 
 
 def test_whole_study_counts_the_time_in_which_jobs_ran(paper_run, study):
-    (study / "results" / "paper").mkdir(parents=True)
     _write(study / "reports" / "paper.pdf", "report")
     [whole] = paper_run.paper_rows(study)
     # 1000 to 1345 s with 20 s between two jobs; the hours until the command was typed again do not count
