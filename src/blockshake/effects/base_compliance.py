@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from blockshake.effects.effect import Effect, EffectParameter, Signature
+from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
 from blockshake.effects.places import nowhere
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import DEEPEST_OVERLAP
@@ -14,6 +14,7 @@ _WIDER = (
     1.5  # width of the bed over that of what stands on it: a rocking block's edge stays within its middle
 )
 _SINK = 0.8 * DEEPEST_OVERLAP  # nodes of LS-DEM sink farther than the layer: 4 % were seen
+_SCALE = 2e-9  # rad/(N m)
 _GRIP = 2.0  # coefficient of friction towards it: the driven body does not slide on its bed
 
 
@@ -78,6 +79,11 @@ def _extent(structure, chosen):
     return max(ends) - min(ends)
 
 
+def _turns(slab):
+    """Rotation of the slab by the moment on it."""
+    return [Columns({}, slab.moment[slab.at][:, None], (_SCALE,), False)]
+
+
 EFFECT = Effect(
     name="base-compliance",
     title="compliant base",
@@ -92,4 +98,5 @@ EFFECT = Effect(
     told_apart_by="vertical displacement of two markers on the slab, apart along x, under blocks of another mass",
     places=nowhere,
     act=_act,
+    turns=_turns,
 )

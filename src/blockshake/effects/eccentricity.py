@@ -1,7 +1,10 @@
 """The mass centre of a block lies beside its middle."""
 
-from blockshake.effects.effect import Effect, EffectParameter, Signature
+from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
 from blockshake.effects.places import blocks
+from blockshake.forces.wrench_histories import mass_centre_off
+
+_SCALE = 0.06  # m
 
 
 def _act(experiment, values, place):
@@ -9,6 +12,11 @@ def _act(experiment, values, place):
     body = next(body for body in file.bodies if body.name == place["body"])
     x, y, z = body.mass_offset
     return experiment.with_parameters(**{f"bodies.{body.name}.mass_offset": [x + values["offset"], y, z]})
+
+
+def _columns(seen, place):
+    body = seen.structure.body_names.index(place["body"])
+    return [Columns({}, seen.rows.along(mass_centre_off(seen, body))[:, None], (_SCALE,), False)]
 
 
 EFFECT = Effect(
@@ -23,4 +31,5 @@ EFFECT = Effect(
     told_apart_by="weighing the block on two supports; a test with the block turned about",
     places=blocks,
     act=_act,
+    columns=_columns,
 )  # fmt: skip

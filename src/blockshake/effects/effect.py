@@ -2,7 +2,9 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, NamedTuple
+
+import numpy as np
 
 from blockshake.dynamics.motion import GroundMotion
 from blockshake.geometry.structure import Structure
@@ -84,6 +86,27 @@ class Signature:
     profile: Literal["slab", "joint", "block", "marker", "all"]
 
 
+class Columns(NamedTuple):
+    """Rows of the forces that an effect makes in a test, given the measured motion.
+
+    Attributes
+    ----------
+    values : dict of str to float
+        Parameters that are not amplitudes, at one point of their grid.
+    rows : float64 array, shape (n_rows, n_amplitudes)
+        Per unit of each amplitude.
+    scales : tuple of float
+        Standard deviations of the amplitudes' priors, about zero; None where the rows have no amplitude.
+    positive : bool
+        The first amplitude is not negative.
+    """
+
+    values: dict
+    rows: np.ndarray
+    scales: tuple | None
+    positive: bool
+
+
 @dataclass(frozen=True)
 class Effect:
     """An entry of the registry.
@@ -109,6 +132,13 @@ class Effect:
         Of a structure: where the effect may be, list of dict (``{}`` where it has no place).
     act : callable
         Of an experiment, the values by parameter name, and the place: the experiment with the effect.
+    columns : callable, optional
+        Of a `SeenTest` and a place of the evidence: `Columns` of all variants of the effect there, the same variants in
+        every test. None where the effect shows elsewhere than in the forces of joints.
+    seen_at : callable, optional
+        Of the structure: places of the evidence, those of ``places`` by default.
+    turns, lifts : callable, optional
+        Of a `SlabMotion`: `Columns` of its rotation, and covariances of its vertical displacement.
     """
 
     name: str
@@ -122,3 +152,7 @@ class Effect:
     told_apart_by: str
     places: Callable
     act: Callable
+    columns: Callable | None = None
+    seen_at: Callable | None = None
+    turns: Callable | None = None
+    lifts: Callable | None = None

@@ -1,13 +1,58 @@
 """One joint has a soft layer: dust, mortar, rough faces that touch at few points."""
 
-from blockshake.effects.effect import Effect, EffectParameter, Signature
-from blockshake.effects.places import joints, stated_joint
+import numpy as np
+
+from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
+from blockshake.effects.places import face_of, joints, stated_joint
+from blockshake.forces.wrench_histories import edge_inward, normal_force
+
+COMPLIANCES = np.geomspace(2e-11, 5e-9, 24)  # m3/N
+_SMALLEST = 1e-4  # rad
+_WIDEST = 2.0 / 3.0  # of the half width, by which the resultant of a soft face lies within the edge at most
 
 
 def _act(experiment, values, place):
     present = stated_joint(experiment, place).compliance
     key = f"joints.{'.'.join(place['joint'])}.compliance"
     return experiment.with_parameters(**{key: present + values["compliance"]})
+
+
+def _columns(seen, place):
+    """Resultant of a layer without tension: ``sqrt(2 N c / (9 L phi))`` within the edge, for every compliance."""
+    face = face_of(seen, place)
+    inward, instant = seen.rows.along(edge_inward(seen, face)), seen.rows.instant
+    length = float(np.ptp(seen.faces[face].corners[:, 1]))
+    turn = np.maximum(np.abs(seen.joints.rotation[instant, face]), _SMALLEST)
+    normal = np.maximum(normal_force(seen, face)[instant], 0.0)
+    widest = _WIDEST * seen.faces[face].half_width
+    return [
+        Columns(
+            {"compliance": float(value)},
+            (inward * np.minimum(np.sqrt(2.0 * normal * value / (9.0 * length * turn)), widest))[:, None],
+            None,
+            True,
+        )
+        for value in COMPLIANCES
+    ]
+
+
+def rotation_by_compliance(lever, normal, half_width, length):
+    """Rotation of a closed joint over its compliance, ``phi / c`` [N/m3]: Winkler's bed without tension.
+
+    ``e N / I`` while the resultant lies in the middle third (I the second moment of the face), and ``2 N / (9 L (b -
+    e)^2)`` beyond, where the pressed part is ``3 (b - e)`` wide.
+
+    Parameters
+    ----------
+    lever, normal : float64 arrays, shape (n_rows,)
+        Of the resultant from the middle [m], and its normal force [N].
+    half_width, length : float
+        Of the face along and across the lever [m].
+    """
+    second_moment = length * (2.0 * half_width) ** 3 / 12.0
+    away = np.minimum(np.abs(lever), 0.99 * half_width)
+    partly = np.sign(lever) * 2.0 * normal / (9.0 * length * (half_width - away) ** 2)
+    return np.where(away < half_width / 3.0, lever * normal / second_moment, partly)
 
 
 EFFECT = Effect(
@@ -24,4 +69,5 @@ EFFECT = Effect(
     told_apart_by="rotation of the joint in a test below uplift; vertical displacement of the slab's markers",
     places=joints,
     act=_act,
+    columns=_columns,
 )

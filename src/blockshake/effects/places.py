@@ -37,3 +37,12 @@ def markers(structure):
 def stops(structure):
     """Both sides of every free body, ``{"body": name, "axis": "+x" or "-x"}``."""
     return [{**place, "axis": axis} for place in blocks(structure) for axis in ("+x", "-x")]
+
+
+def face_of(seen, place):
+    """Index of the face of a joint among those of a seen test."""
+    names = seen.structure.body_names
+    pair = [names.index(name) for name in place["joint"]]
+    return next(
+        index for index, face in enumerate(seen.faces) if sorted((face.lower, face.upper)) == sorted(pair)
+    )

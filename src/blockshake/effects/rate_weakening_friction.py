@@ -1,7 +1,13 @@
 """Friction falls with the slip rate."""
 
-from blockshake.effects.effect import Effect, EffectParameter, Signature
+import numpy as np
+
+from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
 from blockshake.effects.places import nowhere
+from blockshake.forces.wrench_histories import friction_against_slip
+
+_SCALE = 0.6
+_RATES = (0.003, 0.01, 0.03, 0.1)  # m/s
 
 
 def _act(experiment, values, place):
@@ -13,6 +19,20 @@ def _act(experiment, values, place):
         changed[f"friction.{pair}.rate_drop"] = present + drop - present * drop
         changed[f"friction.{pair}.rate_scale"] = entry.rate_scale ** (1.0 - share) * values["scale"] ** share
     return experiment.with_parameters(**changed)
+
+
+def _columns(seen, place):
+    return [Columns({"scale": rate}, _lost(seen, rate)[:, None], (_SCALE,), True) for rate in _RATES]
+
+
+def _lost(seen, scale):
+    """Rows of the friction that all joints lose at full drop."""
+    lost = np.zeros(len(seen.rows.value))
+    for index, face in enumerate(seen.faces):
+        rate = np.abs(seen.joints.slip_rate[seen.rows.instant, index])
+        drop = 1.0 - np.exp(-rate / scale)
+        lost -= face.friction * drop * seen.rows.along(friction_against_slip(seen, index))
+    return lost
 
 
 EFFECT = Effect(
@@ -30,4 +50,5 @@ EFFECT = Effect(
     told_apart_by="sine tests of one acceleration and several frequencies, which slip at several rates",
     places=nowhere,
     act=_act,
+    columns=_columns,
 )

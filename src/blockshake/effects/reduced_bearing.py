@@ -1,7 +1,15 @@
 """Blocks bear on less than their whole face: edges worn on all sides, which takes 3 % of the mass at 9 cm."""
 
-from blockshake.effects.effect import Effect, EffectParameter, Signature
-from blockshake.effects.places import nowhere
+import numpy as np
+
+from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
+from blockshake.effects.places import face_of, joints, nowhere
+from blockshake.forces.wrench_histories import edge_inward
+
+_SCALE, _STEP = 0.05, 0.015  # m: of the inset, and of its change from knot to knot
+_KNOTS = np.array([0.3, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0]) * 1e-3  # rad, of a law of any shape
+_ROLLED, _MOST_ROLLED = 0.02, 1.5  # rad, and share of it, of an edge that rolls
+_SMALLEST = 1e-5  # rad
 
 
 def _act(experiment, values, place):
@@ -21,6 +29,43 @@ def _act(experiment, values, place):
     )
 
 
+def _seen_at(structure):
+    return [{}, *joints(structure)]
+
+
+def _columns(seen, place):
+    """Edges further in alike at all rotations, edges that roll, and, of one joint, an inset of any shape over rotation.
+
+    The last is a random walk over knots of the rotation: the edge of a worn or crushed block has no simple form.
+    """
+    faces = [face_of(seen, place)] if place else range(len(seen.faces))
+    insets = [seen.rows.along(edge_inward(seen, face)) for face in faces]
+    turns = [np.abs(seen.joints.rotation[seen.rows.instant, face]) for face in faces]
+    plain = sum(insets)
+    rolled = [
+        sum(
+            inset * np.clip(turn / _ROLLED, 0.0, _MOST_ROLLED) ** power
+            for inset, turn in zip(insets, turns, strict=True)
+        )
+        for power in (1, 2)
+    ]
+    found = [
+        Columns({"inset": "alike"}, plain[:, None], (_SCALE,), True),
+        Columns({"inset": "rolling"}, np.stack([plain, *rolled], axis=1), (_SCALE,) * 3, True),
+    ]
+    if place:
+        shape = np.stack([plain, *(plain * ramp for ramp in _ramps(turns[0]))], axis=1)
+        found.append(Columns({"inset": "by rotation"}, shape, (_SCALE,) + (_STEP,) * (len(_KNOTS) - 1), True))
+    return found
+
+
+def _ramps(turn):
+    """From knot to knot of the rotation, even in its logarithm: 0 before, 1 after."""
+    place = np.log(np.maximum(turn, _SMALLEST))
+    knots = np.log(_KNOTS)
+    return [np.clip((place - a) / (b - a), 0.0, 1.0) for a, b in zip(knots[:-1], knots[1:], strict=True)]
+
+
 EFFECT = Effect(
     name="reduced-bearing",
     title="reduced bearing width",
@@ -33,4 +78,6 @@ EFFECT = Effect(
     told_apart_by="onset of rocking at several intensities; contact prints on the faces",
     places=nowhere,
     act=_act,
+    columns=_columns,
+    seen_at=_seen_at,
 )

@@ -1,7 +1,14 @@
 """A block meets a stop of the retaining frame that the model leaves out."""
 
-from blockshake.effects.effect import Effect, EffectParameter, Signature
-from blockshake.effects.places import stops
+import numpy as np
+
+from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
+from blockshake.effects.places import blocks, stops
+from blockshake.forces.point_rows import point_rows
+
+_SCALE = 1e7  # N/m
+_GAPS = np.concatenate([[0.002, 0.004], np.arange(0.006, 0.0601, 0.002)])  # m
+HEIGHTS = (0.0, 0.42)  # of a force above the mass centre, over the block's height
 
 
 def _act(experiment, values, place):
@@ -20,6 +27,26 @@ def _act(experiment, values, place):
     return experiment.with_parameters(stoppers=[*present, stop])
 
 
+def _seen_at(structure):
+    return [{**place, "height": height} for place in blocks(structure) for height in HEIGHTS]
+
+
+def _columns(seen, place):
+    """Springs beyond a gap on either side, all gaps of one side first."""
+    point = point_rows(seen, place["body"], place["height"])
+    return [
+        Columns({"gap": float(gap), "side": side}, spring_rows(point, side, gap)[:, None], (_SCALE,), True)
+        for side in (1, -1)
+        for gap in _GAPS
+    ]
+
+
+def spring_rows(point, side, gap):
+    """Rows of a spring of 1 N/m that a point meets beyond a gap towards a side of x, through the kernel."""
+    closure = np.maximum(side * point.fine - gap, 0.0)
+    return -side * point.unit * point.through_kernel(closure)
+
+
 EFFECT = Effect(
     name="stopper-contact",
     title="contact with a stop",
@@ -35,4 +62,6 @@ EFFECT = Effect(
     told_apart_by="accelerometer on the block: spikes at the same displacement",
     places=stops,
     act=_act,
+    columns=_columns,
+    seen_at=_seen_at,
 )

@@ -5,13 +5,37 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import lsim
 
 from blockshake.dynamics.motion import CHANNELS
-from blockshake.effects.effect import Effect, EffectParameter, Signature
+from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
 from blockshake.effects.places import nowhere
 from blockshake.errors import InputError
 
 _FEWEST_ROWS = 0.31  # of a period; the pitch then errs by less than 1 %
 _DAMPING = 0.05  # of critical; tables are lightly damped
 _PITCH = CHANNELS.index("pitch_y")
+
+
+_FREQUENCIES = (5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 15.0, 17.0, 20.0, 25.0, 30.0)  # Hz
+_SCALE = 6e-4  # rad s2/m
+
+
+def _turns(slab):
+    """Rotations of the slab by every frequency; see `Effect`."""
+    return [
+        Columns(
+            {"frequency": frequency},
+            _response(slab.acceleration, slab.step, frequency)[slab.at][:, None],
+            (_SCALE,),
+            False,
+        )
+        for frequency in _FREQUENCIES
+    ]
+
+
+def _response(acceleration, step, frequency):
+    """Rotation by 1 rad s2/m of a history of acceleration at uniform times."""
+    omega = 2.0 * np.pi * frequency
+    system = [omega**2], [1.0, 2.0 * _DAMPING * omega, omega**2]
+    return lsim(system, acceleration, step * np.arange(len(acceleration)))[1]
 
 
 def _act(experiment, values, place):
@@ -26,8 +50,7 @@ def _act(experiment, values, place):
         )
     times = step * np.arange(int(np.ceil((breaks[-1] - breaks[0]) / step)) + 1)
     acceleration = experiment.motion.evaluate(breaks[0] + times, derivative=2)[:, 0]
-    omega = 2.0 * np.pi * values["frequency"]
-    _, response, _ = lsim(([omega**2], [1.0, 2.0 * _DAMPING * omega, omega**2]), acceleration, times)
+    response = _response(acceleration, step, values["frequency"])
     pitch = values["coefficient"] * np.interp(breaks, breaks[0] + times, response)
     return experiment.with_motion(_PITCH, CubicSpline(breaks, pitch).c[::-1].T)
 
@@ -47,4 +70,5 @@ EFFECT = Effect(
     told_apart_by="vertical displacement of two markers on the slab, apart along x",
     places=nowhere,
     act=_act,
+    turns=_turns,
 )  # fmt: skip

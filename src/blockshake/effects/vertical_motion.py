@@ -1,11 +1,14 @@
 """The table moves vertically in proportion to its horizontal motion, earlier or later."""
 
+import numpy as np
 from scipy.interpolate import CubicSpline
 
 from blockshake.dynamics.motion import CHANNELS
 from blockshake.effects.effect import Effect, EffectParameter, Signature
 from blockshake.effects.places import nowhere
 
+_SIZES = (2e-4, 1e-3, 5e-3, 2e-2)  # m
+_MEMORY = 0.15  # s
 _VERTICAL = CHANNELS.index("z")
 
 
@@ -14,6 +17,12 @@ def _act(experiment, values, place):
     delayed = experiment.motion.evaluate(breaks - values["delay"])[:, 0]
     vertical = values["ratio"] * (delayed - delayed[0])
     return experiment.with_motion(_VERTICAL, CubicSpline(breaks, vertical).c[::-1].T)
+
+
+def _lifts(slab):
+    """Covariance of the slab's vertical displacement by size: a smooth random motion of a scale of 0.15 s."""
+    apart = slab.time[slab.at][:, None] - slab.time[slab.at]
+    return [size**2 * np.exp(-0.5 * (apart / _MEMORY) ** 2) for size in _SIZES]
 
 
 EFFECT = Effect(
@@ -31,4 +40,5 @@ EFFECT = Effect(
     told_apart_by="vertical accelerometer on the slab",
     places=nowhere,
     act=_act,
+    lifts=_lifts,
 )  # fmt: skip

@@ -1,13 +1,22 @@
 """One joint slides at less friction than the others of its materials."""
 
-from blockshake.effects.effect import Effect, EffectParameter, Signature
-from blockshake.effects.places import joints, stated_joint
+from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
+from blockshake.effects.places import face_of, joints, stated_joint
+from blockshake.forces.wrench_histories import friction_against_slip
+
+_SCALE = 0.7  # of the coefficient that is missing
 
 
 def _act(experiment, values, place):
     present = stated_joint(experiment, place).friction_factor
     key = f"joints.{'.'.join(place['joint'])}.friction_factor"
     return experiment.with_parameters(**{key: present * values["factor"]})
+
+
+def _columns(seen, place):
+    face = face_of(seen, place)
+    lost = -seen.faces[face].friction * seen.rows.along(friction_against_slip(seen, face))
+    return [Columns({}, lost[:, None], (_SCALE,), True)]
 
 
 EFFECT = Effect(
@@ -22,4 +31,5 @@ EFFECT = Effect(
     told_apart_by="slip of each joint in a test that exceeds r mu g",
     places=joints,
     act=_act,
+    columns=_columns,
 )

@@ -93,7 +93,7 @@ def joint_forces(test, structure, sensors, width=WIDTH):
     sensors = sensors.model_copy(
         update={name: max(getattr(sensors, name), least) for name, least in _LEAST_NOISE.items()}
     )
-    test, until = _from_rest(test, structure, sensors)
+    test, until = from_rest(test, structure, sensors)
     motion = smooth_motion(test, structure, sensors, _STEP, width)
     still = motion.time <= until
     faces = find_faces(structure)
@@ -106,7 +106,7 @@ def joint_forces(test, structure, sensors, width=WIDTH):
     )  # fmt: skip
 
 
-def _from_rest(test, structure, sensors):
+def from_rest(test, structure, sensors):
     """Readings counted from their means while the table was still, and the time until which it was."""
     names = [str(name) for name in test["marker"].values]
     driven = {body.name for body in structure.file.bodies if body.driven}

@@ -22,12 +22,14 @@ class JointMotion:
     ----------
     rotation : float64 array, shape (n_times, n_joints)
         Of the upper body about the second tangent: positive leans its top along the first one [rad].
+    roll : float64 array, shape (n_times, n_joints)
+        The same about the first tangent: positive leans its top against the second one [rad].
     rotation_error : float64 array, shape (n_joints,)
         [rad]
     slip_rate : float64 array, shape (n_times, n_joints)
         Along the first tangent, of the point of the upper body that bears [m/s].
-    slip_rate_error : float64 array, shape (n_joints,)
-        [m/s]
+    slip_error, slip_rate_error : float64 arrays, shape (n_joints,)
+        Of the displacement and of its rate along the first tangent [m, m/s].
     side, across : int8 arrays, shape (n_times, n_joints)
         Edge that bears: 1 or -1 along the first, and along the second tangent, 0 for the whole face.
     steady : bool array, shape (n_times,)
@@ -37,8 +39,10 @@ class JointMotion:
     """
 
     rotation: np.ndarray
+    roll: np.ndarray
     rotation_error: np.ndarray
     slip_rate: np.ndarray
+    slip_error: np.ndarray
     slip_rate_error: np.ndarray
     side: np.ndarray
     across: np.ndarray
@@ -81,8 +85,8 @@ def joint_motion(structure, faces, motion, still, width):
     ]
     steady = ~binary_dilation(changed, iterations=calm, border_value=1)
     return JointMotion(
-        one["rotation"], one["rotation_error"], one["slip_rate"], one["slip_rate_error"],
-        side, across, steady, np.moveaxis(np.array(bears), (0, 1), (2, 3)),
+        one["rotation"], one["roll"], one["rotation_error"], one["slip_rate"], one["slip_error"],
+        one["slip_rate_error"], side, across, steady, np.moveaxis(np.array(bears), (0, 1), (2, 3)),
     )  # fmt: skip
 
 
@@ -125,6 +129,7 @@ def _one_joint(structure, face, motion, still):
         "roll_bend": np.einsum("ti,ti->t", axes[..., 0], bend),
         "roll_error": np.sqrt(face.axes[:, 0] @ pose[3:, 3:] @ face.axes[:, 0]),
         "slip_rate": np.einsum("ti,ti->t", axes[..., 0], rate),
+        "slip_error": np.sqrt(along @ pose @ along),
         "slip_rate_error": np.sqrt(along @ rates @ along),
     }
 

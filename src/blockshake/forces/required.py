@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+_UNREAD = 1e-12  # of the largest eigenvalue
+
 
 @dataclass(frozen=True)
 class RequiredWrenches:
@@ -53,3 +55,16 @@ def information_root(information):
     """Roots W of information matrices, ``W^T W`` the matrix; rows of directions that are not read are zero."""
     values, vectors = np.linalg.eigh(information)
     return np.sqrt(np.maximum(values, 0.0))[..., :, None] * np.swapaxes(vectors, -1, -2)
+
+
+def unread_directions(information):
+    """Unit vectors, in columns, along which information matrices hold none; zero columns for the others."""
+    values, vectors = np.linalg.eigh(information)
+    return np.where((values > _UNREAD * values[..., -1:])[..., None, :], 0.0, vectors)
+
+
+def covariance_root(information):
+    """Roots C of the inverses of information matrices, ``C C^T`` the covariance; directions not read are left out."""
+    values, vectors = np.linalg.eigh(information)
+    read = values > _UNREAD * values[..., -1:]
+    return vectors * np.where(read, 1.0 / np.sqrt(np.where(read, values, 1.0)), 0.0)[..., None, :]

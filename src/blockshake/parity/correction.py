@@ -127,6 +127,11 @@ def _take_drift(test, finding):
 
 def _take_gain(test, finding):
     variable, place = _column(test, finding.where[0])
+    if len(finding.estimate) == 3:
+        factor = xr.DataArray(1.0 + finding.estimate, dims="axis")
+        own = {"marker": test["marker"].isin(finding.where)}
+        test["marker_displacement"].loc[own] = test["marker_displacement"].loc[own] / factor
+        return
     values = test[variable].loc[place]
     rest = 0.0
     if variable == "accelerometer":

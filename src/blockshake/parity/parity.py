@@ -13,7 +13,9 @@ from blockshake.measurement.campaigns.campaign import load_test
 from blockshake.measurement.motion.fall import Fall, find_fall, until_fall
 from blockshake.measurement.sensors.markers import whole_markers
 from blockshake.parity.acceleration_parity import channel_pairs
+from blockshake.parity.body_gain import body_gains
 from blockshake.parity.channel_findings import channel_findings
+from blockshake.parity.correction import corrected
 from blockshake.parity.finding import Finding
 from blockshake.parity.frame_drift import frame_drift
 from blockshake.parity.marker_equations import MarkerFaults
@@ -181,6 +183,10 @@ def check_parity(tests, structure, sensors, level=LEVEL):
         findings += found
     bodies = _bodies(structure, tests)
     looked_at = _looked_at(bodies, tests)
+    of_bodies = body_gains(structure, tests, sensors, level, looked_at)
+    findings += of_bodies
+    tests = {name: corrected(test, name, structure, of_bodies) for name, test in tests.items()}
+    bodies = _bodies(structure, tests)
     tests, found = unswapped(tests, bodies, sensors.marker_noise, level, looked_at)
     findings += found
     bodies = _bodies(structure, tests)

@@ -1,0 +1,184 @@
+"""From evidences to an answer: none, a named cause, a set that cannot be told apart, a combination, or unknown."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from blockshake.diagnosis.evidence.explanation import mean_evidence
+from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
+
+ODDS = float(np.log(20.0))  # within which causes are not told apart
+COARSENING = 0.05  # share of what it explains that the form of a cause may leave unexplained
+FREE_SHARE = 0.85  # of what any force at its place would explain, that a named form must
+FREE_FORCE = "unknown-force"
+OUTSIDE = (
+    "push", "blow", "rope", "drag", "dry-drag", "spring-once", "loose-weight", "changed-edge", FREE_FORCE,
+)  # fmt: skip
+_PRIOR, _PRIOR_OUTSIDE, _PRIOR_FREE = -3.0, -3.5, -6.0
+_NEEDED = 8.0  # nats over none that are no chance on clean campaigns
+_NEEDED_BY = {
+    **dict.fromkeys(("push", "blow", "spring-once", "changed-edge"), 15.0),  # many starts are searched
+    "reduced-bearing": 20.0,  # of any shape over the rotation
+    FREE_FORCE: 100.0,
+}
+_NEEDED_OF_SLAB = 6.0
+_SECOND_SHARE = 0.1  # of the first cause's gain, that a second one must gain beyond what is needed
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A cause with its best place.
+
+    Attributes
+    ----------
+    cause : str
+    place : str
+    gain : float
+        Logarithm of the evidence over none, averaged over the places.
+    score : float
+        The same with the prior, and of a free force the share that a form must explain.
+    places : tuple of str
+        Places that cannot be told apart.
+    """
+
+    cause: str
+    place: str
+    gain: float
+    score: float
+    places: tuple
+
+    @property
+    def strong(self):
+        """Whether the gain is no chance."""
+        return self.gain > _NEEDED_BY.get(self.cause, _NEEDED)
+
+
+@dataclass(frozen=True)
+class Group:
+    """Causes that cannot be told apart in one part of the readings, the likeliest first.
+
+    Attributes
+    ----------
+    rivals : tuple of Rival
+    odds : dict of str to float
+        Of the first over each other cause, as a logarithm, coarsened.
+    """
+
+    rivals: tuple
+    odds: dict
+
+    @property
+    def effects(self):
+        """Effects of the registry in the set."""
+        return tuple(one.cause for one in self.rivals if one.cause not in OUTSIDE)
+
+    @property
+    def outside(self):
+        """Forms from outside in the set."""
+        return tuple(one.cause for one in self.rivals if one.cause in OUTSIDE)
+
+
+def coarsened(difference, gain):
+    """Logarithm of the odds of two causes whose scores differ, the better one gaining ``gain``.
+
+    The likelihood is raised to ``1 / (1 + delta gain / ln 20)``: a form may leave a share delta of what it explains
+    (Miller and Dunson 2019, coarsened posteriors).
+    """
+    return difference / (1.0 + COARSENING * max(gain, 0.0) / ODDS)
+
+
+def rank(evidence, closed=None):
+    """`Rival` by falling score.
+
+    Parameters
+    ----------
+    evidence : Evidence or None
+    closed : dict of str to float64 array, optional
+        Gain of every compliance by joint, from closed joints.
+    """
+    gains = {}
+    for cause, place in evidence.keys if evidence else ():
+        if cause != JOINT_COMPLIANCE.name:
+            gains.setdefault(cause, {})[place] = evidence.gain((cause, place))
+    soft = _soft_joints(evidence, closed or {})
+    if soft:
+        gains[JOINT_COMPLIANCE.name] = soft
+    return sorted((_rival(cause, places) for cause, places in gains.items()), key=lambda one: -one.score)
+
+
+def _soft_joints(evidence, closed):
+    """Gain of a soft layer by joint, of closed and turned joints together.
+
+    The lever of a turned joint follows the layer's law or does not (few asperities): both are averaged.
+    """
+    turned = {place: evidence.gains_of_variants((cause, place)) for cause, place in (evidence.keys if evidence else ()) if cause == JOINT_COMPLIANCE.name}  # fmt: skip
+    found = {}
+    for place in {**turned, **closed}:
+        alone = closed.get(place, 0.0)
+        both = turned.get(place, 0.0) + alone
+        found[place] = float(mean_evidence(np.logaddexp(both, alone) - np.log(2.0)))
+    return found
+
+
+def _rival(cause, places):
+    gain = float(mean_evidence(list(places.values())))
+    best = max(places, key=places.get)
+    near = tuple(
+        place
+        for place in sorted(places, key=lambda one: -places[one])
+        if coarsened(places[best] - places[place], places[best]) < ODDS
+    )
+    prior = _PRIOR_OUTSIDE if cause in OUTSIDE else _PRIOR
+    score = gain + prior if cause != FREE_FORCE else FREE_SHARE * gain + _PRIOR_FREE
+    return Rival(cause, best, gain, score, near)
+
+
+def group_of(ranked, needed=0.0):
+    """`Group` of the strongest cause and all that cannot be told from it; None where nothing is strong.
+
+    Parameters
+    ----------
+    ranked : list of Rival
+        By falling score.
+    needed : float
+        Gain that is needed beyond the usual one.
+    """
+    strong = [one for one in ranked if one.strong and one.gain > _NEEDED + needed]
+    if not strong:
+        return None
+    first = strong[0]
+    odds = {one.cause: coarsened(first.score - one.score, first.score) for one in ranked}
+    near = [one for one in ranked if odds[one.cause] < ODDS]
+    return Group(tuple(near), odds)
+
+
+def second_group(evidence, first):
+    """`Group` beside that of a first cause, or None.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    first : Rival
+    """
+    beside = evidence.beside((first.cause, first.place))
+    return group_of(rank(beside), _SECOND_SHARE * first.gain)
+
+
+def slab_group(gains):
+    """Groups of the slab's rotation and of its vertical motion.
+
+    Parameters
+    ----------
+    gains : dict of str to float
+        Over none, by effect.
+    """
+    found = []
+    for names in (("table-pitch", "base-compliance"), ("vertical-motion",)):
+        ranked = sorted(
+            (Rival(name, "all", gains[name], gains[name], ("all",)) for name in names),
+            key=lambda one: -one.gain,
+        )
+        if ranked[0].gain > _NEEDED_OF_SLAB:
+            odds = {one.cause: coarsened(ranked[0].gain - one.gain, ranked[0].gain) for one in ranked}
+            found.append(Group(tuple(one for one in ranked if odds[one.cause] < ODDS), odds))
+    return found

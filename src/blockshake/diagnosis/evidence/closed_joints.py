@@ -1,0 +1,57 @@
+"""Rotation of closed joints against the moment that they carry: evidence of a soft layer, by joint and compliance."""
+
+import numpy as np
+
+from blockshake.diagnosis.evidence.likelihood import from_rows
+from blockshake.effects.joint_compliance import COMPLIANCES, rotation_by_compliance
+
+_WITHIN = 0.6  # of the half width: a resultant nearer to the edge may have opened the joint
+_FEWEST = 30  # instants
+_NOMINAL, _SPREAD = 6e-11, 4e-11  # m3/N, of the layer that stands for elastic blocks
+_COLOURED, _MEMORY, _CONSTANT = 8e-6, 0.3, 2e-5  # rad, s, rad
+_NOISE_SHARE, _LEAST_NOISE, _RIDGE = 0.8, 1e-5, 0.1
+
+
+def closed_joint_gains(tests):
+    """Gain of every compliance in every joint, over that of elastic blocks alone.
+
+    Parameters
+    ----------
+    tests : list of SeenTest
+
+    Returns
+    -------
+    dict of int to float64 array, shape (n_compliances,)
+        By face; only of structures whose joints are a tree, and of joints that are closed for long enough.
+    """
+    if not tests[0].tree:
+        return {}
+    found = {}
+    for face in range(len(tests[0].faces)):
+        rows = [one for one in (_rows(test, face) for test in tests) if one is not None]
+        if not rows:
+            continue
+        covariances, turns, slopes = zip(*rows, strict=True)
+        values = [turn - _NOMINAL * slope for turn, slope in zip(turns, slopes, strict=True)]
+        likelihood = from_rows(covariances, values, [[_SPREAD * slope for slope in slopes]])
+        target, gram = likelihood.normal_equations(likelihood.whiten([slope[:, None] for slope in slopes]))
+        found[face] = COMPLIANCES * target[0] - 0.5 * COMPLIANCES**2 * gram[0, 0]
+    return found
+
+
+def _rows(test, face):
+    """Covariance and values of the rotation, and its slope on the compliance, of one test; None where too short."""
+    half, length = test.faces[face].half_width, float(np.ptp(test.faces[face].corners[:, 1]))
+    normal, moment = test.forces.force[:, face, 2], test.forces.moment[:, face, 1]
+    closed = test.states.closed[:, face] & (normal > 0.0) & (np.abs(moment) < _WITHIN * half * normal)
+    closed &= np.isfinite(test.joints.rotation[:, face])
+    chosen = np.flatnonzero(closed)[::2]
+    if len(chosen) < _FEWEST:
+        return None
+    slope = rotation_by_compliance(-moment[chosen] / normal[chosen], normal[chosen], half, length)
+    noise = max(_NOISE_SHARE * test.joints.rotation_error[face], _LEAST_NOISE)
+    apart = np.abs(test.motion.time[chosen][:, None] - test.motion.time[chosen])
+    covariance = noise**2 * np.exp(-(apart**2) / (4.0 * test.motion.width**2))
+    covariance += _COLOURED**2 * np.exp(-apart / _MEMORY) + _CONSTANT**2
+    covariance[np.diag_indices(len(chosen))] += (_RIDGE * noise) ** 2
+    return covariance, test.joints.rotation[chosen, face], slope

@@ -1,0 +1,183 @@
+"""Gaussian likelihood of the rows of all tests, nuisances marginalised, and the evidence of columns beside them."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import solve_triangular
+from scipy.special import log_ndtr
+
+
+@dataclass(frozen=True)
+class Amplitudes:
+    """Posterior of the amplitudes of some columns, and what they gain.
+
+    Attributes
+    ----------
+    gain : float
+        Logarithm of the evidence over that of no column.
+    mean : float64 array, shape (n_columns,)
+    covariance : float64 array, shape (n_columns, n_columns)
+    """
+
+    gain: float
+    mean: np.ndarray
+    covariance: np.ndarray
+
+
+@dataclass(frozen=True)
+class Likelihood:
+    """Rows of all tests in units of their covariance.
+
+    Attributes
+    ----------
+    roots : list of float64 array, shape (n_rows, n_rows)
+        Lower roots of the tests' covariances.
+    value : float64 array, shape (n_all_rows,)
+        Whitened rows.
+    nuisances : float64 array, shape (n_all_rows, n_nuisances)
+        Whitened, with standard normal amplitudes.
+    prior : float
+        Logarithm of the prior of this likelihood among others.
+    """
+
+    roots: list
+    value: np.ndarray
+    nuisances: np.ndarray
+    prior: float
+
+    @cached_property
+    def ends(self):
+        """First row of every test, and the number of all."""
+        return np.concatenate([[0], np.cumsum([len(root) for root in self.roots])])
+
+    @cached_property
+    def _inner(self):
+        size = self.nuisances.shape[1]
+        return np.linalg.inv(np.eye(size) + self.nuisances.T @ self.nuisances)
+
+    @cached_property
+    def _weighted(self):
+        return self.value - self.nuisances @ (self._inner @ (self.nuisances.T @ self.value))
+
+    @cached_property
+    def misfit(self):
+        """Squared distance of the rows from zero, nuisances free."""
+        return float(self.value @ self._weighted)
+
+    @cached_property
+    def log_evidence_of_rows(self):
+        """Logarithm of the whitened rows' density without any cause, up to a constant."""
+        return -0.5 * self.misfit + 0.5 * np.linalg.slogdet(self._inner)[1]
+
+    @cached_property
+    def log_evidence(self):
+        """The same of the rows themselves, with the prior of this likelihood."""
+        spread = sum(np.log(np.diag(root)).sum() for root in self.roots)
+        return self.log_evidence_of_rows - spread + self.prior
+
+    def whiten(self, columns):
+        """Columns, one array (n_rows, n_columns) a test, in units of the covariance: (n_all_rows, n_columns)."""
+        return np.concatenate(
+            [self.whiten_one(index, column) for index, column in enumerate(columns)], axis=0
+        )
+
+    def whiten_one(self, test, columns):
+        """The same of one test."""
+        return solve_triangular(self.roots[test], columns, lower=True, check_finite=False)
+
+    def amplitudes(self, whitened, scales, positive=False):
+        """`Amplitudes` of whitened columns together.
+
+        Parameters
+        ----------
+        whitened : float64 array, shape (n_all_rows, n_columns)
+        scales : float64 array, shape (n_columns,)
+            Standard deviations of the amplitudes' priors, about zero; None for one column whose amplitude is 1.
+        positive : bool
+            The first amplitude is not negative: its prior is half a normal distribution.
+
+        Notes
+        -----
+        With the posterior ``N(m, C)``: ``ln B = m' C^-1 m / 2 - ln |1 + G L| / 2``, plus ``ln 2 Phi(m / s)`` of a
+        positive amplitude (Rasmussen and Williams 2006, Eq. 2.8 for the marginal likelihood).
+        """
+        target, gram = self.normal_equations(whitened)
+        if scales is None:
+            return Amplitudes(float(target[0] - 0.5 * gram[0, 0]), np.ones(1), np.zeros((1, 1)))
+        scales = np.atleast_1d(scales)
+        precision = gram + np.diag(scales**-2.0)
+        covariance = np.linalg.inv(precision)
+        mean = covariance @ target
+        gain = 0.5 * target @ mean - 0.5 * np.linalg.slogdet(np.eye(len(scales)) + gram * scales**2)[1]
+        if positive:
+            gain += np.log(2.0) + log_ndtr(mean[0] / np.sqrt(covariance[0, 0]))
+        return Amplitudes(float(gain), mean, covariance)
+
+    def normal_equations(self, whitened):
+        """Projections ``H' Q y`` on the rows and ``H' Q H`` among whitened columns, nuisances free."""
+        crossed = self.nuisances.T @ whitened
+        gram = whitened.T @ whitened - crossed.T @ (self._inner @ crossed)
+        return whitened.T @ self._weighted, gram
+
+    def single(self, whitened, scale, positive=False, test=None):
+        """Gain and mean of every column alone, each (n_columns,); of columns of one test alone if it is given."""
+        own = slice(None) if test is None else slice(self.ends[test], self.ends[test + 1])
+        target = whitened.T @ self._weighted[own]
+        crossed = self.nuisances[own].T @ whitened
+        gram = np.einsum("ij,ij->j", whitened, whitened)
+        gram = np.maximum(gram - np.einsum("ij,ij->j", crossed, self._inner @ crossed), 0.0)
+        return gain_of_one(target, gram, scale, positive)
+
+    def parts(self, whitened, test):
+        """Of columns of one test: ``H' Q y``, the diagonal of ``H' H``, and ``N' H``, to be summed over tests."""
+        own = slice(self.ends[test], self.ends[test + 1])
+        return (
+            whitened.T @ self._weighted[own],
+            np.einsum("ij,ij->j", whitened, whitened),
+            self.nuisances[own].T @ whitened,
+        )
+
+    def gain_of_sum(self, target, square, crossed, scale):
+        """Gain and mean of columns that are sums over tests of such parts."""
+        gram = np.maximum(
+            square - np.einsum("i...,i...->...", crossed, np.tensordot(self._inner, crossed, 1)), 0.0
+        )
+        return gain_of_one(target, gram, scale, False)
+
+    def beside(self, columns, scales):
+        """The likelihood with the columns of a cause among the nuisances."""
+        added = self.whiten(columns) * np.atleast_1d(scales)
+        return Likelihood(self.roots, self.value, np.concatenate([self.nuisances, added], axis=1), self.prior)
+
+
+def gain_of_one(target, gram, scale, positive):
+    """Gain and mean of single amplitudes from ``H' Q y`` and ``H' Q H``."""
+    precision = gram + scale**-2.0
+    mean = target / precision
+    gain = 0.5 * target * mean - 0.5 * np.log1p(gram * scale**2)
+    if positive:
+        gain = gain + np.log(2.0) + log_ndtr(mean * np.sqrt(precision))
+    return gain, mean
+
+
+def from_rows(covariances, values, nuisances, prior=0.0):
+    """`Likelihood` of rows.
+
+    Parameters
+    ----------
+    covariances, values : list of float64 array, shapes (n_rows, n_rows) and (n_rows,)
+        By test.
+    nuisances : list of list of float64 array, shape (n_rows,)
+        By nuisance and test, each times its standard deviation.
+    prior : float
+        Logarithm of the prior of these covariances among others.
+    """
+    roots = [np.linalg.cholesky(covariance) for covariance in covariances]
+    bare = Likelihood(roots, np.zeros(0), np.zeros((0, 0)), prior)
+    value = bare.whiten([rows[:, None] for rows in values])[:, 0]
+    stacked = [
+        np.stack([column[test] for column in nuisances], axis=1) if nuisances else np.zeros((len(rows), 0))
+        for test, rows in enumerate(values)
+    ]
+    return Likelihood(roots, value, bare.whiten(stacked), prior)

@@ -1,0 +1,87 @@
+"""What nobody knows of sound blocks to the millimetre: small errors that every cause is compared beside.
+
+Each is a column of the rows times its standard deviation, marginalised in closed form.
+"""
+
+import numpy as np
+
+INWARD = (
+    0.005  # m, mean by which edges lie further in than the structure file says: chamfers and contact nodes
+)
+_ALL_INWARD, _INWARD, _ALONG, _ALONG_OF_TEST = 0.006, 0.003, 0.001, 0.001  # m
+_GROWTH, _GROWTH_AT = 0.0015, 0.01  # m by this rotation: edges are rounded
+_CLOSING, _CLOSING_AT = 0.006, 0.001  # m, rad: elastic faces bear wider the less they have turned
+_ECCENTRIC = 0.001  # m
+_PAIR, _JOINT, _RISE, _RISE_AT = 0.12, 0.05, 0.05, 0.03  # of the coefficient; m/s
+_SMALLEST_TURN, _MOST_RISE = 1e-5, 2.0
+
+
+def nuisance_columns(tests):
+    """Columns of all nuisances, each times its standard deviation.
+
+    Parameters
+    ----------
+    tests : list of JointRows
+
+    Returns
+    -------
+    list of list of float64 array
+        By nuisance and test, (n_rows,); those that are zero in all rows are left out.
+    """
+    columns = [*_of_edges(tests), *_of_friction(tests), *_of_masses(tests)]
+    return [column for column in columns if any(rows.any() for rows in column)]
+
+
+def expected_rows(test):
+    """Rows of edges that lie further in by the usual amount, (n_rows,)."""
+    return sum((INWARD * hinge.inward for hinge in test.hinges.values()), np.zeros(len(test.rows.value)))
+
+
+def _of_edges(tests):
+    keys = sorted({key for test in tests for key in test.hinges})
+    yield [sum((_ALL_INWARD * h.inward for h in test.hinges.values()), _zero(test)) for test in tests]
+    for key in keys:
+        yield _by_test(tests, key, lambda h: _INWARD * h.inward)
+        yield _by_test(tests, key, lambda h: _ALONG * h.along)
+        yield _by_test(tests, key, lambda h: _GROWTH * h.inward * h.turn / _GROWTH_AT)
+        yield _by_test(tests, key, lambda h: _CLOSING * h.inward * _closing(h.turn))
+        for own in tests:
+            moved = _by_test(tests, key, lambda h: _ALONG_OF_TEST * h.along)
+            yield [rows if test is own else _zero(test) for test, rows in zip(tests, moved, strict=True)]
+
+
+def _closing(turn):
+    return np.minimum(1.0, _CLOSING_AT / np.maximum(turn, _SMALLEST_TURN))
+
+
+def _by_test(tests, key, rows):
+    return [rows(test.hinges[key]) if key in test.hinges else _zero(test) for test in tests]
+
+
+def _of_friction(tests):
+    faces = tests[0].seen.faces
+    slipping = sorted({face for test in tests for face in test.slides})
+    for face in slipping:
+        mu = faces[face].friction
+        yield [_slides(test, [face], lambda slide, mu=mu: _JOINT * mu * slide.friction) for test in tests]
+        yield [_slides(test, [face], lambda slide, mu=mu: _RISE * mu * slide.friction * _rise(slide.rate)) for test in tests]  # fmt: skip
+    for mu in sorted({faces[face].friction for face in slipping}):
+        alike = [face for face in slipping if faces[face].friction == mu]
+        yield [_slides(test, alike, lambda slide, mu=mu: _PAIR * mu * slide.friction) for test in tests]
+
+
+def _rise(rate):
+    return np.minimum(rate / _RISE_AT, _MOST_RISE)
+
+
+def _slides(test, faces, rows):
+    return sum((rows(test.slides[face]) for face in faces if face in test.slides), _zero(test))
+
+
+def _of_masses(tests):
+    for body in tests[0].seen.free:
+        yield [_ECCENTRIC * test.eccentric[int(body)] for test in tests]
+
+
+def _zero(test):
+    return np.zeros(len(test.rows.value))

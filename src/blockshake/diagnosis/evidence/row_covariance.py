@@ -1,0 +1,41 @@
+"""Covariance of a test's rows: the sensors through the smoothing kernel, and what the model of the joints leaves out."""
+
+import numpy as np
+
+_LEVER, _LEVER_MEMORY, _LEVER_WHITE = 0.001, 0.3, 0.0003  # m, s, m: of the point where a turned face bears
+_FRICTION = 0.04  # of the coefficient of a slipping face: half coloured, half white
+_RIDGE = 1e-5  # of every variance, for the factorisation
+
+
+def row_covariance(test, noise, discrepancy):
+    """Covariance matrix of the rows of one test, (n_rows, n_rows).
+
+    Parameters
+    ----------
+    test : JointRows
+    noise : float
+        Standard deviation of the sensors over the stated one [1].
+    discrepancy : float
+        Of the joints' own errors over the usual ones [1].
+
+    Notes
+    -----
+    White noise has, under the second derivative of a Gaussian kernel of the width w, the autocorrelation
+    ``(u^4 - 6 u^2 + 3) / 3 exp(-u^2 / 2)`` with ``u = (t - t') / (sqrt(2) w)``: the fourth derivative of the kernel's
+    own autocorrelation. The errors of levers and of friction are Ornstein-Uhlenbeck processes beside white ones.
+    """
+    rows = test.rows
+    apart = np.abs(rows.time[:, None] - rows.time)
+    u = apart / (np.sqrt(2.0) * test.seen.motion.width)
+    shared = (u**4 - 6.0 * u**2 + 3.0) / 3.0 * np.exp(-0.5 * u**2)
+    covariance = noise**2 * (rows.noise @ rows.noise.T) * shared
+    coloured, same = np.exp(-apart / _LEVER_MEMORY), apart < 1e-9
+    lever = discrepancy**2 * (_LEVER**2 * coloured + _LEVER_WHITE**2 * same)
+    friction = (discrepancy * _FRICTION) ** 2 * (coloured + same)
+    for hinge in test.hinges.values():
+        covariance += np.outer(hinge.inward, hinge.inward) * lever
+    for slide in test.slides.values():
+        usual = test.seen.faces[slide.face].friction * slide.friction
+        covariance += np.outer(usual, usual) * friction
+    covariance[np.diag_indices(len(covariance))] *= 1.0 + _RIDGE
+    return covariance

@@ -1,0 +1,48 @@
+"""Edges of one joint that change: in one test, or from an instant of a test on, and in the tests after it."""
+
+import numpy as np
+
+from blockshake.diagnosis.evidence.explanation import mean_evidence, single
+
+_STARTS_EVERY = 0.5  # s
+_SCALE = 0.05  # m
+
+
+def explain_changed_edge(likelihood, tests, place, key):
+    """`Explanation` of an inset of one edge, or of both, of one hinge.
+
+    Parameters
+    ----------
+    likelihood : Likelihood
+    tests : list of JointRows
+    place : str
+    key : tuple of int
+        Face and tangent.
+    """
+    tried, columns = [], [[] for _ in tests]
+    for own, test in enumerate(tests):
+        for start in np.arange(test.rows.time[0], test.rows.time[-1], _STARTS_EVERY):
+            for lasts in (False, True):
+                if lasts and own == 0 and start == test.rows.time[0]:
+                    continue  # in all tests: no change
+                for edge in (0, 1, -1):
+                    tried.append((own, float(start), lasts, edge))
+                    for number, one in enumerate(tests):
+                        columns[number].append(_rows(one, key, edge, number, own, start, lasts))
+    whitened = likelihood.whiten([np.stack(rows, axis=1) for rows in columns])
+    gain, mean = likelihood.single(whitened, _SCALE, positive=True)
+    best = int(np.argmax(gain))
+    own, start, lasts, edge = tried[best]
+    return single(
+        "changed-edge", place, mean_evidence(gain), [rows[best] for rows in columns], _SCALE, mean[best],
+        {"test": tests[own].seen.name, "start": start, "lasts": lasts, "edge": edge},
+    )  # fmt: skip
+
+
+def _rows(test, key, edge, number, own, start, lasts):
+    """Rows of the inset in one test, where it is there."""
+    if key not in test.hinges or number < own or (number > own and not lasts):
+        return np.zeros(len(test.rows.value))
+    hinge = test.hinges[key]
+    there = hinge.edge == edge if edge else np.ones(len(hinge.edge), dtype=bool)
+    return hinge.inward * (there & ((number > own) | (test.rows.time >= start)))

@@ -1,0 +1,68 @@
+"""A weight that lies loose on the top block: it presses, slides by Coulomb's law, and drags."""
+
+import numpy as np
+
+from blockshake.diagnosis.evidence.explanation import best_of
+from blockshake.effects.effect import Columns
+from blockshake.forces.wrench_histories import force_at
+
+_GRIPS = (0.05, 0.1, 0.2, 0.3, 0.4, 9.0)  # coefficients of friction; the last one holds
+_SCALE = 0.2  # of the block's mass
+
+
+def explain_loose_weight(likelihood, tests, place, body):
+    """`Explanation` of a weight on the top of a body.
+
+    Parameters
+    ----------
+    likelihood : Likelihood
+    tests : list of JointRows
+    place : str
+    body : int
+    """
+    scale = _SCALE * tests[0].seen.structure.mass[body]
+    variants = [
+        [Columns({"grip": grip}, _rows(test.seen, body, grip)[:, None], (scale,), True) for test in tests]
+        for grip in _GRIPS
+    ]
+    return best_of(likelihood, "loose-weight", place, variants)
+
+
+def _rows(seen, body, grip):
+    """Rows of a weight of 1 kg."""
+    motion = seen.motion
+    axes = np.nan_to_num(motion.rotation[:, body])
+    along, up = axes[..., 0], axes[..., 2]
+    solid = seen.structure.solids[seen.structure.file.bodies[body].shape]
+    top = 0.5 * float(np.ptp(solid.vertices[:, 2]))
+    force = motion.acceleration[:, body] - np.array(seen.structure.file.gravity)
+    force = force + np.cross(motion.angular_acceleration[:, body], top * up)
+    asked, pressed = (
+        np.nan_to_num((force * along).sum(axis=1)),
+        np.nan_to_num((force * up).sum(axis=1), nan=9.81),
+    )
+    slid, shear = _slide(asked, np.maximum(pressed, 0.0), grip, motion.time[1] - motion.time[0])
+    weight = -(shear[:, None] * along + np.maximum(pressed, 0.0)[:, None] * up)
+    return seen.rows.along(force_at(seen, body, weight, arm=top * up + slid[:, None] * along))
+
+
+def _slide(asked, pressed, grip, step):
+    """Displacement along the top, and the shear by mass that the weight is given, by Coulomb's law.
+
+    ``asked`` is the acceleration along the top, less gravity, that holds the weight in place; ``pressed`` the same
+    across it.
+    """
+    slid, shear, rate = np.zeros(len(asked)), np.zeros(len(asked)), 0.0
+    for now in range(1, len(asked)):
+        limit = grip * pressed[now]
+        slid[now] = slid[now - 1]
+        if rate == 0.0 and abs(asked[now]) <= limit:
+            shear[now] = asked[now]
+            continue
+        friction = limit * np.sign(asked[now] if rate == 0.0 else -rate)
+        faster = rate + (friction - asked[now]) * step
+        if rate != 0.0 and faster * rate < 0.0 and abs(asked[now]) <= limit:
+            faster, friction = 0.0, asked[now]
+        shear[now], rate = friction, faster
+        slid[now] += rate * step
+    return slid, shear

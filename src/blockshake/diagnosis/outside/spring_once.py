@@ -1,0 +1,29 @@
+"""A spring in one test alone: a cable that is taut once, a bar that leans against a block."""
+
+import numpy as np
+
+from blockshake.diagnosis.evidence.explanation import mean_evidence, single
+from blockshake.effects.stopper_contact import spring_rows
+
+_GAPS = np.concatenate([[-0.02], np.arange(0.0, 0.0401, 0.004)])  # m; below 0 it is taut from the start
+_SCALE = 1e7  # N/m
+
+
+def explain_spring_once(likelihood, points, weight):
+    """`Explanation` of a spring beyond a gap to one side in one test, at one point."""
+    found = []
+    for test, one in enumerate(points.by_test):
+        for side in (1, -1):
+            rows = np.stack([spring_rows(one, side, gap) for gap in _GAPS], axis=1)
+            gain, mean = likelihood.single(
+                likelihood.whiten_one(test, rows), _SCALE, positive=True, test=test
+            )
+            best = int(np.argmax(gain))
+            found.append((float(mean_evidence(gain)), test, rows[:, best], mean[best], side, _GAPS[best]))
+    best = max(found, key=lambda one: one[0])
+    _, own, rows, mean, side, gap = best
+    columns = [rows if test == own else np.zeros(len(one.unit)) for test, one in enumerate(points.by_test)]
+    values = {"test": points.tests[own], "side": side, "gap": float(gap)}
+    return single(
+        "spring-once", points.place, mean_evidence([one[0] for one in found]), columns, _SCALE, mean, values
+    )

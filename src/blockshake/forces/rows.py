@@ -1,0 +1,247 @@
+"""Rows of a test: the share of the required wrenches that no face may carry as it is seen to move."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from blockshake.forces.required import covariance_root, unread_directions
+from blockshake.geometry.rotations import rotation_matrices
+
+_EVERY = 0.02  # s, between instants: the kernel passes next to nothing beyond 25 Hz
+_CARRIED = 1e-9  # of the largest singular value: a wrench that faces carry
+_BEYOND, _SURELY = 0.01, 4.0  # m, standard deviations: of the resultant beyond the edge of a closed face
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Equations that hold without any force of a joint: ``z . (M a - M g) = z . (wrenches of what is not modelled)``.
+
+    Attributes
+    ----------
+    instant : int array, shape (n_rows,)
+        Index of each row's time among the motion's instants.
+    time : float64 array, shape (n_rows,)
+        [s]
+    direction : float64 array, shape (n_rows, n_bodies, 6)
+        z: a unit vector of virtual displacements of all free bodies, force and moment about the mass centre; zero for
+        driven bodies.
+    value : float64 array, shape (n_rows,)
+        Of the required wrenches along z [N, N m].
+    noise : float64 array, shape (n_rows, 6 * n_free)
+        A root of the covariance by the sensors of the rows of one instant.
+    """
+
+    instant: np.ndarray
+    time: np.ndarray
+    direction: np.ndarray
+    value: np.ndarray
+    noise: np.ndarray
+
+    def along(self, wrench):
+        """Component of a history of wrenches (n_times, n_bodies, 6) along every row, (n_rows,)."""
+        return np.einsum("rbk,rbk->r", self.direction, wrench[self.instant])
+
+
+@dataclass(frozen=True)
+class ContactForces:
+    """Resultants that would balance the required wrenches if every face could carry any wrench.
+
+    Attributes
+    ----------
+    force, moment : float64 arrays, shape (n_times, n_faces, 3)
+        On the upper body, about the middle of the face, along its axes [N, N m]: exact where the faces are a tree, of
+        the least norm elsewhere. NaN where the motion is unknown.
+    moment_error : float64 array, shape (n_times, n_faces)
+        Standard deviation of the moment about the second tangent [N m].
+    """
+
+    force: np.ndarray
+    moment: np.ndarray
+    moment_error: np.ndarray
+
+
+def contact_forces(frames, required, free):
+    """Least-squares contact forces, see `ContactForces`.
+
+    Parameters
+    ----------
+    frames : FaceFrames
+    required : RequiredWrenches
+    free : int array, shape (n_free,)
+        Bodies.
+    """
+    n_times, n_faces = len(required.wrench), len(frames.faces)
+    columns = np.stack([frames.unit_wrenches(face) for face in range(n_faces)], axis=-2)
+    # (n_times, n_bodies, 6, n_faces, 6) to one matrix an instant
+    matrix = columns[:, free].reshape(n_times, 6 * len(free), 6 * n_faces)
+    known = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(required.wrench[:, free]).all(axis=(1, 2))
+    inverse = np.full((n_times, 6 * n_faces, 6 * len(free)), np.nan)
+    inverse[known] = np.linalg.pinv(matrix[known])
+    wanted = required.wrench[:, free].reshape(n_times, -1)
+    found = np.einsum("tij,tj->ti", inverse, wanted).reshape(n_times, n_faces, 6)
+    about = inverse.reshape(n_times, n_faces, 6, len(free), 6)[:, :, 4]
+    errors = np.einsum("tfbi,tbij->tfbj", about, covariance_root(required.information[:, free]))
+    return ContactForces(found[..., :3], found[..., 3:], np.sqrt((errors**2).sum(axis=(2, 3))))
+
+
+@dataclass(frozen=True)
+class FaceFrames:
+    """Faces as their upper bodies carry them along.
+
+    Attributes
+    ----------
+    faces : list of Face
+    middle : float64 array, shape (n_times, n_faces, 3)
+        World frame [m].
+    axes : float64 array, shape (n_times, n_faces, 3, 3)
+        Two tangents and the normal, in columns, world frame.
+    position : float64 array, shape (n_times, n_bodies, 3)
+        Of the mass centres [m].
+    """
+
+    faces: list
+    middle: np.ndarray
+    axes: np.ndarray
+    position: np.ndarray
+
+    def between(self, face, force, point, moment=0.0):
+        """Wrenches of a face's force on its upper body, and of its opposite on the lower one.
+
+        Parameters
+        ----------
+        face : int
+        force, point : float64 arrays, shape (n_times, 3)
+            World frame [N, m].
+        moment : float64 array, shape (n_times, 3), optional
+            On the upper body [N m].
+
+        Returns
+        -------
+        float64 array, shape (n_times, n_bodies, 6)
+        """
+        wrench = np.zeros((*self.position.shape[:2], 6))
+        for body, sign in ((self.faces[face].upper, 1.0), (self.faces[face].lower, -1.0)):
+            wrench[:, body, :3] = sign * force
+            wrench[:, body, 3:] = sign * (np.cross(point - self.position[:, body], force) + moment)
+        return wrench
+
+    def unit_wrenches(self, face, point=None):
+        """Wrenches of unit forces at a point, the middle by default, and of unit moments along a face's axes.
+
+        Returns
+        -------
+        float64 array, shape (n_times, n_bodies, 6, 6)
+            In the last axis: three forces, three moments.
+        """
+        point = self.middle[:, face] if point is None else point
+        none = np.zeros_like(point)
+        forces = [self.between(face, self.axes[:, face, :, axis], point) for axis in range(3)]
+        moments = [self.between(face, none, point, self.axes[:, face, :, axis]) for axis in range(3)]
+        return np.stack(forces + moments, axis=-1)
+
+
+def face_frames(structure, faces, motion):
+    """`FaceFrames` of a motion."""
+    start = rotation_matrices(structure.orientation)
+    middle, axes = [], []
+    for face in faces:
+        turn = motion.rotation[:, face.upper]
+        middle.append(motion.position[:, face.upper] + turn @ face.on_upper)
+        axes.append(turn @ (start[face.upper].T @ face.axes))
+    return FaceFrames(faces, np.stack(middle, axis=1), np.stack(axes, axis=1), motion.position)
+
+
+def with_resultants(states, frames, forces, tree):
+    """States in which a closed face whose resultant lies surely beyond an edge bears on that edge.
+
+    A joint of a tree alone has a resultant that is known.
+    """
+    edge = states.edge.copy()
+    for index, face in enumerate(frames.faces):
+        if not tree:
+            continue
+        normal, moment = forces.force[:, index, 2], forces.moment[:, index, 1]
+        over = np.abs(moment) - face.half_width * normal
+        surely = over > _SURELY * forces.moment_error[:, index] + _BEYOND * normal
+        beyond = surely & (normal > 0.0) & (edge[:, index, 0] == 0) & ~states.lifted[:, index]
+        edge[beyond, index, 0] = -np.sign(moment[beyond])
+    return replace(states, edge=edge)
+
+
+def bearing_points(frames, states):
+    """Where every face bears: its middle, an edge or a corner, (n_times, n_faces, 3), world frame [m]."""
+    half = np.array(
+        [[0.5 * np.ptp(face.corners[:, tangent]) for tangent in range(2)] for face in frames.faces]
+    )
+    return frames.middle + np.einsum("tfk,tfik->tfi", states.edge * half, frames.axes[..., :2])
+
+
+def equilibrium_rows(frames, states, motion, required, free):
+    """Rows of a test, see `Rows`.
+
+    Parameters
+    ----------
+    frames : FaceFrames
+    states : FaceStates
+    motion : Motion
+    required : RequiredWrenches
+    free : int array, shape (n_free,)
+
+    Returns
+    -------
+    Rows
+        At instants 20 ms apart at which the motion of every free body is known.
+
+    Notes
+    -----
+    The wrenches that the faces may carry span a space at each instant: any wrench where a face is closed; no moment
+    about an edge on which it has turned; no shear beside friction where it slips; nothing where it is lifted. The rows
+    are an orthonormal basis of what is orthogonal to it: the equations of virtual work of the mechanism that the turned
+    joints make, whatever the statical indeterminacy of the others. A direction of a body that no sensor reads is free
+    like a joint's force.
+    """
+    n_bodies = frames.position.shape[1]
+    step = float(np.median(np.diff(motion.time)))
+    known = np.isfinite(required.wrench[:, free]).all(axis=(1, 2)) & np.isfinite(frames.middle).all(
+        axis=(1, 2)
+    )
+    known &= np.isfinite(frames.axes).all(axis=(1, 2, 3))
+    chosen = np.flatnonzero(known)
+    chosen = chosen[chosen % max(1, round(_EVERY / step)) == 0]
+    carried = np.concatenate(
+        [_carried(frames, states, face)[chosen][:, free] for face in range(len(frames.faces))], axis=-1
+    ).reshape(len(chosen), 6 * len(free), -1)
+    matrix = np.concatenate([carried, _unread(required.information[chosen][:, free])], axis=-1)
+    left, sizes, _ = np.linalg.svd(matrix, full_matrices=False)
+    place, column = np.nonzero(sizes <= _CARRIED * sizes[:, :1])
+    vectors = left[place, :, column]
+    direction = np.zeros((len(place), n_bodies, 6))
+    direction[:, free] = vectors.reshape(-1, len(free), 6)
+    instant = chosen[place]
+    value = np.einsum("rbk,rbk->r", direction[:, free], required.wrench[instant][:, free])
+    roots = covariance_root(required.information[chosen][:, free])[place]
+    noise = np.einsum("rbi,rbij->rbj", direction[:, free], roots).reshape(len(place), 6 * len(free))
+    return Rows(instant, motion.time[instant], direction, value, noise)
+
+
+def _carried(frames, states, face):
+    """Wrenches that a face may carry, (n_times, n_bodies, 6, 6); zero columns where it may carry less than six."""
+    edge, slip = states.edge[:, face], states.slip[:, face]
+    columns = frames.unit_wrenches(face, bearing_points(frames, states)[:, face])
+    friction = frames.faces[face].friction * slip
+    columns[..., 2] -= friction[:, None, None] * columns[..., 0]
+    columns[slip != 0, ..., 0] = 0.0
+    columns[edge[:, 0] != 0, ..., 4] = 0.0
+    columns[edge[:, 1] != 0, ..., 3] = 0.0
+    columns[states.lifted[:, face]] = 0.0
+    return columns
+
+
+def _unread(information):
+    """Unit wrenches along the directions of bodies that no sensor reads, (n_chosen, 6 * n_free, 6 * n_free)."""
+    n_chosen, n_free = information.shape[:2]
+    vectors = unread_directions(information)
+    found = np.zeros((n_chosen, n_free, 6, n_free, 6))
+    for body in range(n_free):
+        found[:, body, :, body] = vectors[:, body]
+    return found.reshape(n_chosen, 6 * n_free, 6 * n_free)

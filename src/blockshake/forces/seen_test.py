@@ -1,0 +1,110 @@
+"""A test as its sensors show it: readings, motion, faces, states, forces and rows, each made once."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import xarray as xr
+
+from blockshake.forces.faces import find_faces
+from blockshake.forces.joint_forces import from_rest
+from blockshake.forces.joint_motion import JointMotion, joint_motion
+from blockshake.forces.motion import WIDTH, Motion, smooth_motion
+from blockshake.forces.required import RequiredWrenches, required_wrenches
+from blockshake.forces.rows import (
+    ContactForces,
+    FaceFrames,
+    Rows,
+    bearing_points,
+    contact_forces,
+    equilibrium_rows,
+    face_frames,
+    with_resultants,
+)
+from blockshake.forces.states import FaceStates, face_states
+from blockshake.geometry.structure import Structure
+
+_STEP = 0.01  # s, between instants: less than the kernel's width
+
+
+@dataclass(frozen=True)
+class SeenTest:
+    """All that is read off a test, measured or simulated.
+
+    Attributes
+    ----------
+    name : str
+    structure : Structure
+    readings : xarray.Dataset
+        As in a campaign's test file, faults of sensors and outliers taken out, counted from rest.
+    motion : Motion
+    still : bool array, shape (n_times,)
+        The quiet start.
+    joints : JointMotion
+    required : RequiredWrenches
+    frames : FaceFrames
+    states : FaceStates
+    forces : ContactForces
+    rows : Rows
+    """
+
+    name: str
+    structure: Structure
+    readings: xr.Dataset
+    motion: Motion
+    still: np.ndarray
+    joints: JointMotion
+    required: RequiredWrenches
+    frames: FaceFrames
+    states: FaceStates
+    forces: ContactForces
+    rows: Rows
+
+    @property
+    def faces(self):
+        """Contact faces of the structure at its start."""
+        return self.frames.faces
+
+    @cached_property
+    def free(self):
+        """Bodies that are not driven, int array."""
+        return np.flatnonzero(~self.structure.driven)
+
+    @property
+    def tree(self):
+        """Whether the faces are a tree: the force of each is known."""
+        return len(self.faces) == len(self.free)
+
+    @cached_property
+    def bearing(self):
+        """Where every face bears, (n_times, n_faces, 3) [m]."""
+        return bearing_points(self.frames, self.states)
+
+
+def see_test(name, readings, structure, sensors):
+    """`SeenTest` of readings.
+
+    Parameters
+    ----------
+    name : str
+    readings : xarray.Dataset
+        Without sensors' faults and outliers, until a block falls.
+    structure : Structure
+    sensors : Sensors
+
+    Returns
+    -------
+    SeenTest
+    """
+    readings, until = from_rest(readings, structure, sensors)
+    motion = smooth_motion(readings, structure, sensors, _STEP, WIDTH)
+    still = motion.time <= until
+    faces = find_faces(structure)
+    required = required_wrenches(structure, motion)
+    joints = joint_motion(structure, faces, motion, still, WIDTH)
+    frames, free = face_frames(structure, faces, motion), np.flatnonzero(~structure.driven)
+    forces = contact_forces(frames, required, free)
+    states = face_states(structure, faces, motion, joints, still)
+    states = with_resultants(states, frames, forces, len(faces) == len(free))
+    rows = equilibrium_rows(frames, states, motion, required, free)
+    return SeenTest(name, structure, readings, motion, still, joints, required, frames, states, forces, rows)

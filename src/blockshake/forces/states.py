@@ -1,0 +1,94 @@
+"""States of the contact faces, from the measured motion of the joints: closed, on an edge, slipping, lifted."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import minimum_filter1d, uniform_filter1d
+
+from blockshake.geometry.rotations import rotation_matrices
+
+_LIFTED = 1e-3  # m, between the edges that should bear
+_SLIPS = 0.01  # m/s, mean over `_OVER`
+_OVER = 0.1  # s; a creep drowns in the rate's own noise and shows in the displacement over this time
+_SURE = 5.0  # standard deviations
+_CALM = 3.0  # widths of the kernel: a change farther away moves a lever by less than a millimetre
+_EITHER = 99  # number of no state
+
+
+@dataclass(frozen=True)
+class FaceStates:
+    """What every face does at every instant, its own changes within three widths of the kernel left out.
+
+    Attributes
+    ----------
+    edge : int8 array, shape (n_times, n_faces, 2)
+        Edge that bears along the first and the second tangent: 1 or -1, 0 for the whole face or where it changes.
+    slip : int8 array, shape (n_times, n_faces)
+        Direction of the upper body's slip along the first tangent, 0 without, or where it changes.
+    lifted, closed : bool arrays, shape (n_times, n_faces)
+        The face bears nowhere; the whole face bears.
+    """
+
+    edge: np.ndarray
+    slip: np.ndarray
+    lifted: np.ndarray
+    closed: np.ndarray
+
+
+def face_states(structure, faces, motion, joints, still):
+    """States of the faces.
+
+    Parameters
+    ----------
+    structure : Structure
+    faces : list of Face
+    motion : Motion
+    joints : JointMotion
+    still : bool array, shape (n_times,)
+        The quiet start, from which openings count.
+
+    Returns
+    -------
+    FaceStates
+        A face whose motion is not read counts as closed: it may carry any wrench.
+    """
+    step = float(np.median(np.diff(motion.time)))
+    near = int(np.ceil(_CALM * motion.width / step))
+    away = openings(structure, faces, motion, joints, still)
+    lifted = np.nan_to_num(away) > _LIFTED
+    edge = np.stack([joints.side, joints.across], axis=-1)
+    closed = ~lifted & (edge == 0).all(axis=-1)
+    for tangent in range(2):
+        steady = _unchanged(np.where(lifted, _EITHER, edge[..., tangent]), near)
+        closed &= steady
+        edge[..., tangent] *= steady & ~lifted
+    mean = uniform_filter1d(np.nan_to_num(joints.slip_rate), max(1, round(_OVER / step)), axis=0)
+    least = np.maximum(_SLIPS, np.sqrt(2.0) * _SURE * joints.slip_error / _OVER)
+    slip = np.where(np.abs(mean) > least, np.sign(mean), 0.0).astype(np.int8)
+    slip *= (np.sign(joints.slip_rate) == slip) & ~lifted
+    slip *= _unchanged(slip, near)
+    return FaceStates(edge, slip, lifted & _unchanged(lifted, near), closed)
+
+
+def openings(structure, faces, motion, joints, still):
+    """Distance between the edges that should bear, less its median in the quiet start, (n_times, n_faces) [m]."""
+    start = rotation_matrices(structure.orientation)
+    found = np.empty((len(motion.time), len(faces)))
+    for index, face in enumerate(faces):
+        lower, upper = face.lower, face.upper
+        apart = structure.position[upper] + start[upper] @ face.on_upper - structure.position[lower]
+        middle = motion.position[:, upper] + motion.rotation[:, upper] @ face.on_upper
+        beneath = motion.position[:, lower] + motion.rotation[:, lower] @ (start[lower].T @ apart)
+        normal = motion.rotation[:, lower] @ (start[lower].T @ face.axes[:, 2])
+        found[:, index] = np.einsum("ti,ti->t", normal, middle - beneath)
+        found[:, index] -= face.half_width * np.abs(np.sin(joints.rotation[:, index]))
+    rest = found[still] if still.any() else found
+    return found - np.nan_to_num(np.nanmedian(rest, axis=0))
+
+
+def _unchanged(states, near):
+    """Whether a state is the same ``near`` instants to either side."""
+    changed = np.zeros(states.shape, dtype=bool)
+    changed[1:] = states[1:] != states[:-1]
+    calm = minimum_filter1d((~changed).astype(np.int8), 2 * near, axis=0, mode="constant", cval=0, origin=-1)
+    return calm.astype(bool)

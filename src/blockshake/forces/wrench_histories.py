@@ -1,0 +1,103 @@
+"""Histories of wrenches that things nobody modelled would put on the bodies of a seen test: columns of its rows.
+
+Each is a float64 array (n_times, n_bodies, 6), force [N] and moment about the mass centre [N m] in the world frame, per
+unit of its amplitude. Where a motion is not known it is zero: no row is there.
+"""
+
+import numpy as np
+
+
+def edge_inward(seen, face, tangent=0, edge=0):
+    """Moment of a bearing edge that lies 1 m further in: ``s N`` about the other tangent.
+
+    Parameters
+    ----------
+    seen : SeenTest
+    face : int
+    tangent : int
+        Along which the edge lies off the middle.
+    edge : int
+        1 or -1 for one of the two edges, 0 for both.
+    """
+    side = seen.states.edge[:, face, tangent].astype(float)
+    return _shifted(seen, face, tangent, -side * (np.equal(side, edge) if edge else 1.0))
+
+
+def edges_along(seen, face, tangent=0):
+    """Moment of both bearing edges moved by 1 m along the tangent, in the direction that counts as positive."""
+    return _shifted(seen, face, tangent, np.abs(seen.states.edge[:, face, tangent]).astype(float))
+
+
+def _shifted(seen, face, tangent, shift):
+    """Moment of the normal force moved by ``shift`` (n_times,) along a tangent [m]."""
+    axes = seen.frames.axes[:, face]
+    arm = shift[:, None] * axes[..., tangent]
+    moment = np.cross(arm, normal_force(seen, face)[:, None] * axes[..., 2])
+    none = np.zeros_like(arm)
+    return np.nan_to_num(seen.frames.between(face, none, none, moment))
+
+
+def friction_against_slip(seen, face):
+    """Shear of 1 times the normal force against the slip, where the face bears."""
+    against = -seen.states.slip[:, face] * normal_force(seen, face)
+    force = against[:, None] * seen.frames.axes[:, face, :, 0]
+    return np.nan_to_num(seen.frames.between(face, force, seen.bearing[:, face]))
+
+
+def normal_force(seen, face):
+    """Normal force of a face as if it were closed, (n_times,) [N]."""
+    return seen.forces.force[:, face, 2]
+
+
+def mass_centre_off(seen, body, axis=0):
+    """Effect on the balance of a body whose mass centre lies 1 m along one of its axes from where it is taken to be.
+
+    The required wrench about the supposed centre then lacks ``m (alpha x e + omega x (omega x e))`` and ``e x m (a -
+    g)``, to first order in e.
+    """
+    motion, structure = seen.motion, seen.structure
+    arm = motion.rotation[:, body, :, axis]
+    spin, turning = motion.angular_velocity[:, body], motion.angular_acceleration[:, body]
+    further = np.cross(turning, arm) + np.cross(spin, np.cross(spin, arm))
+    weight = motion.acceleration[:, body] - np.array(structure.file.gravity)
+    wrench = _none(seen)
+    wrench[:, body, :3] = -structure.mass[body] * further
+    wrench[:, body, 3:] = -structure.mass[body] * np.cross(arm, weight)
+    return np.nan_to_num(wrench)
+
+
+def force_at(seen, body, force, height=0.0, arm=None):
+    """A force on a body.
+
+    Parameters
+    ----------
+    seen : SeenTest
+    body : int
+    force : float64 array, shape (n_times, 3) or (3,)
+        World frame [N].
+    height : float
+        Of its point above the mass centre along the body's z axis [m].
+    arm : float64 array, shape (n_times, 3), optional
+        Of its point from the mass centre in place of that, world frame [m].
+    """
+    arm = height * seen.motion.rotation[:, body, :, 2] if arm is None else arm
+    force = np.broadcast_to(force, arm.shape)
+    wrench = _none(seen)
+    wrench[:, body, :3] = force
+    wrench[:, body, 3:] = np.cross(arm, force)
+    return np.nan_to_num(wrench)
+
+
+def moves_at(seen, body, height=0.0):
+    """Displacement from rest and velocity of a point of a body against the first driven body, (n_times, 3) [m, m/s]."""
+    motion = seen.motion
+    table = int(np.flatnonzero(seen.structure.driven)[0])
+    point = motion.position[:, body] + height * motion.rotation[:, body, :, 2]
+    away = point - motion.position[:, table]
+    rest = away[seen.still & np.isfinite(away).all(axis=1)]
+    start = np.median(rest, axis=0) if len(rest) else np.nan_to_num(away[np.isfinite(away).all(axis=1)][0])
+    return away - start, motion.velocity_at(body, point) - motion.velocity[:, table]
+
+
+def _none(seen):
+    return np.zeros((len(seen.motion.time), len(seen.structure.mass), 6))
