@@ -1,5 +1,7 @@
 """Blocks bear on less than their whole face: edges worn on all sides, which takes 3 % of the mass at 9 cm."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
@@ -42,12 +44,9 @@ def _columns(seen, place):
     insets = [seen.rows.along(edge_inward(seen, face)) for face in faces]
     turns = [np.abs(seen.joints.rotation[seen.rows.instant, face]) for face in faces]
     plain = sum(insets)
+    shares = [np.clip(turn / _ROLLED, 0.0, _MOST_ROLLED) for turn in turns]
     rolled = [
-        sum(
-            inset * np.clip(turn / _ROLLED, 0.0, _MOST_ROLLED) ** power
-            for inset, turn in zip(insets, turns, strict=True)
-        )
-        for power in (1, 2)
+        sum(inset * share**power for inset, share in zip(insets, shares, strict=True)) for power in (1, 2)
     ]
     found = [
         Columns({"inset": "alike"}, plain[:, None], (_SCALE,), True),
@@ -63,7 +62,7 @@ def _ramps(turn):
     """From knot to knot of the rotation, even in its logarithm: 0 before, 1 after."""
     place = np.log(np.maximum(turn, _SMALLEST))
     knots = np.log(_KNOTS)
-    return [np.clip((place - a) / (b - a), 0.0, 1.0) for a, b in zip(knots[:-1], knots[1:], strict=True)]
+    return [np.clip((place - a) / (b - a), 0.0, 1.0) for a, b in pairwise(knots)]
 
 
 EFFECT = Effect(

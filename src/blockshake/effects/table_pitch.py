@@ -20,15 +20,11 @@ _SCALE = 6e-4  # rad s2/m
 
 def _turns(slab):
     """Rotations of the slab by every frequency; see `Effect`."""
-    return [
-        Columns(
-            {"frequency": frequency},
-            _response(slab.acceleration, slab.step, frequency)[slab.at][:, None],
-            (_SCALE,),
-            False,
-        )
-        for frequency in _FREQUENCIES
-    ]
+    found = []
+    for frequency in _FREQUENCIES:
+        turn = _response(slab.acceleration, slab.step, frequency)[slab.at]
+        found.append(Columns({"frequency": frequency}, turn[:, None], (_SCALE,), False))
+    return found
 
 
 def _response(acceleration, step, frequency):

@@ -1,6 +1,6 @@
 """A test as its sensors show it: readings, motion, faces, states, forces and rows, each made once."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -41,6 +41,7 @@ class SeenTest:
     still : bool array, shape (n_times,)
         The quiet start.
     joints : JointMotion
+        Zero where it is not known: no face turns or slips there.
     required : RequiredWrenches
     frames : FaceFrames
     states : FaceStates
@@ -106,5 +107,8 @@ def see_test(name, readings, structure, sensors):
     forces = contact_forces(frames, required, free)
     states = face_states(structure, faces, motion, joints, still)
     states = with_resultants(states, frames, forces, len(faces) == len(free))
+    joints = replace(
+        joints, **{name: np.nan_to_num(getattr(joints, name)) for name in ("rotation", "roll", "slip_rate")}
+    )
     rows = equilibrium_rows(frames, states, motion, required, free)
     return SeenTest(name, structure, readings, motion, still, joints, required, frames, states, forces, rows)

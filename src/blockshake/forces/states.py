@@ -26,7 +26,7 @@ class FaceStates:
     slip : int8 array, shape (n_times, n_faces)
         Direction of the upper body's slip along the first tangent, 0 without, or where it changes.
     lifted, closed : bool arrays, shape (n_times, n_faces)
-        The face bears nowhere; the whole face bears.
+        The face bears nowhere; the whole face is seen to bear.
     """
 
     edge: np.ndarray
@@ -57,7 +57,7 @@ def face_states(structure, faces, motion, joints, still):
     away = openings(structure, faces, motion, joints, still)
     lifted = np.nan_to_num(away) > _LIFTED
     edge = np.stack([joints.side, joints.across], axis=-1)
-    closed = ~lifted & (edge == 0).all(axis=-1)
+    closed = ~lifted & (edge == 0).all(axis=-1) & np.isfinite(joints.rotation)
     for tangent in range(2):
         steady = _unchanged(np.where(lifted, _EITHER, edge[..., tangent]), near)
         closed &= steady

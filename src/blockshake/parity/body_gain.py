@@ -74,11 +74,8 @@ def _joints_of(structure, test, sensors):
     """Slips of the joints and displacements of the bodies in one test; None where a pose is not read."""
     displacement = test["marker_displacement"]
     rest = displacement.isel(time=slice(0, _REST)).mean("time").fillna(0.0)
-    poses = body_poses(
-        without_outliers(test.assign(marker_displacement=displacement - rest), structure),
-        structure,
-        sensors.marker_noise,
-    )
+    counted = without_outliers(test.assign(marker_displacement=displacement - rest), structure)
+    poses = body_poses(counted, structure, sensors.marker_noise)
     if any(known not in (POSE, PLANAR) for known in poses.known):
         return None
     every = max(1, round(_EVERY / float(np.median(np.diff(test["time"])))))
@@ -153,8 +150,8 @@ def _gain(tests):
 def _pooled(tests):
     """Readings of one joint in all tests: slip, displacement, number of the segment; and the noise."""
     parts, first = [], 0
-    for slip, moved, segment, noise in tests:
+    for slip, moved, segment, _ in tests:
         known = np.isfinite(slip) & np.isfinite(moved)
         parts.append((slip[known], moved[known], first + segment[known]))
         first += int(segment[-1]) + 1
-    return (*(np.concatenate(column) for column in zip(*parts, strict=True)), noise)
+    return (*(np.concatenate(column) for column in zip(*parts, strict=True)), tests[0][3])

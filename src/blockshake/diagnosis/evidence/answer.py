@@ -111,7 +111,11 @@ def _soft_joints(evidence, closed):
 
     The lever of a turned joint follows the layer's law or does not (few asperities): both are averaged.
     """
-    turned = {place: evidence.gains_of_variants((cause, place)) for cause, place in (evidence.keys if evidence else ()) if cause == JOINT_COMPLIANCE.name}  # fmt: skip
+    turned = {
+        place: evidence.gains_of_variants((cause, place))
+        for cause, place in (evidence.keys if evidence else ())
+        if cause == JOINT_COMPLIANCE.name
+    }
     found = {}
     for place in {**turned, **closed}:
         alone = closed.get(place, 0.0)
@@ -174,10 +178,8 @@ def slab_group(gains):
     """
     found = []
     for names in (("table-pitch", "base-compliance"), ("vertical-motion",)):
-        ranked = sorted(
-            (Rival(name, "all", gains[name], gains[name], ("all",)) for name in names),
-            key=lambda one: -one.gain,
-        )
+        rivals = [Rival(name, "all", gains[name], gains[name], ("all",)) for name in names]
+        ranked = sorted(rivals, key=lambda one: -one.gain)
         if ranked[0].gain > _NEEDED_OF_SLAB:
             odds = {one.cause: coarsened(ranked[0].gain - one.gain, ranked[0].gain) for one in ranked}
             found.append(Group(tuple(one for one in ranked if odds[one.cause] < ODDS), odds))

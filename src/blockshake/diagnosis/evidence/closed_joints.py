@@ -44,7 +44,6 @@ def _rows(test, face):
     half, length = test.faces[face].half_width, float(np.ptp(test.faces[face].corners[:, 1]))
     normal, moment = test.forces.force[:, face, 2], test.forces.moment[:, face, 1]
     closed = test.states.closed[:, face] & (normal > 0.0) & (np.abs(moment) < _WITHIN * half * normal)
-    closed &= np.isfinite(test.joints.rotation[:, face])
     chosen = np.flatnonzero(closed)[::2]
     if len(chosen) < _FEWEST:
         return None

@@ -63,11 +63,14 @@ def _of_friction(tests):
     slipping = sorted({face for test in tests for face in test.slides})
     for face in slipping:
         mu = faces[face].friction
-        yield [_slides(test, [face], lambda slide, mu=mu: _JOINT * mu * slide.friction) for test in tests]
-        yield [_slides(test, [face], lambda slide, mu=mu: _RISE * mu * slide.friction * _rise(slide.rate)) for test in tests]  # fmt: skip
+        yield [_JOINT * mu * _slides(test, [face], lambda slide: slide.friction) for test in tests]
+        yield [
+            _RISE * mu * _slides(test, [face], lambda slide: slide.friction * _rise(slide.rate))
+            for test in tests
+        ]
     for mu in sorted({faces[face].friction for face in slipping}):
         alike = [face for face in slipping if faces[face].friction == mu]
-        yield [_slides(test, alike, lambda slide, mu=mu: _PAIR * mu * slide.friction) for test in tests]
+        yield [_PAIR * mu * _slides(test, alike, lambda slide: slide.friction) for test in tests]
 
 
 def _rise(rate):

@@ -1,4 +1,4 @@
-"""Covariance of a test's rows: the sensors through the smoothing kernel, and what the model of the joints leaves out."""
+"""Covariance of a test's rows: the sensors through the smoothing kernel, and errors of the joints' own model."""
 
 import numpy as np
 

@@ -139,7 +139,7 @@ def _turning(effect, slabs, likelihoods, none):
 
 
 def _lifting(effect, slabs):
-    """Gain of a random vertical motion of any of its sizes over none, with or without a force that compresses the base."""
+    """Gain of a random vertical motion of any size over none, with or without a force that compresses the base."""
     logs = np.zeros((2, 1 + len(effect.lifts(slabs[0]))))
     for slab in slabs:
         apart = np.abs(slab.time[slab.at][:, None] - slab.time[slab.at])

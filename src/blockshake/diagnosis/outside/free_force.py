@@ -1,5 +1,7 @@
 """A force along x on a block of which only the size and the memory are known: what any named form must explain."""
 
+from itertools import pairwise
+
 import numpy as np
 from scipy.linalg import solve_triangular
 
@@ -38,7 +40,7 @@ def _with_force(likelihood, points, size):
         roots.append(np.linalg.cholesky(spread))
         kernels.append((kernel, column))
     ends = likelihood.ends
-    cut = [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    cut = [slice(a, b) for a, b in pairwise(ends)]
     value = np.concatenate(
         [_solve(root, likelihood.value[own]) for root, own in zip(roots, cut, strict=True)]
     )
