@@ -23,6 +23,7 @@ from blockshake.effects.registry import EFFECTS
 
 NOISES = (0.75, 1.0, 1.3)  # standard deviation of the sensors over the stated one
 _UNHEARD = 20.0  # nats: a likelihood that says so much less for the first cause adds nothing
+_LOOKED_AT = 4  # causes
 _FIRST_LOOK = (1.0,), ((4.0, 0.0),)
 DISCREPANCIES = ((1.0, 0.0), (4.0, -3.0), (16.0, -10.0))  # multiple, logarithm of its prior
 
@@ -47,16 +48,20 @@ def likelihoods(tests, noises=NOISES, discrepancies=DISCREPANCIES):
 
 
 def heard(tests, points):
-    """Likelihoods that matter: within 20 nats of the loudest, the best cause of a first look beside the nuisances.
+    """Likelihoods that matter to any of the best causes of a first look: within 20 nats of the loudest beside it.
 
-    Without that cause a large force that nobody modelled would speak for the widest errors alone.
+    Without a cause beside it, a large force that nobody modelled speaks for the widest errors alone.
     """
     (first,) = likelihoods(tests, *_FIRST_LOOK)
-    by_key = explain(first, tests, points).by_key
-    best = max(by_key.values(), key=lambda one: one.gain)
-    among = likelihoods(tests)
-    logs = np.array([one.beside(best.columns, best.scales).log_evidence for one in among])
-    return [one for one, log in zip(among, logs, strict=True) if log > logs.max() - _UNHEARD]
+    best = {}
+    for one in explain(first, tests, points).by_key.values():
+        if one.cause not in best or one.gain > best[one.cause].gain:
+            best[one.cause] = one
+    among, kept = likelihoods(tests), set()
+    for cause in sorted(best.values(), key=lambda one: -one.gain)[:_LOOKED_AT]:
+        logs = np.array([one.beside(cause.columns, cause.scales).log_evidence for one in among])
+        kept |= set(np.flatnonzero(logs > logs.max() - _UNHEARD))
+    return [among[index] for index in sorted(kept)]
 
 
 def explain(likelihood, tests, points):
@@ -147,6 +152,22 @@ class Evidence:
         """Explanation by a cause at a place beside the likelihood that speaks loudest for it."""
         speaks = [one.by_key[key].gain + one.likelihood.log_evidence for one in self.explained]
         return self.explained[int(np.argmax(speaks))].by_key[key]
+
+    def amplitudes(self, key):
+        """Mean and covariance of the best variant's amplitudes at a place, over the likelihoods of that variant."""
+        speaks = np.array([one.by_key[key].gain + one.likelihood.log_evidence for one in self.explained])
+        values = self.best(key).values
+        alike = [one.by_key[key].values == values for one in self.explained]
+        weights = np.where(alike, np.exp(speaks - speaks.max()), 0.0)
+        weights /= weights.sum()
+        parts = [one.by_key[key] for one, weight in zip(self.explained, weights, strict=True) if weight > 0.0]
+        weights = weights[weights > 0.0]
+        mean = sum(weight * one.mean for weight, one in zip(weights, parts, strict=True))
+        spread = sum(
+            weight * (one.covariance + np.outer(one.mean - mean, one.mean - mean))
+            for weight, one in zip(weights, parts, strict=True)
+        )
+        return mean, spread
 
     @property
     def keys(self):
