@@ -120,6 +120,22 @@ def read_text(path):
         raise InputError(path, "", "expected a text file; its bytes are not UTF-8") from None
 
 
+def read_foreign_text(path):
+    """Text of a file that another program wrote: UTF-8, UTF-16 with its mark, else Windows-1252 or Latin-1.
+
+    Raises
+    ------
+    InputError
+        The file is missing, or is none.
+    """
+    content = read_bytes(path)
+    try:
+        text = content.decode("utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
+    except UnicodeDecodeError:
+        text = content.decode("cp1252", errors="replace")  # digits are the same in both
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
 def read_bytes(path):
     """Bytes of a file that a user named.
 

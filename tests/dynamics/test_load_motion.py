@@ -83,7 +83,7 @@ def test_shipped_names_load_and_own_parameters_too(tmp_path):
         ("note.txt", "hello\n", "note.txt: expected a motion CSV"),
         ("short.AT2", "hello\n", "short.AT2: expected four header lines"),
         ("short.asc", "hello\n", "short.asc: SAMPLING_INTERVAL_S"),
-        ("short.V2C", "hello\n", "short.V2C: expected one acceleration series"),
+        ("short.V2C", "hello\n", "short.V2C: expected an acceleration series"),
         ("bad.csv", "a,b\n", "bad.csv: time_s"),
     ],
 )

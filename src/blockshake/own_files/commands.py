@@ -15,13 +15,18 @@ def add_data_commands(commands):
     command = commands.add_parser(
         "convert-motion", help="a record or a table of another format, to the project's CSV"
     )
-    command.add_argument("file", metavar="FILE", help="a record, or a table (then with --unit and --column)")
+    command.add_argument("file", metavar="FILE", help="a record, or a table (then with --unit)")
     command.add_argument(
         "--unit", metavar="UNIT", help="of a table: m/s2, cm/s2, g, m/s, m, mm, ...; never guessed"
     )
     command.add_argument(
-        "--column", action="append", default=[], metavar="AXIS=COLUMN", help="such as x=EW, repeatable"
-    )
+        "--column", action="append", default=[], metavar="AXIS=COLUMN",
+        help="such as x=EW, repeatable; of a record with several channels x=NUMBER or x=NAME",
+    )  # fmt: skip
+    command.add_argument(
+        "--time-step", type=float, metavar="S",
+        help="of a table without times; without --column all its values, row by row, are x",
+    )  # fmt: skip
     _add_layout(command)
     command.add_argument(
         "--baseline", choices=(CORRECT, NONE), help="default: correct for records, none for tables"
@@ -116,24 +121,34 @@ def _convert_motion(options):
     corner = options.corner_frequency or CORNER_FREQUENCY
     if corner <= 0.0:
         raise InputError("--corner-frequency", corner, "expected a positive number")
-    given = _given(options, ("unit", "time", "time_unit", *_LAYOUT))
     columns = _columns(options)
-    if given or columns:
-        for name, value in (("unit", options.unit), ("column", columns)):
-            if not value:
-                raise InputError(
-                    f"--{name}", "", "expected for a table; the unit and the columns are never guessed"
-                )
+    if _given(options, ("unit", "time", "time_unit", "time_step", *_LAYOUT)):
         motion = load_motion_table(
-            options.file, validated(TableLayout, _given(options, _LAYOUT), "options"), options.time or "time_s",
+            options.file, validated(TableLayout, _given(options, _LAYOUT), "options"), _times(options, columns),
             columns, options.unit, options.time_unit or "s", corner if options.baseline == CORRECT else None,
+            options.time_step,
         )  # fmt: skip
     else:
-        motion = load_motion(options.file, correct=options.baseline != NONE, corner_frequency=corner)
+        motion = load_motion(
+            options.file, correct=options.baseline != NONE, corner_frequency=corner, channels=columns or None
+        )
     write_motion_csv(motion, options.output)
     print(f"{options.output}: {motion_line(motion)}")
     for remark in motion_remarks(motion):
         print(f"  remark: {remark}")
+
+
+def _times(options, columns):
+    """Name of the column of times of a table, whose options are checked for what only a user can say."""
+    if not options.unit:
+        raise InputError("--unit", "", "expected for a table; the unit and the columns are never guessed")
+    if options.time_step is None and not columns:
+        raise InputError("--column", "", "expected for a table, or --time-step for values without times")
+    if options.time_step is not None and not 0.0 < options.time_step < float("inf"):
+        raise InputError("--time-step", options.time_step, "expected a positive number of seconds")
+    if options.time_step is not None and (options.time or options.time_unit):
+        raise InputError("--time-step", options.time_step, "expected alone, or --time and --time-unit")
+    return options.time or "time_s"
 
 
 def _import_campaign(options):

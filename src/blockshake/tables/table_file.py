@@ -2,7 +2,6 @@
 
 import csv
 import io
-import re
 import zipfile
 from decimal import Decimal
 from pathlib import Path
@@ -12,15 +11,18 @@ import numpy as np
 from pydantic import Field
 
 from blockshake.errors import InputError
-from blockshake.files import read_bytes
+from blockshake.files import read_bytes, read_foreign_text
+from blockshake.tables.numbers import missing_code, plain_number, touching_numbers
+from blockshake.tables.units import known_unit, unit_of_name
 from blockshake.validation import Strict
 
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 _SEPARATORS = "\t;|,"  # looked for in the header in this order; white space where it has none of them
 _GAPS = ("", "nan", "#n/a", "#nv")  # the last two as spreadsheets write them, in English and German
 _WORKBOOK = (".xlsx", ".xlsm")
 _MOST_BYTES, _MOST_CELLS = 5e8, 2e7  # a workbook of a few kilobytes may claim any number of them
+_TIMES = 4  # steps up without one down, which are times and no motion
 _MOST_NAMES = 20  # columns that an error lists
+_SIGNS = {".": "point", ",": "comma"}
 
 
 class TableLayout(Strict):
@@ -43,6 +45,8 @@ class Table(NamedTuple):
         File, and ``#SHEET`` of a workbook.
     names : list of str
         Of the columns; 1, 2, ... where the header's line holds numbers.
+    notes : list of list
+        Cells between the names and the numbers, such as units.
     lines : list of int
         Line of every row in the file.
     rows : list of list
@@ -52,17 +56,21 @@ class Table(NamedTuple):
 
     source: str
     names: list
+    notes: list
     lines: list
     rows: list
     decimal: str
 
-    def column(self, name, size=Decimal(1)):
+    def column(self, name, size=Decimal(1), kind=None):
         """Numbers of a column times the size of their unit, float64 (n_rows,); NaN for an empty cell.
+
+        ``kind`` is that of the unit; a unit in the column's name or below it must be the same.
 
         Raises
         ------
         InputError
-            No such column, or two of that name; a cell that is no number.
+            No such column, or two of that name; a cell that is no number or stands for a missing one; another unit in
+            the header.
 
         Notes
         -----
@@ -76,27 +84,59 @@ class Table(NamedTuple):
             )
             raise InputError(self.source, f"column '{name}'", f"expected this column once; {found}")
         place = self.names.index(name)
-        cells = (row[place] if place < len(row) else None for row in self.rows)
-        return np.array([
-            self._number(cell, size, f"line {line}, {name}") for line, cell in zip(self.lines, cells, strict=True)
-        ])  # fmt: skip
+        if kind is not None:
+            self._check_unit(place, kind, size)
+        cells = [row[place] if place < len(row) else None for row in self.rows]
+        keys = [f"line {line}, {name}" for line in self.lines]
+        numbers = [self._number(cell, key) for cell, key in zip(cells, keys, strict=True)]
+        coded = missing_code(
+            np.array([np.nan if number is None else number for number in numbers], dtype=float)
+        )
+        if coded is not None:
+            raise InputError(
+                self.source, keys[coded],
+                f"expected a reading; '{cells[coded]}' looks like a code for a missing one, which an empty cell says",
+            )  # fmt: skip
+        return np.array([np.nan if number is None else float(number * size) for number in numbers])
 
-    def _number(self, cell, size, key):
+    def _check_unit(self, place, kind, size):
+        stated = [unit_of_name(self.names[place])]
+        stated += [known_unit(str(row[place])) for row in self.notes if place < len(row) and row[place]]
+        for unit in filter(None, stated):
+            if unit != (kind, abs(size)):
+                raise InputError(
+                    self.source, f"column '{self.names[place]}'",
+                    f"expected the unit of {kind} that was given; the header has another one, of {unit[0]}",
+                )  # fmt: skip
+
+    def _number(self, cell, key):
+        """A cell as a decimal, or None for a gap."""
         if isinstance(cell, (int, float)) and not isinstance(cell, bool):
-            cell = repr(cell)
+            return Decimal(repr(cell)) if np.isfinite(cell) else None
         text = "" if cell is None else str(cell).strip()
         if text.lower() in _GAPS:
-            return np.nan
-        plain = text.replace(",", ".") if self.decimal == "," and "." not in text else text
-        if not _NUMBER.fullmatch(plain):
-            sign = {".": "point", ",": "comma"}[self.decimal]
-            raise InputError(
-                self.source, key, f"expected a number with a decimal {sign}, or nothing, not '{text}'"
-            )
+            return None
+        number = cell_number(text, self.decimal)
         try:
-            return float(Decimal(plain) * size)
+            return Decimal(number)
         except ArithmeticError:
             raise InputError(self.source, key, f"expected a number of usual size, not '{text}'") from None
+        except TypeError:
+            hint = "; thousands have no sign between them" if {".", ","} & set(text) else ""
+            expected = (
+                f"expected a number with a decimal {_SIGNS[self.decimal]}, or nothing, not '{text}'{hint}"
+            )
+            raise InputError(self.source, key, expected) from None
+
+
+def cell_number(text, decimal):
+    """A number with the table's decimal sign as `float` and `decimal.Decimal` read it, or None for any other text.
+
+    A sign that is not the decimal one is never taken for it: ``1.012`` with a decimal comma, and ``1,012`` with a
+    decimal point, are refused, because nothing tells thousands from a slip of the layout.
+    """
+    other = "." if decimal == "," else ","
+    return None if other in text else plain_number(text.replace(decimal, "."))
 
 
 def read_table(source, layout):
@@ -113,11 +153,11 @@ def read_table(source, layout):
     InputError
         Missing or damaged file, unknown sheet, nothing below the header.
     """
-    path, _, sheet = str(source).partition("#") if not Path(source).exists() else (str(source), "", "")
-    if Path(path).suffix.lower() in _WORKBOOK:
-        source, rows = _sheet_rows(Path(path), sheet)
+    path, sheet = _path_and_sheet(source)
+    if path.suffix.lower() in _WORKBOOK:
+        source, rows = _sheet_rows(path, sheet)
     else:
-        rows = _text_rows(Path(path), layout)
+        rows = _text_rows(path, layout)
     rows = [(line, row) for line, row in rows if any(cell not in (None, "") for cell in row)]
     header = next((row for line, row in rows if line >= layout.header), None)
     if header is None:
@@ -127,38 +167,154 @@ def read_table(source, layout):
     first = next(line for line, _ in rows if line >= layout.header)
     names = ["" if cell is None else str(cell).strip() for cell in header]
     decimal = layout.decimal
-    if all(_NUMBER.fullmatch(name.replace(decimal, ".")) for name in names):
+    if all(cell_number(name, decimal) for name in names):
         names, first = [str(number + 1) for number in range(len(names))], first - 1
-    below = [(line, row) for line, row in rows if line >= (layout.data or first + 1)]
+    start = layout.data or first + 1
+    below = [(line, row) for line, row in rows if line >= start]
     if not below:
         raise InputError(
             source, "", f"expected rows of numbers below the names in line {first}; there is none"
         )
-    return Table(str(source), names, [line for line, _ in below], [row for _, row in below], decimal)
+    notes = [row for line, row in rows if first < line < start]
+    return Table(str(source), names, notes, [line for line, _ in below], [row for _, row in below], decimal)
+
+
+def read_series(source, layout):
+    """Values of a file that gives no times, row by row, with the lines that they stand in.
+
+    Parameters
+    ----------
+    source : str or path
+        As of `read_table`.
+    layout : TableLayout
+        ``data`` is the first line of values; by default the first one that holds numbers alone.
+
+    Returns
+    -------
+    values : float64 array, shape (n_values,)
+        As written.
+
+    Raises
+    ------
+    InputError
+        Missing or damaged file; no values; text among them; rows of different lengths but for the last; a first column
+        that counts as times do; a first value that is the number of the others; a value that stands for a missing one.
+    """
+    path, sheet = _path_and_sheet(source)
+    if path.suffix.lower() in _WORKBOOK:
+        source, rows = _sheet_rows(path, sheet)
+    else:
+        signs = layout.separator if layout.separator and not layout.separator.isspace() else "\t;|"
+        table = str.maketrans(dict.fromkeys(signs, " "))
+        rows = [
+            (number, line.translate(table).split())
+            for number, line in enumerate(read_foreign_text(path).splitlines(), start=1)
+        ]
+    lines, values, lengths = [], [], []
+    for line, row in rows:
+        cells = [cell for cell in row if cell not in (None, "")]
+        numbers = _numbers(cells, layout.decimal)
+        if not cells or line < (layout.data or 1) or (numbers is None and not lines and layout.data is None):
+            continue
+        if numbers is None:
+            raise InputError(
+                source, f"line {line}",
+                f"expected numbers with a decimal {_SIGNS[layout.decimal]} between blanks; --separator and --decimal "
+                f"say what else stands there, not '{' '.join(map(str, cells))}'",
+            )  # fmt: skip
+        lines.append(line)
+        lengths.append(len(numbers))
+        values += numbers
+    if len(values) < 2:
+        raise InputError(source, "", f"expected at least two values, found {len(values)}")
+    values = np.array(values)
+    uneven = next((place for place in range(1, len(lines) - 1) if lengths[place] != lengths[0]), None)
+    if uneven is not None or lengths[-1] > lengths[0]:
+        place = len(lines) - 1 if uneven is None else uneven
+        raise InputError(
+            source, f"line {lines[place]}",
+            f"expected {lengths[0]} values as in line {lines[0]}, found {lengths[place]}; --data says where they begin",
+        )  # fmt: skip
+    if len(values) - values[0] in (1, 2):
+        raise InputError(
+            source, f"line {lines[0]}",
+            f"expected a value; {values[0]:g} is the number of those that follow: --data says where they begin",
+        )  # fmt: skip
+    first_column = values[: len(lines) * lengths[0] : lengths[0]]
+    steps = np.diff(first_column)
+    if lengths[0] > 1 and len(steps) >= _TIMES and steps.min() > 0.0:
+        raise InputError(
+            source,
+            "",
+            "expected values alone; the first column counts as times do: --time and --column name columns",
+        )
+    coded = missing_code(values)
+    if coded is not None:
+        line = lines[int(np.searchsorted(np.cumsum(lengths), coded, side="right"))]
+        raise InputError(
+            source, f"line {line}", f"expected a value; {values[coded]:g} looks like a code for none"
+        )
+    return values
+
+
+def _numbers(cells, decimal):
+    """Values of a row, or None where a cell is anything else."""
+    values = []
+    for cell in cells:
+        if isinstance(cell, (int, float)) and not isinstance(cell, bool):
+            values.append(float(cell))
+            continue
+        number = cell_number(str(cell), decimal)
+        texts = [number] if number else touching_numbers(str(cell)) if decimal == "." else None
+        if texts is None:
+            return None
+        values += [float(plain_number(text)) for text in texts]
+    return values if np.isfinite(values).all() else None
+
+
+def _path_and_sheet(source):
+    path, _, sheet = str(source).partition("#") if not Path(source).exists() else (str(source), "", "")
+    return Path(path), sheet
 
 
 def _text_rows(path, layout):
     """Lines of a text file, by number from 1, cut at the separator."""
-    content = read_bytes(path)
-    try:
-        text = content.decode("utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
-    except UnicodeDecodeError:
-        text = content.decode("cp1252", errors="replace")  # as spreadsheets on Windows write it
-    lines = text.splitlines()
+    lines = read_foreign_text(path).splitlines()
     header = lines[layout.header - 1] if layout.header <= len(lines) else ""
     known = _SEPARATORS.replace(layout.decimal, "")
     separator = layout.separator or next((one for one in known if one in header), " ")
     if separator.isspace() and separator != "\t":
-        return [(number, line.split()) for number, line in enumerate(lines, start=1)]
+        return _blank_rows(lines, layout, path)
     if len(separator) != 1:
         raise InputError(path, "separator", f"expected one character, not '{separator}'")
     reader = csv.reader(io.StringIO("\n".join(lines)), delimiter=separator, strict=True)
     try:
-        return [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
+        rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
     except csv.Error as error:
         raise InputError(
             path, f"line {reader.line_num}", f"expected cells between '{separator}'; {error}"
         ) from None
+    width = next((len(row) for number, row in rows if number >= layout.header and any(row)), 0)
+    for number, row in rows:
+        if number >= (layout.data or layout.header) and any(
+            row[width:]
+        ):  # such as a decimal sign that separates
+            raise InputError(path, f"line {number}", f"expected at most {width} cells, found {len(row)}")
+    return rows
+
+
+def _blank_rows(lines, layout, path):
+    """Lines cut at blanks, where only a row of as many cells as the header tells which one is missing."""
+    rows = [(number, line.split()) for number, line in enumerate(lines, start=1)]
+    filled = [(number, row) for number, row in rows if row and number >= layout.header]
+    for number, row in filled:
+        if number >= (layout.data or 0) and len(row) != len(filled[0][1]):
+            raise InputError(
+                path, f"line {number}",
+                f"expected {len(filled[0][1])} cells between blanks as in line {filled[0][0]}, found {len(row)}; "
+                "--header of a line of numbers counts the columns",
+            )  # fmt: skip
+    return rows
 
 
 def _sheet_rows(path, sheet):

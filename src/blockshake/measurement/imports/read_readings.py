@@ -81,7 +81,7 @@ def _readings(source, names, asked, kind, where):
         if unit is None:
             raise InputError(where, f"{kind}_unit", f"missing key; {name} needs it")
         size = unit_size(kind, unit, where, f"{key}.unit" if column.unit else f"{kind}_unit")
-        read = table.column(column.column, -size if column.reversed else size)
+        read = table.column(column.column, -size if column.reversed else size, kind)
         if np.isnan(read).all():
             raise InputError(table.source, f"column '{column.column}'", "expected readings; all are missing")
         columns.append(read + 0.0)  # no minus zero
@@ -91,7 +91,7 @@ def _readings(source, names, asked, kind, where):
 def _clock(table, asked, where):
     """Times that increase [s]."""
     name = asked.time.column
-    time = table.column(name, unit_size("time", asked.time.unit or "s", where, "time.unit"))
+    time = table.column(name, unit_size("time", asked.time.unit or "s", where, "time.unit"), "time")
     if np.isnan(time).any():
         line = table.lines[int(np.argmax(np.isnan(time)))]
         raise InputError(table.source, f"line {line}, {name}", "expected a time")
