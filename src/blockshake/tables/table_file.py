@@ -211,22 +211,19 @@ def read_series(source, layout):
             for number, line in enumerate(read_foreign_text(path).splitlines(), start=1)
         ]
     lines, values, lengths = [], [], []
+    kept = f"numbers with a decimal {_SIGNS[layout.decimal]} between blanks; --separator and --decimal say what else"
     for line, row in rows:
         cells = [cell for cell in row if cell not in (None, "")]
         numbers = _numbers(cells, layout.decimal)
-        if not cells or line < (layout.data or 1) or (numbers is None and not lines and layout.data is None):
+        if not cells or line < (layout.data or 1) or (not lines and layout.data is None and _is_text(cells)):
             continue
         if numbers is None:
-            raise InputError(
-                source, f"line {line}",
-                f"expected numbers with a decimal {_SIGNS[layout.decimal]} between blanks; --separator and --decimal "
-                f"say what else stands there, not '{' '.join(map(str, cells))}'",
-            )  # fmt: skip
+            raise InputError(source, f"line {line}", f"expected {kept}, not '{' '.join(map(str, cells))}'")
         lines.append(line)
         lengths.append(len(numbers))
         values += numbers
     if len(values) < 2:
-        raise InputError(source, "", f"expected at least two values, found {len(values)}")
+        raise InputError(source, "", f"expected at least two values, {kept}; found {len(values)}")
     values = np.array(values)
     uneven = next((place for place in range(1, len(lines) - 1) if lengths[place] != lengths[0]), None)
     if uneven is not None or lengths[-1] > lengths[0]:
@@ -255,6 +252,12 @@ def read_series(source, layout):
             source, f"line {line}", f"expected a value; {values[coded]:g} looks like a code for none"
         )
     return values
+
+
+def _is_text(cells):
+    """Whether a row is of a header: a cell of it is a word."""
+    words = (str(cell).strip().lower() for cell in cells)
+    return any(word[:1].isalpha() and word not in _GAPS for word in words)
 
 
 def _numbers(cells, decimal):

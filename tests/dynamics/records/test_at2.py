@@ -11,8 +11,8 @@ VALUES = series(503) / 1000.0  # g; a last line that is not full
 @pytest.mark.parametrize(
     "sizes",
     [
-        None, "  503   0.0100   NPTS, DT", "NPTS=   503, DT= 0.01000 SEC", "NPTS=503,DT=.01", "DT= .0100 SEC, NPTS= 503",
-        "DT=10.0 MSEC, NPTS=503", "503, .0100 NPTS, DT", "npts= 503, dt= 1.0D-02 sec",
+        None, "  503   0.0100   NPTS, DT", "NPTS=   503, DT= 0.01000 SEC", "NPTS=503,DT=.01",
+        "DT= .0100 SEC, NPTS= 503", "DT=10.0 MSEC, NPTS=503", "503, .0100 NPTS, DT", "npts= 503, dt= 1.0D-02 sec",
     ],
 )  # fmt: skip
 def test_all_writings_of_the_sizes(sizes):
