@@ -34,7 +34,7 @@ def stated_columns(name, content):
     ValueError, IndexError, AttributeError, KeyError
         The file states nothing that can be read.
     """
-    return _PARSERS[name](text_of(content))
+    return _PARSERS[name](re.sub("\r\n?", "\n", text_of(content)))
 
 
 def _number(text):

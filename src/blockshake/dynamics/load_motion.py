@@ -94,7 +94,7 @@ def _read(path, corner, channels):
 def _csv_motion(text, path):
     time, columns, kind = read_motion_csv(text, path)
     attributes = {"source": path.name, "format": "csv", "synthetic": False, "baseline": "none"}
-    attributes |= {"checked": "even times or sparse ones", "assumed": "nothing"}
+    attributes |= {"checked": "times", "assumed": "nothing"}
     if time[0] != 0.0:
         attributes["first_time"] = float(time[0])
     return ground_motion(path.stem, time - time[0], columns, kind, attributes)

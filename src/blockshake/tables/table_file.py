@@ -97,7 +97,10 @@ class Table(NamedTuple):
                 self.source, keys[coded],
                 f"expected a reading; '{cells[coded]}' looks like a code for a missing one, which an empty cell says",
             )  # fmt: skip
-        return np.array([np.nan if number is None else float(number * size) for number in numbers])
+        try:
+            return np.array([np.nan if number is None else float(number * size) for number in numbers])
+        except ArithmeticError:
+            raise InputError(self.source, f"column '{name}'", "expected numbers of usual size") from None
 
     def _check_unit(self, place, kind, size):
         stated = [unit_of_name(self.names[place])]
@@ -180,7 +183,7 @@ def read_table(source, layout):
 
 
 def read_series(source, layout):
-    """Values of a file that gives no times, row by row, with the lines that they stand in.
+    """Values of a file that gives no times, row by row, and the text above them.
 
     Parameters
     ----------
@@ -193,6 +196,7 @@ def read_series(source, layout):
     -------
     values : float64 array, shape (n_values,)
         As written.
+    header : str
 
     Raises
     ------
@@ -210,12 +214,13 @@ def read_series(source, layout):
             (number, line.translate(table).split())
             for number, line in enumerate(read_foreign_text(path).splitlines(), start=1)
         ]
-    lines, values, lengths = [], [], []
+    lines, values, lengths, header = [], [], [], []
     kept = f"numbers with a decimal {_SIGNS[layout.decimal]} between blanks; --separator and --decimal say what else"
     for line, row in rows:
         cells = [cell for cell in row if cell not in (None, "")]
         numbers = _numbers(cells, layout.decimal)
         if not cells or line < (layout.data or 1) or (not lines and layout.data is None and _is_text(cells)):
+            header.append(" ".join(map(str, cells)))
             continue
         if numbers is None:
             raise InputError(source, f"line {line}", f"expected {kept}, not '{' '.join(map(str, cells))}'")
@@ -251,7 +256,7 @@ def read_series(source, layout):
         raise InputError(
             source, f"line {line}", f"expected a value; {values[coded]:g} looks like a code for none"
         )
-    return values
+    return values, "\n".join(header)
 
 
 def _is_text(cells):

@@ -23,6 +23,9 @@ _SHOWN = {kind: ", ".join(units) for kind, units in UNITS.items()}
 _SECOND = re.compile(r"sec(?:ond)?s?(?![a-z])")
 _PER_SECOND_SQUARED = re.compile(r"/s/s$|/\(s2\)$|(?<=m)/?s-2$")
 _MOST_WORDS = 5  # of a unit: CM / SEC / SEC
+_FACTOR = re.compile(
+    r"[x*/\d\N{MULTIPLICATION SIGN}]", re.IGNORECASE
+)  # what a word that changes a unit begins with
 # a unit in a column's name: in brackets, or after an underscore where no word ends so
 _IN_BRACKETS = re.compile(r"[\[(]([^\[\]()]*(?:\([^()]*\))?[^\[\]()]*)[\])]\s*$")
 _AFTER_UNDERSCORE = re.compile(r"_(ms|mm|cm|um|gal)$", re.IGNORECASE)
@@ -61,9 +64,9 @@ def leading_unit(kind, text, where, key):
     words = text.split()
     for count in range(min(_MOST_WORDS, len(words)), 0, -1):
         unit = _plain(" ".join(words[:count]))
-        if unit in UNITS[kind]:
+        if unit in UNITS[kind] and not _FACTOR.match(" ".join(words[count : count + 1])):
             return UNITS[kind][unit]
-    return unit_size(kind, words[0] if words else "", where, key)
+    return unit_size(kind, text, where, key)
 
 
 def kind_of_unit(text, kinds, where, key):

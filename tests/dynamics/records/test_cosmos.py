@@ -43,7 +43,7 @@ def test_every_channel_is_a_record():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (cosmos(VALUES, units="counts (50)"), "expected a unit of acceleration .*'counts'"),
+        (cosmos(VALUES, units="counts (50)"), r"expected a unit of acceleration .*'counts \(50\)'"),
         (
             cosmos(VALUES, entries={62: -999.0, 63: -999.0}),
             "real header, entry 62: expected the time step in ms",

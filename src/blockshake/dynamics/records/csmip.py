@@ -12,9 +12,9 @@ _SERIES = re.compile(
     r"^\s*(\S+)\s+points of (accel)\S* data equally spaced at\s+(\S+)\s+sec(.*)$", re.IGNORECASE
 )
 _UNIT = re.compile(r"\b(?:in|units?\s*:?)\s+(?:units\s+of\s+)?([^()]+)", re.IGNORECASE)
-_FORTRAN = re.compile(r"\((\d+)[EFGD](\d+)(?:\.\d+)?\)", re.IGNORECASE)
+_FORTRAN = re.compile(r"\((\d{1,4})[EFGD](\d{1,4})(?:\.\d+)?\)", re.IGNORECASE)
 _USUAL_FORMAT = (8, 10)  # of files that name none
-_COUNT = re.compile(r"^\s*(\d+)\s+points of instrument", re.IGNORECASE)
+_COUNT = re.compile(r"^\s*(\d{1,9})\s+points of instrument", re.IGNORECASE)
 _INTERVAL = re.compile(r"equally-spaced intervals of\s+(\S+)\s+sec", re.IGNORECASE)
 _PEAK = re.compile(r"peak\s+acceleration\s*=\s*(\S+)\s+(\S+)\s+at\s+(\S+)\s*sec", re.IGNORECASE)
 _CHANNEL = re.compile(r"\bchan\s+\S+?:\s*(.*?)\s*(?:\bfrom\b.*)?$", re.IGNORECASE)

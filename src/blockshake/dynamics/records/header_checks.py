@@ -1,7 +1,5 @@
 """Entries of a header that say twice what the values say already: a contradiction is an error that names both."""
 
-from decimal import Decimal
-
 import numpy as np
 
 from blockshake.dynamics.records.record import finite_number
@@ -110,7 +108,11 @@ class HeaderChecks:
 
 def _half_digit(text):
     """Half of the last digit of a printed number."""
-    return 0.5 * 10.0 ** Decimal(text.strip().upper().replace("D", "E")).as_tuple().exponent
+    mantissa, _, exponent = text.strip().lower().replace("d", "e").partition("e")
+    try:
+        return 0.5 * 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+    except (ValueError, OverflowError):  # of a zero with thousands of digits
+        return 0.0
 
 
 def _peak(series, stated):

@@ -1,5 +1,6 @@
 """A ground motion from a table of a user: any columns, units and decimal sign, with times or a time step."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -8,9 +9,14 @@ from blockshake.dynamics.baseline import check_samples, correct_baseline, correc
 from blockshake.dynamics.motion import CHANNELS, check_finite, ground_motion
 from blockshake.dynamics.records.times import check_times
 from blockshake.errors import InputError
+from blockshake.tables.numbers import plain_number
 from blockshake.tables.table_file import read_series, read_table
-from blockshake.tables.units import kind_of_unit, unit_size
+from blockshake.tables.units import kind_of_unit, known_unit, unit_size
 
+# of the text above values without times
+_STEP = re.compile(r"\b(?:dt|time step)\s*[=:]?\s*([^\s,;]+)", re.IGNORECASE)
+_COUNT = re.compile(r"\bnpts\s*[=:]?\s*([^\s,;]+)", re.IGNORECASE)
+_UNIT = re.compile(r"\bunits?\s*(?:of|in|[=:])\s*([^\s,;]+)", re.IGNORECASE)
 _UNEVEN = 1e-3  # of the step, by which rows of an even series may be uneven
 
 
@@ -44,30 +50,26 @@ def load_motion_table(
         gap; a correction of other than evenly spaced accelerations.
     """
     kind = kind_of_unit(unit, ("acceleration", "velocity", "displacement"), "--unit", unit)
-    size = unit_size(kind, unit, "--unit", unit)
+    given = kind, unit_size(kind, unit, "--unit", unit)
     for channel in columns:
         if channel not in CHANNELS[:3]:
             raise InputError("--column", channel, f"expected {', '.join(CHANNELS[:3])}")
+    assumed = f"{unit.strip()}, as given"
     if columns:
         table = read_table(source, layout)
-        where, lines = table.source, table.lines
-        read = {channel: table.column(name, size, kind) for channel, name in columns.items()}
+        where = table.source
+        read = {channel: _finite(table, name, *reversed(given)) for channel, name in columns.items()}
     else:
         where = str(source)
-        read = {"x": float(size) * read_series(source, layout)}
+        read = {"x": _series(source, layout, time_step, given)}
     if time_step is None:
-        at = table.column(time, unit_size("time", time_unit, "--time-unit", time_unit), "time")
+        at = _finite(table, time, unit_size("time", time_unit, "--time-unit", time_unit), "time")
+        check_times(at, table.lines, where, time)
     else:
-        at = time_step * np.arange(len(read[next(iter(read))]))
-    if columns:
-        for name, values in ((time, at), *((columns[channel], values) for channel, values in read.items())):
-            if not np.isfinite(values).all():
-                line = lines[int(np.argmin(np.isfinite(values)))]
-                raise InputError(where, f"line {line}, {name}", "expected a finite number")
+        at = time_step * np.arange(len(next(iter(read.values()))))
+        assumed += f"; a time step of {time_step:g} s, as given"
     if len(at) < 2:
         raise InputError(where, "", f"expected at least two rows, found {len(at)}")
-    if time_step is None:
-        check_times(at, lines, where, time)
     baseline = "none"
     if corner_frequency is not None:
         step = _even_step(at, kind, where)
@@ -75,17 +77,38 @@ def load_motion_table(
         read = {name: correct_baseline(values, step, corner_frequency) for name, values in read.items()}
         baseline = correction_words(corner_frequency)
     attributes = {"source": Path(source).name, "format": "table", "synthetic": False, "baseline": baseline}
-    attributes |= {
-        "assumed": f"{unit.strip()}, as given"
-        + ("" if time_step is None else f"; a time step of {time_step:g} s, as given"),
-        "checked": "even times" if time_step is None else "nothing",
-    }
+    attributes |= {"checked": "nothing" if time_step else "times", "assumed": assumed}
     if at[0] != 0.0:
         attributes["first_time"] = float(at[0])
     with np.errstate(over="ignore", invalid="ignore"):  # looked at below
         motion = ground_motion(Path(source).stem, at - at[0], read, kind, attributes)
     check_finite(motion, where)
     return motion
+
+
+def _finite(table, name, size, kind):
+    """A column without gaps."""
+    values = table.column(name, size, kind)
+    if not np.isfinite(values).all():
+        line = table.lines[int(np.argmin(np.isfinite(values)))]
+        raise InputError(table.source, f"line {line}, {name}", "expected a finite number")
+    return values
+
+
+def _series(source, layout, time_step, given):
+    """Values without times in SI, where the text above them does not contradict what was given."""
+    values, header = read_series(source, layout)
+    for pattern, actual, name in (
+        (_STEP, time_step, "--time-step"),
+        (_COUNT, len(values), "number of values"),
+    ):
+        stated = pattern.search(header)
+        if stated and plain_number(stated.group(1)) and float(plain_number(stated.group(1))) != actual:
+            raise InputError(source, name, f"expected {stated.group(1)}, as the file says, found {actual:g}")
+    for stated in _UNIT.findall(header):
+        if known_unit(stated) not in (None, given):
+            raise InputError(source, "--unit", f"expected '{stated}', as the file says")
+    return float(given[1]) * values
 
 
 def _even_step(time, kind, source):

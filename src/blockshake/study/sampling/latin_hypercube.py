@@ -12,6 +12,7 @@ from blockshake.files import read_text, write_text
 from blockshake.study.sampling.correlation_control import arrange
 from blockshake.study.sampling.correlation_target import check_correlation, load_correlation
 from blockshake.study.sampling.distributions import TABLE_2, load_distributions
+from blockshake.tables.numbers import plain_number
 
 SMALLEST_SIZE = 10
 DEFAULT_EFFORT = 8
@@ -251,10 +252,7 @@ def load_design(path):
 
 
 def _finite(cell, path, key):
-    try:
-        value = float(cell)
-    except ValueError:
-        value = np.nan
+    value = float(plain_number(cell) or "nan")
     if not np.isfinite(value):
         raise InputError(path, key, f"expected a finite number, not '{cell.strip()}'")
     return value
