@@ -12,17 +12,16 @@ from pydantic import Field
 
 from blockshake.errors import InputError
 from blockshake.files import read_bytes, read_foreign_text
-from blockshake.tables.numbers import missing_code, plain_number, touching_numbers
+from blockshake.tables.numbers import missing_code, plain_number
 from blockshake.tables.units import known_unit, unit_of_name
 from blockshake.validation import Strict
 
 _SEPARATORS = "\t;|,"  # looked for in the header in this order; white space where it has none of them
-_GAPS = ("", "nan", "#n/a", "#nv")  # the last two as spreadsheets write them, in English and German
-_WORKBOOK = (".xlsx", ".xlsm")
+GAPS = ("", "nan", "#n/a", "#nv")  # the last two as spreadsheets write them, in English and German
+WORKBOOK = (".xlsx", ".xlsm")
 _MOST_BYTES, _MOST_CELLS = 5e8, 2e7  # a workbook of a few kilobytes may claim any number of them
-_TIMES = 4  # steps up without one down, which are times and no motion
 _MOST_NAMES = 20  # columns that an error lists
-_SIGNS = {".": "point", ",": "comma"}
+SIGNS = {".": "point", ",": "comma"}
 
 
 class TableLayout(Strict):
@@ -89,9 +88,8 @@ class Table(NamedTuple):
         cells = [row[place] if place < len(row) else None for row in self.rows]
         keys = [f"line {line}, {name}" for line in self.lines]
         numbers = [self._number(cell, key) for cell, key in zip(cells, keys, strict=True)]
-        coded = missing_code(
-            np.array([np.nan if number is None else number for number in numbers], dtype=float)
-        )
+        written = np.array([np.nan if number is None else number for number in numbers], dtype=float)
+        coded = None if kind == "time" else missing_code(written)
         if coded is not None:
             raise InputError(
                 self.source, keys[coded],
@@ -104,7 +102,8 @@ class Table(NamedTuple):
 
     def _check_unit(self, place, kind, size):
         stated = [unit_of_name(self.names[place])]
-        stated += [known_unit(str(row[place])) for row in self.notes if place < len(row) and row[place]]
+        noted = (str(row[place]) for row in self.notes if place < len(row) and row[place])
+        stated += [known_unit(note) for note in noted if note != "min"]  # of rows of min, max and mean
         for unit in filter(None, stated):
             if unit != (kind, abs(size)):
                 raise InputError(
@@ -114,12 +113,11 @@ class Table(NamedTuple):
 
     def _number(self, cell, key):
         """A cell as a decimal, or None for a gap."""
-        if isinstance(cell, (int, float)) and not isinstance(cell, bool):
-            return Decimal(repr(cell)) if np.isfinite(cell) else None
         text = "" if cell is None else str(cell).strip()
-        if text.lower() in _GAPS:
+        if text.lower() in GAPS:
             return None
-        number = cell_number(text, self.decimal)
+        written = isinstance(cell, str)  # and not a number of a workbook
+        number = cell_number(text, self.decimal) if written else plain_number(text)
         try:
             return Decimal(number)
         except ArithmeticError:
@@ -127,7 +125,7 @@ class Table(NamedTuple):
         except TypeError:
             hint = "; thousands have no sign between them" if {".", ","} & set(text) else ""
             expected = (
-                f"expected a number with a decimal {_SIGNS[self.decimal]}, or nothing, not '{text}'{hint}"
+                f"expected a number with a decimal {SIGNS[self.decimal]}, or nothing, not '{text}'{hint}"
             )
             raise InputError(self.source, key, expected) from None
 
@@ -156,9 +154,9 @@ def read_table(source, layout):
     InputError
         Missing or damaged file, unknown sheet, nothing below the header.
     """
-    path, sheet = _path_and_sheet(source)
-    if path.suffix.lower() in _WORKBOOK:
-        source, rows = _sheet_rows(path, sheet)
+    path, sheet = path_and_sheet(source)
+    if path.suffix.lower() in WORKBOOK:
+        source, rows = sheet_rows(path, sheet)
     else:
         rows = _text_rows(path, layout)
     rows = [(line, row) for line, row in rows if any(cell not in (None, "") for cell in row)]
@@ -182,105 +180,8 @@ def read_table(source, layout):
     return Table(str(source), names, notes, [line for line, _ in below], [row for _, row in below], decimal)
 
 
-def read_series(source, layout):
-    """Values of a file that gives no times, row by row, and the text above them.
-
-    Parameters
-    ----------
-    source : str or path
-        As of `read_table`.
-    layout : TableLayout
-        ``data`` is the first line of values; by default the first one that holds numbers alone.
-
-    Returns
-    -------
-    values : float64 array, shape (n_values,)
-        As written.
-    header : str
-
-    Raises
-    ------
-    InputError
-        Missing or damaged file; no values; text among them; rows of different lengths but for the last; a first column
-        that counts as times do; a first value that is the number of the others; a value that stands for a missing one.
-    """
-    path, sheet = _path_and_sheet(source)
-    if path.suffix.lower() in _WORKBOOK:
-        source, rows = _sheet_rows(path, sheet)
-    else:
-        signs = layout.separator if layout.separator and not layout.separator.isspace() else "\t;|"
-        table = str.maketrans(dict.fromkeys(signs, " "))
-        rows = [
-            (number, line.translate(table).split())
-            for number, line in enumerate(read_foreign_text(path).splitlines(), start=1)
-        ]
-    lines, values, lengths, header = [], [], [], []
-    kept = f"numbers with a decimal {_SIGNS[layout.decimal]} between blanks; --separator and --decimal say what else"
-    for line, row in rows:
-        cells = [cell for cell in row if cell not in (None, "")]
-        numbers = _numbers(cells, layout.decimal)
-        if not cells or line < (layout.data or 1) or (not lines and layout.data is None and _is_text(cells)):
-            header.append(" ".join(map(str, cells)))
-            continue
-        if numbers is None:
-            raise InputError(source, f"line {line}", f"expected {kept}, not '{' '.join(map(str, cells))}'")
-        lines.append(line)
-        lengths.append(len(numbers))
-        values += numbers
-    if len(values) < 2:
-        raise InputError(source, "", f"expected at least two values, {kept}; found {len(values)}")
-    values = np.array(values)
-    uneven = next((place for place in range(1, len(lines) - 1) if lengths[place] != lengths[0]), None)
-    if uneven is not None or lengths[-1] > lengths[0]:
-        place = len(lines) - 1 if uneven is None else uneven
-        raise InputError(
-            source, f"line {lines[place]}",
-            f"expected {lengths[0]} values as in line {lines[0]}, found {lengths[place]}; --data says where they begin",
-        )  # fmt: skip
-    if len(values) - values[0] in (1, 2):
-        raise InputError(
-            source, f"line {lines[0]}",
-            f"expected a value; {values[0]:g} is the number of those that follow: --data says where they begin",
-        )  # fmt: skip
-    first_column = values[: len(lines) * lengths[0] : lengths[0]]
-    steps = np.diff(first_column)
-    if lengths[0] > 1 and len(steps) >= _TIMES and steps.min() > 0.0:
-        raise InputError(
-            source,
-            "",
-            "expected values alone; the first column counts as times do: --time and --column name columns",
-        )
-    coded = missing_code(values)
-    if coded is not None:
-        line = lines[int(np.searchsorted(np.cumsum(lengths), coded, side="right"))]
-        raise InputError(
-            source, f"line {line}", f"expected a value; {values[coded]:g} looks like a code for none"
-        )
-    return values, "\n".join(header)
-
-
-def _is_text(cells):
-    """Whether a row is of a header: a cell of it is a word."""
-    words = (str(cell).strip().lower() for cell in cells)
-    return any(word[:1].isalpha() and word not in _GAPS for word in words)
-
-
-def _numbers(cells, decimal):
-    """Values of a row, or None where a cell is anything else."""
-    values = []
-    for cell in cells:
-        if isinstance(cell, (int, float)) and not isinstance(cell, bool):
-            values.append(float(cell))
-            continue
-        number = cell_number(str(cell), decimal)
-        texts = [number] if number else touching_numbers(str(cell)) if decimal == "." else None
-        if texts is None:
-            return None
-        values += [float(plain_number(text)) for text in texts]
-    return values if np.isfinite(values).all() else None
-
-
-def _path_and_sheet(source):
+def path_and_sheet(source):
+    """Path of a file, and the name of the sheet behind ``#``."""
     path, _, sheet = str(source).partition("#") if not Path(source).exists() else (str(source), "", "")
     return Path(path), sheet
 
@@ -325,7 +226,7 @@ def _blank_rows(lines, layout, path):
     return rows
 
 
-def _sheet_rows(path, sheet):
+def sheet_rows(path, sheet):
     """Rows of a sheet by number from 1, with the name of the source."""
     import openpyxl  # takes long to import
 

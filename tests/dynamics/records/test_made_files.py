@@ -2,6 +2,8 @@
 
 import csv
 import io
+import os
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +14,7 @@ from record_files import COUNT, KNET_SCALE, STEP, at2, cosmos, csmip, dyna, knet
 from blockshake.cli import main
 from blockshake.dynamics.load_motion import load_motion
 
+CASES = Path(os.environ.get("BLOCKSHAKE_SHARED", Path(__file__).parents[4] / "shared")) / "cases"
 G = 9.80665
 CM = series()  # cm/s2, three decimals
 GS = np.round(CM / 980.665, 7)
@@ -277,6 +280,9 @@ TABLES = [
     ("t.csv", table(), ("--time-step", "0.01", "--time", "t", "--unit", "g"), "--time-step: 0.01: expected alone"),
     ("t.csv", table(), ("--time-step", "0", "--unit", "g"), "--time-step: 0.0: expected a positive number"),
     ("t.csv", table(), ("--time-step", "nan", "--unit", "g"), "--time-step: nan: expected a positive number"),
+    ("t.txt", "DT= 0.005 SEC\n" + EIGHT, (*SERIES, "g"), "--time-step: expected 0.005, as the file says, found 0.01"),
+    ("t.txt", "NPTS= 400\n" + EIGHT, (*SERIES, "g"), "number of values: expected 400, as the file says, found 500"),
+    ("t.txt", "acc in units of CM/SEC**2\n" + EIGHT, (*SERIES, "g"), "--unit: expected 'CM/SEC**2', as the file says"),
     ("t.csv", table(), ("--time-step", "0.01"), "--unit: expected for a table"),
     ("t.csv", table(), ("--unit", "g"), "--column: expected for a table, or --time-step"),
     ("m.csv", "time_s,acceleration_x\n" + "".join(f"{row / 100 + 3 * (row > 99)},{row % 7}\n" for row in range(200)),
@@ -316,3 +322,30 @@ def test_a_record_says_what_was_checked_and_assumed(tmp_path):
     assert attributes["checked"] == "number of values, length, peak, time of the peak"
     assert attributes["assumed"] == "a time step of 0.01 s, the length over the number of values"
     assert load_motion(write(tmp_path, "a.at2", at2(GS)), correct=False).attributes["assumed"] == "nothing"
+
+
+@pytest.mark.parametrize(
+    ("case", "length", "peak", "at"),
+    [
+        ("cosmos-v2-interval/record.v2", 9.99, 1.47066, 3.84),
+        ("at2-unit-full-stop/record.AT2", 4.02, 2.39724, None),
+    ],
+)
+def test_records_of_shared_cases(case, length, peak, at):
+    if not (CASES / case).exists():
+        pytest.skip(f"no case in {CASES} (set BLOCKSHAKE_SHARED)")
+    motion = load_motion(CASES / case, correct=False)
+    values = motion.evaluate(motion.table.breaks, 2)[:, 0]
+    place = int(np.argmax(np.abs(values)))
+    assert motion.duration == pytest.approx(length, abs=1e-9)
+    assert abs(values[place]) == pytest.approx(peak, abs=1e-5)
+    assert at is None or motion.table.breaks[place] == pytest.approx(at, abs=1e-9)
+
+
+def test_the_table_of_a_shared_case(tmp_path, capsys):
+    path = CASES / "thousands-point" / "record.csv"
+    if not path.exists():
+        pytest.skip(f"no case in {CASES} (set BLOCKSHAKE_SHARED)")
+    options = ["--unit", "mm/s2", "--decimal", ",", "--column", "x=acc"]
+    assert main(["convert-motion", str(path), *options, "--output", str(tmp_path / "m.csv")]) == 2
+    assert "record.csv: line 4, acc: expected a number with a decimal comma" in capsys.readouterr().err

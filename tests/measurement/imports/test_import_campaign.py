@@ -111,8 +111,8 @@ COLUMNS = ["--time", "Zeit", "--column", "slab-face.x=Tisch", "--column", "block
 
 def _transducers(path, change=lambda rows: rows):
     """A test of two displacement transducers along x, the second with an offset."""
-    rows = [[f"{step * 0.01:.2f}", "0,1", "57,3"] for step in range(1300)]
-    text = ["Zeit;Tisch;Weg 1", *(";".join(row).replace(".", ",") for row in change(rows))]
+    rows = [[f"{step * 0.01:.2f}".replace(".", ","), "0,1", "57,3"] for step in range(1300)]
+    text = ["Zeit;Tisch;Weg 1", *(";".join(row) for row in change(rows))]
     path.write_text("\n".join(text))
     return str(path)
 
@@ -156,6 +156,10 @@ BAD = {
     "times that go back": (_set(50, 0, "0,4"), [], "v1.csv: line 52, Zeit: expected times that increase; 0.4 s"),
     "no time": (_set(50, 0, ""), [], "v1.csv: line 52, Zeit: expected a time"),
     "text among numbers": (_set(9, 2, "over"), [], "v1.csv: line 11, Weg 1: expected a number with a decimal comma"),
+    "a point for thousands": (_set(9, 2, "1.012"), [], "line 11, Weg 1: expected a number with a decimal comma"),
+    "a point and a comma": (_set(9, 2, "1.012,5"), [], "line 11, Weg 1: expected a number with a decimal comma"),
+    "a code for none": (_set(9, 2, "-9999"), [], "line 11, Weg 1: expected a reading; '-9999' looks like a code"),
+    "a cell too many": (_set(9, 2, "57;3"), [], "v1.csv: line 11: expected at most 3 cells, found 4"),
     "a gap of the clock": (_without(200, 230), [], "v1.csv: line 202, Zeit: expected an even clock; 0.31 s after 1.99"),
     "a clock in another unit": (_same, ["--time-unit", "ms"], "v1.csv: time: expected seconds, with 20 to 10000"),
     "an unknown marker": (_same, ["--column", "mystery.x=Tisch"], "v1.csv: mystery: expected markers of the structure"),

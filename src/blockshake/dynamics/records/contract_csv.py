@@ -55,12 +55,12 @@ def read_motion_csv(text, where):
             for name, cell in zip(header, row, strict=True)
         ]
     columns = {name: values[:, index] for index, name in enumerate(header)}
+    time = columns.pop("time_s")
     for name, column in columns.items():
         coded = missing_code(column)
         if coded is not None:
             expected = f"expected a value; {column[coded]:g} looks like a code for none"
             raise InputError(where, f"line {lines[coded]}, {name}", expected)
-    time = columns.pop("time_s")
     check_times(time, lines, where, "time_s")
     return time, {name if name == "pitch_y" else name[-1]: column for name, column in columns.items()}, kind
 

@@ -10,7 +10,8 @@ from blockshake.dynamics.motion import CHANNELS, check_finite, ground_motion
 from blockshake.dynamics.records.times import check_times
 from blockshake.errors import InputError
 from blockshake.tables.numbers import plain_number
-from blockshake.tables.table_file import read_series, read_table
+from blockshake.tables.series_file import read_series
+from blockshake.tables.table_file import read_table
 from blockshake.tables.units import kind_of_unit, known_unit, unit_size
 
 # of the text above values without times
