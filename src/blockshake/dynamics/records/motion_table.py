@@ -4,16 +4,14 @@ from pathlib import Path
 
 import numpy as np
 
-from blockshake.dynamics.baseline import check_samples, correct_baseline, correction_words
+from blockshake.dynamics.baseline import AUTO, settle
 from blockshake.dynamics.motion import CHANNELS, check_finite, ground_motion
 from blockshake.errors import InputError
 from blockshake.tables.table_file import read_table
 from blockshake.tables.units import kind_of_unit, unit_size
 
-_UNEVEN = 1e-3  # of the step, by which rows of an even series may be uneven
 
-
-def load_motion_table(source, layout, time, columns, unit, time_unit="s", corner_frequency=None):
+def load_motion_table(source, layout, time, columns, unit, time_unit="s", baseline=AUTO):
     """`GroundMotion` from columns of a text file or a workbook.
 
     Parameters
@@ -28,8 +26,8 @@ def load_motion_table(source, layout, time, columns, unit, time_unit="s", corner
     unit : str
         Of the columns; tells acceleration, velocity and displacement apart.
     time_unit : str
-    corner_frequency : float, optional
-        Of a baseline correction of accelerations, as of `correct_baseline` [Hz]; none by default.
+    baseline : str or float
+        As of `settle`: a table is corrected with a corner frequency alone.
 
     Raises
     ------
@@ -53,25 +51,10 @@ def load_motion_table(source, layout, time, columns, unit, time_unit="s", corner
     if len(at) < 2 or len(back):
         line = table.lines[back[0] + 1] if len(back) else table.lines[0]
         raise InputError(table.source, f"line {line}, {time}", "expected times that increase from row to row")
-    baseline = "none"
-    if corner_frequency is not None:
-        step = _even_step(at, kind, table.source)
-        check_samples(len(at), step, corner_frequency, table.source)
-        read = {name: correct_baseline(values, step, corner_frequency) for name, values in read.items()}
-        baseline = correction_words(corner_frequency)
-    attributes = {"source": Path(source).name, "format": "table", "synthetic": False, "baseline": baseline}
+    attributes = {"source": Path(source).name, "format": "table", "synthetic": False}
     if at[0] != 0.0:
         attributes["first_time"] = float(at[0])
     with np.errstate(over="ignore", invalid="ignore"):  # looked at below
         motion = ground_motion(Path(source).stem, at - at[0], read, kind, attributes)
     check_finite(motion, table.source)
-    return motion
-
-
-def _even_step(time, kind, source):
-    steps = np.diff(time)
-    if kind != "acceleration" or np.ptp(steps) > _UNEVEN * steps.mean():
-        raise InputError(
-            source, "--baseline", "expected accelerations at even times, which alone can be corrected"
-        )
-    return float(steps.mean())
+    return settle(motion, baseline, table.source)

@@ -120,7 +120,7 @@ def commanded_motion(campaign, entry):
     """The motion that was commanded in a test, None where the campaign names one that is not at hand."""
     own = campaign.folder / entry.motion
     if isfile(own):
-        return load_motion(own, entry.scale)
+        return load_motion(own, entry.scale, entry.baseline)
     return _shipped_motion(entry.motion, entry.scale) if entry.motion in shipped_names("motions") else None
 
 

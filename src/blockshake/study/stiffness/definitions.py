@@ -187,7 +187,7 @@ def _top_peak(case, time_step, duration, restitution, stiffness, keep):
         return np.nan
     parameters = {"restitution": restitution}
     parameters |= {f"ls_dem.{one}_stiffness": float(stiffness.sel(direction=one)) for one in AXES}
-    motion = load_motion(case["motion"], case["scale"])
+    motion = load_motion(case["motion"], case["scale"], case["baseline"])
     structure = load_structure(case["structure"])
 
     def shake():
