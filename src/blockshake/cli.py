@@ -10,7 +10,7 @@ from pathlib import Path
 from blockshake import __version__
 from blockshake.errors import INTERRUPTED, InputError
 from blockshake.files import check_output, parse_yaml, write_json
-from blockshake.own_files.commands import add_data_commands
+from blockshake.own_files.commands import add_baseline, add_data_commands
 from blockshake.simulation.models import MODELS
 
 BAD_INPUT, NUMERICAL_FAILURE = 2, 3
@@ -45,6 +45,7 @@ def _parser():
     command.add_argument("--structure", required=True, metavar="NAME|FILE")
     command.add_argument("--motion", required=True, metavar="NAME|FILE")
     command.add_argument("--scale", type=float, default=1.0, help="multiplies the motion (default 1)")
+    add_baseline(command)
     command.add_argument(
         "--duration", type=float, metavar="S", help="cuts or extends (default: the motion's)"
     )
@@ -136,6 +137,7 @@ def _parser():
     command = commands.add_parser("check", help="say what is wrong with structure, motion or study files")
     command.add_argument("files", nargs="+", metavar="FILE")
     command.add_argument("--picture", metavar="PICTURE", help="of one structure: .png, .pdf or .svg")
+    add_baseline(command)
     command.set_defaults(run=_check)
 
     command = commands.add_parser(
@@ -191,6 +193,7 @@ def _simulate(options):
     import xarray as xr
 
     from blockshake.dynamics.load_motion import load_motion
+    from blockshake.dynamics.provenance import provenance
     from blockshake.dynamics.system import FINISHED
     from blockshake.geometry.structure import load_structure
     from blockshake.jit import CACHE_FOLDER
@@ -200,6 +203,9 @@ def _simulate(options):
     _show_progress()
     begin = time.monotonic()
     structure = load_structure(options.structure)
+    motion = load_motion(options.motion, options.scale, options.baseline)
+    if not motion.attributes["synthetic"]:
+        logging.getLogger("blockshake").info("%s", provenance(motion.attributes))
     if Path(options.output).exists():
         logging.getLogger("blockshake").info("%s is there and will be replaced", options.output)
     if not CACHE_FOLDER.exists():
@@ -207,7 +213,7 @@ def _simulate(options):
     simulate_to_file(
         options.output,
         structure,
-        load_motion(options.motion, options.scale),
+        motion,
         options.model,
         _settings(options),
         time_step=options.time_step,
@@ -334,7 +340,7 @@ def _check(options):
     wrong = 0
     for file in options.files:
         try:
-            print(f"{file}: {check_file(file)}")
+            print(f"{file}: {check_file(file, options.baseline)}")
         except InputError as error:
             print(f"blockshake: {error}", file=sys.stderr)
             wrong += 1

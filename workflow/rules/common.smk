@@ -248,7 +248,7 @@ def case_definition(wildcards):
     """Keys of a case in the configuration that its runs depend on."""
     return {
         key: CASES[wildcards.case][key]
-        for key in ("structure", "motion", "scale", "duration", "input")
+        for key in ("structure", "motion", "scale", "baseline", "duration", "input")
     }
 
 
@@ -277,13 +277,11 @@ MEASURED = [name for name, case in CASES.items() if case["measured"]]
 FRICTION_SEARCH = config.get("friction_calibration") or {}
 CALIBRATION = config.get("calibration") or {}
 FRAGILITY = config.get("fragility") or {}
+BASELINES = {motion: baseline for _, motion, baseline in CHECKED.named_motions()}
 LADDER_MOTIONS = config["ladder"]["motions"] or list(
     dict.fromkeys(case["motion"] for case in config["cases"])
 )
-MOTIONS = {
-    Path(motion).stem: motion
-    for motion in [*(case["motion"] for case in CASES.values()), *LADDER_MOTIONS]
-}
+MOTIONS = {Path(motion).stem: motion for motion in BASELINES}
 
 
 wildcard_constraints:

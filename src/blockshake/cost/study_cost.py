@@ -40,7 +40,10 @@ def study_cost(path):
     parts = []
     for model, settings in config.models.items():
         for case in config.cases:
-            structure, motion = load_structure(case.structure), load_motion(case.motion, case.scale)
+            structure, motion = (
+                load_structure(case.structure),
+                load_motion(case.motion, case.scale, case.baseline),
+            )
             trial = {"model": model, **settings.model_dump()}
             asked = _runs(config, model, case)
             runs = sum(count for count, _ in asked.values())

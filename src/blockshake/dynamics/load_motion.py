@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.dynamics.baseline import CORNER_FREQUENCY, check_samples, correct_baseline, correction_words
+from blockshake.dynamics.baseline import AUTO, NONE, settle
 from blockshake.dynamics.motion import CHANNELS, check_finite, ground_motion
 from blockshake.dynamics.records.at2 import is_at2, read_at2
 from blockshake.dynamics.records.contract_csv import read_motion_csv
@@ -27,7 +27,7 @@ _RECORD_FORMATS = (
 )
 
 
-def load_motion(source, scale=1.0, correct=True, corner_frequency=CORNER_FREQUENCY, channels=None):
+def load_motion(source, scale=1.0, baseline=AUTO, channels=None):
     """Ground motion from a shipped name or a file.
 
     Parameters
@@ -38,10 +38,9 @@ def load_motion(source, scale=1.0, correct=True, corner_frequency=CORNER_FREQUEN
         the format.
     scale : float
         Multiplies every column, not 0 [1].
-    correct : bool
-        Baseline correction of record formats; a CSV is never corrected.
-    corner_frequency : float
-        Of that correction's high-pass [Hz].
+    baseline : str or float
+        ``auto``, ``none`` or a corner frequency [Hz], as `settle` takes it: by default a record that does not end at
+        rest is corrected, and a CSV never is.
     channels : dict of str to str, optional
         By axis (``x``, ``y``, ``z``) the name of a record's channel, or its number in the file, from 1. By default the
         only channel is x.
@@ -51,29 +50,33 @@ def load_motion(source, scale=1.0, correct=True, corner_frequency=CORNER_FREQUEN
     GroundMotion
         Its time starts at zero: what the file gives as its first time is in the attribute
         ``first_time`` where it is another. The attributes of a record tell its ``format``, the entries of its header
-        that were ``checked`` against the values, and what was ``assumed``.
+        that were ``checked`` against the values, and what was ``assumed``; ``baseline`` and, of a corrected motion,
+        ``record_start`` are those of `settle`.
 
     Raises
     ------
     InputError
         Missing file, unknown name, unknown format or unit, NaN, time that does not increase,
         a gap in even rows, mixed kinds, too few rows, a file cut short, a header that contradicts its values, several
-        channels where none is named, a scale that is 0 or not finite, a displacement beyond all numbers.
+        channels where none is named, a scale that is 0 or not finite, a displacement beyond all numbers, a correction
+        that cannot be made.
     """
     if not np.isfinite(scale) or scale == 0.0:
         raise InputError(source, "scale", f"expected a finite number other than 0, found {scale}")
     with np.errstate(over="ignore", invalid="ignore"):  # looked at below
-        motion = _read(named_file("motions", source), corner_frequency if correct else None, channels)
+        motion = _read(named_file("motions", source), baseline, channels)
         motion = motion if scale == 1.0 else motion.scaled(scale)
     check_finite(motion, source)
     return motion
 
 
-def _read(path, corner, channels):
+def _read(path, baseline, channels):
     if path.suffix.lower() in (".yaml", ".yml"):
-        asked = load_synthetic(path)
-        check_samples(asked.duration / asked.time_step, asked.time_step, asked.high_pass_frequency, path)
-        return synthesise(asked)
+        if baseline not in (AUTO, NONE):
+            raise InputError(
+                path, "baseline", f"expected {AUTO} or {NONE} of a synthetic motion, which ends at rest"
+            )
+        return synthesise(load_synthetic(path))
     text = read_foreign_text(path)
     ending = path.suffix.lower()
     named = (
@@ -81,9 +84,9 @@ def _read(path, corner, channels):
     )
     for recognises, _, read in (*_RECORD_FORMATS, *named):
         if recognises(text):
-            return _record_motion(_chosen(read(text, path), channels, path), path, corner)
+            return _record_motion(_chosen(read(text, path), channels, path), path, baseline)
     if "time_s" in text.partition("\n")[0] or ending == ".csv":
-        return _csv_motion(text, path)
+        return settle(_csv_motion(text, path), baseline, path)
     raise InputError(
         path, "",
         "expected a motion CSV (time_s, acceleration_x, ...), ESM/ITACA DYNA 1.2, PEER AT2, COSMOS V2, CSMIP V2, "
@@ -93,7 +96,7 @@ def _read(path, corner, channels):
 
 def _csv_motion(text, path):
     time, columns, kind = read_motion_csv(text, path)
-    attributes = {"source": path.name, "format": "csv", "synthetic": False, "baseline": "none"}
+    attributes = {"source": path.name, "format": "csv", "synthetic": False}
     attributes |= {"checked": "times", "assumed": "nothing"}
     if time[0] != 0.0:
         attributes["first_time"] = float(time[0])
@@ -128,17 +131,14 @@ def _chosen(records, channels, path):
     return chosen
 
 
-def _record_motion(records, path, corner):
-    first, baseline, columns = next(iter(records.values())), "none", {}
-    for axis, record in records.items():
-        columns[axis] = record.acceleration
-        if corner is not None:
-            check_samples(len(record.acceleration), record.time_step, corner, path)
-            columns[axis] = correct_baseline(record.acceleration, record.time_step, corner)
-            baseline = correction_words(corner)
+def _record_motion(records, path, baseline):
+    first = next(iter(records.values()))
+    columns = {axis: record.acceleration for axis, record in records.items()}
     time = first.time_step * np.arange(len(first.acceleration))
-    attributes = {"source": path.name, "format": first.format, "synthetic": False, "baseline": baseline}
+    attributes = {"source": path.name, "format": first.format, "synthetic": False}
     attributes |= {"checked": first.checked, "assumed": first.assumed}
     if any(record.channel for record in records.values()):
         attributes["channels"] = ", ".join(f"{axis}: {record.channel}" for axis, record in records.items())
-    return ground_motion(path.stem, time, columns, "acceleration", {**attributes, **first.metadata})
+    motion = ground_motion(path.stem, time, columns, "acceleration", {**attributes, **first.metadata})
+    check_finite(motion, path)
+    return settle(motion, baseline, path, published=True)

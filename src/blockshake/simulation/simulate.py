@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import blockshake
+from blockshake.dynamics.baseline import check_window
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.motion import PITCH, GroundMotion
 from blockshake.dynamics.system import FINISHED, Status
@@ -196,6 +197,7 @@ def _set_up(structure, motion, model, parameters, time_step, duration, output_ra
     for name, value in (("time step", time_step), ("duration", duration), ("output rate", output_rate)):
         if not (np.isfinite(value) and value > 0.0):
             raise InputError(f"--{name.replace(' ', '-')}", "", f"expected a positive number, not {value}")
+    check_window(motion, duration, "--duration", "")
     if time_step > _LONGEST_STEP:
         raise InputError(
             "--time-step", "", f"expected at most {_LONGEST_STEP:g} s, not {time_step:g}: impacts last less"

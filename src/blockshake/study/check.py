@@ -2,7 +2,9 @@
 
 from pathlib import Path
 
+from blockshake.dynamics.baseline import AUTO
 from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.provenance import provenance
 from blockshake.errors import InputError
 from blockshake.files import load_yaml, shipped_names
 from blockshake.forces.sight import sight_lines
@@ -18,13 +20,15 @@ from blockshake.study.structure_remarks import structure_lines, structure_remark
 _LATE = 5.0  # s of rest after a motion that need no remark
 
 
-def check_file(source):
+def check_file(source, baseline=AUTO):
     """Content of a good file as it was understood, line by line, and remarks.
 
     Parameters
     ----------
     source : str or path
         A structure, a motion, a campaign or a study's configuration, by file, folder or shipped name.
+    baseline : str or float
+        Of a motion, as of `load_motion`; the other files name their own.
 
     Raises
     ------
@@ -47,7 +51,7 @@ def check_file(source):
             raise InputError(
                 source, "", "expected a structure (bodies), a study (cases) or a synthetic motion (synthetic)"
             )
-    motion = load_motion(source)
+    motion = load_motion(source, baseline=baseline)
     return _with_remarks([motion_line(motion)], motion_remarks(motion))
 
 
@@ -71,10 +75,13 @@ def _study_line(source):
         counts = sorted({config.samples(model, case.name) for case in config.cases})
         told.append(f"{model} ({' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))} samples)")
     count = f"{len(config.cases)} case{'s' * (len(config.cases) != 1)}"
-    return _with_remarks([f"a study of {count} by {', '.join(told)}"], _study_remarks(config))
+    motions = {name: load_motion(name, baseline=baseline) for _, name, baseline in config.named_motions()}
+    records = [f"  {name}: {provenance(motion.attributes)}" for name, motion in motions.items()]
+    lines = [f"a study of {count} by {', '.join(told)}", *records]
+    return _with_remarks(lines, _study_remarks(config, motions))
 
 
-def _study_remarks(config):
+def _study_remarks(config, motions):
     """Structures whose samples are all alike, variables that none has, and remarks on each structure and motion."""
     structures = {case.structure: load_structure(case.structure) for case in config.cases}
     # Table 2 stands for all configurations of the paper, of which some have no steel
@@ -85,7 +92,6 @@ def _study_remarks(config):
         if not any(has_parameter(structure, variable) for variable in config.ensemble.distributions):
             yield f"{name}: no variable of ensemble.distributions is the structure's: all of its samples are alike"
         yield from (f"{name}: {remark}" for remark in structure_remarks(structure))
-    motions = {case.motion: load_motion(case.motion) for case in config.cases}
     for name, motion in motions.items():
         yield from (f"{name}: {remark}" for remark in motion_remarks(motion))
     for case in config.cases:

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BeforeValidator, ConfigDict, Field, StringConstraints, field_validator, model_validator
 
+from blockshake.dynamics.baseline import AUTO, Baseline, check_window
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
@@ -102,6 +103,7 @@ class StudyCase(Strict):
     structure: str = Field(description="shipped name or file")
     motion: str = Field(description="shipped name or file")
     scale: Positive = Field(description="multiplies the motion [1]")
+    baseline: Baseline = AUTO
     duration: Positive = Field(description="simulated time [s]")
     samples: dict[ModelName, int] = Field(
         {},
@@ -134,7 +136,8 @@ class StudyCase(Strict):
 class Ladder(Strict):
     """The intensities that are climbed to find each case's scale."""
 
-    motions: tuple[str, ...] = Field((), description="those of the cases by default")
+    motions: tuple[str, ...] = Field((), description="those of the cases by default, with their baselines")
+    baseline: Baseline = AUTO
     first: Positive = Field(0.5, description="scale of the first test [1]")
     increment: Positive = Field(0.25, description="from one scale to the next [1]")
     highest: Positive = Field(4.0, description="where the ladder ends [1]")
@@ -203,6 +206,11 @@ class StudyConfig(Strict):
         """The case of this name."""
         return next(case for case in self.cases if case.name == name)
 
+    def named_motions(self):
+        """Key, name and baseline of every motion that is named, cases first; a ladder without motions has theirs."""
+        cases = [(f"cases.{index}", case.motion, case.baseline) for index, case in enumerate(self.cases)]
+        return [*cases, *(("ladder", motion, self.ladder.baseline) for motion in self.ladder.motions)]
+
     def samples(self, model, case):
         """Number of samples of a case by a model."""
         return min(self.case(case).samples.get(model, self.ensemble.size), self.ensemble.size)
@@ -242,8 +250,15 @@ def check_config(mapping, where):
     names = [case.name for case in config.cases]
     for model, settings in config.models.items():
         check_parameters(model, settings, f"models.{model}.parameters", where)
-    for motion in dict.fromkeys([*(case.motion for case in config.cases), *config.ladder.motions]):
-        load_motion(motion)
+    motions = {}
+    for key, motion, baseline in config.named_motions():
+        if motions.setdefault(motion, baseline) != baseline:
+            raise InputError(
+                where,
+                f"{key}.baseline",
+                f"expected one baseline of {motion}; a copy of the file may have another",
+            )
+    motions = {motion: load_motion(motion, baseline=baseline) for motion, baseline in motions.items()}
     for index, case in enumerate(config.cases):
         key = f"cases.{index}"
         if names.count(case.name) > 1:
@@ -256,6 +271,7 @@ def check_config(mapping, where):
                     where, f"{key}.samples.{model}", f"expected 1 to {config.ensemble.size}, not {count}"
                 )
         check_structure(case.structure, where, key)
+        check_window(motions[case.motion], case.duration, where, f"{key}.duration")
         if case.measured is not None:
             check_measured(case, where, f"{key}.measured")
     for target, source in config.ensemble.linked.items():

@@ -84,11 +84,13 @@ def check_measured(case, where, key):
     if case.measured.test not in open_tests:
         raise InputError(where, f"{key}.test", f"expected a test that is not sealed: {', '.join(open_tests)}")
     test = campaign.tests[case.measured.test]
-    if (Path(test.motion).stem, test.scale) != (Path(case.motion).stem, case.scale):
+    commands = [(Path(one.motion).stem, one.scale, one.baseline) for one in (test, case)]
+    if commands[0] != commands[1]:
         raise InputError(
             where,
             f"{key}.test",
-            f"expected one of {case.motion} at {case.scale:g}, not {test.motion} at {test.scale:g}",
+            f"expected one of {case.motion} at {case.scale:g}, baseline {case.baseline}, not {test.motion} at "
+            f"{test.scale:g}, baseline {test.baseline}",
         )
     if case.input == MEASURED:
         time = load_test(campaign, case.measured.test)["time"].to_numpy()

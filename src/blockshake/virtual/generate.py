@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from blockshake.dynamics.baseline import check_window
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.records.contract_csv import write_motion_csv
 from blockshake.dynamics.system import Status
@@ -46,6 +47,10 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
     fell, whose markers fell with it, is not part of the campaign. Then the stack is put back in any case. Tests that
     an earlier call has finished are kept.
     """
+    for motion in settings.motions:
+        check_window(
+            load_motion(motion, 1.0, settings.baseline), settings.duration, settings.name, "duration"
+        )
     folder, truth = Path(folder), Path(truth)
     loaded = load_structure(structure)
     called_structure = structure_in_folder(structure, loaded, folder)
@@ -56,11 +61,10 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
         for scale in _scales(settings.intensities):
             gentle += table.sine(len(tests))
             entry = {
-                "name": f"{Path(motion).stem}-{round(100 * scale):03d}",
-                "motion": called,
-                "scale": scale,
-            }
-            drift = table.test(entry, load_motion(motion, scale), settings.duration)
+                "name": f"{Path(motion).stem}-{round(100 * scale):03d}", "motion": called, "scale": scale,
+                "baseline": settings.baseline,
+            }  # fmt: skip
+            drift = table.test(entry, load_motion(motion, scale, settings.baseline), settings.duration)
             if drift is not None:
                 tests.append(entry)
             if drift is None or drift > settings.intensities.largest_drift:

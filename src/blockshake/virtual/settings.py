@@ -5,6 +5,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
@@ -61,6 +62,7 @@ class VirtualCampaign(Strict):
     )
     duration: Positive = Field(12.0, description="of a strong test [s]")
     motions: tuple[str, ...] = Field(("alkion", "basso-tirreno"), min_length=1)
+    baseline: Baseline = AUTO
     intensities: Intensities = Intensities()
     sine: Sine | None = None
     table: Table = Table()

@@ -34,7 +34,12 @@ def case(make_mapping, tmp_path):
     pulse = np.where(time < PULSE, 1.0, np.where(time < 2.0 * PULSE, -1.0, 0.0))
     rows = [f"{t:.4f},{a}" for t, a in zip(time, pulse, strict=True)]
     (tmp_path / "pulse.csv").write_text("\n".join(["time_s,acceleration_x", *rows]))
-    return {"structure": str(tmp_path / "cube.yaml"), "motion": str(tmp_path / "pulse.csv"), "duration": 0.6}
+    return {
+        "structure": str(tmp_path / "cube.yaml"),
+        "motion": str(tmp_path / "pulse.csv"),
+        "baseline": "auto",
+        "duration": 0.6,
+    }
 
 
 def test_capacities_enclose_those_of_a_block_that_slides(case, tmp_path):

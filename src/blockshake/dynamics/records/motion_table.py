@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from blockshake.dynamics.baseline import check_samples, correct_baseline, correction_words
+from blockshake.dynamics.baseline import AUTO, settle
 from blockshake.dynamics.motion import CHANNELS, check_finite, ground_motion
 from blockshake.dynamics.records.times import check_times
 from blockshake.errors import InputError
@@ -18,12 +18,9 @@ from blockshake.tables.units import kind_of_unit, known_unit, unit_size
 _STEP = re.compile(r"\b(?:dt|time step)\s*[=:]?\s*([^\s,;]+)", re.IGNORECASE)
 _COUNT = re.compile(r"\bnpts\s*[=:]?\s*([^\s,;]+)", re.IGNORECASE)
 _UNIT = re.compile(r"\bunits?\s*(?:of|in|[=:])\s*([^\s,;]+)", re.IGNORECASE)
-_UNEVEN = 1e-3  # of the step, by which rows of an even series may be uneven
 
 
-def load_motion_table(
-    source, layout, time, columns, unit, time_unit="s", corner_frequency=None, time_step=None
-):
+def load_motion_table(source, layout, time, columns, unit, time_unit="s", baseline=AUTO, time_step=None):
     """`GroundMotion` from columns of a text file or a workbook.
 
     Parameters
@@ -39,8 +36,8 @@ def load_motion_table(
     unit : str
         Of the columns; tells acceleration, velocity and displacement apart.
     time_unit : str
-    corner_frequency : float, optional
-        Of a baseline correction of accelerations, as of `correct_baseline` [Hz]; none by default.
+    baseline : str or float
+        As of `settle`: a table is corrected with a corner frequency alone.
     time_step : float, optional
         Of values without times [s].
 
@@ -71,20 +68,14 @@ def load_motion_table(
         assumed += f"; a time step of {time_step:g} s, as given"
     if len(at) < 2:
         raise InputError(where, "", f"expected at least two rows, found {len(at)}")
-    baseline = "none"
-    if corner_frequency is not None:
-        step = _even_step(at, kind, where)
-        check_samples(len(at), step, corner_frequency, where)
-        read = {name: correct_baseline(values, step, corner_frequency) for name, values in read.items()}
-        baseline = correction_words(corner_frequency)
-    attributes = {"source": Path(source).name, "format": "table", "synthetic": False, "baseline": baseline}
+    attributes = {"source": Path(source).name, "format": "table", "synthetic": False}
     attributes |= {"checked": "nothing" if time_step else "times", "assumed": assumed}
     if at[0] != 0.0:
         attributes["first_time"] = float(at[0])
     with np.errstate(over="ignore", invalid="ignore"):  # looked at below
         motion = ground_motion(Path(source).stem, at - at[0], read, kind, attributes)
     check_finite(motion, where)
-    return motion
+    return settle(motion, baseline, where)
 
 
 def _finite(table, name, size, kind):
@@ -110,12 +101,3 @@ def _series(source, layout, time_step, given):
         if known_unit(stated) not in (None, given):
             raise InputError(source, "--unit", f"expected '{stated}', as the file says")
     return float(given[1]) * values
-
-
-def _even_step(time, kind, source):
-    steps = np.diff(time)
-    if kind != "acceleration" or np.ptp(steps) > _UNEVEN * steps.mean():
-        raise InputError(
-            source, "--baseline", "expected accelerations at even times, which alone can be corrected"
-        )
-    return float(steps.mean())

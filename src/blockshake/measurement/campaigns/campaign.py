@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field
 
+from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.errors import InputError
 from blockshake.files import load_yaml, shipped_names
 from blockshake.geometry.structure import load_structure
@@ -46,6 +47,7 @@ class MeasuredTest(Strict):
     file: str = Field(description="readings: a CSV or netCDF file in the folder")
     motion: str = Field(description="commanded motion: a shipped name, or a file in the folder")
     scale: Scale = Field(description="multiplies the motion; not 0 [1]")
+    baseline: Baseline = AUTO
     role: Literal["fit", "select", "sealed"] = Field(
         description="what the test may be used for: to fit, to choose between models, or to judge a frozen one"
     )

@@ -118,12 +118,14 @@ def driven_axis_remarks(slab):
 
 def commanded_motion(campaign, entry):
     """The motion that was commanded in a test, None where the campaign names one that is not at hand."""
-    own = campaign.folder / entry.motion
-    if isfile(own):
-        return load_motion(own, entry.scale)
-    return _shipped_motion(entry.motion, entry.scale) if entry.motion in shipped_names("motions") else None
+    path = campaign.folder / entry.motion
+    if isfile(path):
+        return _loaded(path, entry.scale, entry.baseline, path.stat().st_mtime_ns)
+    shipped = entry.motion in shipped_names("motions")
+    return _loaded(entry.motion, entry.scale, entry.baseline, 0) if shipped else None
 
 
-@lru_cache
-def _shipped_motion(name, scale):
-    return load_motion(name, scale)
+@lru_cache(maxsize=16)
+def _loaded(source, scale, baseline, changed):
+    """Motion of a source that was last changed at some time: a new file is read anew."""
+    return load_motion(source, scale, baseline)

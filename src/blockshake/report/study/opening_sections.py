@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from blockshake.dynamics.provenance import provenance
 from blockshake.report.document.blocks import Figure, Heading, Items, Section, Text
 from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.units import printed
@@ -161,7 +162,7 @@ def motions(content):
                 else ""
             )
         ),
-        Items(tuple(f"{one.attrs['name']}: {one.attrs.get('source', '')}." for one in data)),
+        Items(tuple(f"{one.attrs['name']}: {provenance(one.attrs)}." for one in data)),
         Figure(
             "Ground acceleration, velocity and displacement along x (after the paper's Fig. 5)"
             + ("; dashed: end of the window that the cases simulate." if cut else "."),
