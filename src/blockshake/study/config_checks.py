@@ -6,6 +6,7 @@ from pathlib import Path
 from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.motion.measured_base import record_start
 from blockshake.measurement.sensors.markers import block_markers, driven_marker
 from blockshake.paths import check_plain
 from blockshake.simulation.models import split_parameters
@@ -94,7 +95,9 @@ def check_measured(case, where, key):
         )
     if case.input == MEASURED:
         time = load_test(campaign, case.measured.test)["time"].to_numpy()
-        check_record(time[-1] - time[0], case.duration, where, f"{key.removesuffix('measured')}duration")
+        check_record(
+            time[-1] - record_start(time), case.duration, where, f"{key.removesuffix('measured')}duration"
+        )
 
 
 def check_fragility(config, where):

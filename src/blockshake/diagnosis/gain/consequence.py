@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from blockshake.measurement.motion.compared_curves import histories_at
 from blockshake.study.ensembles.scores import crps
 
 FRACTILE = 0.95
@@ -59,11 +60,7 @@ def consequence(measured, readings):
 def _drift_score(measured, runs):
     if not all("drift" in one for one in runs):
         return np.full(measured.sizes["body"], np.nan)
-    members = [
-        one["drift"]
-        .reindex(time=measured["time"], method="nearest", tolerance=1e-6)
-        .transpose(..., "time", "body")
-        for one in runs
-    ]
+    time = measured["time"].to_numpy()
+    members = [histories_at(one[["drift"]], time)["drift"].transpose(..., "time", "body") for one in runs]
     score = crps(np.concatenate([one.to_numpy() for one in members]), measured.to_numpy())
     return measured.copy(data=score).mean("time").to_numpy()

@@ -11,6 +11,8 @@ from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.errors import InputError
 from blockshake.files import load_yaml, shipped_names
 from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.command_clock import from_command
+from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 from blockshake.measurement.campaigns.recorded_test import read_test
 from blockshake.measurement.sensors import accelerometers, markers, transducers
 from blockshake.paths import check_plain, file_below
@@ -117,5 +119,7 @@ def load_campaign(folder):
 
 
 def load_test(campaign, name):
-    """Readings of one test, checked against the campaign's structure; see `read_test`."""
-    return read_test(campaign.folder / campaign.tests[name].file, load_structure(campaign.structure))
+    """Readings of one test, checked against the campaign's structure as by `read_test`, times as of `from_command`."""
+    entry, structure = campaign.tests[name], load_structure(campaign.structure)
+    test = read_test(campaign.folder / entry.file, structure)
+    return from_command(test, structure, commanded_motion(campaign, entry))

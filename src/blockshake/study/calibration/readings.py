@@ -66,9 +66,6 @@ def open_test(case, campaign, name):
     base = measured_input({**case, "duration": 0.0}, named)
     duration = min(case["duration"], float(base.attrs["end"] - base.attrs["start"]))
     measured, _ = measured_on_clock(named, base)
-    if "time_acc" in measured.coords:
-        since = measured["time_acc"] - base.attrs["start"]
-        measured = measured.assign_coords(time_acc=since).isel(time_acc=(since >= 0.0).to_numpy())
     sensors = loaded.sensors
     instruments = Instruments(
         marker_noise=sensors.marker_noise, accelerometer_noise=sensors.accelerometer_noise
