@@ -19,6 +19,7 @@ from blockshake.measurement.sensors.accelerometers import FINE_RATE, SKIP, accel
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.measurement.sensors.transducers import transducer_displacement
 from blockshake.simulation.energy_residual import energy_residual
+from blockshake.simulation.falling import still_falling
 from blockshake.simulation.models import model_of, split_parameters
 from blockshake.simulation.run_dataset import (
     add_accelerometers,
@@ -153,6 +154,12 @@ class _SetUp(NamedTuple):
         """Attributes of the run file, from how the run ended and its `energy_residual`."""
         file, motion = self.structure.file, self.motion
         status, reason = trajectory.status, trajectory.reason
+        if status is Status.COMPLETED:
+            last = (part[-1] for part in (trajectory.position, trajectory.orientation, trajectory.angular_velocity))
+            falls = still_falling(self.structure, *last)
+            if falls:
+                status = Status.FALLING
+                reason = f"{falls} still falls at {trajectory.end_time:.3f} s, when the window ends"
         if status in FINISHED and residual > _WORST_RESIDUAL:
             reason = f"the energy audit misses {residual:.0%} of the energy in play: take a smaller time step; {reason}"
             status, reason = Status.NOT_CONVERGED, reason.removesuffix("; ")
