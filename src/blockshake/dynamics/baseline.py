@@ -82,10 +82,10 @@ def settle(motion, baseline, where, published=False):
 
     Notes
     -----
-    A record is at rest where all its components are: where the end velocity is at most 5 % of its peak velocity and its end displacement at most 20 %
-    of its peak displacement, or where both may come from the rounding of its values (`may_be_rounding`). It is at rest
-    elsewhere, after a permanent displacement, where the end velocity is as small and the last quarter of the record
-    moves by at most 5 % of the end displacement.
+    A record is at rest where all its components are: where the end velocity is at most 5 % of the peak velocity and the
+    end displacement at most 20 % of the peak displacement, or where both may come from the rounding of the values
+    (`may_be_rounding`). A component is at rest elsewhere, after a permanent displacement, where the end velocity is as
+    small and the last quarter of the record moves by at most 5 % of the end displacement.
 
     The correction is that of Boore (2005), On pads and filters: processing strong-motion data, Bull. Seism. Soc. Am.
     95: subtract the least-squares line; pad with zeros for ``1.5 order / corner`` at each end; high-pass by a
