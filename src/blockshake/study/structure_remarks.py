@@ -7,7 +7,10 @@ import numpy as np
 from blockshake.geometry.rotations import rotation_matrices
 
 _LIGHTEST, _HEAVIEST = 100.0, 25000.0  # kg/m3; no block is of less or more
-_LARGEST = 50.0  # m, of an edge
+_SMALLEST, _LARGEST = (
+    0.005,
+    25.0,
+)  # m, of the longest edge; no block of a structure or of a model test is beyond
 _SOFTEST = 1e7  # Pa, of rubber; no block is softer
 
 
@@ -65,7 +68,7 @@ def structure_remarks(structure):
                 f"{name} weighs {structure.mass[body]:.3g} kg, {density:.3g} kg/m3: expected kg/m3"
             )
         edge = np.ptp(solid.vertices, axis=0).max()
-        if edge > _LARGEST:
+        if not _SMALLEST <= edge <= _LARGEST:
             remarks.append(
                 f"{name} is {edge:.3g} m long and weighs {structure.mass[body]:.3g} kg: expected m"
             )

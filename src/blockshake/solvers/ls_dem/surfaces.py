@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.errors import InputError
 from blockshake.geometry.level_set import box_distance, hollow_box_distance
 from blockshake.geometry.level_set_grid import box_grid, grid_table, mesh_grid
-from blockshake.geometry.mesh_nodes import mesh_nodes
+from blockshake.geometry.meshes.mesh_nodes import mesh_nodes
 from blockshake.geometry.surface_nodes import box_nodes, chamfer_nodes
 from blockshake.geometry.trilinear import grid_distance
 from blockshake.jit import kernel
