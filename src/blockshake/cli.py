@@ -1,8 +1,9 @@
-"""The command line: exit 0 done, 2 bad input (one line), 3 numerical failure, 130 interrupted, 1 a bug."""
+"""The command line: exit 0 done, 2 bad input (one line), 3 numerical failure, 130 interrupted, 141 unread, 1 a bug."""
 
 import argparse
 import logging
 import os
+import select
 import sys
 import time
 from pathlib import Path
@@ -14,6 +15,7 @@ from blockshake.own_files.commands import add_data_commands
 from blockshake.simulation.models import MODELS
 
 BAD_INPUT, NUMERICAL_FAILURE = 2, 3
+UNREAD = 141  # whoever reads the output has gone, as after `blockshake parameters | head -1`
 
 
 class _Parser(argparse.ArgumentParser):
@@ -25,6 +27,22 @@ class _Parser(argparse.ArgumentParser):
 
 def main(arguments=None):
     """Run one command; the exit code is returned."""
+    if hasattr(sys.stdout, "reconfigure"):  # a terminal that knows few signs gets the others as escapes
+        sys.stdout.reconfigure(errors="backslashreplace")
+    try:
+        try:
+            return _run(arguments)
+        finally:
+            print(end="", flush=True)
+    except BrokenPipeError:
+        if _is_read(1) and _is_read(2):
+            raise
+        for stream in (1, 2):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream)
+        return UNREAD
+
+
+def _run(arguments):
     try:
         options = _parser().parse_args(arguments)
         return options.run(options) or 0
@@ -34,6 +52,13 @@ def main(arguments=None):
     except KeyboardInterrupt as interrupt:
         print(f"blockshake: {str(interrupt) or 'interrupted'}", file=sys.stderr)
         return INTERRUPTED
+
+
+def _is_read(stream):
+    """Whether a pipe of this process has a reader, or is none."""
+    state = select.poll()
+    state.register(stream, select.POLLOUT)
+    return not any(event & select.POLLERR for _, event in state.poll(0))
 
 
 def _parser():

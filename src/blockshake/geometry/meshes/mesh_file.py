@@ -46,12 +46,16 @@ def read_mesh(folder, name, source, key):
     if path.suffix.lower() not in MESHES:
         raise InputError(source, key, f"expected a mesh file {', '.join(MESHES)}, not '{path}'")
     try:
-        # from its bytes, so that it cannot name further files
         with np.errstate(over="ignore", invalid="ignore"):  # of corners that are refused below
+            # from its bytes, so that it cannot name further files
             mesh = trimesh.load_mesh(io.BytesIO(read_bytes(path)), file_type=path.suffix.lower()[1:])
-        mesh.merge_vertices(merge_tex=True, merge_norm=True)  # textures part the corners of a closed surface
-        mesh.update_faces((mesh.faces != np.roll(mesh.faces, 1, axis=1)).all(axis=1))  # edges as triangles
-        mesh.remove_unreferenced_vertices()
+            mesh.merge_vertices(
+                merge_tex=True, merge_norm=True
+            )  # textures part the corners of a closed surface
+            mesh.update_faces(
+                (mesh.faces != np.roll(mesh.faces, 1, axis=1)).all(axis=1)
+            )  # edges as triangles
+            mesh.remove_unreferenced_vertices()
         given, faces = np.array(mesh.vertices, dtype=float), np.array(mesh.faces, dtype=np.int64)
     except Exception as error:  # trimesh raises whatever its many readers raise
         raise InputError(source, key, f"expected a readable mesh file {path}; {error}") from None
