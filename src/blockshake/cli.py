@@ -220,21 +220,26 @@ def _simulate(options):
     from blockshake.geometry.structure import load_structure
     from blockshake.jit import CACHE_FOLDER
     from blockshake.simulation.ending import ending
+    from blockshake.simulation.models import part_parameters
     from blockshake.simulation.simulate import simulate_to_file
+    from blockshake.study.structure_remarks import unusual_values
 
     _show_progress()
     begin = time.monotonic()
-    structure = load_structure(options.structure)
+    structure, settings = load_structure(options.structure), _settings(options)
+    log = logging.getLogger("blockshake")
+    for remark in unusual_values(structure.with_parameters(part_parameters(settings)[0])):
+        log.info("remark: %s", remark)
     if Path(options.output).exists():
-        logging.getLogger("blockshake").info("%s is there and will be replaced", options.output)
+        log.info("%s is there and will be replaced", options.output)
     if not CACHE_FOLDER.exists():
-        logging.getLogger("blockshake").info("compiles the solver first, once, for one to three minutes")
+        log.info("compiles the solver first, once, for one to three minutes")
     simulate_to_file(
         options.output,
         structure,
         load_motion(options.motion, options.scale),
         options.model,
-        _settings(options),
+        settings,
         time_step=options.time_step,
         duration=options.duration,
         output_rate=options.output_rate,
@@ -280,6 +285,7 @@ def _animate(options):
 
 def _export(options):
     from blockshake.report.run.export import check_export, export_run
+    from blockshake.report.run.local_origin import local_origin
     from blockshake.simulation.load_run import load_run
     from blockshake.simulation.run_histories import run_histories
 
@@ -287,6 +293,11 @@ def _export(options):
     run, structure = load_run(options.file, options.meshes)
     for file in export_run(options.output, run, run_histories(run, structure), structure):
         print(file)
+    origin = local_origin(run)
+    if origin.any() and Path(options.output).suffix.lower() != ".csv":
+        print(
+            f"  remark: places count from {origin.tolist()} m, as 32 bits are too coarse so far from the origin"
+        )
 
 
 def _sample(options):
@@ -381,6 +392,8 @@ def _estimate(options):
     from blockshake.cost.diagnosis_cost import campaign_cost
     from blockshake.cost.study_cost import study_cost
 
+    if options.cores < 1:
+        raise InputError("--cores", "", f"expected a whole number from 1, not {options.cores}")
     if Path(options.file).is_dir():
         parts = campaign_cost(options.file, options.effort)
     else:
