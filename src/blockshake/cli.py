@@ -1,8 +1,9 @@
-"""The command line: exit 0 done, 2 bad input (one line), 3 numerical failure, 130 interrupted, 1 a bug."""
+"""The command line: exit 0 done, 2 bad input (one line), 3 numerical failure, 130 interrupted, 141 unread, 1 a bug."""
 
 import argparse
 import logging
 import os
+import select
 import sys
 import time
 from pathlib import Path
@@ -14,6 +15,7 @@ from blockshake.own_files.commands import add_baseline, add_data_commands
 from blockshake.simulation.models import MODELS
 
 BAD_INPUT, NUMERICAL_FAILURE = 2, 3
+UNREAD = 141  # whoever reads the output has gone, as after `blockshake parameters | head -1`
 
 
 class _Parser(argparse.ArgumentParser):
@@ -25,6 +27,22 @@ class _Parser(argparse.ArgumentParser):
 
 def main(arguments=None):
     """Run one command; the exit code is returned."""
+    if hasattr(sys.stdout, "reconfigure"):  # a terminal that knows few signs gets the others as escapes
+        sys.stdout.reconfigure(errors="backslashreplace")
+    try:
+        try:
+            return _run(arguments)
+        finally:
+            print(end="", flush=True)
+    except BrokenPipeError:
+        if _is_read(1) and _is_read(2):
+            raise
+        for stream in (1, 2):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream)
+        return UNREAD
+
+
+def _run(arguments):
     try:
         options = _parser().parse_args(arguments)
         return options.run(options) or 0
@@ -34,6 +52,13 @@ def main(arguments=None):
     except KeyboardInterrupt as interrupt:
         print(f"blockshake: {str(interrupt) or 'interrupted'}", file=sys.stderr)
         return INTERRUPTED
+
+
+def _is_read(stream):
+    """Whether a pipe of this process has a reader, or is none."""
+    state = select.poll()
+    state.register(stream, select.POLLOUT)
+    return not any(event & select.POLLERR for _, event in state.poll(0))
 
 
 def _parser():
@@ -198,24 +223,29 @@ def _simulate(options):
     from blockshake.geometry.structure import load_structure
     from blockshake.jit import CACHE_FOLDER
     from blockshake.simulation.ending import ending
+    from blockshake.simulation.models import part_parameters
     from blockshake.simulation.simulate import simulate_to_file
+    from blockshake.study.structure_remarks import unusual_values
 
     _show_progress()
     begin = time.monotonic()
-    structure = load_structure(options.structure)
+    structure, settings = load_structure(options.structure), _settings(options)
+    log = logging.getLogger("blockshake")
+    for remark in unusual_values(structure.with_parameters(part_parameters(settings)[0])):
+        log.info("remark: %s", remark)
     motion = load_motion(options.motion, options.scale, options.baseline)
     if not motion.attributes["synthetic"]:
-        logging.getLogger("blockshake").info("%s", provenance(motion.attributes))
+        log.info("%s", provenance(motion.attributes))
     if Path(options.output).exists():
-        logging.getLogger("blockshake").info("%s is there and will be replaced", options.output)
+        log.info("%s is there and will be replaced", options.output)
     if not CACHE_FOLDER.exists():
-        logging.getLogger("blockshake").info("compiles the solver first, once, for one to three minutes")
+        log.info("compiles the solver first, once, for one to three minutes")
     simulate_to_file(
         options.output,
         structure,
         motion,
         options.model,
-        _settings(options),
+        settings,
         time_step=options.time_step,
         duration=options.duration,
         output_rate=options.output_rate,
@@ -261,6 +291,7 @@ def _animate(options):
 
 def _export(options):
     from blockshake.report.run.export import check_export, export_run
+    from blockshake.report.run.local_origin import local_origin
     from blockshake.simulation.load_run import load_run
     from blockshake.simulation.run_histories import run_histories
 
@@ -268,6 +299,11 @@ def _export(options):
     run, structure = load_run(options.file, options.meshes)
     for file in export_run(options.output, run, run_histories(run, structure), structure):
         print(file)
+    origin = local_origin(run)
+    if origin.any() and Path(options.output).suffix.lower() != ".csv":
+        print(
+            f"  remark: places count from {origin.tolist()} m, as 32 bits are too coarse so far from the origin"
+        )
 
 
 def _sample(options):
@@ -362,6 +398,8 @@ def _estimate(options):
     from blockshake.cost.diagnosis_cost import campaign_cost
     from blockshake.cost.study_cost import study_cost
 
+    if options.cores < 1:
+        raise InputError("--cores", "", f"expected a whole number from 1, not {options.cores}")
     if Path(options.file).is_dir():
         parts = campaign_cost(options.file, options.effort)
     else:

@@ -8,7 +8,6 @@ import os
 import re
 import shutil
 import tempfile
-from collections import Counter
 from pathlib import Path
 
 import yaml
@@ -26,18 +25,21 @@ _DEEPEST, _MOST_VALUES = 50, 200_000
 _NO_NUMBER = -(2**31)  # stands for NaN in packed variables
 _FULL = (errno.ENOSPC, errno.EDQUOT)
 _FURTHER = 2**16  # bytes, more than a file system keeps in hand for a file's end
+_MERGE = "tag:yaml.org,2002:merge"
 
 
 class _StrictLoader(yaml.CSafeLoader):
     """YAML 1.2 numbers (``1e-5`` is one) and no key twice."""
 
     def construct_mapping(self, node, deep=False):
-        keys = Counter(key.value for key, _ in node.value if isinstance(key, yaml.ScalarNode))
-        for key, count in keys.items():
-            if count > 1:
+        known = set()
+        for key in (key for key, _ in node.value if isinstance(key, yaml.ScalarNode)):
+            value = key.value if key.tag == _MERGE else self.construct_object(key)
+            if value in known:
                 raise yaml.constructor.ConstructorError(
-                    None, None, f"the key '{key}' stands twice", node.start_mark
+                    None, None, f"the key '{key.value}' stands twice", key.start_mark
                 )
+            known.add(value)
         return super().construct_mapping(node, deep)
 
 
@@ -62,7 +64,8 @@ def parse_yaml(text, where):
         _check_growth(text)
         return yaml.load(text, Loader=_StrictLoader)
     except (yaml.YAMLError, ValueError, TypeError, KeyError, AttributeError) as error:  # a bad value of a tag
-        raise InputError(where, "", "expected YAML; " + " ".join(str(error).split())) from None
+        words = " ".join(str(error).replace('in "<unicode string>", ', "in ").split())
+        raise InputError(where, "", f"expected YAML; {words}") from None
 
 
 def _check_growth(text):
@@ -232,10 +235,14 @@ def check_output(path):
     Raises
     ------
     InputError
-        The path is empty or a folder, or its own folder cannot be made or written to.
+        The path is empty, a folder or not UTF-8, or its own folder cannot be made or written to.
     """
     if not str(path) or Path(path).is_dir():
         raise InputError(path or "output", "", "expected the path of a file to write, not a folder")
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:  # libraries that write take no other
+        raise InputError(path, "", "expected a path in UTF-8") from None
     folder = Path(path).parent
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -332,8 +339,9 @@ def write_dataset(path, dataset, decimals=None):
     """Write an xarray Dataset as netCDF-4, atomically, float variables compressed.
 
     ``decimals``, where given, is the number of decimal digits kept in variables of a unit, which are packed as whole
-    numbers (CF-1.11, section 8.1): ``{"m": 7}`` keeps 0.1 micrometre, far below any marker's noise. The same content
-    gives the same bytes, whether it was computed or read from a file.
+    numbers (CF-1.11, section 8.1): ``{"m": 7}`` keeps 0.1 micrometre, far below any marker's noise. A variable with a
+    value that no such number reaches, 215 m here, is not packed. The same content gives the same bytes, whether it was
+    computed or read from a file.
     """
     encoding = {}
     dataset = dataset.drop_encoding()
@@ -341,10 +349,11 @@ def write_dataset(path, dataset, decimals=None):
         if variable.dtype.kind == "f" and variable.size > 64:
             encoding[name] = {"zlib": True, "complevel": 2, "shuffle": True}
             unit = variable.attrs.get("units")
-            if decimals is not None and unit in decimals:
-                encoding[name] |= {
-                    "dtype": "int32", "scale_factor": 10.0 ** -decimals[unit], "_FillValue": _NO_NUMBER,
-                }  # fmt: skip
+            if decimals is None or unit not in decimals:
+                continue
+            scale = 10.0 ** -decimals[unit]
+            if not float(abs(variable).max()) >= -_NO_NUMBER * scale:
+                encoding[name] |= {"dtype": "int32", "scale_factor": scale, "_FillValue": _NO_NUMBER}
     with replacing(path) as temporary, delayed_interrupts():
         dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding, unlimited_dims=[])
 

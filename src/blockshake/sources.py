@@ -14,6 +14,7 @@ _SCRIPTS = HOME / "workflow" / "scripts"
 # These write logs, or decide what is in the names of the files made and in the parameters of rules: they compute
 # nothing else.
 _COMPUTE_NOTHING = (
+    "caches.py",
     "log.py",
     "sources.py",
     "diagnosis/libraries/efforts.py",

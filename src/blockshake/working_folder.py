@@ -96,7 +96,7 @@ def _ancestors():
     process = os.getppid()
     while process > 1:
         yield process
-        process = int(Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[1])
+        process = int(Path(f"/proc/{process}/stat").read_bytes().rpartition(b")")[2].split()[1])
 
 
 def _follow(descriptor):

@@ -10,13 +10,15 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, load_yaml
 from blockshake.geometry.structure import load_structure
+from blockshake.quantities import USUAL
 from blockshake.simulation.models import MODELS
+from blockshake.simulation.parameter_table import instances
 from blockshake.study.check import check_file
 from blockshake.study.comparison.differences import FEWEST
 from blockshake.study.config import check_config, load_config
 from blockshake.study.motion_remarks import motion_remarks
 from blockshake.study.sampling.distributions import TABLE_2
-from blockshake.study.structure_remarks import structure_remarks
+from blockshake.study.structure_remarks import structure_remarks, unusual_values
 
 ROOT = PACKAGE.parents[1]
 
@@ -255,9 +257,20 @@ def test_check_refuses_other_yaml(tmp_path, text):
         ({"gravity": [0.0, 0.0, 9.81]}, "remark: gravity is 9.81 m/s2 along z: it does not press"),
         (
             {"materials.concrete.youngs_modulus": 34.5},
-            "remark: concrete has a Young's modulus of 34.5 Pa: expected Pa",
+            "remark: materials.concrete.youngs_modulus is 34.5 Pa: 1e+07 to 1e+12 Pa is usual",
         ),
-        ({"materials.concrete.density": 2.4}, "remark: block-1 weighs 7.36 kg, 2.4 kg/m3: expected kg/m3"),
+        (
+            {"materials.concrete.density": 2.4},
+            "remark: materials.concrete.density is 2.4 kg/m3: 100 to 25000 kg/m3 is usual",
+        ),
+        (
+            {"friction.concrete.concrete": 60},
+            "remark: friction.concrete.concrete is 60: 0.05 to 1.5 is usual",
+        ),
+        (
+            {"bodies.block-3.velocity": [0.0, 0.0, 300.0]},
+            "remark: bodies.block-3.velocity is [0.0, 0.0, 300.0] m/s: -10 to 10 m/s is usual",
+        ),
     ],
 )
 def test_check_remarks_what_was_hardly_meant(changes, remark):
@@ -275,6 +288,33 @@ def test_check_remarks_a_structure_in_millimetres(tmp_path):
     assert "block-1 is 2.4e+03 m long and weighs 7.37e+12 kg: expected m" in check_file(
         str(tmp_path / "mm.yaml")
     )
+
+
+def test_every_parameter_with_a_usual_range_is_remarked_beyond_it():
+    """Half beyond either end, where the structure file takes such a value at all."""
+    remarked = set()
+    structure = load_structure(
+        "configuration-1",
+        {
+            "joints.slab.block-1.compliance": 1e-9,
+            "bodies.block-1.density": 2400.0,
+            "stoppers": [
+                {"body": "block-3", "position": [0.4, 0, 0.8], "axis": "+x", "gap": 0.05, "stiffness": 1e7}
+            ],
+        },
+    )
+    for pattern, (low, high) in USUAL.items():
+        name, value = list(instances(pattern, structure.file))[-1]
+        for beyond in (1.5 * low if low < 0.0 else 0.5 * low or -0.5, 1.5 * high):
+            try:
+                changed = structure.with_parameters(
+                    {name: [beyond] * 3 if isinstance(value, tuple) else beyond}
+                )
+            except InputError:
+                continue
+            assert any(said.startswith(f"{name} is ") for said in unusual_values(changed)), (name, beyond)
+            remarked.add(pattern)
+    assert remarked == USUAL.keys()
 
 
 @pytest.mark.parametrize("number", [1, 2, 3, 4])
@@ -377,7 +417,7 @@ def test_a_study_remarks_what_its_structures_hardly_mean(mapping, cube, tmp_path
     study["cases"][0]["duration"] = 80.0
     (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
     told = check_file(tmp_path / "study.yaml")
-    assert "expected kg/m3" in told
+    assert "materials.stone.density is 2.4 kg/m3: 100 to 25000 kg/m3 is usual" in told
     assert "80 s are simulated of a motion of" in told
 
 

@@ -1,7 +1,6 @@
 """A structure as the solvers need it: checked file, shapes, mass properties, start state."""
 
 import copy
-import io
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,8 +8,9 @@ import numpy as np
 import trimesh
 
 from blockshake.errors import InputError
-from blockshake.files import load_yaml, named_file, read_bytes
+from blockshake.files import load_yaml, named_file
 from blockshake.geometry.mass_offset import check_offset, offset_inertia, offset_solid
+from blockshake.geometry.meshes.mesh_file import read_mesh
 from blockshake.geometry.overlap import near_pairs, penetration_depths
 from blockshake.geometry.polyhedron import (
     MassProperties,
@@ -29,10 +29,8 @@ from blockshake.geometry.structure_file import (
     replace_into,
     unit_quaternions,
 )
-from blockshake.paths import file_below
 from blockshake.validation import validated
 
-MESHES = (".stl", ".ply", ".obj", ".off")  # suffixes of mesh files
 DEEPEST_OVERLAP = 1e-3  # m; deeper is a wrong structure, not an initial penetration
 # m; an equilibrium of elastic or shrunk contacts within this of the given poses is the start of a run, and bodies
 # nearer than this touch
@@ -245,19 +243,10 @@ def _solid(name, shape, source, folder):
         polyhedron = convex_polyhedron(box_vertices(shape.box, shape.chamfer))
         vertices, faces = polyhedron.vertices, triangles(polyhedron)
         return Solid(vertices, faces, polyhedron, mass_properties(vertices, faces))
-    key = f"shapes.{name}.mesh"
-    path = file_below(folder, shape.mesh, source, key)
-    if path.suffix.lower() not in MESHES:
-        raise InputError(source, key, f"expected a mesh file {', '.join(MESHES)}, not '{path}'")
-    try:
-        # from its bytes, so that it cannot name further files
-        mesh = trimesh.load_mesh(io.BytesIO(read_bytes(path)), file_type=path.suffix.lower()[1:])
-    except Exception as error:  # trimesh raises whatever its many readers raise
-        raise InputError(source, key, f"expected a readable mesh file {path}; {error}") from None
-    if not mesh.is_volume:
-        raise InputError(source, key, "expected a closed surface with outward triangles")
-    vertices = np.array(mesh.vertices) - mesh.center_mass
-    faces = np.array(mesh.faces)
+    vertices, faces = read_mesh(folder, shape.mesh, source, f"shapes.{name}.mesh")
+    properties = mass_properties(vertices, faces)
+    vertices = vertices - properties.centroid
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
     polyhedron = convex_polyhedron(vertices) if mesh.is_convex else None
     return Solid(vertices, faces, polyhedron, mass_properties(vertices, faces))
 

@@ -74,6 +74,8 @@ class Model:
         ``module:function`` that gives them for a structure about which nothing is said: ``(structure)`` to a dict.
     without_effect : tuple of str
         Last parts of the names of parameters that the model has no use for.
+    needed : tuple of str
+        Properties of the materials of free blocks that are above 0.
     rigid : bool
         Its blocks do not deform.
     perturbation : Perturbation or None
@@ -93,6 +95,7 @@ class Model:
     calibrated: tuple[str, ...] = ()
     own_stiffness: str | None = None
     without_effect: tuple[str, ...] = ()
+    needed: tuple[str, ...] = ()
     rigid: bool = True
     perturbation: Perturbation | None = None
 
@@ -191,6 +194,7 @@ MODELS = {
             driver="blockshake.solvers.nscd_deformable.driver:simulate_viscoelastic",
             parameters="blockshake.solvers.nscd_deformable.parameters:DeformableParameters",
             without_effect=("hollow",),
+            needed=("viscous_modulus",),  # without one it is the elastic model
             rigid=False,
         ),
     )

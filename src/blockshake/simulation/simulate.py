@@ -20,6 +20,7 @@ from blockshake.measurement.sensors.markers import RATE
 from blockshake.measurement.sensors.transducers import transducer_displacement
 from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.falling import still_falling
+from blockshake.simulation.limits import check_run, has_fine_record
 from blockshake.simulation.models import model_of, split_parameters
 from blockshake.simulation.run_dataset import (
     add_accelerometers,
@@ -33,7 +34,6 @@ from blockshake.simulation.write_run import write_run
 from blockshake.solvers.kept_rows import KeptRows
 from blockshake.sources import module_sources, source_digest
 
-_LONGEST_STEP = 0.01  # s
 _WORST_RESIDUAL = 0.05  # a run whose energy audit misses more is not to be trusted
 
 
@@ -80,7 +80,7 @@ def simulate(
     Raises
     ------
     InputError
-        Unknown model or parameter, or a structure that is wrong.
+        Unknown model or parameter, a structure that is wrong, or a run beyond the limits of `check_run`.
     """
     of = _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers)
     trajectory = of.solve(checkpoint=checkpoint)
@@ -121,7 +121,9 @@ def simulate_to_file(
     InputError
         As `simulate`; or the file cannot be written.
     """
-    of = _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers=True)
+    of = _set_up(
+        structure, motion, model, parameters, time_step, duration, output_rate, accelerometers=True, in_memory=False
+    )  # fmt: skip
     checkpoint = Path(f"{path}.checkpoint")
     kept = KeptRows(f"{checkpoint}.rows", lambda rows: reduced(of.structure, rows, of.coarse, of.fine))
     trajectory = of.solve(checkpoint=checkpoint, kept=kept)
@@ -190,7 +192,9 @@ class _SetUp(NamedTuple):
         }
 
 
-def _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers):
+def _set_up(
+    structure, motion, model, parameters, time_step, duration, output_rate, accelerometers, in_memory=True
+):
     """`_SetUp` from the arguments of `simulate`."""
     solver = model_of(model)
     physical, _ = split_parameters(parameters or {}, model)
@@ -201,17 +205,12 @@ def _set_up(structure, motion, model, parameters, time_step, duration, output_ra
     time_step = solver.time_step if time_step is None else time_step
     duration = motion.duration if duration is None else duration
     output_rate = RATE if output_rate is None else output_rate
-    for name, value in (("time step", time_step), ("duration", duration), ("output rate", output_rate)):
-        if not (np.isfinite(value) and value > 0.0):
-            raise InputError(f"--{name.replace(' ', '-')}", "", f"expected a positive number, not {value}")
-    check_window(motion, duration, "--duration", "")
-    if time_step > _LONGEST_STEP:
-        raise InputError(
-            "--time-step", "", f"expected at most {_LONGEST_STEP:g} s, not {time_step:g}: impacts last less"
-        )
-    coarse = np.arange(int(np.floor(duration * output_rate + 1e-9)) + 1) / output_rate
     fine = np.empty(0)
-    if accelerometers and (built.file.accelerometers or built.file.displacement_transducers):
+    sensed = accelerometers and has_fine_record(built)
+    check_run(built, model, time_step, duration, output_rate, sensed, in_memory)
+    check_window(motion, duration, "--duration", "")
+    coarse = np.arange(int(np.floor(duration * output_rate + 1e-9)) + 1) / output_rate
+    if sensed:
         fine = np.arange(int(np.floor(duration * FINE_RATE + 1e-9)) + 1) / FINE_RATE
     return _SetUp(built, motion, model, numerical, time_step, output_rate, coarse, fine)
 

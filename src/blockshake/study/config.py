@@ -31,7 +31,7 @@ from blockshake.study.fragility.settings import FragilitySettings
 from blockshake.study.friction.settings import FrictionSearch
 from blockshake.study.sampling.correlation_target import load_correlation
 from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, load_distributions
-from blockshake.study.sampling.latin_hypercube import SMALLEST_SIZE
+from blockshake.study.sampling.latin_hypercube import LARGEST_SIZE, SMALLEST_SIZE
 from blockshake.validation import Positive, Strict, validated
 
 _OF_THE_PAPER = tuple(f"configuration-{place}" for place in (1, 2, 3, 4))
@@ -49,6 +49,7 @@ class Ensemble(Strict):
 
     size: int = Field(
         ge=SMALLEST_SIZE,
+        le=LARGEST_SIZE,
         description="samples of the Latin hypercube; another size is another design: all samples change [1]",
     )
     seed: int = Field(ge=0, description="of the design [1]")

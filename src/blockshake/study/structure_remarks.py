@@ -5,10 +5,13 @@ from collections import Counter
 import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.quantities import PHYSICAL, USUAL
+from blockshake.simulation.parameter_table import instances
 
-_LIGHTEST, _HEAVIEST = 100.0, 25000.0  # kg/m3; no block is of less or more
-_LARGEST = 50.0  # m, of an edge
-_SOFTEST = 1e7  # Pa, of rubber; no block is softer
+_SMALLEST, _LARGEST = (
+    0.005,
+    25.0,
+)  # m, of the longest edge; no block of a structure or of a model test is beyond
 
 
 def structure_lines(structure):
@@ -49,9 +52,7 @@ def structure_remarks(structure):
         remarks.append(
             f"gravity is {structure.file.gravity[2]:g} m/s2 along z: it does not press blocks down"
         )
-    for name, material in structure.file.materials.items():
-        if material.youngs_modulus < _SOFTEST:
-            remarks.append(f"{name} has a Young's modulus of {material.youngs_modulus:.3g} Pa: expected Pa")
+    remarks += unusual_values(structure)
     held = _held_up(structure)
     for body in np.flatnonzero(~held):
         remarks.append(
@@ -59,16 +60,24 @@ def structure_remarks(structure):
         )
     for body in np.flatnonzero(~structure.driven):
         name, solid = structure.body_names[body], structure.solid(body)
-        density = structure.mass[body] / solid.properties.volume
-        if not _LIGHTEST <= density <= _HEAVIEST:
-            remarks.append(
-                f"{name} weighs {structure.mass[body]:.3g} kg, {density:.3g} kg/m3: expected kg/m3"
-            )
         edge = np.ptp(solid.vertices, axis=0).max()
-        if edge > _LARGEST:
+        if not _SMALLEST <= edge <= _LARGEST:
             remarks.append(
                 f"{name} is {edge:.3g} m long and weighs {structure.mass[body]:.3g} kg: expected m"
             )
+    return remarks
+
+
+def unusual_values(structure):
+    """One sentence for every parameter of a `Structure` beyond the values that are usual; a list of str."""
+    remarks = []
+    for quantity in (one for one in PHYSICAL if one.name in USUAL):
+        low, high = USUAL[quantity.name]
+        for name, value in instances(quantity.name, structure.file):
+            if value is not None and not (low <= np.min(value) and np.max(value) <= high):
+                shown = f"{value:g}" if isinstance(value, float) else list(value)
+                unit = "" if quantity.unit == "1" else f" {quantity.unit}"
+                remarks.append(f"{name} is {shown}{unit}: {low:g} to {high:g}{unit} is usual")
     return remarks
 
 

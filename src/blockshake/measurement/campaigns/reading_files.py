@@ -6,12 +6,12 @@ import io
 import numpy as np
 import xarray as xr
 
-from blockshake.damaged_hdf5 import has_endless_heap
 from blockshake.errors import InputError
 from blockshake.files import read_text
 from blockshake.geometry.schema import AXES
 from blockshake.interrupts import delayed_interrupts
 from blockshake.paths import file_below
+from blockshake.tables.damaged_hdf5 import has_endless_heap
 from blockshake.tables.numbers import missing_code, plain_number
 
 _METRES = ("m", "metre", "metres", "meter", "meters")

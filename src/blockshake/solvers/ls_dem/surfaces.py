@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.errors import InputError
 from blockshake.geometry.level_set import box_distance, hollow_box_distance
 from blockshake.geometry.level_set_grid import box_grid, grid_table, mesh_grid
-from blockshake.geometry.mesh_nodes import mesh_nodes
+from blockshake.geometry.meshes.mesh_nodes import mesh_nodes
 from blockshake.geometry.surface_nodes import box_nodes, chamfer_nodes
 from blockshake.geometry.trilinear import grid_distance
 from blockshake.jit import kernel
@@ -15,6 +15,7 @@ from blockshake.jit import kernel
 # Columns of ``Surfaces.lattice``
 FIRST, ORIGIN_X, ORIGIN_Y, ORIGIN_Z, COUNT_X, COUNT_Y, COUNT_Z, INVERSE_SPACING, N_LATTICE = range(9)
 _MOST_POINTS = 5e7  # of a lattice: 400 MB
+_MOST_NODES = 1e6  # of a shape: a step then takes a second
 
 
 class Surfaces(NamedTuple):
@@ -114,8 +115,17 @@ def _hollow_slope(shape):
 def _nodes(structure, name, parameters):
     """Points and areas of a shape's nodes."""
     shape, inset = structure.file.shapes[name], parameters.perimeter_inset
+    solid = structure.solids[name]
+    count = solid.properties.area / parameters.node_spacing**2
+    if parameters.edge_spacing:
+        count += 4.0 * np.ptp(solid.vertices, axis=0).sum() / parameters.edge_spacing
+    if count > _MOST_NODES:
+        raise InputError(
+            structure.source,
+            f"shapes.{name}",
+            f"expected at most {_MOST_NODES:.0e} nodes, not {count:.1g}: a wider ls_dem.node_spacing or edge_spacing",
+        )
     if shape.box is None:
-        solid = structure.solids[name]
         return mesh_nodes(solid.vertices, solid.triangles, parameters.node_spacing, inset)
     flat = min(shape.box) - 2.0 * shape.chamfer
     if 2.0 * inset >= flat:

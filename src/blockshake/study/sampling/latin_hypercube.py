@@ -14,7 +14,7 @@ from blockshake.study.sampling.correlation_target import check_correlation, load
 from blockshake.study.sampling.distributions import TABLE_2, load_distributions
 from blockshake.tables.numbers import plain_number
 
-SMALLEST_SIZE = 10
+SMALLEST_SIZE, LARGEST_SIZE = 10, 1_000_000  # samples; the largest take 2 GB
 DEFAULT_EFFORT = 8
 
 
@@ -91,7 +91,7 @@ def draw_samples(
     Parameters
     ----------
     size : int
-        Samples, at least 10; as many strata of equal probability, each hit once by each variable.
+        Samples, 10 to a million; as many strata of equal probability, each hit once by each variable.
     seed : int
         Not negative; same seed, same values.
     distributions : dict of str to Lognormal
@@ -115,7 +115,7 @@ def draw_samples(
     Raises
     ------
     InputError
-        Too few samples, an unknown word, a target with unknown names or that is no correlation matrix.
+        Too few or too many samples, an unknown word, a target with unknown names or that is no correlation matrix.
 
     Notes
     -----
@@ -151,6 +151,8 @@ def _check_options(size, seed, stratum, kind, effort):
     for key, value, least in (("size", size, SMALLEST_SIZE), ("seed", seed, 0), ("effort", effort, 1)):
         if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
             raise InputError("sampling", key, f"expected a whole number of at least {least}, not {value!r}")
+    if size > LARGEST_SIZE:
+        raise InputError("sampling", "size", f"expected at most {LARGEST_SIZE} samples, not {size}")
     words_of = {"stratum": (stratum, ("median", "mean")), "kind": (kind, ("pearson", "spearman"))}
     for key, (value, words) in words_of.items():
         if value not in words:

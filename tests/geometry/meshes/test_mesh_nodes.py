@@ -3,8 +3,8 @@ import pytest
 import trimesh
 from scipy.spatial import cKDTree
 
-from blockshake.geometry.mesh_distance import lattice_distances
-from blockshake.geometry.mesh_nodes import mesh_nodes
+from blockshake.geometry.meshes.mesh_distance import lattice_distances
+from blockshake.geometry.meshes.mesh_nodes import mesh_nodes
 from blockshake.geometry.polyhedron import box_vertices, convex_polyhedron, triangles
 
 SIZE, CHAMFER = np.array([0.8, 2.4, 1.6]), 0.02
