@@ -71,6 +71,7 @@ def load_motion(source, scale=1.0, correct=True, corner_frequency=CORNER_FREQUEN
 
 def _read(path, corner, channels):
     if path.suffix.lower() in (".yaml", ".yml"):
+        _check_no_channels(channels, path)
         asked = load_synthetic(path)
         check_samples(asked.duration / asked.time_step, asked.time_step, asked.high_pass_frequency, path)
         return synthesise(asked)
@@ -82,6 +83,7 @@ def _read(path, corner, channels):
     for recognises, _, read in (*_RECORD_FORMATS, *named):
         if recognises(text):
             return _record_motion(_chosen(read(text, path), channels, path), path, corner)
+    _check_no_channels(channels, path)
     if "time_s" in text.partition("\n")[0] or ending == ".csv":
         return _csv_motion(text, path)
     raise InputError(
@@ -98,6 +100,13 @@ def _csv_motion(text, path):
     if time[0] != 0.0:
         attributes["first_time"] = float(time[0])
     return ground_motion(path.stem, time - time[0], columns, kind, attributes)
+
+
+def _check_no_channels(channels, path):
+    if channels:
+        raise InputError(
+            path, "--column", "expected for a record, or with --unit for a table; this is neither"
+        )
 
 
 def _chosen(records, channels, path):
