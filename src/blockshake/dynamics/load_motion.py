@@ -3,8 +3,9 @@
 import numpy as np
 
 from blockshake.dynamics.baseline import CORNER_FREQUENCY, check_samples, correct_baseline, correction_words
-from blockshake.dynamics.motion import CHANNELS, check_finite, ground_motion
+from blockshake.dynamics.motion import check_finite, ground_motion
 from blockshake.dynamics.records.at2 import is_at2, read_at2
+from blockshake.dynamics.records.channels import chosen_records
 from blockshake.dynamics.records.contract_csv import read_motion_csv
 from blockshake.dynamics.records.cosmos import is_cosmos, read_cosmos
 from blockshake.dynamics.records.csmip import is_csmip, read_csmip
@@ -77,12 +78,10 @@ def _read(path, corner, channels):
         return synthesise(asked)
     text = read_foreign_text(path)
     ending = path.suffix.lower()
-    named = (
-        (lambda _, begin=begin: ending.startswith(begin), begin, read) for _, begin, read in _RECORD_FORMATS
-    )
-    for recognises, _, read in (*_RECORD_FORMATS, *named):
-        if recognises(text):
-            return _record_motion(_chosen(read(text, path), channels, path), path, corner)
+    readers = [read for recognises, _, read in _RECORD_FORMATS if recognises(text)]
+    readers += [read for _, begin, read in _RECORD_FORMATS if ending.startswith(begin)]
+    if readers:
+        return _record_motion(chosen_records(readers[0](text, path), channels, path), path, corner, channels)
     _check_no_channels(channels, path)
     if "time_s" in text.partition("\n")[0] or ending == ".csv":
         return _csv_motion(text, path)
@@ -109,35 +108,7 @@ def _check_no_channels(channels, path):
         )
 
 
-def _chosen(records, channels, path):
-    """Records by axis."""
-    if channels is None and len(records) == 1:
-        return {"x": records[0]}
-    listed = "; ".join(f"{number}: {one.channel or 'no name'}" for number, one in enumerate(records, start=1))
-    chosen = {}
-    for axis, name in (channels or {"x": ""}).items():
-        if axis not in CHANNELS[:3]:
-            raise InputError("--column", axis, f"expected {', '.join(CHANNELS[:3])}")
-        named = [
-            one
-            for number, one in enumerate(records, start=1)
-            if name.strip().lower() in (str(number), one.channel.lower() or None)
-        ]
-        if len(named) != 1:
-            raise InputError(
-                path, f"channel '{name}'" if name else "",
-                f"expected one of the {len(records)} acceleration channels ({listed}), which "
-                "`blockshake convert-motion --column x=NUMBER` chooses",
-            )  # fmt: skip
-        chosen[axis] = named[0]
-    first = next(iter(chosen.values()))
-    for one in chosen.values():
-        if (one.time_step, len(one.acceleration)) != (first.time_step, len(first.acceleration)):
-            raise InputError(path, "", f"expected channels of the same time step and length ({listed})")
-    return chosen
-
-
-def _record_motion(records, path, corner):
+def _record_motion(records, path, corner, channels):
     first, baseline, columns = next(iter(records.values())), "none", {}
     for axis, record in records.items():
         columns[axis] = record.acceleration
@@ -147,7 +118,8 @@ def _record_motion(records, path, corner):
             baseline = correction_words(corner)
     time = first.time_step * np.arange(len(first.acceleration))
     attributes = {"source": path.name, "format": first.format, "synthetic": False, "baseline": baseline}
-    attributes |= {"checked": first.checked, "assumed": first.assumed}
+    assumed = [first.assumed] if channels else ["a component along x", first.assumed]
+    attributes |= {"checked": first.checked, "assumed": "; ".join(filter(None, assumed)) or "nothing"}
     if any(record.channel for record in records.values()):
         attributes["channels"] = ", ".join(f"{axis}: {record.channel}" for axis, record in records.items())
     return ground_motion(path.stem, time, columns, "acceleration", {**attributes, **first.metadata})

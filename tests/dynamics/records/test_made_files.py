@@ -318,8 +318,12 @@ def test_a_scale_that_leaves_no_motion_is_refused(scale, tmp_path, capsys):
 def test_a_record_says_what_was_checked_and_assumed(tmp_path):
     attributes = load_motion(write(tmp_path, "a.v2", cosmos(CM, entries={62: -999.0}))).attributes
     assert attributes["checked"] == "number of values, length, peak, time of the peak"
-    assert attributes["assumed"] == "a time step of 0.01 s, the length over the number of values"
-    assert load_motion(write(tmp_path, "a.at2", at2(GS))).attributes["assumed"] == "nothing"
+    assert attributes["assumed"] == (
+        "a component along x; a time step of 0.01 s, the length over the number of values"
+    )
+    attributes = load_motion(write(tmp_path, "b.v2", csmip(CM, channels=2)), channels={"y": "2"}).attributes
+    assert attributes["assumed"] == "nothing"
+    assert attributes["channels"] == "y: 180 Deg"
 
 
 @pytest.mark.parametrize("name", ["alkion", "m.csv"])
