@@ -3,8 +3,9 @@
 import numpy as np
 
 from blockshake.dynamics.baseline import AUTO, NONE, settle
-from blockshake.dynamics.motion import CHANNELS, check_finite, ground_motion
+from blockshake.dynamics.motion import check_finite, ground_motion
 from blockshake.dynamics.records.at2 import is_at2, read_at2
+from blockshake.dynamics.records.channels import chosen_records
 from blockshake.dynamics.records.contract_csv import read_motion_csv
 from blockshake.dynamics.records.cosmos import is_cosmos, read_cosmos
 from blockshake.dynamics.records.csmip import is_csmip, read_csmip
@@ -72,6 +73,7 @@ def load_motion(source, scale=1.0, baseline=AUTO, channels=None):
 
 def _read(path, baseline, channels):
     if path.suffix.lower() in (".yaml", ".yml"):
+        _check_no_channels(channels, path)
         if baseline not in (AUTO, NONE):
             raise InputError(
                 path, "baseline", f"expected {AUTO} or {NONE} of a synthetic motion, which ends at rest"
@@ -79,12 +81,11 @@ def _read(path, baseline, channels):
         return synthesise(load_synthetic(path))
     text = read_foreign_text(path)
     ending = path.suffix.lower()
-    named = (
-        (lambda _, begin=begin: ending.startswith(begin), begin, read) for _, begin, read in _RECORD_FORMATS
-    )
-    for recognises, _, read in (*_RECORD_FORMATS, *named):
-        if recognises(text):
-            return _record_motion(_chosen(read(text, path), channels, path), path, baseline)
+    readers = [read for recognises, _, read in _RECORD_FORMATS if recognises(text)]
+    readers += [read for _, begin, read in _RECORD_FORMATS if ending.startswith(begin)]
+    if readers:
+        return _record_motion(chosen_records(readers[0](text, path), channels, path), path, baseline, channels)
+    _check_no_channels(channels, path)
     if "time_s" in text.partition("\n")[0] or ending == ".csv":
         return settle(_csv_motion(text, path), baseline, path)
     raise InputError(
@@ -103,40 +104,20 @@ def _csv_motion(text, path):
     return ground_motion(path.stem, time - time[0], columns, kind, attributes)
 
 
-def _chosen(records, channels, path):
-    """Records by axis."""
-    if channels is None and len(records) == 1:
-        return {"x": records[0]}
-    listed = "; ".join(f"{number}: {one.channel or 'no name'}" for number, one in enumerate(records, start=1))
-    chosen = {}
-    for axis, name in (channels or {"x": ""}).items():
-        if axis not in CHANNELS[:3]:
-            raise InputError("--column", axis, f"expected {', '.join(CHANNELS[:3])}")
-        named = [
-            one
-            for number, one in enumerate(records, start=1)
-            if name.strip().lower() in (str(number), one.channel.lower() or None)
-        ]
-        if len(named) != 1:
-            raise InputError(
-                path, f"channel '{name}'" if name else "",
-                f"expected one of the {len(records)} acceleration channels ({listed}), which "
-                "`blockshake convert-motion --column x=NUMBER` chooses",
-            )  # fmt: skip
-        chosen[axis] = named[0]
-    first = next(iter(chosen.values()))
-    for one in chosen.values():
-        if (one.time_step, len(one.acceleration)) != (first.time_step, len(first.acceleration)):
-            raise InputError(path, "", f"expected channels of the same time step and length ({listed})")
-    return chosen
+def _check_no_channels(channels, path):
+    if channels:
+        raise InputError(
+            path, "--column", "expected for a record, or with --unit for a table; this is neither"
+        )
 
 
-def _record_motion(records, path, baseline):
+def _record_motion(records, path, baseline, channels):
     first = next(iter(records.values()))
     columns = {axis: record.acceleration for axis, record in records.items()}
     time = first.time_step * np.arange(len(first.acceleration))
     attributes = {"source": path.name, "format": first.format, "synthetic": False}
-    attributes |= {"checked": first.checked, "assumed": first.assumed}
+    assumed = [first.assumed] if channels else ["a component along x", first.assumed]
+    attributes |= {"checked": first.checked, "assumed": "; ".join(filter(None, assumed)) or "nothing"}
     if any(record.channel for record in records.values()):
         attributes["channels"] = ", ".join(f"{axis}: {record.channel}" for axis, record in records.items())
     motion = ground_motion(path.stem, time, columns, "acceleration", {**attributes, **first.metadata})

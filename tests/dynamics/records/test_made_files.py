@@ -316,12 +316,22 @@ def test_a_scale_that_leaves_no_motion_is_refused(scale, tmp_path, capsys):
 
 
 def test_a_record_says_what_was_checked_and_assumed(tmp_path):
-    attributes = load_motion(
-        write(tmp_path, "a.v2", cosmos(CM, entries={62: -999.0})), correct=False
-    ).attributes
+    attributes = load_motion(write(tmp_path, "a.v2", cosmos(CM, entries={62: -999.0}))).attributes
     assert attributes["checked"] == "number of values, length, peak, time of the peak"
-    assert attributes["assumed"] == "a time step of 0.01 s, the length over the number of values"
-    assert load_motion(write(tmp_path, "a.at2", at2(GS)), correct=False).attributes["assumed"] == "nothing"
+    assert attributes["assumed"] == (
+        "a component along x; a time step of 0.01 s, the length over the number of values"
+    )
+    attributes = load_motion(write(tmp_path, "b.v2", csmip(CM, channels=2)), channels={"y": "2"}).attributes
+    assert attributes["assumed"] == "nothing"
+    assert attributes["channels"] == "y: 180 Deg"
+
+
+@pytest.mark.parametrize("name", ["alkion", "m.csv"])
+def test_channels_are_of_records_alone(name, tmp_path, capsys):
+    if name == "m.csv":
+        name = str(write(tmp_path, name, "time_s,acceleration_x\n0,0\n1,1\n"))
+    assert main(["convert-motion", name, "--column", "y=1", "--output", str(tmp_path / "o.csv")]) == 2
+    assert "--column: expected for a record, or with --unit for a table" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -331,15 +341,16 @@ def test_a_record_says_what_was_checked_and_assumed(tmp_path):
         ("at2-unit-full-stop/record.AT2", 4.02, 2.39724, None),
     ],
 )
-def test_records_of_shared_cases(case, length, peak, at):
+def test_records_of_shared_cases(case, length, peak, at, tmp_path):
     if not (CASES / case).exists():
         pytest.skip(f"no case in {CASES} (set BLOCKSHAKE_SHARED)")
-    motion = load_motion(CASES / case, correct=False)
-    values = motion.evaluate(motion.table.breaks, 2)[:, 0]
+    output = tmp_path / "m.csv"
+    assert main(["convert-motion", str(CASES / case), "--baseline", "none", "--output", str(output)]) == 0
+    time, values = np.loadtxt(output, delimiter=",", skiprows=1).T
     place = int(np.argmax(np.abs(values)))
-    assert motion.duration == pytest.approx(length, abs=1e-9)
+    assert time[-1] == pytest.approx(length, abs=1e-9)
     assert abs(values[place]) == pytest.approx(peak, abs=1e-5)
-    assert at is None or motion.table.breaks[place] == pytest.approx(at, abs=1e-9)
+    assert at is None or time[place] == pytest.approx(at, abs=1e-9)
 
 
 def test_the_table_of_a_shared_case(tmp_path, capsys):

@@ -86,7 +86,7 @@ def _record(lines, index, start, real, series, layout, where):
     values = unit * fixed_values(lines, index + 1, count, layout, where, line)
     entries = [_entry(real, number) for number in (_STEP, _LENGTH, _PEAK_VALUE, _PEAK_TIME)]
     keys = [f"real header, entry {number}" for number in (_STEP, _LENGTH, _PEAK_VALUE, _PEAK_TIME)]
-    assumed = "nothing"
+    assumed = ""
     if entries[0] is not None:
         step = 1e-3 * positive_number(entries[0], where, keys[0])
     elif entries[1] is not None:

@@ -80,7 +80,7 @@ def _record(lines, index, start, series, where):
         if match := _CHANNEL.search(text):
             channel = channel or match.group(1)
     _check_real_header(lines[:index], checks)
-    assumed = "nothing" if fortran else "columns of ten characters, eight a line"
+    assumed = "" if fortran else "columns of ten characters, eight a line"
     event = lines[start + 2].strip() if start + 2 < index else ""
     return Record(values, step, "CSMIP V2", checks.made, assumed, channel, {"event": event} if event else {})
 

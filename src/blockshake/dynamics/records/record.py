@@ -23,7 +23,7 @@ class Record:
     checked : str
         Entries of the header that were held against the values.
     assumed : str
-        What the file does not say.
+        What the file does not say; empty where it says all.
     channel : str
         Name of the component; empty where the format holds a single one.
     metadata : dict of str to str
@@ -34,7 +34,7 @@ class Record:
     time_step: float
     format: str
     checked: str
-    assumed: str = "nothing"
+    assumed: str = ""
     channel: str = ""
     metadata: dict = field(default_factory=dict)
 
