@@ -272,7 +272,9 @@ def check_config(mapping, where):
                     where, f"{key}.samples.{model}", f"expected 1 to {config.ensemble.size}, not {count}"
                 )
         check_structure(case.structure, where, key)
-        check_window(motions[case.motion], case.duration, where, f"{key}.duration")
+        climbs = config.fragility is not None and case.name in config.fragility.cases
+        if case.input == COMMANDED or climbs:
+            check_window(motions[case.motion], case.duration, where, f"{key}.duration")
         if case.measured is not None:
             check_measured(case, where, f"{key}.measured")
     for target, source in config.ensemble.linked.items():

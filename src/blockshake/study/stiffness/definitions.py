@@ -93,7 +93,7 @@ def compare_definitions(case, time_step, store, source):
     ----------
     case : dict
         ``structure``, of whose blocks the tower of the wave tests is, ``motion``, ``scale`` and ``baseline`` of what is
-        then shaken, and ``duration`` [s], of which at most 6 s after the record's start are simulated.
+        then shaken, and ``duration`` [s], of which at most 6 s are simulated, from the record's start on.
     time_step : float
         Of that run [s].
     store : str or path
@@ -119,7 +119,7 @@ def compare_definitions(case, time_step, store, source):
     """
     structure = load_structure(case["structure"])
     motion = load_motion(case["motion"], case["scale"], case["baseline"])
-    duration = min(case["duration"], motion.attributes.get("record_start", 0.0) + _LONGEST)
+    duration = motion.attributes.get("record_start", 0.0) + min(case["duration"], _LONGEST)
 
     def keep(make, *given):
         return kept_value(store, content_digest(source, *given), make)
