@@ -28,11 +28,10 @@ class Surfaces(NamedTuple):
     bodies that stand on a box without a look at its edges, see `_wide` [m]; ``chamfer``, ``hollow`` (n_shapes,) [m].
     ``lattice`` (n_shapes, N_LATTICE): that of a sampled level set, its spacing zero where the distance of
     the box is exact, first value, origin [m], counts and cells per metre; ``values`` (n_values,)
-    [m]. ``steepest`` (n_shapes,): most that the level set changes per distance [1]. ``first_node`` int64
-    (n_shapes + 1,), ``planes`` (n_planes, 4): outward normals and distances of the faces of a convex mesh, from
-    ``first_plane`` int64 (n_shapes + 1,) on [1, m]. ``first_node`` int64
-    (n_shapes + 1,), ``points`` (n_nodes, 3), ``areas`` (n_nodes,): surface nodes in the frame of the shape
-    [m, m2]; ``damping_weight`` (n_nodes,): what a node's dashpot goes with.
+    [m]. ``steepest`` (n_shapes,): most that the level set changes per distance [1]. ``first_plane`` int64
+    (n_shapes + 1,), ``planes`` (n_planes, 4): outward normals and distances of the faces of a convex mesh [1, m].
+    ``first_node`` int64 (n_shapes + 1,), ``points`` (n_nodes, 3), ``areas`` (n_nodes,): surface nodes in the frame of
+    the shape [m, m2]; ``damping_weight`` (n_nodes,): what a node's dashpot goes with.
     """
 
     shape: np.ndarray
@@ -142,7 +141,7 @@ def _nodes(structure, name, parameters):
 
 
 def _planes(structure, name, parameters):
-    """Normals and distances of the faces of a convex mesh, float64 array, shape (n, 4): none where they are too many."""
+    """Normals and distances of the faces of a convex mesh, shape (n, 4); none of another shape or of too many faces."""
     polyhedron = structure.solids[name].polyhedron
     boxed = structure.file.shapes[name].box is not None
     if (

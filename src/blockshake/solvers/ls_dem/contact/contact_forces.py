@@ -154,7 +154,7 @@ def _share_into(owner, other, side, rotation, offset, d, sums, force, moment, jo
 
 @borrowing_kernel
 def _lever_into(shift, rotation, force, moment):
-    """Take the shift out of the lever of the force on a pair's second body: its surface is where contact sees it less it."""
+    """Moment of the force on a pair's second body about where it is, not about where contact sees it."""
     t0 = rotation[0, 0] * shift[0] + rotation[0, 1] * shift[1] + rotation[0, 2] * shift[2]
     t1 = rotation[1, 0] * shift[0] + rotation[1, 1] * shift[1] + rotation[1, 2] * shift[2]
     t2 = rotation[2, 0] * shift[0] + rotation[2, 1] * shift[1] + rotation[2, 2] * shift[2]

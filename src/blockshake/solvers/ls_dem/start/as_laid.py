@@ -26,7 +26,7 @@ _MOST_PARTINGS = 20  # of a pair: one, but where it meets at several faces
 _ROUNDING = 1e-12  # m
 
 
-def joints_as_laid(structure, bodies, surfaces, interfaces, skin, state, chosen):
+def joints_as_laid(structure, bodies, surfaces, interfaces, skin, state, settled):
     """Joints whose shifts leave no overlap but the elastic one of the weight that the joint carries.
 
     Parameters
@@ -36,14 +36,15 @@ def joints_as_laid(structure, bodies, surfaces, interfaces, skin, state, chosen)
         Reach of the lists [m].
     state : State
         As given.
-    chosen : bool array, shape (n_bodies,)
-        Bodies of whose pairs the overlap is taken up.
+    settled : bool array, shape (n_bodies,)
+        Free bodies with an equilibrium near without any shift. A pair of them has a shift only where it overlaps by
+        0.1 mm more than its weight presses it: between two walls, say, that do not give way.
 
     Returns
     -------
     joints : Joints
     overlap : float
-        Deepest that was taken up [m].
+        Deepest that was taken up, zero where no joint has a shift [m].
 
     Raises
     ------
@@ -67,9 +68,10 @@ def joints_as_laid(structure, bodies, surfaces, interfaces, skin, state, chosen)
         no_joints(),
     )
     pairs, shift = candidates.pairs, candidates.shift
-    depth, rest = _part_into(candidates, surfaces, poses, chosen[pairs].any(axis=1))
-    _refuse_above(DEEPEST_OVERLAP, structure, pairs, depth, "")
-    _refuse_above(START_TOLERANCE, structure, pairs, rest, " on sides that no shift parts")
+    depth, rest = _part_into(candidates, surfaces, poses)
+    unsettled = (~bodies.driven & ~settled)[pairs].any(axis=1) & (depth > 0.0)
+    if not (unsettled | (depth > START_TOLERANCE)).any():
+        return joints, 0.0
     stiffness, pull, _, _ = joint_stiffness(
         candidates, interfaces, surfaces, poses, START_TOLERANCE, downwards(bodies)
     )
@@ -78,12 +80,15 @@ def joints_as_laid(structure, bodies, surfaces, interfaces, skin, state, chosen)
     move = displacements(pairs, stiffness, moves, np.where(moves, load, 0.0)).reshape(-1, 6)
     carried = np.einsum("pij,pj->pi", stiffness, move[pairs].reshape(-1, 12))[:, :3]
     apart = np.einsum("pij,pj->pi", rotation[pairs[:, 1]], shift)
-    square = (apart**2).sum(axis=1)
     along = np.einsum("pi,pij,pj->p", apart, stiffness[:, :3, :3], apart)
     # elastic penetration over the overlap
-    pressed = -(apart * carried).sum(axis=1) / np.where(along > 0.0, along, np.inf)
-    joints.shift[candidates.joint] = shift * (1.0 - np.clip(pressed, 0.0, 1.0))[:, None]
-    return joints, float(np.sqrt(square.max(initial=0.0)))
+    pressed = np.clip(-(apart * carried).sum(axis=1) / np.where(along > 0.0, along, np.inf), 0.0, 1.0)
+    taken = unsettled | ((1.0 - pressed) * depth > START_TOLERANCE)
+    depth, rest = np.where(taken, depth, 0.0), np.where(taken, rest, 0.0)
+    _refuse_above(DEEPEST_OVERLAP, structure, pairs, depth, "")
+    _refuse_above(START_TOLERANCE, structure, pairs, rest, " on sides that no shift parts")
+    joints.shift[candidates.joint] = shift * np.where(taken, 1.0 - pressed, 0.0)[:, None]
+    return joints, float(depth.max())
 
 
 def _refuse_above(limit, structure, pairs, depth, where):
@@ -99,26 +104,24 @@ def _refuse_above(limit, structure, pairs, depth, where):
 
 
 @kernel
-def _part_into(candidates, surfaces, poses, chosen):
+def _part_into(candidates, surfaces, poses):
     """Shift pairs of bodies apart until they just touch.
 
     Parameters
     ----------
     candidates : Candidates
-        The shifts of the chosen pairs are overwritten.
+        Its shifts are overwritten.
     surfaces, poses : Surfaces, Poses
-    chosen : bool array, shape (n_pairs,)
 
     Returns
     -------
     depth, rest : float64 arrays, shape (n_pairs,)
-        Of the deepest node of every chosen pair, before and after [m]; zero where none is inside.
+        Of the deepest node of every pair, before and after [m]; zero where none is inside.
     """
-    depth, rest = np.zeros(chosen.size), np.zeros(chosen.size)
+    n_pairs = candidates.pairs.shape[0]
+    depth, rest = np.zeros(n_pairs), np.zeros(n_pairs)
     R, d = np.empty((2, 3, 3)), np.empty((2, 3))
-    for pair in range(chosen.size):
-        if not chosen[pair]:
-            continue
+    for pair in range(n_pairs):
         for parting in range(_MOST_PARTINGS):
             locate_pair_into(candidates, surfaces, poses, pair, R, d)
             phi, row, lane = nearest_node(candidates, pair)
@@ -129,10 +132,10 @@ def _part_into(candidates, surfaces, poses, chosen):
                 break
             of_first = candidates.first[2 * pair] + row < candidates.first[2 * pair + 1]
             for i in range(3):
-                for j in range(3):
-                    n = candidates.located[row, NORMAL_X + j * LANES + lane]
-                    if of_first:
-                        candidates.shift[pair, i] += rest[pair] * n if i == j else 0.0
-                    else:
-                        candidates.shift[pair, i] -= rest[pair] * n * R[1, j, i]
+                n = candidates.located[row, NORMAL_X + i * LANES + lane]
+                if of_first:
+                    candidates.shift[pair, i] += rest[pair] * n
+                else:
+                    for j in range(3):
+                        candidates.shift[pair, j] -= rest[pair] * n * R[1, i, j]
     return depth, rest

@@ -19,8 +19,8 @@ _log = logging.getLogger(__name__)
 def settled_start(structure, bodies, surfaces, interfaces, skin, time_step, state):
     """Put stacks at rest into their equilibrium, and find what is near and what touches there.
 
-    Where a stack has no equilibrium near, what its bodies overlap by is taken up (`joints_as_laid`), and its
-    equilibrium sought once more.
+    Where a stack has no equilibrium near, or only one that squeezes it, what its bodies overlap by is taken up
+    (`joints_as_laid`), and its equilibrium sought once more.
 
     Parameters
     ----------
@@ -41,14 +41,11 @@ def settled_start(structure, bodies, surfaces, interfaces, skin, time_step, stat
     InputError
         Bodies that start inside one another.
     """
-    scene, overlap = (structure, bodies, surfaces, interfaces, skin, time_step, state), 0.0
+    scene = structure, bodies, surfaces, interfaces, skin, time_step, state
     settled, *start = _relaxed(*scene, no_joints())
-    if not (settled | structure.driven).all():
-        joints, overlap = joints_as_laid(
-            structure, bodies, surfaces, interfaces, skin, state, ~settled & ~structure.driven
-        )
-        if overlap > 0.0:
-            settled, *start = _relaxed(*scene, joints)
+    joints, overlap = joints_as_laid(structure, bodies, surfaces, interfaces, skin, state, settled)
+    if overlap > 0.0:
+        settled, *start = _relaxed(*scene, joints)
     relaxed, candidates, joints, steps, stable_step = start
     if time_step > stable_step:
         _log.warning(
