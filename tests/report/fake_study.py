@@ -289,7 +289,7 @@ def convergence_table():
     settings = {
         "time_step": (1e-5, 1e-4),
         "node_spacing": (0.05, 0.2),
-        "perimeter_inset": (0.005, 0.01),
+        "perimeter_inset": (0.003, 0.006),
         "grid_spacing": (EXACT, 0.02),
     }
     for parameter, values in settings.items():

@@ -27,7 +27,7 @@ SHORT = Convergence(
     duration=0.1,
     time_steps=(1e-4, 5e-5),
     node_spacings=(0.4, 0.8),
-    perimeter_insets=(0.01, 0.02),
+    perimeter_insets=(0.006, 0.012),
     grid_spacings=(0.1,),
 )
 DESIGN = pd.DataFrame({"materials.concrete.youngs_modulus": [3e10, 3.5e10, 4e10]})

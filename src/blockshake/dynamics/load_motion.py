@@ -84,7 +84,9 @@ def _read(path, baseline, channels):
     readers = [read for recognises, _, read in _RECORD_FORMATS if recognises(text)]
     readers += [read for _, begin, read in _RECORD_FORMATS if ending.startswith(begin)]
     if readers:
-        return _record_motion(chosen_records(readers[0](text, path), channels, path), path, baseline, channels)
+        return _record_motion(
+            chosen_records(readers[0](text, path), channels, path), path, baseline, channels
+        )
     _check_no_channels(channels, path)
     if "time_s" in text.partition("\n")[0] or ending == ".csv":
         return settle(_csv_motion(text, path), baseline, path)

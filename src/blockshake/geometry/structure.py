@@ -11,7 +11,7 @@ from blockshake.errors import InputError
 from blockshake.files import load_yaml, named_file
 from blockshake.geometry.mass_offset import check_offset, offset_inertia, offset_solid
 from blockshake.geometry.meshes.mesh_file import read_mesh
-from blockshake.geometry.overlap import near_pairs, penetration_depths
+from blockshake.geometry.overlap import depths_of_pairs, near_pairs
 from blockshake.geometry.polyhedron import (
     MassProperties,
     Polyhedron,
@@ -268,15 +268,7 @@ def _touching(file, source, solids, position, orientation):
     shape = [body.shape for body in bodies]
     driven = np.array([body.driven for body in bodies])
     pairs = near_pairs([solids[name] for name in shape], position, orientation, START_TOLERANCE)
-    depth = np.empty(len(pairs))
-    by_shapes = {}
-    for place, (a, b) in enumerate(pairs):
-        by_shapes.setdefault((shape[a], shape[b]), []).append(place)
-    for (first, second), places in by_shapes.items():
-        a, b = pairs[places].T
-        depth[places] = penetration_depths(
-            solids[first], position[a], orientation[a], solids[second], position[b], orientation[b]
-        )
+    depth = depths_of_pairs(pairs, shape, solids, position, orientation)
     for place in np.flatnonzero(depth > DEEPEST_OVERLAP)[:1]:
         a, b = pairs[place]
         raise InputError(

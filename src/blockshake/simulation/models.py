@@ -153,7 +153,7 @@ MODELS = {
                 stream=0,
                 uncertain=(
                     Uncertain("ls_dem.node_spacing", 0.75, 1.5, relative=True),
-                    Uncertain("ls_dem.perimeter_inset", 0.4, 2.0, relative=True),
+                    Uncertain("ls_dem.perimeter_inset", 0.6, 2.0, relative=True),
                     Uncertain("restitution", 0.8, 1.2, relative=True),
                 ),
                 time_steps=(5e-5,),

@@ -4,7 +4,9 @@ from collections import Counter
 
 import numpy as np
 
+from blockshake.geometry.overlap import depths_of_pairs, near_pairs
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.geometry.structure import DEEPEST_OVERLAP, START_TOLERANCE
 from blockshake.quantities import PHYSICAL, USUAL
 from blockshake.simulation.parameter_table import instances
 
@@ -53,6 +55,13 @@ def structure_remarks(structure):
             f"gravity is {structure.file.gravity[2]:g} m/s2 along z: it does not press blocks down"
         )
     remarks += unusual_values(structure)
+    for name, solid in structure.solids.items():
+        if solid.polyhedron is None:
+            remarks.append(
+                f"{name} is not convex: LS-DEM reads it from a lattice of ls_dem.grid_spacing, which rounds off the "
+                "edges on which others stand"
+            )
+    remarks += _misfits(structure)
     held = _held_up(structure)
     for body in np.flatnonzero(~held):
         remarks.append(
@@ -79,6 +88,36 @@ def unusual_values(structure):
                 unit = "" if quantity.unit == "1" else f" {quantity.unit}"
                 remarks.append(f"{name} is {shown}{unit}: {low:g} to {high:g}{unit} is usual")
     return remarks
+
+
+def _misfits(structure):
+    """Remarks on blocks that stand a little inside others, or a little above them."""
+    shapes, solids = [body.shape for body in structure.file.bodies], structure.solids
+    centroid, orientation = structure.centroid, structure.orientation
+
+    def depths(pairs, position):
+        return depths_of_pairs(pairs, shapes, solids, position, orientation)
+
+    pairs = near_pairs([solids[shape] for shape in shapes], centroid, orientation, DEEPEST_OVERLAP)
+    pairs = pairs[~structure.driven[pairs].all(axis=1)]
+    depth = depths(pairs, centroid)
+    inside = depth > START_TOLERANCE
+    if inside.any():
+        a, b = (structure.body_names[body] for body in pairs[depth.argmax()])
+        yield (
+            f"{_counted(np.count_nonzero(inside), 'joint')} overlapping, by up to {1e3 * depth.max():.2g} mm ({a} and "
+            f"{b}): a run starts them as they are laid, pressed by the weight alone"
+        )
+    apart = (depth < -START_TOLERANCE) & (depth > -DEEPEST_OVERLAP)
+    # a gap is one to fall through where it closes as the upper body comes down by it
+    down = np.array(structure.file.gravity) / max(np.linalg.norm(structure.file.gravity), 1e-300)
+    for pair, gap in zip(pairs[apart], -depth[apart], strict=True):
+        lower, upper = sorted(pair, key=lambda body: -centroid[body] @ down)
+        lowered = centroid.copy()
+        lowered[upper] += gap * down
+        if depths(pair[None], lowered)[0] > -0.1 * START_TOLERANCE:
+            names = structure.body_names
+            yield f"{names[upper]} is {1e3 * gap:.2g} mm above {names[lower]}: it falls unless another block holds it"
 
 
 def _held_up(structure):

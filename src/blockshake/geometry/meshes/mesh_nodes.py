@@ -29,8 +29,8 @@ def mesh_nodes(vertices, faces, spacing, inset, sharp=SHARP):
     spacing : float
         Aimed distance of nodes [m].
     inset : float
-        Distance from sharp convex edges of the nodes that stand along them, on both sides [m]; at
-        most a quarter of the width of a narrow face. A body sinks by at most that much onto an
+        Distance from sharp convex edges of the nodes that stand along them, on both sides, over the breadth of the
+        face, which is twice its area over its perimeter [1]. A body sinks by at most that distance onto an
         edge before a node touches, and by 1.15 times that much onto the corner of a cube.
     sharp : float
         Two triangles that meet at a larger angle between their normals belong to different faces [rad]. Below it the

@@ -24,9 +24,9 @@ class Convergence(Strict):
         (0.05, 0.1, 0.2, 0.4), min_length=2, description="of the surfaces; likewise [m]"
     )
     perimeter_insets: tuple[Positive, ...] = Field(
-        (0.0025, 0.005, 0.01, 0.02),
+        (0.0015, 0.003, 0.006, 0.012),
         min_length=2,
-        description="of the outermost nodes of a face; likewise [m]",
+        description="of the outermost nodes of a face, over the breadth of the narrowest; likewise [1]",
     )
     grid_spacings: tuple[Positive, ...] = Field(
         (0.005, 0.01, 0.02, 0.04),
