@@ -12,6 +12,7 @@ from blockshake.errors import InputError
 from blockshake.files import load_yaml, named_file, read_bytes
 from blockshake.geometry.mass_offset import check_offset, offset_inertia, offset_solid
 from blockshake.geometry.overlap import near_pairs, penetration_depths
+from blockshake.geometry.point_places import check_points
 from blockshake.geometry.polyhedron import (
     MassProperties,
     Polyhedron,
@@ -220,6 +221,7 @@ def build_structure(mapping, source, folder, known=None):
     centroid = np.array([body.position for body in file.bodies])
     orientation = unit_quaternions(file, source)
     check_transducers(file, orientation, source)
+    check_points(file, solids, source)
     offset = np.array([body.mass_offset for body in file.bodies])
     lever = np.einsum("bij,bj->bi", rotation_matrices(orientation), offset)
     angular_velocity = np.array([body.angular_velocity for body in file.bodies])

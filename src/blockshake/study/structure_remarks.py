@@ -4,6 +4,7 @@ from collections import Counter
 
 import numpy as np
 
+from blockshake.geometry.point_places import point_remarks
 from blockshake.geometry.rotations import rotation_matrices
 
 _LIGHTEST, _HEAVIEST = 100.0, 25000.0  # kg/m3; no block is of less or more
@@ -52,6 +53,7 @@ def structure_remarks(structure):
     for name, material in structure.file.materials.items():
         if material.youngs_modulus < _SOFTEST:
             remarks.append(f"{name} has a Young's modulus of {material.youngs_modulus:.3g} Pa: expected Pa")
+    remarks += point_remarks(structure)
     held = _held_up(structure)
     for body in np.flatnonzero(~held):
         remarks.append(
