@@ -12,7 +12,6 @@ from blockshake.errors import InputError
 from blockshake.files import load_yaml, named_file, read_bytes
 from blockshake.geometry.mass_offset import check_offset, offset_inertia, offset_solid
 from blockshake.geometry.overlap import near_pairs, penetration_depths
-from blockshake.geometry.point_places import check_points
 from blockshake.geometry.polyhedron import (
     MassProperties,
     Polyhedron,
@@ -25,6 +24,7 @@ from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import StructureFile
 from blockshake.geometry.structure_file import (
     check_names,
+    check_points,
     check_transducers,
     friction_matrix,
     replace_into,

@@ -4,8 +4,8 @@ from collections import Counter
 
 import numpy as np
 
-from blockshake.geometry.point_places import point_remarks
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.geometry.structure_file import point_remarks
 
 _LIGHTEST, _HEAVIEST = 100.0, 25000.0  # kg/m3; no block is of less or more
 _LARGEST = 50.0  # m, of an edge

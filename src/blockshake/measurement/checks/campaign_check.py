@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from blockshake.geometry.point_places import point_remarks
 from blockshake.geometry.structure import load_structure
+from blockshake.geometry.structure_file import point_remarks
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.campaigns.commanded_motion import (
     check_followed,
