@@ -247,6 +247,7 @@ def made_up_forces(tests, bodies):
     }  # fmt: skip
     return xr.Dataset(
         {
+            "read": (("test", "time"), np.ones(shape, np.int8)),
             **{name: along(values, joints) for name, values in columns.items()},
             "unexplained": along(-2e3 * (time > 2.0), bodies),
             "told": (

@@ -24,6 +24,7 @@ from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import StructureFile
 from blockshake.geometry.structure_file import (
     check_names,
+    check_points,
     check_transducers,
     friction_matrix,
     replace_into,
@@ -218,6 +219,7 @@ def build_structure(mapping, source, folder, known=None):
     centroid = np.array([body.position for body in file.bodies])
     orientation = unit_quaternions(file, source)
     check_transducers(file, orientation, source)
+    check_points(file, solids, source)
     offset = np.array([body.mass_offset for body in file.bodies])
     lever = np.einsum("bij,bj->bi", rotation_matrices(orientation), offset)
     angular_velocity = np.array([body.angular_velocity for body in file.bodies])

@@ -7,6 +7,7 @@ import numpy as np
 from blockshake.geometry.overlap import depths_of_pairs, near_pairs
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import DEEPEST_OVERLAP, START_TOLERANCE
+from blockshake.geometry.structure_file import point_remarks
 from blockshake.quantities import PHYSICAL, USUAL
 from blockshake.simulation.parameter_table import instances
 
@@ -62,6 +63,7 @@ def structure_remarks(structure):
                 "edges on which others stand"
             )
     remarks += _misfits(structure)
+    remarks += point_remarks(structure)
     held = _held_up(structure)
     for body in np.flatnonzero(~held):
         remarks.append(

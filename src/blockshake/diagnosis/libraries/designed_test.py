@@ -149,7 +149,9 @@ def simulated_test(planned, draw, effects=()):
         test = test.sel(channel=list(planned.channels)) if planned.channels else test.drop_dims("channel")
     if planned.clock.first > 0.0:
         test = since(test, 0.0, planned.clock.first)
-        test["marker_displacement"] -= test["marker_displacement"].isel(time=0)
+        moved = test["marker_displacement"].transpose("time", "marker", "axis")
+        first = np.isfinite(moved.to_numpy()).argmax(axis=0)
+        test["marker_displacement"] = moved - np.take_along_axis(moved.to_numpy(), first[None], axis=0)[0]
     return SimulatedTest(test, run.attrs["status"])
 
 

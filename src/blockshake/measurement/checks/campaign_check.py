@@ -3,6 +3,7 @@
 import numpy as np
 
 from blockshake.geometry.structure import load_structure
+from blockshake.geometry.structure_file import point_remarks
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.campaigns.commanded_motion import (
     check_followed,
@@ -63,7 +64,7 @@ def campaign_lines(folder):
     ]
     if structure.file.displacement_transducers:
         lines[0] += f", of displacement transducers {campaign.sensors.transducer_noise:g} m"
-    remarks, read = [], set()
+    remarks, read = [f"  {remark}" for remark in point_remarks(structure)], set()
     for entry in campaign.tests.values():
         test = load_test(campaign, entry.name)
         read.update(

@@ -40,6 +40,9 @@ def read_readings(test, asked, structure, where):
     markers = [name for name in asked.columns if name not in (*channels, *transducers)]
     if not markers:
         raise InputError(where, "columns", "expected a column of a marker, MARKER.x")
+    source = test.accelerometers or test.file
+    for names in (markers, [*channels, *transducers]) if source != test.file else (asked.columns,):
+        _check_once(names, asked, where)
     time, readings = _readings(test.file, markers, asked, "displacement", where)
     names = list(dict.fromkeys(name.rpartition(".")[0] for name in markers))
     values = np.full((len(time), len(names), len(AXES)), np.nan)
@@ -56,7 +59,6 @@ def read_readings(test, asked, structure, where):
         )
     variables = {"marker_displacement": (("time", "marker", "axis"), values, {"units": "m"})}
     coordinates = {"time": ("time", time, {"units": "s"}), "marker": names, "axis": list(AXES)}
-    source = test.accelerometers or test.file
     if channels:
         time_acc, read = _readings(source, channels, asked, "acceleration", where)
         variables["accelerometer"] = (("time_acc", "channel"), read, {"units": "m s-2"})
@@ -68,6 +70,19 @@ def read_readings(test, asked, structure, where):
         variables["transducer_displacement"] = (("time_acc", "transducer"), read, {"units": "m"})
         coordinates |= {"time_acc": ("time_acc", time_acc, {"units": "s"}), "transducer": transducers}
     return xr.Dataset(variables, coordinates)
+
+
+def _check_once(names, asked, where):
+    """Refuse a column of one table that is mapped twice."""
+    taken = {asked.time.column: "time"}
+    for name in names:
+        other = taken.setdefault(asked.columns[name].column, name)
+        if other != name:
+            raise InputError(
+                where,
+                f"columns.{name}",
+                f"expected a column of its own; '{asked.columns[name].column}' is {other}",
+            )
 
 
 def _readings(source, names, asked, kind, where):
