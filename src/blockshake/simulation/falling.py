@@ -144,7 +144,7 @@ def _hull(solid):
 
 
 def _facing(hull, direction):
-    """Corners, a mask, of the largest face that looks along a direction, both of the body's frame, within 45 degrees."""
+    """Corners, a mask, of the largest face that looks within 45 degrees of a direction in the body's frame."""
     facing = np.zeros(len(hull.vertices), dtype=bool)
     largest = 0.0
     for face in np.flatnonzero(hull.polyhedron.normals @ direction > COSINE_OF_TILT):
@@ -206,18 +206,14 @@ def _uncarried(structure, supports, ahead, up, watched):
             if body in (one.lower, one.upper):
                 wrench = np.hstack([force, np.cross(corners - ahead[body], force) / size[row]])
                 sign = 1.0 if body == one.upper else -1.0
-                column[6 * row : 6 * row + 6, : len(corners)] = (
-                    sign * unit / structure.mass[body] * wrench.T
-                )
+                column[6 * row : 6 * row + 6, : len(corners)] = sign * unit / structure.mass[body] * wrench.T
         # the resultant acts on both areas
         rows = slice(6 * len(bodies) + 3 * place, 6 * len(bodies) + 3 * place + 3)
         for points, sign, within in (
             (corners, 1.0, slice(0, len(corners))),
             (one.limits, -1.0, slice(len(corners), None)),
         ):
-            column[rows, within] = sign * np.vstack(
-                [tangents @ (points - one.pivot).T, np.ones(len(points))]
-            )
+            column[rows, within] = sign * np.vstack([tangents @ (points - one.pivot).T, np.ones(len(points))])
         columns.append(csc_array(column))
     slack = eye_array(6 * len(bodies))
     slack = vstack([slack, csc_array((3 * len(supports), 6 * len(bodies)))])

@@ -154,7 +154,10 @@ class _SetUp(NamedTuple):
         file, motion = self.structure.file, self.motion
         status, reason = trajectory.status, trajectory.reason
         if status is Status.COMPLETED:
-            last = (part[-1] for part in (trajectory.position, trajectory.orientation, trajectory.angular_velocity))
+            last = (
+                part[-1]
+                for part in (trajectory.position, trajectory.orientation, trajectory.angular_velocity)
+            )
             falls = still_falling(self.structure, *last)
             if falls:
                 status = Status.FALLING

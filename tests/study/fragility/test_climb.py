@@ -65,7 +65,7 @@ def rung(scale, passed, status="completed"):
 def test_shares_count_what_is_known_at_each_level():
     scales = np.array([1.0, 2.0, 3.0])
     climbs = [
-        [rung(1.0, True), rung(2.0, False, "collapsed")],
+        [rung(1.0, True), rung(2.0, False, "falling")],
         [rung(1.0, True), rung(2.0, True), rung(3.0, True)],
         [rung(1.0, True), rung(2.0, True), rung(3.0, False)],
         [rung(1.0, True), rung(2.0, False, "not-converged")],

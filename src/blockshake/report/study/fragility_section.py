@@ -17,6 +17,7 @@ from blockshake.report.document.wording import (
 )
 from blockshake.report.study.figures.fragility import plot_fragility
 from blockshake.study.ensembles.intervals import CONFIDENCE
+from blockshake.study.ensembles.outcomes import count_outcomes
 from blockshake.study.fragility.fragility import SAFE
 
 _SHOWN = (0.5, 0.95)
@@ -58,10 +59,16 @@ def words(content, name):
     one, case = content.fragility[name], content.cases[name]
     unit = content.motions[case.motion].attrs["peak_acceleration"]
     size = one.sizes["sample"]
-    who = f"{name}, {case.motion}, {size} samples"
-    stopped = int((~np.isin(one["status"].values, ("completed", "collapsed"))).sum())
-    less = (
-        f" The last run of {count_words(stopped, 'sample')} ended for a numerical reason." if stopped else ""
+    model = model_label(content.study["fragility"]["model"])
+    who = f"{name}, {case.motion}, {size} samples by {model}"
+    ended = count_outcomes(one["status"])
+    less = "".join(
+        f" The last run of {count_words(count, 'sample')} {how}."
+        for count, how in (
+            (ended.falling, "still fell when the window ended, which counts as a collapse"),
+            (ended.failed, "ended for a numerical reason"),
+        )
+        if count
     )
     median = float(one["median"])
     if not np.isfinite(median):

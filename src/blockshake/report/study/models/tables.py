@@ -16,16 +16,8 @@ def block_tables(case):
     """Peak, residual and width of the envelope of every block by every model, a table each."""
     found = case.differences
     at_end = f"mean over the last {given(RESIDUAL_WINDOW)} s of the window"
-    sizes = {model: int(found["counted"].sel(model=model)) for model in case.responses}
-    few = [
-        f"{model_label(model)} ({100.0 * (1.0 - 2.0 ** (1 - size)):.0f} %)"
-        for model, size in sizes.items()
-        if 1 < size < SURE_FROM
-    ]
-    limits = "In brackets limits of 95 % by order statistics" + (
-        f"; with fewer than {SURE_FROM} samples the smallest and the largest one: {', '.join(few)}."
-        if few
-        else "."
+    limits = (
+        f"In brackets limits of 95 % by order statistics, which fewer than {SURE_FROM} samples do not bear."
     )
     captions = {
         "peak": f"peak displacement along x relative to the slab [mm], median over the n samples. {limits}",
@@ -62,8 +54,8 @@ def _with_limits(at, name, show=millimetres):
     if not np.isfinite(value):
         return MISSING
     limits = [float(at[f"{name}_interval"].sel(bound=one)) for one in ("lower", "upper")]
-    if limits == [value, value]:
-        return show(value)  # of one sample
+    if not np.isfinite(limits).all():
+        return show(value)  # of few samples
     return f"{show(value)} [{', '.join(map(show, limits))}]"
 
 
