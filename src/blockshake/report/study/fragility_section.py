@@ -34,9 +34,10 @@ def fragility(content):
     blocks = [
         Text(
             f"Samples that climb the ladder by {model_label(asked['model'])}: each is shaken by the case's commanded "
-            "motion at rising factors, from the restored stack each time, until it collapses or the mass centre of a "
-            f"block moves from the slab by more than {limits} mm, which counts as a potential collapse. The capacity "
-            "of a sample lies between the last factor that it passed and the first that it did not. Where these tell "
+            "motion at rising factors, from the restored stack each time, until it collapses, still falls as its "
+            f"window ends, or the mass centre of a block moves from the slab by more than {limits} mm, which counts as "
+            "a potential collapse. The capacity of a sample lies between the last factor that it passed and the first "
+            "that it did not. Where these tell "
             "one, the figure has the lognormal distribution of largest likelihood for such bounds (incremental dynamic "
             "analysis, Vamvatsikos and Cornell 2002; fragility by maximum likelihood, Shinozuka et al. 2000). The "
             "spread is that of the sampled variables. The motion is one: another motion of the same peak has another "
@@ -104,8 +105,10 @@ def _told_from(one):
 
 
 def _limited(one, name):
-    low, high = (number(one[f"{name}_interval"].sel(bound=side)) for side in ("lower", "upper"))
-    return f"{number(one[name])} [{low}, {high}]"
+    limits = one[f"{name}_interval"].sel(bound=["lower", "upper"])
+    if not np.isfinite(limits).all():
+        return "a factor of which the samples bear no limits"
+    return f"{number(one[name])} [{', '.join(map(number, limits))}]"
 
 
 def _table(content):

@@ -25,7 +25,7 @@ from blockshake.study.described import describe
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.ensemble import ALONG_X, POSES, join_batches, relative_to_slab
 from blockshake.study.ensembles.envelope import counted_samples
-from blockshake.study.ensembles.intervals import quantile_interval, sample_quantiles
+from blockshake.study.ensembles.intervals import SURE_FROM, quantile_interval, sample_quantiles
 
 MOST = 400  # samples of a model that are compared: each is held against each
 TOLD_APART_BY = 3.0  # standard deviations of a marker's noise that curves are apart when they have parted
@@ -168,7 +168,8 @@ def _alone(counted, seed):
             weights = resampled_weights(size, _generator(seed, model))
             width = mean_width(mean_differences(curves, curves), weights)
         one["width"] = ("marker", width[0])
-        one["width_interval"] = (("bound", "marker"), limits_of(width[1:]))
+        limits = limits_of(width[1:]) if size >= SURE_FROM else np.full((2, len(blocks)), np.nan)
+        one["width_interval"] = (("bound", "marker"), limits)
         parts.append(xr.Dataset(one, {"marker": blocks, "bound": ["lower", "upper"]}))
     return xr.concat(parts, dim=xr.Variable("model", list(counted)))
 
@@ -268,7 +269,9 @@ def _scores(counted, measured, seed):
     for place, model in enumerate(models):
         if model not in drawn:
             continue
-        score[place], interval[:, place] = drawn[model][0], limits_of(drawn[model][1:])
+        score[place] = drawn[model][0]
+        sure = counted[model].sizes["sample"] >= SURE_FROM
+        interval[:, place] = limits_of(drawn[model][1:]) if sure else np.nan
         for number, other in enumerate(models):
             if other in drawn and other != model:
                 excess = drawn[other] - drawn[model]
