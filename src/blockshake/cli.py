@@ -349,7 +349,8 @@ def _diagnose(options):
     except RuntimeError as error:
         print(f"blockshake: {error}", file=sys.stderr)
         return 1
-    print(f"{verdict.decision}: {', '.join(verdict.causes) or 'no cause'}; {options.output}/report.html")
+    named = f" ({verdict.decision}): {', '.join(verdict.causes)}" if verdict.causes else ""
+    print(f"{verdict.word}{named}; {options.output}/report.html")
     return 0
 
 

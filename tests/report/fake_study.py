@@ -60,7 +60,7 @@ def climbed_and_fitted():
         ]
         climbs.append(rungs)
     climbs[-1][-1]["status"] = "not-converged"
-    return fragility(gathered(np.arange(5), climbs, scales, 0.4), ("configuration-1",))
+    return fragility(gathered(np.arange(5), climbs, scales, 0.4))
 
 
 class FakeStudy:

@@ -174,7 +174,9 @@ def lean_both(ending, angle):
     left, right = (np.array([x + B, 0.0, 0.0]) for x in (-0.8, 0.8))
     before = ending.position.copy()
     ending.turn([1, 2], angle, left).turn([3, 4], angle, right)
-    top = Rotation.from_rotvec([0.0, angle, 0.0]).apply([-2 * B, 0.0, 4 * H])  # the upper left corner of a wall
+    top = Rotation.from_rotvec([0.0, angle, 0.0]).apply(
+        [-2 * B, 0.0, 4 * H]
+    )  # the upper left corner of a wall
     ending.position[5] = before[5] + top - [-2 * B, 0.0, 4 * H]
     return ending
 

@@ -421,6 +421,23 @@ def test_a_study_remarks_what_its_structures_hardly_mean(mapping, cube, tmp_path
     assert "80 s are simulated of a motion of" in told
 
 
+@pytest.mark.parametrize("axis", ["x", "y", "z"])
+@pytest.mark.parametrize(("duration", "remarked"), [(3.0, True), (4.4, True), (4.6, False), (6.0, False)])
+def test_a_window_that_cuts_the_strong_motion_is_remarked(mapping, cube, tmp_path, axis, duration, remarked):
+    """Even shaking from 1 to 4.684 s: 95 % of its Arias intensity is there after 3.5 s of it, at 4.5 s."""
+    time = np.arange(2001) / 200.0
+    strong = np.where((time >= 1.0) & (time <= 1.0 + 3.5 / 0.95), 2.0 * np.sin(2.0 * np.pi * 5.0 * time), 0.0)
+    rows = np.column_stack([time, strong])
+    np.savetxt(tmp_path / "even.csv", rows, delimiter=",", header=f"time_s,acceleration_{axis}", comments="")
+    study = own_study(dict(mapping), tmp_path, cube, ensemble=stone())
+    study["cases"][0] |= {"duration": duration, "motion": str(tmp_path / "even.csv")}
+    (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
+    told = check_file(tmp_path / "study.yaml")
+    line = f"own: {duration:g} s are simulated of a motion that is strong until 4.5"
+    assert (line in told) == remarked
+    assert ("strong until" in told) == remarked
+
+
 def test_an_unknown_structure_and_a_solver_s_parameter_are_named_by_their_keys(mapping):
     mapping["cases"][1]["structure"] = "nowhere.yaml"
     with pytest.raises(InputError, match=r"study\.yaml: cases\.1\.structure: nowhere\.yaml"):

@@ -63,6 +63,11 @@ def arias_intensity(motion, axis="x"):
     return np.pi / (2.0 * _GRAVITY) * np.concatenate([[0.0], gathered])
 
 
+def strong_until(motion):
+    """Time at which 95 % of the Arias intensity of all axes is gathered [s]; 0 for a motion that never moves."""
+    return _crossing(motion.table.breaks, sum(arias_intensity(motion, axis) for axis in "xyz"), 0.95)
+
+
 def _crossing(time, gathered, share):
     """First time at which a share of the end value is reached; 0 for a motion that never moves."""
     if gathered[-1] == 0.0:

@@ -144,7 +144,7 @@ def _hull(solid):
 
 
 def _facing(hull, direction):
-    """Corners, a mask, of the largest face that looks along a direction, both of the body's frame, within 45 degrees."""
+    """Corners, a mask, of the largest face that looks within 45 degrees of a direction in the body's frame."""
     facing = np.zeros(len(hull.vertices), dtype=bool)
     largest = 0.0
     for face in np.flatnonzero(hull.polyhedron.normals @ direction > COSINE_OF_TILT):

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from blockshake.dynamics.baseline import AUTO
+from blockshake.dynamics.intensity import strong_until
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.provenance import provenance
 from blockshake.errors import InputError
@@ -95,6 +96,11 @@ def _study_remarks(config, motions):
     for name, motion in motions.items():
         yield from (f"{name}: {remark}" for remark in motion_remarks(motion))
     for case in config.cases:
-        length = motions[case.motion].duration
+        length, end = motions[case.motion].duration, strong_until(motions[case.motion])
         if case.duration > length + _LATE:
             yield f"{case.name}: {case.duration:g} s are simulated of a motion of {length:g} s"
+        if case.duration < end:
+            yield (
+                f"{case.name}: {case.duration:g} s are simulated of a motion that is strong until {end:.3g} s: blocks "
+                "that fall later count as standing"
+            )

@@ -170,7 +170,7 @@ def test_drift_before_and_after_is_that_of_the_strongest_sealed_test(found, page
     assert float(own["measured"]) == float(found["named"].consequences["measured"].max())
     before, after = (1e3 * float(own["drift"].sel(kind=kind)) for kind in ("recalibrated", "extended"))
     assert (
-        f"On {SEALED[-1]}, which was sealed, the 95 % drift of the top block goes from {before:.0f} mm"
+        f"On {SEALED[-1]}, which was sealed, the median drift of the top block goes from {before:.0f} mm"
         in pages["named"][1]
     )
     assert f"to {after:.0f} mm" in pages["named"][1]

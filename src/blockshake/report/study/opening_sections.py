@@ -67,7 +67,8 @@ def summary(content):
     items = [
         f"{count_words(len(content.cases), 'case')}, {count_words(len(content.study['models']), 'model')} "
         f"({', '.join(model_label(model) for model in content.study['models'])}), {sum(ended)} runs: "
-        f"{ended.completed} completed, {ended.collapsed} collapsed, {ended.failed} failed.",
+        f"{ended.completed} completed, {ended.collapsed} collapsed, {ended.falling} still falling "
+        f"when the window ended, {ended.failed} failed.",
         f"{len(content.design)} samples of {len(content.distributions)} random variables in the design (seed "
         f"{content.study['ensemble']['seed']}).",
     ]

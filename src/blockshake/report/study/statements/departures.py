@@ -306,7 +306,8 @@ DEPARTURES = (
               _words("Envelopes and their widths, peaks and distances are relative to the slab; the absolute ones "
                      "stand beside them."), "docs/sampling.md"),
     Departure("Statistics", "Nothing is said of a run that ends in a collapse.",
-              _words("A run ends at its collapse and counts as one that is over every limit."), "docs/sampling.md"),
+              _words("A run ends at its collapse and counts as one that is over every limit; one that still falls as "
+                     "its window ends counts so too."), "docs/sampling.md"),
     Departure("Statistics", "Residual displacements after a test.",
               lambda: f"The mean over the last {given(RESIDUAL_WINDOW)} s of the window, at which blocks may still "
                       "rock.", "docs/sampling.md"),
