@@ -78,15 +78,13 @@ def test_packets_give_the_bits_of_single_places(surfaces):
     assert (agrees > 1.0 - 1e-6).mean() > 0.99
 
 
-@pytest.mark.parametrize("name", ["_locate_in_box_into", "_locate_in_lattice_into", "_locate_in_planes_into"])
+@pytest.mark.parametrize("name", ["_locate_in_box_into", "_locate_in_lattice_into"])
 def test_packets_become_vector_instructions(surfaces, name):
     """Products of several doubles at once, on any 64-bit processor."""
     fresh = numba.njit(error_model="numpy", noalias=True)(getattr(located_nodes, name).py_func)  # not cached
     table = (surfaces.half, surfaces.chamfer)
     if name == "_locate_in_lattice_into":
         table = (surfaces.lattice, surfaces.values)
-    if name == "_locate_in_planes_into":
-        table = (surfaces.first_plane, surfaces.planes)
     fresh(
         np.zeros((1, PACKET)),
         np.zeros((1, LOCATED)),

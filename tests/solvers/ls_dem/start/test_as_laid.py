@@ -115,11 +115,12 @@ def test_stacks_of_any_sizes_typed_to_the_millimetre_are_never_thrown(make_struc
     moved = (run.position - run.position[0])[:, 1:]
     allowed = np.array(allowed)
     assert run.status == "completed"
-    # a cube may rise a little where another one falls on it: no more energy than that of the falls
-    assert (
-        moved[..., 2].max(axis=0) < 0.2 * allowed.reshape(-1, 3).max(axis=1).repeat(3) + ELASTIC_SINK
-    ).all()
-    assert (moved[..., 2].min(axis=0) > -allowed - 2 * ELASTIC_SINK).all()
+    # a cube may rise a little where a lighter one falls on it, by less than the fall; a fall ends as deep in the
+    # springs as its speed says, v sqrt(m / k A), of columns of 2 m
+    falls = allowed.reshape(-1, 3).max(axis=1).repeat(3)
+    impact = np.sqrt(2.0 * G * falls * 2400.0 * 2.0 / K_N)
+    assert (moved[..., 2].max(axis=0) < falls + ELASTIC_SINK).all()
+    assert (moved[..., 2].min(axis=0) > -allowed - impact - ELASTIC_SINK).all()
     assert run.energy[:, POTENTIAL].max() <= run.energy[0, POTENTIAL]
     assert np.abs(moved[..., :2]).max() < MM
 
@@ -189,7 +190,7 @@ def test_a_gap_closes_by_falling(make_structure, run_ls_dem):
 
 def _structure_with_mesh(make_mapping, folder, mesh, bodies):
     mesh.export(folder / "body.stl")
-    shapes = {"mesh": {"mesh": "body.stl"}, "filling": {"box": [0.4, 0.4, 0.3]}}
+    shapes = {"mesh": {"mesh": "body.stl"}, "filling": {"box": [0.4, 0.4, 0.3], "chamfer": 0.03}}
     return build_structure(make_mapping(bodies, shapes=shapes), "test.yaml", folder)
 
 
@@ -234,7 +235,7 @@ def test_a_body_that_no_shift_parts_from_another_is_refused(make_mapping, tmp_pa
     ]
     structure = _structure_with_mesh(make_mapping, tmp_path, trough, bodies)
     with pytest.raises(
-        InputError, match=r"bodies.filling.position: overlaps trough by 0\.[23]\d* mm on sides that no shift"
+        InputError, match=r"bodies.filling.position: overlaps trough by 0\.[36] mm on sides that no shift"
     ):
         run_ls_dem(structure, 0.01)
 
