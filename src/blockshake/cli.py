@@ -8,12 +8,12 @@ import time
 from pathlib import Path
 
 from blockshake import __version__
-from blockshake.errors import INTERRUPTED, InputError
+from blockshake.errors import BAD_INPUT, INTERRUPTED, InputError
 from blockshake.files import check_output, parse_yaml, write_json
 from blockshake.own_files.commands import add_data_commands
 from blockshake.simulation.models import MODELS
 
-BAD_INPUT, NUMERICAL_FAILURE = 2, 3
+NUMERICAL_FAILURE = 3
 
 
 class _Parser(argparse.ArgumentParser):
@@ -266,13 +266,11 @@ def _export(options):
 
 def _sample(options):
     check_output(options.output)
-    from blockshake.study.sampling.correlation_target import load_correlation
     from blockshake.study.sampling.latin_hypercube import draw_samples, write_design
 
-    correlation = load_correlation(options.correlation) if options.correlation else None
-    design = draw_samples(size=options.size, seed=options.seed, correlation=correlation)
+    design = draw_samples(options.size, options.seed, correlation=options.correlation)
     write_design(options.output, design.values)
-    print(f"{len(design.values)} samples; rms correlation error {design.rms_error:.2e}")
+    print(f"{options.output}: {len(design.values)} samples; rms correlation error {design.rms_error:.2e}")
 
 
 def _calibrate_stiffness(options):
@@ -287,7 +285,7 @@ def _generate_campaign(options):
     from blockshake.virtual.generate import generate_campaign
     from blockshake.virtual.settings import load_settings
 
-    settings = load_settings(options.settings)
+    settings = load_settings(options.settings, options.structure)
     for folder in (options.output, options.truth):
         check_output(f"{folder}/campaign.yaml")
     if Path(options.output).resolve() in (
@@ -300,13 +298,12 @@ def _generate_campaign(options):
 
 
 def _diagnose(options):
-    from blockshake.run_diagnosis import diagnose
+    from blockshake.run_diagnosis import WorkflowError, diagnose
 
     try:
         verdict = diagnose(options.campaign, options.output, options.effort, options.cores)
-    except RuntimeError as error:
-        print(f"blockshake: {error}", file=sys.stderr)
-        return 1
+    except WorkflowError as stopped:
+        return stopped.exit_code
     print(f"{verdict.decision}: {', '.join(verdict.causes) or 'no cause'}; {options.output}/report.html")
     return 0
 
@@ -327,7 +324,7 @@ def _modes(options):
 
 
 def _check(options):
-    from blockshake.study.check import check_file
+    from blockshake.own_files.check import check_file
 
     if options.picture:
         _draw_structure(options.files, options.picture)

@@ -53,6 +53,12 @@ def load_motion(source, scale=1.0, correct=True, corner_frequency=CORNER_FREQUEN
         raise InputError(source, "scale", f"expected a finite number, found {scale}")
     with np.errstate(over="ignore", invalid="ignore"):  # looked at below
         motion = _read(named_file("motions", source), corner_frequency if correct else None)
+    return scaled(motion, scale, source)
+
+
+def scaled(motion, scale, source):
+    """A motion with every column multiplied by a finite scale; an `InputError` names ``source`` if that is too much."""
+    with np.errstate(over="ignore", invalid="ignore"):  # looked at below
         motion = motion if scale == 1.0 else motion.scaled(scale)
     check_finite(motion, source)
     return motion

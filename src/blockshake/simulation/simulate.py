@@ -31,7 +31,7 @@ from blockshake.simulation.write_run import write_run
 from blockshake.solvers.kept_rows import KeptRows
 from blockshake.sources import module_sources, source_digest
 
-_LONGEST_STEP = 0.01  # s
+LONGEST_STEP = 0.01  # s
 _WORST_RESIDUAL = 0.05  # a run whose energy audit misses more is not to be trusted
 
 
@@ -129,6 +129,12 @@ def simulate_to_file(
     kept.remove()
 
 
+def check_run(structure, motion, model, parameters, time_step, duration, output_rate):
+    """Refuse a simulation that `simulate`, whose arguments these are, would refuse; nothing is simulated."""
+    of = _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers=True)
+    model_of(model).refuse(of.structure, of.numerical)
+
+
 class _SetUp(NamedTuple):
     """A simulation before its first step; times are ``coarse`` of histories and ``fine`` of accelerometers [s]."""
 
@@ -196,9 +202,9 @@ def _set_up(structure, motion, model, parameters, time_step, duration, output_ra
     for name, value in (("time step", time_step), ("duration", duration), ("output rate", output_rate)):
         if not (np.isfinite(value) and value > 0.0):
             raise InputError(f"--{name.replace(' ', '-')}", "", f"expected a positive number, not {value}")
-    if time_step > _LONGEST_STEP:
+    if time_step > LONGEST_STEP:
         raise InputError(
-            "--time-step", "", f"expected at most {_LONGEST_STEP:g} s, not {time_step:g}: impacts last less"
+            "--time-step", "", f"expected at most {LONGEST_STEP:g} s, not {time_step:g}: impacts last less"
         )
     coarse = np.arange(int(np.floor(duration * output_rate + 1e-9)) + 1) / output_rate
     fine = np.empty(0)
