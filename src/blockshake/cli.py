@@ -216,7 +216,7 @@ def _simulate(options):
     )
     with xr.open_dataset(options.output, decode_times=False) as run:
         told, status, reason = ending(run, structure), run.attrs["status"], run.attrs["reason"]
-    print(f"{options.output}: {told}; took {time.monotonic() - begin:.3g} s")
+    print(f"{options.output}: {told}; took {time.monotonic() - begin:.3g} s", flush=True)
     if status in FINISHED:
         return 0
     print(f"blockshake: {status}: {reason}", file=sys.stderr)
@@ -277,7 +277,10 @@ def _calibrate_stiffness(options):
     check_output(options.output)
     from blockshake.study.stiffness.wave_speed import calibrate_stiffness
 
-    write_json(options.output, calibrate_stiffness(options.structure, _settings(options)))
+    found = calibrate_stiffness(options.structure, _settings(options))
+    write_json(options.output, found)
+    stiffness = ", ".join(f"{kind} {found[f'{kind}_stiffness']:.3g}" for kind in ("normal", "shear"))
+    print(f"{options.output}: stiffness {stiffness} N/m3")
 
 
 def _generate_campaign(options):
@@ -295,6 +298,7 @@ def _generate_campaign(options):
         raise InputError("--truth", options.truth, "expected a folder outside the campaign's")
     source = source_digest(*module_sources("virtual/generate.py", *MODELS))
     generate_campaign(settings, options.structure, options.output, options.truth, source, print)
+    print(f"{options.output}: a synthetic campaign; its truth: {options.truth}")
 
 
 def _diagnose(options):
@@ -321,6 +325,7 @@ def _modes(options):
     _print_table([HEADER, *summary_rows(found)])
     if options.output:
         write_json(options.output, {"tests": found})
+        print(options.output)
 
 
 def _check(options):
@@ -331,10 +336,12 @@ def _check(options):
     wrong = 0
     for file in options.files:
         try:
-            print(f"{file}: {check_file(file)}")
+            print(f"{file}: {check_file(file)}", flush=True)
         except InputError as error:
             print(f"blockshake: {error}", file=sys.stderr)
             wrong += 1
+    if wrong and len(options.files) > 1:
+        print(f"blockshake: {wrong} of {len(options.files)} files are wrong", file=sys.stderr)
     return BAD_INPUT if wrong else 0
 
 

@@ -3,7 +3,7 @@
 import tempfile
 from pathlib import Path
 
-from blockshake.diagnosis.libraries.plan import plan_diagnosis
+from blockshake.diagnosis.libraries.plan import plan_diagnosis, planned_motion
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.synthetic_schema import SyntheticMotion
 from blockshake.errors import InputError, faults_of
@@ -11,11 +11,10 @@ from blockshake.files import load_yaml, shipped_names
 from blockshake.forces.sight import sight_lines
 from blockshake.geometry.schema import StructureFile
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaigns.campaign import CampaignFile, load_campaign
+from blockshake.measurement.campaigns.campaign import CampaignFile, load_campaign, load_test
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.measurement.imports.import_campaign import import_campaign
 from blockshake.measurement.imports.import_map import ImportMap, load_map
-from blockshake.study.calibration.readings import open_test
 from blockshake.study.config import StudyConfig, load_config
 from blockshake.study.ensembles.case_input import measured_input
 from blockshake.study.motion_remarks import motion_line, motion_remarks
@@ -101,24 +100,26 @@ def _study_line(source):
 
 def _read_measured(config, source):
     """Read what the study's jobs read of measured tests, and plan its diagnoses."""
-    calibrated = [
-        name for names in (config.calibration.cases if config.calibration else {}).values() for name in names
-    ]
+    calibrated = config.calibration.cases.values() if config.calibration else ()
     for index, case in enumerate(config.cases):
-        if case.measured is None:
-            continue
-        campaign = case.measured.campaign
-        tests = [case.measured.test]
-        if case.name in calibrated:
-            tests = [name for name, test in load_campaign(campaign).tests.items() if test.role != "sealed"]
-        with faults_of(source, f"cases.{index}.measured"):
-            measured_input(case.model_dump(), case.measured.model_dump())
-            for test in tests:
-                open_test(case.model_dump(), campaign, test)
+        if case.measured is not None:
+            with faults_of(source, f"cases.{index}.measured"):
+                measured_input(case.model_dump(), case.measured.model_dump())
+                if any(case.name in names for names in calibrated):
+                    _read_open_tests(case.measured.campaign)
     for folder in config.diagnosis.campaigns:
         with faults_of(source, "diagnosis.campaigns"):
             campaign_lines(folder)
             plan_diagnosis(folder, config.diagnosis.effort)
+
+
+def _read_open_tests(folder):
+    """Read the tests of a campaign that are not sealed, and their commands."""
+    campaign = load_campaign(folder)
+    for name, test in campaign.tests.items():
+        if test.role != "sealed":
+            load_test(campaign, name)
+            planned_motion(campaign, name)
 
 
 def _study_remarks(config):
