@@ -151,7 +151,7 @@ def test_an_interrupt_before_a_run_has_begun_is_said_too(monkeypatch, capsys):
     def interrupted(file):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("blockshake.study.check.check_file", interrupted)
+    monkeypatch.setattr("blockshake.own_files.check.check_file", interrupted)
     assert main(["check", "configuration-1"]) == 130
     assert capsys.readouterr().err == "blockshake: interrupted\n"
 

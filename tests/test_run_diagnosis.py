@@ -2,7 +2,6 @@
 
 import os
 import shutil
-import subprocess
 from types import SimpleNamespace
 
 import pytest
@@ -110,14 +109,15 @@ def test_the_workflow_ends_with_the_diagnosis(tmp_path, monkeypatch):
     """A diagnosis that is killed leaves no workflow behind, which would hold the folder."""
     given = {}
 
-    def run(command, env, check):
-        given.update(env)
-        return subprocess.CompletedProcess(command, 1)
+    def run(_, environment):
+        given.update(environment)
+        return 1
 
     monkeypatch.setattr(run_diagnosis, "HOME", tmp_path)
-    monkeypatch.setattr(run_diagnosis.subprocess, "run", run)
-    with pytest.raises(RuntimeError, match="the workflow stopped"):
-        run_diagnosis.diagnose(CAMPAIGN, tmp_path / "output")
+    monkeypatch.setattr(run_diagnosis, "run_workflow", run)
+    with pytest.raises(run_diagnosis.WorkflowError, match="the workflow stopped"):
+        run_diagnosis.diagnose(CAMPAIGN, tmp_path / "new" / "output")
+    assert not (tmp_path / "new").exists()
     assert this_command().items() <= given.items()
 
 

@@ -9,12 +9,12 @@ import time
 from pathlib import Path
 
 from blockshake import __version__
-from blockshake.errors import INTERRUPTED, InputError
+from blockshake.errors import BAD_INPUT, INTERRUPTED, InputError
 from blockshake.files import check_output, parse_yaml, write_json
 from blockshake.own_files.commands import add_baseline, add_data_commands
 from blockshake.simulation.models import MODELS
 
-BAD_INPUT, NUMERICAL_FAILURE = 2, 3
+NUMERICAL_FAILURE = 3
 UNREAD = 141  # whoever reads the output has gone, as after `blockshake parameters | head -1`
 
 
@@ -252,7 +252,7 @@ def _simulate(options):
     )
     with xr.open_dataset(options.output, decode_times=False) as run:
         told, status, reason = ending(run, structure), run.attrs["status"], run.attrs["reason"]
-    print(f"{options.output}: {told}; took {time.monotonic() - begin:.3g} s")
+    print(f"{options.output}: {told}; took {time.monotonic() - begin:.3g} s", flush=True)
     if status in FINISHED:
         return 0
     print(f"blockshake: {status}: {reason}", file=sys.stderr)
@@ -308,20 +308,21 @@ def _export(options):
 
 def _sample(options):
     check_output(options.output)
-    from blockshake.study.sampling.correlation_target import load_correlation
     from blockshake.study.sampling.latin_hypercube import draw_samples, write_design
 
-    correlation = load_correlation(options.correlation) if options.correlation else None
-    design = draw_samples(size=options.size, seed=options.seed, correlation=correlation)
+    design = draw_samples(options.size, options.seed, correlation=options.correlation)
     write_design(options.output, design.values)
-    print(f"{len(design.values)} samples; rms correlation error {design.rms_error:.2e}")
+    print(f"{options.output}: {len(design.values)} samples; rms correlation error {design.rms_error:.2e}")
 
 
 def _calibrate_stiffness(options):
     check_output(options.output)
     from blockshake.study.stiffness.wave_speed import calibrate_stiffness
 
-    write_json(options.output, calibrate_stiffness(options.structure, _settings(options)))
+    found = calibrate_stiffness(options.structure, _settings(options))
+    write_json(options.output, found)
+    stiffness = ", ".join(f"{kind} {found[f'{kind}_stiffness']:.3g}" for kind in ("normal", "shear"))
+    print(f"{options.output}: stiffness {stiffness} N/m3")
 
 
 def _generate_campaign(options):
@@ -329,7 +330,7 @@ def _generate_campaign(options):
     from blockshake.virtual.generate import generate_campaign
     from blockshake.virtual.settings import load_settings
 
-    settings = load_settings(options.settings)
+    settings = load_settings(options.settings, options.structure)
     for folder in (options.output, options.truth):
         check_output(f"{folder}/campaign.yaml")
     if Path(options.output).resolve() in (
@@ -339,16 +340,16 @@ def _generate_campaign(options):
         raise InputError("--truth", options.truth, "expected a folder outside the campaign's")
     source = source_digest(*module_sources("virtual/generate.py", *MODELS))
     generate_campaign(settings, options.structure, options.output, options.truth, source, print)
+    print(f"{options.output}: a synthetic campaign; its truth: {options.truth}")
 
 
 def _diagnose(options):
-    from blockshake.run_diagnosis import diagnose
+    from blockshake.run_diagnosis import WorkflowError, diagnose
 
     try:
         verdict = diagnose(options.campaign, options.output, options.effort, options.cores)
-    except RuntimeError as error:
-        print(f"blockshake: {error}", file=sys.stderr)
-        return 1
+    except WorkflowError as stopped:
+        return stopped.exit_code
     named = f" ({verdict.decision}): {', '.join(verdict.causes)}" if verdict.causes else ""
     print(f"{verdict.word}{named}; {options.output}/report.html")
     return 0
@@ -367,20 +368,23 @@ def _modes(options):
     _print_table([HEADER, *summary_rows(found)])
     if options.output:
         write_json(options.output, {"tests": found})
+        print(options.output)
 
 
 def _check(options):
-    from blockshake.study.check import check_file
+    from blockshake.own_files.check import check_file
 
     if options.picture:
         _draw_structure(options.files, options.picture)
     wrong = 0
     for file in options.files:
         try:
-            print(f"{file}: {check_file(file, options.baseline)}")
+            print(f"{file}: {check_file(file, options.baseline)}", flush=True)
         except InputError as error:
             print(f"blockshake: {error}", file=sys.stderr)
             wrong += 1
+    if wrong and len(options.files) > 1:
+        print(f"blockshake: {wrong} of {len(options.files)} files are wrong", file=sys.stderr)
     return BAD_INPUT if wrong else 0
 
 

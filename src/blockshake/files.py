@@ -230,7 +230,7 @@ def shipped_names(kind):
 
 
 def check_output(path):
-    """Path of a file that can be written, its folder made where it is missing.
+    """Path of a file that can be written. Its folder may be missing: a command that fails leaves none behind.
 
     Raises
     ------
@@ -243,14 +243,17 @@ def check_output(path):
         str(path).encode()
     except UnicodeEncodeError:  # libraries that write take no other
         raise InputError(path, "", "expected a path in UTF-8") from None
-    folder = Path(path).parent
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(path, "", f"expected a folder to write to; {error.strerror.lower()}") from None
+    folder = _nearest_folder(path)
+    if not folder.is_dir():
+        raise InputError(path, "", f"expected a folder to write to; {folder} is a file")
     if not os.access(folder, os.W_OK):
         raise InputError(path, "", "expected a folder to write to; permission denied")
     return Path(path)
+
+
+def _nearest_folder(path):
+    """The folder of a path or, where it is missing, the nearest one above that is there."""
+    return next(folder for folder in Path(path).absolute().parents if os.path.exists(folder))
 
 
 @contextlib.contextmanager
@@ -267,11 +270,12 @@ def replacing(path):
     path = check_output(path)
     full = InputError(path, "", "expected room to write to; the disk is full")
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=path.suffix, dir=path.parent)
     except OSError as error:
         if error.errno in _FULL:
             raise full from None
-        raise
+        raise InputError(path, "", f"expected a folder to write to; {error.strerror.lower()}") from None
     os.close(handle)
     try:
         yield Path(temporary)
@@ -309,10 +313,11 @@ def replacing_folder(folder):
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(folder, "", "expected a new or an empty folder; nothing is overwritten")
     check_output(folder / "file" if folder.exists() else folder)
-    made = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+    made = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=_nearest_folder(folder)))
     try:
         yield made
         made.chmod(0o777 & ~_umask())
+        folder.parent.mkdir(parents=True, exist_ok=True)
         made.replace(folder)
     finally:
         shutil.rmtree(made, ignore_errors=True)

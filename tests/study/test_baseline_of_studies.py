@@ -16,7 +16,7 @@ from blockshake.files import PACKAGE
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.campaigns.campaign_folder import motion_in_folder
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
-from blockshake.study.check import check_file
+from blockshake.own_files.check import check_file
 from blockshake.study.config import StudyConfig, check_config
 from blockshake.study.ensembles.case_input import driving_motions
 from blockshake.virtual.generate import generate_campaign

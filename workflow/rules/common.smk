@@ -17,8 +17,11 @@ os.environ.update(
     NUMEXPR_NUM_THREADS="1",
 )
 
-from blockshake.errors import InputError
+from snakemake.logging import logger
+
+from blockshake.errors import BAD_INPUT, InputError
 from blockshake.files import HOME, PACKAGE, shipped
+from blockshake.log import Failures
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.simulation.models import MODELS as SOLVERS
 from blockshake.sources import kernel_sources, script_sources, source_digest
@@ -38,7 +41,7 @@ GIVEN = ("campaign", "campaigns", "effort", "without")
 def refuse(error):
     """End with one line on bad input and exit 2."""
     print(f"blockshake: {error}", file=sys.stderr, flush=True)
-    os._exit(2)
+    os._exit(BAD_INPUT)
 
 
 def hold_folder():
@@ -252,8 +255,18 @@ def case_definition(wildcards):
     }
 
 
+FAILURES = Failures()
+
+
 onstart:
     hold_folder()
+    # the user may ask to go on, and a cluster may start killed jobs again
+    asked = workflow.execution_settings
+    FAILURES.watch(logger, asked.keep_going, asked.retries)
+
+
+onerror:
+    FAILURES.end()
 
 
 if workflow.remote_exec:

@@ -66,6 +66,12 @@ def load_motion(source, scale=1.0, baseline=AUTO, channels=None):
         raise InputError(source, "scale", f"expected a finite number other than 0, found {scale}")
     with np.errstate(over="ignore", invalid="ignore"):  # looked at below
         motion = _read(named_file("motions", source), baseline, channels)
+    return scaled(motion, scale, source)
+
+
+def scaled(motion, scale, source):
+    """A motion with every column multiplied by a finite scale; an `InputError` names ``source`` if that is too much."""
+    with np.errstate(over="ignore", invalid="ignore"):  # looked at below
         motion = motion if scale == 1.0 else motion.scaled(scale)
     check_finite(motion, source)
     return motion

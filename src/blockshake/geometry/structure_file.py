@@ -107,10 +107,12 @@ def check_names(file, source):
         if len(pair) == 1 or pair in joints:
             raise InputError(source, key, "expected two different bodies, and every joint once")
         joints.add(pair)
-    for index, force in enumerate(file.external_forces):
-        if any(body.driven and body.name == force.body for body in file.bodies):
-            raise InputError(source, f"external_forces.{index}.body", "expected a body that is not driven")
-    if file.stoppers and not any(body.driven for body in file.bodies):
+    driven = {body.name for body in file.bodies if body.driven}
+    for kind in ("external_forces", "stoppers"):
+        for index, item in enumerate(getattr(file, kind)):
+            if item.body in driven:
+                raise InputError(source, f"{kind}.{index}.body", "expected a body that is not driven")
+    if file.stoppers and not driven:
         raise InputError(source, "stoppers", "expected a driven body to fix the stoppers to")
 
 

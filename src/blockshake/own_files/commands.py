@@ -164,6 +164,7 @@ def _import_campaign(options):
     else:
         asked, where = _map_of_options(options, given, columns), "options"
     print("\n".join(import_campaign(asked, options.output, where)))
+    print(f"{options.output}: {len(asked.tests)} tests imported")
 
 
 def _map_of_options(options, given, columns):
@@ -214,5 +215,6 @@ def _schema(options):
     text = json.dumps(file_schema(options.kind), indent=2)
     if options.output:
         write_text(options.output, text + "\n")
+        print(options.output)
     else:
         print(text)

@@ -16,7 +16,7 @@ def has_fine_record(structure):
     return bool(structure.file.accelerometers or structure.file.displacement_transducers)
 
 
-def check_run(structure, model, time_step, duration, output_rate, fine, in_memory):
+def check_limits(structure, model, time_step, duration, output_rate, fine, in_memory):
     """Refuse a run that cannot end, cannot be held, or is not of its model.
 
     Parameters

@@ -68,6 +68,8 @@ class Model:
         to a `Trajectory`.
     parameters : str
         ``module:class`` of its numerical parameters.
+    refusal : str
+        ``module:function`` that refuses, of a structure and numerical parameters, what the driver would.
     calibrated : tuple of str
         Those of them that a wave test gives from the material, as its contact stiffness.
     own_stiffness : str or None
@@ -92,6 +94,7 @@ class Model:
     time_step: float
     driver: str
     parameters: str
+    refusal: str
     calibrated: tuple[str, ...] = ()
     own_stiffness: str | None = None
     without_effect: tuple[str, ...] = ()
@@ -102,6 +105,10 @@ class Model:
     def solve(self, *arguments, **options):
         """Run the driver."""
         return _named(self.driver)(*arguments, **options)
+
+    def refuse(self, structure, numerical):
+        """Raise an `InputError` where the driver would refuse a structure with these numerical parameters."""
+        _named(self.refusal)(structure, numerical)
 
     @property
     def schema(self):
@@ -145,6 +152,7 @@ MODELS = {
             time_step=1e-5,
             driver="blockshake.solvers.ls_dem.driver:simulate_ls_dem",
             parameters="blockshake.solvers.ls_dem.parameters:LsDemParameters",
+            refusal="blockshake.solvers.ls_dem.surfaces:check_shapes",
             calibrated=("normal_stiffness", "shear_stiffness"),
             own_stiffness="blockshake.solvers.ls_dem.own_stiffness:own_stiffness",
             without_effect=("viscous_modulus",),  # rigid blocks
@@ -167,6 +175,7 @@ MODELS = {
             time_step=1e-3,
             driver="blockshake.solvers.nscd.driver:simulate_nscd",
             parameters="blockshake.solvers.nscd.parameters:NscdParameters",
+            refusal="blockshake.solvers.nscd.contact.polyhedra:check_convex",
             without_effect=("viscous_modulus", "youngs_modulus", "hollow"),  # rigid, and bearing on corners
             # a closer time step where bodies meet, as studies should: docs/nscd.md
             perturbation=Perturbation(
@@ -183,6 +192,7 @@ MODELS = {
             time_step=1e-3,
             driver="blockshake.solvers.nscd_deformable.driver:simulate_elastic",
             parameters="blockshake.solvers.nscd_deformable.parameters:DeformableParameters",
+            refusal="blockshake.solvers.nscd_deformable.elastic_bodies:check_boxes",
             without_effect=("viscous_modulus", "hollow"),
             rigid=False,
         ),
@@ -193,6 +203,7 @@ MODELS = {
             time_step=1e-3,
             driver="blockshake.solvers.nscd_deformable.driver:simulate_viscoelastic",
             parameters="blockshake.solvers.nscd_deformable.parameters:DeformableParameters",
+            refusal="blockshake.solvers.nscd_deformable.elastic_bodies:check_boxes",
             without_effect=("hollow",),
             needed=("viscous_modulus",),  # without one it is the elastic model
             rigid=False,

@@ -20,7 +20,7 @@ from blockshake.measurement.sensors.markers import RATE
 from blockshake.measurement.sensors.transducers import transducer_displacement
 from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.falling import still_falling
-from blockshake.simulation.limits import check_run, has_fine_record
+from blockshake.simulation.limits import check_limits, has_fine_record
 from blockshake.simulation.models import model_of, split_parameters
 from blockshake.simulation.run_dataset import (
     add_accelerometers,
@@ -133,6 +133,12 @@ def simulate_to_file(
     kept.remove()
 
 
+def check_run(structure, motion, model, parameters, time_step, duration, output_rate):
+    """Refuse a simulation that `simulate`, whose arguments these are, would refuse; nothing is simulated."""
+    of = _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers=True)
+    model_of(model).refuse(of.structure, of.numerical)
+
+
 class _SetUp(NamedTuple):
     """A simulation before its first step; times are ``coarse`` of histories and ``fine`` of accelerometers [s]."""
 
@@ -210,7 +216,7 @@ def _set_up(
     output_rate = RATE if output_rate is None else output_rate
     fine = np.empty(0)
     sensed = accelerometers and has_fine_record(built)
-    check_run(built, model, time_step, duration, output_rate, sensed, in_memory)
+    check_limits(built, model, time_step, duration, output_rate, sensed, in_memory)
     check_window(motion, duration, "--duration", "")
     coarse = np.arange(int(np.floor(duration * output_rate + 1e-9)) + 1) / output_rate
     if sensed:

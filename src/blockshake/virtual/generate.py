@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from blockshake.dynamics.baseline import check_window
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.records.contract_csv import write_motion_csv
 from blockshake.dynamics.system import Status
@@ -47,10 +46,6 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
     fell, whose markers fell with it, is not part of the campaign. Then the stack is put back in any case. Tests that
     an earlier call has finished are kept.
     """
-    for motion in settings.motions:
-        check_window(
-            load_motion(motion, 1.0, settings.baseline), settings.duration, settings.name, "duration"
-        )
     folder, truth = Path(folder), Path(truth)
     loaded = load_structure(structure)
     called_structure = structure_in_folder(structure, loaded, folder)
@@ -58,7 +53,7 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
     tests, gentle = [], []
     for motion in settings.motions:
         called = motion_in_folder(motion, folder)
-        for scale in _scales(settings.intensities):
+        for scale in settings.intensities.scales.tolist():
             gentle += table.sine(len(tests))
             entry = {
                 "name": f"{Path(motion).stem}-{round(100 * scale):03d}", "motion": called, "scale": scale,
@@ -182,8 +177,3 @@ class _Table:
             0.0, self.settings.misplacement, ((~self.structure.driven).sum(), 2)
         )
         self.places = places
-
-
-def _scales(intensities):
-    count = int(np.floor((intensities.highest - intensities.first) / intensities.increment + 1e-9)) + 1
-    return [float(intensities.first + intensities.increment * step) for step in range(count)]

@@ -191,7 +191,9 @@ class _Described:
     def _hold_input(self, commanded):
         """The slab's markers against the command."""
         if commanded is None:
-            self.remarks.append(f"the commanded motion {self.entry.motion} is not at hand")
+            self.remarks.append(
+                f"the commanded motion {self.entry.motion} is not at hand, without which there is no diagnosis"
+            )
             self.remarks += driven_axis_remarks(self.slab)
             return
         self.remarks += length_remarks(self.time, commanded)

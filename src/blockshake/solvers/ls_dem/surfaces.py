@@ -170,21 +170,36 @@ def _grid(structure, name, parameters):
     spacing = parameters.grid_spacing
     if shape.box is not None and parameters.level_set == "exact":
         return None
-    if shape.hollow:
+    _check_grid(structure, name, parameters)
+    if shape.box is not None:
+        return box_grid(shape.box, shape.chamfer, spacing)
+    return mesh_grid(solid.vertices, solid.triangles, spacing)
+
+
+def check_shapes(structure, parameters):
+    """Refuse shapes on which no nodes fit, or whose distance cannot be sampled, with `InputError`."""
+    for name, shape in structure.file.shapes.items():
+        if shape.box is not None:
+            _nodes(structure, name, parameters)
+        if shape.box is None or parameters.level_set != "exact":
+            _check_grid(structure, name, parameters)
+
+
+def _check_grid(structure, name, parameters):
+    """Refuse a hollow face, and a lattice of too many points."""
+    spacing = parameters.grid_spacing
+    if structure.file.shapes[name].hollow:
         raise InputError(
             structure.source,
             f"shapes.{name}.hollow",
             f"expected the exact distance with hollow faces: ls_dem.level_set is {parameters.level_set}",
         )
-    if np.prod(np.ptp(solid.vertices, axis=0) / spacing + 4.0) > _MOST_POINTS:
+    if np.prod(np.ptp(structure.solids[name].vertices, axis=0) / spacing + 4.0) > _MOST_POINTS:
         raise InputError(
             structure.source,
             f"shapes.{name}",
             f"expected fewer lattice points: ls_dem.grid_spacing is {spacing} m",
         )
-    if shape.box is not None:
-        return box_grid(shape.box, shape.chamfer, spacing)
-    return mesh_grid(solid.vertices, solid.triangles, spacing)
 
 
 @kernel

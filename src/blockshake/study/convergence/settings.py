@@ -1,7 +1,10 @@
 """The convergence study in a study's configuration."""
 
+from typing import Annotated
+
 from pydantic import Field
 
+from blockshake.simulation.limits import LONGEST_STEP
 from blockshake.validation import Positive, Strict
 
 
@@ -15,7 +18,7 @@ class Convergence(Strict):
     )
     frequency: Positive = Field(1.5, description="of that cycle [Hz]")
     duration: Positive = Field(4.0, description="simulated time [s]")
-    time_steps: tuple[Positive, ...] = Field(
+    time_steps: tuple[Annotated[Positive, Field(le=LONGEST_STEP)], ...] = Field(
         (1e-5, 2e-5, 5e-5, 1e-4),
         min_length=2,
         description="of LS-DEM; the smallest is what the others are held against [s]",
@@ -33,3 +36,12 @@ class Convergence(Strict):
         min_length=1,
         description="of the sampled distance, beside the exact one [m]",
     )
+
+    @property
+    def numerical(self):
+        """Values by parameter of LS-DEM."""
+        return {
+            "node_spacing": self.node_spacings,
+            "perimeter_inset": self.perimeter_insets,
+            "grid_spacing": self.grid_spacings,
+        }
