@@ -11,6 +11,8 @@ import xarray as xr
 
 import blockshake
 from blockshake.cli import main
+from blockshake.errors import InputError
+from blockshake.files import check_output, write_text
 from blockshake.simulation.models import MODELS
 
 
@@ -200,3 +202,44 @@ def test_a_picture_or_export_that_cannot_be_made_leaves_nothing(
     (said,) = capsys.readouterr().err.splitlines()
     assert line in said
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["simulate", "--structure", "nothing", "--motion", "alkion", "--model", "nscd-rigid"],
+        ["plot", "nothing.nc"],
+        ["export", "nothing.nc"],
+        ["animate", "nothing.nc"],
+        ["convert-motion", "nothing.csv"],
+        ["sample", "--correlation", "nothing.csv"],
+        ["calibrate-stiffness", "--structure", "nothing"],
+        ["import-campaign", "nothing.yaml"],
+        ["generate-campaign", "nothing.yaml", "--structure", "configuration-1", "--truth", "new/truth"],
+        ["modes", "nothing"],
+        ["diagnose", "nothing"],
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_a_command_that_fails_leaves_no_folder_and_one_line(arguments, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    suffix = {"simulate": ".nc", "plot": ".png", "export": ".csv", "animate": ".gif"}.get(arguments[0], "")
+    assert main([*arguments, "--output", f"new/deep/output{suffix}"]) == 2
+    assert list(tmp_path.iterdir()) == []
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_a_check_of_several_files_says_last_how_many_are_wrong(tmp_path, capsys):
+    (tmp_path / "bad.yaml").write_text("bodies: []\n")
+    assert main(["check", "configuration-1", str(tmp_path / "bad.yaml"), "configuration-2"]) == 2
+    assert capsys.readouterr().err.splitlines()[-1] == "blockshake: 1 of 3 files are wrong"
+
+
+def test_a_missing_folder_is_made_with_the_file_alone(tmp_path):
+    path = tmp_path / "new" / "deep" / "file.txt"
+    assert check_output(path) == path
+    assert list(tmp_path.iterdir()) == []
+    write_text(path, "x")
+    assert path.read_text() == "x"
+    with pytest.raises(InputError, match="expected a folder to write to"):
+        check_output(path / "below")

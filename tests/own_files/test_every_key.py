@@ -5,7 +5,10 @@ The keys come from the schemas, so that a new one cannot be forgotten: it needs 
 
 import copy
 import itertools
+import os
 import re
+import shutil
+from pathlib import Path
 
 import pytest
 import yaml
@@ -28,6 +31,7 @@ KINDS = {
     "import": (ImportMap, "import.yaml", check_file),
     "virtual": (VirtualCampaign, "virtual.yaml", lambda path: load_settings(path, "structure.yaml")),
 }
+SHARED = Path(os.environ.get("BLOCKSHAKE_SHARED", Path(__file__).parents[3] / "shared"))
 ANY = "*"  # of a key's pattern: an entry of a list or of a mapping with free names
 
 
@@ -197,3 +201,15 @@ def test_a_command_that_is_not_at_hand_is_remarked(tmp_path):
     assert "nothing.csv is not at hand, without which there is no diagnosis" in check_file(
         tmp_path / "campaign"
     )
+
+
+@pytest.mark.skipif(not (SHARED / "cases").is_dir(), reason=f"no cases in {SHARED} (set BLOCKSHAKE_SHARED)")
+def test_the_case_of_a_correlation_s_names(tmp_path, monkeypatch):
+    shutil.copytree(SHARED / "cases" / "correlation-names", tmp_path / "case")
+    monkeypatch.chdir(tmp_path / "case")
+    with pytest.raises(InputError, match=r"correlation\.csv: friction\.granite\.steel: expected one of"):
+        check_file("study.yaml")
+    check_file("study-2.yaml")
+    design = draw_design(load_config("study-2.yaml").ensemble.model_dump())
+    assert design.target.to_numpy()[0, 1] == 0.5
+    assert abs(design.correlation.to_numpy()[0, 1] - 0.5) < 0.01

@@ -16,7 +16,7 @@ from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.motion.measured_base import record_start
 from blockshake.measurement.sensors.markers import block_markers, driven_marker
 from blockshake.paths import check_plain
-from blockshake.simulation.models import model_of, split_parameters
+from blockshake.simulation.models import model_of, part_parameters
 from blockshake.simulation.simulate import check_run
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.study.calibration.comparison import has_use, parameter_of
@@ -50,7 +50,8 @@ def check_named(config, where):
     """
     check_names(config, where)
     for model, settings in config.models.items():
-        check_parameters(model, settings, f"models.{model}.parameters", where)
+        for name in part_parameters(settings.parameters)[0]:
+            raise InputError(where, f"models.{model}.parameters.{name}", "expected a parameter of the solver")
     motions, structures = _read_motions(config, where), {}
     for motion in config.ladder.motions:
         with faults_of(where, "ladder.motions"):
@@ -152,16 +153,6 @@ def check_names(config, where):
             raise InputError(
                 where, key, f"expected motions of different names, not {by_name[name]} and {path}"
             )
-
-
-def check_parameters(model, settings, key, where):
-    """Refuse parameters shared by all samples that are not the solver's."""
-    try:
-        physical, _ = split_parameters(settings.parameters, model)
-    except InputError as error:
-        raise InputError(where, key, str(error).removeprefix("--set: ")) from None
-    if physical:
-        raise InputError(where, f"{key}.{next(iter(physical))}", "expected a parameter of the solver")
 
 
 def check_structure(name, where, key):

@@ -12,6 +12,7 @@ from blockshake.effects.registry import EFFECTS, with_effect
 from blockshake.errors import InputError, faults_of
 from blockshake.files import load_yaml
 from blockshake.geometry.structure import load_structure
+from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.instruments import Instruments, check_instruments
 from blockshake.measurement.sensors.markers import RATE, driven_marker
 from blockshake.simulation.limits import LONGEST_STEP
@@ -123,7 +124,7 @@ def _check_structure(settings, structure, path):
     with faults_of(path, "model"):
         check_run(structure, motion, settings.model, settings.numerics, time_step, settings.duration, RATE)
     with faults_of(path, "instruments"):
-        check_instruments(settings.instruments, structure)
+        check_instruments(settings.instruments, structure, accelerometer_channels(structure))
     with faults_of(path, "hidden"):
         effect = hidden_effect(settings.hidden, structure, settings.seed)
         if effect is not None:
