@@ -207,7 +207,7 @@ def test_tables_of_the_project_are_corrected_with_a_frequency_alone(tmp_path):
     moved = read.evaluate(read.table.breaks)
     np.testing.assert_allclose(moved[:, 2], -moved[:, 0], atol=1e-12)
     assert abs(moved[-1, 0]) < 1e-6
-    assert "along z it ends with -0.3 m/s at -4.5e+03 mm" in read.attributes["baseline"]
+    assert "along z it ends with -0.3 m/s at -4500 mm" in read.attributes["baseline"]
 
 
 @pytest.mark.parametrize("value", ["correct", "", None, True, 0, -0.1, np.nan, np.inf, "0", [0.1]])

@@ -84,6 +84,7 @@ class FakeStudy:
                     "structure": name,
                     "motion": "basso-tirreno",
                     "scale": 2.0,
+                    "baseline": "auto",
                     "duration": duration,
                     "samples": FEWER[name],
                     "measured": {"campaign": str(self.folder / "campaigns" / name), "test": "virtual"},

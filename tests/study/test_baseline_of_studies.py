@@ -62,7 +62,7 @@ def test_check_says_what_is_done_to_each_record(record, tmp_path):
     assert "PGD 4500 to 4" in line
     assert "\n" not in check_file(record).strip()
     assert "baseline: corrected" in check_file(record)
-    assert "baseline: none, as asked for; the record ends with 0.3 m/s at 4.5e+03 mm" in check_file(
+    assert "baseline: none, as asked for; the record ends with 0.3 m/s at 4500 mm" in check_file(
         record, "none"
     )
 

@@ -168,7 +168,7 @@ def _end(motion, axis):
 
 def _end_words(motion, axis):
     velocity, displacement = _end(motion, axis)
-    return f"ends with {velocity:.3g} m/s at {1e3 * displacement:.3g} mm"
+    return f"ends with {velocity:.3g} m/s at {1e3 * displacement:.4g} mm"
 
 
 def _ends(motion):
