@@ -42,13 +42,14 @@ def kernel_folder(digest):
 
 
 def _user_cache():
+    """Cache of the user, there or not."""
     named = Path(os.environ.get("XDG_CACHE_HOME", ""))
     if named.is_absolute():
         return named
     try:
         return Path.home() / ".cache"
-    except RuntimeError:  # a user that the system does not know, without HOME
-        return Path("/nonexistent")
+    except RuntimeError:  # a user that the system does not know, without HOME: a folder that cannot be
+        return Path(os.devnull)
 
 
 def _takes_files(folder):

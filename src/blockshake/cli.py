@@ -1,6 +1,7 @@
 """The command line: exit 0 done, 2 bad input (one line), 3 numerical failure, 130 interrupted, 141 unread, 1 a bug."""
 
 import argparse
+import errno
 import logging
 import os
 import select
@@ -34,12 +35,14 @@ def main(arguments=None):
             return _run(arguments)
         finally:
             print(end="", flush=True)
-    except BrokenPipeError:
-        if _is_read(1) and _is_read(2):
+    except OSError as error:  # of the output: those of files are told in one line where they are written
+        unread = not (_is_read(1) and _is_read(2))
+        if not unread and error.errno != errno.ENOSPC:
             raise
-        for stream in (1, 2):
-            os.dup2(os.open(os.devnull, os.O_WRONLY), stream)
-        return UNREAD
+        if not unread:
+            print("blockshake: output: expected room to write to; the disk is full", file=sys.stderr)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return UNREAD if unread else BAD_INPUT
 
 
 def _run(arguments):

@@ -210,6 +210,10 @@ def _set_up(
     built = load_structure(structure, physical)
     numerical = split_parameters(solver.stiffness_of(built) | (parameters or {}), model)[1]
     motion = motion if isinstance(motion, GroundMotion) else load_motion(motion)
+    try:
+        motion.name.encode()
+    except UnicodeEncodeError:  # a run file holds it
+        raise InputError("--motion", motion.name, "expected a name in UTF-8") from None
     _check_start(built, motion)
     time_step = solver.time_step if time_step is None else time_step
     duration = motion.duration if duration is None else duration

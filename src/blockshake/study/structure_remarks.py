@@ -11,6 +11,7 @@ from blockshake.geometry.structure_file import point_remarks
 from blockshake.quantities import PHYSICAL, USUAL
 from blockshake.simulation.parameter_table import instances
 
+_FAR = 1e4  # m, from the origin: with some digits of forces lost, docs/contracts.md
 _SMALLEST, _LARGEST = (
     0.005,
     25.0,
@@ -64,6 +65,12 @@ def structure_remarks(structure):
             )
     remarks += _misfits(structure)
     remarks += point_remarks(structure)
+    farthest = np.abs(structure.position).max()
+    if farthest > _FAR:
+        remarks.append(
+            f"the blocks stand {farthest:.3g} m from the origin, where places have steps of {np.spacing(farthest):.1g} "
+            "m: a local origin in whole metres keeps more digits"
+        )
     held = _held_up(structure)
     for body in np.flatnonzero(~held):
         remarks.append(
