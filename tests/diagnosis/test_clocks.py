@@ -7,8 +7,11 @@ from tiny_campaign import write_campaign
 from tiny_diagnosis import diagnose, two_effects_and_a_formula
 
 from blockshake.diagnosis import steps
+from blockshake.diagnosis.features.measured_readings import reading_of
+from blockshake.diagnosis.laws.measured_forces import forces_of
 from blockshake.diagnosis.libraries.plan import plan_diagnosis
 from blockshake.files import PACKAGE, write_dataset
+from blockshake.report.diagnosis.figures.forces import plot_unexplained
 
 STRUCTURE = PACKAGE.parents[1] / "hidden_effects" / "structures" / "two-blocks.yaml"
 PITCH = {"name": "table-pitch", "values": {"coefficient": 1.2e-3, "frequency": 18.0}, "place": {}}
@@ -64,7 +67,7 @@ def campaign(tmp_path_factory):
     return folder
 
 
-def _copy(campaign, folder, change, names=("*",)):
+def _copy(campaign, folder, change):
     folder.mkdir()
     for path in campaign.iterdir():
         (folder / path.name).write_bytes(path.read_bytes())
@@ -133,3 +136,23 @@ def test_readings_before_the_command_are_left_out(campaign, tmp_path):
     spread = here.readings["value"].sel(feature="top.displacement.peak+")
     error = before.readings["value"].sel(feature="top.displacement.peak+") - spread
     assert (np.abs(error) < 5e-4).all()
+
+
+def test_a_test_at_another_rate_has_its_figure(campaign, tmp_path):
+    """Tests at 200 and at 100 Hz: each keeps its own times, and no line of a figure is broken by the other's."""
+    folder = tmp_path / "mixed"
+    _copy(campaign, folder, _moved(0.0))
+    path = folder / "two-100.nc"
+    test = _read_at(2)(xr.load_dataset(path))
+    path.unlink()
+    write_dataset(path, test)
+    measured = _measured(str(folder))
+    for name, rate in (("one-100", 200.0), ("two-100", 100.0)):
+        time = reading_of(measured.readings, name)["time"].to_numpy()
+        np.testing.assert_allclose(np.diff(time), 1.0 / rate, atol=1e-9)
+        own = forces_of(measured.forces, name)["unexplained"].sel(body="block-1")
+        assert np.isfinite(own).mean() > 0.9
+    figure = plot_unexplained(measured.forces, {})
+    for axes in figure.axes:
+        known = [np.isfinite(np.asarray(line.get_ydata(), dtype=float)) for line in axes.get_lines()]
+        assert all(len(one) > 100 and one.mean() > 0.9 for one in known)
