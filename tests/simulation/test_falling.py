@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from blockshake.simulation.falling import still_falling
+from blockshake.simulation.outcome.falling import still_falling
 
 B, H = 0.4, 0.8  # m, half width and half height of the block
 SLENDER = np.arctan(B / H)

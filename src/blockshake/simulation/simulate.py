@@ -19,9 +19,9 @@ from blockshake.measurement.sensors.accelerometers import FINE_RATE, SKIP, accel
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.measurement.sensors.transducers import transducer_displacement
 from blockshake.simulation.energy_residual import energy_residual
-from blockshake.simulation.falling import still_falling
 from blockshake.simulation.limits import check_limits, has_fine_record
 from blockshake.simulation.models import model_of, split_parameters
+from blockshake.simulation.outcome.falling import still_falling
 from blockshake.simulation.run_dataset import (
     add_accelerometers,
     add_transducers,
