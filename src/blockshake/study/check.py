@@ -10,6 +10,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.study.config import load_config
+from blockshake.study.config_checks import typical_structure
 from blockshake.study.motion_remarks import motion_line, motion_remarks
 from blockshake.study.sampling.distributions import TABLE_2
 from blockshake.study.sampling.sample_parameters import has_parameter
@@ -76,7 +77,7 @@ def _study_line(source):
 
 def _study_remarks(config):
     """Structures whose samples are all alike, variables that none has, and remarks on each structure and motion."""
-    structures = {case.structure: load_structure(case.structure) for case in config.cases}
+    structures = {case.structure: typical_structure(config, case) for case in config.cases}
     # Table 2 stands for all configurations of the paper, of which some have no steel
     for variable in (name for name in config.ensemble.distributions if name not in TABLE_2):
         if not any(has_parameter(one, variable) for one in structures.values()):

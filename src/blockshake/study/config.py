@@ -22,6 +22,7 @@ from blockshake.study.config_checks import (
     check_measured,
     check_parameters,
     check_paths,
+    check_runs,
     check_structure,
 )
 from blockshake.study.convergence.settings import Convergence
@@ -257,6 +258,7 @@ def check_config(mapping, where):
                     where, f"{key}.samples.{model}", f"expected 1 to {config.ensemble.size}, not {count}"
                 )
         check_structure(case.structure, where, key)
+        check_runs(config, case, where)
         if case.measured is not None:
             check_measured(case, where, f"{key}.measured")
     for target, source in config.ensemble.linked.items():

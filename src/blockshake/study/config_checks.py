@@ -8,9 +8,11 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.sensors.markers import block_markers, driven_marker
 from blockshake.paths import check_plain
+from blockshake.simulation.limits import check_run
 from blockshake.simulation.models import split_parameters
 from blockshake.study.calibration.settings import OTHERS
 from blockshake.study.ensembles.case_input import MEASURED, check_record
+from blockshake.study.sampling.sample_parameters import sample_parameters
 
 _NAME = re.compile(r"\w[\w.-]*")  # of a structure, a motion or a case: it names results
 
@@ -69,6 +71,23 @@ def check_parameters(model, settings, key, where):
         raise InputError(where, key, str(error).removeprefix("--set: ")) from None
     if physical:
         raise InputError(where, f"{key}.{next(iter(physical))}", "expected a parameter of the solver")
+
+
+def typical_structure(config, case):
+    """Structure of a case with the medians of the variables."""
+    medians = {name: one.median for name, one in config.ensemble.distributions.items()}
+    structure = load_structure(case.structure)
+    return structure.with_parameters(sample_parameters(medians, structure, config.ensemble.linked))
+
+
+def check_runs(config, case, where):
+    """Refuse runs of a case that a model cannot make."""
+    structure = typical_structure(config, case)
+    for model, settings in config.models.items():
+        try:
+            check_run(structure, model, settings.time_step, case.duration, config.output_rate, False, True)
+        except InputError as error:
+            raise InputError(where, f"models.{model}", f"{case.name}: {error}") from None
 
 
 def check_measured(case, where, key):
