@@ -412,12 +412,12 @@ def test_variables_that_no_structure_has_are_remarked(mapping, cube, tmp_path):
 
 
 def test_a_study_remarks_what_its_structures_hardly_mean(mapping, cube, tmp_path):
-    cube["materials"]["stone"]["density"] = 2.4
+    cube["materials"]["stone"]["youngs_modulus"] = 34.5
     study = own_study(dict(mapping), tmp_path, cube, ensemble=stone())
     study["cases"][0]["duration"] = 80.0
     (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
     told = check_file(tmp_path / "study.yaml")
-    assert "materials.stone.density is 2.4 kg/m3: 100 to 25000 kg/m3 is usual" in told
+    assert "materials.stone.youngs_modulus is 34.5 Pa: 1e+07 to 1e+12 Pa is usual" in told
     assert "80 s are simulated of a motion of" in told
 
 
