@@ -411,12 +411,12 @@ def test_variables_that_no_structure_has_are_refused_but_for_table_2(mapping, cu
 
 
 def test_a_study_remarks_what_its_structures_hardly_mean(mapping, cube, tmp_path):
-    cube["materials"]["stone"]["density"] = 2.4
+    cube["materials"]["stone"]["youngs_modulus"] = 34.5
     study = own_study(dict(mapping), tmp_path, cube, ensemble=stone())
     study["cases"][0]["duration"] = 80.0
     (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
     told = check_file(tmp_path / "study.yaml")
-    assert "materials.stone.density is 2.4 kg/m3: 100 to 25000 kg/m3 is usual" in told
+    assert "materials.stone.youngs_modulus is 34.5 Pa: 1e+07 to 1e+12 Pa is usual" in told
     assert "80 s are simulated of a motion of" in told
 
 
@@ -445,3 +445,42 @@ def test_an_unknown_structure_and_a_solver_s_parameter_are_named_by_their_keys(m
     mapping["models"]["nscd-rigid"]["parameters"] = {"nscd.impact_part": 20}
     with pytest.raises(InputError, match=r"models\.nscd-rigid\.parameters: nscd\.impact_part"):
         check_config(mapping, "study.yaml")
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "words"),
+    [
+        (("models", "nscd-rigid", "time_step"), 1.0, "--time-step: expected at most 0.01 s, not 1"),
+        (("models", "nscd-rigid", "time_step"), 1e-15, r"--time-step: expected at most 1e\+11 steps"),
+        (("output_rate",), 1e9, "--duration: expected a run of at most 8.6 GB"),
+        (("cases", 0, "duration"), 1e9, r"--time-step: expected at most 1e\+11 steps"),
+        (("ensemble", "size"), 10**9, "ensemble.size: input should be less than or equal to 1000000"),
+    ],
+)
+def test_a_study_that_no_machine_can_run_is_refused(mapping, path, value, words):
+    mapping = copy.deepcopy(dict(mapping))
+    *way, last = path
+    place = mapping
+    for part in way:
+        place = place[part]
+    place[last] = value
+    with pytest.raises(InputError, match=words):
+        check_config(mapping, "study.yaml")
+
+
+def test_a_study_of_the_viscoelastic_model_needs_a_viscous_modulus(mapping, cube, tmp_path):
+    study = own_study(dict(mapping), tmp_path, cube, ensemble=stone())
+    study["models"] = {"nscd-viscoelastic": {"time_step": 1e-3}}
+    with pytest.raises(
+        InputError, match=r"models.nscd-viscoelastic: own: .*viscous_modulus: expected above 0"
+    ):
+        check_config(study, "study.yaml")
+    study["ensemble"]["distributions"]["materials.stone.viscous_modulus"] = {"mean": 1.5e8, "cov": 0.1}
+    check_config(study, "study.yaml")
+
+
+def test_a_variable_beyond_what_is_usual_is_remarked(mapping, cube, tmp_path):
+    study = own_study(dict(mapping), tmp_path, cube, ensemble=stone())
+    study["ensemble"]["distributions"]["friction.stone.stone"] = {"mean": 60.0, "cov": 0.1}
+    (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
+    assert "friction.stone.stone is 59.7022: 0.05 to 1.5 is usual" in check_file(tmp_path / "study.yaml")

@@ -19,6 +19,7 @@ from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.measurement.imports.import_campaign import import_campaign
 from blockshake.measurement.imports.import_map import ImportMap, load_map
 from blockshake.study.config import StudyConfig, load_config
+from blockshake.study.config_checks import typical_structure
 from blockshake.study.ensembles.case_input import measured_input
 from blockshake.study.motion_remarks import motion_line, motion_remarks
 from blockshake.study.sampling.sample_parameters import has_parameter
@@ -133,7 +134,10 @@ def _read_open_tests(folder):
 
 def _study_remarks(config, motions):
     """Structures whose samples are all alike, and remarks on each structure and motion."""
-    structures = {case.structure: load_structure(case.structure) for case in config.cases}
+    structures = {
+        case.structure: typical_structure(load_structure(case.structure), config.ensemble)
+        for case in config.cases
+    }
     for name, structure in structures.items():
         if not any(has_parameter(structure, variable) for variable in config.ensemble.distributions):
             yield f"{name}: no variable of ensemble.distributions is the structure's: all of its samples are alike"

@@ -73,8 +73,10 @@ def check_named(config, where):
             structures[case.structure] = check_structure(case.structure, where, key)
         if case.measured is not None:
             check_measured(case, structures[case.structure], where, f"{key}.measured")
-        check_simulations(config, index, structures[case.structure], motion, where)
     check_samples(config.ensemble, structures, where)
+    for index, case in enumerate(config.cases):
+        motion = scaled(motions[case.motion], case.scale, case.motion)
+        check_simulations(config, index, structures[case.structure], motion, where)
     check_friction_search(config, structures, where)
     check_fragility(config, where)
     check_calibration(config, structures, where)
@@ -165,9 +167,15 @@ def check_structure(name, where, key):
     return structure
 
 
+def typical_structure(structure, ensemble):
+    """The structure with the medians of the variables."""
+    medians = {name: one.median for name, one in ensemble.distributions.items()}
+    return structure.with_parameters(sample_parameters(pd.Series(medians), structure, ensemble.linked))
+
+
 def check_simulations(config, index, structure, motion, where):
     """Refuse a case that a model cannot simulate, or whose blocks make no tower for the contact stiffness."""
-    case = config.cases[index]
+    case, structure = config.cases[index], typical_structure(structure, config.ensemble)
     for model, settings in config.models.items():
         given = settings.parameters, settings.time_step, case.duration, config.output_rate
         try:
