@@ -5,7 +5,12 @@ import pytest
 from resting_stack import MOTION, resting_stack, write_campaign
 
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
-from blockshake.measurement.campaigns.command_clock import command_start, from_first_reading, simulation_start
+from blockshake.measurement.campaigns.command_clock import (
+    command_start,
+    from_first_reading,
+    reading_rate,
+    simulation_start,
+)
 from blockshake.measurement.checks.campaign_check import campaign_lines
 
 LEAD = 1.5  # s
@@ -34,12 +39,14 @@ def test_an_even_clock_is_the_same_whatever_it_shows(rate, zero):
     read = from_first_reading(test.assign_coords(time=zero + time, time_acc=zero + test["time_acc"]))
     np.testing.assert_array_equal(read["time"], np.round(time, 9))
     np.testing.assert_array_equal(read["time_acc"], test["time_acc"])
+    assert reading_rate(read["time"].to_numpy()) == rate
 
 
 def test_a_clock_that_lacks_rows_keeps_its_gaps():
     test = resting_stack().isel(time=np.r_[0:100, 140:2001])
     read = from_first_reading(test.assign_coords(time=test["time"] + 43200.0))
     np.testing.assert_allclose(read["time"], np.r_[0:100, 140:2001] / 200.0, atol=1e-9)
+    assert reading_rate(read["time"].to_numpy()) == 200.0
 
 
 @pytest.mark.parametrize("start", [-2.0, 0.0, 1.2345, 4.0])

@@ -129,8 +129,9 @@ def simulation_start(time):
 
 
 def reading_rate(time):
-    """Readings in a second of a clock (n_times,), gaps in it not counted [Hz]."""
-    return float(round(1.0 / np.median(np.diff(time)), 6))
+    """Readings in a second of a clock (n_times,) [s], rows that it lacks counted as if they were there [Hz]."""
+    length = time[-1] - time[0]
+    return float(round(np.rint(length / np.median(np.diff(time))) / length, 6))
 
 
 def since(test, zero, first=0.0):
