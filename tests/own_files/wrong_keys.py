@@ -47,7 +47,7 @@ CAMPAIGN = {
     "name": "tests", "structure": "wall.yaml",
     "sensors": {"marker_noise": 1e-4, "accelerometer_noise": 0.02, "transducer_noise": 1e-4},
     "tests": [
-        {"name": "t1", "file": "t1.csv", "motion": "push.csv", "scale": 1.0, "role": "fit"},
+        {"name": "t1", "file": "t1.csv", "motion": "push.csv", "scale": 1.0, "baseline": "auto", "role": "fit"},
         {"name": "t2", "file": "t2.csv", "motion": "push.csv", "scale": 0.5, "role": "fit"},
         {"name": "t3", "file": "t2.csv", "motion": "push.csv", "scale": 0.5, "role": "sealed"},
     ],
@@ -61,11 +61,11 @@ IMPORT = {
     "columns": {"slab-face.x": "slab-face.x",
                 "high-face.x": {"column": "high-face.x", "unit": "m", "reversed": False}, "felt-x": "felt-x"},
     "tests": [{"name": "t1", "file": "t1.csv", "accelerometers": "felt.csv", "motion": "push.csv", "scale": 1.0,
-               "role": "fit"}],
+               "baseline": "auto", "role": "fit"}],
 }  # fmt: skip
 VIRTUAL = {
     "name": "made", "seed": 1, "model": "nscd-rigid", "time_step": 1e-3, "numerics": {"nscd.impact_parts": 2},
-    "duration": 1.0, "motions": ["push.csv"],
+    "duration": 1.0, "motions": ["push.csv"], "baseline": "auto",
     "intensities": {"first": 0.5, "increment": 0.25, "highest": 1.0, "largest_drift": 0.4},
     "sine": {"frequency": 5.0, "acceleration": 0.1, "duration": 1.0},
     "table": {"gain": 1.0, "high": 0.0, "corner": 2.0, "pitch": 0.0}, "restored": True, "misplacement": 0.0,
@@ -87,8 +87,9 @@ STUDY = {
     "models": {"ls-dem": {"time_step": 5e-5, "parameters": {"ls_dem.node_spacing": 0.3}},
                "nscd-rigid": {"time_step": 1e-3, "parameters": {}}},
     "cases": [
-        {"name": "wall", "structure": "wall.yaml", "motion": "push.csv", "scale": 1.0, "duration": 1.0,
-         "samples": {"nscd-rigid": 3}, "measured": {"campaign": "campaign", "test": "t1"}, "input": "measured"},
+        {"name": "wall", "structure": "wall.yaml", "motion": "push.csv", "scale": 1.0, "baseline": "auto",
+         "duration": 1.0, "samples": {"nscd-rigid": 3}, "measured": {"campaign": "campaign", "test": "t1"},
+         "input": "measured"},
         {"name": "stronger", "structure": "wall.yaml", "motion": "push.csv", "scale": 2.0, "duration": 1.0},
     ],
     "ensemble": {
@@ -97,7 +98,8 @@ STUDY = {
                           "shapes.block.hollow": {**_COV, "mean": 1e-4}},
         "correlation": "correlation.csv", "linked": {"friction.granite.granite": FRICTION},
     },
-    "ladder": {"motions": ["push.csv"], "first": 0.5, "increment": 0.25, "highest": 2.0, "largest_drift": 0.3},
+    "ladder": {"motions": ["push.csv"], "baseline": "auto", "first": 0.5, "increment": 0.25, "highest": 2.0,
+               "largest_drift": 0.3},
     "fragility": {"model": "nscd-rigid", "cases": ["wall"], "size": 3},
     "friction_calibration": {"model": "nscd-rigid", "cases": ["wall"], "variables": [TURNED], "lowest": 0.3,
                              "highest": 0.8, "step": 0.1, "finest": 0.05, "size": 10, "replicates": 2},
@@ -162,6 +164,7 @@ _TOO_FINE = STUDY["models"] | {
 }
 _CASE, _SAMPLED = "cases.0", "ensemble.distributions"
 _LOWER, _AT_LEAST = "greater than", "greater than or equal to"
+_BASELINE = "expected auto, none or a corner frequency"
 ROWS = {
     "study": [
         ("name", "Upper", "match pattern"),
@@ -176,7 +179,7 @@ ROWS = {
         ("models.nscd-rigid.time_step", 0.1, "expected at most 0.01 s"),
         ("models.ls-dem.parameters", {"ls_dem.spacing": 1.0}, "expected one of ls_dem."),
         ("models.ls-dem.parameters", {"ls_dem.node_spacing": -1.0}, _LOWER),
-        ("models.ls-dem.parameters", {"ls_dem.perimeter_inset": 0.1}, "expected flats wider than twice"),
+        ("models.ls-dem.parameters", {"ls_dem.perimeter_inset": 0.2}, "less than or equal to 0.1"),
         ("models.ls-dem.parameters", {"ls_dem.level_set": "grid"}, "expected the exact distance with hollow"),
         ("models.ls-dem.parameters", {"restitution": 0.5}, "expected a parameter of the solver"),
         ("models", _TOO_FINE, "nodes"),
@@ -189,9 +192,13 @@ ROWS = {
         (f"{_CASE}.structure", "lone.yaml", "expected a marker on a driven body"),
         (f"{_CASE}.motion", "nothing.csv", "readable file"),
         (f"{_CASE}.motion", "wall.yaml", "wall.yaml: "),
+        (f"{_CASE}.baseline", "zero", _BASELINE),
+        (f"{_CASE}.baseline", "none", "expected one of push.csv at 1, baseline none"),
+        ("ladder.baseline", "zero", _BASELINE),
+        ("ladder.baseline", "none", "expected one baseline of push.csv"),
         (f"{_CASE}.scale", 0.0, _LOWER),
         (f"{_CASE}.scale", 1e300, "push.csv"),
-        (f"{_CASE}.scale", 0.5, "expected one of push.csv at 0.5, not push.csv at 1"),
+        (f"{_CASE}.scale", 0.5, "expected one of push.csv at 0.5, baseline auto, not push.csv at 1"),
         (f"{_CASE}.duration", 0.0, _LOWER),
         (f"{_CASE}.duration", 3.0, "expected at most 2 s"),
         (f"{_CASE}.samples", {"nscd-rigid": 11}, "expected 1 to 10, not 11"),
@@ -260,7 +267,7 @@ ROWS = {
         ("convergence.duration", 0.0, _LOWER),
         ("convergence.time_steps", [1e-4, 0.1], "less than or equal to 0.01"),
         ("convergence.node_spacings", [0.1], "at least 2 items"),
-        ("convergence.perimeter_insets", [0.01, 0.2], "wider"),
+        ("convergence.perimeter_insets", [0.01, 0.2], "less than or equal to 0.1"),
         ("convergence.grid_spacings", [1e-5], "expected fewer lattice points"),
         ("convergence.structure", "wall.yaml", "expected the exact distance with hollow faces"),
         ("diagnosis.campaigns", ["nowhere"], "readable file"),
@@ -348,6 +355,7 @@ ROWS = {
         ("tests.0.file", "../t1.csv", "expected the path of a file below"),
         ("tests.0.motion", "correlation.csv", "correlation.csv"),
         ("tests.0.scale", 0.0, "other than 0"),
+        ("tests.0.baseline", "zero", _BASELINE),
         ("tests.0.role", "open", "'fit', 'select' or 'sealed'"),
     ],
     "import": [
@@ -379,6 +387,7 @@ ROWS = {
         ("tests.0.accelerometers", "nothing.csv", "readable file"),
         ("tests.0.motion", "nothing.csv", "nothing.csv"),
         ("tests.0.scale", 0.0, "other than 0"),
+        ("tests.0.baseline", "zero", _BASELINE),
         ("tests.0.role", "open", "'fit', 'select' or 'sealed'"),
     ],
     "virtual": [
@@ -388,6 +397,7 @@ ROWS = {
         ("numerics", {"nscd.parts": 1}, "expected one of nscd."),
         ("duration", 0.0, _LOWER),
         ("motions", ["nothing.csv"], "readable file"),
+        ("baseline", "zero", _BASELINE),
         ("motions", ["push.csv", "campaign/push.csv"], "motions of different names"),
         ("intensities.first", 9.0, "`highest` not below `first`"),
         ("intensities.increment", 1e-9, "at most 1000 scales"),

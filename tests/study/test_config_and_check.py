@@ -443,17 +443,21 @@ def test_an_unknown_structure_and_a_solver_s_parameter_are_named_by_their_keys(m
         check_config(mapping, "study.yaml")
     mapping["cases"][1]["structure"] = "configuration-2"
     mapping["models"]["nscd-rigid"]["parameters"] = {"nscd.impact_part": 20}
-    with pytest.raises(InputError, match=r"models\.nscd-rigid\.parameters: nscd\.impact_part"):
+    with pytest.raises(InputError, match=r"models\.nscd-rigid\.parameters\.nscd\.impact_part: "):
         check_config(mapping, "study.yaml")
 
 
 @pytest.mark.parametrize(
     ("path", "value", "words"),
     [
-        (("models", "nscd-rigid", "time_step"), 1.0, "--time-step: expected at most 0.01 s, not 1"),
-        (("models", "nscd-rigid", "time_step"), 1e-15, r"--time-step: expected at most 1e\+11 steps"),
-        (("output_rate",), 1e9, "--duration: expected a run of at most 8.6 GB"),
-        (("cases", 0, "duration"), 1e9, r"--time-step: expected at most 1e\+11 steps"),
+        (("models", "nscd-rigid", "time_step"), 1.0, "nscd-rigid.time_step: expected at most 0.01 s, not 1"),
+        (
+            ("models", "nscd-rigid", "time_step"),
+            1e-15,
+            r"nscd-rigid.time_step: expected at most 1e\+11 steps",
+        ),
+        (("output_rate",), 1e9, "output_rate: expected a run of at most 8.6 GB"),
+        (("cases", 0, "duration"), 1e9, "cases.0.duration: expected at most"),
         (("ensemble", "size"), 10**9, "ensemble.size: input should be less than or equal to 1000000"),
     ],
 )
@@ -471,9 +475,7 @@ def test_a_study_that_no_machine_can_run_is_refused(mapping, path, value, words)
 def test_a_study_of_the_viscoelastic_model_needs_a_viscous_modulus(mapping, cube, tmp_path):
     study = own_study(dict(mapping), tmp_path, cube, ensemble=stone())
     study["models"] = {"nscd-viscoelastic": {"time_step": 1e-3}}
-    with pytest.raises(
-        InputError, match=r"models.nscd-viscoelastic: own: .*viscous_modulus: expected above 0"
-    ):
+    with pytest.raises(InputError, match=r"nscd-viscoelastic: .*viscous_modulus: expected above 0"):
         check_config(study, "study.yaml")
     study["ensemble"]["distributions"]["materials.stone.viscous_modulus"] = {"mean": 1.5e8, "cov": 0.1}
     check_config(study, "study.yaml")

@@ -55,11 +55,11 @@ def check_limits(structure, model, time_step, duration, output_rate, fine, in_me
     rows = duration * output_rate, duration * FINE_RATE * fine
     size = run_bytes(structure, *rows, in_memory)
     if size > LARGEST_RUN:
-        rate, of = (FINE_RATE, "sensors") if rows[1] > rows[0] else (output_rate, "--output-rate")
+        rate, option = (FINE_RATE, "--duration") if rows[1] > rows[0] else (output_rate, "--output-rate")
         raise InputError(
-            "--duration", "",
+            option, "",
             f"expected a run of at most {LARGEST_RUN / 1e9:.2g} GB, not {size / 1e9:.2g} GB: {duration:g} s at "
-            f"{rate:g} Hz ({of})",
+            f"{rate:g} Hz",
         )  # fmt: skip
     for name in model_of(model).needed:
         for body in structure.file.bodies:

@@ -6,6 +6,8 @@ from pydantic import Field
 
 from blockshake.validation import NotNegative, Positive, Strict
 
+LARGEST_INSET = 0.1  # of a flat's breadth
+
 
 class LsDemParameters(Strict):
     """Numerical parameters of LS-DEM; each is set as ``ls_dem.NAME``."""
@@ -27,7 +29,7 @@ class LsDemParameters(Strict):
     )
     perimeter_inset: Positive = Field(
         0.003,
-        le=0.1,
+        le=LARGEST_INSET,
         description="distance of the outermost nodes from the perimeter of a flat, over the breadth of the narrowest "
         "one [1]; chosen",
     )

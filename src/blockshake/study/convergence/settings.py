@@ -5,6 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from blockshake.simulation.limits import LONGEST_STEP
+from blockshake.solvers.ls_dem.parameters import LARGEST_INSET
 from blockshake.validation import Positive, Strict
 
 
@@ -26,7 +27,7 @@ class Convergence(Strict):
     node_spacings: tuple[Positive, ...] = Field(
         (0.05, 0.1, 0.2, 0.4), min_length=2, description="of the surfaces; likewise [m]"
     )
-    perimeter_insets: tuple[Positive, ...] = Field(
+    perimeter_insets: tuple[Annotated[Positive, Field(le=LARGEST_INSET)], ...] = Field(
         (0.0015, 0.003, 0.006, 0.012),
         min_length=2,
         description="of the outermost nodes of a face, over the breadth of the narrowest; likewise [1]",
