@@ -51,7 +51,7 @@ def load_motion(source, scale=1.0, baseline=AUTO):
     """
     if not np.isfinite(scale):
         raise InputError(source, "scale", f"expected a finite number, found {scale}")
-    with np.errstate(over="ignore", invalid="ignore"):  # looked at below
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # looked at below
         motion = _read(named_file("motions", source), baseline)
         motion = motion if scale == 1.0 else motion.scaled(scale)
     check_finite(motion, source)

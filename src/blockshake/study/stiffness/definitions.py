@@ -130,7 +130,9 @@ def compare_definitions(case, time_step, store, source):
         row["wave_speed"] = _speeds_at(structure, restitution, study, keep)
         for name, used in (("top_peak", restitution), ("top_peak_same_damping", _NOMINAL[1])):
             peaks = [
-                _top_peak(structure, motion, time_step, duration, used, row["stiffness"].sel(definition=one), keep)
+                _top_peak(
+                    structure, motion, time_step, duration, used, row["stiffness"].sel(definition=one), keep
+                )
                 for one in DEFINITIONS
             ]
             row[name] = ("definition", peaks)
