@@ -152,7 +152,7 @@ def test_step_too_large_to_trust_is_a_numerical_failure(tmp_path, capsys):
 
 
 def test_an_interrupt_before_a_run_has_begun_is_said_too(monkeypatch, capsys):
-    def interrupted(file):
+    def interrupted(*_):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("blockshake.own_files.check.check_file", interrupted)

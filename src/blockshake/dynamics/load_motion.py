@@ -64,7 +64,7 @@ def load_motion(source, scale=1.0, baseline=AUTO, channels=None):
     """
     if not np.isfinite(scale) or scale == 0.0:
         raise InputError(source, "scale", f"expected a finite number other than 0, found {scale}")
-    with np.errstate(over="ignore", invalid="ignore"):  # looked at below
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # looked at below
         motion = _read(named_file("motions", source), baseline, channels)
     return scaled(motion, scale, source)
 
