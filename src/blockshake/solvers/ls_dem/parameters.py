@@ -30,8 +30,7 @@ class LsDemParameters(Strict):
     perimeter_inset: Positive = Field(
         0.003,
         le=LARGEST_INSET,
-        description="distance of the outermost nodes from the perimeter of a flat, over the breadth of the narrowest "
-        "one [1]; chosen",
+        description="distance of the outermost nodes from the perimeter of a flat, over its narrower width [1]; chosen",
     )
     edge_spacing: NotNegative = Field(
         0.0,

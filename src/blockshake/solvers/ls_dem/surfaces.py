@@ -141,9 +141,7 @@ def _nodes(structure, name, parameters):
         )
     if shape.box is None:
         return mesh_nodes(solid.vertices, solid.triangles, spacing, parameters.perimeter_inset)
-    # no more than a quarter of the spacing: a weight of a node would be negative
-    inset = min(parameters.perimeter_inset * breadth, 0.25 * spacing)
-    points, areas = box_nodes(shape.box, shape.chamfer, shape.hollow, spacing, inset)
+    points, areas = box_nodes(shape.box, shape.chamfer, shape.hollow, spacing, parameters.perimeter_inset)
     if parameters.edge_spacing == 0.0:
         return points, areas
     more_points, more_areas = chamfer_nodes(shape.box, shape.chamfer, parameters.edge_spacing)

@@ -30,7 +30,7 @@ class Convergence(Strict):
     perimeter_insets: tuple[Annotated[Positive, Field(le=LARGEST_INSET)], ...] = Field(
         (0.0015, 0.003, 0.006, 0.012),
         min_length=2,
-        description="of the outermost nodes of a face, over the breadth of the narrowest; likewise [1]",
+        description="of the outermost nodes of a face, over its narrower width; likewise [1]",
     )
     grid_spacings: tuple[Positive, ...] = Field(
         (0.005, 0.01, 0.02, 0.04),

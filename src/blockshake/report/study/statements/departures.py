@@ -54,7 +54,7 @@ def _pivot():
     edge = 0.5 * float(block.size[0])
     inset = share * 2.0 * (edge - chamfer)
     return (
-        f"The outermost nodes lie {given(1e2 * share)} % of the narrowest flat's breadth inside the flat. A block of "
+        f"The outermost nodes lie {given(1e2 * share)} % of a flat's width inside the flat. A block of "
         f"{given(2.0 * edge)} m with a chamfer of {given(1e3 * chamfer)} mm pivots "
         f"{number(1e3 * (edge - chamfer - inset))} mm from its middle."
     )
