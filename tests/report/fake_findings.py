@@ -172,6 +172,7 @@ def parity(structure, findings):
         "transducers": {"wire-1": {"gain": 2e-3, "gain_error": 1e-3}, "wire-2": {"gain": None, "gain_error": None}},
         "looked_at": 214,
         "falls": {},
+        "gaps": {},
     })  # fmt: skip
 
 
