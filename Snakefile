@@ -63,11 +63,3 @@ for case in CASES:
 rule ladder:
     input:
         f"results/{STUDY}/ladder.json",
-
-
-onerror:
-    print(
-        "Not finished. All that is finished is kept, and the same command goes on.",
-        file=sys.stderr,
-        flush=True,
-    )

@@ -55,6 +55,8 @@ def _resolved(entry, known):
     """An entry with its reference followed; of alternatives the one that is no null, with keys if there is one."""
     own = {name: value for name, value in entry.items() if name not in ("$ref", "anyOf")}
     choices = [one for one in entry.get("anyOf", ()) if one.get("type") != "null"]
+    if len(choices) > 1 and not any("$ref" in one for one in choices):
+        return {**own, "choices": choices}
     if choices:
         best = max(choices, key=lambda one: "$ref" in one)
         return {**_resolved(best, known), **own}
@@ -87,6 +89,8 @@ def _of_mapping(entry):
 
 def _value(entry, known):
     """Kind and limits of a value in words."""
+    if "choices" in entry:
+        return " or ".join(_value(one, known) for one in entry["choices"])
     if "enum" in entry:
         return "one of " + ", ".join(f"`{one}`" for one in entry["enum"])
     if "const" in entry:

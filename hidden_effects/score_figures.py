@@ -5,12 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from case_noise import MARKER_NOISE
 from outside_forces import OUTSIDE
-from scipy.stats import binom
 
 from blockshake.diagnosis.verdict.track_record import Answers, JudgedCase, Median, Row, Share
 from blockshake.diagnosis.verdict.verdict import Verdict
 from blockshake.effects.registry import EFFECTS
-from blockshake.study.ensembles.intervals import share_interval
+from blockshake.study.ensembles.intervals import quantile_ranks, share_interval
 
 NONE = "none"
 _TIMED = ("outside-push", "outside-blow")
@@ -177,10 +176,10 @@ def _share(meaning, hits, goal=None, side="at least"):
 
 
 def _median(meaning, values, goal=None, side="at least"):
-    """Median with the narrowest pair of order statistics that holds it in 95 of 100 cases."""
+    """Median with the pair of order statistics that holds it in 95 of 100 cases."""
     ordered, count = sorted(values), len(values)
-    rank = int(binom.ppf(0.025, count, 0.5)) if count else 0
-    ends = {"lower": ordered[rank - 1], "upper": ordered[count - rank]} if rank >= 1 else {}
+    ranks = quantile_ranks(count, 0.5)
+    ends = {"lower": ordered[ranks[0] - 1], "upper": ordered[ranks[1] - 1]} if ranks else {}
     estimate = float(np.median(ordered)) if count else None
     return Median(meaning=meaning, n=count, estimate=estimate, goal=goal, side=side, **ends)
 

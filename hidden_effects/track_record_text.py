@@ -20,7 +20,7 @@ def as_markdown(record):
     str
     """
     lines = [
-        f"{record.date}, sources {record.commit}, {record.machine}, seeds {record.seeds}: {len(record.cases)} cases.",
+        f"{record.date}, sources {record.commit}, {record.machine}, seeds {record.seeds}: {record.counted}.",
         "",
         *_by_structure(record),
         "",

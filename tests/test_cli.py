@@ -1,6 +1,7 @@
 """The command line of docs/contracts.md: files, messages and exit codes."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -8,9 +9,12 @@ import sys
 import pandas as pd
 import pytest
 import xarray as xr
+import yaml
 
 import blockshake
-from blockshake.cli import main
+from blockshake.cli import BAD_INPUT, UNREAD, main
+from blockshake.errors import InputError
+from blockshake.files import HOME, check_output, load_yaml, shipped, write_text
 from blockshake.simulation.models import MODELS
 
 
@@ -148,10 +152,10 @@ def test_step_too_large_to_trust_is_a_numerical_failure(tmp_path, capsys):
 
 
 def test_an_interrupt_before_a_run_has_begun_is_said_too(monkeypatch, capsys):
-    def interrupted(file):
+    def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("blockshake.study.check.check_file", interrupted)
+    monkeypatch.setattr("blockshake.own_files.check.check_file", interrupted)
     assert main(["check", "configuration-1"]) == 130
     assert capsys.readouterr().err == "blockshake: interrupted\n"
 
@@ -200,3 +204,118 @@ def test_a_picture_or_export_that_cannot_be_made_leaves_nothing(
     (said,) = capsys.readouterr().err.splitlines()
     assert line in said
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["simulate", "--structure", "nothing", "--motion", "alkion", "--model", "nscd-rigid"],
+        ["plot", "nothing.nc"],
+        ["export", "nothing.nc"],
+        ["animate", "nothing.nc"],
+        ["convert-motion", "nothing.csv"],
+        ["sample", "--correlation", "nothing.csv"],
+        ["calibrate-stiffness", "--structure", "nothing"],
+        ["import-campaign", "nothing.yaml"],
+        ["generate-campaign", "nothing.yaml", "--structure", "configuration-1", "--truth", "new/truth"],
+        ["modes", "nothing"],
+        ["diagnose", "nothing"],
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_a_command_that_fails_leaves_no_folder_and_one_line(arguments, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    suffix = {"simulate": ".nc", "plot": ".png", "export": ".csv", "animate": ".gif"}.get(arguments[0], "")
+    assert main([*arguments, "--output", f"new/deep/output{suffix}"]) == 2
+    assert list(tmp_path.iterdir()) == []
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_a_check_of_several_files_says_last_how_many_are_wrong(tmp_path, capsys):
+    (tmp_path / "bad.yaml").write_text("bodies: []\n")
+    assert main(["check", "configuration-1", str(tmp_path / "bad.yaml"), "configuration-2"]) == 2
+    assert capsys.readouterr().err.splitlines()[-1] == "blockshake: 1 of 3 files are wrong"
+
+
+def test_a_missing_folder_is_made_with_the_file_alone(tmp_path):
+    path = tmp_path / "new" / "deep" / "file.txt"
+    assert check_output(path) == path
+    assert list(tmp_path.iterdir()) == []
+    write_text(path, "x")
+    assert path.read_text() == "x"
+    with pytest.raises(InputError, match="expected a folder to write to"):
+        check_output(path / "below")
+
+
+def _process(command, tmp_path, output=subprocess.PIPE, **environment):
+    return subprocess.Popen(
+        [sys.executable, "-m", "blockshake", *command], cwd=tmp_path, stdout=output, stderr=subprocess.PIPE,
+        env={**os.environ, **environment},
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["parameters"], ["--help"], ["simulate", "--help"], ["--version"], ["schema", "structure"],
+        ["check", "configuration-1", "alkion"], ["new", "structure", "own.yaml"],
+        ["sample", "--size", "10", "--output", "d.csv"], ["convert-motion", "alkion", "--output", "m.csv"],
+    ],
+    ids=" ".join,
+)  # fmt: skip
+def test_a_reader_that_has_gone_is_no_fault(command, tmp_path):
+    """As after `| head -1`: no traceback, whether the pipe closes at the first line or at the last flush."""
+    running = _process(command, tmp_path)
+    running.stdout.close()
+    complaint = running.stderr.read().decode()
+    assert running.wait(timeout=120) in (0, UNREAD)
+    assert complaint == ""
+
+
+def test_a_full_disk_behind_the_output_is_one_line(tmp_path):
+    with open("/dev/full", "wb") as full:
+        running = _process(["parameters"], tmp_path, full)
+        complaint = running.stderr.read().decode()
+    assert running.wait(timeout=120) == BAD_INPUT
+    assert complaint == "blockshake: output: expected room to write to; the disk is full\n"
+
+
+PLAIN = {"LC_ALL": "C", "LANG": "", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}  # ASCII and nothing else
+
+
+def test_a_terminal_that_knows_no_other_signs_gets_escapes(tmp_path):
+    structure = load_yaml(shipped("structures", "configuration-1"))
+    structure["bodies"][1]["name"] = "bloc-\u00e9\u00b5"
+    for sensor in [*structure["markers"], *structure["accelerometers"], *structure.get("stoppers", [])]:
+        sensor["body"] = "bloc-\u00e9\u00b5" if sensor["body"] == "block-1" else sensor["body"]
+    (tmp_path / "s.yaml").write_text(yaml.safe_dump(structure, allow_unicode=True), encoding="utf-8")
+    running = _process(["parameters", "--structure", "s.yaml"], tmp_path, **PLAIN)
+    said, complaint = running.communicate(timeout=120)
+    assert (running.returncode, complaint) == (0, b"")
+    assert b"bodies.bloc-\\xe9\\xb5.position" in said
+
+
+@pytest.mark.parametrize("environment", [{}, PLAIN], ids=["UTF-8", "C"])
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["sample", "--size", "10", "--output"], ["convert-motion", "alkion", "--output"],
+        ["new", "structure"], ["schema", "structure", "--output"],
+        ["export", "RUN", "--output"], ["plot", "RUN", "--output"], ["animate", "RUN", "--output"],
+        ["generate-campaign", "SETTINGS", "--structure", "configuration-1", "--truth", "t", "--output"],
+    ],
+    ids=lambda command: command[0],
+)  # fmt: skip
+def test_an_output_whose_name_is_not_utf_8_is_refused_in_one_line(
+    command, environment, tmp_path, leaning_file
+):
+    given = {"RUN": str(leaning_file), "SETTINGS": str(HOME / "config" / "virtual-campaign.yaml")}
+    suffix = {"export": ".csv", "plot": ".png", "animate": ".gif", "new": ".yaml"}.get(command[0], "")
+    command = [given.get(word, word) for word in command]
+    running = _process([*command, b"a\xff" + suffix.encode()], tmp_path, **environment)
+    said, complaint = running.communicate(timeout=120)
+    assert running.returncode == BAD_INPUT, complaint
+    assert said == b""
+    assert complaint.decode().count("\n") == 1
+    assert "expected a path in UTF-8" in complaint.decode()
+    assert list(tmp_path.iterdir()) == []

@@ -59,11 +59,25 @@ def test_other_values_keep_their_type(text, value):
     assert type(read) is type(value)
 
 
-@pytest.mark.parametrize("text", ["a: 1\nb: 2\na: 3\n", "outer:\n  a: 1\n  a: 1\n"])
-def test_a_key_stated_twice_is_an_error(text):
-    with pytest.raises(InputError, match=r"file.yaml: expected YAML; the key 'a' stands twice") as error:
-        parse_yaml(text, "file.yaml")
-    assert "\n" not in str(error.value)
+@pytest.mark.parametrize(
+    ("text", "key", "line"),
+    [
+        ("a: 1\nb: 2\na: 3\n", "a", 3),
+        ("a: 1\r\nb: 2\r\n\r\na: 3\r\n", "a", 4),
+        ("outer:\n  a: 1\n  # remark\n  b: {c: 1}\n  a: 1\n", "a", 5),
+        ("list:\n  - a: 1\n    b: 2\n    a: 3\n", "a", 4),
+        ("{a: 1,\n b: 2, a: 3}", "a", 2),
+        ("a: 1\n'a': 2\n", "a", 2),
+        ("1: 1\nx: 1\n1.0: 2\n", "1.0", 3),
+        ("a: &a {x: 1}\nb:\n  <<: *a\n  <<: *a\n", "<<", 4),
+    ],
+)
+def test_a_key_stated_twice_is_an_error_that_names_the_line_of_the_second(text, key, line, tmp_path):
+    (tmp_path / "f.yaml").write_bytes(text.encode())
+    with pytest.raises(InputError) as error:
+        load_yaml(tmp_path / "f.yaml")
+    assert f"expected YAML; the key '{key}' stands twice in line {line}, column" in str(error.value)
+    assert str(error.value).isprintable()
 
 
 @pytest.mark.parametrize(
@@ -188,6 +202,15 @@ def test_packed_variables_keep_their_digits_and_their_gaps(tmp_path):
     # read and written again, nothing moves
     write_dataset(tmp_path / "b.nc", read, decimals={"m": 5})
     assert (tmp_path / "b.nc").read_bytes() == (tmp_path / "a.nc").read_bytes()
+
+
+@pytest.mark.parametrize("far", [214.7483648, 240.0, -1e6, np.inf])
+def test_a_value_beyond_packed_numbers_is_kept_as_it_is(tmp_path, far):
+    """A whole number of four bytes ends at 214.7 m in tenths of a micrometre; a block falls as far in 6.6 s."""
+    values = np.linspace(0.0, 1.0, 100)
+    values[7], values[8] = far, np.nan
+    write_dataset(tmp_path / "a.nc", xr.Dataset({"u": ("t", values, {"units": "m"})}), decimals={"m": 7})
+    np.testing.assert_array_equal(xr.load_dataset(tmp_path / "a.nc")["u"], values)
 
 
 def test_content_that_was_read_gives_the_bytes_of_content_that_was_made(tmp_path):

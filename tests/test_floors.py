@@ -8,7 +8,7 @@ from blockshake.files import PACKAGE
 
 # From the ground up; what stands on one line knows nothing of its neighbours.
 FLOORS = [
-    ["damaged_hdf5", "errors", "interrupts"],
+    ["caches", "errors", "interrupts"],
     ["files", "paths", "quantities", "working_folder"],
     ["validation", "log", "sources", "store"],
     ["tables"],

@@ -2,12 +2,13 @@
 
 import os
 import shutil
-import subprocess
+from types import SimpleNamespace
 
 import pytest
 
 from blockshake import run_diagnosis
 from blockshake.cli import main
+from blockshake.diagnosis.verdict.ladder import NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE
 from blockshake.working_folder import hold, this_command
@@ -108,14 +109,15 @@ def test_the_workflow_ends_with_the_diagnosis(tmp_path, monkeypatch):
     """A diagnosis that is killed leaves no workflow behind, which would hold the folder."""
     given = {}
 
-    def run(command, env, check):
-        given.update(env)
-        return subprocess.CompletedProcess(command, 1)
+    def run(_, environment):
+        given.update(environment)
+        return 1
 
     monkeypatch.setattr(run_diagnosis, "HOME", tmp_path)
-    monkeypatch.setattr(run_diagnosis.subprocess, "run", run)
-    with pytest.raises(RuntimeError, match="the workflow stopped"):
-        run_diagnosis.diagnose(CAMPAIGN, tmp_path / "output")
+    monkeypatch.setattr(run_diagnosis, "run_workflow", run)
+    with pytest.raises(run_diagnosis.WorkflowError, match="the workflow stopped"):
+        run_diagnosis.diagnose(CAMPAIGN, tmp_path / "new" / "output")
+    assert not (tmp_path / "new").exists()
     assert this_command().items() <= given.items()
 
 
@@ -129,3 +131,19 @@ def test_functions_of_the_package_are_no_modules(tmp_path):
 
     with pytest.raises(InputError, match="nowhere"):
         diagnose("nowhere", tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("decision", "causes", "word", "line"),
+    [
+        ("none", (), NOTHING, "no misfit larger than chance"),
+        ("unknown", (), UNKNOWN, "something acts, cause unknown"),
+        ("named", ("weak-joint",), PROBABLE, "probable (named): weak-joint"),
+        ("ambiguous", ("weak-joint", "table-pitch"), ONE_OF, "one of (ambiguous): weak-joint, table-pitch"),
+    ],
+)
+def test_the_last_line_says_the_verdict(tmp_path, capsys, monkeypatch, decision, causes, word, line):
+    told = SimpleNamespace(decision=decision, causes=causes, word=word)
+    monkeypatch.setattr(run_diagnosis, "diagnose", lambda *arguments: told)
+    assert main(["diagnose", str(CAMPAIGN), "--output", str(tmp_path)]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == f"{line}; {tmp_path}/report.html"

@@ -48,7 +48,7 @@ def test_a_run_watches_all_that_python_imports_for_it(model):
     ).stdout
     loaded = {path.partition("/blockshake/")[2] for path in printed.split()}
     loaded = {name for name in loaded if not name.endswith("__init__.py")}
-    unwatched = {"log.py", "quantities.py", "sources.py"}
+    unwatched = {"caches.py", "log.py", "quantities.py", "sources.py"}
     assert loaded - unwatched == files(module_sources("simulation/simulate.py", model)) - unwatched
 
 

@@ -7,6 +7,8 @@ only draws a figure compiles no solver.
 
 import importlib
 
+from blockshake.caches import set_cache_home
+
 __version__ = "0.1.0"
 
 _HOMES = {
@@ -20,6 +22,7 @@ _HOMES = {
     "InputError": "blockshake.errors",
 }
 __all__ = list(_HOMES)
+set_cache_home()
 
 
 def __getattr__(name):

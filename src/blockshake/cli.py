@@ -1,19 +1,22 @@
-"""The command line: exit 0 done, 2 bad input (one line), 3 numerical failure, 130 interrupted, 1 a bug."""
+"""The command line: exit 0 done, 2 bad input (one line), 3 numerical failure, 130 interrupted, 141 unread, 1 a bug."""
 
 import argparse
+import errno
 import logging
 import os
+import select
 import sys
 import time
 from pathlib import Path
 
 from blockshake import __version__
-from blockshake.errors import INTERRUPTED, InputError
+from blockshake.errors import BAD_INPUT, INTERRUPTED, InputError
 from blockshake.files import check_output, parse_yaml, write_json
-from blockshake.own_files.commands import add_data_commands
+from blockshake.own_files.commands import add_baseline, add_data_commands
 from blockshake.simulation.models import MODELS
 
-BAD_INPUT, NUMERICAL_FAILURE = 2, 3
+NUMERICAL_FAILURE = 3
+UNREAD = 141  # whoever reads the output has gone, as after `blockshake parameters | head -1`
 
 
 class _Parser(argparse.ArgumentParser):
@@ -25,6 +28,24 @@ class _Parser(argparse.ArgumentParser):
 
 def main(arguments=None):
     """Run one command; the exit code is returned."""
+    if hasattr(sys.stdout, "reconfigure"):  # a terminal that knows few signs gets the others as escapes
+        sys.stdout.reconfigure(errors="backslashreplace")
+    try:
+        try:
+            return _run(arguments)
+        finally:
+            print(end="", flush=True)
+    except OSError as error:  # of the output: those of files are told in one line where they are written
+        unread = not (_is_read(1) and _is_read(2))
+        if not unread and error.errno != errno.ENOSPC:
+            raise
+        if not unread:
+            print("blockshake: output: expected room to write to; the disk is full", file=sys.stderr)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return UNREAD if unread else BAD_INPUT
+
+
+def _run(arguments):
     try:
         options = _parser().parse_args(arguments)
         return options.run(options) or 0
@@ -36,6 +57,13 @@ def main(arguments=None):
         return INTERRUPTED
 
 
+def _is_read(stream):
+    """Whether a pipe of this process has a reader, or is none."""
+    state = select.poll()
+    state.register(stream, select.POLLOUT)
+    return not any(event & select.POLLERR for _, event in state.poll(0))
+
+
 def _parser():
     parser = _Parser(prog="blockshake", description="Stacked blocks on a shake table.")
     parser.add_argument("--version", action="version", version=f"blockshake {__version__}")
@@ -45,6 +73,7 @@ def _parser():
     command.add_argument("--structure", required=True, metavar="NAME|FILE")
     command.add_argument("--motion", required=True, metavar="NAME|FILE")
     command.add_argument("--scale", type=float, default=1.0, help="multiplies the motion (default 1)")
+    add_baseline(command)
     command.add_argument(
         "--duration", type=float, metavar="S", help="cuts or extends (default: the motion's)"
     )
@@ -136,6 +165,7 @@ def _parser():
     command = commands.add_parser("check", help="say what is wrong with structure, motion or study files")
     command.add_argument("files", nargs="+", metavar="FILE")
     command.add_argument("--picture", metavar="PICTURE", help="of one structure: .png, .pdf or .svg")
+    add_baseline(command)
     command.set_defaults(run=_check)
 
     command = commands.add_parser(
@@ -191,32 +221,41 @@ def _simulate(options):
     import xarray as xr
 
     from blockshake.dynamics.load_motion import load_motion
+    from blockshake.dynamics.provenance import provenance
     from blockshake.dynamics.system import FINISHED
     from blockshake.geometry.structure import load_structure
     from blockshake.jit import CACHE_FOLDER
-    from blockshake.simulation.ending import ending
+    from blockshake.simulation.models import part_parameters
+    from blockshake.simulation.outcome.ending import ending
     from blockshake.simulation.simulate import simulate_to_file
+    from blockshake.study.structure_remarks import unusual_values
 
     _show_progress()
     begin = time.monotonic()
-    structure = load_structure(options.structure)
+    structure, settings = load_structure(options.structure), _settings(options)
+    log = logging.getLogger("blockshake")
+    for remark in unusual_values(structure.with_parameters(part_parameters(settings)[0])):
+        log.info("remark: %s", remark)
+    motion = load_motion(options.motion, options.scale, options.baseline)
+    if not motion.attributes["synthetic"]:
+        log.info("%s", provenance(motion.attributes))
     if Path(options.output).exists():
-        logging.getLogger("blockshake").info("%s is there and will be replaced", options.output)
+        log.info("%s is there and will be replaced", options.output)
     if not CACHE_FOLDER.exists():
-        logging.getLogger("blockshake").info("compiles the solver first, once, for one to three minutes")
+        log.info("compiles the solver first, once, for one to three minutes")
     simulate_to_file(
         options.output,
         structure,
-        load_motion(options.motion, options.scale),
+        motion,
         options.model,
-        _settings(options),
+        settings,
         time_step=options.time_step,
         duration=options.duration,
         output_rate=options.output_rate,
     )
     with xr.open_dataset(options.output, decode_times=False) as run:
         told, status, reason = ending(run, structure), run.attrs["status"], run.attrs["reason"]
-    print(f"{options.output}: {told}; took {time.monotonic() - begin:.3g} s")
+    print(f"{options.output}: {told}; took {time.monotonic() - begin:.3g} s", flush=True)
     if status in FINISHED:
         return 0
     print(f"blockshake: {status}: {reason}", file=sys.stderr)
@@ -255,6 +294,7 @@ def _animate(options):
 
 def _export(options):
     from blockshake.report.run.export import check_export, export_run
+    from blockshake.report.run.local_origin import local_origin
     from blockshake.simulation.load_run import load_run
     from blockshake.simulation.run_histories import run_histories
 
@@ -262,24 +302,30 @@ def _export(options):
     run, structure = load_run(options.file, options.meshes)
     for file in export_run(options.output, run, run_histories(run, structure), structure):
         print(file)
+    origin = local_origin(run)
+    if origin.any() and Path(options.output).suffix.lower() != ".csv":
+        print(
+            f"  remark: places count from {origin.tolist()} m, as 32 bits are too coarse so far from the origin"
+        )
 
 
 def _sample(options):
     check_output(options.output)
-    from blockshake.study.sampling.correlation_target import load_correlation
     from blockshake.study.sampling.latin_hypercube import draw_samples, write_design
 
-    correlation = load_correlation(options.correlation) if options.correlation else None
-    design = draw_samples(size=options.size, seed=options.seed, correlation=correlation)
+    design = draw_samples(options.size, options.seed, correlation=options.correlation)
     write_design(options.output, design.values)
-    print(f"{len(design.values)} samples; rms correlation error {design.rms_error:.2e}")
+    print(f"{options.output}: {len(design.values)} samples; rms correlation error {design.rms_error:.2e}")
 
 
 def _calibrate_stiffness(options):
     check_output(options.output)
     from blockshake.study.stiffness.wave_speed import calibrate_stiffness
 
-    write_json(options.output, calibrate_stiffness(options.structure, _settings(options)))
+    found = calibrate_stiffness(options.structure, _settings(options))
+    write_json(options.output, found)
+    stiffness = ", ".join(f"{kind} {found[f'{kind}_stiffness']:.3g}" for kind in ("normal", "shear"))
+    print(f"{options.output}: stiffness {stiffness} N/m3")
 
 
 def _generate_campaign(options):
@@ -287,7 +333,7 @@ def _generate_campaign(options):
     from blockshake.virtual.generate import generate_campaign
     from blockshake.virtual.settings import load_settings
 
-    settings = load_settings(options.settings)
+    settings = load_settings(options.settings, options.structure)
     for folder in (options.output, options.truth):
         check_output(f"{folder}/campaign.yaml")
     if Path(options.output).resolve() in (
@@ -297,17 +343,18 @@ def _generate_campaign(options):
         raise InputError("--truth", options.truth, "expected a folder outside the campaign's")
     source = source_digest(*module_sources("virtual/generate.py", *MODELS))
     generate_campaign(settings, options.structure, options.output, options.truth, source, print)
+    print(f"{options.output}: a synthetic campaign; its truth: {options.truth}")
 
 
 def _diagnose(options):
-    from blockshake.run_diagnosis import diagnose
+    from blockshake.run_diagnosis import WorkflowError, diagnose
 
     try:
         verdict = diagnose(options.campaign, options.output, options.effort, options.cores)
-    except RuntimeError as error:
-        print(f"blockshake: {error}", file=sys.stderr)
-        return 1
-    print(f"{verdict.decision}: {', '.join(verdict.causes) or 'no cause'}; {options.output}/report.html")
+    except WorkflowError as stopped:
+        return stopped.exit_code
+    named = f" ({verdict.decision}): {', '.join(verdict.causes)}" if verdict.causes else ""
+    print(f"{verdict.word}{named}; {options.output}/report.html")
     return 0
 
 
@@ -324,20 +371,23 @@ def _modes(options):
     _print_table([HEADER, *summary_rows(found)])
     if options.output:
         write_json(options.output, {"tests": found})
+        print(options.output)
 
 
 def _check(options):
-    from blockshake.study.check import check_file
+    from blockshake.own_files.check import check_file
 
     if options.picture:
         _draw_structure(options.files, options.picture)
     wrong = 0
     for file in options.files:
         try:
-            print(f"{file}: {check_file(file)}")
+            print(f"{file}: {check_file(file, options.baseline)}", flush=True)
         except InputError as error:
             print(f"blockshake: {error}", file=sys.stderr)
             wrong += 1
+    if wrong and len(options.files) > 1:
+        print(f"blockshake: {wrong} of {len(options.files)} files are wrong", file=sys.stderr)
     return BAD_INPUT if wrong else 0
 
 
@@ -356,6 +406,8 @@ def _estimate(options):
     from blockshake.cost.diagnosis_cost import campaign_cost
     from blockshake.cost.study_cost import study_cost
 
+    if options.cores < 1:
+        raise InputError("--cores", "", f"expected a whole number from 1, not {options.cores}")
     if Path(options.file).is_dir():
         parts = campaign_cost(options.file, options.effort)
     else:

@@ -1,6 +1,8 @@
 """The one error that a user can mend, worded in one line."""
 
-INTERRUPTED = 130  # exit code, by Ctrl-C
+import contextlib
+
+BAD_INPUT, INTERRUPTED = 2, 130  # exit codes; the second by Ctrl-C
 _LONGEST = 1000  # characters of a line that someone reads
 
 
@@ -25,9 +27,19 @@ class InputError(ValueError):
     def __init__(self, where, key, expected):
         self.where, self.key, self.expected = str(where), str(key), str(expected)
         place = f"{self.where}: {self.key}" if self.key else self.where
-        super().__init__(_one_line(f"{place}: {self.expected}"))
+        super().__init__(one_line(f"{place}: {self.expected}"))
 
 
-def _one_line(words):
+@contextlib.contextmanager
+def faults_of(where, key):
+    """Faults of what a key of a file names, told with that file and key."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(where, key, str(error)) from None
+
+
+def one_line(words):
+    """Words in one line of at most 1000 characters, control characters as escapes."""
     line = "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in words[:_LONGEST])
     return line if len(words) <= _LONGEST >= len(line) else f"{line[: _LONGEST - 4]} ..."

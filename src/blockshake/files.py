@@ -8,7 +8,6 @@ import os
 import re
 import shutil
 import tempfile
-from collections import Counter
 from pathlib import Path
 
 import yaml
@@ -26,18 +25,21 @@ _DEEPEST, _MOST_VALUES = 50, 200_000
 _NO_NUMBER = -(2**31)  # stands for NaN in packed variables
 _FULL = (errno.ENOSPC, errno.EDQUOT)
 _FURTHER = 2**16  # bytes, more than a file system keeps in hand for a file's end
+_MERGE = "tag:yaml.org,2002:merge"
 
 
 class _StrictLoader(yaml.CSafeLoader):
     """YAML 1.2 numbers (``1e-5`` is one) and no key twice."""
 
     def construct_mapping(self, node, deep=False):
-        keys = Counter(key.value for key, _ in node.value if isinstance(key, yaml.ScalarNode))
-        for key, count in keys.items():
-            if count > 1:
+        known = set()
+        for key in (key for key, _ in node.value if isinstance(key, yaml.ScalarNode)):
+            value = key.value if key.tag == _MERGE else self.construct_object(key)
+            if value in known:
                 raise yaml.constructor.ConstructorError(
-                    None, None, f"the key '{key}' stands twice", node.start_mark
+                    None, None, f"the key '{key.value}' stands twice", key.start_mark
                 )
+            known.add(value)
         return super().construct_mapping(node, deep)
 
 
@@ -62,7 +64,8 @@ def parse_yaml(text, where):
         _check_growth(text)
         return yaml.load(text, Loader=_StrictLoader)
     except (yaml.YAMLError, ValueError, TypeError, KeyError, AttributeError) as error:  # a bad value of a tag
-        raise InputError(where, "", "expected YAML; " + " ".join(str(error).split())) from None
+        words = " ".join(str(error).replace('in "<unicode string>", ', "in ").split())
+        raise InputError(where, "", f"expected YAML; {words}") from None
 
 
 def _check_growth(text):
@@ -118,6 +121,22 @@ def read_text(path):
         return read_bytes(path).decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError:
         raise InputError(path, "", "expected a text file; its bytes are not UTF-8") from None
+
+
+def read_foreign_text(path):
+    """Text of a file that another program wrote: UTF-8, UTF-16 with its mark, else Windows-1252 or Latin-1.
+
+    Raises
+    ------
+    InputError
+        The file is missing, or is none.
+    """
+    content = read_bytes(path)
+    try:
+        text = content.decode("utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
+    except UnicodeDecodeError:
+        text = content.decode("cp1252", errors="replace")  # digits are the same in both
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def read_bytes(path):
@@ -211,23 +230,30 @@ def shipped_names(kind):
 
 
 def check_output(path):
-    """Path of a file that can be written, its folder made where it is missing.
+    """Path of a file that can be written. Its folder may be missing: a command that fails leaves none behind.
 
     Raises
     ------
     InputError
-        The path is empty or a folder, or its own folder cannot be made or written to.
+        The path is empty, a folder or not UTF-8, or its own folder cannot be made or written to.
     """
     if not str(path) or Path(path).is_dir():
         raise InputError(path or "output", "", "expected the path of a file to write, not a folder")
-    folder = Path(path).parent
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(path, "", f"expected a folder to write to; {error.strerror.lower()}") from None
+        str(path).encode()
+    except UnicodeEncodeError:  # libraries that write take no other
+        raise InputError(path, "", "expected a path in UTF-8") from None
+    folder = _nearest_folder(path)
+    if not folder.is_dir():
+        raise InputError(path, "", f"expected a folder to write to; {folder} is a file")
     if not os.access(folder, os.W_OK):
         raise InputError(path, "", "expected a folder to write to; permission denied")
     return Path(path)
+
+
+def _nearest_folder(path):
+    """The folder of a path or, where it is missing, the nearest one above that is there."""
+    return next(folder for folder in Path(path).absolute().parents if os.path.exists(folder))
 
 
 @contextlib.contextmanager
@@ -244,11 +270,12 @@ def replacing(path):
     path = check_output(path)
     full = InputError(path, "", "expected room to write to; the disk is full")
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=path.suffix, dir=path.parent)
     except OSError as error:
         if error.errno in _FULL:
             raise full from None
-        raise
+        raise InputError(path, "", f"expected a folder to write to; {error.strerror.lower()}") from None
     os.close(handle)
     try:
         yield Path(temporary)
@@ -286,10 +313,11 @@ def replacing_folder(folder):
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(folder, "", "expected a new or an empty folder; nothing is overwritten")
     check_output(folder / "file" if folder.exists() else folder)
-    made = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+    made = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=_nearest_folder(folder)))
     try:
         yield made
         made.chmod(0o777 & ~_umask())
+        folder.parent.mkdir(parents=True, exist_ok=True)
         made.replace(folder)
     finally:
         shutil.rmtree(made, ignore_errors=True)
@@ -316,8 +344,9 @@ def write_dataset(path, dataset, decimals=None):
     """Write an xarray Dataset as netCDF-4, atomically, float variables compressed.
 
     ``decimals``, where given, is the number of decimal digits kept in variables of a unit, which are packed as whole
-    numbers (CF-1.11, section 8.1): ``{"m": 7}`` keeps 0.1 micrometre, far below any marker's noise. The same content
-    gives the same bytes, whether it was computed or read from a file.
+    numbers (CF-1.11, section 8.1): ``{"m": 7}`` keeps 0.1 micrometre, far below any marker's noise. A variable with a
+    value that no such number reaches, 215 m here, is not packed. The same content gives the same bytes, whether it was
+    computed or read from a file.
     """
     encoding = {}
     dataset = dataset.drop_encoding()
@@ -325,10 +354,11 @@ def write_dataset(path, dataset, decimals=None):
         if variable.dtype.kind == "f" and variable.size > 64:
             encoding[name] = {"zlib": True, "complevel": 2, "shuffle": True}
             unit = variable.attrs.get("units")
-            if decimals is not None and unit in decimals:
-                encoding[name] |= {
-                    "dtype": "int32", "scale_factor": 10.0 ** -decimals[unit], "_FillValue": _NO_NUMBER,
-                }  # fmt: skip
+            if decimals is None or unit not in decimals:
+                continue
+            scale = 10.0 ** -decimals[unit]
+            if not float(abs(variable).max()) >= -_NO_NUMBER * scale:
+                encoding[name] |= {"dtype": "int32", "scale_factor": scale, "_FillValue": _NO_NUMBER}
     with replacing(path) as temporary, delayed_interrupts():
         dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding, unlimited_dims=[])
 

@@ -13,8 +13,9 @@ Nor does that cache know a module by its name: a copy of a checkout, or a file w
 anew. Here a kernel's place is its module's name; the digest says whether the sources are the same.
 """
 
+import functools
 import hashlib
-import os
+import logging
 import pickle
 from pathlib import Path
 
@@ -25,12 +26,14 @@ from numba.core.cpu import CPUTargetOptions
 from numba.core.options import TargetOptions
 from numba.core.serialize import dumps
 
+from blockshake.caches import kernel_folder
 from blockshake.sources import compiled_sources, source_digest
 
 SOURCE_DIGEST = source_digest(*compiled_sources())
-CACHE_FOLDER = Path(os.environ.get("BLOCKSHAKE_CACHE", Path.home() / ".cache" / "blockshake")) / SOURCE_DIGEST
+CACHE_FOLDER = kernel_folder(SOURCE_DIGEST)
 numba.config.CACHE_DIR = str(CACHE_FOLDER)
 
+_log = logging.getLogger("blockshake")
 _SEAL = hashlib.sha256().digest_size  # bytes
 
 
@@ -41,10 +44,20 @@ def _place(cache, key):
 
 
 def _save(self, key, data):
-    """Save a compiled kernel, whole or not at all."""
+    """Save a compiled kernel, whole or not at all; without room or permission it is compiled in every process."""
     content = dumps((self._source_stamp, key, data))
-    with self._open_for_write(_place(self, key)) as file:
-        file.write(hashlib.sha256(content).digest() + content)
+    path = Path(_place(self, key))
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with self._open_for_write(path) as file:
+            file.write(hashlib.sha256(content).digest() + content)
+    except OSError as error:
+        _say_not_kept(error.strerror)
+
+
+@functools.cache
+def _say_not_kept(reason):
+    _log.warning("compiled kernels are not kept in %s: %s", CACHE_FOLDER, reason.lower())
 
 
 def _load(self, key):
@@ -71,6 +84,9 @@ class _ByModule(_CacheLocator):
     def get_cache_path(self):
         """Folder of the module's kernels."""
         return str(self._path)
+
+    def ensure_cache_path(self):
+        """Leave the folder to the first file that is saved."""
 
     def get_source_stamp(self):
         """Stamp that every copy of the same sources has."""

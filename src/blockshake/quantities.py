@@ -57,3 +57,24 @@ PHYSICAL = (
     Quantity("stoppers.INDEX.gap", "g", "m", "clearance of a stopper, counted from 0", "structure file"),
     Quantity("stoppers.INDEX.stiffness", "k", "N/m", "stiffness of a stopper", "structure file"),
 )  # fmt: skip
+_DENSITIES = (100.0, 25000.0)
+# Ends between which values of dry-stacked blocks lie, in a vector those of its parts: wide, and by judgement.
+# `blockshake check` remarks values beyond.
+USUAL = {
+    "friction.MATERIAL.MATERIAL": (0.05, 1.5),
+    "friction.MATERIAL.MATERIAL.rate_scale": (1e-5, 1.0),
+    "friction.MATERIAL.MATERIAL.slip_scale": (1e-5, 1.0),
+    "friction.MATERIAL.MATERIAL.asymmetry": (-0.5, 0.5),
+    "joints.BODY.BODY.friction_factor": (0.1, 5.0),
+    "joints.BODY.BODY.compliance": (0.0, 1e-7),
+    "materials.MATERIAL.density": _DENSITIES,
+    "materials.MATERIAL.youngs_modulus": (1e7, 1e12),
+    "materials.MATERIAL.poisson_ratio": (0.0, 0.5),
+    "materials.MATERIAL.viscous_modulus": (0.0, 1e11),
+    "gravity": (-30.0, 30.0),
+    "bodies.BODY.density": _DENSITIES,
+    "bodies.BODY.velocity": (-10.0, 10.0),
+    "bodies.BODY.angular_velocity": (-10.0, 10.0),
+    "stoppers.INDEX.gap": (0.0, 1.0),
+    "stoppers.INDEX.stiffness": (0.0, 1e12),
+}

@@ -1,5 +1,6 @@
 """A campaign diagnosed by the checkout's workflow: what `blockshake diagnose` and `blockshake.diagnose` start."""
 
+import contextlib
 import json
 import os
 import shutil
@@ -7,12 +8,27 @@ import subprocess
 import sys
 from pathlib import Path
 
-from blockshake.errors import InputError
+from blockshake.errors import INTERRUPTED, InputError
 from blockshake.files import HOME, PACKAGE, check_output
 from blockshake.working_folder import hold, this_command
 
 _KEPT = ("verdict.json", "decision.json", "parity.json", "misfit.nc", "evidence.nc", "forces.nc")
 _OF_GAIN = ("gain.nc", "consequences.nc")  # where a cause was found and there are sealed tests
+_GRACE = 15.0  # s; for a workflow that is interrupted to end
+
+
+class WorkflowError(RuntimeError):
+    """The workflow did not end well; its last lines say why.
+
+    Parameters
+    ----------
+    exit_code : int
+        Its own: 2 for bad input, 130 for Ctrl-C, else 1.
+    """
+
+    def __init__(self, exit_code):
+        self.exit_code = exit_code
+        super().__init__("the workflow stopped: its last lines say why")
 
 
 def diagnose(campaign, output, effort="standard", cores=None):
@@ -42,8 +58,8 @@ def diagnose(campaign, output, effort="standard", cores=None):
     InputError
         A campaign that cannot be diagnosed, a number of cores below 1, or another command works in the folder of the
         results.
-    RuntimeError
-        The workflow stopped; its messages were printed.
+    WorkflowError
+        A job failed: the workflow's last lines are the reason, the job and the path of its log.
     """
     from blockshake.diagnosis.libraries.plan import plan_diagnosis, result_name
     from blockshake.diagnosis.verdict.verdict import load_verdict
@@ -56,9 +72,9 @@ def diagnose(campaign, output, effort="standard", cores=None):
     check_output(Path(output) / "verdict.json")
     command = diagnosis_command(campaign, effort, os.cpu_count() if cores is None else cores)
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
-    # its output is the progress
-    if subprocess.run(command, env={**os.environ, **this_command(), "PATH": path}, check=False).returncode:
-        raise RuntimeError("the workflow stopped: its messages are above")
+    exit_code = run_workflow(command, {**os.environ, **this_command(), "PATH": path})
+    if exit_code:
+        raise WorkflowError(exit_code)
     name = result_name(campaign)
     results = work / "results" / "diagnosis" / name
     kept = _KEPT if load_verdict(results / "verdict.json").gain is None else (*_KEPT, *_OF_GAIN)
@@ -70,6 +86,18 @@ def diagnose(campaign, output, effort="standard", cores=None):
     for path in found:
         shutil.copyfile(path, Path(output) / path.name.replace(f"diagnosis-{name}", "report"))
     return load_verdict(Path(output) / "verdict.json")
+
+
+def run_workflow(command, environment):
+    """Exit code of a workflow, whose output is the progress and whose last lines are the outcome, after Ctrl-C too."""
+    with subprocess.Popen(command, env=environment) as workflow:
+        try:
+            return workflow.wait()
+        except KeyboardInterrupt:  # which the workflow got as well
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                workflow.wait(_GRACE)
+            workflow.kill()
+            return INTERRUPTED
 
 
 def working_place():

@@ -11,9 +11,10 @@ from typing import NamedTuple
 from blockshake.files import HOME, PACKAGE
 
 _SCRIPTS = HOME / "workflow" / "scripts"
-# These write logs, or decide what is in the names of the files made and in the parameters of rules: they compute
-# nothing else.
+# These write logs, say where kernels are kept, or decide what is in the names of the files made and in the parameters
+# of rules: they compute nothing else.
 _COMPUTE_NOTHING = (
+    "caches.py",
     "log.py",
     "sources.py",
     "diagnosis/libraries/efforts.py",

@@ -15,7 +15,8 @@ Positive = Annotated[Finite, Field(gt=0)]
 NotNegative = Annotated[Finite, Field(ge=0)]
 Fraction = Annotated[Finite, Field(ge=0, le=1)]
 ProperFraction = Annotated[Finite, Field(ge=0, lt=1)]
-Count = Annotated[int, Field(strict=True, ge=0)]
+Whole = Annotated[int, Field(strict=True)]
+Count = Annotated[Whole, Field(ge=0)]
 
 
 _SHOWN = 20  # faults in a line

@@ -64,7 +64,7 @@ def end_with_command():
         descriptor = os.pidfd_open(int(command))
     except ProcessLookupError:  # before this process came so far
         os.kill(os.getpid(), signal.SIGKILL)
-    if int(command) in _ancestors():
+    if int(command) in _ancestors(os.getpid()):
         threading.Thread(target=_follow, args=[descriptor], daemon=True).start()
 
 
@@ -91,12 +91,19 @@ def start_jobs():
     os.environ.update(this_command())
 
 
-def _ancestors():
-    """Processes that this one descends from."""
-    process = os.getppid()
+def interrupt_jobs():
+    """Interrupt all processes that descend from this one, as Ctrl-C does: long runs keep their checkpoints."""
+    for folder in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):  # it ended this moment
+            if os.getpid() in _ancestors(int(folder.name)):
+                os.kill(int(folder.name), signal.SIGINT)
+
+
+def _ancestors(process):
+    """Processes that one descends from."""
     while process > 1:
+        process = int(Path(f"/proc/{process}/stat").read_bytes().rpartition(b")")[2].split()[1])
         yield process
-        process = int(Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[1])
 
 
 def _follow(descriptor):

@@ -7,7 +7,7 @@ from rocking_theory import HALF_WIDTH, H, Rocker
 
 from blockshake.geometry.surface_nodes import line_nodes
 
-INSET, ANGLE, READ = 0.005, 0.045, 6e-3  # m, rad, rad past upright
+INSET, ANGLE, READ = 0.003 * 2.0 * HALF_WIDTH, 0.045, 6e-3  # m, rad, rad past upright
 SEAT = {"slab": {"box": [0.8, 2.4, 0.2]}}  # flat, its nodes under the block's own
 
 

@@ -5,7 +5,7 @@ import pytest
 from rocking_theory import H, Rocker, leans
 from shenton_theory import edge_of, hold, needed, points
 
-ROCKER = Rocker(0.005)
+ROCKER = Rocker(0.0024)
 SLIM = ROCKER.pivot / H
 OFF = 0.03  # from a boundary, of the number that is varied
 # A joint under a thrust at its edge leans by 3.4e-4 rad, and swings to 4e-3 under a sliding block near tipping;

@@ -21,7 +21,7 @@ TURNS = {
 
 
 @pytest.mark.parametrize(
-    ("spacing", "inset"), [(0.2, 0.005), (0.2, 0.02), (0.4, 0.001), (0.1, 0.005), (0.07, 0.005)]
+    ("spacing", "inset"), [(0.2, 0.006), (0.2, 0.026), (0.4, 0.001), (0.1, 0.006), (0.07, 0.006)]
 )
 def test_every_joint_of_a_stack_is_pressed_by_the_weight_above_it(spacing, inset, make_structure, run_ls_dem):
     """Three blocks; stiffness is per area, so that spacing and inset of the nodes drop out."""

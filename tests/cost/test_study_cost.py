@@ -34,7 +34,9 @@ def test_every_run_of_the_default_study_is_counted(monkeypatch):
     opened = 30 * (4 + 3) * 7  # four cases by LS-DEM, three by rigid blocks; seven open tests each
     parts = study_cost.study_cost("config/study.yaml")
     runs = samples + 3 * twins + search.runs + climbs + opened
-    assert sum(part.seconds for part in parts) == pytest.approx(runs * 10.0)
+    # an open test drives from the start of its command on, 2 to 4 ms after its first reading
+    seconds = sum(part.seconds for part in parts)
+    assert runs * 10.0 - 0.004 * opened < seconds <= runs * 10.0
 
 
 def test_every_simulated_test_of_a_diagnosis_is_counted(monkeypatch):

@@ -1,27 +1,24 @@
 """The way of a diagnosis, step by step, on a campaign of two blocks that a formula simulates."""
 
-from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
-from tiny_campaign import TESTS, prescribed_run, write_campaign
+from tiny_campaign import TESTS, write_campaign
+from tiny_diagnosis import SOLVERS, TINY, diagnose, silent, two_effects_and_a_formula
 
 from blockshake.diagnosis import steps
 from blockshake.diagnosis.inference import calibration
 from blockshake.diagnosis.inference.calibration import write_cases
 from blockshake.diagnosis.inference.decision import write_result
 from blockshake.diagnosis.laws.findings import LawFindings, OutsideForce
-from blockshake.diagnosis.libraries import candidates, designed_test, efforts, plan
-from blockshake.diagnosis.misfit import predictability
+from blockshake.diagnosis.libraries import efforts, plan
 from blockshake.diagnosis.verdict.frozen import freeze
 from blockshake.errors import InputError
-from blockshake.files import PACKAGE, write_dataset, write_json
+from blockshake.files import PACKAGE, write_dataset
 
-TINY = efforts.Effort(runs=1000, tests=2, nominal_draws=10, own_draws=2, further_draws=2, members=2, twins=2)
-SOLVERS = ("ls-dem", "nscd-rigid")
 PITCH = {"name": "table-pitch", "values": {"coefficient": 1.2e-3, "frequency": 18.0}, "place": {}}
 STRUCTURE = PACKAGE.parents[1] / "hidden_effects" / "structures" / "two-blocks.yaml"
 
@@ -31,93 +28,13 @@ PUSH = OutsideForce(
 )  # fmt: skip
 
 
-def _silent(line):
-    """No progress."""
-
-
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
     """Results of every step and the files that the next ones read."""
     folder = tmp_path_factory.mktemp("tiny")
     write_campaign(folder / "campaign", STRUCTURE, PITCH)
-    with _two_effects_and_a_formula():
-        yield _diagnose(folder, str(folder / "campaign"))
-
-
-@contextmanager
-def _two_effects_and_a_formula():
-    """The tiny effort, two candidates, and a solver that is a formula."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(efforts.EFFORTS, "tiny", TINY)
-        patch.setattr(designed_test, "simulate", prescribed_run)
-        patch.setattr(predictability, "simulate", prescribed_run)
-        everywhere = candidates.candidates
-        patch.setattr(
-            plan,
-            "candidates",
-            lambda built: [
-                one for one in everywhere(built) if one.effect in ("table-pitch", "vertical-motion")
-            ],
-        )
-        yield
-
-
-def _diagnose(folder, campaign):
-    effects, config = plan.considered(), {"diagnosed": [campaign], "diagnosis_effort": "tiny"}
-    made_by = folder / "store", "source", _silent
-    shared = "shared"
-    path = {
-        name: str(folder / f"{name}.json")
-        for name in ("parity", "decision", "frozen", "size", "frozen-size", "cases")
-    } | {name: str(folder / f"{name}.nc") for name in ("readings", "forces", "misfit")}
-    measured = steps.read_measured(campaign, "tiny", [])
-    write_dataset(path["readings"], measured.readings)
-    write_dataset(path["forces"], measured.forces)
-    write_json(path["parity"], measured.parity.as_json())
-    planned = plan.plan_diagnosis(campaign, "tiny")
-    names = [planned.library(test, shared) for test in planned.tests]
-    libraries, histories, further = [], [], []
-    for name in names:
-        for solver in SOLVERS:
-            features, moved = steps.simulate_library(name, solver, config, shared, *made_by)
-            for kind, files, dataset in (("", libraries, features), ("-histories", histories, moved)):
-                files.append(str(folder / f"{name}-{solver}{kind}.nc"))
-                write_dataset(files[-1], dataset)
-    write_cases(path["cases"], steps.calibrate_decision(libraries, effects, *made_by))
-    files = SimpleNamespace(
-        readings=path["readings"], forces=path["forces"], libraries=libraries, histories=histories,
-        calibration=path["cases"],
-        parity=path["parity"], decision=path["decision"], frozen=path["frozen"], misfit=path["misfit"],
-    )  # fmt: skip
-    decided = steps.decide(campaign, effects, files)
-    write_result(files.decision, decided.decision)
-    write_dataset(files.misfit, decided.misfit)
-    freeze(files.frozen, files.decision, decided.tests)
-    for name in names:
-        for solver in SOLVERS:
-            features = steps.simulate_cause(
-                name, solver, decided.decision.first_key, TINY.further_draws, config, shared, *made_by
-            )
-            further.append(str(folder / f"{name}-{solver}-further.nc"))
-            write_dataset(further[-1], features)
-    files.further = further
-    sized = steps.size_cause(files, effects)
-    write_result(path["size"], sized.size)
-    freeze(path["frozen-size"], path["size"], sized.tests)
-    extended = [str(folder / f"extended-{solver}.nc") for solver in SOLVERS]
-    files.posterior = path["size"], path["frozen-size"]
-    for solver, file in zip(SOLVERS, extended, strict=True):
-        write_dataset(file, steps.extend_model(campaign, "tiny", solver, files, effects, *made_by))
-    files.extended = extended
-    gained = steps.measure_gain(campaign, files)
-    files.gain = str(folder / "gain.json"), str(folder / "gain.nc")
-    write_result(files.gain[0], gained.summary)
-    write_dataset(files.gain[1], gained.scores)
-    return SimpleNamespace(
-        campaign=campaign, files=files, measured=measured, decided=decided, sized=sized, gained=gained,
-        verdict=steps.conclude(campaign, "tiny", files),
-        horizon=steps.predict_twins(names[0], histories[:2], config, shared, _silent),
-    )  # fmt: skip
+    with two_effects_and_a_formula():
+        yield diagnose(folder, str(folder / "campaign"))
 
 
 def test_open_tests_are_read_off_with_sound_sensors(found):
@@ -136,7 +53,7 @@ def test_a_killed_calibration_judges_each_draw_once(found, tmp_path, monkeypatch
 
     def attempt(source="source"):
         given = found.files.libraries, plan.considered(), tmp_path / "store", source
-        write_cases(tmp_path / "cases.json", steps.calibrate_decision(*given, _silent))
+        write_cases(tmp_path / "cases.json", steps.calibrate_decision(*given, silent))
 
     monkeypatch.setattr(calibration, "_cases_of_draw", counted)
     limit = 7
@@ -211,7 +128,7 @@ def test_a_force_that_the_laws_describe_extends_the_model(found, tmp_path):
     freeze(frozen, decision, found.decided.tests)
     given = {"decision": str(decision), "frozen": str(frozen), "posterior": (), "further": ()}
     files = SimpleNamespace(**vars(found.files) | given)
-    made_by = tmp_path / "store", "source", _silent
+    made_by = tmp_path / "store", "source", silent
     files.extended = [str(tmp_path / f"{solver}.nc") for solver in SOLVERS]
     for solver, file in zip(SOLVERS, files.extended, strict=True):
         runs = steps.extend_model(found.campaign, "tiny", solver, files, plan.considered(), *made_by)
@@ -244,8 +161,8 @@ def test_a_camera_and_transducers_along_x_are_diagnosed_too(axes, names, curve, 
     """Nothing that was not measured enters: no curve, no residual, no force; the verdict is one of its words."""
     write_campaign(tmp_path / "campaign", STRUCTURE, PITCH)
     _leave(tmp_path / "campaign", axes, names)
-    with _two_effects_and_a_formula():
-        found = _diagnose(tmp_path, str(tmp_path / "campaign"))
+    with two_effects_and_a_formula():
+        found = diagnose(tmp_path, str(tmp_path / "campaign"))
     assert f"one-100.{curve}" in found.decided.misfit["curve"].values
     assert not found.measured.forces.data_vars
     residual = found.decided.misfit["residual"]

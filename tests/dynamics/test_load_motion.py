@@ -27,25 +27,30 @@ def accelerations(motion):
 )
 def test_content_tells_the_format_and_values_are_si(tmp_path, file_name, text, unit, format_name):
     (tmp_path / file_name).write_text(text)
-    raw = load_motion(tmp_path / file_name, correct=False)
+    raw = load_motion(tmp_path / file_name, baseline="none")
     np.testing.assert_allclose(accelerations(raw), unit * series()[:-1], atol=1e-8)  # the files' last digits
     assert raw.duration == pytest.approx(STEP * 499)
     assert raw.attributes["format"] == format_name
-    assert raw.attributes["baseline"] == "none"
+    assert raw.attributes["baseline"].startswith("none, as asked for; the record ends with ")
     assert raw.attributes["synthetic"] is False
     assert raw.name == Path(file_name).stem
 
 
-def test_records_are_corrected_unless_told(tmp_path):
-    values = series() + 5.0  # an offset of 0.05 m/s2, 0.6 m after 5 s
-    (tmp_path / "a.asc").write_text(dyna(values))
-    end = np.array([4.99])
-    raw, corrected = load_motion(tmp_path / "a.asc", correct=False), load_motion(tmp_path / "a.asc")
-    assert raw.evaluate(end)[0, 0] > 0.5
-    assert abs(corrected.evaluate(end)[0, 0]) < 1e-12
-    assert abs(corrected.evaluate(end, 1)[0, 0]) < 1e-12
-    assert "0.1 Hz" in corrected.attributes["baseline"]
-    assert corrected.attributes["licence"] == "CC BY 4.0"
+@pytest.mark.parametrize("file_name", ["a.asc", "b.AT2", "c.v2"])
+def test_a_record_of_any_format_is_corrected_where_it_drifts(file_name, tmp_path):
+    make, unit = {"a.asc": (dyna, 1.0), "b.AT2": (at2, 980.665), "c.v2": (cosmos, 1.0)}[file_name]
+    ends = {}
+    for offset in (0.0, 5.0):  # 0.05 m/s2, 0.6 m after 5 s
+        (tmp_path / file_name).write_text(make((series() + offset) / unit))
+        raw = load_motion(tmp_path / file_name, baseline="none")
+        read = load_motion(tmp_path / file_name)
+        ends[offset] = [motion.evaluate(motion.table.breaks[-1:])[0, 0] for motion in (raw, read)]
+        assert read.attributes["baseline"].startswith("corrected" if offset else "as published")
+        assert read.attributes["format"] == raw.attributes["format"]
+    assert ends[0.0][0] == ends[0.0][1]
+    assert ends[5.0][0] > 0.5
+    assert abs(ends[5.0][1]) < 1e-6
+    assert "0.1 Hz" in read.attributes["baseline"]
 
 
 def test_converted_record_moves_as_the_record(tmp_path):
@@ -83,7 +88,7 @@ def test_shipped_names_load_and_own_parameters_too(tmp_path):
         ("note.txt", "hello\n", "note.txt: expected a motion CSV"),
         ("short.AT2", "hello\n", "short.AT2: expected four header lines"),
         ("short.asc", "hello\n", "short.asc: SAMPLING_INTERVAL_S"),
-        ("short.V2C", "hello\n", "short.V2C: expected one acceleration series"),
+        ("short.V2C", "hello\n", "short.V2C: expected an acceleration series"),
         ("bad.csv", "a,b\n", "bad.csv: time_s"),
     ],
 )

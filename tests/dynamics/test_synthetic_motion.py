@@ -6,9 +6,12 @@ from blockshake.dynamics.intensity import arias_intensity, motion_figures
 from blockshake.dynamics.motion import ground_motion
 from blockshake.dynamics.response_spectrum import response_spectrum
 from blockshake.dynamics.synthetic_motion import (
+    close_integrals,
+    end_of_motion,
     source_shape,
     standard_normal,
     synthesise,
+    taper_ends,
     target_acceleration,
     window,
 )
@@ -138,3 +141,25 @@ def test_wrong_parameters_are_named(tmp_path, old, new, key):
         load_synthetic(path)
     assert str(path) in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_end_of_motion_is_exact_for_a_ramp():
+    # a = 3 t: v = 1.5 t^2, d = 0.5 t^3
+    time = 0.01 * np.arange(401)
+    velocity, displacement = end_of_motion(3.0 * time, 0.01)
+    assert velocity == pytest.approx(24.0, rel=1e-12)
+    assert displacement == pytest.approx(32.0, rel=1e-12)
+
+
+def test_closing_removes_a_linear_acceleration_and_nothing_else():
+    time = 0.01 * np.arange(2001)
+    drift = 0.02 - 0.003 * time
+    np.testing.assert_allclose(close_integrals(drift, 0.01), 0.0, atol=1e-13)
+
+
+def test_taper_touches_two_percent_at_each_end():
+    tapered = taper_ends(np.ones(1000))
+    assert tapered[0] == 0.0
+    assert tapered[-1] == 0.0
+    np.testing.assert_array_equal(tapered[20:-20], 1.0)
+    assert tapered[10] == pytest.approx(0.5)

@@ -51,7 +51,7 @@ def test_a_bed_that_sinks_as_far_as_it_may_starts_in_ls_dem(spacing):
     experiment = Experiment(load_structure("configuration-3"), REST, Instruments())
     softest = EFFECT.parameters[0].upper
     structure = with_effect(experiment, "base-compliance", {"compliance": softest}, {}).structure
-    numerics = {"ls_dem.node_spacing": spacing, "ls_dem.perimeter_inset": 0.0086}
+    numerics = {"ls_dem.node_spacing": spacing, "ls_dem.perimeter_inset": 0.006}
     run = simulate(structure, REST, "ls-dem", numerics, time_step=5e-5, duration=0.01)
     assert run.attrs["status"] == "completed"
 

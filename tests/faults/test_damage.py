@@ -59,7 +59,7 @@ def test_a_damaged_result_is_named_and_made_anew_when_deleted(finished):
     _cut(path)
     DONE["study: finished result cut"] += 1
     answer = finished.snakemake("configuration-1")
-    assert answer.returncode == 1
+    assert answer.returncode == 2
     name = re.escape(str(path.relative_to(finished.folder)))
     assert re.search(
         rf"^blockshake: {name}: expected the netCDF file", answer.stdout + answer.stderr, re.MULTILINE

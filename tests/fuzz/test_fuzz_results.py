@@ -56,6 +56,7 @@ PARITY = {
     "markers": {"m": {"noise": 1e-4, "misfit": None}}, "clock": {"t1": {"lag": 0.0, "lag_error": 1e-3}},
     "channels": {"a-x": {"gain": 0.1, "gain_error": 0.01}}, "looked_at": 12,
     "falls": {"t1": {"body": "a", "time": 2.5}},
+    "gaps": {"t1": ["0 m throughout while others change, taken as gaps: a.z"]},
 }  # fmt: skip
 CASES = [{
     "truth": "none", "size": 0.0, "strongest": 1.0, "nominal": 1.0, "shortfall": {"weak-joint": 0.1},

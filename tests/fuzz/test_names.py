@@ -208,11 +208,11 @@ def test_a_diagnosis_is_told_the_very_folder(odd, tmp_path, monkeypatch):
 
     given = []
 
-    def taken(command, **_):
+    def taken(command, _):
         given.extend(command)
-        return subprocess.CompletedProcess(command, 1)
+        return 1
 
-    monkeypatch.setattr(run_diagnosis.subprocess, "run", taken)
+    monkeypatch.setattr(run_diagnosis, "run_workflow", taken)
     monkeypatch.setattr("blockshake.diagnosis.libraries.plan.plan_diagnosis", lambda *_: None)
     with pytest.raises(RuntimeError, match="workflow stopped"):
         run_diagnosis.diagnose(odd, tmp_path / "out", "quick", 1)

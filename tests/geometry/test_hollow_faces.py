@@ -56,7 +56,7 @@ def test_no_slope_is_steeper_than_the_lists_of_near_nodes_take(make_structure):
     """A list holds the nodes below ``steepest`` times the skin: the level set may not change faster."""
     size, hollow = np.array([0.05, 0.05, 0.05]), 5e-4
     structure = _of_hollow_block(make_structure, size, hollow)
-    surfaces = assemble_surfaces(structure, LsDemParameters(node_spacing=0.02, perimeter_inset=1e-3))
+    surfaces = assemble_surfaces(structure, LsDemParameters(node_spacing=0.02, perimeter_inset=0.02))
     limit = surfaces.steepest[surfaces.shape[1]]
     rng = np.random.default_rng(6)
     points = (rng.random((20000, 3)) - 0.5) * 0.06

@@ -25,7 +25,7 @@ from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import EFFECTS, with_effect
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.instruments import Instruments
-from blockshake.study.check import check_file
+from blockshake.own_files.check import check_file
 
 STRUCTURE = structure_file("two-blocks")
 PROGRAMS = Path(make_case.__file__).parent

@@ -97,6 +97,7 @@ def test_a_misspelt_key_does_not_validate(kind):
 def test_the_command_writes_a_schema_that_is_one(tmp_path, capsys):
     for kind in (*SHIPPED, "import"):
         assert main(["schema", kind, "--output", str(tmp_path / "s.json")]) == 0
+        assert capsys.readouterr().out == f"{tmp_path / 's.json'}\n"
         assert main(["schema", kind]) == 0
         printed = capsys.readouterr().out
         assert (tmp_path / "s.json").read_text() == printed

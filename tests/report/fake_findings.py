@@ -172,6 +172,7 @@ def parity(structure, findings):
         "transducers": {"wire-1": {"gain": 2e-3, "gain_error": 1e-3}, "wire-2": {"gain": None, "gain_error": None}},
         "looked_at": 214,
         "falls": {},
+        "gaps": {},
     })  # fmt: skip
 
 
@@ -247,6 +248,7 @@ def made_up_forces(tests, bodies):
     }  # fmt: skip
     return xr.Dataset(
         {
+            "read": (("test", "time"), np.ones(shape, np.int8)),
             **{name: along(values, joints) for name, values in columns.items()},
             "unexplained": along(-2e3 * (time > 2.0), bodies),
             "told": (

@@ -60,7 +60,7 @@ def climbed_and_fitted():
         ]
         climbs.append(rungs)
     climbs[-1][-1]["status"] = "not-converged"
-    return fragility(gathered(np.arange(5), climbs, scales, 0.4), ("configuration-1",))
+    return fragility(gathered(np.arange(5), climbs, scales, 0.4))
 
 
 class FakeStudy:
@@ -84,6 +84,7 @@ class FakeStudy:
                     "structure": name,
                     "motion": "basso-tirreno",
                     "scale": 2.0,
+                    "baseline": "auto",
                     "duration": duration,
                     "samples": FEWER[name],
                     "measured": {"campaign": str(self.folder / "campaigns" / name), "test": "virtual"},
@@ -289,7 +290,7 @@ def convergence_table():
     settings = {
         "time_step": (1e-5, 1e-4),
         "node_spacing": (0.05, 0.2),
-        "perimeter_inset": (0.005, 0.01),
+        "perimeter_inset": (0.003, 0.006),
         "grid_spacing": (EXACT, 0.02),
     }
     for parameter, values in settings.items():

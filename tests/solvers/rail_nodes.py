@@ -14,6 +14,7 @@ def rail_nodes(size, chamfer, hollow, spacing, inset):
     """
     points, areas = box_nodes(size, chamfer, hollow, spacing, inset)
     level = np.isclose(np.abs(points[:, 2]), 0.5 * size[2])
-    kept = ~level | np.isclose(np.abs(points[:, 0]), 0.5 * size[0] - chamfer - inset)
+    inside = inset * (min(size[:2]) - 2.0 * chamfer)
+    kept = ~level | np.isclose(np.abs(points[:, 0]), 0.5 * size[0] - chamfer - inside)
     areas = np.where(level, areas * areas[level].sum() / areas[level & kept].sum(), areas)
     return points[kept], areas[kept]

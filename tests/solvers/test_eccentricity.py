@@ -21,7 +21,7 @@ from blockshake.solvers.nscd.parameters import NscdParameters
 G = 9.81
 K_N = 2.16e10  # N/m3, ls_dem.normal_stiffness by default
 B, H = 0.4, 0.8  # m, half width and half height of the sharp block
-INSET = 0.005  # m, of LS-DEM's outermost nodes, its pivot
+INSET = 0.003 * 2.0 * B  # m, of LS-DEM's outermost nodes, its pivot
 FIELDS = ("position", "orientation", "velocity", "angular_velocity", "energy", "joint_force")
 SOLVERS = {
     "ls-dem": lambda structure, motion, times, **keys: simulate_ls_dem(

@@ -77,7 +77,7 @@ def by_ls_dem(name, duration, stiffer, time_step, shift=0.0, spacing=0.4):
     parameters = LsDemParameters(
         normal_stiffness=stiffer * NORMAL,
         shear_stiffness=stiffer * SHEAR,
-        perimeter_inset=INSET,
+        perimeter_inset=INSET / FLAT,
         node_spacing=spacing,
     )
     built = structure(name, shift)

@@ -10,13 +10,15 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, load_yaml
 from blockshake.geometry.structure import load_structure
+from blockshake.own_files.check import check_file
+from blockshake.quantities import USUAL
 from blockshake.simulation.models import MODELS
-from blockshake.study.check import check_file
+from blockshake.simulation.parameter_table import instances
 from blockshake.study.comparison.differences import FEWEST
 from blockshake.study.config import check_config, load_config
 from blockshake.study.motion_remarks import motion_remarks
 from blockshake.study.sampling.distributions import TABLE_2
-from blockshake.study.structure_remarks import structure_remarks
+from blockshake.study.structure_remarks import structure_remarks, unusual_values
 
 ROOT = PACKAGE.parents[1]
 
@@ -220,7 +222,7 @@ def test_a_decimal_comma_is_named():
 
 def test_friction_is_calibrated_against_a_measured_test_alone(mapping):
     mapping["cases"][0]["measured"] = None
-    line = "friction_calibration.cases: expected cases with a measured test, not configuration-1"
+    line = "friction_calibration.cases: expected cases with a measured test: .*, not configuration-1"
     with pytest.raises(InputError, match=line):
         check_config(mapping, "study.yaml")
 
@@ -255,9 +257,20 @@ def test_check_refuses_other_yaml(tmp_path, text):
         ({"gravity": [0.0, 0.0, 9.81]}, "remark: gravity is 9.81 m/s2 along z: it does not press"),
         (
             {"materials.concrete.youngs_modulus": 34.5},
-            "remark: concrete has a Young's modulus of 34.5 Pa: expected Pa",
+            "remark: materials.concrete.youngs_modulus is 34.5 Pa: 1e+07 to 1e+12 Pa is usual",
         ),
-        ({"materials.concrete.density": 2.4}, "remark: block-1 weighs 7.36 kg, 2.4 kg/m3: expected kg/m3"),
+        (
+            {"materials.concrete.density": 2.4},
+            "remark: materials.concrete.density is 2.4 kg/m3: 100 to 25000 kg/m3 is usual",
+        ),
+        (
+            {"friction.concrete.concrete": 60},
+            "remark: friction.concrete.concrete is 60: 0.05 to 1.5 is usual",
+        ),
+        (
+            {"bodies.block-3.velocity": [0.0, 0.0, 300.0]},
+            "remark: bodies.block-3.velocity is [0.0, 0.0, 300.0] m/s: -10 to 10 m/s is usual",
+        ),
     ],
 )
 def test_check_remarks_what_was_hardly_meant(changes, remark):
@@ -275,6 +288,33 @@ def test_check_remarks_a_structure_in_millimetres(tmp_path):
     assert "block-1 is 2.4e+03 m long and weighs 7.37e+12 kg: expected m" in check_file(
         str(tmp_path / "mm.yaml")
     )
+
+
+def test_every_parameter_with_a_usual_range_is_remarked_beyond_it():
+    """Half beyond either end, where the structure file takes such a value at all."""
+    remarked = set()
+    structure = load_structure(
+        "configuration-1",
+        {
+            "joints.slab.block-1.compliance": 1e-9,
+            "bodies.block-1.density": 2400.0,
+            "stoppers": [
+                {"body": "block-3", "position": [0.4, 0, 0.8], "axis": "+x", "gap": 0.05, "stiffness": 1e7}
+            ],
+        },
+    )
+    for pattern, (low, high) in USUAL.items():
+        name, value = list(instances(pattern, structure.file))[-1]
+        for beyond in (1.5 * low if low < 0.0 else 0.5 * low or -0.5, 1.5 * high):
+            try:
+                changed = structure.with_parameters(
+                    {name: [beyond] * 3 if isinstance(value, tuple) else beyond}
+                )
+            except InputError:
+                continue
+            assert any(said.startswith(f"{name} is ") for said in unusual_values(changed)), (name, beyond)
+            remarked.add(pattern)
+    assert remarked == USUAL.keys()
 
 
 @pytest.mark.parametrize("number", [1, 2, 3, 4])
@@ -358,27 +398,43 @@ def test_a_study_needs_markers_of_the_base_and_of_a_block(mapping, cube, tmp_pat
             check_config(own_study(dict(mapping), tmp_path, bare, ensemble=stone()), "study.yaml")
 
 
-def test_variables_that_no_structure_has_are_remarked(mapping, cube, tmp_path):
+def test_variables_that_no_structure_has_are_refused_but_for_table_2(mapping, cube, tmp_path):
     of_concrete = own_study(dict(mapping), tmp_path, cube, ensemble={"size": 10, "seed": 1})
     (tmp_path / "study.yaml").write_text(yaml.safe_dump(of_concrete))
     assert "all of its samples are alike" in check_file(tmp_path / "study.yaml")
     wrong = {"friction.ston.stone": {"distribution": "lognormal", "mean": 0.5, "cov": 0.1}}
     study = own_study(dict(mapping), tmp_path, cube, ensemble=stone(**wrong))
-    (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
-    told = check_file(tmp_path / "study.yaml")
-    assert "alike" not in told
-    assert told.startswith("a study of 1 case by nscd-rigid (10 samples)")
-    assert "remark: ensemble.distributions.friction.ston.stone: no structure of the cases has it" in told
+    with pytest.raises(
+        InputError, match=r"distributions\.friction\.ston\.stone: expected a parameter that one of"
+    ):
+        check_config(study, "study.yaml")
 
 
 def test_a_study_remarks_what_its_structures_hardly_mean(mapping, cube, tmp_path):
-    cube["materials"]["stone"]["density"] = 2.4
+    cube["materials"]["stone"]["youngs_modulus"] = 34.5
     study = own_study(dict(mapping), tmp_path, cube, ensemble=stone())
     study["cases"][0]["duration"] = 80.0
     (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
     told = check_file(tmp_path / "study.yaml")
-    assert "expected kg/m3" in told
+    assert "materials.stone.youngs_modulus is 34.5 Pa: 1e+07 to 1e+12 Pa is usual" in told
     assert "80 s are simulated of a motion of" in told
+
+
+@pytest.mark.parametrize("axis", ["x", "y", "z"])
+@pytest.mark.parametrize(("duration", "remarked"), [(3.0, True), (4.4, True), (4.6, False), (6.0, False)])
+def test_a_window_that_cuts_the_strong_motion_is_remarked(mapping, cube, tmp_path, axis, duration, remarked):
+    """Even shaking from 1 to 4.684 s: 95 % of its Arias intensity is there after 3.5 s of it, at 4.5 s."""
+    time = np.arange(2001) / 200.0
+    strong = np.where((time >= 1.0) & (time <= 1.0 + 3.5 / 0.95), 2.0 * np.sin(2.0 * np.pi * 5.0 * time), 0.0)
+    rows = np.column_stack([time, strong])
+    np.savetxt(tmp_path / "even.csv", rows, delimiter=",", header=f"time_s,acceleration_{axis}", comments="")
+    study = own_study(dict(mapping), tmp_path, cube, ensemble=stone())
+    study["cases"][0] |= {"duration": duration, "motion": str(tmp_path / "even.csv")}
+    (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
+    told = check_file(tmp_path / "study.yaml")
+    line = f"own: {duration:g} s are simulated of a motion that is strong until 4.5"
+    assert (line in told) == remarked
+    assert ("strong until" in told) == remarked
 
 
 def test_an_unknown_structure_and_a_solver_s_parameter_are_named_by_their_keys(mapping):
@@ -387,5 +443,46 @@ def test_an_unknown_structure_and_a_solver_s_parameter_are_named_by_their_keys(m
         check_config(mapping, "study.yaml")
     mapping["cases"][1]["structure"] = "configuration-2"
     mapping["models"]["nscd-rigid"]["parameters"] = {"nscd.impact_part": 20}
-    with pytest.raises(InputError, match=r"models\.nscd-rigid\.parameters: nscd\.impact_part"):
+    with pytest.raises(InputError, match=r"models\.nscd-rigid\.parameters\.nscd\.impact_part: "):
         check_config(mapping, "study.yaml")
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "words"),
+    [
+        (("models", "nscd-rigid", "time_step"), 1.0, "nscd-rigid.time_step: expected at most 0.01 s, not 1"),
+        (
+            ("models", "nscd-rigid", "time_step"),
+            1e-15,
+            r"nscd-rigid.time_step: expected at most 1e\+11 steps",
+        ),
+        (("output_rate",), 1e9, "output_rate: expected a run of at most 8.6 GB"),
+        (("cases", 0, "duration"), 1e9, "cases.0.duration: expected at most"),
+        (("ensemble", "size"), 10**9, "ensemble.size: input should be less than or equal to 1000000"),
+    ],
+)
+def test_a_study_that_no_machine_can_run_is_refused(mapping, path, value, words):
+    mapping = copy.deepcopy(dict(mapping))
+    *way, last = path
+    place = mapping
+    for part in way:
+        place = place[part]
+    place[last] = value
+    with pytest.raises(InputError, match=words):
+        check_config(mapping, "study.yaml")
+
+
+def test_a_study_of_the_viscoelastic_model_needs_a_viscous_modulus(mapping, cube, tmp_path):
+    study = own_study(dict(mapping), tmp_path, cube, ensemble=stone())
+    study["models"] = {"nscd-viscoelastic": {"time_step": 1e-3}}
+    with pytest.raises(InputError, match=r"nscd-viscoelastic: .*viscous_modulus: expected above 0"):
+        check_config(study, "study.yaml")
+    study["ensemble"]["distributions"]["materials.stone.viscous_modulus"] = {"mean": 1.5e8, "cov": 0.1}
+    check_config(study, "study.yaml")
+
+
+def test_a_variable_beyond_what_is_usual_is_remarked(mapping, cube, tmp_path):
+    study = own_study(dict(mapping), tmp_path, cube, ensemble=stone())
+    study["ensemble"]["distributions"]["friction.stone.stone"] = {"mean": 60.0, "cov": 0.1}
+    (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
+    assert "friction.stone.stone is 59.7022: 0.05 to 1.5 is usual" in check_file(tmp_path / "study.yaml")

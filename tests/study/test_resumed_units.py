@@ -13,7 +13,13 @@ from blockshake.study.ensembles import ladder
 from blockshake.study.sampling.latin_hypercube import write_design
 from blockshake.study.stiffness import definitions, wave_speed
 
-CASE = {"structure": "configuration-1", "motion": "basso-tirreno", "scale": 1.0, "duration": 0.05}
+CASE = {
+    "structure": "configuration-1",
+    "motion": "basso-tirreno",
+    "scale": 1.0,
+    "baseline": "auto",
+    "duration": 0.05,
+}
 RUNGS = Ladder(first=0.5, increment=0.25, highest=1.25)
 SHORT = Convergence(
     structure="configuration-1",
@@ -21,7 +27,7 @@ SHORT = Convergence(
     duration=0.1,
     time_steps=(1e-4, 5e-5),
     node_spacings=(0.4, 0.8),
-    perimeter_insets=(0.01, 0.02),
+    perimeter_insets=(0.006, 0.012),
     grid_spacings=(0.1,),
 )
 DESIGN = pd.DataFrame({"materials.concrete.youngs_modulus": [3e10, 3.5e10, 4e10]})
@@ -32,7 +38,7 @@ class CutShortError(Exception):
 
 
 def _climb(path, store):
-    climbed = [CASE], ["alkion"], 1e-4, RUNGS
+    climbed = [CASE], {"alkion": "auto"}, 1e-4, RUNGS
     write_json(path, ladder.climb_ladders(*climbed, store, "source", lambda line: None))
 
 
@@ -40,7 +46,7 @@ def test_a_structure_of_two_cases_is_climbed_once_for_the_longer_one(tmp_path, m
     climbed = []
     monkeypatch.setattr(ladder, "climb", lambda structure, motion, *run: climbed.append(run[3]) or [])
     cases = [CASE, CASE | {"duration": 0.1}]
-    ladder.climb_ladders(cases, ["alkion"], 1e-4, RUNGS, tmp_path, "source", lambda line: None)
+    ladder.climb_ladders(cases, {"alkion": "auto"}, 1e-4, RUNGS, tmp_path, "source", lambda line: None)
     assert climbed == [0.1]
 
 
@@ -53,7 +59,7 @@ def _calibrate(path, store):
 
 
 def _compare(path, store):
-    compared = definitions.compare_definitions(CASE, 1e-4, 0.02, store, "source")
+    compared = definitions.compare_definitions({**CASE, "duration": 0.02}, 1e-4, store, "source")
     path.write_bytes(b"".join(np.ascontiguousarray(one).tobytes() for one in compared.data_vars.values()))
 
 

@@ -21,6 +21,7 @@ CASE = {
     "structure": "configuration-1",
     "motion": "basso-tirreno",
     "scale": 2.25,
+    "baseline": "auto",
     "duration": 12.0,
     "input": "commanded",
 }

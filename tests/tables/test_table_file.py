@@ -8,7 +8,7 @@ import pytest
 
 from blockshake.errors import InputError
 from blockshake.tables.table_file import TableLayout, read_table
-from blockshake.tables.units import kind_of_unit, unit_size
+from blockshake.tables.units import unit_size
 
 MM = unit_size("displacement", "mm", "here", "unit")
 
@@ -100,12 +100,8 @@ def test_faults_of_a_table_name_their_place(text, message, tmp_path):
     assert "\n" not in str(error.value)
 
 
-def test_units_have_their_sizes():
-    for kind, unit, size in (
-        ("displacement", "mm", "0.001"), ("time", "ms", "0.001"), ("acceleration", "g", "9.80665"),
-        ("acceleration", "cm/s2", "0.01"), ("acceleration", "GAL", "0.01"), ("displacement", "\N{MICRO SIGN}m", "1e-6"),
-    ):  # fmt: skip
-        assert unit_size(kind, unit, "here", "unit") == Decimal(size)
-    assert kind_of_unit("cm/s", ("acceleration", "velocity"), "here", "unit") == "velocity"
-    with pytest.raises(InputError, match="expected a unit of displacement"):
-        unit_size("displacement", "inch", "here", "unit")
+def test_text_of_a_workbook_has_the_table_s_decimal_sign(tmp_path):
+    path = _book(tmp_path / "b.xlsx", one=[["t", "a"], [0.5, "1,5"], [1.5, "1.012"]])
+    assert _column(path, "t", decimal=",") == [0.5, 1.5]  # a number has no sign to take for another
+    with pytest.raises(InputError, match="line 3, a: expected a number with a decimal comma"):
+        _column(path, "a", decimal=",")

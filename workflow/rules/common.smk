@@ -17,8 +17,11 @@ os.environ.update(
     NUMEXPR_NUM_THREADS="1",
 )
 
-from blockshake.errors import InputError
+from snakemake.logging import logger
+
+from blockshake.errors import BAD_INPUT, InputError
 from blockshake.files import HOME, PACKAGE, shipped
+from blockshake.log import Failures
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.simulation.models import MODELS as SOLVERS
 from blockshake.sources import kernel_sources, script_sources, source_digest
@@ -38,7 +41,7 @@ GIVEN = ("campaign", "campaigns", "effort", "without")
 def refuse(error):
     """End with one line on bad input and exit 2."""
     print(f"blockshake: {error}", file=sys.stderr, flush=True)
-    os._exit(2)
+    os._exit(BAD_INPUT)
 
 
 def hold_folder():
@@ -248,12 +251,22 @@ def case_definition(wildcards):
     """Keys of a case in the configuration that its runs depend on."""
     return {
         key: CASES[wildcards.case][key]
-        for key in ("structure", "motion", "scale", "duration", "input")
+        for key in ("structure", "motion", "scale", "baseline", "duration", "input")
     }
+
+
+FAILURES = Failures()
 
 
 onstart:
     hold_folder()
+    # the user may ask to go on, and a cluster may start killed jobs again
+    asked = workflow.execution_settings
+    FAILURES.watch(logger, asked.keep_going, asked.retries)
+
+
+onerror:
+    FAILURES.end()
 
 
 if workflow.remote_exec:
@@ -277,13 +290,11 @@ MEASURED = [name for name, case in CASES.items() if case["measured"]]
 FRICTION_SEARCH = config.get("friction_calibration") or {}
 CALIBRATION = config.get("calibration") or {}
 FRAGILITY = config.get("fragility") or {}
+BASELINES = {motion: baseline for _, motion, baseline in CHECKED.named_motions()}
 LADDER_MOTIONS = config["ladder"]["motions"] or list(
     dict.fromkeys(case["motion"] for case in config["cases"])
 )
-MOTIONS = {
-    Path(motion).stem: motion
-    for motion in [*(case["motion"] for case in CASES.values()), *LADDER_MOTIONS]
-}
+MOTIONS = {Path(motion).stem: motion for motion in BASELINES}
 
 
 wildcard_constraints:

@@ -23,7 +23,7 @@ rule climb_samples:
     params:
         case=lambda wildcards: {
             key: CASES[wildcards.case][key]
-            for key in ("structure", "motion", "duration")
+            for key in ("structure", "motion", "baseline", "duration")
         },
         model=lambda wildcards: FRAGILITY["model"],
         settings=lambda wildcards: config["models"][FRAGILITY["model"]],

@@ -9,6 +9,7 @@ rule describe_motion:
     conda:
         "../envs/blockshake.yaml"
     params:
+        baseline=lambda wildcards: BASELINES[MOTIONS[wildcards.motion]],
         source=source_of("describe_motion"),
     script:
         "../scripts/describe_motion.py"

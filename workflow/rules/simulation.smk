@@ -96,7 +96,7 @@ rule climb_ladder:
         "../envs/blockshake.yaml"
     params:
         cases=[case for case in CASES.values()],
-        motions=LADDER_MOTIONS,
+        motions={motion: BASELINES[motion] for motion in LADDER_MOTIONS},
         ladder=lookup(dpath="ladder", within=config),
         time_step=time_step_of("ls-dem"),
         store="results/store",

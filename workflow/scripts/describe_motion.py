@@ -4,4 +4,6 @@ from blockshake.files import write_dataset
 from blockshake.log import logging_to
 
 with logging_to(snakemake.log[0]):
-    write_dataset(snakemake.output[0], describe_motion(load_motion(snakemake.input[0]), snakemake.input[0]))
+    definition = snakemake.input[0]
+    motion = load_motion(definition, baseline=snakemake.params.baseline)
+    write_dataset(snakemake.output[0], describe_motion(motion, definition))

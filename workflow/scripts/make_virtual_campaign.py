@@ -5,6 +5,7 @@ from blockshake.virtual.generate import generate_campaign
 from blockshake.virtual.settings import load_settings
 
 with logging_to(snakemake.log[0]) as say:
-    settings, structure = load_settings(snakemake.input.settings), snakemake.wildcards.structure
+    structure = snakemake.wildcards.structure
+    settings = load_settings(snakemake.input.settings, structure)
     folders = Path(snakemake.output.campaign).parent, Path(snakemake.output.truth).parent
     generate_campaign(settings, structure, *folders, snakemake.params.source, say)

@@ -10,6 +10,7 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import HOME
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.motion.measured_base import record_start
 from blockshake.study.config import load_config
 
 _TWINS = 3  # runs that twins cost: one of the usual step, one of half
@@ -40,7 +41,10 @@ def study_cost(path):
     parts = []
     for model, settings in config.models.items():
         for case in config.cases:
-            structure, motion = load_structure(case.structure), load_motion(case.motion, case.scale)
+            structure, motion = (
+                load_structure(case.structure),
+                load_motion(case.motion, case.scale, case.baseline),
+            )
             trial = {"model": model, **settings.model_dump()}
             asked = _runs(config, model, case)
             runs = sum(count for count, _ in asked.values())
@@ -80,5 +84,9 @@ def _runs(config, model, case):
 def _open_records(case):
     """Lengths of the open tests of a case's campaign [s]."""
     campaign = load_campaign(case.measured.campaign)
-    opened = [load_test(campaign, name) for name, test in campaign.tests.items() if test.role != "sealed"]
-    return [float(test["time"][-1] - test["time"][0]) for test in opened]
+    times = [
+        load_test(campaign, name)["time"].to_numpy()
+        for name, test in campaign.tests.items()
+        if test.role != "sealed"
+    ]
+    return [float(time[-1] - record_start(time)) for time in times]

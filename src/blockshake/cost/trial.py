@@ -44,10 +44,10 @@ def run_seconds(structure, motion, settings, duration, runs):
             lambda: simulate(structure, shaken, duration=until, accelerometers=False, **settings)
         )
 
-    seconds(motion, 0.01)  # loads the kernels
+    strong = from_strongest(motion)
+    seconds(strong, 0.01)  # loads the kernels
     if runs >= _MANY:
         return seconds(motion, duration)
-    strong = from_strongest(motion)
     first, second = (seconds(strong, min(part, duration)) for part in _PARTS)
     rate = (second - first) / (_PARTS[1] - _PARTS[0])
     return seconds(motion, duration) if rate * duration < _LONGEST else rate * duration

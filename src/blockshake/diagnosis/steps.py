@@ -364,7 +364,8 @@ def conclude(folder, effort, files):
     fell = [
         f"{test} is judged until {one.body} falls, at {one.time:.2f} s" for test, one in parity.falls.items()
     ]
-    caveats = [*measured.caveats, *fell]
+    gaps = [f"{test}: {line}" for test, lines in parity.gaps.items() for line in lines]
+    caveats = [*measured.caveats, *fell, *gaps]
     return conclude(
         decision, parity.findings, parity.recorder_sensors, judged, runs, caveats, effort, size, measured, scores,
     )  # fmt: skip

@@ -2,17 +2,20 @@
 
 import numpy as np
 
+from blockshake.dynamics.motion import CHANNELS
 from blockshake.dynamics.response_spectrum import acceleration_segments
 
 _GRAVITY = 9.80665  # m/s2, in Arias's definition
 
 
-def motion_figures(motion):
-    """Peaks, Arias intensity and duration of a motion along x.
+def motion_figures(motion, axis="x"):
+    """Peaks, Arias intensity and duration of a motion along one axis.
 
     Parameters
     ----------
     motion : GroundMotion
+    axis : str
+        ``x``, ``y`` or ``z``.
 
     Returns
     -------
@@ -22,11 +25,12 @@ def motion_figures(motion):
         ``significant_duration`` from 5 to 95 % of it, with its ``significant_start`` and
         ``significant_end`` [s]; ``duration`` of the record [s]; ``end_displacement`` [m].
     """
-    _, start, end = acceleration_segments(motion, "x")
-    displacement = motion.evaluate(motion.table.breaks)[:, 0]
+    _, start, end = acceleration_segments(motion, axis)
+    channel = CHANNELS.index(axis)
+    displacement = motion.evaluate(motion.table.breaks)[:, channel]
     displacement = displacement - displacement[0]
-    velocity = motion.evaluate(motion.table.breaks, derivative=1)[:, 0]
-    arias = arias_intensity(motion)
+    velocity = motion.evaluate(motion.table.breaks, derivative=1)[:, channel]
+    arias = arias_intensity(motion, axis)
     begins, ends = (_crossing(motion.table.breaks, arias, share) for share in (0.05, 0.95))
     return {
         "peak_acceleration": float(max(np.abs(start).max(), np.abs(end).max())),
@@ -57,6 +61,11 @@ def arias_intensity(motion, axis="x"):
     step, start, end = acceleration_segments(motion, axis)
     gathered = np.cumsum(step * (start * start + start * end + end * end) / 3.0)
     return np.pi / (2.0 * _GRAVITY) * np.concatenate([[0.0], gathered])
+
+
+def strong_until(motion):
+    """Time at which 95 % of the Arias intensity of all axes is gathered [s]; 0 for a motion that never moves."""
+    return _crossing(motion.table.breaks, sum(arias_intensity(motion, axis) for axis in "xyz"), 0.95)
 
 
 def _crossing(time, gathered, share):

@@ -2,99 +2,132 @@
 
 import numpy as np
 
-from blockshake.dynamics.baseline import CORNER_FREQUENCY, check_samples, correct_baseline, correction_words
+from blockshake.dynamics.baseline import AUTO, NONE, settle
 from blockshake.dynamics.motion import check_finite, ground_motion
 from blockshake.dynamics.records.at2 import is_at2, read_at2
+from blockshake.dynamics.records.channels import chosen_records
 from blockshake.dynamics.records.contract_csv import read_motion_csv
 from blockshake.dynamics.records.cosmos import is_cosmos, read_cosmos
+from blockshake.dynamics.records.csmip import is_csmip, read_csmip
 from blockshake.dynamics.records.dyna import is_dyna, read_dyna
+from blockshake.dynamics.records.knet import is_knet, read_knet
+from blockshake.dynamics.records.smc import is_smc, read_smc
 from blockshake.dynamics.synthetic_motion import synthesise
 from blockshake.dynamics.synthetic_schema import load_synthetic
 from blockshake.errors import InputError
-from blockshake.files import named_file, read_text
+from blockshake.files import named_file, read_foreign_text
 
 # content decides; the ending only where a broken file of that format should say what it lacks
 _RECORD_FORMATS = (
     (is_dyna, ".asc", read_dyna),
-    (is_cosmos, ".v2", read_cosmos),
+    (is_cosmos, ".v2c", read_cosmos),
+    (is_csmip, ".v2", read_csmip),
+    (is_knet, ".knt", read_knet),
+    (is_smc, ".smc", read_smc),
     (is_at2, ".at2", read_at2),
 )
 
 
-def load_motion(source, scale=1.0, correct=True, corner_frequency=CORNER_FREQUENCY):
+def load_motion(source, scale=1.0, baseline=AUTO, channels=None):
     """Ground motion from a shipped name or a file.
 
     Parameters
     ----------
     source : str or path
         ``alkion``, ``basso-tirreno`` (synthetic), a CSV of the project, a record in ESM/ITACA DYNA
-        1.2, PEER AT2 or COSMOS V2, or the YAML of a synthetic motion. Content tells the format.
+        1.2, PEER AT2, COSMOS V2, CSMIP V2, K-NET/KiK-net ASCII or SMC, or the YAML of a synthetic motion. Content tells
+        the format.
     scale : float
-        Multiplies every column [1].
-    correct : bool
-        Baseline correction of record formats; a CSV is never corrected.
-    corner_frequency : float
-        Of that correction's high-pass [Hz].
+        Multiplies every column, not 0 [1].
+    baseline : str or float
+        ``auto``, ``none`` or a corner frequency [Hz], as `settle` takes it: by default a record that does not end at
+        rest is corrected, and a CSV never is.
+    channels : dict of str to str, optional
+        By axis (``x``, ``y``, ``z``) the name of a record's channel, or its number in the file, from 1. By default the
+        only channel is x.
 
     Returns
     -------
     GroundMotion
         Its time starts at zero: what the file gives as its first time is in the attribute
-        ``first_time`` where it is another. A record's component becomes x.
+        ``first_time`` where it is another. The attributes of a record tell its ``format``, the entries of its header
+        that were ``checked`` against the values, and what was ``assumed``; ``baseline`` and, of a corrected motion,
+        ``record_start`` are those of `settle`.
 
     Raises
     ------
     InputError
         Missing file, unknown name, unknown format or unit, NaN, time that does not increase,
-        mixed kinds, too few rows, a file cut short, a scale that is not a finite number, a displacement beyond all
-        numbers.
+        a gap in even rows, mixed kinds, too few rows, a file cut short, a header that contradicts its values, several
+        channels where none is named, a scale that is 0 or not finite, a displacement beyond all numbers, a correction
+        that cannot be made.
     """
-    if not np.isfinite(scale):
-        raise InputError(source, "scale", f"expected a finite number, found {scale}")
+    if not np.isfinite(scale) or scale == 0.0:
+        raise InputError(source, "scale", f"expected a finite number other than 0, found {scale}")
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # looked at below
+        motion = _read(named_file("motions", source), baseline, channels)
+    return scaled(motion, scale, source)
+
+
+def scaled(motion, scale, source):
+    """A motion with every column multiplied by a finite scale; an `InputError` names ``source`` if that is too much."""
     with np.errstate(over="ignore", invalid="ignore"):  # looked at below
-        motion = _read(named_file("motions", source), corner_frequency if correct else None)
         motion = motion if scale == 1.0 else motion.scaled(scale)
     check_finite(motion, source)
     return motion
 
 
-def _read(path, corner):
+def _read(path, baseline, channels):
     if path.suffix.lower() in (".yaml", ".yml"):
-        asked = load_synthetic(path)
-        check_samples(asked.duration / asked.time_step, asked.time_step, asked.high_pass_frequency, path)
-        return synthesise(asked)
-    text = read_text(path)
-    for recognises, _, read in _RECORD_FORMATS:
-        if recognises(text):
-            return _record_motion(read(text, path), path, corner)
-    for _, ending, read in _RECORD_FORMATS:
-        if path.suffix.lower().startswith(ending):
-            return _record_motion(read(text, path), path, corner)
-    if "time_s" in text.partition("\n")[0] or path.suffix.lower() == ".csv":
-        return _csv_motion(text, path)
+        _check_no_channels(channels, path)
+        if baseline not in (AUTO, NONE):
+            raise InputError(
+                path, "baseline", f"expected {AUTO} or {NONE} of a synthetic motion, which ends at rest"
+            )
+        return synthesise(load_synthetic(path))
+    text = read_foreign_text(path)
+    ending = path.suffix.lower()
+    readers = [read for recognises, _, read in _RECORD_FORMATS if recognises(text)]
+    readers += [read for _, begin, read in _RECORD_FORMATS if ending.startswith(begin)]
+    if readers:
+        return _record_motion(
+            chosen_records(readers[0](text, path), channels, path), path, baseline, channels
+        )
+    _check_no_channels(channels, path)
+    if "time_s" in text.partition("\n")[0] or ending == ".csv":
+        return settle(_csv_motion(text, path), baseline, path)
     raise InputError(
-        path,
-        "",
-        "expected a motion CSV (time_s, acceleration_x, ...), ESM/ITACA DYNA 1.2, PEER AT2 or COSMOS V2",
-    )
+        path, "",
+        "expected a motion CSV (time_s, acceleration_x, ...), ESM/ITACA DYNA 1.2, PEER AT2, COSMOS V2, CSMIP V2, "
+        "K-NET/KiK-net ASCII or SMC; `blockshake convert-motion` reads other tables",
+    )  # fmt: skip
 
 
 def _csv_motion(text, path):
     time, columns, kind = read_motion_csv(text, path)
-    attributes = {"source": path.name, "format": "csv", "synthetic": False, "baseline": "none"}
+    attributes = {"source": path.name, "format": "csv", "synthetic": False}
+    attributes |= {"checked": "times", "assumed": "nothing"}
     if time[0] != 0.0:
         attributes["first_time"] = float(time[0])
     return ground_motion(path.stem, time - time[0], columns, kind, attributes)
 
 
-def _record_motion(record, path, corner):
-    acceleration, baseline = record.acceleration, "none"
-    if corner is not None:
-        check_samples(len(acceleration), record.time_step, corner, path)
-        acceleration = correct_baseline(acceleration, record.time_step, corner)
-        baseline = correction_words(corner)
-    time = record.time_step * np.arange(len(acceleration))
-    attributes = {"source": path.name, "format": record.format, "synthetic": False, "baseline": baseline}
-    return ground_motion(
-        path.stem, time, {"x": acceleration}, "acceleration", {**attributes, **record.metadata}
-    )
+def _check_no_channels(channels, path):
+    if channels:
+        raise InputError(
+            path, "--column", "expected for a record, or with --unit for a table; this is neither"
+        )
+
+
+def _record_motion(records, path, baseline, channels):
+    first = next(iter(records.values()))
+    columns = {axis: record.acceleration for axis, record in records.items()}
+    time = first.time_step * np.arange(len(first.acceleration))
+    attributes = {"source": path.name, "format": first.format, "synthetic": False}
+    assumed = [first.assumed] if channels else ["a component along x", first.assumed]
+    attributes |= {"checked": first.checked, "assumed": "; ".join(filter(None, assumed)) or "nothing"}
+    if any(record.channel for record in records.values()):
+        attributes["channels"] = ", ".join(f"{axis}: {record.channel}" for axis, record in records.items())
+    motion = ground_motion(path.stem, time, columns, "acceleration", {**attributes, **first.metadata})
+    check_finite(motion, path)
+    return settle(motion, baseline, path, published=True)

@@ -57,6 +57,16 @@ class GroundMotion:
         scale = float(self.attributes.get("scale", 1.0) * factor)
         return replace(self, table=table, attributes={**self.attributes, "scale": scale})
 
+    def delayed(self, late):
+        """The same motion, ``late`` after a rest at its first row; not negative [s]."""
+        if late == 0.0:
+            return self
+        breaks, coefficients = self.table
+        rest = np.zeros((1, *coefficients.shape[1:]))
+        rest[..., 0] = coefficients[0, :, 0]
+        rows = np.concatenate([breaks[:1], breaks + late])
+        return replace(self, table=MotionTable(rows, np.concatenate([rest, coefficients])))
+
     def evaluate(self, times, derivative=0):
         """Displacement (or a time derivative) and pitch at any times.
 

@@ -48,7 +48,7 @@ class SyntheticMotion(Strict):
     time_step: Positive = Field(description="[s]")
     duration: Positive = Field(description="[s]")
     peak_acceleration: Positive = Field(description="of the finished record, exact [m/s2]")
-    high_pass_frequency: Positive = Field(description="corner of the baseline correction [Hz]")
+    high_pass_frequency: Positive = Field(description="corner below which the motion has nothing [Hz]")
     source: Source
     envelope: Envelope
     target_spectrum: tuple[Ordinate, ...] = Field(min_length=2)
@@ -60,6 +60,8 @@ class SyntheticMotion(Strict):
             raise ValueError("expected target_spectrum in order of rising period")
         if not 100.0 <= self.duration / self.time_step <= _MOST_STEPS:
             raise ValueError(f"expected a duration of 100 to {_MOST_STEPS} time steps")
+        if self.high_pass_frequency * self.duration < 0.1:
+            raise ValueError("expected high_pass_frequency of a period of at most ten durations")
         return self
 
 

@@ -28,11 +28,13 @@ class Status(StrEnum):
 
     COMPLETED = "completed"
     COLLAPSED = "collapsed"
+    FALLING = "falling"
     DIVERGED = "diverged"
     NOT_CONVERGED = "not-converged"
 
 
-FINISHED = (Status.COMPLETED, Status.COLLAPSED)  # a run that the solver could not finish is no prediction
+FALLEN = (Status.COLLAPSED, Status.FALLING)  # the window ended before a block that falls was down
+FINISHED = (Status.COMPLETED, *FALLEN)  # a run that the solver could not finish is no prediction
 
 
 class Bodies(NamedTuple):

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.geometry.mesh_distance import lattice_distances
+from blockshake.geometry.meshes.mesh_distance import lattice_distances
 from blockshake.geometry.polyhedron import box_vertices, convex_polyhedron, triangles
 
 _MARGIN = 2  # cells beyond the bounding box on every side

@@ -110,6 +110,36 @@ def penetration_depths(solid_a, positions_a, orientations_a, solid_b, positions_
     return depths
 
 
+def depths_of_pairs(pairs, shapes, solids, position, orientation):
+    """`penetration_depth` of pairs of bodies, those of the same two shapes at once.
+
+    Parameters
+    ----------
+    pairs : int64 array, shape (n_pairs, 2)
+        Bodies.
+    shapes : list of str
+        Shape of each body.
+    solids : dict of str to Solid
+        By shape.
+    position, orientation : float64 arrays, shape (n_bodies, 3) and (n_bodies, 4)
+        Of the solids' origins [m].
+
+    Returns
+    -------
+    float64 array, shape (n_pairs,)
+        [m]
+    """
+    depth, by_shapes = np.empty(len(pairs)), {}
+    for place, (a, b) in enumerate(pairs):
+        by_shapes.setdefault((shapes[a], shapes[b]), []).append(place)
+    for (first, second), places in by_shapes.items():
+        a, b = pairs[places].T
+        depth[places] = penetration_depths(
+            solids[first], position[a], orientation[a], solids[second], position[b], orientation[b]
+        )
+    return depth
+
+
 def _face_overlap(solid, other, rotation, offset):
     """Least overlap along the normals of one solid's faces, in its frame, for every pose of the other [m]."""
     normals, reach = solid.polyhedron.normals, solid.polyhedron.offsets

@@ -13,7 +13,7 @@ _SAME_PLANE = 1e-7
 
 @dataclass(frozen=True)
 class MassProperties:
-    """Volume, centroid and unit-density inertia of a closed surface.
+    """Volume, centroid, unit-density inertia and area of a closed surface.
 
     Attributes
     ----------
@@ -23,11 +23,14 @@ class MassProperties:
         In the frame of the vertices [m].
     inertia : float64 array, shape (3, 3)
         About the centroid for a density of 1 kg/m3 [m5], axes of the vertices' frame.
+    area : float
+        [m2]
     """
 
     volume: float
     centroid: np.ndarray
     inertia: np.ndarray
+    area: float
 
 
 @dataclass(frozen=True)
@@ -143,4 +146,4 @@ def mass_properties(vertices, faces):
     inertia = np.array(mesh.moment_inertia)
     # a symmetric body must not start to yaw from the rounding of its own inertia
     inertia[np.abs(inertia) < 1e-12 * np.trace(inertia)] = 0.0
-    return MassProperties(float(mesh.volume), np.array(mesh.center_mass), inertia)
+    return MassProperties(float(mesh.volume), np.array(mesh.center_mass), inertia, float(mesh.area))

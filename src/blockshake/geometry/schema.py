@@ -129,6 +129,12 @@ class ExternalForce(Strict):
     )
     damping: Finite = Field(0.0, description="force against the point's velocity relative to it [N s/m]")
 
+    @model_validator(mode="after")
+    def _ends(self):
+        if self.end <= self.start:
+            raise ValueError("expected `end` after `start`")
+        return self
+
 
 class Marker(Strict):
     """A point of a body whose displacement is measured."""
@@ -145,6 +151,12 @@ class Accelerometer(Strict):
     body: str = Field(description="the body that carries it")
     position: Vector = Field(description="body frame, from the centroid [m]")
     axes: tuple[Literal[AXES], ...] = Field(min_length=1, description="of the body that it measures along")
+
+    @model_validator(mode="after")
+    def _each_axis_once(self):
+        if len(set(self.axes)) < len(self.axes):
+            raise ValueError("expected every axis once")
+        return self
 
 
 class DisplacementTransducer(Strict):

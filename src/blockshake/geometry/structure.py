@@ -1,7 +1,6 @@
 """A structure as the solvers need it: checked file, shapes, mass properties, start state."""
 
 import copy
-import io
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,9 +8,10 @@ import numpy as np
 import trimesh
 
 from blockshake.errors import InputError
-from blockshake.files import load_yaml, named_file, read_bytes
+from blockshake.files import load_yaml, named_file
 from blockshake.geometry.mass_offset import check_offset, offset_inertia, offset_solid
-from blockshake.geometry.overlap import near_pairs, penetration_depths
+from blockshake.geometry.meshes.mesh_file import read_mesh
+from blockshake.geometry.overlap import depths_of_pairs, near_pairs
 from blockshake.geometry.polyhedron import (
     MassProperties,
     Polyhedron,
@@ -24,15 +24,14 @@ from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import StructureFile
 from blockshake.geometry.structure_file import (
     check_names,
+    check_points,
     check_transducers,
     friction_matrix,
     replace_into,
     unit_quaternions,
 )
-from blockshake.paths import file_below
 from blockshake.validation import validated
 
-MESHES = (".stl", ".ply", ".obj", ".off")  # suffixes of mesh files
 DEEPEST_OVERLAP = 1e-3  # m; deeper is a wrong structure, not an initial penetration
 # m; an equilibrium of elastic or shrunk contacts within this of the given poses is the start of a run, and bodies
 # nearer than this touch
@@ -220,6 +219,7 @@ def build_structure(mapping, source, folder, known=None):
     centroid = np.array([body.position for body in file.bodies])
     orientation = unit_quaternions(file, source)
     check_transducers(file, orientation, source)
+    check_points(file, solids, source)
     offset = np.array([body.mass_offset for body in file.bodies])
     lever = np.einsum("bij,bj->bi", rotation_matrices(orientation), offset)
     angular_velocity = np.array([body.angular_velocity for body in file.bodies])
@@ -245,19 +245,10 @@ def _solid(name, shape, source, folder):
         polyhedron = convex_polyhedron(box_vertices(shape.box, shape.chamfer))
         vertices, faces = polyhedron.vertices, triangles(polyhedron)
         return Solid(vertices, faces, polyhedron, mass_properties(vertices, faces))
-    key = f"shapes.{name}.mesh"
-    path = file_below(folder, shape.mesh, source, key)
-    if path.suffix.lower() not in MESHES:
-        raise InputError(source, key, f"expected a mesh file {', '.join(MESHES)}, not '{path}'")
-    try:
-        # from its bytes, so that it cannot name further files
-        mesh = trimesh.load_mesh(io.BytesIO(read_bytes(path)), file_type=path.suffix.lower()[1:])
-    except Exception as error:  # trimesh raises whatever its many readers raise
-        raise InputError(source, key, f"expected a readable mesh file {path}; {error}") from None
-    if not mesh.is_volume:
-        raise InputError(source, key, "expected a closed surface with outward triangles")
-    vertices = np.array(mesh.vertices) - mesh.center_mass
-    faces = np.array(mesh.faces)
+    vertices, faces = read_mesh(folder, shape.mesh, source, f"shapes.{name}.mesh")
+    properties = mass_properties(vertices, faces)
+    vertices = vertices - properties.centroid
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
     polyhedron = convex_polyhedron(vertices) if mesh.is_convex else None
     return Solid(vertices, faces, polyhedron, mass_properties(vertices, faces))
 
@@ -279,15 +270,7 @@ def _touching(file, source, solids, position, orientation):
     shape = [body.shape for body in bodies]
     driven = np.array([body.driven for body in bodies])
     pairs = near_pairs([solids[name] for name in shape], position, orientation, START_TOLERANCE)
-    depth = np.empty(len(pairs))
-    by_shapes = {}
-    for place, (a, b) in enumerate(pairs):
-        by_shapes.setdefault((shape[a], shape[b]), []).append(place)
-    for (first, second), places in by_shapes.items():
-        a, b = pairs[places].T
-        depth[places] = penetration_depths(
-            solids[first], position[a], orientation[a], solids[second], position[b], orientation[b]
-        )
+    depth = depths_of_pairs(pairs, shape, solids, position, orientation)
     for place in np.flatnonzero(depth > DEEPEST_OVERLAP)[:1]:
         a, b = pairs[place]
         raise InputError(

@@ -1,6 +1,7 @@
 """The mapping of a structure file: parameters replaced in it, names checked, pairs of materials resolved."""
 
 from collections import Counter
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,6 +11,9 @@ from blockshake.geometry.schema import AXES
 
 _SHORTEST_WIRE = 1e-3  # m; a shorter one has no direction
 _BEHIND = 0.02  # m, by which a face may lie behind the point given of the rod, as blocks out of place make it
+# A mast or a bracket of a sensor is shorter than its block; a frame on a slab may be some times as high as wide. Places
+# in centimetres or from the structure's origin lie farther off.
+_REMARKED, _REFUSED = 0.5, 3.0  # of the body's longest edge
 
 
 def replace_into(mapping, key, value, source):
@@ -103,10 +107,12 @@ def check_names(file, source):
         if len(pair) == 1 or pair in joints:
             raise InputError(source, key, "expected two different bodies, and every joint once")
         joints.add(pair)
-    for index, force in enumerate(file.external_forces):
-        if any(body.driven and body.name == force.body for body in file.bodies):
-            raise InputError(source, f"external_forces.{index}.body", "expected a body that is not driven")
-    if file.stoppers and not any(body.driven for body in file.bodies):
+    driven = {body.name for body in file.bodies if body.driven}
+    for kind in ("external_forces", "stoppers"):
+        for index, item in enumerate(getattr(file, kind)):
+            if item.body in driven:
+                raise InputError(source, f"{kind}.{index}.body", "expected a body that is not driven")
+    if file.stoppers and not driven:
         raise InputError(source, "stoppers", "expected a driven body to fix the stoppers to")
 
 
@@ -196,3 +202,63 @@ def friction_matrix(file, source):
                     source, f"friction.{key[0]}.{key[1]}", "missing; expected a coefficient for this pair"
                 )
     return np.where(together, np.nan, coefficient[material[:, None], material[None, :]])
+
+
+class _Point(NamedTuple):
+    key: str
+    body: str
+    away: float
+    edge: float
+
+
+def check_points(file, solids, source):
+    """Refuse points farther off their bodies than three times these bodies' longest edge.
+
+    Parameters
+    ----------
+    file : StructureFile
+    solids : dict of str to Solid
+        By shape name.
+    source : str
+
+    Raises
+    ------
+    InputError
+    """
+    for point in _points(file, solids):
+        if point.away > _REFUSED * point.edge:
+            raise InputError(
+                source, point.key,
+                f"expected a place near {point.body}, whose longest edge is {point.edge:.3g} m, in its own frame; "
+                f"it lies {point.away:.3g} m off",
+            )  # fmt: skip
+
+
+def point_remarks(structure):
+    """One sentence for every point that is off its body by more than half of the longest edge; a list of str."""
+    return [
+        f"{point.key} lies {point.away:.3g} m off {point.body}, whose longest edge is {point.edge:.3g} m"
+        for point in _points(structure.file, structure.solids)
+        if point.away > _REMARKED * point.edge
+    ]
+
+
+def _points(file, solids):
+    """Every point of the file, and how far it lies outside of its body's bounding box [m]."""
+    boxes = {
+        body.name: (solids[body.shape].vertices.min(axis=0), solids[body.shape].vertices.max(axis=0))
+        for body in file.bodies
+    }
+    named = [
+        (f"{kind}.{getattr(item, 'name', index)}.position", item.body, item.position)
+        for kind in ("markers", "accelerometers", "displacement_transducers", "stoppers", "external_forces")
+        for index, item in enumerate(getattr(file, kind))
+    ]
+    named += [
+        (f"displacement_transducers.{item.name}.reference_position", item.reference, item.reference_position)
+        for item in file.displacement_transducers
+    ]
+    for key, body, position in named:
+        low, high = boxes[body]
+        outside = np.maximum(np.maximum(low - position, position - high), 0.0)
+        yield _Point(key, body, float(np.linalg.norm(outside)), float((high - low).max()))

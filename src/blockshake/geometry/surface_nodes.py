@@ -19,8 +19,8 @@ def box_nodes(size, chamfer, hollow, spacing, inset):
     spacing : float
         Aimed distance of nodes along each edge [m]; at least two intervals an edge.
     inset : float
-        Distance of the outermost nodes from the flat's perimeter [m]. On the ridge itself the
-        normal of the level set jumps by 45 degrees.
+        Distance of the outermost nodes from a flat's perimeter, over the narrower width of the flat [1], and at most a
+        quarter of the spacing. On the ridge itself the normal of the level set jumps by 45 degrees.
 
     Returns
     -------
@@ -36,8 +36,10 @@ def box_nodes(size, chamfer, hollow, spacing, inset):
     for axis in range(3):
         across = [other for other in range(3) if other != axis]
         widths = [size[other] - 2.0 * chamfer for other in across]
-        first, first_weight = line_nodes(widths[0], spacing, inset)
-        second, second_weight = line_nodes(widths[1], spacing, inset)
+        # farther in, the weight of a node would be negative
+        inside = min(inset * min(widths), 0.25 * spacing)
+        first, first_weight = line_nodes(widths[0], spacing, inside)
+        second, second_weight = line_nodes(widths[1], spacing, inside)
         u, v = 2.0 * first / widths[0], 2.0 * second / widths[1]
         depth = np.array([[hollow_depth(one, other, hollow) for other in v] for one in u])
         for side in (-0.5, 0.5):

@@ -7,7 +7,6 @@ from blockshake.errors import InputError
 from blockshake.files import check_output, write_text
 
 KINDS = ("structure", "study", "campaign")
-CORRECT, NONE = "correct", "none"
 
 
 def add_data_commands(commands):
@@ -15,20 +14,20 @@ def add_data_commands(commands):
     command = commands.add_parser(
         "convert-motion", help="a record or a table of another format, to the project's CSV"
     )
-    command.add_argument("file", metavar="FILE", help="a record, or a table (then with --unit and --column)")
+    command.add_argument("file", metavar="FILE", help="a record, or a table (then with --unit)")
     command.add_argument(
         "--unit", metavar="UNIT", help="of a table: m/s2, cm/s2, g, m/s, m, mm, ...; never guessed"
     )
     command.add_argument(
-        "--column", action="append", default=[], metavar="AXIS=COLUMN", help="such as x=EW, repeatable"
-    )
+        "--column", action="append", default=[], metavar="AXIS=COLUMN",
+        help="such as x=EW, repeatable; of a record with several channels x=NUMBER or x=NAME",
+    )  # fmt: skip
+    command.add_argument(
+        "--time-step", type=float, metavar="S",
+        help="of a table without times; without --column all its values, row by row, are x",
+    )  # fmt: skip
     _add_layout(command)
-    command.add_argument(
-        "--baseline", choices=(CORRECT, NONE), help="default: correct for records, none for tables"
-    )
-    command.add_argument(
-        "--corner-frequency", type=float, metavar="HZ", help="of the correction (default 0.1)"
-    )
+    add_baseline(command)
     command.add_argument("--output", required=True, metavar="MOTION.csv")
     command.set_defaults(run=_convert_motion)
 
@@ -43,6 +42,7 @@ def add_data_commands(commands):
         ("--structure NAME|FILE", "that was tested"),
         ("--motion NAME|FILE", "that was commanded"),
         ("--scale SCALE", "of that motion (default 1)"),
+        ("--baseline auto|none|HZ", "of that motion (default auto)"),
         ("--role ROLE", "fit, select or sealed (default fit)"),
         ("--displacement-unit UNIT", "m, cm, mm or um"),
         ("--acceleration-unit UNIT", "m/s2, cm/s2 or g"),
@@ -68,6 +68,15 @@ def add_data_commands(commands):
     command.add_argument("kind", choices=(*KINDS, "import"))
     command.add_argument("--output", metavar="SCHEMA.json", help="default: printed")
     command.set_defaults(run=_schema)
+
+
+def add_baseline(command):
+    """Add the option that says what is done to the baseline of a motion."""
+    command.add_argument(
+        "--baseline", default="auto", metavar="auto|none|HZ",
+        help="auto (default) corrects a record that does not end at rest, none nothing, and a corner frequency any "
+        "motion of even accelerations",
+    )  # fmt: skip
 
 
 def _add_layout(command):
@@ -105,7 +114,6 @@ def _columns(options):
 
 def _convert_motion(options):
     check_output(options.output)
-    from blockshake.dynamics.baseline import CORNER_FREQUENCY
     from blockshake.dynamics.load_motion import load_motion
     from blockshake.dynamics.records.contract_csv import write_motion_csv
     from blockshake.dynamics.records.motion_table import load_motion_table
@@ -113,27 +121,31 @@ def _convert_motion(options):
     from blockshake.tables.table_file import TableLayout
     from blockshake.validation import validated
 
-    corner = options.corner_frequency or CORNER_FREQUENCY
-    if corner <= 0.0:
-        raise InputError("--corner-frequency", corner, "expected a positive number")
-    given = _given(options, ("unit", "time", "time_unit", *_LAYOUT))
     columns = _columns(options)
-    if given or columns:
-        for name, value in (("unit", options.unit), ("column", columns)):
-            if not value:
-                raise InputError(
-                    f"--{name}", "", "expected for a table; the unit and the columns are never guessed"
-                )
+    if _given(options, ("unit", "time", "time_unit", "time_step", *_LAYOUT)):
         motion = load_motion_table(
-            options.file, validated(TableLayout, _given(options, _LAYOUT), "options"), options.time or "time_s",
-            columns, options.unit, options.time_unit or "s", corner if options.baseline == CORRECT else None,
+            options.file, validated(TableLayout, _given(options, _LAYOUT), "options"), _times(options, columns),
+            columns, options.unit, options.time_unit or "s", options.baseline, options.time_step,
         )  # fmt: skip
     else:
-        motion = load_motion(options.file, correct=options.baseline != NONE, corner_frequency=corner)
+        motion = load_motion(options.file, baseline=options.baseline, channels=columns or None)
     write_motion_csv(motion, options.output)
     print(f"{options.output}: {motion_line(motion)}")
     for remark in motion_remarks(motion):
         print(f"  remark: {remark}")
+
+
+def _times(options, columns):
+    """Name of the column of times of a table, whose options are checked for what only a user can say."""
+    if not options.unit:
+        raise InputError("--unit", "", "expected for a table; the unit and the columns are never guessed")
+    if options.time_step is None and not columns:
+        raise InputError("--column", "", "expected for a table, or --time-step for values without times")
+    if options.time_step is not None and not 0.0 < options.time_step < float("inf"):
+        raise InputError("--time-step", options.time_step, "expected a positive number of seconds")
+    if options.time_step is not None and (options.time or options.time_unit):
+        raise InputError("--time-step", options.time_step, "expected alone, or --time and --time-unit")
+    return options.time or "time_s"
 
 
 def _import_campaign(options):
@@ -141,8 +153,8 @@ def _import_campaign(options):
     from blockshake.measurement.imports.import_map import load_map
 
     given = _given(
-        options, ("structure", "motion", "scale", "role", "displacement_unit", "acceleration_unit", "rest", "time",
-                  "time_unit", *_LAYOUT),
+        options, ("structure", "motion", "scale", "baseline", "role", "displacement_unit", "acceleration_unit", "rest",
+                  "time", "time_unit", *_LAYOUT),
     )  # fmt: skip
     columns, where = _columns(options), options.sources[0]
     if Path(where).suffix in (".yaml", ".yml"):
@@ -152,6 +164,7 @@ def _import_campaign(options):
     else:
         asked, where = _map_of_options(options, given, columns), "options"
     print("\n".join(import_campaign(asked, options.output, where)))
+    print(f"{options.output}: {len(asked.tests)} tests imported")
 
 
 def _map_of_options(options, given, columns):
@@ -169,6 +182,7 @@ def _map_of_options(options, given, columns):
         {
             "name": Path(source.replace("#", "-")).stem, "file": source, "motion": given["motion"],
             "scale": numbers.get("scale", 1.0), "role": given.get("role", "fit"),
+            **{name: given[name] for name in ("baseline",) if name in given},
         }
         for source in options.sources
     ]  # fmt: skip
@@ -201,5 +215,6 @@ def _schema(options):
     text = json.dumps(file_schema(options.kind), indent=2)
     if options.output:
         write_text(options.output, text + "\n")
+        print(options.output)
     else:
         print(text)

@@ -5,10 +5,10 @@ import xarray as xr
 
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.campaigns.campaign import load_test
+from blockshake.measurement.campaigns.command_clock import simulation_start, since
 from blockshake.measurement.motion.body_frame import see_from_body
 from blockshake.measurement.motion.fall import find_fall, until_fall
 
-_AT_RANGE = 1e-6  # of the largest reading
 _REST = 0.1  # s, whose mean is an accelerometer's reading at rest
 _ORDERS = {"x and y": [1, 0, 2], "x and z": [2, 1, 0], "y and z": [0, 2, 1]}
 
@@ -16,12 +16,13 @@ _ORDERS = {"x and y": [1, 0, 2], "x and z": [2, 1, 0], "y and z": [0, 2, 1]}
 def load_corrected_test(campaign, name, structure, findings):
     """Load a test of a campaign without the faults that were found, until a block falls.
 
-    Its time is counted from its first reading.
+    All its times count from `simulation_start`, as those of the tests that are simulated beside it; what was read
+    before is left out.
     """
     test = load_test(campaign, name)
     test = until_fall(test, find_fall(test, structure, campaign.sensors))
     test = corrected(test, name, structure, findings)
-    return test.assign_coords(time=np.round(test["time"] - test["time"][0], 6))
+    return since(test, simulation_start(test["time"].to_numpy()))
 
 
 def corrected(test, name, structure, findings):
@@ -48,9 +49,8 @@ def corrected(test, name, structure, findings):
     reading is right, of other points than the structure says.
     """
     test = test.transpose("time", "marker", "axis", ...).copy(deep=True)
-    own = [finding for finding in findings if name in finding.tests]
+    own = [finding for finding in findings if name in finding.tests and finding.quantity != "range"]
     order = (
-        "range",
         "swap",
         "axes",
         "polarity",
@@ -78,12 +78,6 @@ def _column(test, where):
     if "channel" in test.coords and where in test["channel"].values:
         return "accelerometer", {"channel": where}
     return "marker_displacement", {"marker": where}
-
-
-def _take_range(test, finding):
-    variable, place = _column(test, finding.where[0])
-    values = test[variable].loc[place]
-    test[variable].loc[place] = values.where(np.abs(values) < finding.estimate[0] * (1.0 - _AT_RANGE))
 
 
 def _take_swap(test, finding):
@@ -153,7 +147,6 @@ def _take_skew(test, finding):
 
 
 _TAKE = {
-    "range": _take_range,
     "swap": _take_swap,
     "axes": _take_axes,
     "polarity": _take_polarity,

@@ -10,6 +10,7 @@ from blockshake.files import load_made_json
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
+from blockshake.measurement.campaigns.faulty_readings import faulty_lines
 from blockshake.measurement.motion.fall import Fall, find_fall, until_fall
 from blockshake.measurement.sensors.markers import whole_markers
 from blockshake.parity.acceleration_parity import channel_pairs
@@ -21,7 +22,7 @@ from blockshake.parity.frame_drift import frame_drift
 from blockshake.parity.marker_equations import MarkerFaults
 from blockshake.parity.marker_faults import BodyMarkers, check_body
 from blockshake.parity.marker_swaps import unswapped
-from blockshake.parity.saturation import without_saturation
+from blockshake.parity.saturation import saturation
 from blockshake.parity.transducer_equations import held_readings
 from blockshake.parity.transducer_faults import check_transducer, hypotheses
 
@@ -52,6 +53,8 @@ class Parity:
         Number of hypotheses.
     falls : dict of str to Fall
         By test: the block that fell first; the test is judged until then.
+    gaps : dict of str to list of str
+        By test: lines on the readings that were taken as gaps.
     """
 
     findings: tuple
@@ -61,6 +64,7 @@ class Parity:
     transducers: xr.Dataset
     looked_at: int
     falls: dict
+    gaps: dict
 
     def as_json(self):
         """As JSON-like values, NaN as null."""
@@ -73,6 +77,7 @@ class Parity:
             **({"transducers": transducers} if transducers else {}),
             "looked_at": self.looked_at,
             "falls": {name: fall._asdict() for name, fall in self.falls.items()},
+            "gaps": self.gaps,
         }
 
     @property
@@ -95,6 +100,7 @@ class Parity:
             transducers=_table(values.get("transducers", {}), "transducer", _GAIN_UNITS),
             looked_at=values["looked_at"],
             falls={name: Fall(**fall) for name, fall in values["falls"].items()},
+            gaps=values["gaps"],
         )
 
 
@@ -177,10 +183,7 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     Markers are checked body by body against a rigid motion first; accelerometers and displacement transducers are then
     compared with the markers as corrected.
     """
-    tests, findings = dict(tests), []
-    for name, test in tests.items():
-        tests[name], found = without_saturation(test, name, level, 2 * len(tests) * _channel_count(tests))
-        findings += found
+    findings = saturation(tests, level, 2 * len(tests) * _channel_count(tests))
     bodies = _bodies(structure, tests)
     looked_at = _looked_at(bodies, tests)
     of_bodies = body_gains(structure, tests, sensors, level, looked_at)
@@ -213,6 +216,7 @@ def check_parity(tests, structure, sensors, level=LEVEL):
         ),
         looked_at=looked_at,
         falls={},
+        gaps={name: faulty_lines(test) for name, test in tests.items()},
     )
 
 

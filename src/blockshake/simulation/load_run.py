@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from blockshake.damaged_hdf5 import has_endless_heap
 from blockshake.dynamics.system import ENERGY_TERMS
 from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES, QUATERNION
 from blockshake.geometry.structure import build_structure
 from blockshake.interrupts import delayed_interrupts
+from blockshake.tables.damaged_hdf5 import has_endless_heap
 
 _VARIABLES = {
     "position": ("time", "body", "axis"),

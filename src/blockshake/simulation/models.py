@@ -68,12 +68,16 @@ class Model:
         to a `Trajectory`.
     parameters : str
         ``module:class`` of its numerical parameters.
+    refusal : str
+        ``module:function`` that refuses, of a structure and numerical parameters, what the driver would.
     calibrated : tuple of str
         Those of them that a wave test gives from the material, as its contact stiffness.
     own_stiffness : str or None
         ``module:function`` that gives them for a structure about which nothing is said: ``(structure)`` to a dict.
     without_effect : tuple of str
         Last parts of the names of parameters that the model has no use for.
+    needed : tuple of str
+        Properties of the materials of free blocks that are above 0.
     rigid : bool
         Its blocks do not deform.
     perturbation : Perturbation or None
@@ -90,15 +94,21 @@ class Model:
     time_step: float
     driver: str
     parameters: str
+    refusal: str
     calibrated: tuple[str, ...] = ()
     own_stiffness: str | None = None
     without_effect: tuple[str, ...] = ()
+    needed: tuple[str, ...] = ()
     rigid: bool = True
     perturbation: Perturbation | None = None
 
     def solve(self, *arguments, **options):
         """Run the driver."""
         return _named(self.driver)(*arguments, **options)
+
+    def refuse(self, structure, numerical):
+        """Raise an `InputError` where the driver would refuse a structure with these numerical parameters."""
+        _named(self.refusal)(structure, numerical)
 
     @property
     def schema(self):
@@ -142,6 +152,7 @@ MODELS = {
             time_step=1e-5,
             driver="blockshake.solvers.ls_dem.driver:simulate_ls_dem",
             parameters="blockshake.solvers.ls_dem.parameters:LsDemParameters",
+            refusal="blockshake.solvers.ls_dem.surfaces:check_shapes",
             calibrated=("normal_stiffness", "shear_stiffness"),
             own_stiffness="blockshake.solvers.ls_dem.own_stiffness:own_stiffness",
             without_effect=("viscous_modulus",),  # rigid blocks
@@ -150,7 +161,7 @@ MODELS = {
                 stream=0,
                 uncertain=(
                     Uncertain("ls_dem.node_spacing", 0.75, 1.5, relative=True),
-                    Uncertain("ls_dem.perimeter_inset", 0.4, 2.0, relative=True),
+                    Uncertain("ls_dem.perimeter_inset", 0.6, 2.0, relative=True),
                     Uncertain("restitution", 0.8, 1.2, relative=True),
                 ),
                 time_steps=(5e-5,),
@@ -164,6 +175,7 @@ MODELS = {
             time_step=1e-3,
             driver="blockshake.solvers.nscd.driver:simulate_nscd",
             parameters="blockshake.solvers.nscd.parameters:NscdParameters",
+            refusal="blockshake.solvers.nscd.contact.polyhedra:check_convex",
             without_effect=("viscous_modulus", "youngs_modulus", "hollow"),  # rigid, and bearing on corners
             # a closer time step where bodies meet, as studies should: docs/nscd.md
             perturbation=Perturbation(
@@ -180,6 +192,7 @@ MODELS = {
             time_step=1e-3,
             driver="blockshake.solvers.nscd_deformable.driver:simulate_elastic",
             parameters="blockshake.solvers.nscd_deformable.parameters:DeformableParameters",
+            refusal="blockshake.solvers.nscd_deformable.elastic_bodies:check_boxes",
             without_effect=("viscous_modulus", "hollow"),
             rigid=False,
         ),
@@ -190,7 +203,9 @@ MODELS = {
             time_step=1e-3,
             driver="blockshake.solvers.nscd_deformable.driver:simulate_viscoelastic",
             parameters="blockshake.solvers.nscd_deformable.parameters:DeformableParameters",
+            refusal="blockshake.solvers.nscd_deformable.elastic_bodies:check_boxes",
             without_effect=("hollow",),
+            needed=("viscous_modulus",),  # without one it is the elastic model
             rigid=False,
         ),
     )

@@ -23,7 +23,7 @@ def parameter_table(structure=None):
     loaded = load_structure(structure or shipped_names("structures")[0])
     file, rows = loaded.file, []
     for quantity in PHYSICAL:
-        for name, value in _instances(quantity.name, file):
+        for name, value in instances(quantity.name, file):
             rows.append((name, quantity.unit, _shown(value), quantity.meaning, quantity.source))
     numerical, own = {}, {}
     for model in MODELS.values():
@@ -35,8 +35,8 @@ def parameter_table(structure=None):
     return rows
 
 
-def _instances(pattern, file):
-    """Dotted names of this structure that a pattern stands for, with the structure's values."""
+def instances(pattern, file):
+    """Dotted names that the name of a `Quantity` stands for in a structure file, and their values there."""
     parts = pattern.split(".")
     if parts[0] == "friction":
         suffix, key = (f".{parts[3]}", parts[3]) if len(parts) == 4 else ("", "coefficient")

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import blockshake
+from blockshake.dynamics.baseline import check_window
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.motion import PITCH, GroundMotion
 from blockshake.dynamics.system import FINISHED, Status
@@ -18,7 +19,9 @@ from blockshake.measurement.sensors.accelerometers import FINE_RATE, SKIP, accel
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.measurement.sensors.transducers import transducer_displacement
 from blockshake.simulation.energy_residual import energy_residual
+from blockshake.simulation.limits import check_limits, has_fine_record
 from blockshake.simulation.models import model_of, split_parameters
+from blockshake.simulation.outcome.falling import still_falling
 from blockshake.simulation.run_dataset import (
     add_accelerometers,
     add_transducers,
@@ -31,7 +34,6 @@ from blockshake.simulation.write_run import write_run
 from blockshake.solvers.kept_rows import KeptRows
 from blockshake.sources import module_sources, source_digest
 
-_LONGEST_STEP = 0.01  # s
 _WORST_RESIDUAL = 0.05  # a run whose energy audit misses more is not to be trusted
 
 
@@ -78,7 +80,7 @@ def simulate(
     Raises
     ------
     InputError
-        Unknown model or parameter, or a structure that is wrong.
+        Unknown model or parameter, a structure that is wrong, or a run beyond the limits of `check_run`.
     """
     of = _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers)
     trajectory = of.solve(checkpoint=checkpoint)
@@ -119,7 +121,9 @@ def simulate_to_file(
     InputError
         As `simulate`; or the file cannot be written.
     """
-    of = _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers=True)
+    of = _set_up(
+        structure, motion, model, parameters, time_step, duration, output_rate, accelerometers=True, in_memory=False
+    )  # fmt: skip
     checkpoint = Path(f"{path}.checkpoint")
     kept = KeptRows(f"{checkpoint}.rows", lambda rows: reduced(of.structure, rows, of.coarse, of.fine))
     trajectory = of.solve(checkpoint=checkpoint, kept=kept)
@@ -127,6 +131,12 @@ def simulate_to_file(
     write_run(path, parts, of.attributes(trajectory, parts.energy_residual()))
     checkpoint.unlink(missing_ok=True)
     kept.remove()
+
+
+def check_run(structure, motion, model, parameters, time_step, duration, output_rate):
+    """Refuse a simulation that `simulate`, whose arguments these are, would refuse; nothing is simulated."""
+    of = _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers=True)
+    model_of(model).refuse(of.structure, of.numerical)
 
 
 class _SetUp(NamedTuple):
@@ -152,6 +162,15 @@ class _SetUp(NamedTuple):
         """Attributes of the run file, from how the run ended and its `energy_residual`."""
         file, motion = self.structure.file, self.motion
         status, reason = trajectory.status, trajectory.reason
+        if status is Status.COMPLETED:
+            last = (
+                part[-1]
+                for part in (trajectory.position, trajectory.orientation, trajectory.angular_velocity)
+            )
+            falls = still_falling(self.structure, *last)
+            if falls:
+                status = Status.FALLING
+                reason = f"{falls} still falls at {trajectory.end_time:.3f} s, when the window ends"
         if status in FINISHED and residual > _WORST_RESIDUAL:
             reason = f"the energy audit misses {residual:.0%} of the energy in play: take a smaller time step; {reason}"
             status, reason = Status.NOT_CONVERGED, reason.removesuffix("; ")
@@ -182,27 +201,29 @@ class _SetUp(NamedTuple):
         }
 
 
-def _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers):
+def _set_up(
+    structure, motion, model, parameters, time_step, duration, output_rate, accelerometers, in_memory=True
+):
     """`_SetUp` from the arguments of `simulate`."""
     solver = model_of(model)
     physical, _ = split_parameters(parameters or {}, model)
     built = load_structure(structure, physical)
     numerical = split_parameters(solver.stiffness_of(built) | (parameters or {}), model)[1]
     motion = motion if isinstance(motion, GroundMotion) else load_motion(motion)
+    try:
+        motion.name.encode()
+    except UnicodeEncodeError:  # a run file holds it
+        raise InputError("--motion", motion.name, "expected a name in UTF-8") from None
     _check_start(built, motion)
     time_step = solver.time_step if time_step is None else time_step
     duration = motion.duration if duration is None else duration
     output_rate = RATE if output_rate is None else output_rate
-    for name, value in (("time step", time_step), ("duration", duration), ("output rate", output_rate)):
-        if not (np.isfinite(value) and value > 0.0):
-            raise InputError(f"--{name.replace(' ', '-')}", "", f"expected a positive number, not {value}")
-    if time_step > _LONGEST_STEP:
-        raise InputError(
-            "--time-step", "", f"expected at most {_LONGEST_STEP:g} s, not {time_step:g}: impacts last less"
-        )
-    coarse = np.arange(int(np.floor(duration * output_rate + 1e-9)) + 1) / output_rate
     fine = np.empty(0)
-    if accelerometers and (built.file.accelerometers or built.file.displacement_transducers):
+    sensed = accelerometers and has_fine_record(built)
+    check_limits(built, model, time_step, duration, output_rate, sensed, in_memory)
+    check_window(motion, duration, "--duration", "")
+    coarse = np.arange(int(np.floor(duration * output_rate + 1e-9)) + 1) / output_rate
+    if sensed:
         fine = np.arange(int(np.floor(duration * FINE_RATE + 1e-9)) + 1) / FINE_RATE
     return _SetUp(built, motion, model, numerical, time_step, output_rate, coarse, fine)
 

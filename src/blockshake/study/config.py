@@ -1,37 +1,27 @@
 """The configuration of a study: every key, its type and its limits, checked before the first job."""
 
+from datetime import date
 from pathlib import Path
 from typing import Annotated, Literal
 
-import numpy as np
 from pydantic import BeforeValidator, ConfigDict, Field, StringConstraints, field_validator, model_validator
 
-from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
-from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import MODELS, ModelName
 from blockshake.study.calibration.settings import CalibrationSettings
 from blockshake.study.comparison.differences import FEWEST
-from blockshake.study.config_checks import (
-    check_calibration,
-    check_fragility,
-    check_friction_search,
-    check_measured,
-    check_parameters,
-    check_paths,
-    check_structure,
-)
+from blockshake.study.config_checks import check_named
 from blockshake.study.convergence.settings import Convergence
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED
+from blockshake.study.ensembles.rungs import Rungs
 from blockshake.study.fragility.settings import FragilitySettings
 from blockshake.study.friction.settings import FrictionSearch
-from blockshake.study.sampling.correlation_target import load_correlation
-from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, load_distributions
-from blockshake.study.sampling.latin_hypercube import SMALLEST_SIZE
-from blockshake.validation import Positive, Strict, validated
+from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, known_as, load_distributions
+from blockshake.study.sampling.latin_hypercube import LARGEST_SIZE, SMALLEST_SIZE
+from blockshake.validation import Count, Positive, Strict, Whole, validated
 
 _OF_THE_PAPER = tuple(f"configuration-{place}" for place in (1, 2, 3, 4))
 
@@ -43,14 +33,20 @@ def _links(ensemble):
     }
 
 
+def _as_text(given):
+    """The text of a date, which YAML reads as one or as a year."""
+    return str(given) if isinstance(given, (date, int)) and not isinstance(given, bool) else given
+
+
 class Ensemble(Strict):
     """The samples: how many, of which variables, how correlated."""
 
-    size: int = Field(
+    size: Whole = Field(
         ge=SMALLEST_SIZE,
+        le=LARGEST_SIZE,
         description="samples of the Latin hypercube; another size is another design: all samples change [1]",
     )
-    seed: int = Field(ge=0, description="of the design [1]")
+    seed: Count = Field(description="of the design [1]")
     distributions: dict[str, Lognormal] = Field(
         TABLE_2,
         description="random variables by dotted name, as `blockshake parameters` lists them; Table 2's by default",
@@ -102,8 +98,9 @@ class StudyCase(Strict):
     structure: str = Field(description="shipped name or file")
     motion: str = Field(description="shipped name or file")
     scale: Positive = Field(description="multiplies the motion [1]")
+    baseline: Baseline = AUTO
     duration: Positive = Field(description="simulated time [s]")
-    samples: dict[ModelName, int] = Field(
+    samples: dict[ModelName, Count] = Field(
         {},
         description="fewer samples than the ensemble's, at least 1, by model: the first rows of the design. With fewer "
         "than three the case has no twins, distances, widths or scores of that model",
@@ -131,30 +128,16 @@ class StudyCase(Strict):
         return self
 
 
-class Ladder(Strict):
+class Ladder(Rungs):
     """The intensities that are climbed to find each case's scale."""
 
-    motions: tuple[str, ...] = Field((), description="those of the cases by default")
-    first: Positive = Field(0.5, description="scale of the first test [1]")
-    increment: Positive = Field(0.25, description="from one scale to the next [1]")
-    highest: Positive = Field(4.0, description="where the ladder ends [1]")
+    motions: tuple[str, ...] = Field((), description="those of the cases by default, with their baselines")
+    baseline: Baseline = AUTO
     largest_drift: Positive | None = Field(
         None,
         description="displacement of a block relative to the slab that counts as a potential collapse, by default half "
         "of the smaller width of the structure's blocks [m]",
     )
-
-    @model_validator(mode="after")
-    def _rises(self):
-        if self.highest < self.first:
-            raise ValueError("expected `highest` not below `first`")
-        return self
-
-    @property
-    def scales(self):
-        """Scales from the first to the highest, float64 array [1]."""
-        count = int(np.floor((self.highest - self.first) / self.increment + 1e-9)) + 1
-        return self.first + self.increment * np.arange(count)
 
 
 class Diagnosis(Strict):
@@ -171,6 +154,7 @@ class StudyConfig(Strict):
 
     name: str = Field(
         pattern=r"^[a-z0-9-]+$",
+        max_length=100,
         description="names results/NAME, logs/NAME and reports/NAME.html; lower case, digits, hyphens",
     )
     description: Annotated[str, StringConstraints(strip_whitespace=True)] = Field(
@@ -178,13 +162,13 @@ class StudyConfig(Strict):
     )
     project: str = Field("", description="for the head of the report, as `author` and `date`")
     author: str = Field("", description="who answers for the study")
-    date: Annotated[str, BeforeValidator(str)] = Field(
+    date: Annotated[str, BeforeValidator(_as_text)] = Field(
         "", description="of the report; it is yours to state, since the same results give the same bytes"
     )
     output_rate: Positive = Field(
         RATE, description="of the histories; the default is that of the paper's optical system [Hz]"
     )
-    samples_per_job: int = Field(
+    samples_per_job: Whole = Field(
         10, ge=1, description="samples in one job; a killed job resumes at the sample, whatever this is [1]"
     )
     models: dict[ModelName, ModelSettings] = Field(min_length=1)
@@ -199,9 +183,34 @@ class StudyConfig(Strict):
     convergence: Convergence | None = Field(None, description="none: no study of the numerical parameters")
     diagnosis: Diagnosis = Field(Diagnosis(), description="none: no campaign is diagnosed")
 
+    @model_validator(mode="after")
+    def _variables_by_one_name(self):
+        """Give frictions the names that the distributions have, whose materials may be in the other order."""
+        known = self.ensemble.distributions
+
+        def own(name):
+            return known_as(name, known) or name
+
+        linked = {target: own(source) for target, source in self.ensemble.linked.items()}
+        changes = {"ensemble": self.ensemble.model_copy(update={"linked": linked})}
+        if (search := self.friction_calibration) is not None:
+            variables = tuple(map(own, search.variables))
+            changes["friction_calibration"] = search.model_copy(update={"variables": variables})
+        if (asked := self.calibration) is not None:
+            ranges = {own(name): span for name, span in asked.ranges.items()}
+            if len(ranges) < len(asked.ranges):
+                raise InputError("", "study.calibration.ranges", "expected every pair once")
+            changes["calibration"] = asked.model_copy(update={"ranges": ranges})
+        return self.model_copy(update=changes)
+
     def case(self, name):
         """The case of this name."""
         return next(case for case in self.cases if case.name == name)
+
+    def named_motions(self):
+        """Key, name and baseline of every motion that is named, cases first; a ladder without motions has theirs."""
+        cases = [(f"cases.{index}", case.motion, case.baseline) for index, case in enumerate(self.cases)]
+        return [*cases, *(("ladder", motion, self.ladder.baseline) for motion in self.ladder.motions)]
 
     def samples(self, model, case):
         """Number of samples of a case by a model."""
@@ -238,38 +247,5 @@ def load_config(path):
 def check_config(mapping, where):
     """Configuration from a mapping, checked with all that it names; ``where`` is its file."""
     config = validated(StudyConfig, mapping, where)
-    check_paths(config, where)
-    names = [case.name for case in config.cases]
-    for model, settings in config.models.items():
-        check_parameters(model, settings, f"models.{model}.parameters", where)
-    for motion in dict.fromkeys([*(case.motion for case in config.cases), *config.ladder.motions]):
-        load_motion(motion)
-    for index, case in enumerate(config.cases):
-        key = f"cases.{index}"
-        if names.count(case.name) > 1:
-            raise InputError(
-                where, f"{key}.name", f"expected a name of its own, as there are two cases {case.name}"
-            )
-        for model, count in case.samples.items():
-            if not 1 <= count <= config.ensemble.size:
-                raise InputError(
-                    where, f"{key}.samples.{model}", f"expected 1 to {config.ensemble.size}, not {count}"
-                )
-        check_structure(case.structure, where, key)
-        if case.measured is not None:
-            check_measured(case, where, f"{key}.measured")
-    for target, source in config.ensemble.linked.items():
-        if source not in config.ensemble.distributions:
-            raise InputError(
-                where, f"ensemble.linked.{target}", f"expected one of the random variables, not {source}"
-            )
-    check_friction_search(config, where)
-    check_fragility(config, where)
-    check_calibration(config, where)
-    if config.ensemble.correlation is not None:
-        load_correlation(config.ensemble.correlation)
-    if config.convergence is not None:
-        load_structure(config.convergence.structure)
-    for folder in config.diagnosis.campaigns:
-        load_campaign(folder)
+    check_named(config, where)
     return config

@@ -1,53 +1,149 @@
-"""Checks of all that a study's configuration names: structures, motions, measured tests, models of its parts."""
+"""Checks of all that a study's configuration names, by the functions that its jobs run: no job finds a fault first."""
 
+import contextlib
 import re
 from pathlib import Path
 
-from blockshake.errors import InputError
+import numpy as np
+import pandas as pd
+
+from blockshake.dynamics.baseline import check_window
+from blockshake.dynamics.load_motion import load_motion, scaled
+from blockshake.errors import InputError, faults_of
+from blockshake.files import HOME
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.motion.measured_base import record_start
 from blockshake.measurement.sensors.markers import block_markers, driven_marker
 from blockshake.paths import check_plain
-from blockshake.simulation.models import split_parameters
-from blockshake.study.calibration.settings import OTHERS
-from blockshake.study.ensembles.case_input import MEASURED, check_record
+from blockshake.simulation.models import model_of, part_parameters
+from blockshake.simulation.simulate import check_run
+from blockshake.solvers.ls_dem.parameters import LsDemParameters
+from blockshake.study.calibration.comparison import has_use, parameter_of
+from blockshake.study.calibration.settings import OTHERS, STIFFNESS
+from blockshake.study.convergence.runs import kicked
+from blockshake.study.ensembles.case_input import COMMANDED, MEASURED, check_record
+from blockshake.study.sampling.distributions import LINKED, TABLE_2, known_as, parameter_unit
+from blockshake.study.sampling.latin_hypercube import complete_correlation
+from blockshake.study.sampling.sample_parameters import has_parameter, sample_parameters
+from blockshake.study.stiffness.tower import tower_of
 
-_NAME = re.compile(r"\w[\w.-]*")  # of a structure, a motion or a case: it names results
+_NAME = re.compile(r"\w[\w.-]{0,99}")  # of a structure, a motion or a case: it names results
+_RULE = re.compile(r"^(?:rule|checkpoint) (\w+):", re.MULTILINE)
+_SHARED = re.compile(r"diagnosis(-.*)?|hidden-effects|kernels|libraries|store|virtual-(campaign|truth)")
+# where the configuration says what `simulate` calls by its option
+_OPTIONS = {
+    "--set": "models.{model}.parameters",
+    "--time-step": "models.{model}.time_step",
+    "--duration": "cases.{case}.duration",
+    "--output-rate": "output_rate",
+}
 
 
-def check_structure(name, where, key):
-    """A structure that can be read, with a marker on a driven body and on a free one."""
-    try:
-        structure = load_structure(name)
-    except InputError as error:
-        raise InputError(where, f"{key}.structure", str(error)) from None
-    driven_marker(structure)
-    if not block_markers(structure):
-        raise InputError(structure.source, "markers", "expected a marker on a body that is not driven")
+def check_named(config, where):
+    """Refuse a `StudyConfig` that names what is not there, or of which a job could not be done.
+
+    Raises
+    ------
+    InputError
+        Names ``where``, the key, and the fault of what the key names.
+    """
+    check_names(config, where)
+    for model, settings in config.models.items():
+        for name in part_parameters(settings.parameters)[0]:
+            raise InputError(where, f"models.{model}.parameters.{name}", "expected a parameter of the solver")
+    motions, structures = _read_motions(config, where), {}
+    for motion in config.ladder.motions:
+        with faults_of(where, "ladder.motions"):
+            scaled(motions[motion], config.ladder.highest, motion)
+    for index, case in enumerate(config.cases):
+        key = f"cases.{index}"
+        for model, count in case.samples.items():
+            _one_of(model, config.models, where, f"{key}.samples")
+            if not 1 <= count <= config.ensemble.size:
+                raise InputError(
+                    where, f"{key}.samples.{model}", f"expected 1 to {config.ensemble.size}, not {count}"
+                )
+        with faults_of(where, f"{key}.motion"):
+            motion = scaled(motions[case.motion], case.scale, case.motion)
+        climbs = config.fragility is not None and case.name in config.fragility.cases
+        if case.input == COMMANDED or climbs:
+            check_window(motion, case.duration, where, f"{key}.duration")
+        if case.structure not in structures:
+            structures[case.structure] = check_structure(case.structure, where, key)
+        if case.measured is not None:
+            check_measured(case, structures[case.structure], where, f"{key}.measured")
+    check_samples(config.ensemble, structures, where)
+    for index, case in enumerate(config.cases):
+        motion = scaled(motions[case.motion], case.scale, case.motion)
+        check_simulations(config, index, structures[case.structure], motion, where)
+    check_friction_search(config, structures, where)
+    check_fragility(config, where)
+    check_calibration(config, structures, where)
+    check_convergence(config.convergence, where)
+    for folder in config.diagnosis.campaigns:
+        with faults_of(where, "diagnosis.campaigns"):
+            load_campaign(folder)
+    folders = [Path(folder).resolve().name for folder in config.diagnosis.campaigns]
+    _each_once(folders, where, "diagnosis.campaigns")
 
 
-def check_paths(config, where):
-    """Refuse paths that the workflow reads as patterns, and structures and motions whose names cannot name results."""
+def _read_motions(config, where):
+    """Motions by name, each with the one baseline that the study gives it."""
+    baselines, read = {}, {}
+    for key, motion, baseline in config.named_motions():
+        if baselines.setdefault(motion, baseline) != baseline:
+            expected = f"expected one baseline of {motion}; a copy of the file may have another"
+            raise InputError(where, f"{key}.baseline", expected)
+        if motion not in read:
+            with faults_of(where, f"{key}.motions" if key == "ladder" else f"{key}.motion"):
+                read[motion] = load_motion(motion, baseline=baseline)
+    return read
+
+
+def _one_of(name, known, where, key):
+    """Refuse a name that is none of the known ones."""
+    if name not in known:
+        raise InputError(where, key, f"expected one of {', '.join(known) or 'none'}, not {name}")
+
+
+def _each_once(names, where, key):
+    """Refuse a name that stands twice."""
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(where, key, f"expected every name once, not {name} twice")
+
+
+def check_names(config, where):
+    """Refuse paths that the workflow reads as patterns, and names that cannot name results or are another's."""
+    if _SHARED.fullmatch(config.name):
+        raise InputError(where, "name", f"expected another name: results/{config.name} is all studies' own")
+    rules = [
+        rule
+        for path in (HOME / "Snakefile", *HOME.glob("workflow/rules/*.smk"))
+        for rule in _RULE.findall(path.read_text(encoding="utf-8"))
+    ]
+    names = [case.name for case in config.cases]
     paths = [("diagnosis.campaigns", folder) for folder in config.diagnosis.campaigns]
     if config.ensemble.correlation is not None:
         paths.append(("ensemble.correlation", config.ensemble.correlation))
-    paths += [
-        (f"cases.{index}.measured.campaign", case.measured.campaign)
-        for index, case in enumerate(config.cases)
-        if case.measured
-    ]
     naming = [("ladder.motions", motion) for motion in config.ladder.motions]
     if config.convergence is not None:
         naming.append(("convergence.structure", config.convergence.structure))
     for index, case in enumerate(config.cases):
         naming += [(f"cases.{index}.structure", case.structure), (f"cases.{index}.motion", case.motion)]
+        if case.measured:
+            paths.append((f"cases.{index}.measured.campaign", case.measured.campaign))
     for key, path in [*paths, *naming]:
         check_plain(path, where, key)
     for index, case in enumerate(config.cases):
+        key = f"cases.{index}.name"
         if case.name != Path(case.structure).stem and not _NAME.fullmatch(case.name):
-            raise InputError(
-                where, f"cases.{index}.name", f"expected letters, digits, dots, hyphens, not '{case.name}'"
-            )
+            raise InputError(where, key, f"expected letters, digits, dots, hyphens, not '{case.name}'")
+        if case.name in rules:
+            raise InputError(where, key, f"expected another name than the workflow's rule {case.name}")
+        if names.count(case.name) > 1:
+            raise InputError(where, key, f"expected a name of its own, as there are two cases {case.name}")
     by_name = {}
     for key, path in naming:
         name = Path(path).stem
@@ -61,20 +157,106 @@ def check_paths(config, where):
             )
 
 
-def check_parameters(model, settings, key, where):
-    """Refuse parameters shared by all samples that are not the solver's."""
-    try:
-        physical, _ = split_parameters(settings.parameters, model)
-    except InputError as error:
-        raise InputError(where, key, str(error).removeprefix("--set: ")) from None
-    if physical:
-        raise InputError(where, f"{key}.{next(iter(physical))}", "expected a parameter of the solver")
+def check_structure(name, where, key):
+    """`Structure` that can be read, with a marker on a driven body and on a free one."""
+    with faults_of(where, f"{key}.structure"):
+        structure = load_structure(name)
+        driven_marker(structure)
+        if not block_markers(structure):
+            raise InputError(structure.source, "markers", "expected a marker on a body that is not driven")
+    return structure
 
 
-def check_measured(case, where, key):
-    """The test a case is compared with: of its structure, motion and scale, and not sealed."""
-    campaign = load_campaign(case.measured.campaign)
-    if not load_structure(campaign.structure).same_as(load_structure(case.structure)):
+def typical_structure(structure, ensemble):
+    """The structure with the medians of the variables."""
+    medians = {name: one.median for name, one in ensemble.distributions.items()}
+    return structure.with_parameters(sample_parameters(pd.Series(medians), structure, ensemble.linked))
+
+
+def check_simulations(config, index, structure, motion, where):
+    """Refuse a case that a model cannot simulate, or whose blocks make no tower for the contact stiffness."""
+    case, structure = config.cases[index], typical_structure(structure, config.ensemble)
+    for model, settings in config.models.items():
+        given = settings.parameters, settings.time_step, case.duration, config.output_rate
+        try:
+            check_run(structure, motion, model, *given)
+            if model_of(model).calibrated:
+                tower_of(structure)
+        except InputError as error:
+            key = _OPTIONS.get(error.where)
+            if key is None:
+                raise InputError(where, f"cases.{index}.structure", f"{model}: {error}") from None
+            key = ".".join(filter(None, [key.format(model=model, case=index), error.key]))
+            raise InputError(where, key, error.expected) from None
+
+
+def check_samples(ensemble, structures, where):
+    """Refuse variables and links that no structure has, values that one cannot have, and a correlation of others."""
+    variables = ensemble.distributions
+    for kind, names, usual in (("distributions", variables, TABLE_2), ("linked", ensemble.linked, LINKED)):
+        for name in names:
+            with faults_of(where, f"ensemble.{kind}.{name}"):
+                parameter_unit(name)
+            if name not in usual and not any(has_parameter(one, name) for one in structures.values()):
+                raise InputError(
+                    where,
+                    f"ensemble.{kind}.{name}",
+                    f"expected a parameter that one of {', '.join(structures)} has",
+                )
+    for target, source in ensemble.linked.items():
+        key = f"ensemble.linked.{target}"
+        if source not in variables:
+            raise InputError(where, key, f"expected one of the random variables, not {source}")
+        if known_as(target, variables) or known_as(target, ensemble.linked) != target:
+            raise InputError(where, key, "expected a parameter that is neither sampled nor linked already")
+        if parameter_unit(target) != parameter_unit(source):
+            raise InputError(where, key, f"expected a variable in {parameter_unit(target)}, not {source}")
+    with faults_of(where, "ensemble.correlation"):
+        complete_correlation(ensemble.correlation, list(variables))
+    ends = {}
+    for name, distribution in variables.items():
+        values = distribution.stratum_medians(ensemble.size)
+        if not (np.isfinite(values).all() and (np.diff(values) > 0.0).all()):
+            key = f"ensemble.distributions.{name}"
+            raise InputError(where, key, f"expected {ensemble.size} different samples: another cov")
+        ends[name] = values[0], values[-1]
+    for structure in structures.values():
+
+        def parameters(row, structure=structure):
+            return sample_parameters(pd.Series(row), structure, ensemble.linked)
+
+        check_ends(structure, ends, parameters, where, "ensemble.distributions")
+
+
+def check_ends(structure, ends, parameters, where, key):
+    """Refuse a variable whose lowest or highest value a structure cannot have.
+
+    Parameters
+    ----------
+    structure : Structure
+    ends : dict of str to tuple of float
+        Both values by variable.
+    parameters : callable
+        Of values by variable: parameters of the structure by dotted name.
+    where, key : str
+        File, and key under which the variables stand, that an error names.
+    """
+    with contextlib.suppress(InputError):
+        for values in zip(*ends.values(), strict=True):
+            structure.with_parameters(parameters(dict(zip(ends, values, strict=True))))
+        return
+    for name, values in ends.items():
+        for value in values:
+            with faults_of(where, f"{key}.{name}"):
+                structure.with_parameters(parameters({name: value}))
+
+
+def check_measured(case, structure, where, key):
+    """The test a case is compared with: readable, of its structure, motion and scale, and not sealed."""
+    with faults_of(where, f"{key}.campaign"):
+        campaign = load_campaign(case.measured.campaign)
+        tested = load_structure(campaign.structure)
+    if not tested.same_as(structure):
         raise InputError(
             where,
             f"{key}.campaign",
@@ -84,15 +266,20 @@ def check_measured(case, where, key):
     if case.measured.test not in open_tests:
         raise InputError(where, f"{key}.test", f"expected a test that is not sealed: {', '.join(open_tests)}")
     test = campaign.tests[case.measured.test]
-    if (Path(test.motion).stem, test.scale) != (Path(case.motion).stem, case.scale):
+    commands = [(Path(one.motion).stem, one.scale, one.baseline) for one in (test, case)]
+    if commands[0] != commands[1]:
         raise InputError(
             where,
             f"{key}.test",
-            f"expected one of {case.motion} at {case.scale:g}, not {test.motion} at {test.scale:g}",
+            f"expected one of {case.motion} at {case.scale:g}, baseline {case.baseline}, not {test.motion} at "
+            f"{test.scale:g}, baseline {test.baseline}",
         )
-    if case.input == MEASURED:
+    with faults_of(where, f"{key}.test"):
         time = load_test(campaign, case.measured.test)["time"].to_numpy()
-        check_record(time[-1] - time[0], case.duration, where, f"{key.removesuffix('measured')}duration")
+    if case.input == MEASURED:
+        check_record(
+            time[-1] - record_start(time), case.duration, where, f"{key.removesuffix('measured')}duration"
+        )
 
 
 def check_fragility(config, where):
@@ -100,67 +287,87 @@ def check_fragility(config, where):
     asked = config.fragility
     if asked is None:
         return
-    known = [case.name for case in config.cases]
     for name in asked.cases:
-        if name not in known:
-            raise InputError(where, "fragility.cases", f"expected one of {', '.join(known)}, not {name}")
-    if asked.model not in config.models:
-        raise InputError(where, "fragility.model", f"expected a model of the study, not {asked.model}")
+        _one_of(name, [case.name for case in config.cases], where, "fragility.cases")
+    _each_once(asked.cases, where, "fragility.cases")
+    _one_of(asked.model, config.models, where, "fragility.model")
     if asked.size > config.ensemble.size:
         raise InputError(where, "fragility.size", f"expected at most ensemble.size, {config.ensemble.size}")
 
 
-def check_calibration(config, where):
-    """Models and measured cases of the study, and parameters that it samples or that contact springs have."""
+def check_measured_cases(names, config, where, key):
+    """Refuse names that are not those of cases with a measured test, each once."""
+    known = [case.name for case in config.cases if case.measured is not None]
+    for name in names:
+        if name not in known:
+            raise InputError(
+                where, key, f"expected cases with a measured test: {', '.join(known) or 'none'}, not {name}"
+            )
+    _each_once(names, where, key)
+
+
+def check_calibration(config, structures, where):
+    """Models and measured cases of the study, and values of parameters that models and structures have a use for."""
     asked = config.calibration
     if asked is None:
         return
+    ranges = asked.ranges_of(config.ensemble.distributions)
+    for name in asked.ranges:
+        known = [
+            *(name for name in config.ensemble.distributions if name.startswith("friction.")), *OTHERS
+        ]  # fmt: skip
+        _one_of(name, known, where, f"calibration.ranges.{name}")
     for model, names in asked.cases.items():
         key = f"calibration.cases.{model}"
-        if model not in config.models:
-            raise InputError(where, key, f"expected a model of the study: {', '.join(config.models)}")
+        _one_of(model, config.models, where, key)
+        check_measured_cases(names, config, where, key)
         for name in names:
-            known = [case.name for case in config.cases if case.measured is not None]
-            if name not in known:
+            structure = structures[config.case(name).structure]
+            used = [one for one in ranges if has_use(model, structure, one)]
+            if not used:
                 raise InputError(
-                    where,
-                    key,
-                    f"expected cases with a measured test: {', '.join(known) or 'none'}, not {name}",
+                    where, key, f"expected a parameter among {', '.join(ranges)} that {model} has a use for"
                 )
-    known = [*(name for name in config.ensemble.distributions if name.startswith("friction.")), *OTHERS]
-    for name in asked.ranges:
-        if name not in known:
-            raise InputError(where, f"calibration.ranges.{name}", f"expected one of {', '.join(known)}")
+            ends = {one: (ranges[one].lowest, ranges[one].highest) for one in used if one != STIFFNESS}
+
+            def parameters(values, structure=structure):
+                placed = {one: parameter_of(structure, one) for one in values}
+                return {name: factor * values[one] for one, (name, factor) in placed.items()}
+
+            check_ends(structure, ends, parameters, where, "calibration.ranges")
 
 
-def check_friction_search(config, where):
+def check_friction_search(config, structures, where):
     """A model, measured cases and frictions of the study, and at least two candidates."""
     search = config.friction_calibration
     if search is None:
         return
-    for kind, names, known in (
-        ("cases", search.cases, [case.name for case in config.cases]),
-        (
-            "variables",
-            search.variables,
-            [name for name in config.ensemble.distributions if name.startswith("friction.")],
-        ),
-    ):
-        for name in names:
-            if name not in known:
-                raise InputError(
-                    where, f"friction_calibration.{kind}", f"expected one of {', '.join(known)}, not {name}"
-                )
+    key = "friction_calibration"
+    check_measured_cases(search.cases, config, where, f"{key}.cases")
+    _one_of(search.model, config.models, where, f"{key}.model")
+    for name in search.variables:
+        known = [name for name in config.ensemble.distributions if name.startswith("friction.")]
+        _one_of(name, known, where, f"{key}.variables")
+    _each_once(search.variables, where, f"{key}.variables")
     for name in search.cases:
-        if config.case(name).measured is None:
-            raise InputError(
-                where, "friction_calibration.cases", f"expected cases with a measured test, not {name}"
-            )
-    if search.model not in config.models:
-        raise InputError(
-            where, "friction_calibration.model", f"expected a model of the study, not {search.model}"
-        )
+        structure = structures[config.case(name).structure]
+        if not any(has_parameter(structure, variable) for variable in search.variables):
+            raise InputError(where, f"{key}.variables", f"expected a friction that {name} has")
     if search.lowest + search.step > search.highest + 1e-9:
-        raise InputError(
-            where, "friction_calibration.step", "expected at least two candidates between lowest and highest"
-        )
+        raise InputError(where, f"{key}.step", "expected at least two candidates between lowest and highest")
+
+
+def check_convergence(settings, where):
+    """A structure with a block on a driven body, and settings with which LS-DEM can read its shapes."""
+    if settings is None:
+        return
+    with faults_of(where, "convergence.structure"):
+        structure = load_structure(settings.structure)
+        kicked(structure, 1.0)
+    for name, values in settings.numerical.items():
+        for value in values:
+            numerical = LsDemParameters(
+                **{name: value}, level_set="grid" if name == "grid_spacing" else "exact"
+            )
+            with faults_of(where, f"convergence.{name}s"):
+                model_of("ls-dem").refuse(structure, numerical)

@@ -4,6 +4,7 @@ import numpy as np
 
 from blockshake.dynamics.intensity import motion_figures
 from blockshake.dynamics.motion import PITCH
+from blockshake.dynamics.provenance import provenance
 from blockshake.dynamics.response_spectrum import acceleration_segments
 
 _GRAVITY = 9.81  # m/s2
@@ -19,12 +20,12 @@ _SMALLER = {"acceleration": "cm/s2 or mm/s2", "velocity": "cm/s or mm/s", "displ
 
 
 def motion_line(motion):
-    """Duration, kind and peaks along x of a `GroundMotion`, in one line."""
+    """Duration, kind, peaks along x and provenance of a `GroundMotion`, in one line."""
     peaks = motion_figures(motion)
     return (
         f"a motion of {motion.duration:g} s, given as {motion.kind}; peaks along x: "
         f"{peaks['peak_acceleration']:.3g} m/s2, {peaks['peak_velocity']:.3g} m/s, "
-        f"{peaks['peak_displacement']:.3g} m"
+        f"{peaks['peak_displacement']:.3g} m; {provenance(motion.attributes)}"
     )
 
 

@@ -4,11 +4,18 @@ from collections import Counter
 
 import numpy as np
 
+from blockshake.geometry.overlap import depths_of_pairs, near_pairs
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.geometry.structure import DEEPEST_OVERLAP, START_TOLERANCE
+from blockshake.geometry.structure_file import point_remarks
+from blockshake.quantities import PHYSICAL, USUAL
+from blockshake.simulation.parameter_table import instances
 
-_LIGHTEST, _HEAVIEST = 100.0, 25000.0  # kg/m3; no block is of less or more
-_LARGEST = 50.0  # m, of an edge
-_SOFTEST = 1e7  # Pa, of rubber; no block is softer
+_FAR = 1e4  # m, from the origin: with some digits of forces lost, docs/contracts.md
+_SMALLEST, _LARGEST = (
+    0.005,
+    25.0,
+)  # m, of the longest edge; no block of a structure or of a model test is beyond
 
 
 def structure_lines(structure):
@@ -49,9 +56,21 @@ def structure_remarks(structure):
         remarks.append(
             f"gravity is {structure.file.gravity[2]:g} m/s2 along z: it does not press blocks down"
         )
-    for name, material in structure.file.materials.items():
-        if material.youngs_modulus < _SOFTEST:
-            remarks.append(f"{name} has a Young's modulus of {material.youngs_modulus:.3g} Pa: expected Pa")
+    remarks += unusual_values(structure)
+    for name, solid in structure.solids.items():
+        if solid.polyhedron is None:
+            remarks.append(
+                f"{name} is not convex: LS-DEM reads it from a lattice of ls_dem.grid_spacing, which rounds off the "
+                "edges on which others stand"
+            )
+    remarks += _misfits(structure)
+    remarks += point_remarks(structure)
+    farthest = np.abs(structure.position).max()
+    if farthest > _FAR:
+        remarks.append(
+            f"the blocks stand {farthest:.3g} m from the origin, where places have steps of {np.spacing(farthest):.1g} "
+            "m: a local origin in whole metres keeps more digits"
+        )
     held = _held_up(structure)
     for body in np.flatnonzero(~held):
         remarks.append(
@@ -59,17 +78,55 @@ def structure_remarks(structure):
         )
     for body in np.flatnonzero(~structure.driven):
         name, solid = structure.body_names[body], structure.solid(body)
-        density = structure.mass[body] / solid.properties.volume
-        if not _LIGHTEST <= density <= _HEAVIEST:
-            remarks.append(
-                f"{name} weighs {structure.mass[body]:.3g} kg, {density:.3g} kg/m3: expected kg/m3"
-            )
         edge = np.ptp(solid.vertices, axis=0).max()
-        if edge > _LARGEST:
+        if not _SMALLEST <= edge <= _LARGEST:
             remarks.append(
                 f"{name} is {edge:.3g} m long and weighs {structure.mass[body]:.3g} kg: expected m"
             )
     return remarks
+
+
+def unusual_values(structure):
+    """One sentence for every parameter of a `Structure` beyond the values that are usual; a list of str."""
+    remarks = []
+    for quantity in (one for one in PHYSICAL if one.name in USUAL):
+        low, high = USUAL[quantity.name]
+        for name, value in instances(quantity.name, structure.file):
+            if value is not None and not (low <= np.min(value) and np.max(value) <= high):
+                shown = f"{value:g}" if isinstance(value, float) else list(value)
+                unit = "" if quantity.unit == "1" else f" {quantity.unit}"
+                remarks.append(f"{name} is {shown}{unit}: {low:g} to {high:g}{unit} is usual")
+    return remarks
+
+
+def _misfits(structure):
+    """Remarks on blocks that stand a little inside others, or a little above them."""
+    shapes, solids = [body.shape for body in structure.file.bodies], structure.solids
+    centroid, orientation = structure.centroid, structure.orientation
+
+    def depths(pairs, position):
+        return depths_of_pairs(pairs, shapes, solids, position, orientation)
+
+    pairs = near_pairs([solids[shape] for shape in shapes], centroid, orientation, DEEPEST_OVERLAP)
+    pairs = pairs[~structure.driven[pairs].all(axis=1)]
+    depth = depths(pairs, centroid)
+    inside = depth > START_TOLERANCE
+    if inside.any():
+        a, b = (structure.body_names[body] for body in pairs[depth.argmax()])
+        yield (
+            f"{_counted(np.count_nonzero(inside), 'joint')} overlapping, by up to {1e3 * depth.max():.2g} mm ({a} and "
+            f"{b}): a run starts them as they are laid, pressed by the weight alone"
+        )
+    apart = (depth < -START_TOLERANCE) & (depth > -DEEPEST_OVERLAP)
+    # a gap is one to fall through where it closes as the upper body comes down by it
+    down = np.array(structure.file.gravity) / max(np.linalg.norm(structure.file.gravity), 1e-300)
+    for pair, gap in zip(pairs[apart], -depth[apart], strict=True):
+        lower, upper = sorted(pair, key=lambda body: -centroid[body] @ down)
+        lowered = centroid.copy()
+        lowered[upper] += gap * down
+        if depths(pair[None], lowered)[0] > -0.1 * START_TOLERANCE:
+            names = structure.body_names
+            yield f"{names[upper]} is {1e3 * gap:.2g} mm above {names[lower]}: it falls unless another block holds it"
 
 
 def _held_up(structure):

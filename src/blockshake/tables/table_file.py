@@ -2,7 +2,6 @@
 
 import csv
 import io
-import re
 import zipfile
 from decimal import Decimal
 from pathlib import Path
@@ -12,15 +11,17 @@ import numpy as np
 from pydantic import Field
 
 from blockshake.errors import InputError
-from blockshake.files import read_bytes
+from blockshake.files import read_bytes, read_foreign_text
+from blockshake.tables.numbers import missing_code, plain_number
+from blockshake.tables.units import known_unit, unit_of_name
 from blockshake.validation import Strict
 
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 _SEPARATORS = "\t;|,"  # looked for in the header in this order; white space where it has none of them
-_GAPS = ("", "nan", "#n/a", "#nv")  # the last two as spreadsheets write them, in English and German
-_WORKBOOK = (".xlsx", ".xlsm")
+GAPS = ("", "nan", "#n/a", "#nv")  # the last two as spreadsheets write them, in English and German
+WORKBOOK = (".xlsx", ".xlsm")
 _MOST_BYTES, _MOST_CELLS = 5e8, 2e7  # a workbook of a few kilobytes may claim any number of them
 _MOST_NAMES = 20  # columns that an error lists
+SIGNS = {".": "point", ",": "comma"}
 
 
 class TableLayout(Strict):
@@ -43,6 +44,8 @@ class Table(NamedTuple):
         File, and ``#SHEET`` of a workbook.
     names : list of str
         Of the columns; 1, 2, ... where the header's line holds numbers.
+    notes : list of list
+        Cells between the names and the numbers, such as units.
     lines : list of int
         Line of every row in the file.
     rows : list of list
@@ -52,17 +55,21 @@ class Table(NamedTuple):
 
     source: str
     names: list
+    notes: list
     lines: list
     rows: list
     decimal: str
 
-    def column(self, name, size=Decimal(1)):
+    def column(self, name, size=Decimal(1), kind=None):
         """Numbers of a column times the size of their unit, float64 (n_rows,); NaN for an empty cell.
+
+        ``kind`` is that of the unit; a unit in the column's name or below it must be the same.
 
         Raises
         ------
         InputError
-            No such column, or two of that name; a cell that is no number.
+            No such column, or two of that name; a cell that is no number or stands for a missing one; another unit in
+            the header.
 
         Notes
         -----
@@ -76,27 +83,61 @@ class Table(NamedTuple):
             )
             raise InputError(self.source, f"column '{name}'", f"expected this column once; {found}")
         place = self.names.index(name)
-        cells = (row[place] if place < len(row) else None for row in self.rows)
-        return np.array([
-            self._number(cell, size, f"line {line}, {name}") for line, cell in zip(self.lines, cells, strict=True)
-        ])  # fmt: skip
-
-    def _number(self, cell, size, key):
-        if isinstance(cell, (int, float)) and not isinstance(cell, bool):
-            cell = repr(cell)
-        text = "" if cell is None else str(cell).strip()
-        if text.lower() in _GAPS:
-            return np.nan
-        plain = text.replace(",", ".") if self.decimal == "," and "." not in text else text
-        if not _NUMBER.fullmatch(plain):
-            sign = {".": "point", ",": "comma"}[self.decimal]
+        if kind is not None:
+            self._check_unit(place, kind, size)
+        cells = [row[place] if place < len(row) else None for row in self.rows]
+        keys = [f"line {line}, {name}" for line in self.lines]
+        numbers = [self._number(cell, key) for cell, key in zip(cells, keys, strict=True)]
+        written = np.array([np.nan if number is None else number for number in numbers], dtype=float)
+        coded = None if kind == "time" else missing_code(written)
+        if coded is not None:
             raise InputError(
-                self.source, key, f"expected a number with a decimal {sign}, or nothing, not '{text}'"
-            )
+                self.source, keys[coded],
+                f"expected a reading; '{cells[coded]}' looks like a code for a missing one, which an empty cell says",
+            )  # fmt: skip
         try:
-            return float(Decimal(plain) * size)
+            return np.array([np.nan if number is None else float(number * size) for number in numbers])
+        except ArithmeticError:
+            raise InputError(self.source, f"column '{name}'", "expected numbers of usual size") from None
+
+    def _check_unit(self, place, kind, size):
+        stated = [unit_of_name(self.names[place])]
+        noted = (str(row[place]) for row in self.notes if place < len(row) and row[place])
+        stated += [known_unit(note) for note in noted if note != "min"]  # of rows of min, max and mean
+        for unit in filter(None, stated):
+            if unit != (kind, abs(size)):
+                raise InputError(
+                    self.source, f"column '{self.names[place]}'",
+                    f"expected the unit of {kind} that was given; the header has another one, of {unit[0]}",
+                )  # fmt: skip
+
+    def _number(self, cell, key):
+        """A cell as a decimal, or None for a gap."""
+        text = "" if cell is None else str(cell).strip()
+        if text.lower() in GAPS:
+            return None
+        written = isinstance(cell, str)  # and not a number of a workbook
+        number = cell_number(text, self.decimal) if written else plain_number(text)
+        try:
+            return Decimal(number)
         except ArithmeticError:
             raise InputError(self.source, key, f"expected a number of usual size, not '{text}'") from None
+        except TypeError:
+            hint = "; thousands have no sign between them" if {".", ","} & set(text) else ""
+            expected = (
+                f"expected a number with a decimal {SIGNS[self.decimal]}, or nothing, not '{text}'{hint}"
+            )
+            raise InputError(self.source, key, expected) from None
+
+
+def cell_number(text, decimal):
+    """A number with the table's decimal sign as `float` and `decimal.Decimal` read it, or None for any other text.
+
+    A sign that is not the decimal one is never taken for it: ``1.012`` with a decimal comma, and ``1,012`` with a
+    decimal point, are refused, because nothing tells thousands from a slip of the layout.
+    """
+    other = "." if decimal == "," else ","
+    return None if other in text else plain_number(text.replace(decimal, "."))
 
 
 def read_table(source, layout):
@@ -113,11 +154,11 @@ def read_table(source, layout):
     InputError
         Missing or damaged file, unknown sheet, nothing below the header.
     """
-    path, _, sheet = str(source).partition("#") if not Path(source).exists() else (str(source), "", "")
-    if Path(path).suffix.lower() in _WORKBOOK:
-        source, rows = _sheet_rows(Path(path), sheet)
+    path, sheet = path_and_sheet(source)
+    if path.suffix.lower() in WORKBOOK:
+        source, rows = sheet_rows(path, sheet)
     else:
-        rows = _text_rows(Path(path), layout)
+        rows = _text_rows(path, layout)
     rows = [(line, row) for line, row in rows if any(cell not in (None, "") for cell in row)]
     header = next((row for line, row in rows if line >= layout.header), None)
     if header is None:
@@ -127,41 +168,65 @@ def read_table(source, layout):
     first = next(line for line, _ in rows if line >= layout.header)
     names = ["" if cell is None else str(cell).strip() for cell in header]
     decimal = layout.decimal
-    if all(_NUMBER.fullmatch(name.replace(decimal, ".")) for name in names):
+    if all(cell_number(name, decimal) for name in names):
         names, first = [str(number + 1) for number in range(len(names))], first - 1
-    below = [(line, row) for line, row in rows if line >= (layout.data or first + 1)]
+    start = layout.data or first + 1
+    below = [(line, row) for line, row in rows if line >= start]
     if not below:
         raise InputError(
             source, "", f"expected rows of numbers below the names in line {first}; there is none"
         )
-    return Table(str(source), names, [line for line, _ in below], [row for _, row in below], decimal)
+    notes = [row for line, row in rows if first < line < start]
+    return Table(str(source), names, notes, [line for line, _ in below], [row for _, row in below], decimal)
+
+
+def path_and_sheet(source):
+    """Path of a file, and the name of the sheet behind ``#``."""
+    path, _, sheet = str(source).partition("#") if not Path(source).exists() else (str(source), "", "")
+    return Path(path), sheet
 
 
 def _text_rows(path, layout):
     """Lines of a text file, by number from 1, cut at the separator."""
-    content = read_bytes(path)
-    try:
-        text = content.decode("utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
-    except UnicodeDecodeError:
-        text = content.decode("cp1252", errors="replace")  # as spreadsheets on Windows write it
-    lines = text.splitlines()
+    lines = read_foreign_text(path).splitlines()
     header = lines[layout.header - 1] if layout.header <= len(lines) else ""
     known = _SEPARATORS.replace(layout.decimal, "")
     separator = layout.separator or next((one for one in known if one in header), " ")
     if separator.isspace() and separator != "\t":
-        return [(number, line.split()) for number, line in enumerate(lines, start=1)]
+        return _blank_rows(lines, layout, path)
     if len(separator) != 1:
         raise InputError(path, "separator", f"expected one character, not '{separator}'")
     reader = csv.reader(io.StringIO("\n".join(lines)), delimiter=separator, strict=True)
     try:
-        return [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
+        rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
     except csv.Error as error:
         raise InputError(
             path, f"line {reader.line_num}", f"expected cells between '{separator}'; {error}"
         ) from None
+    width = next((len(row) for number, row in rows if number >= layout.header and any(row)), 0)
+    for number, row in rows:
+        if number >= (layout.data or layout.header) and any(
+            row[width:]
+        ):  # such as a decimal sign that separates
+            raise InputError(path, f"line {number}", f"expected at most {width} cells, found {len(row)}")
+    return rows
 
 
-def _sheet_rows(path, sheet):
+def _blank_rows(lines, layout, path):
+    """Lines cut at blanks, where only a row of as many cells as the header tells which one is missing."""
+    rows = [(number, line.split()) for number, line in enumerate(lines, start=1)]
+    filled = [(number, row) for number, row in rows if row and number >= layout.header]
+    for number, row in filled:
+        if number >= (layout.data or 0) and len(row) != len(filled[0][1]):
+            raise InputError(
+                path, f"line {number}",
+                f"expected {len(filled[0][1])} cells between blanks as in line {filled[0][0]}, found {len(row)}; "
+                "--header of a line of numbers counts the columns",
+            )  # fmt: skip
+    return rows
+
+
+def sheet_rows(path, sheet):
     """Rows of a sheet by number from 1, with the name of the source."""
     import openpyxl  # takes long to import
 

@@ -1,5 +1,7 @@
 """Units that files of users may have, and their sizes in SI as exact decimals: digits stay as they were written."""
 
+import re
+import unicodedata
 from decimal import Decimal
 
 from blockshake.errors import InputError
@@ -7,23 +9,40 @@ from blockshake.errors import InputError
 _CENTI, _MILLI, _MICRO = Decimal("0.01"), Decimal("0.001"), Decimal("0.000001")
 STANDARD_GRAVITY = Decimal("9.80665")  # m/s2, ISO 80000-3; the g of record files
 _DEGREE = Decimal("0.01745329251994329577")  # rad
-_SQUARED = ("/s^2", "/s2", "/s/s", "/sec2", "/sec^2", "/sec/sec", "/s**2")
 UNITS = {
     "time": {"s": Decimal(1), "ms": _MILLI, "min": Decimal(60)},
     "displacement": {"m": Decimal(1), "cm": _CENTI, "mm": _MILLI, "um": _MICRO},
     "velocity": {"m/s": Decimal(1), "cm/s": _CENTI, "mm/s": _MILLI},
     "acceleration": {
-        **{
-            prefix + spelt: size
-            for prefix, size in (("m", Decimal(1)), ("cm", _CENTI), ("mm", _MILLI))
-            for spelt in _SQUARED
-        },
-        "gal": _CENTI,
-        "g": STANDARD_GRAVITY,
+        "m/s2": Decimal(1), "cm/s2": _CENTI, "mm/s2": _MILLI, "gal": _CENTI, "g": STANDARD_GRAVITY,
+        "mg": STANDARD_GRAVITY * _MILLI, "%g": STANDARD_GRAVITY * _CENTI,
     },
     "rotation": {"rad": Decimal(1), "mrad": _MILLI, "deg": _DEGREE},
-}
-_SHOWN = {kind: ", ".join(units) for kind, units in UNITS.items()} | {"acceleration": "cm/s^2, m/s^2 or g"}
+}  # fmt: skip
+_SHOWN = {kind: ", ".join(units) for kind, units in UNITS.items()}
+_SECOND = re.compile(r"sec(?:ond)?s?(?![a-z])")
+_PER_SECOND_SQUARED = re.compile(r"/s/s$|/\(s2\)$|(?<=m)/?s-2$")
+_MOST_WORDS = 5  # of a unit: CM / SEC / SEC
+_FACTOR = re.compile(
+    r"[x*/\d\N{MULTIPLICATION SIGN}]", re.IGNORECASE
+)  # what a word that changes a unit begins with
+# a unit in a column's name: in brackets, or after an underscore where no word ends so
+_IN_BRACKETS = re.compile(r"[\[(]([^\[\]()]*(?:\([^()]*\))?[^\[\]()]*)[\])]\s*$")
+_AFTER_UNDERSCORE = re.compile(r"_(ms|mm|cm|um|gal)$", re.IGNORECASE)
+
+
+def _plain(text):
+    """A unit in the spelling of `UNITS`, whatever its case, blanks, brackets, powers and punctuation."""
+    unit = unicodedata.normalize("NFKC", text).lower().replace("\N{GREEK SMALL LETTER MU}", "u")
+    unit = re.sub(r"\(\s*\d+\s*\)\s*$", "", unit)  # the code of COSMOS
+    unit = _SECOND.sub("s", unit.replace("\N{MINUS SIGN}", "-").replace("**", ""))
+    unit = re.sub(
+        r"[\s\[\]{}\"'`\N{RIGHT SINGLE QUOTATION MARK}.,;:^*\N{MIDDLE DOT}\N{DOT OPERATOR}]", "", unit
+    )
+    if unit.startswith("(") and unit.endswith(")"):
+        unit = unit[1:-1]
+    unit = _PER_SECOND_SQUARED.sub("/s2", unit)
+    return {"gs": "g", "gals": "gal"}.get(unit, unit)
 
 
 def unit_size(kind, text, where, key):
@@ -34,10 +53,20 @@ def unit_size(kind, text, where, key):
     InputError
         Another unit.
     """
-    unit = text.strip().lower().replace(" ", "").replace("\N{MICRO SIGN}", "u")
+    unit = _plain(text)
     if unit not in UNITS[kind]:
         raise InputError(where, key, f"expected a unit of {kind} ({_SHOWN[kind]}), found '{text.strip()}'")
     return UNITS[kind][unit]
+
+
+def leading_unit(kind, text, where, key):
+    """Size in SI of the unit that a text begins with, as `unit_size`; further words may follow it."""
+    words = text.split()
+    for count in range(min(_MOST_WORDS, len(words)), 0, -1):
+        unit = _plain(" ".join(words[:count]))
+        if unit in UNITS[kind] and not _FACTOR.match(" ".join(words[count : count + 1])):
+            return UNITS[kind][unit]
+    return unit_size(kind, text, where, key)
 
 
 def kind_of_unit(text, kinds, where, key):
@@ -48,9 +77,21 @@ def kind_of_unit(text, kinds, where, key):
     InputError
         None of them.
     """
-    unit = text.strip().lower().replace(" ", "")
+    unit = _plain(text)
     for kind in kinds:
         if unit in UNITS[kind]:
             return kind
     shown = "; ".join(f"of {kind} {_SHOWN[kind]}" for kind in kinds)
     raise InputError(where, key, f"expected a unit {shown}; found '{text.strip()}'")
+
+
+def unit_of_name(name):
+    """Kind and size in SI of the unit that a column's name holds, such as ``EW [cm/s2]`` or ``time_ms``; or None."""
+    match = _IN_BRACKETS.search(name) or _AFTER_UNDERSCORE.search(name)
+    return known_unit(match.group(1)) if match else None
+
+
+def known_unit(text):
+    """Kind and size in SI of a unit, or None for any other text."""
+    unit = _plain(text)
+    return next(((kind, units[unit]) for kind, units in UNITS.items() if unit in units), None)

@@ -53,14 +53,13 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
     tests, gentle = [], []
     for motion in settings.motions:
         called = motion_in_folder(motion, folder)
-        for scale in _scales(settings.intensities):
+        for scale in settings.intensities.scales.tolist():
             gentle += table.sine(len(tests))
             entry = {
-                "name": f"{Path(motion).stem}-{round(100 * scale):03d}",
-                "motion": called,
-                "scale": scale,
-            }
-            drift = table.test(entry, load_motion(motion, scale), settings.duration)
+                "name": f"{Path(motion).stem}-{round(100 * scale):03d}", "motion": called, "scale": scale,
+                "baseline": settings.baseline,
+            }  # fmt: skip
+            drift = table.test(entry, load_motion(motion, scale, settings.baseline), settings.duration)
             if drift is not None:
                 tests.append(entry)
             if drift is None or drift > settings.intensities.largest_drift:
@@ -178,8 +177,3 @@ class _Table:
             0.0, self.settings.misplacement, ((~self.structure.driven).sum(), 2)
         )
         self.places = places
-
-
-def _scales(intensities):
-    count = int(np.floor((intensities.highest - intensities.first) / intensities.increment + 1e-9)) + 1
-    return [float(intensities.first + intensities.increment * step) for step in range(count)]

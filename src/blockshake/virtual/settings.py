@@ -3,32 +3,33 @@
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
-from blockshake.effects.registry import EFFECTS
-from blockshake.errors import InputError
+from blockshake.dynamics.baseline import AUTO, Baseline, check_window
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.effects.effect import Experiment
+from blockshake.effects.registry import EFFECTS, with_effect
+from blockshake.errors import InputError, faults_of
 from blockshake.files import load_yaml
-from blockshake.measurement.sensors.instruments import Instruments
-from blockshake.simulation.models import ModelName
-from blockshake.validation import Finite, NotNegative, Positive, Strict, validated
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.sensors.accelerometers import accelerometer_channels
+from blockshake.measurement.sensors.instruments import Instruments, check_instruments
+from blockshake.measurement.sensors.markers import RATE, driven_marker
+from blockshake.simulation.limits import LONGEST_STEP
+from blockshake.simulation.models import ModelName, model_of, split_parameters
+from blockshake.simulation.simulate import check_run
+from blockshake.study.ensembles.rungs import Rungs
+from blockshake.validation import Count, Finite, NotNegative, Positive, Strict, validated
 from blockshake.virtual.table import Table
+from blockshake.virtual.truth import hidden_effect
 
 
-class Intensities(Strict):
-    """The ladder of strong tests of every motion; Zhou et al. (2023): 50 %, + 25 % until a potential collapse."""
+class Intensities(Rungs):
+    """The ladder of strong tests of every motion, until a potential collapse."""
 
-    first: Positive = Field(0.5, description="scale of the first test [1]")
-    increment: Annotated[float, Field(ge=0.01, allow_inf_nan=False)] = Field(0.25, description="[1]")
-    highest: Positive = Field(4.0, description="[1]")
     largest_drift: Positive = Field(
         0.4, description="of a marker relative to the slab's, after which a motion's ladder ends [m]"
     )
-
-    @model_validator(mode="after")
-    def _rising(self):
-        if self.first > self.highest:
-            raise ValueError("expected first <= highest")
-        return self
 
 
 class Sine(Strict):
@@ -53,14 +54,17 @@ class VirtualCampaign(Strict):
     """The whole file."""
 
     name: str
-    seed: int = Field(ge=0, description="of all that is drawn")
+    seed: Count = Field(description="of all that is drawn")
     model: ModelName = "ls-dem"
-    time_step: Positive | None = Field(None, description="the model's own by default [s]")
+    time_step: Annotated[Positive, Field(le=LONGEST_STEP)] | None = Field(
+        None, description="the model's own by default [s]"
+    )
     numerics: dict[str, float | str] = Field(
         {}, description="numerical parameters of the solver, by dotted name"
     )
     duration: Positive = Field(12.0, description="of a strong test [s]")
     motions: tuple[str, ...] = Field(("alkion", "basso-tirreno"), min_length=1)
+    baseline: Baseline = AUTO
     intensities: Intensities = Intensities()
     sine: Sine | None = None
     table: Table = Table()
@@ -77,13 +81,14 @@ class VirtualCampaign(Strict):
     hidden: Hidden = Hidden()
 
 
-def load_settings(path):
-    """Settings of a file.
+def load_settings(path, structure=None):
+    """Settings of a file, for tests of a structure, a shipped name or a file; None: it is not known yet.
 
     Raises
     ------
     InputError
-        Unknown key, value out of range, an effect or a parameter that the registry lacks.
+        Unknown key, value out of range, a motion, an effect, a parameter or, in the structure, a place or a sensor that
+        is not there.
     """
     settings = validated(VirtualCampaign, load_yaml(path), path)
     hidden = settings.hidden
@@ -100,4 +105,27 @@ def load_settings(path):
         raise InputError(
             path, "motions", "expected motions of different names, none called sine beside `sine`"
         )
+    for motion in settings.motions:
+        with faults_of(path, "motions"):
+            read = load_motion(motion, settings.intensities.highest, settings.baseline)
+        check_window(read, settings.duration, path, "duration")
+    with faults_of(path, "numerics"):
+        split_parameters(settings.numerics, settings.model)
+    if structure is not None:
+        _check_structure(settings, load_structure(structure), path)
     return settings
+
+
+def _check_structure(settings, structure, path):
+    """Refuse a structure without what the settings name, or that the model cannot simulate."""
+    driven_marker(structure)
+    motion = load_motion(settings.motions[0], baseline=settings.baseline)
+    time_step = settings.time_step or model_of(settings.model).time_step
+    with faults_of(path, "model"):
+        check_run(structure, motion, settings.model, settings.numerics, time_step, settings.duration, RATE)
+    with faults_of(path, "instruments"):
+        check_instruments(settings.instruments, structure, accelerometer_channels(structure))
+    with faults_of(path, "hidden"):
+        effect = hidden_effect(settings.hidden, structure, settings.seed)
+        if effect is not None:
+            with_effect(Experiment(structure, motion, settings.instruments), **effect)

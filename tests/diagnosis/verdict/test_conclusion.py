@@ -5,6 +5,7 @@ from made_up_decision import made_up_decision
 from blockshake.diagnosis.inference.decision import CauseSize
 from blockshake.diagnosis.verdict.conclusion import Judged, conclude
 from blockshake.diagnosis.verdict.ladder import PROBABLE
+from blockshake.diagnosis.verdict.verdict import Contrast, Gain, MeasuredGain
 from blockshake.effects.registry import EFFECTS
 from blockshake.parity.finding import Finding
 
@@ -89,6 +90,20 @@ def test_an_unknown_cause_stays_unknown_beside_a_sensor_fault():
     # of the corrected readings: the fault of the sensor is not the misfit
     assert (verdict.misfit.p, verdict.misfit.where) == (decision.p_none, JUDGED.where)
     assert any(EFFECTS["sensor-gain"].title in caveat for caveat in verdict.caveats)
+
+
+def test_the_gain_of_a_sensor_fault_is_none_of_an_unknown_cause():
+    one = Contrast(estimate=0.9, lower=0.8, upper=1.0)
+    measured = MeasuredGain(gain=Gain(recalibrated=one, nominal=one, discrepancy=one), caveats=(), runs=0)
+
+    def verdict(decision):
+        return conclude(decision, [_finding()], {}, JUDGED, 100, [], "standard", measured=measured)
+
+    unknown = verdict(made_up_decision("unknown"))
+    assert unknown.gain is None
+    assert any("no gain was measured" in caveat for caveat in unknown.caveats)
+    # of the fault alone it is
+    assert verdict(made_up_decision()).gain.nominal == one
 
 
 def test_little_effort_allows_no_strong_word():

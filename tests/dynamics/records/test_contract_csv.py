@@ -34,7 +34,7 @@ def test_pitch_alone_is_a_motion():
         ("time_s,velocity_x\n0,0\n1,nan\n", "line 3, velocity_x: expected a finite number, found 'nan'"),
         ("time_s,velocity_x\n0,0\n1,\n", "line 3, velocity_x: expected a finite number"),
         ("time_s,velocity_x\n0,0\n\n1,2,3\n", "line 4: expected 2 cells, found 3"),
-        ("time_s,velocity_x\n0,0\n1,1\n1,2\n", "line 4, time_s: expected time that increases"),
+        ("time_s,velocity_x\n0,0\n1,1\n1,2\n", "line 4, time_s: expected times that increase"),
     ],
 )
 def test_wrong_files_are_named(text, message):

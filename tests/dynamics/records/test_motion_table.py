@@ -50,11 +50,13 @@ def test_a_unit_is_taken_at_its_word(unit, size, derivative, tmp_path):
 def test_a_correction_is_made_where_it_is_asked_for(tmp_path):
     """An offset of 0.01 m/s2 carries the ground 0.5 m in 10 s; the corrected one ends at rest."""
     ends = {}
-    for baseline in ("none", "correct"):
+    for baseline in ("auto", "none", "0.1"):
         assert _convert(tmp_path, WAVE + 0.01, "--unit", "m/s2", "--baseline", baseline) == 0
-        ends[baseline] = load_motion(tmp_path / "out.csv").evaluate(TIME[-1:])[0, 0]
+        motion = load_motion(tmp_path / "out.csv")
+        ends[baseline] = motion.evaluate(motion.table.breaks[-1:])[0, 0]
     assert ends["none"] == pytest.approx(0.5, abs=0.05)
-    assert abs(ends["correct"]) < 1e-9
+    assert ends["auto"] == ends["none"]
+    assert abs(ends["0.1"]) < 1e-6
 
 
 def test_a_corner_is_a_record_s_too(tmp_path):
@@ -64,12 +66,13 @@ def test_a_corner_is_a_record_s_too(tmp_path):
         + values
     )
     peaks = []
-    for options in ([], ["--corner-frequency", "0.4"], ["--baseline", "none"]):
+    for options in (["--baseline", "0.1"], ["--baseline", "0.4"], ["--baseline", "none"]):
         assert (
             main(["convert-motion", str(tmp_path / "r.at2"), *options, "--output", str(tmp_path / "o.csv")])
             == 0
         )
-        peaks.append(np.abs(load_motion(tmp_path / "o.csv").evaluate(TIME, 2)[:, 0]).max())
+        motion = load_motion(tmp_path / "o.csv")
+        peaks.append(np.abs(motion.evaluate(motion.table.breaks, 2)[:, 0]).max())
     assert peaks[2] == pytest.approx(np.abs(WAVE).max(), rel=1e-6)
     assert len(set(peaks)) == 3
 
@@ -82,7 +85,11 @@ def test_a_corner_is_a_record_s_too(tmp_path):
         (["--unit", "g", "--column", "u=EW"], "--column: u: expected x, y, z"),
         (["--unit", "g", "--column", "x=NS"], "column 'NS': expected this column once; there are Zeit, EW"),
         (["--unit", "g", "--column", "x"], "--column: x: expected READING=COLUMN"),
-        (["--unit", "mm", "--baseline", "correct"], "--baseline: expected accelerations at even times"),
+        (["--unit", "mm", "--baseline", "0.1"], "baseline: expected accelerations at even times"),
+        (
+            ["--unit", "g", "--baseline", "correct"],
+            "baseline: expected auto, none or a corner frequency above 0 Hz",
+        ),
         (["--unit", "g", "--time-unit", "h"], "--time-unit: h: expected a unit of time"),
     ],
 )

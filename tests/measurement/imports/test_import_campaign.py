@@ -9,7 +9,10 @@ import xarray as xr
 
 from blockshake.cli import main
 from blockshake.files import PACKAGE
+from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.campaigns.command_clock import from_first_reading
+from blockshake.measurement.campaigns.recorded_test import read_test
 
 SHIPPED = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-1"
 TEST = "basso-tirreno-200"
@@ -72,15 +75,20 @@ columns:
 
 def _equal_again(virtual, source, folder):
     assert main(["import-campaign", str(source), "--output", str(folder / "campaign")]) == 0
-    again = load_test(load_campaign(folder / "campaign"), "t1")
+    campaign = load_campaign(folder / "campaign")
+    again = read_test(campaign.folder / campaign.tests["t1"].file, load_structure(campaign.structure))
+    virtual = from_first_reading(virtual)
     for name in ("marker_displacement", "accelerometer"):
         xr.testing.assert_identical(
             again[name].drop_attrs().rename(None), virtual[name].drop_attrs().rename(None)
         )
 
 
-def test_a_german_csv_comes_back_to_the_digit(virtual, tmp_path):
-    for name, rows in zip(("m.csv", "a.csv"), _tables(virtual, ","), strict=True):
+@pytest.mark.parametrize("zero", [0.0, 43200.0])
+def test_a_german_csv_comes_back_to_the_digit(virtual, zero, tmp_path):
+    """Also where its clock shows the time of day."""
+    shown = virtual.assign_coords(time=virtual["time"] + zero, time_acc=virtual["time_acc"] + zero)
+    for name, rows in zip(("m.csv", "a.csv"), _tables(shown, ","), strict=True):
         (tmp_path / name).write_text("\n".join(";".join(row) for row in rows), encoding="cp1252")
     _equal_again(virtual, _map(tmp_path, virtual, "m.csv", "a.csv", ","), tmp_path)
 
@@ -110,9 +118,9 @@ COLUMNS = ["--time", "Zeit", "--column", "slab-face.x=Tisch", "--column", "block
 
 
 def _transducers(path, change=lambda rows: rows):
-    """A test of two displacement transducers along x, the second with an offset."""
-    rows = [[f"{step * 0.01:.2f}", "0,1", "57,3"] for step in range(1300)]
-    text = ["Zeit;Tisch;Weg 1", *(";".join(row).replace(".", ",") for row in change(rows))]
+    """A test of two displacement transducers along x, the second with an offset, and a column that nobody asks for."""
+    rows = [[f"{step * 0.01:.2f}", "0,1", "57,3", "0,2"] for step in range(1300)]
+    text = ["Zeit;Tisch;Weg 1;frei", *(";".join(row).replace(".", ",") for row in change(rows))]
     path.write_text("\n".join(text))
     return str(path)
 
@@ -152,17 +160,29 @@ BAD = {
         _same, ["--column", "block-2-face.x=Weg 2"], "v1.csv: column 'Weg 2': expected this column once; there are",
     ),
     "an unknown unit": (_same, ["--displacement-unit", "inch"], "options: displacement_unit: expected a unit of disp"),
-    "no unit of accelerations": (_same, ["--column", "slab-acc-x=Tisch"], "options: acceleration_unit: missing key"),
+    "no unit of accelerations": (_same, ["--column", "slab-acc-x=frei"], "options: acceleration_unit: missing key"),
     "times that go back": (_set(50, 0, "0,4"), [], "v1.csv: line 52, Zeit: expected times that increase; 0.4 s"),
     "no time": (_set(50, 0, ""), [], "v1.csv: line 52, Zeit: expected a time"),
     "text among numbers": (_set(9, 2, "over"), [], "v1.csv: line 11, Weg 1: expected a number with a decimal comma"),
+    "a point for thousands": (_set(9, 2, "1.012"), [], "line 11, Weg 1: expected a number with a decimal comma"),
+    "a point and a comma": (_set(9, 2, "1.012,5"), [], "line 11, Weg 1: expected a number with a decimal comma"),
+    "a code for none": (_set(9, 2, "-9999"), [], "line 11, Weg 1: expected a reading; '-9999' looks like a code"),
+    "a cell too many": (_set(9, 2, "57;3"), [], "v1.csv: line 11: expected at most 3 cells, found 4"),
     "a gap of the clock": (_without(200, 230), [], "v1.csv: line 202, Zeit: expected an even clock; 0.31 s after 1.99"),
     "a clock in another unit": (_same, ["--time-unit", "ms"], "v1.csv: time: expected seconds, with 20 to 10000"),
-    "an unknown marker": (_same, ["--column", "mystery.x=Tisch"], "v1.csv: mystery: expected markers of the structure"),
-    "no axis": (_same, ["--column", "block-2-face=Tisch"], "options: columns.block-2-face: expected MARKER.x"),
+    "an unknown marker": (_same, ["--column", "mystery.x=frei"], "v1.csv: mystery: expected markers of the structure"),
+    "no axis": (_same, ["--column", "block-2-face=frei"], "options: columns.block-2-face: expected MARKER.x"),
     "no rest taken off": (_same, ["--rest", "0"], "v1.csv: block-1-face.x: expected displacements since the first"),
     "an empty file": (lambda rows: [], [], "v1.csv: expected rows of numbers below the names"),
     "no separator": (_same, ["--separator", "::"], "v1.csv: separator: expected one character"),
+    "a column mapped twice": (
+        _same, ["--column", "block-2-face.x=Tisch"],
+        "options: columns.block-2-face.x: expected a column of its own; 'Tisch' is slab-face.x",
+    ),
+    "times as readings": (
+        _same, ["--column", "block-2-face.x=Zeit"],
+        "options: columns.block-2-face.x: expected a column of its own; 'Zeit' is time",
+    ),
     "an unknown role": (_same, ["--role", "test"], "options: tests.v1.role: input should be 'fit'"),
 }  # fmt: skip
 

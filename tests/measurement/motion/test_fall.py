@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from blockshake.geometry.structure import load_structure
+from blockshake.geometry.structure import build_structure, load_structure
 from blockshake.measurement.campaigns.campaign import Sensors
 from blockshake.measurement.motion.fall import find_fall, until_fall
 from blockshake.measurement.sensors.markers import marker_position
@@ -54,3 +54,14 @@ def test_a_block_that_leans_and_comes_back_has_not_fallen():
         test = readings(lean * np.sin(np.pi * TIME / 4.0) ** 2)
         assert find_fall(test, STRUCTURE, SENSORS) is None
         assert until_fall(test, None) is test
+
+
+def test_a_block_that_is_dropped_has_nothing_to_fall_from():
+    """All blocks hang a metre apart; the lowest falls onto the slab."""
+    mapping = STRUCTURE.file.model_dump(mode="json")
+    for place, body in enumerate(mapping["bodies"]):
+        body["position"][2] += float(place)
+    hanging = build_structure(mapping, "hanging.yaml", STRUCTURE.folder)
+    assert not hanging.touching.any()
+    test = readings(np.zeros_like(TIME), np.clip(0.5 * 9.81 * TIME**2, 0.0, 1.0))
+    assert find_fall(test, hanging, SENSORS) is None

@@ -9,6 +9,7 @@ from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Sensors
+from blockshake.measurement.campaigns.command_clock import from_command, from_first_reading
 from blockshake.measurement.motion.measured_base import (
     base_as_motion,
     draw_base,
@@ -30,7 +31,7 @@ LAG = 0.012  # s, of the markers' clock behind the accelerometer's
 def readings(
     rate, zero=0.0, lag=0.0, markers=("slab-face", "slab-left", "slab-right", "slab-end"), duration=8.0
 ):
-    """A test of the slab alone: readings from ``zero`` on of a table that starts `QUIET` later."""
+    """A test of the slab alone, loaded: readings from ``zero`` on of a table that starts `QUIET` later."""
     generator = np.random.default_rng(11)
     time = np.arange(round((duration + QUIET) * rate) + 1) / rate
     pose = TRUE.evaluate(time - QUIET) - TRUE.evaluate(np.zeros(1))
@@ -51,7 +52,7 @@ def readings(
     since = time_acc - QUIET
     level = np.where(since >= 0.0, TRUE.evaluate(since, 2)[:, 0] - 9.81 * TRUE.evaluate(since)[:, 3], 0.0)
     level = level + 0.05 + generator.normal(0.0, NOISE.accelerometer_noise, len(level))
-    return xr.Dataset(
+    test = xr.Dataset(
         {
             "marker_displacement": (("time", "marker", "axis"), read - read[:1]),
             "accelerometer": (("time_acc", "channel"), level[:, None]),
@@ -61,6 +62,7 @@ def readings(
             "time_acc": zero + time_acc, "channel": ["slab-acc-x"],
         },
     )  # fmt: skip
+    return from_command(from_first_reading(test), STRUCTURE, COMMAND)
 
 
 @pytest.mark.parametrize(
@@ -69,11 +71,12 @@ def readings(
 def test_the_input_is_the_table_s_motion_whatever_the_clock_and_the_rate(rate, zero, lag, pitch_error):
     test = readings(rate, zero, lag)
     base = measure_base(test, STRUCTURE, NOISE, COMMAND)
-    assert base.attrs["start"] == pytest.approx(zero + QUIET + lag, abs=0.002)
+    assert base.attrs["start"] == 0.0
+    assert test["time"][0] == pytest.approx(-QUIET, abs=0.002)
     assert base.attrs["accelerometer_lag"] == pytest.approx(lag, abs=3e-4)
     drawn = base_as_motion(base, draw_base(base, np.random.default_rng(1)), "drawn", {})
     time = np.arange(0.0, 7.9, 0.01)
-    late = base.attrs["start"] - zero - QUIET - lag
+    late = -float(test["time"][0]) - QUIET
     error = drawn.evaluate(time) - (TRUE.evaluate(time + late) - TRUE.evaluate(np.full(1, late)))
     assert np.sqrt(np.mean(error[:, 0] ** 2)) < 5e-5
     assert np.sqrt(np.mean(error[:, 3] ** 2)) < pitch_error
@@ -105,6 +108,6 @@ def test_one_marker_tells_no_pitch():
 def test_a_table_that_does_not_follow_starts_with_its_record():
     test = readings(200.0, zero=3.0, duration=3.0)
     test["marker_displacement"][:] = 0.0
-    base = measure_base(test, STRUCTURE, NOISE, COMMAND)
+    base = measure_base(from_command(test, STRUCTURE, COMMAND), STRUCTURE, NOISE, COMMAND)
     assert base.attrs["follows"] == 0
-    assert base.attrs["start"] == 3.0
+    assert base.attrs["start"] == 0.0

@@ -8,6 +8,7 @@ from blockshake.diagnosis.features.features import features
 from blockshake.diagnosis.features.reading import read_off
 from blockshake.dynamics.motion import ground_motion
 from blockshake.forces.joint_forces import gives_forces
+from blockshake.measurement.campaigns.command_clock import from_command
 from blockshake.measurement.motion.joint_histories import joint_histories
 from blockshake.measurement.motion.measured_base import base_as_motion, draw_base, measure_base
 from blockshake.parity.parity import check_parity
@@ -96,12 +97,14 @@ def test_a_test_is_read_off_without_what_was_not_measured(run, axes, names):
 def test_a_table_is_commanded_along_what_nobody_measured(run):
     told = {"x": BASE.displacement, "z": 0.2 * BASE.displacement}
     command = ground_motion("command", TIME, told, "displacement")
-    base = measure_base(_measured(seen(run), "x"), STRUCTURE, SENSORS, command)
+    test = from_command(_measured(seen(run), "x"), STRUCTURE, command)
+    base = measure_base(test, STRUCTURE, SENSORS, command)
     assert base.attrs["unread"] == "yz"
     assert base["marker"].sel(channel=["y", "z"]).isnull().all()
     assert base["displacement_error"].sel(channel=["y", "z"]).isnull().all()
     motion = base_as_motion(base, draw_base(base, np.random.default_rng(1)), "measured", {})
-    moved = motion.evaluate(TIME - base.attrs["start"])
-    expected = command.evaluate(TIME - base.attrs["start"])
+    start = float(test["time"][0])
+    moved = motion.evaluate(TIME + start - base.attrs["start"])
+    expected = command.evaluate(TIME + start)
     np.testing.assert_allclose(moved[:, 1], 0.0, atol=1e-15)
     np.testing.assert_allclose(moved[:, 2], expected[:, 2], atol=1e-5)

@@ -1,16 +1,18 @@
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 from fake_diagnosis import FakeDiagnosis
 from fake_findings import CAUSES, OPEN, SEALED, track_record, write_horizons, write_made_up_track_record
-from page import CLAIMS, Page
+from page import CLAIMS, Page, texts
 
 from blockshake.diagnosis.verdict.ladder import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.diagnosis.verdict.track_record import procedure_digest
 from blockshake.diagnosis.verdict.verdict import load_verdict
 from blockshake.errors import InputError
 from blockshake.report.diagnosis.content import load_diagnosed
+from blockshake.report.diagnosis.limits_section import limits_section
 from blockshake.report.diagnosis.report import compose_diagnosis, make_diagnosis_report
 from blockshake.report.diagnosis.track_record_section import track_record_section
 from blockshake.report.diagnosis.verdict import statement
@@ -170,7 +172,7 @@ def test_drift_before_and_after_is_that_of_the_strongest_sealed_test(found, page
     assert float(own["measured"]) == float(found["named"].consequences["measured"].max())
     before, after = (1e3 * float(own["drift"].sel(kind=kind)) for kind in ("recalibrated", "extended"))
     assert (
-        f"On {SEALED[-1]}, which was sealed, the 95 % drift of the top block goes from {before:.0f} mm"
+        f"On {SEALED[-1]}, which was sealed, the median drift of the top block goes from {before:.0f} mm"
         in pages["named"][1]
     )
     assert f"to {after:.0f} mm" in pages["named"][1]
@@ -239,3 +241,14 @@ def test_missing_results_are_named_and_nothing_is_written(fakes, tmp_path):
     with pytest.raises(InputError, match=r"misfit\.nc"):
         make_diagnosis_report(*fake.arguments(), tmp_path / "a.html", tmp_path / "a.pdf")
     assert not (tmp_path / "a.html").exists()
+
+
+def test_a_record_that_was_commanded_is_said_with_its_format_and_baseline(found):
+    record = {
+        "source": "r.AT2", "format": "PEER NGA AT2", "synthetic": False, "assumed": "g of 9.80665 m/s2",
+        "baseline": "corrected, not at rest",
+    }  # fmt: skip
+    said = " ".join(texts(limits_section(replace(found["named"], motions={"r.AT2": record}))))
+    assert (
+        "r.AT2: r.AT2 (PEER NGA AT2); assumed: g of 9.80665 m/s2; baseline: corrected, not at rest." in said
+    )

@@ -30,7 +30,7 @@ def test_a_sensor_fault_alone_is_probable_and_named_without_simulation(tmp_path)
     shown = [block for section in compose_diagnosis(one).sections for block in section.blocks]
     items = " ".join(item for block in shown if block.kind == "items" for item in block.items)
     assert "without any simulation" in items
-    assert "Excluded (nine in ten would have been seen)" in items
+    assert "Excluded, by simulated tests of which nine in ten showed such a size" in items
     assert any(block.kind == "table" and block.caption.startswith("Faults of sensors") for block in shown)
 
 

@@ -73,3 +73,23 @@ def test_an_mp4_without_ffmpeg_is_refused_in_one_line(leaning_run, tmp_path, mon
 def test_an_mp4_is_written_where_there_is_ffmpeg(leaning_run, tmp_path):
     animate_run(tmp_path / "x.mp4", *leaning_run)
     assert (tmp_path / "x.mp4").read_bytes()[4:8] == b"ftyp"
+
+
+@pytest.mark.parametrize("view", ["front", "side", "3d"])
+def test_a_run_in_national_coordinates_looks_as_at_the_origin(view, leaning_run, tmp_path):
+    run, structure = leaning_run
+    origin = np.array([500_000.0, 4_000_000.0, 1000.0])
+    mapping = structure.file.model_dump(mode="json")
+    for body in mapping["bodies"]:
+        body["position"] = (origin + body["position"]).tolist()
+    moved = run.assign(position=run["position"] + origin)
+    animate_run(tmp_path / "near.gif", run, structure, view, 3.0, 5.0)
+    animate_run(tmp_path / "far.gif", moved, structure.with_mapping(mapping), view, 3.0, 5.0)
+    with Image.open(tmp_path / "near.gif") as near, Image.open(tmp_path / "far.gif") as far:
+        assert near.n_frames == far.n_frames > 1
+        for frame in range(near.n_frames):
+            near.seek(frame)
+            far.seek(frame)
+            a, b = (np.asarray(film.convert("RGB")).astype(int) for film in (near, far))
+            # a line that falls between two pixels falls on either
+            assert (np.abs(a - b).max(axis=2) > 60).mean() < 0.01

@@ -70,3 +70,19 @@ def test_the_animation_has_the_poses_of_the_run(glb, leaning_run):
 def test_same_run_same_bytes(glb, leaning_run, tmp_path):
     write_glb(tmp_path / "again.glb", *leaning_run)
     assert (tmp_path / "again.glb").read_bytes() == glb.read_bytes()
+
+
+def test_a_run_in_national_coordinates_counts_from_a_local_origin(leaning_run, tmp_path):
+    """32 bits are 0.25 m apart at 4000 km: the same bytes of motion as at the origin, and the origin said."""
+    run, structure = leaning_run
+    origin = np.array([500_000.0, 4_000_000.0, 0.0])
+    write_glb(tmp_path / "far.glb", run.assign(position=run["position"] + origin), structure)
+    tree, binary = parts(tmp_path / "far.glb")
+    assert tree["asset"]["extras"]["local_origin"] == origin.tolist()
+    (animation,) = tree["animations"]
+    for channel in animation["channels"]:
+        if channel["target"]["path"] == "translation":
+            node = tree["nodes"][channel["target"]["node"]]
+            found = values(tree, binary, animation["samplers"][channel["sampler"]]["output"])
+            np.testing.assert_allclose(found, run.sel(body=node["name"])["position"], atol=1e-6)
+            np.testing.assert_allclose(node["translation"], found[0], atol=1e-6)

@@ -65,3 +65,22 @@ def test_vtk_reads_blocks_and_joints_over_time(files, leaning_run):
         reader.UpdateTimeStep(1.0)
         cells = reader.GetOutputDataObject(0).GetCellData()
         assert cells.GetArray(name).GetTuple(0)[0] == pytest.approx(expected)
+
+
+def test_a_run_in_national_coordinates_counts_from_a_local_origin(files, leaning_run, tmp_path):
+    """32 bits are 0.25 m apart at 4000 km: the same points as at the origin, and the origin said."""
+    run, structure = leaning_run
+    origin = np.array([500_000.0, 4_000_000.0, 0.0])
+    moved = run.assign(position=run["position"] + origin)
+    mapping = structure.file.model_dump(mode="json")
+    for body in mapping["bodies"]:
+        body["position"] = (origin + body["position"]).tolist()
+    structure = structure.with_mapping(mapping)
+    far = write_vtkhdf(tmp_path / "far.vtkhdf", moved, run_histories(moved, structure), structure)
+    for near, file in zip(files, far, strict=True):
+        with netCDF4.Dataset(near) as expected, netCDF4.Dataset(file) as found:
+            np.testing.assert_array_equal(found["VTKHDF"].LocalOrigin, origin)
+            assert "LocalOrigin" not in expected["VTKHDF"].ncattrs()
+            np.testing.assert_allclose(found["VTKHDF"]["Points"], expected["VTKHDF"]["Points"], atol=1e-6)
+            for name, values in expected["VTKHDF"]["CellData"].variables.items():
+                np.testing.assert_allclose(found["VTKHDF"]["CellData"][name], values, rtol=1e-6, atol=1e-6)

@@ -30,6 +30,13 @@ def test_median_is_told_as_a_factor_and_as_an_acceleration(content):
     assert f"half of the capacities are below {float(one['median']):.2f} [" in told
     assert f"({float(one['median']) * peak:.2f} m/s" in told
     assert "The last run of 1 sample ended for a numerical reason." in told
+    # whose it is
+    assert "5 samples by NSCD rigid: half of the capacities" in told
+
+
+def test_samples_that_still_fall_are_told(content):
+    falling = with_fragility(content, status="falling")
+    assert "5 samples still fell when the window ended, which counts as a collapse." in words(falling, CASE)
 
 
 def test_a_table_has_every_level_with_its_share(content):

@@ -7,7 +7,7 @@ from page import texts
 
 from blockshake.report.document.blocks import Heading, Text
 from blockshake.report.study.content import load_content
-from blockshake.report.study.opening_sections import samples, stiffness, structures
+from blockshake.report.study.opening_sections import motions, samples, stiffness, structures
 from blockshake.study.sampling.latin_hypercube import load_design
 
 
@@ -46,3 +46,12 @@ def test_variables_without_use_are_those_of_the_models_of_the_study(fake):
     said = " ".join(texts(samples(load_content(study, fake.results, fake.logs))))
     assert "LS-DEM has no use for viscous modulus of concrete" in said
     assert "NSCD rigid has no use" not in said
+
+
+def test_a_record_is_said_with_its_format_and_baseline(fake):
+    found = load_content(fake.study, fake.results, fake.logs)
+    name = next(iter(found.motions))
+    record = {"source": "r.AT2", "format": "PEER NGA AT2", "baseline": "corrected, not at rest"}
+    found.motions[name] = found.motions[name].assign_attrs(synthetic=0, **record)
+    said = " ".join(texts(motions(found)))
+    assert f"{name}: r.AT2 (PEER NGA AT2); baseline: corrected, not at rest." in said

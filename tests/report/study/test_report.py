@@ -111,7 +111,7 @@ def test_coverage_never_stands_alone(fake, text):
 def test_samples_that_did_not_complete_are_listed_with_their_reason(text):
     assert f"configuration-4 NSCD rigid 2 collapsed 1 {COLLAPSE_REASON}" in text
     assert "configuration-4 NSCD rigid 4 not-converged" in text
-    assert "48 runs: 46 completed, 1 collapsed, 1 failed" in text
+    assert "48 runs: 46 completed, 1 collapsed, 0 still falling when the window ended, 1 failed" in text
     assert "NSCD rigid: 5 samples contribute until" in text
     assert "the statistics leave out failed samples (1)" in text
 

@@ -8,7 +8,7 @@ from blockshake.geometry.surface_nodes import line_nodes
 
 G = 9.81
 B, H = 0.4, 0.8  # m, half width and half height of the sharp block
-INSET = 0.005  # m; the outermost nodes, and so the pivot, lie this far inside the edge
+INSET = 0.003 * 2.0 * B  # m; the outermost nodes, and so the pivot, lie this far inside the edge
 PIVOT = B - INSET
 MASS = 0.8 * 2.4 * 1.6 * 2400.0
 INERTIA = MASS * ((2 * B) ** 2 + (2 * H) ** 2) / 12.0 + MASS * (PIVOT**2 + H**2)  # about the pivot

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from blockshake.dynamics.motion import ground_motion
-from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
 from blockshake.solvers.ls_dem.loop import _has_diverged
 
@@ -85,13 +84,6 @@ def test_records_fall_between_steps(make_structure, run_ls_dem):
     # half a step of linear extrapolation: g dt^2 / 8 = 1e-9 m
     np.testing.assert_allclose(run.position[:, 1, 2], 5.0 - 0.5 * G * run.time**2, atol=2e-9)
     np.testing.assert_allclose(run.velocity[:, 1, 2], -G * run.time, atol=1e-12)
-
-
-def test_an_inset_wider_than_a_flat_is_refused(make_structure, run_ls_dem):
-    body = {"name": "b", "shape": "thin", "position": [0.0, 0.0, 0.5]}
-    structure = make_structure([body], shapes={"thin": {"box": [0.009, 1.0, 1.0]}})
-    with pytest.raises(InputError, match=r"test.yaml: shapes.thin: expected flats wider than"):
-        run_ls_dem(structure, 0.01)
 
 
 @pytest.mark.parametrize("body", [0, 1, 2])

@@ -31,7 +31,7 @@ def test_a_mesh_is_refused(tmp_path, stone):
     trimesh.creation.icosahedron().export(tmp_path / "ball.stl")
     (tmp_path / "ball.yaml").write_text(
         "name: ball\n"
-        "materials: {stone: {density: 2400.0, youngs_modulus: 3.45e10, poisson_ratio: 0.2}}\n"
+        "materials: {stone: {density: 2400.0, youngs_modulus: 3.45e10, poisson_ratio: 0.2, viscous_modulus: 1.5e8}}\n"
         "shapes: {slab: {box: [3.0, 3.0, 0.2]}, ball: {mesh: ball.stl}}\n"
         "bodies:\n"
         "  - {name: slab, shape: slab, material: stone, position: [0, 0, -0.1], driven: true}\n"

@@ -72,10 +72,11 @@ def test_equal_ensembles_are_not_apart(ensembles):
 def test_medians_and_width_of_a_block(compared):
     at = compared.sel(model="ls-dem", marker=BLOCK)
     assert float(at["peak"]) == pytest.approx(np.median(LEVELS), rel=1e-12)
-    np.testing.assert_allclose(at["peak_interval"], [LEVELS[0], LEVELS[-1]], rtol=1e-12)
+    # four samples bear no limits
+    assert np.isnan(at["peak_interval"]).all()
+    assert np.isnan(at["width_interval"]).all()
     pairs = [b - a for place, a in enumerate(LEVELS) for b in LEVELS[place + 1 :]]
     assert float(at["width"]) == pytest.approx(STANDING * np.mean(pairs), rel=1e-9)
-    assert at["width_interval"][0] <= at["width"] <= at["width_interval"][1]
     assert "slab-face" not in compared["marker"].values
 
 

@@ -52,6 +52,7 @@ def case(tmp_path):
     (tmp_path / "campaign.yaml").write_text(CAMPAIGN)
     return {
         "structure": str(tmp_path / "one-block.yaml"), "motion": str(tmp_path / "motion.csv"), "scale": 1.0,
+        "baseline": "auto",
         "duration": 2.5,
     }  # fmt: skip
 

@@ -11,7 +11,7 @@ from blockshake.study.ensembles.outcomes import (
 )
 from blockshake.study.ensembles.timing import Timing, total_timing
 
-STATUS = ["completed", "collapsed", "not-converged", "completed"]
+STATUS = ["completed", "collapsed", "not-converged", "completed", "falling"]
 
 
 @pytest.fixture
@@ -19,21 +19,21 @@ def samples():
     return xr.Dataset(
         {
             "status": ("sample", STATUS),
-            "energy_residual": ("sample", [1e-4, np.nan, 5e-4, 2e-4]),
-            "numerics_steps": ("sample", [10.0, 30.0, np.nan, 20.0]),
+            "energy_residual": ("sample", [1e-4, np.nan, 5e-4, 2e-4, np.nan]),
+            "numerics_steps": ("sample", [10.0, 30.0, np.nan, 20.0, np.nan]),
         },
-        coords={"sample": [3, 5, 8, 9]},
+        coords={"sample": [3, 5, 8, 9, 11]},
     )
 
 
 def test_every_sample_has_one_outcome():
     found = count_outcomes(STATUS)
-    assert found == (2, 1, 1)
-    assert (sum(found), found.counted) == (4, 3)
+    assert found == (2, 1, 1, 1)
+    assert (sum(found), found.counted) == (5, 4)
 
 
 def test_unfinished_samples_are_those_that_did_not_complete(samples):
-    assert [int(one["sample"]) for one in unfinished(samples)] == [5, 8]
+    assert [int(one["sample"]) for one in unfinished(samples)] == [5, 8, 11]
 
 
 def test_figures_leave_out_samples_without_one(samples):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from blockshake.study.fragility.capacity import Capacity, bootstrap_capacities, fit_capacity
+from blockshake.study.fragility.capacity import Capacity, fit_capacity, likely_capacities
 
 MEDIAN, DISPERSION = 1.6, 0.25
 LEVELS = np.arange(0.5, 4.01, 0.25)
@@ -33,15 +33,23 @@ def test_probability_and_level_are_each_others_inverse():
     assert known.probability(known.level(0.05)) == pytest.approx(0.05)
 
 
-def test_bootstrap_limits_hold_the_median_about_as_often_as_they_say():
+@pytest.mark.parametrize("size", [8, 20, 50])
+def test_limits_hold_what_they_are_of_as_often_as_they_say(size):
+    """95 of 100, less four standard errors of 100 trials: median, dispersion and the level of 5 %."""
     inside = []
-    for seed in range(20):
-        lower, upper = bounds(drawn(30, 100 + seed))
-        medians = [one.median for one in bootstrap_capacities(lower, upper, np.random.default_rng(seed))]
-        low, high = np.quantile(medians, [0.025, 0.975])
-        inside.append(low <= MEDIAN <= high)
-    # 95 % less the few that a bootstrap of 30 misses; 20 trials spread by 5 %
-    assert np.mean(inside) >= 0.8
+    for seed in range(100):
+        likely = likely_capacities(*bounds(drawn(size, 100 + seed)))
+        known = Capacity(MEDIAN, DISPERSION)
+        inside.append([
+            of(likely).min() <= of(known) <= of(likely).max()
+            for of in (lambda one: one.median, lambda one: one.dispersion, lambda one: one.level(0.05))
+        ])  # fmt: skip
+    assert (np.mean(inside, axis=0) >= 0.95 - 4.0 * np.sqrt(0.95 * 0.05 / 100)).all()
+
+
+def test_samples_that_leave_a_capacity_open_give_no_limits():
+    """Two samples on two sides: any dispersion does."""
+    assert np.isnan(likely_capacities([1.0, 0.0], [np.inf, 0.5])).all()
 
 
 def test_capacities_that_one_value_would_do_for_have_no_dispersion():

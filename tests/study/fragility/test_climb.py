@@ -34,7 +34,12 @@ def case(make_mapping, tmp_path):
     pulse = np.where(time < PULSE, 1.0, np.where(time < 2.0 * PULSE, -1.0, 0.0))
     rows = [f"{t:.4f},{a}" for t, a in zip(time, pulse, strict=True)]
     (tmp_path / "pulse.csv").write_text("\n".join(["time_s,acceleration_x", *rows]))
-    return {"structure": str(tmp_path / "cube.yaml"), "motion": str(tmp_path / "pulse.csv"), "duration": 0.6}
+    return {
+        "structure": str(tmp_path / "cube.yaml"),
+        "motion": str(tmp_path / "pulse.csv"),
+        "baseline": "auto",
+        "duration": 0.6,
+    }
 
 
 def test_capacities_enclose_those_of_a_block_that_slides(case, tmp_path):
@@ -65,7 +70,7 @@ def rung(scale, passed, status="completed"):
 def test_shares_count_what_is_known_at_each_level():
     scales = np.array([1.0, 2.0, 3.0])
     climbs = [
-        [rung(1.0, True), rung(2.0, False, "collapsed")],
+        [rung(1.0, True), rung(2.0, False, "falling")],
         [rung(1.0, True), rung(2.0, True), rung(3.0, True)],
         [rung(1.0, True), rung(2.0, True), rung(3.0, False)],
         [rung(1.0, True), rung(2.0, False, "not-converged")],
@@ -73,13 +78,13 @@ def test_shares_count_what_is_known_at_each_level():
     climbed = gathered(np.arange(4), climbs, scales, 0.4)
     np.testing.assert_array_equal(climbed["capacity_lower"], [1.0, 3.0, 2.0, 1.0])
     np.testing.assert_array_equal(climbed["capacity_upper"], [2.0, np.inf, 3.0, np.inf])
-    found = fragility(climbed, ("test",))
+    found = fragility(climbed)
     np.testing.assert_array_equal(found["known"], [4, 3, 3])
     np.testing.assert_allclose(found["share"], [0.0, 1.0 / 3.0, 2.0 / 3.0])
     # Clopper and Pearson of 0 in 4
     assert float(found["share_interval"].sel(bound="upper")[0]) == pytest.approx(1.0 - 0.025**0.25)
     assert 2.0 < float(found["median"]) < 3.5
     assert float(found["safe_scale"]) < float(found["median"])
-    assert found.identical(fragility(climbed, ("test",)))
+    assert found.identical(fragility(climbed))
     for name, variable in found.variables.items():
         assert variable.attrs.get("long_name") or name in ("sample", "bound", "quantile"), name

@@ -31,6 +31,7 @@ def search(tmp_path, one_block, read_with_noise):
             "structure": str(structure),
             "motion": str(tmp_path / "motion.csv"),
             "scale": 1.0,
+            "baseline": "auto",
             "duration": 2.0,
             "input": "commanded",
         }

@@ -153,3 +153,51 @@ def test_wrong_options_are_refused_in_one_line(options, words):
     with pytest.raises(InputError, match=words) as error:
         draw_samples(**options)
     assert "\n" not in str(error.value)
+
+
+STUDYS = {
+    "friction.granite.plate": {"distribution": "lognormal", "mean": 0.7, "cov": 0.1},
+    "materials.granite.density": {"mean": 2650.0, "cov": 0.04},
+}
+CORRELATION = "name,{0},materials.granite.density\n{0},1,0.5\nmaterials.granite.density,0.5,1\n"
+
+
+def test_the_notation_of_a_study_is_that_of_its_distributions():
+    """Both ways to name a distribution and its correlation give the same bytes."""
+    named = {
+        "friction.granite.plate": Lognormal(mean=0.7, cov=0.1),
+        "materials.granite.density": Lognormal(mean=2650.0, cov=0.04),
+    }
+    values = draw_samples(10, 1, STUDYS).values
+    pd.testing.assert_frame_equal(values, draw_samples(10, 1, named).values)
+
+
+@pytest.mark.parametrize("pair", ["friction.granite.plate", "friction.plate.granite"])
+def test_a_correlation_names_a_pair_in_either_order(tmp_path, pair):
+    (tmp_path / "c.csv").write_text(CORRELATION.format(pair))
+    design = draw_samples(10, 1, STUDYS, tmp_path / "c.csv")
+    assert design.target.to_numpy()[0, 1] == 0.5
+    assert list(design.target.columns) == list(STUDYS)
+    assert abs(design.correlation.to_numpy()[0, 1] - 0.5) < 0.01
+
+
+@pytest.mark.parametrize(
+    ("distributions", "words"),
+    [
+        ({"friction.a.b": 0.7}, "sampling: distributions.friction.a.b: "),
+        ({"friction.a.b": {"mean": 0.7}}, "sampling: distributions.friction.a.b.cov: missing key"),
+        ({"colour": {"mean": 0.7, "cov": 0.1}}, "sampling: distributions.colour: unknown parameter"),
+        ([0.7], "sampling: distributions: expected a mapping"),
+    ],
+)
+def test_wrong_distributions_are_refused_in_one_line(distributions, words):
+    with pytest.raises(InputError) as error:
+        draw_samples(10, 1, distributions)
+    assert words in str(error.value)
+
+
+def test_a_correlation_that_names_a_pair_twice_is_refused(tmp_path):
+    both = "name,friction.a.b,friction.b.a\nfriction.a.b,1,0.5\nfriction.b.a,0.5,1\n"
+    (tmp_path / "c.csv").write_text(both)
+    with pytest.raises(InputError, match="the same names, each once"):
+        draw_samples(10, 1, {"friction.a.b": {"mean": 0.7, "cov": 0.1}}, tmp_path / "c.csv")

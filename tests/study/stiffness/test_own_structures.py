@@ -132,8 +132,8 @@ def test_samples_of_an_own_material_have_their_own_stiffness(own, tmp_path):
 
 def test_definitions_are_compared_in_the_own_tower(own, tmp_path):
     structure = own("granite", 0.2)
-    case = {"structure": structure, "motion": "alkion", "scale": 1.0}
-    compared = compare_definitions(case, 1e-5, 0.02, tmp_path, "source")
+    case = {"structure": structure, "motion": "alkion", "scale": 1.0, "baseline": "auto", "duration": 0.02}
+    compared = compare_definitions(case, 1e-5, tmp_path, "source")
     by_half = compared["stiffness"].sel(definition="50 %", restitution=0.5, direction="normal")
     assert float(by_half) == pytest.approx(calibrate_stiffness(structure)["normal_stiffness"], rel=0.01)
 

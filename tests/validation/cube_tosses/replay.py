@@ -15,14 +15,14 @@ from blockshake.geometry.rotations import rotation_matrices
 from blockshake.simulation import simulate as simulation
 
 # LS-DEM: an acrylic cube is nearer 3e10 N/m3 (E over its side); a tenth of it moves no figure of docs/tosses.md and
-# allows a larger step. Nodes: three a side of each face, half a millimetre inside; none of the slab's within 1.5 m.
+# allows a larger step. Nodes: three a side of each face, half a percent of it inside; none of the slab's within 1.5 m.
 SETTINGS = {
     "ls-dem": (
         {
             "ls_dem.normal_stiffness": 2e9,
             "ls_dem.shear_stiffness": 1e9,
             "ls_dem.node_spacing": 10.0,
-            "ls_dem.perimeter_inset": 5e-4,
+            "ls_dem.perimeter_inset": 0.005,
         },
         2e-5,
     ),

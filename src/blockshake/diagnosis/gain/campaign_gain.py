@@ -16,6 +16,7 @@ from blockshake.diagnosis.libraries.plan import sealed_tests
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
+from blockshake.measurement.motion.compared_curves import histories_at
 from blockshake.parity.parity import check_parity
 
 DISCREPANCY = "discrepancy"
@@ -108,8 +109,8 @@ def _histories(reading, ensembles):
     """Quantiles of the drift by ensemble, both solvers together, and the measured one."""
     rows = []
     for by_model in ensembles.values():
-        drift = xr.concat([one["drift"] for one in by_model.values()], dim="run", join="outer")
-        drift = drift.sel(time=reading["time"], method="nearest").assign_coords(time=reading["time"])
+        drift = xr.concat([one[["drift"]] for one in by_model.values()], dim="run", join="outer")
+        drift = histories_at(drift, reading["time"].to_numpy())["drift"]
         drift = drift.drop_vars(["kind", "test", "draw", "status"])
         rows.append(drift.quantile((0.05, 0.5, 0.95), dim="run", skipna=True))
     history = xr.concat(rows, dim="kind").assign_coords(kind=list(ensembles)).astype(np.float32)

@@ -72,6 +72,7 @@ def planned_sealed(campaign, name, like):
         markers=like.markers,
         channels=like.channels,
         unread=like.unread,
+        clock=like.clock._replace(first=0.0),
     )
 
 

@@ -40,8 +40,9 @@ def measured_forces(campaign, names, findings):
         ``unexplained(body)``, the least unexplained force along x [N]; ``told(joint, law)``, the instants that the laws
         of the lever, of friction and of the closed joint are read from; ``half_width(joint)`` [m] and
         ``coefficient(joint)`` of friction in the structure [1]; of the table ``table_rotation`` [rad],
-        ``table_acceleration`` [m/s2] and ``table_moment`` [N m], see `table_readings`. Attributes: ``outside``, an
-        `OutsideForce` as JSON, or null, and ``weight`` of all free bodies [N]. Empty where the sensors give no forces.
+        ``table_acceleration`` [m/s2] and ``table_moment`` [N m], see `table_readings`; ``read``, 1 at the
+        test's own times. Attributes: ``outside``, an `OutsideForce` as JSON, or null, and ``weight`` of all free bodies
+        [N]. Empty where the sensors give no forces.
     """
     structure = load_structure(campaign.structure)
     found = {}
@@ -56,6 +57,11 @@ def measured_forces(campaign, names, findings):
     text = json.dumps(outside.model_dump() if outside else None)
     weight = structure.mass[~structure.driven].sum() * np.linalg.norm(structure.file.gravity)
     return whole.assign_coords(test=list(found)).assign_attrs(outside=text, weight=float(weight))
+
+
+def forces_of(forces, name):
+    """Forces of one test of `measured_forces`, at its own times: another one may be read at another rate."""
+    return forces.sel(test=name, drop=True).dropna("time", subset=["read"])
 
 
 def outside_of(forces):
@@ -83,6 +89,7 @@ def _histories(forces):
     told = [[law(forces, place) for law in LAWS.values()] for place in places]
     return xr.Dataset(
         {
+            "read": ("time", np.ones(n_times, dtype=np.int8)),
             **{name: (("time", "joint"), values.astype(np.float32)) for name, values in columns.items()},
             "unexplained": (("time", "body"), forces.least.wrench[:, free, 0].astype(np.float32)),
             **{

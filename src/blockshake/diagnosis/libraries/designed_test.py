@@ -16,6 +16,9 @@ from blockshake.effects.registry import with_effect
 from blockshake.files import content_digest
 from blockshake.geometry.structure import Structure
 from blockshake.measurement.campaigns.campaign import Sensors
+from blockshake.measurement.campaigns.command_clock import since
+from blockshake.measurement.motion.compared_curves import histories_at
+from blockshake.measurement.sensors import accelerometers
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import part_parameters
@@ -27,9 +30,25 @@ from blockshake.store import keep_dataset, kept, load_made
 _SLOW = 0.04  # s, standard deviation of a Gaussian that is some 0.1 s wide at half its height
 
 
+class Clock(NamedTuple):
+    """Times at which a test was read, counted from `simulation_start`.
+
+    ``late``: start of the command, less than a step [s]; ``rate`` and ``rate_acc`` of markers and accelerometers [Hz];
+    ``first``: the first reading, where the record begins after the command [s].
+    """
+
+    late: float = 0.0
+    rate: float = RATE
+    rate_acc: float = accelerometers.RATE
+    first: float = 0.0
+
+
+_SIMULATED = Clock()
+
+
 @dataclass(frozen=True)
 class PlannedTest:
-    """A commanded test: all that its simulations depend on. Of the readings only the length enters.
+    """A commanded test: all that its simulations depend on. Of the readings only their times enter.
 
     Attributes
     ----------
@@ -45,6 +64,7 @@ class PlannedTest:
         That were read.
     unread : tuple of (str, str)
         Marker and axis of the directions that were not measured.
+    clock : Clock
     """
 
     structure: Structure
@@ -54,6 +74,12 @@ class PlannedTest:
     markers: tuple[str, ...]
     channels: tuple[str, ...]
     unread: tuple[tuple[str, str], ...] = ()
+    clock: Clock = _SIMULATED
+
+    @property
+    def driving(self):
+        """The commanded motion on the clock of the readings."""
+        return self.motion.delayed(self.clock.late)
 
     def digest(self):
         """Of the content: equal for equal tests, whatever their files are called."""
@@ -65,6 +91,7 @@ class PlannedTest:
             self.markers,
             self.channels,
             self.unread,
+            self.clock,
         )
 
 
@@ -101,14 +128,18 @@ def simulated_test(planned, draw, effects=()):
         **readings,
     )
     structure = planned.structure.with_parameters(physical | placed(planned.structure, draw.places))
-    experiment = Experiment(structure, planned.motion.scaled(draw.amplitude), instruments)
+    experiment = Experiment(structure, planned.driving.scaled(draw.amplitude), instruments)
     experiment = experiment.with_motion(0, draw.fast * faster_part(experiment.motion))
     for effect in effects:
         experiment = with_effect(experiment, **effect)
     run = simulate(
         experiment.structure, experiment.motion, draw.model, numerics,
-        time_step=draw.time_step, duration=planned.duration, output_rate=RATE,
+        time_step=draw.time_step, duration=planned.duration, output_rate=planned.clock.rate,
     )  # fmt: skip
+    rate = planned.clock.rate_acc
+    if "time_acc" in run.coords and rate != accelerometers.RATE:
+        count = int(float(run["time_acc"][-1]) * rate)
+        run = histories_at(run, np.arange(count + 1) / rate, "time_acc")
     test = observe(run, experiment.structure, experiment.instruments, draw.seed).sel(
         marker=list(planned.markers)
     )
@@ -116,6 +147,11 @@ def simulated_test(planned, draw, effects=()):
         test["marker_displacement"].loc[{"marker": marker, "axis": axis}] = np.nan
     if "accelerometer" in test:
         test = test.sel(channel=list(planned.channels)) if planned.channels else test.drop_dims("channel")
+    if planned.clock.first > 0.0:
+        test = since(test, 0.0, planned.clock.first)
+        moved = test["marker_displacement"].transpose("time", "marker", "axis")
+        first = np.isfinite(moved.to_numpy()).argmax(axis=0)
+        test["marker_displacement"] = moved - np.take_along_axis(moved.to_numpy(), first[None], axis=0)[0]
     return SimulatedTest(test, run.attrs["status"])
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.diagnosis.libraries.candidates import candidates
-from blockshake.diagnosis.libraries.designed_test import PlannedTest
+from blockshake.diagnosis.libraries.designed_test import Clock, PlannedTest
 from blockshake.diagnosis.libraries.efforts import EFFORTS, Effort, open_tests, own_draws
 from blockshake.diagnosis.libraries.null_model import MODELS
 from blockshake.effects.registry import EFFECTS
@@ -16,10 +16,13 @@ from blockshake.errors import InputError
 from blockshake.files import PACKAGE, content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Campaign, load_campaign, load_test
+from blockshake.measurement.campaigns.command_clock import reading_rate, simulation_start, since
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 from blockshake.measurement.motion.fall import find_fall, until_fall
+from blockshake.measurement.sensors import accelerometers
 from blockshake.measurement.sensors.markers import unread_directions
 
+_SAME_READING = 1e-3  # steps, within which two readings are at one time
 _CHECKOUT = PACKAGE.parents[1].resolve()
 
 
@@ -40,15 +43,23 @@ def planned_test(campaign, name, structure):
     """
     test = load_test(campaign, name)
     test = until_fall(test, find_fall(test, structure, campaign.sensors))
-    time = test["time"].to_numpy()
+    late = -simulation_start(test["time"].to_numpy())
+    test = since(test, -late)
+    time, rate = test["time"].to_numpy(), reading_rate(test["time"].to_numpy())
     return PlannedTest(
         structure=structure,
         motion=planned_motion(campaign, name),
-        duration=float(np.round(time[-1] - time[0], 3)),
+        duration=float(np.ceil(time[-1] * rate - _SAME_READING) / rate),
         sensors=campaign.sensors,
         markers=tuple(map(str, test["marker"].values)),
         channels=tuple(map(str, test["channel"].values)) if "accelerometer" in test else (),
         unread=tuple(unread_directions(test)),
+        clock=Clock(
+            late,
+            rate,
+            reading_rate(test["time_acc"].to_numpy()) if "accelerometer" in test else accelerometers.RATE,
+            float(time[0]),
+        ),
     )
 
 

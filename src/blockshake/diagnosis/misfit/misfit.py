@@ -8,6 +8,7 @@ from blockshake.diagnosis.features.reading import HISTORIES
 from blockshake.diagnosis.misfit.curve_scores import curve_scores, joint_curves
 from blockshake.diagnosis.misfit.residual_atlas import code_word, residual_atlas
 from blockshake.diagnosis.misfit.whole_curve import whole_curve_probability
+from blockshake.measurement.motion.compared_curves import histories_at
 
 _QUANTILES = (0.05, 0.5, 0.95)  # quantiles of the ensemble
 _LONGEST_DROPOUT = 40  # readings at an end that a dropout may lose; more is a run cut short
@@ -37,10 +38,9 @@ def misfit(readings, ensembles):
     names = [str(name) for name in readings["test"].values]
     for name in names:
         reading = reading_of(readings, name)
-        members = xr.concat([one[list(HISTORIES)] for one in ensembles[name]], dim="draw", join="outer").sel(
-            time=reading["time"], method="nearest", tolerance=1e-3
-        )
-        members = members.assign_coords(time=reading["time"], draw=np.arange(members.sizes["draw"]))
+        members = xr.concat([one[list(HISTORIES)] for one in ensembles[name]], dim="draw", join="outer")
+        members = histories_at(members, reading["time"].to_numpy())
+        members = members.transpose("draw", "time", ...).assign_coords(draw=np.arange(members.sizes["draw"]))
         members = members.map(_without_dropouts)
         atlases.append(residual_atlas(reading, members))
         measured, simulated = joint_curves(reading, name), joint_curves(members, name)

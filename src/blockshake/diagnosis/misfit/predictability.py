@@ -6,10 +6,10 @@ import xarray as xr
 from blockshake.diagnosis.libraries.designed_test import simulated_test
 from blockshake.diagnosis.libraries.null_model import MODELS, draw_nominal
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.motion.compared_curves import histories_at
 from blockshake.measurement.motion.joint_coordinates import joint_coordinates
 from blockshake.measurement.motion.joint_histories import joint_histories
 from blockshake.measurement.motion.reconstructed_base import reconstruct_base
-from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import part_parameters
 from blockshake.simulation.placement import placed
 from blockshake.simulation.simulate import simulate
@@ -55,10 +55,10 @@ def twins(planned, model, n_twins, progress):
             places[free] += generator.normal(0.0, [_PLACED, _PLACED, _TURNED], (free.sum(), 3))
             amplitude *= 1.0 + generator.normal(0.0, _INPUT_SPREAD)
         run = simulate(
-            structure, planned.motion.scaled(amplitude), model,
+            structure, planned.driving.scaled(amplitude), model,
             physical | placed(structure, places) | numerics,
             time_step=draw.time_step / (2.0 if twin == 1 else 1.0), duration=planned.duration,
-            output_rate=RATE, accelerometers=False,
+            output_rate=planned.clock.rate, accelerometers=False,
         )  # fmt: skip
         progress(f"{planned.motion.name} {model} twin {twin}/{n_twins}: {run.attrs['status']}")
         moved = joint_coordinates(
@@ -119,7 +119,7 @@ def predictability(moved, noise, nominal):
     """
     time = moved["time"].to_numpy()
     spread = xr.concat([moved[name].std("twin", ddof=1, skipna=False) for name in QUANTITIES], dim="quantity")
-    nominal = nominal.sel(time=time, method="nearest", tolerance=0.5 / RATE).assign_coords(time=time)
+    nominal = histories_at(nominal[list(QUANTITIES)], time)
     scatter = xr.concat([nominal[name].std("draw", ddof=1) for name in QUANTITIES], dim="quantity")
     reading = xr.concat([noise[name] for name in QUANTITIES], dim="quantity")
     limit = xr.where(

@@ -53,14 +53,17 @@ def conclude(decision, findings, kinds, judged, runs, caveats, effort, size=None
     Notes
     -----
     A sensor fault beside a physical cause is a combination: it was corrected first, and the tests judged again. Where
-    the physical cause is unknown, so is the whole: misfit and gain are those of the corrected readings, and the sensor
-    fault stands among the caveats. Its entry in
+    the physical cause is unknown, so is the whole: misfit and gain are those of the corrected readings, a gain of the
+    sensors' faults is none of the verdict's, and the faults stand among the caveats. Its entry in
     ``probabilities`` is 1 less the parity check's p: a score, neither a conformal p value nor a probability.
     """
     sensors = sensor_causes(findings, kinds)
     kind, causes = decision.decision, [*sensors, *decision.causes]
     gain, law_gain = (measured.gain, measured.laws) if measured else (None, None)
     caveats = [*caveats]
+    if gain is not None and kind == "unknown" and decision.described is None:
+        gain = None  # of the sensors' faults alone: what is unknown extends no model
+        caveats.append("no gain was measured: the model was not extended, as no cause is known")
     if sensors and kind == "unknown":
         causes = []
         titles = ", ".join(EFFECTS[name].title for name in sensors)

@@ -59,8 +59,8 @@ class Median(Strict):
 
     @property
     def met(self):
-        """Whether the goal is met; None without a goal or without cases."""
-        return _met(self.estimate, self.goal, self.side)
+        """Whether the goal is met; None without a goal or without cases enough for an interval."""
+        return None if self.lower is None else _met(self.estimate, self.goal, self.side)
 
     @model_validator(mode="after")
     def _consistent(self):
@@ -126,6 +126,11 @@ class TrackRecord(Strict):
     medians: dict[str, Median]
     confusion: tuple[Row, ...]
     cases: tuple[JudgedCase, ...]
+
+    @property
+    def counted(self):
+        """Numbers of diagnoses and of campaigns in words: some are diagnosed again without their effect on the list."""
+        return f"{len(self.cases)} diagnoses of {len({case.name for case in self.cases})} campaigns"
 
     @property
     def effort(self):

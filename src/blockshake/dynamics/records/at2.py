@@ -1,24 +1,29 @@
-"""PEER NGA "AT2": four header lines, then accelerations in g, usually five a line."""
+"""PEER "AT2": four header lines, then accelerations in g, usually five a line."""
 
 import re
 
-from blockshake.dynamics.records.record import Record, acceleration_unit, positive_number, values_of
+from blockshake.dynamics.records.header_checks import HeaderChecks
+from blockshake.dynamics.records.record import Record, free_values, positive_number
 from blockshake.errors import InputError
+from blockshake.tables.units import leading_unit, unit_size
 
-_NAMED = re.compile(r"NPTS\s*=\s*([^\s,]+)\s*,?\s*DT\s*=\s*([^\s,]+)", re.IGNORECASE)
-_TRAILING = re.compile(r"^\s*(\S+)\s+(\S+)\s+NPTS\s*,\s*DT", re.IGNORECASE)
+_COUNT = re.compile(r"NPTS\s*=\s*([^\s,;]+)", re.IGNORECASE)
+_STEP = re.compile(r"\bDT\s*=\s*([^\s,;]+)[\s,;]*([A-Z]+)?", re.IGNORECASE)
+_TRAILING = re.compile(r"^\s*([^\s,]+)[\s,]+([^\s,]+)[\s,]+NPTS\s*,\s*DT", re.IGNORECASE)
+_UNIT = re.compile(r"ACCEL.*?\bUNITS?\b\s*(?:OF|IN|[:=])?\s*(.*)", re.IGNORECASE)
 _HEADER_LINES = 4
 
 
 def is_at2(text):
     """Whether a text looks like an AT2 file."""
-    return any("NPTS" in line.upper() for line in text.splitlines()[:_HEADER_LINES])
+    return any("NPTS" in line.upper() for line in text.split("\n", _HEADER_LINES)[:_HEADER_LINES])
 
 
 def read_at2(text, where):
-    """Record from the text of an AT2 file; g is 9.80665 m/s2.
+    """Records, a list of one, from the text of an AT2 file; g is 9.80665 m/s2.
 
-    Both writings of line 4 are read: ``NPTS= 4000, DT= .0050 SEC`` and ``4000 0.0050 NPTS, DT``.
+    Line 4 is read as ``NPTS= 4000, DT= .0050 SEC``, in any order, and as ``4000 0.0050 NPTS, DT``; line 3 as
+    ``ACCELERATION TIME SERIES IN UNITS OF G``, with whatever stands before and behind the unit.
 
     Raises
     ------
@@ -29,17 +34,29 @@ def read_at2(text, where):
     lines = text.splitlines()
     if len(lines) < _HEADER_LINES:
         raise InputError(where, "", f"expected four header lines of an AT2 file, found {len(lines)} lines")
-    stated = re.search(r"ACCELERATION.*UNITS? OF\s+(\S+)", lines[2], re.IGNORECASE)
+    stated = _UNIT.search(lines[2])
     if not stated:
         raise InputError(
             where, "line 3", f"expected 'ACCELERATION ... IN UNITS OF G', found '{lines[2].strip()}'"
         )
-    unit = acceleration_unit(stated.group(1), where, "line 3")
-    sizes = _NAMED.search(lines[3]) or _TRAILING.search(lines[3])
-    if not sizes:
-        raise InputError(where, "line 4", f"expected NPTS and DT, found '{lines[3].strip()}'")
-    count = positive_number(sizes.group(1), where, "NPTS", int)
-    step = positive_number(sizes.group(2), where, "DT")
-    data = ((number, line.split()) for number, line in enumerate(lines[_HEADER_LINES:], _HEADER_LINES + 1))
+    unit = float(leading_unit("acceleration", stated.group(1), where, "line 3"))
+    count_text, step_text, step_unit = _sizes(lines[3], where)
+    count = positive_number(count_text, where, "NPTS", int)
+    step = positive_number(step_text, where, "DT") * float(unit_size("time", step_unit or "s", where, "DT"))
+    values = unit * free_values(lines, _HEADER_LINES, count, where, "NPTS")
     metadata = {"event": lines[1].strip()} if lines[1].strip() else {}
-    return Record(unit * values_of(data, count, where, "NPTS"), step, "PEER NGA AT2", metadata)
+    return [Record(values, step, "PEER NGA AT2", HeaderChecks(where, values, step).made, metadata=metadata)]
+
+
+def _sizes(line, where):
+    """Texts of the number of values, of the time step, and of its unit or None."""
+    count, step, trailing = _COUNT.search(line), _STEP.search(line), _TRAILING.search(line)
+    if count and step:
+        return (
+            count.group(1),
+            step.group(1),
+            step.group(2) if (step.group(2) or "").upper() != "NPTS" else None,
+        )
+    if trailing:
+        return *trailing.groups(), None
+    raise InputError(where, "line 4", f"expected NPTS and DT, found '{line.strip()}'")

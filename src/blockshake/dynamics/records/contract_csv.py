@@ -7,9 +7,11 @@ import numpy as np
 
 from blockshake.dynamics.motion import CHANNELS
 from blockshake.dynamics.records.record import finite_number
+from blockshake.dynamics.records.times import check_times
 from blockshake.errors import InputError
 from blockshake.files import write_text
 from blockshake.geometry.schema import AXES
+from blockshake.tables.numbers import missing_code
 
 KINDS = ("acceleration", "velocity", "displacement")
 
@@ -37,12 +39,12 @@ def read_motion_csv(text, where):
     ------
     InputError
         Unknown, repeated or missing column, mixed kinds, fewer than two rows, a cell that is not
-        a finite number, a row of another length, time that does not increase.
+        a finite number or stands for a missing one, a row of another length, time that does not increase or has a gap.
     """
     rows = [(number, row) for number, row in _rows(text) if any(cell.strip() for cell in row)]
     header = [cell.strip() for cell in rows[0][1]] if rows else []
     kind = _check_header(header, where)
-    values = np.empty((len(rows) - 1, len(header)))
+    values, lines = np.empty((len(rows) - 1, len(header))), [number for number, _ in rows[1:]]
     if len(values) < 2:
         raise InputError(where, "", f"expected at least two rows of numbers, found {len(values)}")
     for index, (number, row) in enumerate(rows[1:]):
@@ -54,10 +56,12 @@ def read_motion_csv(text, where):
         ]
     columns = {name: values[:, index] for index, name in enumerate(header)}
     time = columns.pop("time_s")
-    backwards = np.flatnonzero(np.diff(time) <= 0.0)
-    if len(backwards):
-        line = rows[backwards[0] + 2][0]
-        raise InputError(where, f"line {line}, time_s", "expected time that increases from row to row")
+    for name, column in columns.items():
+        coded = missing_code(column)
+        if coded is not None:
+            expected = f"expected a value; {column[coded]:g} looks like a code for none"
+            raise InputError(where, f"line {lines[coded]}, {name}", expected)
+    check_times(time, lines, where, "time_s")
     return time, {name if name == "pitch_y" else name[-1]: column for name, column in columns.items()}, kind
 
 

@@ -1,7 +1,9 @@
 """ESM and ITACA "DYNA 1.2" ASCII: header lines ``KEY: value``, then one value a line."""
 
-from blockshake.dynamics.records.record import Record, acceleration_unit, positive_number, values_of
+from blockshake.dynamics.records.header_checks import HeaderChecks
+from blockshake.dynamics.records.record import Record, free_values, positive_number
 from blockshake.errors import InputError
+from blockshake.tables.units import unit_size
 
 # header key -> name in our outputs
 _METADATA = {
@@ -29,7 +31,7 @@ def is_dyna(text):
 
 
 def read_dyna(text, where):
-    """Record from the text of an ESM or ITACA file.
+    """Records, a list of one, from the text of an ESM or ITACA file.
 
     The header is read by key, never by line number: the 64 lines of version 1.2 differ between
     providers in order and number.
@@ -37,8 +39,8 @@ def read_dyna(text, where):
     Raises
     ------
     InputError
-        A needed key is missing or wrong, the data are not accelerations, a value is not a finite
-        number, or their number differs from ``NDATA``.
+        A needed key is missing, wrong or twice, the data are not accelerations, a value is not a finite
+        number, their number differs from ``NDATA``, or the length, the peak or its time from the header's.
     """
     lines = text.splitlines()
     header = {}
@@ -48,15 +50,26 @@ def read_dyna(text, where):
         if not colon:
             first = index
             break
-        header[key.strip().upper()] = value.strip()
+        if header.setdefault(key.strip().upper(), value.strip()) != value.strip():
+            raise InputError(
+                where, f"line {index + 1}, {key.strip()}", "expected this key once, found two values"
+            )
     for key in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS", "DATA_TYPE"):
         if not header.get(key):
             raise InputError(where, key, "expected this key in the header, with a value")
     if not header["DATA_TYPE"].upper().endswith("ACCELERATION"):
         raise InputError(where, "DATA_TYPE", f"expected ACCELERATION, found '{header['DATA_TYPE']}'")
-    unit = acceleration_unit(header["UNITS"], where, "UNITS")
+    unit = float(unit_size("acceleration", header["UNITS"], where, "UNITS"))
     step = positive_number(header["SAMPLING_INTERVAL_S"], where, "SAMPLING_INTERVAL_S")
     count = positive_number(header["NDATA"], where, "NDATA", int)
-    data = ((number, line.split()) for number, line in enumerate(lines[first:], first + 1))
+    values = unit * free_values(lines, first, count, where, "NDATA")
+    checks = HeaderChecks(where, values, step)
+    checks.length("DURATION_S", header.get("DURATION_S"))
+    for key in header:
+        if key.startswith("PGA_"):
+            checks.peak(
+                key, header[key], float(unit_size("acceleration", key.removeprefix("PGA_"), where, key))
+            )
+    checks.peak_time("TIME_PGA_S", header.get("TIME_PGA_S"))
     metadata = {name: header[key] for key, name in _METADATA.items() if header.get(key)}
-    return Record(unit * values_of(data, count, where, "NDATA"), step, "ESM/ITACA DYNA 1.2", metadata)
+    return [Record(values, step, "ESM/ITACA DYNA 1.2", checks.made, metadata=metadata)]

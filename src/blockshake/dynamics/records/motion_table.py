@@ -1,19 +1,26 @@
-"""A ground motion from a table of a user: any columns, units and decimal sign."""
+"""A ground motion from a table of a user: any columns, units and decimal sign, with times or a time step."""
 
+import re
 from pathlib import Path
 
 import numpy as np
 
-from blockshake.dynamics.baseline import check_samples, correct_baseline, correction_words
+from blockshake.dynamics.baseline import AUTO, settle
 from blockshake.dynamics.motion import CHANNELS, check_finite, ground_motion
+from blockshake.dynamics.records.times import check_times
 from blockshake.errors import InputError
+from blockshake.tables.numbers import plain_number
+from blockshake.tables.series_file import read_series
 from blockshake.tables.table_file import read_table
-from blockshake.tables.units import kind_of_unit, unit_size
+from blockshake.tables.units import kind_of_unit, known_unit, unit_size
 
-_UNEVEN = 1e-3  # of the step, by which rows of an even series may be uneven
+# of the text above values without times
+_STEP = re.compile(r"\b(?:dt|time step)\s*[=:]?\s*([^\s,;]+)", re.IGNORECASE)
+_COUNT = re.compile(r"\bnpts\s*[=:]?\s*([^\s,;]+)", re.IGNORECASE)
+_UNIT = re.compile(r"\bunits?\s*(?:of|in|[=:])\s*([^\s,;]+)", re.IGNORECASE)
 
 
-def load_motion_table(source, layout, time, columns, unit, time_unit="s", corner_frequency=None):
+def load_motion_table(source, layout, time, columns, unit, time_unit="s", baseline=AUTO, time_step=None):
     """`GroundMotion` from columns of a text file or a workbook.
 
     Parameters
@@ -22,56 +29,75 @@ def load_motion_table(source, layout, time, columns, unit, time_unit="s", corner
         A file; of a workbook with several sheets ``FILE#SHEET``.
     layout : TableLayout
     time : str
-        Name of the column of times.
+        Name of the column of times; nothing is read from it where there is a ``time_step``.
     columns : dict of str to str
-        By channel (``x``, ``y``, ``z``) the name of a column.
+        By channel (``x``, ``y``, ``z``) the name of a column. None at all, with a ``time_step``: the file's values,
+        row by row, are x.
     unit : str
         Of the columns; tells acceleration, velocity and displacement apart.
     time_unit : str
-    corner_frequency : float, optional
-        Of a baseline correction of accelerations, as of `correct_baseline` [Hz]; none by default.
+    baseline : str or float
+        As of `settle`: a table is corrected with a corner frequency alone.
+    time_step : float, optional
+        Of values without times [s].
 
     Raises
     ------
     InputError
-        A missing column, an unknown unit or channel, a cell that is no number, times that do not increase; a correction
-        of other than evenly spaced accelerations.
+        A missing column, an unknown unit or channel, a cell that is no number, times that do not increase or have a
+        gap; a correction of other than evenly spaced accelerations.
     """
     kind = kind_of_unit(unit, ("acceleration", "velocity", "displacement"), "--unit", unit)
-    table = read_table(source, layout)
-    at = table.column(time, unit_size("time", time_unit, "--time-unit", time_unit))
-    read = {}
-    for channel, name in columns.items():
+    given = kind, unit_size(kind, unit, "--unit", unit)
+    for channel in columns:
         if channel not in CHANNELS[:3]:
             raise InputError("--column", channel, f"expected {', '.join(CHANNELS[:3])}")
-        read[channel] = table.column(name, unit_size(kind, unit, "--unit", unit))
-    for name, values in ((time, at), *((columns[channel], values) for channel, values in read.items())):
-        if not np.isfinite(values).all():
-            line = table.lines[int(np.argmin(np.isfinite(values)))]
-            raise InputError(table.source, f"line {line}, {name}", "expected a finite number")
-    back = np.flatnonzero(np.diff(at) <= 0.0)
-    if len(at) < 2 or len(back):
-        line = table.lines[back[0] + 1] if len(back) else table.lines[0]
-        raise InputError(table.source, f"line {line}, {time}", "expected times that increase from row to row")
-    baseline = "none"
-    if corner_frequency is not None:
-        step = _even_step(at, kind, table.source)
-        check_samples(len(at), step, corner_frequency, table.source)
-        read = {name: correct_baseline(values, step, corner_frequency) for name, values in read.items()}
-        baseline = correction_words(corner_frequency)
-    attributes = {"source": Path(source).name, "format": "table", "synthetic": False, "baseline": baseline}
+    assumed = f"{unit.strip()}, as given"
+    if columns:
+        table = read_table(source, layout)
+        where = table.source
+        read = {channel: _finite(table, name, *reversed(given)) for channel, name in columns.items()}
+    else:
+        where = str(source)
+        read = {"x": _series(source, layout, time_step, given)}
+    if time_step is None:
+        at = _finite(table, time, unit_size("time", time_unit, "--time-unit", time_unit), "time")
+        check_times(at, table.lines, where, time)
+    else:
+        at = time_step * np.arange(len(next(iter(read.values()))))
+        assumed += f"; a time step of {time_step:g} s, as given"
+    if len(at) < 2:
+        raise InputError(where, "", f"expected at least two rows, found {len(at)}")
+    attributes = {"source": Path(source).name, "format": "table", "synthetic": False}
+    attributes |= {"checked": "nothing" if time_step else "times", "assumed": assumed}
     if at[0] != 0.0:
         attributes["first_time"] = float(at[0])
     with np.errstate(over="ignore", invalid="ignore"):  # looked at below
         motion = ground_motion(Path(source).stem, at - at[0], read, kind, attributes)
-    check_finite(motion, table.source)
-    return motion
+    check_finite(motion, where)
+    return settle(motion, baseline, where)
 
 
-def _even_step(time, kind, source):
-    steps = np.diff(time)
-    if kind != "acceleration" or np.ptp(steps) > _UNEVEN * steps.mean():
-        raise InputError(
-            source, "--baseline", "expected accelerations at even times, which alone can be corrected"
-        )
-    return float(steps.mean())
+def _finite(table, name, size, kind):
+    """A column without gaps."""
+    values = table.column(name, size, kind)
+    if not np.isfinite(values).all():
+        line = table.lines[int(np.argmin(np.isfinite(values)))]
+        raise InputError(table.source, f"line {line}, {name}", "expected a finite number")
+    return values
+
+
+def _series(source, layout, time_step, given):
+    """Values without times in SI, where the text above them does not contradict what was given."""
+    values, header = read_series(source, layout)
+    for pattern, actual, name in (
+        (_STEP, time_step, "--time-step"),
+        (_COUNT, len(values), "number of values"),
+    ):
+        stated = pattern.search(header)
+        if stated and plain_number(stated.group(1)) and float(plain_number(stated.group(1))) != actual:
+            raise InputError(source, name, f"expected {stated.group(1)}, as the file says, found {actual:g}")
+    for stated in _UNIT.findall(header):
+        if known_unit(stated) not in (None, given):
+            raise InputError(source, "--unit", f"expected '{stated}', as the file says")
+    return float(given[1]) * values

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from blockshake.errors import InputError
-from blockshake.tables.units import unit_size
+from blockshake.tables.numbers import missing_code, plain_number, touching_numbers
 
 
 @dataclass(frozen=True)
@@ -20,6 +20,12 @@ class Record:
         [s]
     format : str
         Name of the file format.
+    checked : str
+        Entries of the header that were held against the values.
+    assumed : str
+        What the file does not say; empty where it says all.
+    channel : str
+        Name of the component; empty where the format holds a single one.
     metadata : dict of str to str
         What the header says of event, station and processing; ``licence`` where stated.
     """
@@ -27,18 +33,10 @@ class Record:
     acceleration: np.ndarray
     time_step: float
     format: str
+    checked: str
+    assumed: str = ""
+    channel: str = ""
     metadata: dict = field(default_factory=dict)
-
-
-def acceleration_unit(text, where, key):
-    """Size in m/s2 of the unit of acceleration that a header names.
-
-    Raises
-    ------
-    InputError
-        The unit is not one of cm/s2, m/s2 and g, in any usual spelling.
-    """
-    return float(unit_size("acceleration", text, where, key))
 
 
 def positive_number(text, where, key, kind=float):
@@ -49,9 +47,10 @@ def positive_number(text, where, key, kind=float):
     InputError
         The text is no such number.
     """
+    number = plain_number(text)
     try:
-        number = kind(text)
-    except ValueError:
+        number = kind(number)
+    except (TypeError, ValueError):
         number = 0
     if not (0 < number < np.inf):
         raise InputError(
@@ -62,13 +61,29 @@ def positive_number(text, where, key, kind=float):
     return number
 
 
-def values_of(tokens_by_line, count, where, count_key):
-    """Series of values from the data lines of a file.
+def finite_number(text, where, key):
+    """A finite number written as text.
+
+    Raises
+    ------
+    InputError
+        The text is no number, or is NaN or infinite.
+    """
+    number = float(plain_number(text) or "nan")
+    if not np.isfinite(number):
+        raise InputError(where, key, f"expected a finite number, found '{text.strip()}'")
+    return number
+
+
+def free_values(lines, first, count, where, count_key):
+    """Series of values between blanks, or touching where a sign tells them apart, from the last lines of a file.
 
     Parameters
     ----------
-    tokens_by_line : iterable of (int, list of str)
-        Line number in the file, from 1, and the numbers on that line as text.
+    lines : list of str
+        Of the whole file.
+    first : int
+        Index of the first line of values.
     count : int
         How many values the header promises.
     where, count_key : str
@@ -82,31 +97,80 @@ def values_of(tokens_by_line, count, where, count_key):
     Raises
     ------
     InputError
-        A value is not a finite number, or there are more or fewer than ``count``, or fewer than two.
+        A value is not a finite number, stands for a missing one or is cut short, or there are more or fewer than
+        ``count``, or fewer than two.
     """
-    values = []
-    for line, tokens in tokens_by_line:
-        for token in tokens:
-            values.append(finite_number(token, where, f"line {line}"))
-    if len(values) != count:
-        raise InputError(where, count_key, f"expected {count} values, found {len(values)}")
-    if count < 2:
-        raise InputError(where, count_key, f"expected at least two values, found {count}")
-    return np.array(values)
+    cells = [
+        (text, index + 1)
+        for index in range(first, len(lines))
+        for token in lines[index].split()
+        for text in touching_numbers(token) or [token]
+    ]
+    return _series(cells, count, where, count_key)
 
 
-def finite_number(text, where, key):
-    """A finite number written as text.
+def fixed_values(lines, first, count, layout, where, count_key):
+    """Series of values in columns of a fixed width, which may touch.
+
+    Parameters
+    ----------
+    lines : list of str
+        Of the whole file.
+    first : int
+        Index of the first line of values.
+    count : int
+        How many values the header promises.
+    layout : (int, int)
+        Columns of a full line and their width.
+    where, count_key : str
+        File and header entry that a message names.
+
+    Returns
+    -------
+    float64 array, shape (count,)
+        In the file's unit.
 
     Raises
     ------
     InputError
-        The text is no number, or is NaN or infinite.
+        As `free_values`; a line that holds another number of values than its columns.
     """
-    try:
-        number = float(text)
-    except ValueError:
-        number = np.nan
-    if not np.isfinite(number):
-        raise InputError(where, key, f"expected a finite number, found '{text.strip()}'")
-    return number
+    columns, width = layout
+    cells, behind = [], first + -(-count // columns)
+    for index in range(first, min(behind, len(lines))):
+        line, expected = lines[index].rstrip(), min(columns, count - len(cells))
+        if len(line) == expected * width:
+            texts = [line[start : start + width] for start in range(0, len(line), width)]
+        else:
+            texts = [text for token in line.split() for text in touching_numbers(token) or [token]]
+        if len(texts) != expected and plain_number(texts[0] if texts else ""):
+            expected = f"expected {expected} values, in {width} columns each, found {len(texts)}"
+            raise InputError(where, f"line {index + 1}", expected)
+        if len(texts) != expected:  # the next header, or the end
+            break
+        cells += [(text.strip(), index + 1) for text in texts]
+    if any(
+        tokens and all(map(plain_number, tokens)) for tokens in map(str.split, lines[behind : behind + 1])
+    ):
+        raise InputError(where, count_key, f"expected {count} values, found more in line {behind + 1}")
+    return _series(cells, count, where, count_key)
+
+
+def _series(cells, count, where, count_key):
+    """Values of texts with the numbers of their lines, as many as promised."""
+    values = np.array([finite_number(text, where, f"line {line}") for text, line in cells])
+    if len(values) != count:
+        raise InputError(where, count_key, f"expected {count} values, found {len(values)}")
+    if count < 2:
+        raise InputError(where, count_key, f"expected at least two values, found {count}")
+    last, line = cells[-1]
+    digits = {len(text.partition(".")[2]) for text, _ in cells[:-1]}
+    if len(digits) == 1 and len(last.partition(".")[2]) < min(digits):  # 1.23E-0 for 1.23E-05
+        raise InputError(
+            where, f"line {line}", f"expected as many digits as elsewhere, found '{last}': it is cut short"
+        )
+    coded = missing_code(values)
+    if coded is not None:
+        text, line = cells[coded]
+        raise InputError(where, f"line {line}", f"expected a value; '{text}' looks like a code for none")
+    return values

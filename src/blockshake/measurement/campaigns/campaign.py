@@ -7,9 +7,12 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field
 
+from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.errors import InputError
 from blockshake.files import load_yaml, shipped_names
 from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.command_clock import from_command
+from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 from blockshake.measurement.campaigns.recorded_test import read_test
 from blockshake.measurement.sensors import accelerometers, markers, transducers
 from blockshake.paths import check_plain, file_below
@@ -46,6 +49,7 @@ class MeasuredTest(Strict):
     file: str = Field(description="readings: a CSV or netCDF file in the folder")
     motion: str = Field(description="commanded motion: a shipped name, or a file in the folder")
     scale: Scale = Field(description="multiplies the motion; not 0 [1]")
+    baseline: Baseline = AUTO
     role: Literal["fit", "select", "sealed"] = Field(
         description="what the test may be used for: to fit, to choose between models, or to judge a frozen one"
     )
@@ -115,5 +119,7 @@ def load_campaign(folder):
 
 
 def load_test(campaign, name):
-    """Readings of one test, checked against the campaign's structure; see `read_test`."""
-    return read_test(campaign.folder / campaign.tests[name].file, load_structure(campaign.structure))
+    """Readings of one test, checked against the campaign's structure as by `read_test`, times as of `from_command`."""
+    entry, structure = campaign.tests[name], load_structure(campaign.structure)
+    test = read_test(campaign.folder / entry.file, structure)
+    return from_command(test, structure, commanded_motion(campaign, entry))

@@ -5,19 +5,16 @@ from pathlib import Path
 
 import yaml
 
-from blockshake.dynamics.load_motion import load_motion
-from blockshake.dynamics.records.contract_csv import write_motion_csv
+from blockshake.dynamics.baseline import AUTO
 from blockshake.files import shipped_names, write_text
 
 
 def motion_in_folder(motion, folder):
-    """Name of a motion in the campaign: a shipped name, or the file that is written to the folder."""
+    """Name of a motion in the campaign: a shipped name, or the file copied to the folder as it was published."""
     if motion in shipped_names("motions"):
         return motion
-    name = f"{Path(motion).stem}.csv"
-    if Path(motion).resolve() != (folder / name).resolve():
-        write_motion_csv(load_motion(motion), folder / name)
-    return name
+    _copy(motion, folder / Path(motion).name)
+    return Path(motion).name
 
 
 def structure_in_folder(structure, loaded, folder):
@@ -25,14 +22,16 @@ def structure_in_folder(structure, loaded, folder):
     if structure in shipped_names("structures"):
         return structure
     meshes = [shape.mesh for shape in loaded.file.shapes.values() if shape.mesh]
-    for name, source in [
-        ("structure.yaml", Path(structure)),
-        *((m, Path(structure).parent / m) for m in meshes),
-    ]:
-        if source.resolve() != (folder / name).resolve():
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(source, folder / name)
+    _copy(structure, folder / "structure.yaml")
+    for mesh in meshes:
+        _copy(Path(structure).parent / mesh, folder / mesh)
     return "structure.yaml"
+
+
+def _copy(source, target):
+    if Path(source).resolve() != target.resolve():
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source, target)
 
 
 def write_campaign_file(folder, header, name, structure, sensors, tests):
@@ -50,10 +49,10 @@ def write_campaign_file(folder, header, name, structure, sensors, tests):
     tests : sequence of dict
         Of which the keys that the file has are taken.
     """
-    keys = ("name", "file", "motion", "scale", "role")
+    keys = ("name", "file", "motion", "scale", "baseline", "role")
     mapping = {
         "name": name, "structure": structure, "sensors": sensors,
-        "tests": [{key: test[key] for key in keys} for test in tests],
+        "tests": [{key: test[key] for key in keys if test.get(key, AUTO) != AUTO} for test in tests],
     }  # fmt: skip
     text = yaml.safe_dump(mapping, sort_keys=False, default_flow_style=None, width=200, allow_unicode=True)
     write_text(folder / "campaign.yaml", header + text)

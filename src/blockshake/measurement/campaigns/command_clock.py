@@ -1,40 +1,161 @@
-"""When, on the clock of a test, the table began to do what it was told."""
+"""One clock for a test: all its times count from the start of the command, which is searched for here alone."""
+
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-_RELATED = 0.7  # correlation beyond which one motion is the other's
+from blockshake.measurement.sensors.markers import slab_displacement
+
+_FOLLOWS = 0.8  # correlation; of 150 pairs of other motions 3 % reach it at some start
 _COARSE = 0.02  # s, between the starts that are tried: a tenth of a period of 5 Hz
+_SPAN = 0.06  # s, over which velocities are means: half a period of 8 Hz, some 20 Hz and more hardly pass
+_EVEN = (
+    1e-5  # s, by which an even clock may err as written: in five digits, in 32 bits, or in seconds since 1970
+)
+_DIGITS = 9  # of a time after the decimal point: nanoseconds
 
 
-def command_start(time, slab, command):
-    """Start of the command on the clock of a test [s]; None where the slab does not follow the command.
+class Start(NamedTuple):
+    """Start of the command [s], and the correlation of a motion with the command from then on, of either sign [1]."""
+
+    time: float
+    correlation: float
+
+    @property
+    def related(self):
+        """Whether one is the other's motion, or its opposite."""
+        return abs(self.correlation) > _FOLLOWS
+
+
+def command_start(time, moved, command):
+    """`Start` of the command on the clock of a motion: where the correlation of their velocities is largest in size.
 
     Parameters
     ----------
-    time, slab : float64 arrays, shape (n_times,)
-        Displacement of the slab along x, without gaps [s, m].
+    time, moved : float64 arrays, shape (n_times,)
+        Displacement of the slab along an axis; NaN is a gap [s, m].
     command : GroundMotion
-        Commanded; it rests before its first row and after its last.
+        Commanded along x; the table rests before its first row and after its last.
 
     Notes
     -----
-    The start of the largest correlation of the two displacements over the whole record. A table that is late by the
-    phase of its control starts late.
+    Velocities are means over 60 ms. Displacements would not do: the slow lobes of most pairs of earthquakes can be laid
+    over each other. A table that is late by the phase of its control starts late.
     """
-    centred = slab - slab.mean()
+    known = np.isfinite(moved)
+    grid = np.arange(time[0], time[-1] - _SPAN, _COARSE)
+    if known.sum() < 2 or len(grid) < 2:
+        return Start(0.0, 0.0)
+    read = np.diff(np.interp([grid, grid + _SPAN], time[known], moved[known]), axis=0)[0]
+    read -= read.mean()
+    rows = np.arange(0.0, command.duration + _COARSE, _COARSE)
+    displacement = command.evaluate(rows)[:, 0]
 
-    def unlike(start):
-        told = command.evaluate(time - start)[:, 0]
-        told = told - told.mean()
-        size = np.sqrt((told @ told) * (centred @ centred))
-        return 1.0 - (told @ centred / size if size > 0.0 else 0.0)
+    def correlation(asked):
+        gained = asked(grid + _SPAN) - asked(grid)
+        gained = gained - gained.mean()
+        size = np.sqrt((gained @ gained) * (read @ read))
+        return gained @ read / size if size > 0.0 else 0.0
 
-    starts = np.arange(time[0] - command.duration, time[-1], _COARSE)
-    # the clocks' common zero is tried first: where nothing is told apart, it stays
-    starts = np.concatenate([[0.0], starts])
-    best = starts[int(np.argmin([unlike(start) for start in starts]))]
-    found = minimize_scalar(
-        unlike, bounds=(best - _COARSE, best + _COARSE), method="bounded", options={"xatol": 1e-6}
+    # the first reading is tried first: where no start is better than another, it stays
+    starts = np.concatenate([[0.0], np.arange(time[0] - command.duration, time[-1], _COARSE)])
+    tried = [
+        correlation(lambda at, start=start: np.interp(at - start, rows, displacement)) for start in starts
+    ]
+    best = starts[int(np.abs(tried).argmax())]
+
+    def exactly(start):
+        return correlation(lambda at: command.evaluate(at - start)[:, 0])
+
+    start = minimize_scalar(
+        lambda start: -abs(exactly(start)), bounds=(best - _COARSE, best + _COARSE), method="bounded",
+        options={"xatol": 1e-6},
+    ).x  # fmt: skip
+    return Start(float(start), float(exactly(start)))
+
+
+def from_first_reading(test):
+    """The test with all its times counted from the markers' first reading, whatever its clock showed then.
+
+    A clock that is even but for the digits it was written with becomes even, at the rate of fewest decimals.
+    """
+    zero = float(test["time"][0])
+    return _with_clocks(test, lambda time: _even(time - zero))
+
+
+def from_command(test, structure, command):
+    """The test with all its times counted from the start of the command.
+
+    Parameters
+    ----------
+    test : xarray.Dataset
+        From `from_first_reading`.
+    structure : Structure
+    command : GroundMotion or None
+        None where it is not at hand.
+
+    Returns
+    -------
+    xarray.Dataset
+        Attribute ``follows`` is 1. Where the slab does not follow the command along x, ``follows`` is 0 and times count
+        from the markers' first reading.
+    """
+    start = Start(0.0, 0.0)
+    if command is not None:
+        start = command_start(test["time"].to_numpy(), slab_displacement(test, structure)[:, 0], command)
+    follows = start.related and start.correlation > 0.0
+    zero = round(start.time, 6) if follows else 0.0
+    return since(test, zero, -np.inf).assign_attrs(follows=int(follows))
+
+
+def simulation_start(time):
+    """Time of a test at which its simulation starts: its last reading before the command, so that both share readings.
+
+    Parameters
+    ----------
+    time : float64 array, shape (n_times,)
+        Of the markers, from the start of the command on [s].
+
+    Returns
+    -------
+    float
+        Between a step before the command and the command; also where the first reading comes later [s].
+    """
+    if time[0] <= 0.0:
+        return float(time[time <= 0.0][-1])
+    step = float(np.median(np.diff(time)))
+    return float(time[0] - step * np.ceil(time[0] / step))
+
+
+def reading_rate(time):
+    """Readings in a second of a clock (n_times,) [s], rows that it lacks counted as if they were there [Hz]."""
+    length = time[-1] - time[0]
+    return float(round(np.rint(length / np.median(np.diff(time))) / length, 6))
+
+
+def since(test, zero, first=0.0):
+    """The test with times that count from ``zero``, without readings before the new time ``first`` [s]."""
+    moved = _with_clocks(test, lambda time: np.round(time - zero, _DIGITS))
+    return moved.isel({name: np.flatnonzero(moved[name].to_numpy() >= first) for name in _clocks(moved)})
+
+
+def _clocks(test):
+    return [name for name in ("time", "time_acc") if name in test.coords]
+
+
+def _with_clocks(test, changed):
+    """The test with each of its clocks changed by a function of times."""
+    return test.assign_coords(
+        {name: (name, changed(test[name].to_numpy()), test[name].attrs) for name in _clocks(test)}
     )
-    return float(found.x) if found.fun < 1.0 - _RELATED else None
+
+
+def _even(time):
+    steps = np.arange(len(time))
+    rate = steps[-1] / (time[-1] - time[0])
+    for decimals in range(_DIGITS):
+        even = round(float(time[0]), 6) + steps / (round(rate, decimals) or rate)
+        if np.abs(even - time).max() < _EVEN:
+            return np.round(even, _DIGITS)
+    return np.round(time, _DIGITS)

@@ -9,10 +9,11 @@ import numpy as np
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import shipped_names
+from blockshake.measurement.campaigns.command_clock import command_start
 
 _FOLLOWED = (0.8, 1.25)  # of the command, by which a table may move without a word
-_RELATED = 0.7  # correlation of the slab with the command, beyond which one is the other's motion
 _SEEN = 2.0  # times the slab's noise, that the command's standard deviation must be to be judged
+_RELATED = 0.7  # correlation of the slab with the command, beyond which one is the other's motion
 _UNIT = 20.0  # times the command, by which no table moves; centimetres are a hundred times
 _ONE_AXIS = 3.0  # times the motion along another axis
 
@@ -95,16 +96,40 @@ def followed_remarks(followed, role):
     return []
 
 
+def command_target(test, slab, commanded):
+    """Commanded displacement along x since the first reading of a test, (n_times,) [m].
+
+    Parameters
+    ----------
+    test : xarray.Dataset
+        As of `from_command`: its clock counts from the start of the command where the slab follows along x.
+    slab : float64 array, shape (n_times, 3)
+        Mean displacement of the slab's markers [m].
+    commanded : GroundMotion
+
+    Notes
+    -----
+    A slab that moves backwards or along another axis has its start there, so that this can be said of it.
+    """
+    time, zero = test["time"].to_numpy(), 0.0
+    if not test.attrs["follows"]:
+        starts = [command_start(time, moved, commanded) for moved in slab.T]
+        best = max(starts, key=lambda start: abs(start.correlation))
+        zero = best.time if best.related else 0.0
+    target = commanded.evaluate(time - zero)[:, 0]
+    return target - target[0]
+
+
 def length_remarks(time, commanded):
-    """A remark where the record ends before the strongest acceleration that was commanded."""
+    """A remark where the record ends before, or begins after, the strongest acceleration that was commanded."""
     breaks = commanded.table.breaks
     strongest = breaks[np.abs(commanded.evaluate(breaks, 2)[:, 0]).argmax()]
-    length = time[-1] - time[0]
-    if length < strongest:
-        return [
-            f"the record of {length:.4g} s ends before the strongest shaking, commanded at {strongest:.4g} s"
-        ]
-    return []
+    if time[0] < strongest < time[-1]:
+        return []
+    how = "begins after" if strongest <= time[0] else "ends before"
+    return [
+        f"the record of {time[-1] - time[0]:.4g} s {how} the strongest shaking, commanded at {strongest:.4g} s"
+    ]
 
 
 def driven_axis_remarks(slab):
@@ -118,12 +143,14 @@ def driven_axis_remarks(slab):
 
 def commanded_motion(campaign, entry):
     """The motion that was commanded in a test, None where the campaign names one that is not at hand."""
-    own = campaign.folder / entry.motion
-    if isfile(own):
-        return load_motion(own, entry.scale)
-    return _shipped_motion(entry.motion, entry.scale) if entry.motion in shipped_names("motions") else None
+    path = campaign.folder / entry.motion
+    if isfile(path):
+        return _loaded(path, entry.scale, entry.baseline, path.stat().st_mtime_ns)
+    shipped = entry.motion in shipped_names("motions")
+    return _loaded(entry.motion, entry.scale, entry.baseline, 0) if shipped else None
 
 
-@lru_cache
-def _shipped_motion(name, scale):
-    return load_motion(name, scale)
+@lru_cache(maxsize=16)
+def _loaded(source, scale, baseline, changed):
+    """Motion of a source that was last changed at some time: a new file is read anew."""
+    return load_motion(source, scale, baseline)

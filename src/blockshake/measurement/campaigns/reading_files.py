@@ -6,12 +6,13 @@ import io
 import numpy as np
 import xarray as xr
 
-from blockshake.damaged_hdf5 import has_endless_heap
 from blockshake.errors import InputError
 from blockshake.files import read_text
 from blockshake.geometry.schema import AXES
 from blockshake.interrupts import delayed_interrupts
 from blockshake.paths import file_below
+from blockshake.tables.damaged_hdf5 import has_endless_heap
+from blockshake.tables.numbers import missing_code, plain_number
 
 _METRES = ("m", "metre", "metres", "meter", "meters")
 _ACCELERATION = ("m s-2", "m s^-2", "m s**-2", "m/s2", "m/s^2", "m/s**2", "m.s-2", "meters/second^2")
@@ -161,12 +162,19 @@ def _table(path):
             raise InputError(path, f"line {line}", f"expected {len(names)} cells, not {len(row)}")
         for column, cell in enumerate(row):
             values[place, column] = _number(cell.strip(), path, f"line {line}, {names[column]}")
+    for name, column in zip(names, values.T, strict=True):
+        coded = None if name == "time_s" else missing_code(column)
+        if coded is not None:
+            expected = (
+                f"expected a reading; {column[coded]:g} looks like a code for none, which an empty cell says"
+            )
+            raise InputError(path, f"line {rows[coded + 1][0]}, {name}", expected)
     time = values[:, names.index("time_s")]
     return time, {name: values[:, place] for place, name in enumerate(names) if name != "time_s"}
 
 
 def _number(cell, path, key):
-    try:
-        return float(cell) if cell else np.nan
-    except ValueError:
-        raise InputError(path, key, f"expected a number or nothing, not '{cell}'") from None
+    number = "nan" if cell.lower() in ("", "nan") else plain_number(cell)
+    if number is None:
+        raise InputError(path, key, f"expected a number or nothing, not '{cell}'")
+    return float(number)

@@ -6,6 +6,8 @@ import numpy as np
 
 from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES
+from blockshake.measurement.campaigns.command_clock import from_first_reading
+from blockshake.measurement.campaigns.faulty_readings import without_faulty
 from blockshake.measurement.campaigns.initial_places import check_initial_places
 from blockshake.measurement.campaigns.reading_files import read_netcdf, read_tables
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
@@ -43,8 +45,8 @@ def read_test(path, structure):
     Returns
     -------
     xarray.Dataset
-        Variables of docs/campaigns.md, float64; NaN along a direction that was not measured. The file is never
-        changed.
+        Variables of docs/campaigns.md, float64; NaN along a direction that was not measured, and where a column holds
+        no readings, as of `without_faulty`. All times count from the markers' first reading. The file is never changed.
 
     Raises
     ------
@@ -55,13 +57,11 @@ def read_test(path, structure):
         readings that are infinite or not since the first.
     """
     path = Path(path)
-    return checked_test(
-        read_tables(path, transducer_names(structure))
-        if path.suffix.lower() == ".csv"
-        else read_netcdf(path),
-        structure,
-        path,
-    )
+    table = path.suffix.lower() == ".csv"
+    test = read_tables(path, transducer_names(structure)) if table else read_netcdf(path)
+    test = without_faulty(checked_test(test, structure, path), structure)
+    _check_markers(test, structure, path)  # of the driven body a reading has to remain
+    return from_first_reading(test)
 
 
 def checked_test(test, structure, path):

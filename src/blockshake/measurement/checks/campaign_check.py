@@ -3,15 +3,18 @@
 import numpy as np
 
 from blockshake.geometry.structure import load_structure
+from blockshake.geometry.structure_file import point_remarks
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.campaigns.commanded_motion import (
     check_followed,
+    command_target,
     commanded_motion,
     driven_axis_remarks,
     follow,
     followed_remarks,
     length_remarks,
 )
+from blockshake.measurement.campaigns.faulty_readings import faulty_lines
 from blockshake.measurement.checks.carried_blocks import carried_remarks
 from blockshake.measurement.checks.quiet_noise import (
     accelerometer_noise,
@@ -22,7 +25,12 @@ from blockshake.measurement.checks.quiet_noise import (
 )
 from blockshake.measurement.checks.slab_accelerometer import clock_remarks
 from blockshake.measurement.motion.fall import find_fall
-from blockshake.measurement.sensors.markers import directions_read, marker_bodies, unread_directions
+from blockshake.measurement.sensors.markers import (
+    directions_read,
+    marker_bodies,
+    slab_displacement,
+    unread_directions,
+)
 from blockshake.measurement.sensors.transducers import transducer_names
 
 _QUIET = 0.5  # s at most that are taken as the quiet start
@@ -56,7 +64,7 @@ def campaign_lines(folder):
     ]
     if structure.file.displacement_transducers:
         lines[0] += f", of displacement transducers {campaign.sensors.transducer_noise:g} m"
-    remarks, read = [], set()
+    remarks, read = [f"  {remark}" for remark in point_remarks(structure)], set()
     for entry in campaign.tests.values():
         test = load_test(campaign, entry.name)
         read.update(
@@ -92,13 +100,14 @@ class _Described:
         self.readings = test["marker_displacement"].to_numpy()
         driven = {body.name for body in structure.file.bodies if body.driven}
         self.on_slab = np.array([body in driven for body in marker_bodies(structure, test["marker"].values)])
-        self.slab = _mean(self.readings[:, self.on_slab])
+        self.slab = slab_displacement(test, structure)
         self.slab_noise = self.sensors.marker_noise / np.sqrt(self.on_slab.sum())
-        self.facts, self.remarks = [], []
+        self.facts, self.remarks = [], faulty_lines(test)
         commanded = commanded_motion(campaign, entry)
+        self.target = None if commanded is None else command_target(test, self.slab, commanded)
         self._describe_shape()
         self._hold_input(commanded)
-        self._hold_noise(self._quiet_end(commanded))
+        self._hold_noise(self._quiet_end())
         if entry.role != "sealed":
             self._hold_answer()
 
@@ -128,18 +137,14 @@ class _Described:
         if np.ptp(np.diff(time)) > 0.01 * np.median(np.diff(time)):
             self.remarks.append("the marker times are not even")
 
-    def _quiet_end(self, commanded):
+    def _quiet_end(self):
         """Time before which nothing moves, by the command or, where that is not at hand, by habit [s]."""
         latest = self.time[0] + _QUIET
-        if commanded is None:
+        if self.target is None:
             return latest
-        target = np.abs(self._target(commanded))
+        target = np.abs(self.target)
         moving = target > max(_QUIET_PART * target.max(), self.sensors.marker_noise)
         return min(latest, self.time[np.argmax(moving)]) if moving.any() else latest
-
-    def _target(self, commanded):
-        target = commanded.evaluate(self.time - self.time[0])[:, 0]
-        return target - target[0]
 
     def _hold_noise(self, quiet_end):
         """Noise of every channel against what is stated, and where displacements start."""
@@ -186,12 +191,13 @@ class _Described:
     def _hold_input(self, commanded):
         """The slab's markers against the command."""
         if commanded is None:
-            self.remarks.append(f"the commanded motion {self.entry.motion} is not at hand")
+            self.remarks.append(
+                f"the commanded motion {self.entry.motion} is not at hand, without which there is no diagnosis"
+            )
             self.remarks += driven_axis_remarks(self.slab)
             return
         self.remarks += length_remarks(self.time, commanded)
-        target = self._target(commanded)
-        followed = follow(self.slab, target, self.slab_noise)
+        followed = follow(self.slab, self.target, self.slab_noise)
         if followed is None:
             self.facts.append("a command along x too small to be seen")
             return
@@ -200,7 +206,7 @@ class _Described:
         if self.entry.role != "sealed":
             self.facts.append(
                 f"table moved by {100.0 * followed.share[0]:.3g} % of the command, whose peak is "
-                f"{1e3 * np.abs(target).max():.3g} mm"
+                f"{1e3 * np.abs(self.target).max():.3g} mm"
             )
 
     def _hold_answer(self):

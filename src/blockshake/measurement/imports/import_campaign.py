@@ -3,6 +3,7 @@
 import re
 from pathlib import Path
 
+from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import replacing_folder, write_dataset
 from blockshake.geometry.structure import load_structure
@@ -51,8 +52,13 @@ def import_campaign(asked, folder, where):
 def _fill(asked, folder, where):
     """Write all files of the campaign."""
     structure = load_structure(asked.structure)
-    tests = []
+    tests, motions = [], {}
     for test in asked.tests:
+        load_motion(test.motion, test.scale, test.baseline)
+        if motions.setdefault(Path(test.motion).name, test.motion) != test.motion:
+            raise InputError(
+                where, f"tests.{test.name}.motion", "expected motions in files of different names"
+            )
         readings = checked_test(read_readings(test, asked, structure, where), structure, test.file)
         name = re.sub(r"[^\w.-]+", "-", test.name)
         readings.attrs = {

@@ -17,6 +17,11 @@ class Column(Strict):
 
     column: str = Field(description="its name in the header, or its number where there is none")
     unit: str | None = Field(None, description="by default that of all columns of its kind")
+
+
+class Reading(Column):
+    """A column of readings."""
+
     reversed: bool = Field(False, description="positive readings are along the negative axis")
 
 
@@ -25,7 +30,8 @@ def _entry(given):
     return {"column": str(given)} if isinstance(given, (str, int)) else given
 
 
-ColumnEntry = Annotated[Column, BeforeValidator(_entry, json_schema_input_type=Column | str | int)]
+TimeEntry = Annotated[Column, BeforeValidator(_entry, json_schema_input_type=Column | str | int)]
+ReadingEntry = Annotated[Reading, BeforeValidator(_entry, json_schema_input_type=Reading | str | int)]
 
 
 class ImportedTest(MeasuredTest):
@@ -45,12 +51,12 @@ class ImportMap(Strict):
     structure: str = Field(description="shipped name or file")
     sensors: Sensors = Field(Sensors(), description="standard deviations of the readings")
     layout: TableLayout = Field(TableLayout(), description="how the files are written")
-    time: ColumnEntry = Field(description="a column's name, or an entry; in s by default")
+    time: TimeEntry = Field(description="a column's name, or an entry; in s by default")
     displacement_unit: str = Field(description="m, cm, mm or um")
     acceleration_unit: str | None = Field(
         None, description="m/s2, cm/s2 or g; needed where there are channels"
     )
-    columns: dict[str, ColumnEntry] = Field(
+    columns: dict[str, ReadingEntry] = Field(
         min_length=1,
         description="by MARKER.x and the like, accelerometer channel or displacement transducer: a column's name, or "
         "an entry",

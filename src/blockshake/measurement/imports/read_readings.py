@@ -40,6 +40,9 @@ def read_readings(test, asked, structure, where):
     markers = [name for name in asked.columns if name not in (*channels, *transducers)]
     if not markers:
         raise InputError(where, "columns", "expected a column of a marker, MARKER.x")
+    source = test.accelerometers or test.file
+    for names in (markers, [*channels, *transducers]) if source != test.file else (asked.columns,):
+        _check_once(names, asked, where)
     time, readings = _readings(test.file, markers, asked, "displacement", where)
     names = list(dict.fromkeys(name.rpartition(".")[0] for name in markers))
     values = np.full((len(time), len(names), len(AXES)), np.nan)
@@ -56,7 +59,6 @@ def read_readings(test, asked, structure, where):
         )
     variables = {"marker_displacement": (("time", "marker", "axis"), values, {"units": "m"})}
     coordinates = {"time": ("time", time, {"units": "s"}), "marker": names, "axis": list(AXES)}
-    source = test.accelerometers or test.file
     if channels:
         time_acc, read = _readings(source, channels, asked, "acceleration", where)
         variables["accelerometer"] = (("time_acc", "channel"), read, {"units": "m s-2"})
@@ -70,6 +72,19 @@ def read_readings(test, asked, structure, where):
     return xr.Dataset(variables, coordinates)
 
 
+def _check_once(names, asked, where):
+    """Refuse a column of one table that is mapped twice."""
+    taken = {asked.time.column: "time"}
+    for name in names:
+        other = taken.setdefault(asked.columns[name].column, name)
+        if other != name:
+            raise InputError(
+                where,
+                f"columns.{name}",
+                f"expected a column of its own; '{asked.columns[name].column}' is {other}",
+            )
+
+
 def _readings(source, names, asked, kind, where):
     """Times (n_times,) and readings (n_times, n_names) of a table, in SI."""
     table = read_table(source, asked.layout)
@@ -81,7 +96,7 @@ def _readings(source, names, asked, kind, where):
         if unit is None:
             raise InputError(where, f"{kind}_unit", f"missing key; {name} needs it")
         size = unit_size(kind, unit, where, f"{key}.unit" if column.unit else f"{kind}_unit")
-        read = table.column(column.column, -size if column.reversed else size)
+        read = table.column(column.column, -size if column.reversed else size, kind)
         if np.isnan(read).all():
             raise InputError(table.source, f"column '{column.column}'", "expected readings; all are missing")
         columns.append(read + 0.0)  # no minus zero
@@ -91,7 +106,7 @@ def _readings(source, names, asked, kind, where):
 def _clock(table, asked, where):
     """Times that increase [s]."""
     name = asked.time.column
-    time = table.column(name, unit_size("time", asked.time.unit or "s", where, "time.unit"))
+    time = table.column(name, unit_size("time", asked.time.unit or "s", where, "time.unit"), "time")
     if np.isnan(time).any():
         line = table.lines[int(np.argmax(np.isnan(time)))]
         raise InputError(table.source, f"line {line}, {name}", "expected a time")

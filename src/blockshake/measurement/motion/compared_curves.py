@@ -42,6 +42,30 @@ def curves_along_x(measured, members):
     return read, read.expand_dims(sample=members.sizes["sample"]).copy(data=values).assign_coords(other)
 
 
+def histories_at(histories, asked, clock="time"):
+    """All variables along a clock of a dataset at other times of it, each as by `at_times`.
+
+    Parameters
+    ----------
+    histories : xarray.Dataset
+        At uniform times.
+    asked : float64 array, shape (n_asked,)
+        Within those [s].
+    clock : str
+        Name of the dimension.
+    """
+    time = histories[clock].to_numpy()
+    changed = {}
+    for name, values in histories.data_vars.items():
+        if clock in values.dims:
+            dims = [clock, *(dim for dim in values.dims if dim != clock)]
+            moved = values.transpose(*dims).to_numpy()
+            read = at_times(moved.reshape(1, len(time), -1), time, asked)
+            changed[name] = (dims, read.reshape(len(asked), *moved.shape[1:]), values.attrs)
+    kept = histories.drop_dims(clock)
+    return kept.assign(changed).assign_coords({clock: (clock, asked, histories[clock].attrs)})
+
+
 def at_times(curves, time, asked):
     """Curves at other times, each by the cubic through the four values around it.
 

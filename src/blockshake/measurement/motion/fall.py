@@ -22,6 +22,8 @@ class Fall(NamedTuple):
 def find_fall(test, structure, sensors):
     """`Fall` in a test, or None: by the criterion of `find_collapsed`, from an instant to the end of the record.
 
+    A block that touches nothing at the start, as one that is dropped, has nothing to fall from.
+
     Parameters
     ----------
     test : xarray.Dataset
@@ -30,6 +32,8 @@ def find_fall(test, structure, sensors):
     sensors : Sensors
     """
     supported, drop_limit = collapse_limits(structure)
+    if not supported.any():
+        return None
     moved = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()
     if not (np.ptp(np.nan_to_num(moved), axis=1).max() > _SCREEN * drop_limit[supported].min()):
         return None

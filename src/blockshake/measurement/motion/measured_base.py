@@ -6,7 +6,7 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
 from blockshake.dynamics.motion import CHANNELS, PITCH, ground_motion
-from blockshake.measurement.campaigns.command_clock import command_start
+from blockshake.measurement.campaigns.command_clock import since
 from blockshake.measurement.motion.base_motion import (
     BaseReadings,
     first_variances,
@@ -40,11 +40,11 @@ def measure_base(test, structure, sensors, command):
     Parameters
     ----------
     test : xarray.Dataset
-        As in a campaign's test file.
+        As of `from_command`.
     structure : Structure
     sensors : Sensors
     command : GroundMotion
-        That the table was told; it tells where time 0 of a simulation lies.
+        That the table was told.
 
     Returns
     -------
@@ -52,10 +52,10 @@ def measure_base(test, structure, sensors, command):
         Along ``time``, that of the markers and of the accelerometer together, and ``channel`` (x, y, z, pitch_y; the
         mass centre's displacement since the first reading [m], and the pitch [rad]): the readings ``marker`` and
         ``reading``, and ``displacement``, ``velocity`` and their ``_error``, smoothed. By channel ``marker_noise``,
-        ``reading_noise`` and ``jerk_density``. ``of_markers`` is 1 at the markers' times. Attributes: ``start`` of the
-        command on the test's clock [s], or of the record where that starts later; ``follows``, 1 where the table
-        follows the command, else the record's start is taken; ``accelerometer_lag``, which the accelerometer's times
-        were moved by [s]; ``end`` of the record [s]; ``unread``, the axes that no marker of the body measures.
+        ``reading_noise`` and ``jerk_density``. ``of_markers`` is 1 at the markers' times. Attributes: ``start`` of a
+        simulation on the test's clock [s]: 0, that of the command, or that of the record where it starts later;
+        ``follows`` as of the test; ``accelerometer_lag``, which the accelerometer's times were moved by [s]; ``end`` of
+        the record [s]; ``unread``, the axes that no marker of the body measures.
 
     Notes
     -----
@@ -88,14 +88,12 @@ def measure_base(test, structure, sensors, command):
         densities[0] = _density(parts[0])
     base = _gathered(time, parts, densities)
     unread = [CHANNELS[axis] for axis in np.flatnonzero(np.isnan(values[:, :3]).all(axis=0))]
-    moved = np.interp(time, base["time"], base["displacement"].sel(channel="x"))
-    start = command_start(time, moved, command)
     base.attrs = {
         "Conventions": "CF-1.11",
         "title": "measured motion of the slab",
-        "start": float(time[0] if start is None else max(start, time[0])),
+        "start": record_start(time),
         "end": float(time[-1]),
-        "follows": int(start is not None),
+        "follows": test.attrs["follows"],
         "accelerometer_lag": float(lag),
         "unread": "".join(unread),
     }
@@ -104,13 +102,21 @@ def measure_base(test, structure, sensors, command):
     return base
 
 
+def record_start(time):
+    """Time from which a test's record drives a simulation: the start of the command, or the first reading after it [s].
+
+    ``time`` (n_times,): of the test's markers, as of `from_command` [s].
+    """
+    return max(float(time[0]), 0.0)
+
+
 def _move_as_told(base, axis, command):
     """Give an axis that nothing measures the commanded motion, or rest, and errors that nobody knows."""
     at = {"channel": axis}
     for derivative, name in enumerate(("displacement", "velocity")):
         if base.attrs["follows"]:
-            told = command.evaluate(base["time"].to_numpy() - base.attrs["start"], derivative)
-            told = told - command.evaluate(np.zeros(1)) * (derivative == 0)
+            told = command.evaluate(base["time"].to_numpy(), derivative)
+            told = told - command.evaluate(np.full(1, base.attrs["start"])) * (derivative == 0)
             base[name].loc[at] = told[:, CHANNELS.index(axis)]
         base[f"{name}_error"].loc[at] = np.nan
 
@@ -167,8 +173,7 @@ def base_as_motion(base, displacement, name, attributes):
 
 def on_its_clock(test, base):
     """The test with time 0 where the base's motion starts as an input; earlier readings are left out."""
-    time = test["time"].to_numpy() - base.attrs["start"]
-    return test.assign_coords(time=("time", time, test["time"].attrs)).isel(time=time > -_SAME_TIME)
+    return since(test, base.attrs["start"])
 
 
 def _density(readings):

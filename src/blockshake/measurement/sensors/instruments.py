@@ -89,7 +89,8 @@ def observe(run, structure, instruments, seed):
     displacement = places - places[:1]
     names = [marker.name for marker in structure.file.markers]
     time = run["time"].to_numpy()
-    _check_names(instruments, names, run)
+    channels = [str(name) for name in run["channel"].values] if "channel" in run.coords else []
+    check_instruments(instruments, structure, channels)
     displacement = _delayed(displacement, time, instruments.marker_lag)
     displacement *= np.array([instruments.marker_gain.get(name, 1.0) for name in names])[:, None]
     displacement += (time - time[0])[:, None, None] * np.array(instruments.marker_drift)
@@ -192,8 +193,9 @@ def _lost(generator, n_times, n_markers, share):
     return lost
 
 
-def _check_names(instruments, markers, run):
-    channels = [str(name) for name in run["channel"].values] if "channel" in run.coords else []
+def check_instruments(instruments, structure, channels):
+    """Refuse faults of markers that a structure lacks, and of other ``channels``, with `InputError`."""
+    markers = [marker.name for marker in structure.file.markers]
     for key, known in (("marker_gain", markers), ("marker_offset", markers), ("channel_gain", channels)):
         for name in getattr(instruments, key):
             if name not in known:

@@ -114,3 +114,13 @@ def driven_marker(structure, names=None):
         if marker.body in driven and (names is None or marker.name in names):
             return marker.name
     raise InputError(structure.source, "markers", "expected a marker on a driven body")
+
+
+def slab_displacement(test, structure):
+    """Mean displacement of the driven body's markers, as far as they were read, (n_times, 3) [m]; NaN is a gap."""
+    driven = {body.name for body in structure.file.bodies if body.driven}
+    mine = [body in driven for body in marker_bodies(structure, test["marker"].values)]
+    readings = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()[:, mine]
+    known = np.isfinite(readings)
+    with np.errstate(invalid="ignore"):
+        return np.where(known, readings, 0.0).sum(axis=1) / known.sum(axis=1)

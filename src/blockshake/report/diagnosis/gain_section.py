@@ -215,11 +215,11 @@ def _consequences(found):
         )
     kinds = [str(kind) for kind in found.consequences["kind"].values]
     return Table(
-        f"What it means for the user: 95 % drift, the largest displacement of {found.top} against the table that one "
-        "member in twenty exceeds, with its interval of 90 % by bootstrap of the members; the largest of the "
+        f"What it means for the user: median drift, the largest displacement of {found.top} against the table that "
+        "half of the members exceed, with its limits of 95 % by order statistics; the largest of the "
         f"{'virtual test' if found.synthetic else 'test'}; score of the drift over time. All in mm.",
         (
-            "Test", *(f"95 % drift, {kind}" for kind in kinds), "Read off the test",
+            "Test", *(f"Median drift, {kind}" for kind in kinds), "Read off the test",
             *(f"Score, {kind}" for kind in kinds),
         ),
         tuple(rows), "l" + "r" * (2 * len(kinds) + 1),

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from blockshake.dynamics.provenance import provenance
 from blockshake.effects.registry import EFFECTS
 from blockshake.parity.parity import LEVEL
 from blockshake.report.diagnosis.verdict import chance_words
@@ -42,7 +43,7 @@ def _not_tested(found):
     ]
     motions = [
         f"{name}{' (SYNTHETIC)' if one.get('synthetic') else ''}"
-        + (f": {one['source']}" if one["source"] != name else "")
+        + (f": {provenance(one)}" if one["source"] != name or one["format"] != "csv" else "")
         for name, one in found.motions.items()
     ]
     items = [

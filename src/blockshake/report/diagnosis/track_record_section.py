@@ -27,9 +27,10 @@ def track_record_section(found):
         return Section("Track record of the procedure", "track-record", (Text(text, strong=True),))
     blocks = [
         Text(
-            f"The procedure was run on {len(record.cases)} campaigns in which the truth was known to the scorer "
-            "alone, made with other numerics and other forms of the effects than the diagnosis has "
-            f"(docs/hidden-effects.md). It was run on {record.date} with effort {record.effort}, sources "
+            f"The record holds {record.counted}, in which the truth was known to the scorer alone: those that were "
+            "diagnosed twice were so the second time with their effect taken out of the candidates. The campaigns were "
+            "made with other numerics and other forms of the effects than the diagnosis has (docs/hidden-effects.md). "
+            f"The procedure was run on {record.date} with effort {record.effort}, sources "
             f"{record.commit}, seeds {record.seeds}, on {record.machine}. The figures hold for such campaigns; on "
             "another structure they are an indication."
         )
@@ -87,7 +88,7 @@ def _confusion(record):
         counts = row.answers.model_dump()
         rows.append((", ".join(words), *(str(counts[name] or "") for name in Answers.model_fields)))
     return Table(
-        "Answers by what was hidden, numbers of campaigns. It: the truth; unknown: something acts that no known effect "
+        "Answers by what was hidden, numbers of diagnoses. It: the truth; unknown: something acts that no known effect "
         "explains.",
         ("Hidden", *(_ANSWERS[name] for name in Answers.model_fields)),
         tuple(rows),

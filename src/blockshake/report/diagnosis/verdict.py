@@ -74,7 +74,11 @@ def excluded(found):
     sizes = [f"{title_of(name)} {beyond(name, size)}" for name, size in found.verdict.excluded_above.items()]
     if not sizes:
         return "No size of any effect is excluded."
-    return f"Excluded (nine in ten would have been seen): {', '.join(sizes)}."
+    words = f"Excluded, by simulated tests of which nine in ten showed such a size: {', '.join(sizes)}."
+    held = found.track_record and found.track_record.shares.get("bound_holds")
+    if held:
+        words += f" In the track record such a limit held in {held.hits} of {held.n} campaigns."
+    return words
 
 
 def facts(found):
@@ -172,7 +176,7 @@ def drift_change(found, test):
         for one in (own.sel(kind=kind) for kind in ("recalibrated", "extended"))
     )
     return (
-        f"On {test}, which was sealed, the 95 % drift of the top block goes from {before} by the recalibrated model to "
-        f"{after} by the extended one; the {'virtual test' if found.synthetic else 'test'} had "
+        f"On {test}, which was sealed, the median drift of the top block goes from {before} by the recalibrated model "
+        f"to {after} by the extended one; the {'virtual test' if found.synthetic else 'test'} had "
         f"{quantity(float(own['measured']), 'm')}."
     )

@@ -97,8 +97,8 @@ def _record_of_unknown(record):
     empty = sum(row.answers.unknown for row in record.confusion if row.truth == "none" and not row.removed)
     known = sum(row.answers.unknown for row in record.confusion if row.truth in EFFECTS and not row.removed)
     return (
-        f"Track record of the procedure: of {count_words(given, 'made-up campaign')} that it answered so, {empty} hid "
-        f"nothing and {known} an effect of the registry."
+        f"Track record of the procedure: it answered so on {count_words(given, 'made-up campaign')}, of which {empty} "
+        f"hid nothing, {known} one of its candidates, and the others another cause."
     )
 
 

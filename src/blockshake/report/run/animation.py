@@ -22,6 +22,7 @@ from blockshake.report.scene.projection import VIEWS, Scene
 from blockshake.solvers.pieces import Due
 
 FRAME_RATE = 20.0  # Hz; a GIF counts in hundredths of a second
+_MOST_FRAMES = 100_000  # hours of drawing
 _PIXELS = 100  # an inch
 _LARGEST, _SMALLEST = 7.0, 3.6  # inches, of the drawing's sides
 _LETTERS = 17.0  # of the title, an inch
@@ -61,7 +62,7 @@ def animate_run(path, run, structure, view="front", magnification=1.0, speed=1.0
     Raises
     ------
     InputError
-        An unknown view or suffix, or a number that is not positive.
+        An unknown view or suffix, a number that is not positive, or more than `_MOST_FRAMES` frames.
     """
     check_animation(path)
     if view not in VIEWS:
@@ -70,6 +71,9 @@ def animate_run(path, run, structure, view="front", magnification=1.0, speed=1.0
         if not (np.isfinite(value) and value > 0.0):
             raise InputError(f"--{name}", "", f"expected a positive number, not {value}")
     times = run["time"].to_numpy()
+    frames = (times[-1] - times[0]) / speed * FRAME_RATE
+    if frames > _MOST_FRAMES:
+        raise InputError("--speed", "", f"expected at most {_MOST_FRAMES} frames, not {frames:.2g}")
     wanted = np.arange(times[0], times[-1] + 1e-9, speed / FRAME_RATE)
     rows = np.searchsorted(times, wanted - 0.5 * float(np.diff(times[:2]).sum()), side="left")
     position, orientation = magnified(run.isel(time=rows), structure, magnification)

@@ -6,6 +6,7 @@ from trimesh.exchange.gltf import export_glb
 from trimesh.visual.material import PBRMaterial
 
 from blockshake.files import replacing
+from blockshake.report.run.local_origin import local_origin
 from blockshake.report.scene.colors import body_colors
 
 _UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, 1.0, 0], [0, -1.0, 0, 0], [0, 0, 0, 1.0]])  # glTF's y is up
@@ -24,8 +25,10 @@ def write_glb(path, run, structure):
     Notes
     -----
     One node a body, of its name; its translation [m] and rotation are animated, one key a time of the run [s],
-    linear in between. All nodes are children of ``inertial frame``, which turns z up into glTF's y up.
+    linear in between. All nodes are children of ``inertial frame``, which turns z up into glTF's y up. Translations
+    count from `local_origin`, which stands in ``asset.extras.local_origin`` [m] where it is another than 0.
     """
+    origin = local_origin(run)
     scene = trimesh.Scene(base_frame="glTF frame")
     scene.graph.update(frame_from="glTF frame", frame_to="inertial frame", matrix=_UPRIGHT)
     colors = body_colors(structure)
@@ -40,14 +43,16 @@ def write_glb(path, run, structure):
         scene.add_geometry(mesh, node_name=body.name, geom_name=body.name, parent_node_name="inertial frame")
 
     def animate(buffers, tree):
-        _add_animation(buffers, tree, run)
+        _add_animation(buffers, tree, run, origin)
+        if origin.any():
+            tree["asset"]["extras"] = {"local_origin": origin.tolist()}
 
     content = export_glb(scene, include_normals=True, buffer_postprocessor=animate)
     with replacing(path) as temporary:
         temporary.write_bytes(content)
 
 
-def _add_animation(buffers, tree, run):
+def _add_animation(buffers, tree, run, origin):
     """Add the poses of the run to the tree and its buffers, and the first ones to the nodes."""
     nodes = {node["name"]: number for number, node in enumerate(tree["nodes"])}
     times = _accessor(buffers, tree, "time", run["time"].to_numpy(), bounds=True)
@@ -55,7 +60,7 @@ def _add_animation(buffers, tree, run):
     for body in run["body"].values.tolist():
         one = run.sel(body=body)
         turns = np.roll(one["orientation"].to_numpy(), -1, axis=1)  # glTF's order is x, y, z, w
-        paths = {"translation": one["position"].to_numpy(), "rotation": turns}
+        paths = {"translation": one["position"].to_numpy() - origin, "rotation": turns}
         node = tree["nodes"][nodes[body]]
         node.pop("matrix", None)  # an animated node has none
         for path, values in paths.items():

@@ -8,6 +8,7 @@ import numpy as np
 
 from blockshake.files import check_output, replacing
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.report.run.local_origin import local_origin
 
 _VERSION = np.array([2, 2], dtype=np.int64)  # of the file format
 _KINDS = (
@@ -39,22 +40,24 @@ def write_vtkhdf(path, run, histories, structure):
     Polygonal data over time, inertial frame, SI. The cells of the first file are the faces of the bodies, each with
     its body's number in the file of the run (``body``), ``velocity`` of the mass centre, ``angular_velocity`` and
     ``drift``. Those of the second are points, one a joint, with ``force`` on the upper body, ``normal_force``,
-    ``shear_force``, ``friction_ratio``, ``uplift`` and ``slip``, which are NaN where they are not told.
+    ``shear_force``, ``friction_ratio``, ``uplift`` and ``slip``, which are NaN where they are not told. Points count
+    from `local_origin`, which is the attribute ``LocalOrigin`` [m] where it is another than 0.
     """
-    base = Path(path)
-    files = {check_output(base): _blocks(run, histories, structure)}
+    base, origin = Path(path), local_origin(run)
+    files = {check_output(base): _blocks(run, histories, structure, origin)}
     if histories.sizes["joint"]:
-        files[check_output(base.with_name(f"{base.stem}-joints{base.suffix}"))] = _joints(run, histories)
+        joints = check_output(base.with_name(f"{base.stem}-joints{base.suffix}"))
+        files[joints] = _joints(run, histories, origin)
     with contextlib.ExitStack() as written:
         for file, content in files.items():
-            _write(written.enter_context(replacing(file)), run["time"].to_numpy(), *content)
+            _write(written.enter_context(replacing(file)), run["time"].to_numpy(), origin, *content)
     return list(files)
 
 
-def _blocks(run, histories, structure):
+def _blocks(run, histories, structure, origin):
     """Points over time, kind of cells, their corners, and values of the cells over time and of all times."""
     turns = rotation_matrices(run["orientation"])
-    position = run["position"].to_numpy()
+    position = run["position"].to_numpy() - origin
     places, cells, owners, count = [], [], [], 0
     for body in range(position.shape[1]):
         solid = structure.solid(body)
@@ -72,19 +75,21 @@ def _blocks(run, histories, structure):
     return np.concatenate(places, axis=1), "Polygons", cells, values, {"body": np.array(owners)}
 
 
-def _joints(run, histories):
+def _joints(run, histories, origin):
     names = ("normal_force", "shear_force", "friction_ratio", "uplift", "slip")
     values = {"force": run["joint_force"].to_numpy()} | {name: histories[name].to_numpy() for name in names}
     cells = [np.array([joint]) for joint in range(histories.sizes["joint"])]
-    return histories["joint_position"].to_numpy(), "Vertices", cells, values, {}
+    return histories["joint_position"].to_numpy() - origin, "Vertices", cells, values, {}
 
 
-def _write(path, times, points, kind, cells, values, steady):
+def _write(path, times, origin, points, kind, cells, values, steady):
     """One file: the points move, the cells stay; see the VTKHDF file format, polygonal data and temporal data."""
     n_times, n_points, _ = points.shape
     with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
         root = file.createGroup("VTKHDF")
-        root.setncatts({"Version": _VERSION, "Type": "PolyData"})
+        root.setncatts(
+            {"Version": _VERSION, "Type": "PolyData"} | ({"LocalOrigin": origin} if origin.any() else {})
+        )
         steps = root.createGroup("Steps")
         steps.setncattr("NSteps", np.int64(n_times))
         zero = np.zeros(n_times, dtype=np.int64)

@@ -17,11 +17,12 @@ from blockshake.report.document.wording import (
 )
 from blockshake.report.study.fragility_section import words as fragility_words
 from blockshake.study.ensembles.coverage import is_likely
-from blockshake.study.ensembles.intervals import CONFIDENCE, SURE_FROM
+from blockshake.study.ensembles.envelope import counted_samples
+from blockshake.study.ensembles.intervals import CONFIDENCE, SURE_FROM, samples_needed
+from blockshake.study.ensembles.outcomes import count_outcomes
 from blockshake.study.sensitivity.findings import influences, is_known
 
 _UPPER = 0.95  # quantile that stands for a large peak
-_FEW = 20  # samples, of which the largest is the 95 % quantile
 
 
 def conclusions(content):
@@ -63,15 +64,23 @@ def _case(case):
 
 
 def _drift(case, counted, body, marker):
-    """Displacement that 95 % of the samples stay below, and the share beyond the limit."""
+    """Peak of the top block, by the statistics that so many samples bear, and the share beyond the limit."""
     told = []
     for model, response in counted.items():
-        peak = response.envelope.sel(frame="slab", marker=marker, quantile=_UPPER)
-        size = int(response.envelope.attrs["counted"])
-        low, high = (millimetres(peak["peak_interval"].sel(bound=one)) for one in ("lower", "upper"))
+        size, peak = (
+            int(response.envelope.attrs["counted"]),
+            response.envelope.sel(frame="slab", marker=marker),
+        )
+        largest = counted_samples(response.samples)["peak"].sel(frame="slab", marker=marker).max()
+        statistics = [
+            f"{words} {millimetres(at['peak'])} mm [{', '.join(map(millimetres, at['peak_interval']))}]"
+            for words, quantile in (("median", 0.5), (f"{quantile_percent(_UPPER)} of all below", _UPPER))
+            if np.isfinite(
+                (at := peak.sel(quantile=quantile, bound=["lower", "upper"]))["peak_interval"]
+            ).all()
+        ]
         told.append(
-            f"{millimetres(peak['peak'])} mm by {model_label(model)} "
-            + ("(one sample)" if size == 1 else f"[{low}, {high}] (n = {size})")
+            f"{', '.join([*statistics, f'largest {millimetres(largest)} mm'])} by {model_label(model)} (n = {size})"
         )
     limit = next(iter(counted.values())).envelope["drift_probability"].attrs["largest_drift"]
     beyond = [
@@ -80,10 +89,10 @@ def _drift(case, counted, body, marker):
         if (value := float(one.envelope["drift_probability"].sel(marker=marker))) > 0.0
     ]
     return (
-        f"Of the samples, {quantile_percent(_UPPER)} keep the top block ({body}, marker {marker}) nearer to its place "
-        f"on the slab than, with {quantile_percent(CONFIDENCE)} limits: {', '.join(told)}. "
+        f"Peak displacement of the top block ({body}, marker {marker}) from its place on the slab, with "
+        f"{quantile_percent(CONFIDENCE)} limits where the samples bear them: {'; '.join(told)}. "
         + (
-            f"Of the samples, beyond {millimetres(limit)} mm or collapsed: {', '.join(beyond)}."
+            f"Of the samples, beyond {millimetres(limit)} mm or fallen: {', '.join(beyond)}."
             if beyond
             else f"No sample moves it by more than {millimetres(limit)} mm."
         )
@@ -91,11 +100,13 @@ def _drift(case, counted, body, marker):
 
 
 def _collapse(counted):
-    told, any_fell = [], False
+    told, falling, any_fell = [], [], False
     for model, response in counted.items():
         one = response.envelope
         share, size = float(one["collapse_probability"]), int(one.attrs["counted"])
         any_fell |= share > 0.0
+        if still := count_outcomes(response.samples["status"]).falling:
+            falling.append(f"{still} of {size} by {model_label(model)}")
         upper = percent(one["collapse_probability_interval"].sel(bound="upper"))
         if share:
             lower = percent(one["collapse_probability_interval"].sel(bound="lower"))
@@ -103,7 +114,10 @@ def _collapse(counted):
         else:
             told.append(f"below {upper} % by {model_label(model)} (n = {size})")
     found = "Collapse is found" if any_fell else "No sample collapses"
-    return f"{found}. Probability of collapse, {quantile_percent(CONFIDENCE)} limits: {', '.join(told)}."
+    words = f"{found}. Probability of collapse, {quantile_percent(CONFIDENCE)} limits: {', '.join(told)}."
+    if falling:
+        words += f" Counted as collapsed, but still falling when the window ended: {', '.join(falling)}."
+    return words
 
 
 def _joints(counted):
@@ -112,7 +126,7 @@ def _joints(counted):
     for name, what in (("joint_uplift", "opening"), ("joint_slip", "slip")):
         found = []
         for model, response in counted.items():
-            values = response.envelope[name].sel(quantile=_UPPER).dropna("joint")
+            values = response.envelope[name].sel(quantile=0.5).dropna("joint")
             if values.size:
                 place = values.argmax("joint")
                 found.append((float(values[place]), str(values["joint"][place].values), model))
@@ -124,7 +138,7 @@ def _joints(counted):
     if not words:
         return "The structure has no joints at its start."
     told = " and ".join(words)
-    return f"{told[0].upper()}{told[1:]}, {quantile_percent(_UPPER)} quantile at the middle of the face."
+    return f"{told[0].upper()}{told[1:]}, median over the samples at the middle of the face."
 
 
 def _models(counted, marker):
@@ -216,16 +230,26 @@ def _unknown(content):
         named = [f"{', '.join(without)} (no measured test)"] if without else []
         named += [f"{', '.join(synthetic)} (synthetic tests)"] if synthetic else []
         told.append(f"Whether any model is right about real blocks: {'; '.join(named)}.")
-    few = {}
+    few, few_from = {}, samples_needed(_UPPER)
     for case in cases:
         for model, one in case.responses.items():
             size = int(one.envelope.attrs["counted"])
-            if size < _FEW:
+            if size < few_from:
                 few.setdefault(f"{model_label(model)} (n = {size})", []).append(case.name)
     if few:
         words = "; ".join(f"{model}, {', '.join(names)}" for model, names in few.items())
         told.append(
-            f"How large the {quantile_percent(_UPPER)} quantile is, where fewer than {_FEW} samples ran: {words}."
+            f"How large the {quantile_percent(_UPPER)} quantile is, of which fewer than {few_from} samples bear no "
+            f"limits: {words}."
+        )
+    short = [
+        f"{case.name} ({given(case.settings['duration'])} s of a motion that is strong until {number(end)} s)"
+        for case in cases
+        if case.settings["duration"] < (end := float(content.motions[case.motion].attrs["significant_end"]))
+    ]
+    if short:
+        told.append(
+            f"Whether blocks fall after the window, which ends in the strong motion: {', '.join(short)}."
         )
     cut = [
         f"{model_label(model)}, {case.name}"
@@ -235,7 +259,7 @@ def _unknown(content):
     ]
     if cut:
         told.append(
-            f"How far blocks of collapsed samples would have moved, peaks are lower limits: {'; '.join(cut)}."
+            f"How far blocks of samples that fell would have moved, peaks are lower limits: {'; '.join(cut)}."
         )
     chaotic = _chaotic(cases)
     if chaotic:

@@ -17,6 +17,7 @@ from blockshake.report.document.wording import (
 )
 from blockshake.report.study.figures.fragility import plot_fragility
 from blockshake.study.ensembles.intervals import CONFIDENCE
+from blockshake.study.ensembles.outcomes import count_outcomes
 from blockshake.study.fragility.fragility import SAFE
 
 _SHOWN = (0.5, 0.95)
@@ -33,9 +34,10 @@ def fragility(content):
     blocks = [
         Text(
             f"Samples that climb the ladder by {model_label(asked['model'])}: each is shaken by the case's commanded "
-            "motion at rising factors, from the restored stack each time, until it collapses or the mass centre of a "
-            f"block moves from the slab by more than {limits} mm, which counts as a potential collapse. The capacity "
-            "of a sample lies between the last factor that it passed and the first that it did not. Where these tell "
+            "motion at rising factors, from the restored stack each time, until it collapses, still falls as its "
+            f"window ends, or the mass centre of a block moves from the slab by more than {limits} mm, which counts as "
+            "a potential collapse. The capacity of a sample lies between the last factor that it passed and the first "
+            "that it did not. Where these tell "
             "one, the figure has the lognormal distribution of largest likelihood for such bounds (incremental dynamic "
             "analysis, Vamvatsikos and Cornell 2002; fragility by maximum likelihood, Shinozuka et al. 2000). The "
             "spread is that of the sampled variables. The motion is one: another motion of the same peak has another "
@@ -58,10 +60,16 @@ def words(content, name):
     one, case = content.fragility[name], content.cases[name]
     unit = content.motions[case.motion].attrs["peak_acceleration"]
     size = one.sizes["sample"]
-    who = f"{name}, {case.motion}, {size} samples"
-    stopped = int((~np.isin(one["status"].values, ("completed", "collapsed"))).sum())
-    less = (
-        f" The last run of {count_words(stopped, 'sample')} ended for a numerical reason." if stopped else ""
+    model = model_label(content.study["fragility"]["model"])
+    who = f"{name}, {case.motion}, {size} samples by {model}"
+    ended = count_outcomes(one["status"])
+    less = "".join(
+        f" The last run of {count_words(count, 'sample')} {how}."
+        for count, how in (
+            (ended.falling, "still fell when the window ended, which counts as a collapse"),
+            (ended.failed, "ended for a numerical reason"),
+        )
+        if count
     )
     median = float(one["median"])
     if not np.isfinite(median):
@@ -97,8 +105,10 @@ def _told_from(one):
 
 
 def _limited(one, name):
-    low, high = (number(one[f"{name}_interval"].sel(bound=side)) for side in ("lower", "upper"))
-    return f"{number(one[name])} [{low}, {high}]"
+    limits = one[f"{name}_interval"].sel(bound=["lower", "upper"])
+    if not np.isfinite(limits).all():
+        return "a factor of which the samples bear no limits"
+    return f"{number(one[name])} [{', '.join(map(number, limits))}]"
 
 
 def _table(content):

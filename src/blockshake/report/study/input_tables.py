@@ -30,7 +30,7 @@ def cases_table(content):
             ))  # fmt: skip
     header = (
         "Case", "Motion", "Scale", f"Peak acceleration [m/s{SQUARED}]", "Window [s]", "Model", "Time step [s]",
-        "Samples", "completed / collapsed / failed",
+        "Samples", "completed / collapsed / still falling / failed",
     )  # fmt: skip
     shared = [
         f"{model_label(model)}: {', '.join(f'{name} {given(value)}' for name, value in settings['parameters'].items())}"

@@ -41,7 +41,7 @@ def _table(case, envelopes):
     labels = (f"{model_label(model)} (n = {int(one.attrs['counted'])})" for model, one in envelopes.items())
     return Table(
         f"{case.name}: compression [kN] / uplift [mm] / slip [mm] of the joints from the top down, "
-        f"{quantile_percent(_SHOWN)} quantile over the samples that completed or collapsed. {_MEANING}.",
+        f"{quantile_percent(_SHOWN)} quantile over the samples that did not fail. {_MEANING}.",
         ("Joint", *labels), tuple(rows), "l" + "r" * len(envelopes),
     )  # fmt: skip
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from blockshake.dynamics.provenance import provenance
 from blockshake.report.document.blocks import Figure, Heading, Items, Section, Text
 from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.units import printed
@@ -66,7 +67,8 @@ def summary(content):
     items = [
         f"{count_words(len(content.cases), 'case')}, {count_words(len(content.study['models']), 'model')} "
         f"({', '.join(model_label(model) for model in content.study['models'])}), {sum(ended)} runs: "
-        f"{ended.completed} completed, {ended.collapsed} collapsed, {ended.failed} failed.",
+        f"{ended.completed} completed, {ended.collapsed} collapsed, {ended.falling} still falling "
+        f"when the window ended, {ended.failed} failed.",
         f"{len(content.design)} samples of {len(content.distributions)} random variables in the design (seed "
         f"{content.study['ensemble']['seed']}).",
     ]
@@ -161,7 +163,7 @@ def motions(content):
                 else ""
             )
         ),
-        Items(tuple(f"{one.attrs['name']}: {one.attrs.get('source', '')}." for one in data)),
+        Items(tuple(f"{one.attrs['name']}: {provenance(one.attrs)}." for one in data)),
         Figure(
             "Ground acceleration, velocity and displacement along x (after the paper's Fig. 5)"
             + ("; dashed: end of the window that the cases simulate." if cut else "."),

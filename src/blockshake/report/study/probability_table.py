@@ -5,10 +5,11 @@ import numpy as np
 from blockshake.report.document.blocks import Table
 from blockshake.report.document.rows import face_markers
 from blockshake.report.document.wording import MISSING, model_label, number, percent
-from blockshake.study.ensembles.intervals import CONFIDENCE
+from blockshake.study.ensembles.intervals import CONFIDENCE, samples_needed
 from blockshake.study.ensembles.outcomes import shortfall
 
 _SHOWN = (0.5, 0.95)
+_needed = ", ".join(f"{100 * one:.0f} % needs {samples_needed(one)}" for one in _SHOWN)
 
 
 def probability_table(content):
@@ -32,11 +33,12 @@ def probability_table(content):
     quantiles = [f"{100 * one:.0f} %" for one in _SHOWN]
     return Table(
         "Top block, at its marker: probability of collapse, and of a displacement relative to the slab of more than "
-        f"{number(1e3 * limit.attrs['largest_drift'])} mm (a collapse counts as more), with Clopper-Pearson limits; "
-        f"quantiles {shown} of peak displacement [mm] and peak rotation [mrad] over the n samples that completed or "
-        "collapsed, with bootstrap limits, which cannot reach beyond the largest sample and hold the upper quantile "
-        f"less often than stated. All limits are of {100 * CONFIDENCE:.0f} % and take samples as independent; "
-        "collapsed samples count with the displacement that they had reached.",
+        f"{number(1e3 * limit.attrs['largest_drift'])} mm, with Clopper-Pearson limits; quantiles {shown} of peak "
+        "displacement [mm] and peak rotation [mrad] over the n samples that did not fail, with limits by order "
+        f"statistics. {MISSING.capitalize()}: of a quantile for which n is too small to bear limits ({_needed}). All "
+        f"limits are of {100 * CONFIDENCE:.0f} % and take samples as independent. A sample that collapsed, or still "
+        "fell when the window ended, counts as a collapse and as more than that drift, and with the peak that it had "
+        "reached.",
         (
             "Case, marker", "Model", "n", "Collapse [%]", "Drift [%]", *(f"Peak, {one} [mm]" for one in quantiles),
             *(f"Rotation, {one} [mrad]" for one in quantiles),
@@ -46,11 +48,10 @@ def probability_table(content):
 
 
 def _with_limits(dataset, name, show):
-    value = float(dataset[name])
-    if not np.isfinite(value):
+    value, limits = float(dataset[name]), dataset[f"{name}_interval"].sel(bound=["lower", "upper"])
+    if not np.isfinite([value, *limits]).all():
         return MISSING
-    low, high = (show(dataset[f"{name}_interval"].sel(bound=one)) for one in ("lower", "upper"))
-    return f"{show(value)} [{low}, {high}]"
+    return f"{show(value)} [{', '.join(map(show, limits))}]"
 
 
 def _thousandths(value):

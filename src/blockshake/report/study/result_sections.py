@@ -121,7 +121,7 @@ def _gaps(case):
                 Text(
                     f"{model_label(model)}: {found.counted} samples contribute until {number(found.since)} s, "
                     f"{found.at_end} at the end; bounds and quantiles are of those that contribute, and peaks of "
-                    "collapsed samples are lower limits."
+                    "samples that fell are lower limits."
                 )
             )
         if found.failed:

@@ -43,7 +43,7 @@ def top_block_table(content):
     )  # fmt: skip
     return Table(
         "Peak displacement of the top block along x relative to the slab: quantiles over the n samples that "
-        "completed or collapsed; one number where they print alike, with the reason.",
+        "did not fail; one number where they print alike, with the reason.",
         header, tuple(rows), "ll" + "r" * (len(header) - 2),
     )  # fmt: skip
 
@@ -101,8 +101,8 @@ def failures_table(content):
         for one in unfinished(response.samples)
     ]  # fmt: skip
     return Table(
-        "Samples that did not complete. Collapsed samples count in the statistics up to their end, "
-        "failed samples do not.",
+        "Samples that did not complete. Samples that collapsed, or still fell when the window ended, count in the "
+        "statistics up to their end; failed samples do not.",
         ("Case", "Model", "Sample", "Status", "End [s]", "Reason"), tuple(rows), "llrlrl",
     )  # fmt: skip
 

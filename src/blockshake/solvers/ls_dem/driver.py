@@ -107,6 +107,7 @@ def simulate_ls_dem(
             "steps": min(int(progress.clock[STEP]), n_steps),
             "settling_steps": int(started[0]),
             "stable_time_step": float(started[1]),
+            "overlap_as_laid": float(started[2]),
             "list_searches": int(progress.clock[SEARCHES]),
         },
     )

@@ -10,12 +10,14 @@ from blockshake.jit import kernel
 class Joints(NamedTuple):
     """Joints in the order in which their bodies came near; they outlast the lists of near nodes.
 
-    ``pair`` int64 (n_joints, 2): bodies, the lower index first. ``force`` (n_joints, 3): on the
-    second body at the last step, world frame [N]. ``slip`` (n_joints,): made so far, either way [m];
-    ``slip_rate`` (n_joints,): at the last step [m/s]. ``touched`` bool (n_joints,).
+    ``pair`` int64 (n_joints, 2): bodies, the lower index first. ``shift`` (n_joints, 3): where contact sees the first
+    body from where it is, frame of the second, all through a run: what they overlapped by as they were laid [m].
+    ``force`` (n_joints, 3): on the second body at the last step, world frame [N]. ``slip`` (n_joints,): made so far,
+    either way [m]; ``slip_rate`` (n_joints,): at the last step [m/s]. ``touched`` bool (n_joints,).
     """
 
     pair: np.ndarray
+    shift: np.ndarray
     force: np.ndarray
     slip: np.ndarray
     slip_rate: np.ndarray
@@ -26,8 +28,9 @@ class Joints(NamedTuple):
 def no_joints():
     """Joints before any body came near another."""
     return Joints(
-        np.empty((0, 2), np.int64), np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0, np.bool_)
-    )
+        np.empty((0, 2), np.int64), np.empty((0, 3)), np.empty((0, 3)), np.empty(0), np.empty(0),
+        np.empty(0, np.bool_),
+    )  # fmt: skip
 
 
 @kernel
@@ -41,13 +44,13 @@ def find_joint(joints, a, b):
 
 @kernel
 def add_joints(joints, pairs):
-    """Joints with further pairs, which have no force, slip or touch yet."""
+    """Joints with further pairs, which have no shift, force, slip or touch."""
     n, more = joints.slip.size, pairs.shape[0]
     new = Joints(
-        np.empty((n + more, 2), np.int64), np.zeros((n + more, 3)), np.zeros(n + more), np.zeros(n + more),
-        np.zeros(n + more, np.bool_),
+        np.empty((n + more, 2), np.int64), np.zeros((n + more, 3)), np.zeros((n + more, 3)), np.zeros(n + more),
+        np.zeros(n + more), np.zeros(n + more, np.bool_),
     )  # fmt: skip
-    new.pair[:n], new.pair[n:] = joints.pair, pairs
+    new.pair[:n], new.pair[n:], new.shift[:n] = joints.pair, pairs, joints.shift
     new.force[:n], new.slip[:n], new.slip_rate[:n] = joints.force, joints.slip, joints.slip_rate
     new.touched[:n] = joints.touched
     return new

@@ -6,6 +6,8 @@ from pydantic import Field
 
 from blockshake.validation import NotNegative, Positive, Strict
 
+LARGEST_INSET = 0.1  # of a flat's breadth
+
 
 class LsDemParameters(Strict):
     """Numerical parameters of LS-DEM; each is set as ``ls_dem.NAME``."""
@@ -21,10 +23,14 @@ class LsDemParameters(Strict):
         "nothing is said [N/m3]; G/h of a 1.6 m block, Zhou et al. (2023), Eq. (8), at Table 2's means",
     )
     node_spacing: Positive = Field(
-        0.2, description="aimed distance of surface nodes [m]; Zhou et al. (2023), section LS-DEM"
+        0.2,
+        description="aimed distance of surface nodes, of a shape broader than 1 m in proportion to its breadth [m]; "
+        "Zhou et al. (2023), section LS-DEM",
     )
     perimeter_inset: Positive = Field(
-        0.005, description="distance of the outermost nodes from the perimeter of a flat [m]; chosen"
+        0.003,
+        le=LARGEST_INSET,
+        description="distance of the outermost nodes from the perimeter of a flat, over its narrower width [1]; chosen",
     )
     edge_spacing: NotNegative = Field(
         0.0,
@@ -33,7 +39,7 @@ class LsDemParameters(Strict):
     )
     level_set: Literal["exact", "grid"] = Field(
         "exact",
-        description="how the distance to a box is found [exact or grid], by its formula or, as for a mesh, sampled; "
+        description="how the distance to a box or a convex mesh is found [exact or grid], by its formula or sampled; "
         "Zhou et al. (2023), Eq. (1), sample it",
     )
     grid_spacing: Positive = Field(

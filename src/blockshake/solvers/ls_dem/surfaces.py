@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.errors import InputError
 from blockshake.geometry.level_set import box_distance, hollow_box_distance
 from blockshake.geometry.level_set_grid import box_grid, grid_table, mesh_grid
-from blockshake.geometry.mesh_nodes import mesh_nodes
+from blockshake.geometry.meshes.mesh_nodes import mesh_nodes
 from blockshake.geometry.surface_nodes import box_nodes, chamfer_nodes
 from blockshake.geometry.trilinear import grid_distance
 from blockshake.jit import kernel
@@ -15,6 +15,9 @@ from blockshake.jit import kernel
 # Columns of ``Surfaces.lattice``
 FIRST, ORIGIN_X, ORIGIN_Y, ORIGIN_Z, COUNT_X, COUNT_Y, COUNT_Z, INVERSE_SPACING, N_LATTICE = range(9)
 _MOST_POINTS = 5e7  # of a lattice: 400 MB
+_MOST_NODES = 1e6  # of a shape: a step then takes a second
+_MOST_PLANES = 64  # of a convex mesh whose distance is found by them
+_BROAD = 1.0  # m; nodes of a shape that is broader are farther apart, in proportion
 
 
 class Surfaces(NamedTuple):
@@ -26,9 +29,10 @@ class Surfaces(NamedTuple):
     bodies that stand on a box without a look at its edges, see `_wide` [m]; ``chamfer``, ``hollow`` (n_shapes,) [m].
     ``lattice`` (n_shapes, N_LATTICE): that of a sampled level set, its spacing zero where the distance of
     the box is exact, first value, origin [m], counts and cells per metre; ``values`` (n_values,)
-    [m]. ``steepest`` (n_shapes,): most that the level set changes per distance [1]. ``first_node`` int64
-    (n_shapes + 1,), ``points`` (n_nodes, 3), ``areas`` (n_nodes,): surface nodes in the frame of the shape
-    [m, m2]; ``damping_weight`` (n_nodes,): what a node's dashpot goes with.
+    [m]. ``steepest`` (n_shapes,): most that the level set changes per distance [1]. ``first_plane`` int64
+    (n_shapes + 1,), ``planes`` (n_planes, 4): outward normals and distances of the faces of a convex mesh [1, m].
+    ``first_node`` int64 (n_shapes + 1,), ``points`` (n_nodes, 3), ``areas`` (n_nodes,): surface nodes in the frame of
+    the shape [m, m2]; ``damping_weight`` (n_nodes,): what a node's dashpot goes with.
     """
 
     shape: np.ndarray
@@ -42,6 +46,8 @@ class Surfaces(NamedTuple):
     lattice: np.ndarray
     values: np.ndarray
     steepest: np.ndarray
+    first_plane: np.ndarray
+    planes: np.ndarray
     first_node: np.ndarray
     points: np.ndarray
     areas: np.ndarray
@@ -54,12 +60,18 @@ def assemble_surfaces(structure, parameters):
     Raises
     ------
     InputError
-        A flat too narrow for the perimeter inset, or a lattice too fine to hold.
+        A lattice too fine to hold.
     """
     names = list(structure.file.shapes)
     shapes = structure.file.shapes
     nodes = [_nodes(structure, name, parameters) for name in names]
-    table = grid_table([_grid(structure, name, parameters) for name in names])
+    planes = [_planes(structure, name, parameters) for name in names]
+    table = grid_table(
+        [
+            _grid(structure, name, parameters) if not len(own) else None
+            for name, own in zip(names, planes, strict=True)
+        ]
+    )
     solids = [structure.solids[name] for name in names]
     low = np.array([solid.vertices.min(axis=0) for solid in solids])
     high = np.array([solid.vertices.max(axis=0) for solid in solids])
@@ -85,6 +97,8 @@ def assemble_surfaces(structure, parameters):
         ),
         values=table.values,
         steepest=table.steepest * np.array([_hollow_slope(shapes[name]) for name in names]),
+        first_plane=np.concatenate([[0], np.cumsum([len(own) for own in planes])]),
+        planes=np.vstack(planes),
         first_node=np.concatenate([[0], np.cumsum([len(areas) for _, areas in nodes])]),
         points=np.vstack([points for points, _ in nodes]),
         areas=areas,
@@ -113,28 +127,39 @@ def _hollow_slope(shape):
 
 def _nodes(structure, name, parameters):
     """Points and areas of a shape's nodes."""
-    shape, inset = structure.file.shapes[name], parameters.perimeter_inset
+    shape, solid = structure.file.shapes[name], structure.solids[name]
+    breadth = min(shape.box or np.ptp(solid.vertices, axis=0)) - 2.0 * shape.chamfer
+    spacing = parameters.node_spacing * max(1.0, breadth / _BROAD)
+    count = solid.properties.area / spacing**2
+    if parameters.edge_spacing:
+        count += 4.0 * np.ptp(solid.vertices, axis=0).sum() / parameters.edge_spacing
+    if count > _MOST_NODES:
+        raise InputError(
+            structure.source,
+            f"shapes.{name}",
+            f"expected at most {_MOST_NODES:.0e} nodes, not {count:.1g}: a wider ls_dem.node_spacing or edge_spacing",
+        )
     if shape.box is None:
-        solid = structure.solids[name]
-        return mesh_nodes(solid.vertices, solid.triangles, parameters.node_spacing, inset)
-    flat = min(shape.box) - 2.0 * shape.chamfer
-    if 2.0 * inset >= flat:
-        raise InputError(
-            structure.source,
-            f"shapes.{name}",
-            f"expected flats wider than twice ls_dem.perimeter_inset, not {flat} m",
-        )
-    points, areas = box_nodes(shape.box, shape.chamfer, shape.hollow, parameters.node_spacing, inset)
-    if areas.min() <= 0.0:
-        raise InputError(
-            structure.source,
-            f"shapes.{name}",
-            "expected flats much wider than ls_dem.perimeter_inset, and for long ones a wider ls_dem.node_spacing",
-        )
+        return mesh_nodes(solid.vertices, solid.triangles, spacing, parameters.perimeter_inset)
+    points, areas = box_nodes(shape.box, shape.chamfer, shape.hollow, spacing, parameters.perimeter_inset)
     if parameters.edge_spacing == 0.0:
         return points, areas
     more_points, more_areas = chamfer_nodes(shape.box, shape.chamfer, parameters.edge_spacing)
     return np.vstack([points, more_points]), np.concatenate([areas, more_areas])
+
+
+def _planes(structure, name, parameters):
+    """Normals and distances of the faces of a convex mesh, shape (n, 4); none of another shape or of too many faces."""
+    polyhedron = structure.solids[name].polyhedron
+    boxed = structure.file.shapes[name].box is not None
+    if (
+        boxed
+        or polyhedron is None
+        or parameters.level_set == "grid"
+        or len(polyhedron.offsets) > _MOST_PLANES
+    ):
+        return np.empty((0, 4))
+    return np.column_stack([polyhedron.normals, polyhedron.offsets])
 
 
 def _grid(structure, name, parameters):
@@ -143,27 +168,47 @@ def _grid(structure, name, parameters):
     spacing = parameters.grid_spacing
     if shape.box is not None and parameters.level_set == "exact":
         return None
-    if shape.hollow:
+    _check_grid(structure, name, parameters)
+    if shape.box is not None:
+        return box_grid(shape.box, shape.chamfer, spacing)
+    return mesh_grid(solid.vertices, solid.triangles, spacing)
+
+
+def check_shapes(structure, parameters):
+    """Refuse shapes on which no nodes fit, or whose distance cannot be sampled, with `InputError`."""
+    for name, shape in structure.file.shapes.items():
+        if shape.box is not None:
+            _nodes(structure, name, parameters)
+        if shape.box is None or parameters.level_set != "exact":
+            _check_grid(structure, name, parameters)
+
+
+def _check_grid(structure, name, parameters):
+    """Refuse a hollow face, and a lattice of too many points."""
+    spacing = parameters.grid_spacing
+    if structure.file.shapes[name].hollow:
         raise InputError(
             structure.source,
             f"shapes.{name}.hollow",
             f"expected the exact distance with hollow faces: ls_dem.level_set is {parameters.level_set}",
         )
-    if np.prod(np.ptp(solid.vertices, axis=0) / spacing + 4.0) > _MOST_POINTS:
+    if np.prod(np.ptp(structure.solids[name].vertices, axis=0) / spacing + 4.0) > _MOST_POINTS:
         raise InputError(
             structure.source,
             f"shapes.{name}",
             f"expected fewer lattice points: ls_dem.grid_spacing is {spacing} m",
         )
-    if shape.box is not None:
-        return box_grid(shape.box, shape.chamfer, spacing)
-    return mesh_grid(solid.vertices, solid.triangles, spacing)
 
 
 @kernel
 def level_set(surfaces, shape, x, y, z):
     """Level-set value of a shape at one place in its frame [m]."""
     lattice = surfaces.lattice[shape]
+    if surfaces.first_plane[shape] < surfaces.first_plane[shape + 1]:
+        farthest = -np.inf
+        for plane in surfaces.planes[surfaces.first_plane[shape] : surfaces.first_plane[shape + 1]]:
+            farthest = max(farthest, plane[0] * x + plane[1] * y + plane[2] * z - plane[3])
+        return farthest
     if lattice[INVERSE_SPACING] == 0.0:
         half = surfaces.half[shape]
         chamfer, hollow = surfaces.chamfer[shape], surfaces.hollow[shape]

@@ -21,7 +21,7 @@ class NscdParameters(Strict):
     max_iterations: Annotated[int, Field(ge=1)] = Field(
         500, description="Newton steps and sweeps over the contacts allowed in one step [1]; chosen"
     )
-    impact_parts: Annotated[int, Field(ge=1)] = Field(
+    impact_parts: Annotated[int, Field(ge=1, le=1000)] = Field(
         1, description="parts into which a step is cut in which bodies meet [1]; 1 takes it whole"
     )
     shrink: ProperFraction = Field(

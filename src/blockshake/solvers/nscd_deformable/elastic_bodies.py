@@ -69,6 +69,7 @@ def pack_elastic(structure, order, parameters, viscous):
     has the damping ``(eta / E) omega^2``. The mesh fills the box; its density is the body's mass over
     the box's volume, a chamfer being a small part of it.
     """
+    check_boxes(structure, parameters)
     file = structure.file
     squared, damping, shape, lines, tables, n_points = [], [], [], [], [], []
     for body in order:
@@ -82,11 +83,6 @@ def pack_elastic(structure, order, parameters, viscous):
             n_points.append(0)
             continue
         box, material = file.shapes[one.shape].box, file.materials[one.material]
-        if box is None:
-            raise InputError(
-                structure.source, f"shapes.{one.shape}", "expected a box: meshes deform in no model yet"
-            )
-        _check_size(box, parameters)
         found = elastic_shapes(
             box, material.poisson_ratio, parameters.mesh_size, parameters.contact_spacing, parameters.modes
         )
@@ -112,8 +108,19 @@ def pack_elastic(structure, order, parameters, viscous):
     )
 
 
+def check_boxes(structure, parameters):
+    """Refuse a free body that is no box, or a mesh that this program's dense matrices do not hold."""
+    for body in structure.file.bodies:
+        if not body.driven:
+            box = structure.file.shapes[body.shape].box
+            if box is None:
+                raise InputError(
+                    structure.source, f"shapes.{body.shape}", "expected a box: meshes deform in no model yet"
+                )
+            _check_size(box, parameters)
+
+
 def _check_size(box, parameters):
-    """Refuse a mesh that this program's dense matrices do not hold."""
     counts = [max(1, round(edge / parameters.mesh_size)) for edge in box]
     nodes = int(np.prod([count + 1 for count in counts]))
     limit = _MOST_NODES if parameters.modes < 3 * nodes - 6 else _MOST_NODES_OF_FULL_MESH

@@ -129,6 +129,14 @@ def hollow_shape(structure):
     return (name, min(box)) if box else (None, None)
 
 
+def parameter_of(structure, name):
+    """Dotted name in a structure of a parameter of the calibration, not of a stiffness, and its value over that."""
+    if name == HOLLOW:
+        shape, edge = hollow_shape(structure)
+        return f"shapes.{shape}.hollow", edge
+    return name, 1.0
+
+
 def read_distances(compared):
     """`Distances` by test and reading of a Dataset of `compare_open_tests`, without those of `left_out`."""
     found = {}
@@ -157,8 +165,8 @@ def _as_parameters(drawn, used, structure, named, store):
         wave = calibrate_design(named, pd.DataFrame(index=[0]), {}, store, source).iloc[0]
         rows = rows.assign(**{name: value * drawn[STIFFNESS] for name, value in wave.items()})
     if HOLLOW in used:
-        shape, edge = hollow_shape(structure)
-        rows = rows.assign(**{f"shapes.{shape}.hollow": drawn[HOLLOW] * edge})
+        hollow, edge = parameter_of(structure, HOLLOW)
+        rows = rows.assign(**{hollow: drawn[HOLLOW] * edge})
     return rows
 
 

@@ -34,8 +34,8 @@ class OpenTest(NamedTuple):
     ----------
     name : str
     case : dict
-        ``structure``, ``motion``, ``scale``, ``duration`` [s] and ``input``, the measured one, as `driving_motions`
-        takes them.
+        ``structure``, ``motion``, ``scale``, ``baseline``, ``duration`` [s] and ``input``, the measured one, as
+        `driving_motions` takes them.
     base : xarray.Dataset
         From `measured_input`.
     measured : xarray.Dataset
@@ -62,13 +62,10 @@ def open_test(case, campaign, name):
         listed.motion if listed.motion in shipped_names("motions") else str(loaded.folder / listed.motion)
     )
     named = {"campaign": campaign, "test": name}
-    case = {**case, "motion": motion, "scale": listed.scale, "input": MEASURED}
+    case = {**case, "motion": motion, "scale": listed.scale, "baseline": listed.baseline, "input": MEASURED}
     base = measured_input({**case, "duration": 0.0}, named)
     duration = min(case["duration"], float(base.attrs["end"] - base.attrs["start"]))
     measured, _ = measured_on_clock(named, base)
-    if "time_acc" in measured.coords:
-        since = measured["time_acc"] - base.attrs["start"]
-        measured = measured.assign_coords(time_acc=since).isel(time_acc=(since >= 0.0).to_numpy())
     sensors = loaded.sensors
     instruments = Instruments(
         marker_noise=sensors.marker_noise, accelerometer_noise=sensors.accelerometer_noise

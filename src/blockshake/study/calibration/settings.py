@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from blockshake.simulation.models import ModelName
-from blockshake.validation import Positive, Strict
+from blockshake.validation import Positive, Strict, Whole
 
 FEWEST = 19  # samples with which a range of 95 % has an end: the largest excess of 19 stands for the 20th
 RESTITUTION = "restitution"
@@ -62,7 +62,7 @@ class CalibrationSettings(Strict):
     cases: dict[ModelName, tuple[str, ...]] = Field(
         min_length=1, description="by model, one of the study's: names of cases with a measured test"
     )
-    size: int = Field(
+    size: Whole = Field(
         40, ge=FEWEST, description="samples by which every test is simulated; fewer would give no range [1]"
     )
     ranges: dict[str, Range] = Field(

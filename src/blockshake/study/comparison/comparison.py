@@ -25,12 +25,13 @@ from blockshake.study.described import describe
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.ensemble import ALONG_X, POSES, join_batches, relative_to_slab
 from blockshake.study.ensembles.envelope import counted_samples
-from blockshake.study.ensembles.intervals import median_interval
+from blockshake.study.ensembles.intervals import SURE_FROM, quantile_interval, sample_quantiles
 
 MOST = 400  # samples of a model that are compared: each is held against each
 TOLD_APART_BY = 3.0  # standard deviations of a marker's noise that curves are apart when they have parted
+_MIDDLE = [0.5]
 _DESCRIBED = {
-    "counted": ("completed or collapsed samples", "1"),
+    "counted": ("samples that enter statistics", "1"),
     "peak": ("median of the largest displacement along x relative to the slab", "m"),
     "residual": ("median of the displacement along x relative to the slab at the end", "m"),
     "width": ("mean absolute difference of two samples relative to the slab", "m"),
@@ -159,17 +160,16 @@ def _alone(counted, seed):
         one = {"counted": ((), size)}
         for name in ("peak", "residual"):
             values = ensemble[name].sel(frame="slab", marker=blocks).transpose("sample", "marker").to_numpy()
-            middle = [median_interval(column) for column in values.T]
-            one[name] = ("marker", [found.median for found in middle])
-            limits = [[found.lower for found in middle], [found.upper for found in middle]]
-            one[f"{name}_interval"] = (("bound", "marker"), limits)
+            one[name] = ("marker", sample_quantiles(values, _MIDDLE)[0])
+            one[f"{name}_interval"] = (("bound", "marker"), quantile_interval(values, _MIDDLE)[:, 0])
         width = np.full((1, len(blocks)), np.nan)
         if size >= FEWEST:
             curves = _of(ensemble)
             weights = resampled_weights(size, _generator(seed, model))
             width = mean_width(mean_differences(curves, curves), weights)
         one["width"] = ("marker", width[0])
-        one["width_interval"] = (("bound", "marker"), limits_of(width[1:]))
+        limits = limits_of(width[1:]) if size >= SURE_FROM else np.full((2, len(blocks)), np.nan)
+        one["width_interval"] = (("bound", "marker"), limits)
         parts.append(xr.Dataset(one, {"marker": blocks, "bound": ["lower", "upper"]}))
     return xr.concat(parts, dim=xr.Variable("model", list(counted)))
 
@@ -195,8 +195,8 @@ def _pairs(counted, limit, seed):
         shared, at_own, at_other = np.intersect1d(
             counted[own]["sample"], counted[other]["sample"], return_indices=True
         )
-        middle = median_interval(differences[at_own, split + at_other])
-        values["history_difference"] = middle.median
+        of_both = differences[at_own, split + at_other]
+        values["history_difference"] = sample_quantiles(of_both, _MIDDLE)[0]
         time = counted[own]["time"].to_numpy()
         parted = [
             parting_time(time, curves[own][a], curves[other][b], limit)
@@ -205,7 +205,7 @@ def _pairs(counted, limit, seed):
         values["parting_time"] = _upper_median(parted)
         for place in places:
             common[place] = len(shared)
-            interval[:, *place] = middle.lower, middle.upper
+            interval[:, *place] = quantile_interval(of_both, _MIDDLE)[:, 0]
             for name in names:
                 found[name][place] = values[name]
     pair = ("model", "other")
@@ -269,7 +269,9 @@ def _scores(counted, measured, seed):
     for place, model in enumerate(models):
         if model not in drawn:
             continue
-        score[place], interval[:, place] = drawn[model][0], limits_of(drawn[model][1:])
+        score[place] = drawn[model][0]
+        sure = counted[model].sizes["sample"] >= SURE_FROM
+        interval[:, place] = limits_of(drawn[model][1:]) if sure else np.nan
         for number, other in enumerate(models):
             if other in drawn and other != model:
                 excess = drawn[other] - drawn[model]

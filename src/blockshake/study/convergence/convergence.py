@@ -63,10 +63,10 @@ def study_convergence(settings, store, source, progress):
         given = identity, numerical.model_dump(), time_step, strength, shaken
         return kept_value(store, content_digest(source, "convergence", *given), run)
 
-    def vary(name, values, **others):
+    def vary(name, **others):
         return {
             value: observe(f"{name} {value:g} m", LsDemParameters(**stiffness, **{name: value}, **others))
-            for value in sorted(values)
+            for value in sorted(settings.numerical[name])
         }
 
     reference = observe("default parameters")
@@ -76,9 +76,9 @@ def study_convergence(settings, store, source, progress):
         "time_step": {
             value: observe(f"time_step {value:g} s", time_step=value) for value in sorted(settings.time_steps)
         },
-        "node_spacing": vary("node_spacing", settings.node_spacings),
-        "perimeter_inset": vary("perimeter_inset", settings.perimeter_insets),
-        "grid_spacing": {EXACT: reference} | vary("grid_spacing", settings.grid_spacings, level_set="grid"),
+        "node_spacing": vary("node_spacing"),
+        "perimeter_inset": vary("perimeter_inset"),
+        "grid_spacing": {EXACT: reference} | vary("grid_spacing", level_set="grid"),
     }
     defaults = usual.model_dump() | {"time_step": _TIME_STEP, "grid_spacing": EXACT}
     rows = []

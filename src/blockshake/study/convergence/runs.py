@@ -48,7 +48,7 @@ def rocking_block(structure, model, parameters, time_step, strength):
     InputError
         No free body stands on a driven one.
     """
-    alone, block = _kicked(structure, strength)
+    alone, block = kicked(structure, strength)
     times = _records(_KICKED_DURATION)
     run = model_of(model).solve(alone, None, parameters, times, time_step)
     if run.status != Status.COMPLETED:
@@ -74,7 +74,7 @@ def housner_ratio(structure):
     Housner (1963), Bull. Seismol. Soc. Am. 53: ``1 - 2 m b^2 / I``, with half the width b of the base and the moment
     of inertia I about the far edge.
     """
-    alone, block = _kicked(structure, 1.0)
+    alone, block = kicked(structure, 1.0)
     vertices = alone.solid(block).vertices
     height = -vertices[:, 2].min()
     half = vertices[vertices[:, 2] < -height + 1e-9, 0].max()
@@ -134,8 +134,11 @@ def sine(acceleration, frequency):
     return ground_motion("sine", time, {"x": values}, "acceleration")
 
 
-def _kicked(structure, strength):
-    """The driven bodies with the block that stands on them, turning about the edge of its base at +x."""
+def kicked(structure, strength):
+    """The driven bodies with the block that stands on them, turning about the edge of its base at +x.
+
+    ``strength`` multiplies the kick [1]. An `InputError` where no free body stands on a driven one.
+    """
     driven, touching = structure.driven, structure.touching
     seated = np.flatnonzero(~driven & touching[:, driven].any(axis=1))
     if not len(seated):

@@ -25,7 +25,8 @@ def measured_input(case, named):
     Parameters
     ----------
     case : dict
-        ``structure``, ``motion``, ``scale``, ``duration`` [s] and ``input`` of a case of the configuration.
+        ``structure``, ``motion``, ``scale``, ``baseline``, ``duration`` [s] and ``input`` of a case of the
+        configuration.
     named : dict
         Entries ``campaign``, a folder, and ``test``.
 
@@ -43,7 +44,7 @@ def measured_input(case, named):
     """
     campaign = load_campaign(named["campaign"])
     test = load_test(campaign, named["test"])
-    command = load_motion(case["motion"], case["scale"])
+    command = commanded(case)
     base = measure_base(test, load_structure(campaign.structure), campaign.sensors, command)
     length = base.attrs["end"] - base.attrs["start"]
     if case["input"] == MEASURED:
@@ -51,6 +52,11 @@ def measured_input(case, named):
     base.attrs |= {"test": named["test"], "synthetic": int(test.attrs.get("synthetic", 0))}
     base.attrs |= dict(zip(("gain", "departure"), _against(base, command, case["duration"]), strict=True))
     return base
+
+
+def commanded(case):
+    """`GroundMotion` that a case commands, from its ``motion``, ``scale`` and ``baseline``."""
+    return load_motion(case["motion"], case["scale"], case["baseline"])
 
 
 def check_record(length, duration, where, key):
@@ -95,8 +101,8 @@ def driving_motions(case, base, seed):
     A draw depends on structure, motion, scale, seed and sample: it is the same for all models and in any order.
     """
     if case["input"] == COMMANDED:
-        commanded = load_motion(case["motion"], case["scale"])
-        return lambda sample: commanded
+        motion = commanded(case)
+        return lambda sample: motion
     base = _loaded(base)
     identity = Path(case["structure"]).stem, Path(case["motion"]).stem, case["scale"], seed
     attributes = {"source": f"measured motion of the slab, {base.attrs['test']}", "scale": case["scale"]}

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from blockshake.dynamics.system import Status
 from blockshake.errors import InputError
 from blockshake.simulation.joint_figures import JOINT_FIGURES
 from blockshake.store import load_made
@@ -229,8 +230,9 @@ def peak_and_residual(along, since, skipna):
 def _extremes(ensemble):
     """Peak and residual along x of every marker in both frames."""
     along = in_frames(ensemble["marker_displacement"].sel(axis="x", drop=True), ensemble.attrs["slab_marker"])
-    # a run that stopped early has NaN in the window, and so no residual
+    # a run that stopped early has NaN in the window, and so no residual; nor has one that still falls
     peak, residual = peak_and_residual(along, along["time"][-1] - RESIDUAL_WINDOW, skipna=False)
+    residual = residual.where(ensemble["status"] != Status.FALLING)
     peak.attrs = {"long_name": "largest absolute displacement along x until the end of the run", "units": "m"}
     residual.attrs = {
         "long_name": f"mean displacement along x in the last {RESIDUAL_WINDOW:g} s",

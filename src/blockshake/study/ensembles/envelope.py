@@ -3,8 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from blockshake.dynamics.system import FINISHED, Status
-from blockshake.files import content_digest
+from blockshake.dynamics.system import FALLEN, FINISHED
 from blockshake.simulation.joint_figures import JOINT_FIGURES
 from blockshake.study.ensembles.ensemble import POSES, in_frames, join_batches
 from blockshake.study.ensembles.intervals import (
@@ -21,7 +20,7 @@ _SINGLE = ("peak", "residual", "peak_rotation", *JOINT_FIGURES)  # numbers of a 
 
 
 def counted_samples(ensemble):
-    """The samples that enter statistics: completed or collapsed runs."""
+    """The samples that enter statistics: runs that completed, collapsed or still fell as the window ended."""
     return ensemble.isel(sample=np.isin(ensemble["status"].values, FINISHED))
 
 
@@ -55,7 +54,8 @@ def envelope(ensemble, largest_drift, displacement=None):
         `joint_figures` ``(quantile, joint)``;
         ``contributing(time)``: samples with a value at that time; ``collapse_probability`` and
         ``drift_probability(marker)`` [1]. NaN where no sample has a value. The statistics of single numbers have their
-        95 % limits beside them, ``NAME_interval(bound, ...)``. Attributes ``samples`` and ``counted``: how many runs
+        95 % limits beside them, ``NAME_interval(bound, ...)``, those of quantiles NaN of too few samples
+        (`quantile_ranks`). Attributes ``samples`` and ``counted``: how many runs
         there were and how many enter.
 
     Notes
@@ -63,8 +63,8 @@ def envelope(ensemble, largest_drift, displacement=None):
     Quantiles interpolate linearly between ordered values (Hyndman and Fan 1996, type 7) of the samples that have a
     value: after a collapse cut a run short, those of the others. The peak of a collapsed run is what it had reached, so
     that upper quantiles of the peak are then lower limits. The band from lower to upper of n runs holds a further run
-    at one instant with probability (n - 1) / (n + 1); it has no stated probability for a whole record. A collapsed run
-    counts as one whose drift exceeded the limit.
+    at one instant with probability (n - 1) / (n + 1); it has no stated probability for a whole record. A run that still
+    falls as the window ends counts as a collapse, and a collapse as a drift beyond the limit.
     """
     counted = counted_samples(ensemble)
     probabilities = xr.DataArray(list(QUANTILES), dims="quantile", coords={"quantile": list(QUANTILES)})
@@ -125,13 +125,13 @@ def _over_markers(counted, displacement, bounds, probabilities):
 
 
 def _probabilities(counted, largest_drift):
-    """Shares of the samples that collapsed and that drifted too far, with their limits."""
-    collapsed = counted["status"].values == Status.COLLAPSED
+    """Shares of the samples that fell and that drifted too far, with their limits."""
+    fell = np.isin(counted["status"].values, FALLEN)
     peak = counted["peak"].sel(frame="slab", drop=True).transpose("sample", "marker").to_numpy()
-    beyond = (collapsed[:, None] | (peak > largest_drift)).sum(axis=0)
-    size = len(collapsed)
-    share = np.array([collapsed.sum(), *beyond]) / size if size else np.full(1 + len(beyond), np.nan)
-    limits = np.array([share_interval(int(count), size) for count in (collapsed.sum(), *beyond)]).T
+    counts = np.array([fell.sum(), *(fell[:, None] | (peak > largest_drift)).sum(axis=0)])
+    size = len(fell)
+    share = counts / size if size else np.full(len(counts), np.nan)
+    limits = np.array([share_interval(int(count), size) for count in counts]).T
     result = xr.Dataset(
         {
             "collapse_probability": ((), share[0]),
@@ -141,7 +141,7 @@ def _probabilities(counted, largest_drift):
         }
     )
     what = {
-        "collapse": "collapse",
+        "collapse": "collapse, or the fall that leads to it as the window ends",
         "drift": f"a displacement along x of more than {largest_drift:g} m from the slab",
     }
     for name, event in what.items():
@@ -160,16 +160,14 @@ def _probabilities(counted, largest_drift):
 
 
 def _intervals(counted, probabilities):
-    """Bootstrap limits of the quantiles of single numbers."""
-    identity = (str(counted.attrs.get(key)) for key in ("model", "structure"))
-    generator = np.random.default_rng(int(content_digest("envelope", *identity), 16))
+    """Limits of the quantiles of single numbers."""
     result = xr.Dataset()
     for name in _SINGLE:
         values = counted[name].transpose("sample", ...)
-        limits = quantile_interval(values.to_numpy(), probabilities.to_numpy(), generator)
+        limits = quantile_interval(values.to_numpy(), probabilities.to_numpy())
         result[f"{name}_interval"] = (("bound", "quantile", *values.dims[1:]), limits)
         result[f"{name}_interval"].attrs = {
-            "long_name": f"bootstrap limits of the quantiles of {name.replace('_', ' ')}",
+            "long_name": f"limits by order statistics of the quantiles of {name.replace('_', ' ')}",
             "units": counted[name].attrs["units"],
         }
     return result

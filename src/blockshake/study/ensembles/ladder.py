@@ -82,9 +82,9 @@ def _rung(structure, motion, model, parameters, time_step, duration, store, sour
 def climb_ladders(cases, motions, time_step, ladder, store, source, progress):
     """Climb the ladder of every case with every motion by LS-DEM, nominal parameters: rungs by structure and motion.
 
-    ``cases``: ``structure`` and ``duration`` [s] of the configuration's; ``motions``: names or files; ``time_step``
-    [s]; ``store`` and ``source`` as of `climb`; ``progress`` is called with a line of text after each ladder. A
-    structure of several cases is climbed with the longest duration of these.
+    ``cases``: ``structure`` and ``duration`` [s] of the configuration's; ``motions``: baselines by name or file;
+    ``time_step`` [s]; ``store`` and ``source`` as of `climb`; ``progress`` is called with a line of text after each
+    ladder. A structure of several cases is climbed with the longest duration of these.
     """
     durations = {}
     for case in cases:
@@ -92,9 +92,9 @@ def climb_ladders(cases, motions, time_step, ladder, store, source, progress):
     found = {name: {} for name in durations}
     for name, duration in durations.items():
         structure = load_structure(name)
-        for motion in motions:
+        for motion, baseline in motions.items():
             run = "ls-dem", {}, time_step, duration, ladder, store, source
-            rungs = climb(structure, partial(load_motion, motion), *run)
+            rungs = climb(structure, partial(load_motion, motion, baseline=baseline), *run)
             found[name][motion] = rungs
             passed = [rung["scale"] for rung in rungs if rung["passed"]]
             progress(f"{name} {motion}: passed {passed}")

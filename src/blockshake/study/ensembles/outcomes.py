@@ -4,24 +4,27 @@ from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.dynamics.system import FINISHED
+
 
 class Outcomes(NamedTuple):
     """Numbers of samples by the way they ended.
 
-    >>> count_outcomes(["completed", "collapsed", "completed", "not-converged"])
-    Outcomes(completed=2, collapsed=1, failed=1)
-    >>> count_outcomes(["completed", "collapsed"]).counted
+    >>> count_outcomes(["completed", "collapsed", "completed", "falling", "not-converged"])
+    Outcomes(completed=2, collapsed=1, falling=1, failed=1)
+    >>> count_outcomes(["completed", "falling"]).counted
     2
     """
 
     completed: int
     collapsed: int
+    falling: int
     failed: int
 
     @property
     def counted(self):
         """Samples that enter statistics."""
-        return self.completed + self.collapsed
+        return self.completed + self.collapsed + self.falling
 
 
 class EnergyResiduals(NamedTuple):
@@ -47,8 +50,8 @@ class Shortfall(NamedTuple):
 def count_outcomes(status):
     """`Outcomes` of samples from their statuses, as in the variable ``status`` of an ensemble."""
     status = np.asarray(status, dtype=str)
-    completed, collapsed = (int((status == one).sum()) for one in ("completed", "collapsed"))
-    return Outcomes(completed, collapsed, len(status) - completed - collapsed)
+    counts = [int((status == one).sum()) for one in FINISHED]
+    return Outcomes(*counts, len(status) - sum(counts))
 
 
 def unfinished(samples):

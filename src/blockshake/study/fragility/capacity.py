@@ -5,9 +5,13 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import minimize
 from scipy.special import ndtr, ndtri
+from scipy.stats import t
 
-_DRAWS = 200
+from blockshake.study.ensembles.intervals import CONFIDENCE
+
 _SHARPEST, _WIDEST = 1e-6, 10.0  # dispersions that stand for none and for any [1]
+# the grid of limits: logarithms beyond the levels, its smallest dispersion, and its points
+_BEYOND, _NARROWEST, _MEDIANS, _DISPERSIONS = 2.0, 1e-3, 801, 201
 _NEVER = 1e-300  # probability that stands for none [1]
 
 
@@ -19,7 +23,7 @@ class Capacity(NamedTuple):
 
     def probability(self, level):
         """Probability of a capacity below a level, or levels [1]."""
-        return ndtr((np.log(level) - np.log(self.median)) / max(self.dispersion, _SHARPEST))
+        return ndtr((np.log(level) - np.log(self.median)) / np.maximum(self.dispersion, _SHARPEST))
 
     def level(self, probability):
         """Level below which the capacity lies with a probability, in the unit of the levels."""
@@ -71,8 +75,41 @@ def fit_capacity(lower, upper):
     return Capacity(float(np.exp(found.x[0])), float(np.exp(found.x[1])))
 
 
-def bootstrap_capacities(lower, upper, generator):
-    """`Capacity` of each of 200 samples drawn with replacement from the capacities of `fit_capacity`."""
-    lower, upper = np.asarray(lower, dtype=float), np.asarray(upper, dtype=float)
-    draws = (generator.integers(len(lower), size=len(lower)) for _ in range(_DRAWS))
-    return [fit_capacity(lower[draw], upper[draw]) for draw in draws]
+def likely_capacities(lower, upper):
+    """`Capacity` of many values, of which those of a function of it span the limits of 95 % of that function.
+
+    Parameters
+    ----------
+    lower, upper
+        As of `fit_capacity`, which finds a dispersion above 0 in them.
+
+    Returns
+    -------
+    Capacity
+        float64 arrays, shape (n,): all on a grid whose likelihood is not too small; NaN where they reach its end, so
+        that the data leave the capacity without limits. The smallest dispersion stands for none.
+
+    Notes
+    -----
+    Profile likelihood (Venzon and Moolgavkar 1988). The ratio is that which gives Student's limits of the median of
+    capacities that are known exactly, ``n ln(1 + t^2 / (n - 1))``, and not its limit of many samples. A bootstrap held
+    the dispersion in 79 of 100 cases of 20 samples.
+    """
+    bounds, counts = np.unique(np.column_stack([lower, upper]), axis=0, return_counts=True)
+    with np.errstate(divide="ignore"):
+        low, high = np.log(bounds).T
+    ends = np.concatenate([low[np.isfinite(low)], high[np.isfinite(high)]])
+    middle = np.linspace(ends.min() - _BEYOND, ends.max() + _BEYOND, _MEDIANS)[:, None]
+    spread = np.geomspace(_NARROWEST, _WIDEST, _DISPERSIONS)
+    likelihood = np.zeros((_MEDIANS, _DISPERSIONS))
+    for one in range(len(counts)):
+        share = ndtr((high[one] - middle) / spread) - ndtr((low[one] - middle) / spread)
+        likelihood += counts[one] * np.log(np.maximum(share, _NEVER))
+    size = counts.sum()
+    least = 0.5 * size * np.log1p(t.ppf(0.5 + 0.5 * CONFIDENCE, size - 1) ** 2 / (size - 1))
+    likely = likelihood >= likelihood.max() - least
+    if likely[[0, -1]].any() or likely[:, -1].any():
+        return Capacity(np.full(1, np.nan), np.full(1, np.nan))
+    median, dispersion = np.nonzero(likely)
+    spread[0] = 0.0
+    return Capacity(np.exp(middle[median, 0]), spread[dispersion])

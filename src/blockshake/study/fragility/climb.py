@@ -28,7 +28,7 @@ def climb_samples(case, model, settings, rows, linked, ladder, store, source, pr
     Parameters
     ----------
     case : dict
-        ``structure``, ``motion`` and ``duration`` [s] of a case of the configuration.
+        ``structure``, ``motion``, ``baseline`` and ``duration`` [s] of a case of the configuration.
     model : str
     settings : dict
         The model's, as of `simulate_samples`.
@@ -59,7 +59,7 @@ def climb_samples(case, model, settings, rows, linked, ladder, store, source, pr
     for sample, row in rows.iterrows():
         parameters = settings.get("parameters", {}) | sample_parameters(row, structure, linked)
         rungs = climb(
-            structure, partial(load_motion, case["motion"]), model, parameters,
+            structure, partial(load_motion, case["motion"], baseline=case["baseline"]), model, parameters,
             settings["time_step"], case["duration"], ladder, store, source,
         )  # fmt: skip
         climbs.append(rungs)

@@ -3,12 +3,11 @@
 import numpy as np
 import xarray as xr
 
-from blockshake.files import content_digest
 from blockshake.store import load_made
 from blockshake.study.described import describe
 from blockshake.study.ensembles.envelope import BOUNDS, QUANTILES, over_samples
 from blockshake.study.ensembles.intervals import CONFIDENCE, share_interval
-from blockshake.study.fragility.capacity import bootstrap_capacities, fit_capacity
+from blockshake.study.fragility.capacity import Capacity, fit_capacity, likely_capacities
 
 SAFE = 0.05  # probability of a potential collapse that a safe level may have
 _POINTS = 101  # of the curve
@@ -19,32 +18,30 @@ _DESCRIBED = {
     "peak": ("largest displacement of the mass centre of a block from the slab, samples that climbed", "m"),
     "fine_scale": ("factor of the motion", "1"),
     "curve": ("probability of a capacity below that factor, lognormal", "1"),
-    "curve_interval": ("bootstrap limits of it", "1"),
+    "curve_interval": ("limits of it by likelihood", "1"),
     "median": ("median capacity, factor of the motion", "1"),
-    "median_interval": ("bootstrap limits of it", "1"),
+    "median_interval": ("limits of it by likelihood", "1"),
     "dispersion": ("standard deviation of the logarithm of the capacity", "1"),
-    "dispersion_interval": ("bootstrap limits of it", "1"),
+    "dispersion_interval": ("limits of it by likelihood", "1"),
     "safe_scale": (f"factor that {100.0 * SAFE:g} % of the capacities are below", "1"),
-    "safe_scale_interval": ("bootstrap limits of it", "1"),
+    "safe_scale_interval": ("limits of it by likelihood", "1"),
 }
 
 
-def fragility_of_case(batches, case):
-    """`fragility` of a case from the files of its samples' climbs."""
+def fragility_of_case(batches):
+    """`fragility` of samples from the files of their climbs."""
     climbed = [load_made(batch) for batch in batches]
     joined = xr.concat(climbed, dim="sample", data_vars="minimal", coords="minimal", combine_attrs="override")
-    return fragility(joined, (case,))
+    return fragility(joined)
 
 
-def fragility(climbed, identity):
+def fragility(climbed):
     """Probability of a potential collapse at the levels of `climb_samples`, and a lognormal curve through them.
 
     Parameters
     ----------
     climbed : xarray.Dataset
         From `climb_samples`.
-    identity : sequence of str
-        Names the case: the seed of the bootstrap.
 
     Returns
     -------
@@ -56,8 +53,9 @@ def fragility(climbed, identity):
 
     Notes
     -----
-    Limits of 95 %; samples are taken as independent. A sample whose run ended for a numerical reason is known at the
-    levels below. The spread is that of the sampled variables under one motion: another motion has another fragility.
+    Limits of 95 %, of `likely_capacities`, NaN where the samples bear none; samples are taken as independent. A
+    sample whose run ended for a numerical reason is known at the levels below. The spread is that of the sampled
+    variables under one motion: another motion has another fragility.
     """
     lower, upper = climbed["capacity_lower"].to_numpy(), climbed["capacity_upper"].to_numpy()
     scales = climbed["scale"].to_numpy()
@@ -68,15 +66,12 @@ def fragility(climbed, identity):
     )
     fine = np.linspace(scales[0], scales[-1], _POINTS)
     fitted = fit_capacity(lower, upper)
-    generator = np.random.default_rng(int(content_digest("fragility", *identity), 16))
-    drawn = bootstrap_capacities(lower, upper, generator)
-    tails = (0.5 - 0.5 * CONFIDENCE, 0.5 + 0.5 * CONFIDENCE)
+    told = fitted.dispersion > 0.0  # else the levels tell two factors alone, between which all capacities lie
+    likely = likely_capacities(lower, upper) if told else Capacity(np.full(1, np.nan), np.full(1, np.nan))
 
     def with_limits(of):
-        values = np.array([of(one) for one in drawn])
-        return of(fitted), np.quantile(values, tails, axis=0) if np.isfinite(values).all() else np.full(
-            (2, *values.shape[1:]), np.nan
-        )
+        values = of(likely)
+        return of(fitted), np.stack([values.min(axis=-1), values.max(axis=-1)])
 
     result = climbed.drop_vars("peak").assign(
         known=("scale", known),
@@ -91,10 +86,8 @@ def fragility(climbed, identity):
     ):
         value, bounds = with_limits(of)
         result[name], result[f"{name}_interval"] = ((), float(value)), ("bound", bounds)
-    curve = (
-        fitted.dispersion > 0.0
-    )  # else the levels tell two factors alone, between which all capacities lie
-    value, bounds = with_limits(lambda one: one.probability(fine) if curve else np.full(_POINTS, np.nan))
+    value, bounds = with_limits(lambda one: one.probability(fine[:, None]))
+    value = value[:, 0] if told else np.full(_POINTS, np.nan)
     result["curve"], result["curve_interval"] = ("fine_scale", value), (("bound", "fine_scale"), bounds)
     result = result.assign_coords(bound=list(BOUNDS), quantile=list(QUANTILES), fine_scale=fine)
     describe(result, _DESCRIBED)

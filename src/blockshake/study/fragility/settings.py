@@ -3,7 +3,7 @@
 from pydantic import Field
 
 from blockshake.simulation.models import ModelName
-from blockshake.validation import Strict
+from blockshake.validation import Strict, Whole
 
 
 class FragilitySettings(Strict):
@@ -13,6 +13,6 @@ class FragilitySettings(Strict):
     cases: tuple[str, ...] = Field(
         min_length=1, description="names of the cases, that is of their structures' files without the ending"
     )
-    size: int = Field(
+    size: Whole = Field(
         20, ge=3, description="samples that climb: the first rows of the design, no more than there are [1]"
     )

@@ -5,7 +5,7 @@ from pydantic import Field
 
 from blockshake.simulation.models import ModelName
 from blockshake.study.sampling.latin_hypercube import SMALLEST_SIZE
-from blockshake.validation import Positive, Strict
+from blockshake.validation import Positive, Strict, Whole
 
 
 class FrictionSearch(Strict):
@@ -20,8 +20,8 @@ class FrictionSearch(Strict):
     highest: Positive = Field(0.8, description="the same [1]")
     step: Positive = Field(0.1, description="distance of the first candidates [1]")
     finest: Positive = Field(0.025, description="how near the ends of the accepted range are located [1]")
-    size: int = Field(50, ge=SMALLEST_SIZE, description="samples of an ensemble [1]")
-    replicates: int = Field(3, ge=2, description="independent designs, for error bars [1]")
+    size: Whole = Field(50, ge=SMALLEST_SIZE, description="samples of an ensemble [1]")
+    replicates: Whole = Field(3, ge=2, description="independent designs, for error bars [1]")
 
     @property
     def runs(self):

@@ -68,6 +68,20 @@ class Lognormal(Strict):
         return size * self.mean * np.diff(ndtr(edges - self.log_deviation))
 
 
+def known_as(name, names):
+    """Name among ``names`` of the parameter that a dotted name stands for, materials of a pair in either order.
+
+    None where there is no such parameter among them.
+    """
+    return next((known for known in names if _identity(known) == _identity(name)), None)
+
+
+def _identity(name):
+    """The same for all names of one parameter."""
+    match = _NAME.fullmatch(str(name))
+    return tuple(sorted(match.group(1, 2))) if match and match.group(1) else name
+
+
 TABLE_2 = {
     "friction.concrete.concrete": Lognormal(mean=0.75, cov=0.10),
     "friction.concrete.foundation": Lognormal(mean=0.75, cov=0.10),
@@ -114,22 +128,17 @@ def load_distributions(mapping, where):
         return dict(TABLE_2)
     if not isinstance(mapping, dict) or not mapping:
         raise InputError(where, "distributions", "expected a mapping of parameter names to distributions")
-    variables, seen = {}, {}
+    variables = {}
     for name, entry in mapping.items():
-        match = _NAME.fullmatch(str(name))
-        if match is None:
+        if _NAME.fullmatch(str(name)) is None:
             raise InputError(
                 where,
                 f"distributions.{name}",
                 "unknown parameter; expected friction.MATERIAL.MATERIAL, shapes.SHAPE.hollow or "
                 f"materials.MATERIAL.PROPERTY with one of the properties {', '.join(_PROPERTIES)}",
             )
-        identity = tuple(sorted(match.group(1, 2))) if match.group(1) else name
-        if identity in seen:
-            raise InputError(
-                where, f"distributions.{name}", f"expected every pair once; it is {seen[identity]} too"
-            )
-        seen[identity] = name
+        if twin := known_as(name, variables):
+            raise InputError(where, f"distributions.{name}", f"expected every pair once; it is {twin} too")
         variables[name] = validated(Lognormal, entry, where, f"distributions.{name}")
     return variables
 

@@ -11,9 +11,10 @@ from blockshake.errors import InputError
 from blockshake.files import read_text, write_text
 from blockshake.study.sampling.correlation_control import arrange
 from blockshake.study.sampling.correlation_target import check_correlation, load_correlation
-from blockshake.study.sampling.distributions import TABLE_2, load_distributions
+from blockshake.study.sampling.distributions import TABLE_2, known_as, load_distributions
+from blockshake.tables.numbers import plain_number
 
-SMALLEST_SIZE = 10
+SMALLEST_SIZE, LARGEST_SIZE = 10, 1_000_000  # samples; the largest take 2 GB
 DEFAULT_EFFORT = 8
 
 
@@ -90,14 +91,15 @@ def draw_samples(
     Parameters
     ----------
     size : int
-        Samples, at least 10; as many strata of equal probability, each hit once by each variable.
+        Samples, 10 to a million; as many strata of equal probability, each hit once by each variable.
     seed : int
         Not negative; same seed, same values.
-    distributions : dict of str to Lognormal
-        By dotted name; Table 2 of Zhou et al. (2023) by default.
-    correlation : pandas.DataFrame, optional
-        Square target with names as index and columns, of some or all variables; those not named,
-        and all by default, are uncorrelated.
+    distributions : dict of str to Lognormal or dict
+        By dotted name, also in the notation of a study, see `load_distributions`; Table 2 of Zhou et al. (2023) by
+        default.
+    correlation : pandas.DataFrame, str or path, optional
+        Square target with names as index and columns, of some or all variables, or its file; those not named,
+        and all by default, are uncorrelated. The materials of a pair may be in either order.
     stratum : str
         ``median``: the value of a stratum is its median, so that the marginals are exact quantiles
         and the coefficient of variation falls short, by 1.3 to 1.5 % for 50 samples of Table 2;
@@ -114,7 +116,8 @@ def draw_samples(
     Raises
     ------
     InputError
-        Too few samples, an unknown word, a target with unknown names or that is no correlation matrix.
+        Too few or too many samples, an unknown word, a wrong distribution, a target with unknown names or that is no
+        correlation matrix.
 
     Notes
     -----
@@ -123,6 +126,10 @@ def draw_samples(
     lie beyond what any pairing reaches: the error then stays and is reported.
     """
     _check_options(size, seed, stratum, kind, effort)
+    if not isinstance(distributions, dict) or not all(
+        hasattr(one, "stratum_medians") for one in distributions.values()
+    ):
+        distributions = load_distributions(distributions, "sampling")
     names = list(distributions)
     target = complete_correlation(correlation, names)
     strata = [getattr(distribution, f"stratum_{stratum}s")(size) for distribution in distributions.values()]
@@ -150,6 +157,8 @@ def _check_options(size, seed, stratum, kind, effort):
     for key, value, least in (("size", size, SMALLEST_SIZE), ("seed", seed, 0), ("effort", effort, 1)):
         if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
             raise InputError("sampling", key, f"expected a whole number of at least {least}, not {value!r}")
+    if size > LARGEST_SIZE:
+        raise InputError("sampling", "size", f"expected at most {LARGEST_SIZE} samples, not {size}")
     words_of = {"stratum": (stratum, ("median", "mean")), "kind": (kind, ("pearson", "spearman"))}
     for key, (value, words) in words_of.items():
         if value not in words:
@@ -161,8 +170,8 @@ def complete_correlation(correlation, names):
 
     Parameters
     ----------
-    correlation : pandas.DataFrame or None
-        Square, names as index and columns.
+    correlation : pandas.DataFrame, str, path or None
+        Square, names as index and columns; or its file.
     names : list of str
         All variables, in order.
 
@@ -173,22 +182,25 @@ def complete_correlation(correlation, names):
     Raises
     ------
     InputError
-        An unknown name, or no positive definite correlation matrix.
+        An unknown name, a parameter named twice, or no positive definite correlation matrix.
     """
     if correlation is None:
         return np.eye(len(names))
+    if not isinstance(correlation, pd.DataFrame):
+        correlation = load_correlation(correlation)
     where = correlation.attrs.get("source", "correlation")
     given = [str(name) for name in correlation.columns]
-    for name in given:
-        if name not in names:
-            raise InputError(where, name, f"expected one of the random variables: {', '.join(names)}")
-    if [str(name) for name in correlation.index] != given or len(set(given)) < len(given):
+    variables = [known_as(name, names) for name in given]
+    if None in variables:
+        unknown = given[variables.index(None)]
+        raise InputError(where, unknown, f"expected one of the random variables: {', '.join(names)}")
+    if [str(name) for name in correlation.index] != given or len(set(variables)) < len(variables):
         raise InputError(
             where, "", "expected a square matrix, the same names, each once, in rows and columns"
         )
     matrix = correlation.to_numpy(dtype=float)
     check_correlation(matrix, given, where)
-    places = [names.index(name) for name in given]
+    places = [names.index(name) for name in variables]
     target = np.eye(len(names))
     target[np.ix_(places, places)] = (matrix + matrix.T) / 2.0
     np.fill_diagonal(target, 1.0)
@@ -196,17 +208,8 @@ def complete_correlation(correlation, names):
 
 
 def draw_design(ensemble):
-    """`SampleDesign` of a configuration's ensemble.
-
-    A mapping with ``size``, ``seed``, ``distributions``, and ``correlation``, the file of the target or none.
-    """
-    correlation = ensemble["correlation"]
-    return draw_samples(
-        size=ensemble["size"],
-        seed=ensemble["seed"],
-        distributions=load_distributions(ensemble["distributions"], "ensemble"),
-        correlation=load_correlation(correlation) if correlation else None,
-    )
+    """`SampleDesign` of a configuration's ensemble, a mapping with the first four arguments of `draw_samples`."""
+    return draw_samples(*(ensemble[key] for key in ("size", "seed", "distributions", "correlation")))
 
 
 def write_design(path, values):
@@ -251,10 +254,7 @@ def load_design(path):
 
 
 def _finite(cell, path, key):
-    try:
-        value = float(cell)
-    except ValueError:
-        value = np.nan
+    value = float(plain_number(cell) or "nan")
     if not np.isfinite(value):
         raise InputError(path, key, f"expected a finite number, not '{cell.strip()}'")
     return value

@@ -77,8 +77,8 @@ def sensitivity(ensemble, variables, controls=()):
 
     Notes
     -----
-    Only completed and collapsed samples are used. A collapsed one ranks first: its peak and rotation are at least the
-    largest of the completed ones. It has no residual, and its history ends: both then rest on the completed samples.
+    Samples that failed are left out. One that collapsed or still falls ranks first: its peak and rotation are at least
+    the largest of the completed ones. Residuals and histories rest on the completed samples.
     Variables are taken as independent; of correlated ones the index holds what they carry of each other. The share of
     a history weighs each time by the variance there: it says what the envelope's thickness over time comes from.
     """

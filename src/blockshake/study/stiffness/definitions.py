@@ -23,6 +23,7 @@ DEFINITIONS = (*LEVELS, "first peak", "cross-correlation")
 RESTITUTIONS = (0.1, 0.5, 1.0)
 FREE_FACTORS = (1.0, 10.0, 100.0)  # on the shear stiffness, where blocks may turn
 _FREE_PASSAGES = 12.0
+_LONGEST = 6.0  # s of the record; the first strong swings
 _NOMINAL = "50 %", 0.5  # definition and restitution of the study
 _DESCRIBED = {
     "stiffness": ("stiffness per area whose wave speed is the material's", "N m-3"),
@@ -85,14 +86,15 @@ def _vertex(times, values, place):
     return float(times[place] + 0.5 * (before - after) / (before - 2.0 * at + after) * (times[1] - times[0]))
 
 
-def compare_definitions(case, time_step, duration, store, source):
+def compare_definitions(case, time_step, store, source):
     """Stiffness by definition and damping, and the top block's peak with each.
 
     Parameters
     ----------
     case : dict
-        ``structure``, of whose blocks the tower of the wave tests is, ``motion`` and ``scale`` of what is then shaken.
-    time_step, duration : float
+        ``structure``, of whose blocks the tower of the wave tests is, ``motion``, ``scale`` and ``baseline`` of what is
+        then shaken, and ``duration`` [s], of which at most 6 s are simulated, from the record's start on.
+    time_step : float
         Of that run [s].
     store : str or path
         Folder of finished tests and runs: one that is there is not simulated again.
@@ -116,6 +118,8 @@ def compare_definitions(case, time_step, duration, store, source):
     kept: one test at any stiffness gives K for all definitions, and a second confirms it.
     """
     structure = load_structure(case["structure"])
+    motion = load_motion(case["motion"], case["scale"], case["baseline"])
+    duration = motion.attributes.get("record_start", 0.0) + min(case["duration"], _LONGEST)
 
     def keep(make, *given):
         return kept_value(store, content_digest(source, *given), make)
@@ -126,7 +130,9 @@ def compare_definitions(case, time_step, duration, store, source):
         row["wave_speed"] = _speeds_at(structure, restitution, study, keep)
         for name, used in (("top_peak", restitution), ("top_peak_same_damping", _NOMINAL[1])):
             peaks = [
-                _top_peak(case, time_step, duration, used, row["stiffness"].sel(definition=one), keep)
+                _top_peak(
+                    structure, motion, time_step, duration, used, row["stiffness"].sel(definition=one), keep
+                )
                 for one in DEFINITIONS
             ]
             row[name] = ("definition", peaks)
@@ -181,14 +187,12 @@ def _speeds_at(structure, restitution, stiffness, keep):
     return ("direction", "definition"), np.array(speeds)
 
 
-def _top_peak(case, time_step, duration, restitution, stiffness, keep):
+def _top_peak(structure, motion, time_step, duration, restitution, stiffness, keep):
     """Largest displacement of the highest block relative to the slab along x in one nominal run [m]."""
     if not np.isfinite(stiffness).all():
         return np.nan
     parameters = {"restitution": restitution}
     parameters |= {f"ls_dem.{one}_stiffness": float(stiffness.sel(direction=one)) for one in AXES}
-    motion = load_motion(case["motion"], case["scale"])
-    structure = load_structure(case["structure"])
 
     def shake():
         run = simulate(structure, motion, "ls-dem", parameters, time_step, duration, accelerometers=False)

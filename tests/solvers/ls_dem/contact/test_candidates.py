@@ -70,7 +70,7 @@ def test_an_overhanging_block_stands(make_structure, run_ls_dem):
 def test_a_corner_is_held_by_a_face(make_structure, run_ls_dem):
     """A cube falling corner first: its nodes near the corner are the contact.
 
-    They lie 5 mm inside the edges, so that the corner goes in 5.8 mm before they touch.
+    They lie 3 mm inside the edges, so that the corner goes in 3.5 mm before they touch.
     """
     axis = np.cross([1.0, 1.0, 1.0], [0.0, 0.0, 1.0]) / np.sqrt(2.0)
     angle = np.arccos(np.sqrt(1.0 / 3.0))
@@ -81,7 +81,7 @@ def test_a_corner_is_held_by_a_face(make_structure, run_ls_dem):
     )
     run = run_ls_dem(structure, 0.15, rate=1000)
     lowest = run.position[:, 1, 2].min()
-    blunt = 2.0 * 0.005 / np.sqrt(3.0)
+    blunt = 2.0 * 0.003 / np.sqrt(3.0)
     fall = 2.0 * G * (0.01 + blunt)
     # three nodes of about 0.01 m2, half the stiffness: x = v sqrt(m / k)
     spring = np.sqrt(fall * structure.mass[1] / (3 * 0.5 * 2.16e10 * 0.005))

@@ -25,10 +25,16 @@ from blockshake.solvers.ls_dem.surfaces import assemble_surfaces, level_set
 N_PACKETS = 50
 
 
-@pytest.fixture(scope="module", params=["exact", "grid"])
+@pytest.fixture(scope="module", params=["exact", "grid", "planes"])
 def surfaces(request, make_structure):
     structure = make_structure([{"name": "b", "shape": "block", "position": [0.0, 0.0, 0.8]}])
-    return assemble_surfaces(structure, LsDemParameters(level_set=request.param))
+    if request.param != "planes":
+        return assemble_surfaces(structure, LsDemParameters(level_set=request.param))
+    # the box as a convex mesh of its 18 faces and 8 corners
+    surfaces, solid = assemble_surfaces(structure, LsDemParameters()), structure.solids["block"].polyhedron
+    planes, own = np.column_stack([solid.normals, solid.offsets]), int(surfaces.shape[1])
+    first = np.where(np.arange(len(surfaces.first_plane)) > own, len(planes), 0)
+    return surfaces._replace(planes=planes, first_plane=first)
 
 
 @kernel
@@ -48,10 +54,7 @@ def test_packets_give_the_bits_of_single_places(surfaces):
     shape = int(surfaces.shape[1])
     R, d = np.zeros((2, 3, 3)), np.zeros((2, 3))
     R[1] = np.eye(3)
-    area = locate_nodes_into(
-        packets, located, 0, N_PACKETS, 0, surfaces.half, surfaces.chamfer, surfaces.hollow, surfaces.lattice,
-        surfaces.values, shape, R, d, 1,
-    )  # fmt: skip
+    area = locate_nodes_into(packets, located, 0, N_PACKETS, 0, surfaces, shape, R, d, 1)
     expected = _level_sets(surfaces, shape, points)
     np.testing.assert_array_equal(found[:, PHI // LANES].ravel(), expected)
     assert area == 0.5 * (expected < 0.0).sum()

@@ -3,6 +3,7 @@
 import numpy as np
 
 from blockshake.diagnosis.laws.law_table import kind_of
+from blockshake.diagnosis.laws.measured_forces import forces_of
 from blockshake.report.document.drawing import (
     BLACK,
     BLUE,
@@ -37,10 +38,9 @@ def beyond_the_face(one):
 
 def plot_levers(forces, joint):
     """Figure of the lever of one joint in every test of `measured_forces`, with the edges of its face."""
-    own = forces.sel(joint=joint)
     figure, panels = _rows(forces, 0.012)
     for axes, test in zip(panels, forces["test"].values, strict=True):
-        one = own.sel(test=test)
+        one = forces_of(forces, test).sel(joint=joint)
         half, beyond = float(one["half_width"]), beyond_the_face(one)
         axes.plot(one["time"], 1e3 * one["lever"], color=BLACK, linewidth=0.6)
         axes.plot(one["time"], 1e3 * beyond, color=RED, linewidth=0.9)
@@ -64,7 +64,7 @@ def plot_work(forces, shown):
     end, length = float(forces["time"].max()), float(np.ptp(forces["time"].to_numpy()))
     for axes, test in zip(panels, forces["test"].values, strict=True):
         for place, (joint, colour) in enumerate(coloured(forces["joint"].values), start=1):
-            one = forces["work"].sel(test=test, joint=joint)
+            one = forces_of(forces, test)["work"].sel(joint=joint)
             axes.plot(one["time"], KILO * one, color=colour, linewidth=0.8, label=joint)
             draws = of_draws.get(joint)
             if draws and test in draws.expected:
@@ -73,8 +73,8 @@ def plot_work(forces, shown):
                     yerr=_SPREADS * KILO * draws.spreads[test], color=colour, fmt="o", markersize=3, capsize=2,
                 )  # fmt: skip
         if forces.sizes["joint"] > 1:
-            together = KILO * forces["work"].sel(test=test).sum("joint", skipna=False)
-            axes.plot(forces["time"], together, label="all together", **DASHED)
+            together = KILO * forces_of(forces, test)["work"].sum("joint", skipna=False)
+            axes.plot(together["time"], together, label="all together", **DASHED)
         axes.set_ylabel(f"{test}\nenergy [kJ]")
     return _finished(figure, panels, columns=forces.sizes["joint"] + 1)
 
@@ -87,9 +87,9 @@ def plot_unexplained(forces, usual):
     figure, panels = _rows(forces, 0.016)
     for axes, test in zip(panels, forces["test"].values, strict=True):
         for body, colour in coloured(forces["body"].values)[::-1]:
-            one = forces["unexplained"].sel(test=test, body=body)
+            one = forces_of(forces, test)["unexplained"].sel(body=body)
             axes.plot(one["time"], KILO * one, color=colour, linewidth=0.7, label=body)
-        together = forces["unexplained"].sel(test=test).sum("body", min_count=1)
+        together = forces_of(forces, test)["unexplained"].sum("body", min_count=1)
         axes.plot(together["time"], KILO * together, color=BLACK, linewidth=0.5, label="sum")
         for level in (-1.0, 1.0) if test in usual else ():
             axes.axhline(KILO * level * usual[test], **DASHED)

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from blockshake.diagnosis.features.measured_readings import reading_of
 from blockshake.report.diagnosis.figures.drift import darker, draw_band
 from blockshake.report.document.drawing import BLACK, LIGHT_GREY, RED, SKY, new_figure
 
@@ -35,10 +36,11 @@ def plot_joints(misfit, readings, test, joints, horizon, measured_word):
     """
     figure = new_figure(0.018 + (0.024 if len(joints) < 4 else 0.021) * len(joints))
     panels = figure.subplots(len(joints), len(_COLUMNS), sharex=True, squeeze=False)
-    end = float(readings["acceleration"].sel(test=test).dropna("time")["time"][-1])
+    own = reading_of(readings, test)
+    end = float(own["time"][-1])
     for row, joint in zip(panels, reversed(joints), strict=True):
         for axes, name in zip(row, _COLUMNS, strict=True):
-            measured = _MILLI * readings[name].sel(test=test, joint=joint, time=slice(None, end))
+            measured = _MILLI * own[name].sel(joint=joint)
             quantiles = misfit[name].sel(test=test, joint=joint).sel(time=measured["time"])
             if np.isfinite(measured).any():
                 _draw(axes, measured, quantiles)

@@ -12,7 +12,7 @@ _ROUNDING = 1e-8  # relative; what is below it is the same number
 PARAMETERS = {
     "time_step": ("time step", MICROSECONDS),
     "node_spacing": ("node spacing", printed("m")),
-    "perimeter_inset": ("perimeter inset", printed("m")),
+    "perimeter_inset": ("perimeter inset", printed("1")),
     "grid_spacing": ("grid spacing", printed("m")),
 }
 """Numerical parameters in the order of the columns: name in words and printed unit."""

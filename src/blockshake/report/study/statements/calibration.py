@@ -77,9 +77,9 @@ def low_variability(content):
     if not told:
         return unjudged(f"No model has all {len(content.design)} samples of a case.{smaller}")
     words = (
-        "Half of the 95 % bootstrap interval of the median peak at the top, over that median, of "
+        "Half of the 95 % interval, by order statistics, of the median peak at the top, over that median, of "
         f"{len(content.design)} samples: {'; '.join(told)}. {percent(_LOW_VARIABILITY)} % counts as low. The "
-        f"bootstrap takes the samples as independent; those of a Latin hypercube vary less.{smaller}"
+        f"interval takes the samples as independent; those of a Latin hypercube vary less.{smaller}"
     )
     return judged(True, words) if np.max(halves) < _LOW_VARIABILITY else unjudged(words)
 

@@ -48,13 +48,15 @@ def _words(text):
 
 
 def _pivot():
-    structure, inset = load_structure("configuration-1"), LsDemParameters().perimeter_inset
+    structure, share = load_structure("configuration-1"), LsDemParameters().perimeter_inset
     block = reference_block(structure)
     chamfer = structure.file.shapes[structure.file.bodies[block.body].shape].chamfer
     edge = 0.5 * float(block.size[0])
+    inset = share * 2.0 * (edge - chamfer)
     return (
-        f"The outermost nodes lie {given(1e3 * inset)} mm inside the flat. A block of {given(2.0 * edge)} m with a "
-        f"chamfer of {given(1e3 * chamfer)} mm pivots {given(1e3 * (edge - chamfer - inset))} mm from its middle."
+        f"The outermost nodes lie {given(1e2 * share)} % of a flat's width inside the flat. A block of "
+        f"{given(2.0 * edge)} m with a chamfer of {given(1e3 * chamfer)} mm pivots "
+        f"{number(1e3 * (edge - chamfer - inset))} mm from its middle."
     )
 
 
@@ -304,7 +306,8 @@ DEPARTURES = (
               _words("Envelopes and their widths, peaks and distances are relative to the slab; the absolute ones "
                      "stand beside them."), "docs/sampling.md"),
     Departure("Statistics", "Nothing is said of a run that ends in a collapse.",
-              _words("A run ends at its collapse and counts as one that is over every limit."), "docs/sampling.md"),
+              _words("A run ends at its collapse and counts as one that is over every limit; one that still falls as "
+                     "its window ends counts so too."), "docs/sampling.md"),
     Departure("Statistics", "Residual displacements after a test.",
               lambda: f"The mean over the last {given(RESIDUAL_WINDOW)} s of the window, at which blocks may still "
                       "rock.", "docs/sampling.md"),

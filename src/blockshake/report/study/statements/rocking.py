@@ -4,7 +4,7 @@ from blockshake.report.document.wording import model_label, percent
 from blockshake.report.study.statements.order import Limited, all_of, ordered
 from blockshake.report.study.statements.statement import missing, unjudged
 from blockshake.study.ensembles.envelope import counted_samples
-from blockshake.study.ensembles.intervals import SURE_FROM, median_interval
+from blockshake.study.ensembles.intervals import SURE_FROM, quantile_interval, sample_quantiles
 
 _FIRST, _SECOND, _THIRD, _FOURTH = (f"configuration-{place}" for place in (1, 2, 3, 4))
 
@@ -66,5 +66,7 @@ def _moved_joints(content, model, *figures):
         samples = counted_samples(case.responses[model].samples)
         if samples.sizes["sample"] >= SURE_FROM:
             beyond = samples[list(figures)].to_dataarray().max("variable") > case.marker_noise
-            found[name] = Limited(*median_interval(beyond.mean("joint").values))
+            shares = beyond.mean("joint").values
+            median, limits = sample_quantiles(shares, [0.5])[0], quantile_interval(shares, [0.5])[:, 0]
+            found[name] = Limited(float(median), *map(float, limits))
     return found

@@ -157,7 +157,7 @@ def ladder(content):
     drift = f"{given(limit)} m" if limit else "half a block's smaller width"
     words = (
         f"The ladder starts at {given(first)} and rises by {given(increment)}. The paper names no criterion of a "
-        f"potential collapse; the ladder ends at a drift of {drift}. Share of the samples that collapse at "
+        f"potential collapse; the ladder ends at a drift of {drift}. Share of the samples that fall at "
         f"the level of the study: {'; '.join(told)}."
     )
     near = f"Steps of {given(INCREMENT - _ABOUT)} to {given(INCREMENT + _ABOUT)} count as about {given(INCREMENT)}."

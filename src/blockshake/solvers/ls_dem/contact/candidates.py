@@ -16,6 +16,7 @@ from blockshake.solvers.ls_dem.contact.packets import (
     LANES,
     LOCATED,
     PACKET,
+    PHI,
     POINT_X,
     POINT_Y,
     POINT_Z,
@@ -33,16 +34,17 @@ _FRESH = -2  # no key begins so
 class Candidates(NamedTuple):
     """Near nodes, by side of a pair of bodies.
 
-    ``pairs`` int64 (n_pairs, 2), lower index first; ``joint`` int64 (n_pairs,): their rows in `Joints`. Side ``2 p`` of
-    pair ``p`` holds nodes of its first body against the level set of its second, side ``2 p + 1`` the reverse.
-    ``first`` int64 (2 n_pairs + 1,): first packet of each side. ``node`` int64 (n_packets * LANES,): index in
-    `Surfaces`, -1 for filling. ``packets`` float64 (n_packets, PACKET): see `packets`. ``located`` float64 (packets of
-    the pair with most, LOCATED): workspace of the pair at hand. ``position`` and ``orientation``: poses for which the
-    list was made.
+    ``pairs`` int64 (n_pairs, 2), lower index first; ``joint`` int64 (n_pairs,): their rows in `Joints`, and ``shift``
+    (n_pairs, 3) from there. Side ``2 p`` of pair ``p`` holds nodes of its first body against the level set of its
+    second, side ``2 p + 1`` the reverse. ``first`` int64 (2 n_pairs + 1,): first packet of each side. ``node`` int64
+    (n_packets * LANES,): index in `Surfaces`, -1 for filling. ``packets`` float64 (n_packets, PACKET): see `packets`.
+    ``located`` float64 (packets of the pair with most, LOCATED): workspace of the pair at hand. ``position`` and
+    ``orientation``: poses for which the list was made.
     """
 
     pairs: np.ndarray
     joint: np.ndarray
+    shift: np.ndarray
     first: np.ndarray
     node: np.ndarray
     packets: np.ndarray
@@ -57,9 +59,9 @@ class Candidates(NamedTuple):
 def empty_candidates(n_bodies):
     """Lists before the first search."""
     return Candidates(
-        np.empty((0, 2), np.int64), np.empty(0, np.int64), np.zeros(1, np.int64), np.empty(0, np.int64),
-        np.empty((0, PACKET)), np.empty(0), np.empty((0, N_KEY), np.int64), np.empty((0, LOCATED)),
-        np.full((n_bodies, 3), np.inf), np.zeros((n_bodies, 4)),
+        np.empty((0, 2), np.int64), np.empty(0, np.int64), np.empty((0, 3)), np.zeros(1, np.int64),
+        np.empty(0, np.int64), np.empty((0, PACKET)), np.empty(0), np.empty((0, N_KEY), np.int64),
+        np.empty((0, LOCATED)), np.full((n_bodies, 3), np.inf), np.zeros((n_bodies, 4)),
     )  # fmt: skip
 
 
@@ -147,8 +149,9 @@ def find_pairs(surfaces, driven, position, orientation, skin):
 
 
 @kernel
-def _near_nodes(surfaces, owner, other, R, d, side, skin, found, count):
-    """Append the nodes of ``owner`` within ``skin`` of ``other``; list and count are returned."""
+def _near_nodes(surfaces, pair, R, d, side, skin, found, count):
+    """Append the nodes of one side of a pair within ``skin`` of the other body; list and count are returned."""
+    owner, other = pair[side], pair[1 - side]
     shape, other_shape = surfaces.shape[owner], surfaces.shape[other]
     most = surfaces.first_node[shape + 1] - surfaces.first_node[shape]
     if count + most > found.size:
@@ -208,17 +211,20 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
     """
     position, rotation = poses.position, poses.rotation
     pairs = find_pairs(surfaces, driven, position, orientation, skin)
+    earlier = _earlier_pairs(old.pairs, pairs)
+    joint, joints = _joints_of(pairs, earlier, old.joint, joints)
+    shift = joints.shift[joint]
     n_sides = 2 * pairs.shape[0]
     R, d = np.empty((2, 3, 3)), np.empty((2, 3))
     found, count = np.empty(1024, np.int64), np.zeros(n_sides + 1, np.int64)
     share = np.empty(n_sides)
     for side in range(n_sides):
-        owner, other = pairs[side // 2, side % 2], pairs[side // 2, 1 - side % 2]
+        pair, of = pairs[side // 2], side % 2
         count[side + 1] = count[side]
-        share[side] = _share(surfaces, driven, owner, other)
+        share[side] = _share(surfaces, driven, pair[of], pair[1 - of])
         if share[side] > 0.0:
-            relative_pose_into(position, rotation, surfaces.offset, owner, other, 0, R, d)
-            found, count[side + 1] = _near_nodes(surfaces, owner, other, R, d, 0, skin, found, count[side])
+            relative_pose_into(position, rotation, surfaces.offset, pair, shift[side // 2], of, R, d)
+            found, count[side + 1] = _near_nodes(surfaces, pair, R, d, of, skin, found, count[side])
     first = np.zeros(n_sides + 1, np.int64)
     for side in range(n_sides):
         first[side + 1] = first[side] + (count[side + 1] - count[side] + LANES - 1) // LANES
@@ -226,8 +232,8 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
     packets = np.zeros((first[n_sides], PACKET))
     located = np.zeros((_most_packets(first), LOCATED))
     for side in range(n_sides):
-        owner, other = pairs[side // 2, side % 2], pairs[side // 2, 1 - side % 2]
-        e, n_nodes = surfaces.offset[owner], count[side + 1] - count[side]
+        pair, of = pairs[side // 2], side % 2
+        e, n_nodes = surfaces.offset[pair[of]], count[side + 1] - count[side]
         for rank in range((first[side + 1] - first[side]) * LANES):
             place = first[side] * LANES + rank
             packet, lane = place // LANES, place % LANES
@@ -239,20 +245,26 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
             else:
                 packets[packet, lane + POINT_X] = FAR_AWAY
         relative_pose_into(
-            poses.position_before, poses.rotation_before, surfaces.offset, owner, other, 0, R, d
+            poses.position_before, poses.rotation_before, surfaces.offset, pair, shift[side // 2], of, R, d
         )
         locate_nodes_into(
-            packets, located, first[side], first[side + 1], first[side],
-            surfaces.half, surfaces.chamfer, surfaces.hollow, surfaces.lattice, surfaces.values, surfaces.shape[other],
-            R, d, 0,
-        )  # fmt: skip
-    joint = np.full(pairs.shape[0], -1, np.int64)
+            packets,
+            located,
+            first[side],
+            first[side + 1],
+            first[side],
+            surfaces,
+            surfaces.shape[pair[1 - of]],
+            R,
+            d,
+            of,
+        )
     key = np.full((pairs.shape[0], N_KEY), _FRESH, np.int64)
     new = Candidates(
-        pairs, joint, first, node, packets, share, key, located, position.copy(), orientation.copy()
+        pairs, joint, shift, first, node, packets, share, key, located, position.copy(), orientation.copy()
     )
-    _carry_over_into(old, new)
-    return new, _name_joints(new, joints)
+    _carry_over_into(old, earlier, new)
+    return new, joints
 
 
 @kernel
@@ -280,15 +292,15 @@ def locate_pair_into(candidates, surfaces, poses, pair, R, d):
     """
     pairs, first = candidates.pairs, candidates.first
     for side in range(2):
-        owner, other = pairs[pair, side], pairs[pair, 1 - side]
-        relative_pose_into(poses.position, poses.rotation, surfaces.offset, owner, other, side, R, d)
+        relative_pose_into(
+            poses.position, poses.rotation, surfaces.offset, pairs[pair], candidates.shift[pair], side, R, d
+        )
     _renew_areas_into(candidates, surfaces, pair, R, d)
     area = 0.0
     for side in range(2):
         area += 0.5 * locate_nodes_into(
             candidates.packets, candidates.located, first[2 * pair + side], first[2 * pair + side + 1],
-            first[2 * pair], surfaces.half, surfaces.chamfer, surfaces.hollow, surfaces.lattice, surfaces.values,
-            surfaces.shape[pairs[pair, 1 - side]], R, d, side,
+            first[2 * pair], surfaces, surfaces.shape[pairs[pair, 1 - side]], R, d, side,
         )  # fmt: skip
     return area
 
@@ -304,24 +316,55 @@ def _renew_areas_into(candidates, surfaces, pair, R, d):
         joint_areas_into(candidates, surfaces, pair, key)
 
 
+@borrowing_kernel
+def nearest_node(candidates, pair):
+    """Least level-set value of a pair's nodes, as located [m], with the node's row of ``located`` and its lane."""
+    least, at, lane_at = np.inf, 0, 0
+    for row in range(candidates.first[2 * pair + 2] - candidates.first[2 * pair]):
+        for lane in range(LANES):
+            if candidates.located[row, PHI + lane] < least:
+                least, at, lane_at = candidates.located[row, PHI + lane], row, lane
+    return least, at, lane_at
+
+
 @kernel
-def _carry_over_into(old, new):
-    """Joints and shear springs that both lists hold; both are sorted, so one pass finds them."""
-    old_pair = 0
+def _earlier_pairs(old, pairs):
+    """Row of every pair in an earlier list, -1 where it is not there; both are sorted, so one pass finds them."""
+    earlier, at = np.full(len(pairs), -1), 0
+    for pair in range(len(pairs)):
+        a, b = pairs[pair, 0], pairs[pair, 1]
+        while at < len(old) and (old[at, 0] < a or (old[at, 0] == a and old[at, 1] < b)):
+            at += 1
+        if at < len(old) and old[at, 0] == a and old[at, 1] == b:
+            earlier[pair] = at
+    return earlier
+
+
+@kernel
+def _joints_of(pairs, earlier, old, joints):
+    """Joint of every pair, that of an earlier approach or a new one, and all joints; ``old``: of earlier pairs."""
+    joint, fresh = np.empty(len(pairs), np.int64), np.empty(len(pairs), np.int64)
+    n_fresh = 0
+    for pair in range(len(pairs)):
+        joint[pair] = (
+            old[earlier[pair]] if earlier[pair] >= 0 else find_joint(joints, pairs[pair, 0], pairs[pair, 1])
+        )
+        if joint[pair] < 0:
+            joint[pair] = joints.slip.size + n_fresh
+            fresh[n_fresh] = pair
+            n_fresh += 1
+    return joint, add_joints(joints, pairs[fresh[:n_fresh]])
+
+
+@kernel
+def _carry_over_into(old, earlier, new):
+    """Shear springs of nodes that both lists hold; these are sorted, so one pass a side finds them."""
     for pair in range(new.pairs.shape[0]):
-        while old_pair < old.pairs.shape[0] and (
-            old.pairs[old_pair, 0] < new.pairs[pair, 0]
-            or (old.pairs[old_pair, 0] == new.pairs[pair, 0] and old.pairs[old_pair, 1] < new.pairs[pair, 1])
-        ):
-            old_pair += 1
-        if old_pair == old.pairs.shape[0]:
-            return
-        if old.pairs[old_pair, 0] != new.pairs[pair, 0] or old.pairs[old_pair, 1] != new.pairs[pair, 1]:
+        if earlier[pair] < 0:
             continue
-        new.joint[pair] = old.joint[old_pair]
         for side in range(2):
-            place = old.first[2 * old_pair + side] * LANES
-            end = old.first[2 * old_pair + side + 1] * LANES
+            place = old.first[2 * earlier[pair] + side] * LANES
+            end = old.first[2 * earlier[pair] + side + 1] * LANES
             for here in range(new.first[2 * pair + side] * LANES, new.first[2 * pair + side + 1] * LANES):
                 while place < end and old.node[place] != -1 and old.node[place] < new.node[here]:
                     place += 1
@@ -330,19 +373,3 @@ def _carry_over_into(old, new):
                         new.packets[here // LANES, here % LANES + row] = old.packets[
                             place // LANES, place % LANES + row
                         ]
-
-
-@kernel
-def _name_joints(candidates, joints):
-    """Give every pair its joint: that of an earlier approach, or a new one; all joints are returned."""
-    fresh = np.empty(candidates.pairs.shape[0], np.int64)
-    n_fresh = 0
-    for pair in range(candidates.pairs.shape[0]):
-        if candidates.joint[pair] < 0:
-            joint = find_joint(joints, candidates.pairs[pair, 0], candidates.pairs[pair, 1])
-            if joint < 0:
-                joint = joints.slip.size + n_fresh
-                fresh[n_fresh] = pair
-                n_fresh += 1
-            candidates.joint[pair] = joint
-    return add_joints(joints, candidates.pairs[fresh[:n_fresh]]) if n_fresh > 0 else joints

@@ -126,6 +126,7 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
             heat += sums[SUM_SLID]
             energy[STEP_DASHPOT_HEAT] += sums[SUM_DAMPED]
             energy[SPRING_ENERGY] += sums[SUM_HELD]
+        _lever_into(candidates.shift[pair], rotation[b], joint_force[joint], moment[b])
         energy[STEP_FRICTION_HEAT] += heat
         _slip_into(loads.joints, joint, mu, heat, dt)
 
@@ -149,6 +150,17 @@ def _share_into(owner, other, side, rotation, offset, d, sums, force, moment, jo
         moment[owner, i] += e0 * o0 + e1 * o1 + e2 * o2
         moment[other, i] -= e0 * m0 + e1 * m1 + e2 * m2
         joint_force[joint, i] += sign * f
+
+
+@borrowing_kernel
+def _lever_into(shift, rotation, force, moment):
+    """Moment of the force on a pair's second body about where it is, not about where contact sees it."""
+    t0 = rotation[0, 0] * shift[0] + rotation[0, 1] * shift[1] + rotation[0, 2] * shift[2]
+    t1 = rotation[1, 0] * shift[0] + rotation[1, 1] * shift[1] + rotation[1, 2] * shift[2]
+    t2 = rotation[2, 0] * shift[0] + rotation[2, 1] * shift[1] + rotation[2, 2] * shift[2]
+    moment[0] -= t1 * force[2] - t2 * force[1]
+    moment[1] -= t2 * force[0] - t0 * force[2]
+    moment[2] -= t0 * force[1] - t1 * force[0]
 
 
 @inline_kernel

@@ -1,5 +1,7 @@
 """Places of the nodes of one side of a pair in the other body's frame, and its level set there: Eq. (1)."""
 
+import numpy as np
+
 from blockshake.geometry.level_set import box_distance, hollow_box_distance
 from blockshake.geometry.trilinear import corner_values, interpolate, locate
 from blockshake.jit import borrowing_kernel, inline_kernel, separate_kernel
@@ -38,9 +40,7 @@ from blockshake.solvers.ls_dem.surfaces import (
 
 
 @borrowing_kernel
-def locate_nodes_into(
-    packets, located, first, last, start, half, chamfer, hollow, lattice, values, shape, R, d, side
-):
+def locate_nodes_into(packets, located, first, last, start, surfaces, shape, R, d, side):
     """Locate the nodes of one side.
 
     Parameters
@@ -54,7 +54,7 @@ def locate_nodes_into(
         Packets of this side.
     start : int
         First packet of the pair, whose row of ``located`` is the first.
-    half, chamfer, hollow, lattice, values, shape : as in `Surfaces`, int
+    surfaces, shape : Surfaces, int
         Shape whose level set is read.
     R, d, side : float64 arrays, shape (2, 3, 3) and (2, 3), int
         Pose of the owner in the other's frame, from `relative_pose_into`.
@@ -69,8 +69,15 @@ def locate_nodes_into(
     The change is the difference of two places and not a velocity times the step: taken with the
     lever arms of the step's end, the latter would creep by ``dt / 2`` times the centripetal acceleration.
     """
-    if lattice[shape, INVERSE_SPACING] != 0.0:
-        _locate_in_lattice_into(packets, located, first, last, start, lattice, values, shape, R, d, side)
+    half, chamfer, hollow = surfaces.half, surfaces.chamfer, surfaces.hollow
+    if surfaces.lattice[shape, INVERSE_SPACING] != 0.0:
+        _locate_in_lattice_into(
+            packets, located, first, last, start, surfaces.lattice, surfaces.values, shape, R, d, side
+        )
+    elif surfaces.first_plane[shape] < surfaces.first_plane[shape + 1]:
+        _locate_in_planes_into(
+            packets, located, first, last, start, surfaces.first_plane, surfaces.planes, shape, R, d, side
+        )
     elif hollow[shape] != 0.0:
         _locate_in_hollow_box_into(
             packets, located, first, last, start, half, chamfer, hollow, shape, R, d, side
@@ -162,6 +169,33 @@ def _locate_in_hollow_box_into(
             x, y, z = _follow(packets, packet, located, row, lane, pose)
             phi, nx, ny, nz = hollow_box_distance(x, y, z, a, b, c, leg, deep)
             busy |= _find(packets, packet, located, row, lane, phi, nx, ny, nz, 1.0)
+        located[row, BUSY] = busy
+
+
+@separate_kernel
+def _locate_in_planes_into(packets, located, first, last, start, first_plane, planes, shape, R, d, side):
+    """Places, level-set values and normals by the planes of a convex shape's faces."""
+    pose = _pose(R, d, side)
+    for packet in range(first, last):
+        busy, row = False, packet - start
+        for lane in range(LANES):
+            _follow(packets, packet, located, row, lane, pose)
+            located[row, PHI + lane] = -np.inf
+        for plane in range(first_plane[shape], first_plane[shape + 1]):
+            px, py, pz, reach = planes[plane, 0], planes[plane, 1], planes[plane, 2], planes[plane, 3]
+            for lane in range(LANES):
+                x, y = packets[packet, PLACE_X + lane], packets[packet, PLACE_Y + lane]
+                out = px * x + py * y + pz * packets[packet, PLACE_Z + lane] - reach
+                farther = out > located[row, PHI + lane]
+                located[row, NORMAL_X + lane] = px if farther else located[row, NORMAL_X + lane]
+                located[row, NORMAL_Y + lane] = py if farther else located[row, NORMAL_Y + lane]
+                located[row, NORMAL_Z + lane] = pz if farther else located[row, NORMAL_Z + lane]
+                located[row, PHI + lane] = out if farther else located[row, PHI + lane]
+        for lane in range(LANES):
+            busy |= _find(
+                packets, packet, located, row, lane, located[row, PHI + lane], located[row, NORMAL_X + lane],
+                located[row, NORMAL_Y + lane], located[row, NORMAL_Z + lane], 1.0,
+            )  # fmt: skip
         located[row, BUSY] = busy
 
 

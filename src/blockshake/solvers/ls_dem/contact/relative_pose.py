@@ -31,11 +31,13 @@ def keep_poses(poses):
 
 
 @borrowing_kernel
-def relative_pose_into(position, rotation, offset, owner, other, side, R, d):
-    """Pose of ``owner`` in the frame of the shape of ``other``, whose origin is the shape's centroid.
+def relative_pose_into(position, rotation, offset, pair, shift, side, R, d):
+    """Pose of one body of a pair in the frame of the other's shape, whose origin is the shape's centroid.
 
-    Its axes ``R[side]`` (3, 3) and its mass centre ``d[side]`` (3,); ``offset`` as in `Surfaces`.
+    The owner of ``side`` 0 is the pair's first body. Its axes are ``R[side]`` (3, 3), its mass centre is ``d[side]``
+    (3,); ``offset`` as in `Surfaces`, ``shift`` (3,) as in `Joints`.
     """
+    owner, other = pair[side], pair[1 - side]
     for i in range(3):
         for j in range(3):
             R[side, i, j] = (
@@ -49,3 +51,7 @@ def relative_pose_into(position, rotation, offset, owner, other, side, R, d):
             + rotation[other, 2, i] * (position[owner, 2] - position[other, 2])
             + offset[other, i]
         )
+        if side == 0:
+            d[0, i] += shift[i]
+        else:
+            d[1, i] -= R[1, i, 0] * shift[0] + R[1, i, 1] * shift[1] + R[1, i, 2] * shift[2]

@@ -7,12 +7,16 @@ from scipy.sparse.linalg import splu
 
 from blockshake.geometry.rotations import rotate_into, rotation_matrices
 from blockshake.jit import kernel
-from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates, locate_pair_into
+from blockshake.solvers.ls_dem.contact.candidates import (
+    empty_candidates,
+    find_candidates,
+    locate_pair_into,
+    nearest_node,
+)
 from blockshake.solvers.ls_dem.contact.contact_forces import clear_loads, contact_forces_into, no_loads
 from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES, NORMAL_X, PHI, PLACE_X
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
-from blockshake.solvers.ls_dem.joints import no_joints
 from blockshake.solvers.ls_dem.start.stability import stable_time_step
 
 _MOST_ITERATIONS = 20
@@ -21,7 +25,7 @@ _SEATED = 1e-5  # m; nodes of a hollow joint that are open by so much more than 
 _SOFT = 1e-9  # of the stiffest entry; it lets a body that nothing holds move far, and is told by that
 
 
-def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near):
+def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near, joints):
     """Poses at which stacks rest under gravity on the springs between them, near the given poses.
 
     Parameters
@@ -34,6 +38,8 @@ def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near):
     near : float
         Joints open by less than this are taken to close, and a stack with a body that moves farther
         has no equilibrium near [m].
+    joints : Joints
+        Shifts of the pairs; forces and slips are overwritten.
 
     Returns
     -------
@@ -59,23 +65,20 @@ def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near):
     rotation = np.ascontiguousarray(rotation_matrices(orientation))
     poses = Poses(position, rotation, position.copy(), rotation.copy())
     candidates, joints = find_candidates(
-        surfaces, bodies.driven, poses, orientation, skin, empty_candidates(n_bodies), no_joints()
+        surfaces, bodies.driven, poses, orientation, skin, empty_candidates(n_bodies), joints
     )
     loads = no_loads(n_bodies, joints)
     radius = surfaces.radius
     at_rest = _AT_REST * bodies.mass * np.linalg.norm(bodies.gravity) + 1e-300
-    down = bodies.gravity / max(np.linalg.norm(bodies.gravity), 1e-300)
-    moves = np.repeat([[True] * 3 + [False] * 3], n_bodies, axis=0)
-    moves[bodies.inverse_inertia.any(axis=(1, 2)), 3:] = True
-    solved, left = ~bodies.driven, np.zeros(n_bodies, dtype=bool)
+    moves, solved, left = ways_to_move(bodies), ~bodies.driven, np.zeros(n_bodies, dtype=bool)
     for iteration in range(_MOST_ITERATIONS):
         clear_loads(bodies, loads)
         contact_forces_into(candidates, surfaces, interfaces, poses, 0.0, loads)
         poses.position_before[:] = position
         poses.rotation_before[:] = rotation
         reach = near if iteration == 0 else 0.0
-        stiffness, pull, touching, relaxation = _joint_stiffness(
-            candidates, interfaces, surfaces, poses, reach, down
+        stiffness, pull, touching, relaxation = joint_stiffness(
+            candidates, interfaces, surfaces, poses, reach, downwards(bodies)
         )
         if iteration == 0:
             stable_step = _stable_step(candidates.pairs, stiffness, relaxation, bodies)
@@ -85,7 +88,7 @@ def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near):
         limit = np.where(np.arange(6) < 3, 1.0, radius[:, None]) * at_rest[:, None]
         if not solved.any() or (np.abs(load) < limit)[solved].all():
             break
-        move = _solve(candidates.pairs, stiffness, solved[:, None] & moves, load)[solved]
+        move = displacements(candidates.pairs, stiffness, solved[:, None] & moves, load)[solved]
         for body, (shift, turn) in zip(np.flatnonzero(solved), move, strict=True):
             position[body] += shift
             rotate_into(orientation[body], turn, orientation[body])
@@ -135,7 +138,18 @@ def _groups(pairs, driven):
     return connected_components(links, directed=False)[1]
 
 
-def _solve(pairs, stiffness, solved, load):
+def ways_to_move(bodies):
+    """Which displacements and rotations bodies can make: bool array, shape (n_bodies, 6)."""
+    turns = bodies.inverse_inertia.any(axis=(1, 2))
+    return ~bodies.driven[:, None] & (turns[:, None] | (np.arange(6) < 3))
+
+
+def downwards(bodies):
+    """Direction of gravity: float64 array, shape (3,), zero without any."""
+    return bodies.gravity / max(np.linalg.norm(bodies.gravity), 1e-300)
+
+
+def displacements(pairs, stiffness, solved, load):
     """Displacements and rotations under these loads, zero where not solved for: (n_bodies, 2, 3) [m, rad]."""
     chosen = np.flatnonzero(solved)
     matrix = _assembled(pairs, stiffness, solved.size)[chosen][:, chosen]
@@ -146,7 +160,7 @@ def _solve(pairs, stiffness, solved, load):
 
 
 @kernel
-def _joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
+def joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
     """Stiffness of each pair for the displacements and rotations of its two bodies, and the pull of open nodes.
 
     Parameters
@@ -185,7 +199,7 @@ def _joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
         k_n, k_s = normal_stiffness(interfaces, a, b), in_series(interfaces.k_s, a, b)
         area, weight, closed = 0.0, 0.0, reach
         if surfaces.hollow[surfaces.shape[a]] > 0.0 or surfaces.hollow[surfaces.shape[b]] > 0.0:
-            closed = min(reach, max(0.0, _nearest(candidates, pair) + _SEATED))
+            closed = min(reach, max(0.0, nearest_node(candidates, pair)[0] + _SEATED))
         for side in range(2):
             owner, other = candidates.pairs[pair, side], candidates.pairs[pair, 1 - side]
             R = poses.rotation[other]
@@ -227,16 +241,6 @@ def _joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
             gamma = dashpot_coefficient(interfaces, a, b, interfaces.damping_ratio, k_n, area)
             relaxation[pair] = gamma * weight / (k_n * area)
     return stiffness, pull, touching, relaxation
-
-
-@kernel
-def _nearest(candidates, pair):
-    """Least level-set value of the nodes of a pair, as located [m]."""
-    least = np.inf
-    for row in range(candidates.first[2 * pair + 2] - candidates.first[2 * pair]):
-        for lane in range(LANES):
-            least = min(least, candidates.located[row, PHI + lane])
-    return least
 
 
 @kernel

@@ -70,6 +70,17 @@ class Placed(NamedTuple):
     outline: Outline
 
 
+def check_convex(structure, _=None):
+    """Refuse a body whose shape is not convex, with `InputError`."""
+    for body in structure.file.bodies:
+        if structure.solids[body.shape].polyhedron is None:
+            raise InputError(
+                structure.source,
+                f"shapes.{body.shape}",
+                "expected a convex shape: nonsmooth contact dynamics needs convex meshes",
+            )
+
+
 def pack_polyhedra(structure, order):
     """Polyhedra of a structure's bodies, in the order of the body indices ``order``.
 
@@ -78,15 +89,8 @@ def pack_polyhedra(structure, order):
     InputError
         A body's shape is not convex.
     """
-    solids = []
-    for body in order:
-        if structure.solid(body).polyhedron is None:
-            raise InputError(
-                structure.source,
-                f"shapes.{structure.file.bodies[body].shape}",
-                "expected a convex shape: nonsmooth contact dynamics needs convex meshes",
-            )
-        solids.append(structure.solid(body).polyhedron)
+    check_convex(structure)
+    solids = [structure.solid(body).polyhedron for body in order]
     edges = [_edges(solid) for solid in solids]
     directions = [_directions(solid, pairs) for solid, pairs in zip(solids, edges, strict=True)]
     first_vertex = _first([len(solid.vertices) for solid in solids])

@@ -27,6 +27,9 @@ def ending(run, structure):
     words = f"{run.attrs['status']} at {run.attrs['end_time']:.4g} s"
     if run.attrs["status"] in FINISHED and run.attrs["reason"]:
         words += f" ({run.attrs['reason']})"
+    overlap = run.attrs.get("numerics_overlap_as_laid", 0.0)
+    if overlap > 0.0:
+        words += f"; overlaps of up to {1e3 * overlap:.2g} mm were taken up at the start"
     largest = None
     for begin in range(0, 0 if structure.driven.all() else run.sizes["time"], _AT_HAND):
         rows = np.append(0, np.arange(begin, min(begin + _AT_HAND, run.sizes["time"])))

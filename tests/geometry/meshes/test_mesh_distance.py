@@ -2,8 +2,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from blockshake.errors import InputError
-from blockshake.geometry.mesh_distance import lattice_distances
+from blockshake.geometry.meshes.mesh_distance import lattice_distances
 
 ROUNDING = 1e-12
 
@@ -105,14 +104,3 @@ def test_a_flat_triangle_on_an_edge_changes_nothing(l_shape):
     np.testing.assert_allclose(
         lattice_distances(split, sliced, axes), lattice_distances(vertices, faces, axes), atol=ROUNDING
     )
-
-
-def test_an_open_or_inconsistent_surface_is_refused(l_shape):
-    vertices, faces = l_shape
-    axes = _axes(0.0, 1.0, 3)
-    with pytest.raises(InputError, match="expected a closed surface with outward triangles"):
-        lattice_distances(vertices, faces[1:], axes)
-    turned = faces.copy()
-    turned[0] = turned[0, ::-1]
-    with pytest.raises(InputError, match="expected a closed surface with outward triangles"):
-        lattice_distances(vertices, turned, axes)

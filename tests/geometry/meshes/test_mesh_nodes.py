@@ -3,12 +3,12 @@ import pytest
 import trimesh
 from scipy.spatial import cKDTree
 
-from blockshake.geometry.mesh_distance import lattice_distances
-from blockshake.geometry.mesh_nodes import mesh_nodes
+from blockshake.geometry.meshes.mesh_distance import lattice_distances
+from blockshake.geometry.meshes.mesh_nodes import mesh_nodes
 from blockshake.geometry.polyhedron import box_vertices, convex_polyhedron, triangles
 
 SIZE, CHAMFER = np.array([0.8, 2.4, 1.6]), 0.02
-INSET = 0.005
+INSET = 0.01  # over the breadth of a face, twice its area over its perimeter
 
 
 def _box(chamfer=CHAMFER):
@@ -39,10 +39,11 @@ def test_over_every_flat_of_a_box_area_and_second_moments_are_exact(spacing):
             assert a @ p[:, second] ** 2 == pytest.approx(depth**3 * width / 12.0, rel=1e-8)
             assert a @ (p[:, first] * p[:, second]) == pytest.approx(0.0, abs=1e-9)
             # the pivots of rocking, and the corners
-            assert np.abs(p[:, first]).max() == pytest.approx(width / 2.0 - INSET, abs=1e-9)
-            assert np.abs(p[:, second]).max() == pytest.approx(depth / 2.0 - INSET, abs=1e-9)
-            corners = (np.abs(p[:, first]) > width / 2.0 - 1.01 * INSET) & (
-                np.abs(p[:, second]) > depth / 2.0 - 1.01 * INSET
+            inset = INSET * width * depth / (width + depth)
+            assert np.abs(p[:, first]).max() == pytest.approx(width / 2.0 - inset, abs=1e-9)
+            assert np.abs(p[:, second]).max() == pytest.approx(depth / 2.0 - inset, abs=1e-9)
+            corners = (np.abs(p[:, first]) > width / 2.0 - 1.01 * inset) & (
+                np.abs(p[:, second]) > depth / 2.0 - 1.01 * inset
             )
             assert corners.sum() == 4
             count = width * depth / spacing**2
@@ -98,9 +99,10 @@ def test_sharp_convex_edges_have_nodes_on_both_sides_and_reentrant_ones_none():
     for x, y in outline:
         reentrant = (x, y) == (0.5, 0.5)
         assert beside(x, y).any() != reentrant
-    # a corner's three faces each have a node at the inset from both edges
+    # a corner's three faces each have a node at the inset from both edges; breadths 0.75 / 2, 1 / 2 and 1 / 3 m
     near = np.linalg.norm(points - vertices[1], axis=1) < 1.5 * INSET
-    expected = vertices[1] + INSET * np.array([[-1, 1, 0], [-1, 0, 1], [0, 1, 1]])
+    breadths = np.array([[0.375], [0.5], [1.0 / 3.0]])
+    expected = vertices[1] + INSET * breadths * np.array([[-1, 1, 0], [-1, 0, 1], [0, 1, 1]])
     np.testing.assert_allclose(np.sort(points[near], axis=0), np.sort(expected, axis=0), atol=1e-12)
 
 
@@ -112,8 +114,9 @@ def test_a_rounded_edge_is_no_edge():
     radius, height = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
     rim = np.isclose(height, 0.5, atol=1e-9) & (radius > 0.49)
     assert rim.sum() == round(2.0 * np.pi * 0.5 / 0.2)
-    np.testing.assert_allclose(radius[rim], 0.5 - INSET, atol=0.002)  # chords of 5.6 degrees
-    below = np.isclose(height, 0.5 - INSET, atol=1e-9)
+    # breadths: the radius of a cap, the height of the mantle; chords of 5.6 degrees
+    np.testing.assert_allclose(radius[rim], 0.5 - INSET * 0.5, atol=0.002)
+    below = np.isclose(height, 0.5 - INSET * 1.0, atol=1e-9)
     assert below.sum() == rim.sum()
 
 

@@ -5,7 +5,7 @@ import struct
 import pytest
 import xarray as xr
 
-from blockshake.damaged_hdf5 import has_endless_heap
+from blockshake.tables.damaged_hdf5 import has_endless_heap
 
 HEAP = b"GCOL\x01\x00\x00\x00"
 

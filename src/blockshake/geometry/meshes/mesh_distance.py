@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from blockshake.errors import InputError
 from blockshake.jit import inline_kernel, kernel
 
 _BLOCK = 8  # points along the edge of the blocks in which far triangles are left out
@@ -28,11 +27,6 @@ def lattice_distances(vertices, faces, axes):
     float64 array, shape (n_x, n_y, n_z)
         Euclidean distance to the surface [m], negative inside.
 
-    Raises
-    ------
-    InputError
-        The surface is not closed, or its triangles do not agree on which side is outside.
-
     Notes
     -----
     Sign by the angle-weighted pseudonormal of the nearest face, edge or corner: Baerentzen and
@@ -40,7 +34,6 @@ def lattice_distances(vertices, faces, axes):
     """
     vertices = np.ascontiguousarray(vertices, dtype=float)
     faces = np.ascontiguousarray(faces, dtype=np.int64)
-    check_closed(vertices, faces)
     corners = vertices[faces]
     normals = _pseudonormals(corners, faces, len(vertices))
     kept = np.flatnonzero(np.linalg.norm(normals[:, _FACE], axis=1) > 0.0)
@@ -49,14 +42,6 @@ def lattice_distances(vertices, faces, axes):
     radii = np.linalg.norm(corners - centres[:, None], axis=2).max(axis=1)
     x, y, z = (np.ascontiguousarray(axis, dtype=float) for axis in axes)
     return _distances(corners, normals, centres, radii, x, y, z)
-
-
-def check_closed(vertices, faces):
-    """Raise `InputError` unless every edge joins two triangles that run along it in opposite directions."""
-    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    forward, backward = np.sort(start * len(vertices) + end), np.sort(end * len(vertices) + start)
-    if not np.array_equal(forward, backward) or (np.diff(forward) == 0).any():
-        raise InputError("mesh", "triangles", "expected a closed surface with outward triangles")
 
 
 def _pseudonormals(corners, faces, n_vertices):

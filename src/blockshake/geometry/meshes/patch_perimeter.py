@@ -63,7 +63,7 @@ def perimeter_points(vertices, normals, sides, area, spacing, inset, sharp):
     """
     points = [np.empty((0, 3))]
     if sides:
-        inset = min(inset, 0.5 * area / _length(vertices, sides))
+        inset *= 2.0 * area / _length(vertices, sides)
     for loop in _loops(sides):
         for chain in _chains(loop, vertices, normals, sharp):
             if chain[1][0][3]:

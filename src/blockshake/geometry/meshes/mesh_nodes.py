@@ -5,8 +5,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from blockshake.geometry.mesh_distance import check_closed
-from blockshake.geometry.patch_perimeter import boundaries, edge_pairs, perimeter_points
+from blockshake.geometry.meshes.patch_perimeter import boundaries, edge_pairs, perimeter_points
 
 SHARP = np.radians(
     30.0
@@ -30,8 +29,8 @@ def mesh_nodes(vertices, faces, spacing, inset, sharp=SHARP):
     spacing : float
         Aimed distance of nodes [m].
     inset : float
-        Distance from sharp convex edges of the nodes that stand along them, on both sides [m]; at
-        most a quarter of the width of a narrow face. A body sinks by at most that much onto an
+        Distance from sharp convex edges of the nodes that stand along them, on both sides, over the breadth of the
+        face, which is twice its area over its perimeter [1]. A body sinks by at most that distance onto an
         edge before a node touches, and by 1.15 times that much onto the corner of a cube.
     sharp : float
         Two triangles that meet at a larger angle between their normals belong to different faces [rad]. Below it the
@@ -46,11 +45,6 @@ def mesh_nodes(vertices, faces, spacing, inset, sharp=SHARP):
         have its centroid and, where it has nodes enough, its second moments, so that node
         spacing changes no stiffness of an interface in compression or in rocking.
 
-    Raises
-    ------
-    InputError
-        The surface is not closed.
-
     Notes
     -----
     Seeds a little less than a spacing apart are taken in the order of the triangles, then moved
@@ -59,7 +53,6 @@ def mesh_nodes(vertices, faces, spacing, inset, sharp=SHARP):
     """
     vertices = np.asarray(vertices, dtype=float)
     faces = np.asarray(faces, dtype=np.int64)
-    check_closed(vertices, faces)
     corners = vertices[faces]
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     doubled = np.linalg.norm(cross, axis=1)

@@ -1,0 +1,46 @@
+"""Times of the rows of a motion, given one by one."""
+
+import numpy as np
+
+from blockshake.errors import InputError
+
+_GAP = 1.5  # usual steps, beyond which a row of an even series is missing
+_EVEN = 0.2  # of the usual step, by which steps of an even series may differ: times printed with few digits
+_EVEN_SHARE, _WIDE_SHARE = 0.9, 0.25  # of the steps: even ones of all that are no gap, and gaps
+_FEWEST_ROWS = 20  # below it a table may be sparse on purpose
+
+
+def check_times(time, lines, where, name):
+    """Refuse times that do not increase, and gaps in a series that is even otherwise, which no line may bridge.
+
+    Parameters
+    ----------
+    time : float64 array, shape (n_rows,)
+        [s]
+    lines : list of int
+        Line of every row in the file.
+    where, name : str
+        File and column that a message names.
+
+    Raises
+    ------
+    InputError
+    """
+    steps = np.diff(time)
+    back = np.flatnonzero(steps <= 0.0)
+    if len(back):
+        before, after = time[back[0] : back[0] + 2]
+        raise InputError(
+            where, f"line {lines[back[0] + 1]}, {name}",
+            f"expected times that increase from row to row; {after:g} s follows {before:g} s",
+        )  # fmt: skip
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    wide = steps > _GAP * usual
+    even = np.abs(steps[~wide] - usual) <= _EVEN * usual
+    if wide.any() and len(time) >= _FEWEST_ROWS and wide.mean() <= _WIDE_SHARE and even.mean() >= _EVEN_SHARE:
+        place = int(np.argmax(wide))
+        raise InputError(
+            where, f"line {lines[place + 1]}, {name}",
+            f"expected rows {usual:.4g} s apart as elsewhere; {steps[place]:.4g} s after {time[place]:g} s have none, "
+            f"{int(wide.sum())} such gaps in all: write the rows that are missing, or split the motion",
+        )  # fmt: skip

@@ -1,0 +1,1 @@
+"""Closed triangulated surfaces: their files, checks, distances and nodes."""

@@ -1,0 +1,216 @@
+"""Columns of a test that are no readings: constant, frozen for a while, clipped, or the same as another one."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.measurement.sensors.markers import marker_bodies
+
+_LEVEL = 1e-3  # chance of any such column in a test of sound sensors
+_SHORTEST = 10  # steps without a change, below which nothing is called frozen
+_LEAST_REPEATED = (
+    0.1  # chance that a sound reading repeats the one before: a motion turns, and digits are few
+)
+_SAME = 1e-6  # of a column's range: readings this near its end are at it
+_FEWEST_AT_END = 4
+_NOISY = 0.3  # third over first differences: noise has 3, a motion of 10 Hz without noise 0.1 at 200 Hz
+_WINDOW = 50  # readings, in which noise changes some
+_RESOLVED = 0.3  # of the readings of the quietest window, that noise changes where its digits are fine enough
+_MANY = 4  # columns that a line spells out
+_INSTRUMENTS = (
+    ("marker_displacement", "time", "marker", "m"),
+    ("accelerometer", "time_acc", "channel", "m/s2"),
+    ("transducer_displacement", "time_acc", "transducer", "m"),
+)
+
+
+class Faulty(NamedTuple):
+    """Readings of a column that were made gaps.
+
+    ``sensor``: marker, channel or transducer; ``column``: its name, with an axis; ``kind``: ``constant``, ``frozen``,
+    ``clipped`` or ``doubled``; ``value`` that they have [m or m/s2]; ``p``: chance of a sound column like it;
+    ``words``: what they do.
+    """
+
+    sensor: str
+    column: str
+    kind: str
+    value: float
+    p: float
+    words: str
+
+
+class _Fault(NamedTuple):
+    kind: str
+    column: int
+    rows: np.ndarray
+    p: float
+
+
+def without_faulty(test, structure):
+    """The test with such readings as gaps; a sensor without any other reading is left out.
+
+    Parameters
+    ----------
+    test : xarray.Dataset
+        As a file has it, checked.
+    structure : Structure
+
+    Returns
+    -------
+    xarray.Dataset
+        Attribute ``faulty``: tuple of `Faulty`.
+
+    Notes
+    -----
+    A column is held against the others of its body and axis; where these do not change either, against all others of
+    its instrument, if those have noise. In a test without noise equal and constant columns may be true, of a slab that
+    does not rise or of blocks at rest.
+    """
+    faulty = []
+    for variable, clock, dimension, unit in _INSTRUMENTS:
+        if variable not in test:
+            continue
+        readings = test[variable].transpose(clock, dimension, ...)
+        values = readings.to_numpy().reshape(readings.sizes[clock], -1).copy()
+        names = [str(name) for name in readings[dimension].values]
+        axes = [f".{axis}" for axis in readings["axis"].values] if "axis" in readings.dims else [""]
+        labels = [name + axis for name in names for axis in axes]
+        faults = _faults(values, _groups(names, axes, dimension, structure))
+        step = float(np.median(np.diff(test[clock].to_numpy())))
+        for fault in faults:
+            value = float(values[np.argmax(fault.rows), fault.column]) + 0.0
+            words = {
+                "constant": f"{value:.4g} {unit} throughout while others change",
+                "frozen": f"no change for {fault.rows.sum() * step:.3g} s while others change",
+                "clipped": f"readings that end at {abs(value):.4g} {unit}",
+                "doubled": "the same readings twice",
+            }[fault.kind]
+            sensor = names[fault.column // len(axes)]
+            faulty.append(Faulty(sensor, labels[fault.column], fault.kind, value, fault.p, words))
+        for fault in faults:
+            values[fault.rows, fault.column] = np.nan
+        test = test.assign({variable: readings.copy(data=values.reshape(readings.shape))})
+        read = np.isfinite(values).reshape(len(values), len(names), -1).any(axis=(0, 2))
+        test = test.isel({dimension: np.flatnonzero(read)})
+    return test.assign_attrs(faulty=tuple(faulty))
+
+
+def faulty_lines(test):
+    """Lines for a reader on the readings of a test, as of `without_faulty`, that are taken as gaps."""
+    columns = {}
+    for fault in test.attrs.get("faulty", ()):
+        columns.setdefault(fault.words, []).append(fault.column)
+    return [
+        f"{words}, taken as gaps: {', '.join(mine[:_MANY])}"
+        + (f" and {len(mine) - _MANY} more" if len(mine) > _MANY else "")
+        for words, mine in columns.items()
+    ]
+
+
+def _groups(names, axes, dimension, structure):
+    """Body and axis of every column; a transducer has no other like it."""
+    if dimension == "marker":
+        return [(body, axis) for body in marker_bodies(structure, names) for axis in axes]
+    carriers = {
+        f"{item.name}-{axis}": (item.body, axis)
+        for item in structure.file.accelerometers
+        for axis in item.axes
+    }
+    return [carriers.get(name, name) for name in names]
+
+
+def _faults(values, groups):
+    """List of `_Fault` of columns (n_times, n_columns), a column's ``constant`` without any other."""
+    known = np.isfinite(values[1:]) & np.isfinite(values[:-1])
+    steps = np.diff(values, axis=0)
+    changed = known & (steps != 0.0)
+    varying = changed.any(axis=0)
+    noisy = _is_noisy(steps[:, varying], changed[:, varying])
+    faults, copies = [], {}
+    for column, group in enumerate(groups):
+        others = np.array([one == group for one in groups]) & varying
+        others[column] = False
+        if not others.any():
+            others = varying & noisy
+            others[column] = False
+        if not others.any() or not known[:, column].any():
+            continue
+        moving = changed[:, others].sum(axis=1) / np.maximum(known[:, others].sum(axis=1), 1)
+        repeats = known[:, column] & ~changed[:, column]
+        if varying[column]:
+            at_end, p = _at_end(values[:, column], 0.5 * _LEVEL / len(groups))
+            touched = at_end[1:] | at_end[:-1]
+            if at_end.any() and (noisy or moving[touched].mean() > 0.5):
+                faults.append(_Fault("clipped", column, at_end, p))
+                repeats &= ~touched
+            original = copies.setdefault(_content(values[:, column]), column)
+            if noisy and original != column:
+                every = np.isfinite(values[:, column])
+                faults.append(_Fault("doubled", original, every, 0.0))
+                faults.append(_Fault("doubled", column, every, 0.0))
+                continue
+        rows, p = _frozen(repeats, known[:, column], moving, _LEVEL / len(groups))
+        if rows.any():
+            faults.append(_Fault("frozen" if varying[column] else "constant", column, rows, p))
+    return faults
+
+
+def _is_noisy(steps, changed):
+    """Whether readings scatter from one to the next more than a motion does, and are written finely enough for that."""
+    if len(steps) < _WINDOW or not steps.shape[1]:
+        return False
+    share = np.convolve(changed.mean(axis=1), np.full(_WINDOW, 1.0 / _WINDOW), mode="valid").min()
+    third = np.nanmedian(np.abs(np.diff(steps, 2, axis=0)))
+    return bool(share > _RESOLVED and third > _NOISY * np.nanmedian(np.abs(steps)))
+
+
+def _content(column):
+    """Bytes that columns with the same readings share, also of opposite sign."""
+    first = column[np.argmax(np.isfinite(column) & (column != 0.0))]
+    return (np.where(np.isfinite(column), column, 0.0) * np.sign(first) + 0.0).tobytes()
+
+
+def _frozen(repeats, known, moving, level):
+    """Readings (n_times,) in stretches without a change, and the chance of the likeliest of these.
+
+    Each step of a stretch has the chance of a repeated reading: that of the column beside the stretch, or that of the
+    others within it, whichever is larger.
+    """
+    rows, chance = np.zeros(len(repeats) + 1, dtype=bool), 0.0
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], repeats.astype(int), [0]])))
+    for begin, end in edges.reshape(-1, 2):
+        if end - begin < _SHORTEST:
+            continue
+        beside = (repeats.sum() - (end - begin) + 1.0) / (known.sum() - (end - begin) + 2.0)
+        repeated = max(beside, 1.0 - moving[begin:end].mean(), _LEAST_REPEATED)
+        p = known.sum() * repeated ** (end - begin)
+        if p < level:
+            rows[begin : end + 1] = True
+            chance = max(chance, p)
+    return rows, chance
+
+
+def _at_end(values, level):
+    """Mask of the readings at the ends of a column's range, (n_times,), and the chance of as many in a sound record.
+
+    Beside a largest (or smallest) reading that is shared by neighbours each further one has the chance with which any
+    reading repeats the one before, taken from the record itself below the plateau, so that coarse digits and a sensor
+    at rest are no saturation. A limit that acts before the noise is added leaves no equal readings and is not seen.
+    """
+    known = np.isfinite(values)
+    nothing = np.zeros(len(values), dtype=bool)
+    if known.sum() < 10 * _FEWEST_AT_END:
+        return nothing, 1.0
+    width = _SAME * np.ptp(values[known])
+    clipped, chance = nothing, 1.0
+    for end in (values[known].max(), values[known].min()):
+        at_end = known & (np.abs(values - end) <= width)
+        together = (at_end[1:] & at_end[:-1]).sum()
+        pairs = known[1:] & known[:-1] & ~(at_end[1:] | at_end[:-1])
+        equal = (np.abs(np.diff(values)) <= width) & pairs
+        rate = (equal.sum() + 1.0) / (pairs.sum() + 2.0)
+        p = known.sum() * rate ** (together - 1.0)
+        if together >= _FEWEST_AT_END - 1 and p < level:
+            clipped, chance = clipped | at_end, min(p, chance)
+    return clipped, chance

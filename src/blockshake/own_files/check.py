@@ -1,0 +1,166 @@
+"""Check of a user's file before anything runs: its kind, and its first fault, by the functions that commands run."""
+
+import tempfile
+from pathlib import Path
+
+from blockshake.diagnosis.libraries.plan import plan_diagnosis, planned_motion
+from blockshake.dynamics.baseline import AUTO
+from blockshake.dynamics.intensity import strong_until
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.provenance import provenance
+from blockshake.dynamics.synthetic_schema import SyntheticMotion
+from blockshake.errors import InputError, faults_of
+from blockshake.files import load_yaml, shipped_names
+from blockshake.forces.sight import sight_lines
+from blockshake.geometry.schema import StructureFile
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign import CampaignFile, load_campaign, load_test
+from blockshake.measurement.checks.campaign_check import campaign_lines
+from blockshake.measurement.imports.import_campaign import import_campaign
+from blockshake.measurement.imports.import_map import ImportMap, load_map
+from blockshake.study.config import StudyConfig, load_config
+from blockshake.study.config_checks import typical_structure
+from blockshake.study.ensembles.case_input import measured_input
+from blockshake.study.motion_remarks import motion_line, motion_remarks
+from blockshake.study.sampling.sample_parameters import has_parameter
+from blockshake.study.structure_remarks import structure_lines, structure_remarks
+from blockshake.virtual.settings import VirtualCampaign, load_settings
+
+_LATE = 5.0  # s of rest after a motion that need no remark
+
+
+def check_file(source, baseline=AUTO):
+    """Content of a good file as it was understood, line by line, and remarks.
+
+    Parameters
+    ----------
+    source : str or path
+        A structure, a motion, a campaign, a study's configuration, the map of an import or the settings of a virtual
+        campaign, by file, folder or shipped name.
+    baseline : str or float
+        Of a motion, as of `load_motion`; the other files name their own.
+
+    Raises
+    ------
+    InputError
+        The first fault of the file, or of what it names.
+    """
+    if (Path(source) / "campaign.yaml").is_file():
+        return _campaign_line(Path(source))
+    if source in shipped_names("structures"):
+        return _structure_line(source)
+    if Path(source).suffix not in (".yaml", ".yml"):
+        return _motion_line(source, baseline)
+    keys = load_yaml(source).keys()
+    known = {schema: len(keys & schema.model_fields.keys()) for schema in _LINES}
+    if not any(known.values()):
+        raise InputError(
+            source,
+            "",
+            "expected a structure (bodies), a study (cases), a campaign (tests), the map of an import (columns), a "
+            "virtual campaign (intensities) or a synthetic motion (synthetic)",
+        )
+    kind = max(known, key=known.get)
+    return _motion_line(source, baseline) if kind is SyntheticMotion else _LINES[kind](source)
+
+
+def _motion_line(source, baseline):
+    motion = load_motion(source, baseline=baseline)
+    return _with_remarks([motion_line(motion)], motion_remarks(motion))
+
+
+def _structure_line(source):
+    structure = load_structure(source)
+    return _with_remarks(structure_lines(structure), structure_remarks(structure))
+
+
+def _with_remarks(lines, remarks):
+    return "\n".join([*lines, *(f"  remark: {remark}" for remark in remarks)])
+
+
+def _campaign_line(folder):
+    return "\n".join([*campaign_lines(folder), *sight_lines(load_campaign(folder))])
+
+
+def _import_line(source):
+    """Lines of the campaign that the map would make; it is made, and thrown away."""
+    with tempfile.TemporaryDirectory() as folder:
+        lines = import_campaign(load_map(source), Path(folder) / "campaign", source)
+    return "\n".join(line.replace(f"{folder}/", "") for line in lines)
+
+
+def _virtual_line(source):
+    settings = load_settings(source)
+    return f"a virtual campaign by {settings.model}, under {', '.join(settings.motions)}"
+
+
+def _study_line(source):
+    config = load_config(source)
+    _read_measured(config, source)
+    told = []
+    for model in config.models:
+        counts = sorted({config.samples(model, case.name) for case in config.cases})
+        told.append(f"{model} ({' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))} samples)")
+    count = f"{len(config.cases)} case{'s' * (len(config.cases) != 1)}"
+    motions = {name: load_motion(name, baseline=baseline) for _, name, baseline in config.named_motions()}
+    records = [f"  {name}: {provenance(motion.attributes)}" for name, motion in motions.items()]
+    lines = [f"a study of {count} by {', '.join(told)}", *records]
+    return _with_remarks(lines, _study_remarks(config, motions))
+
+
+def _read_measured(config, source):
+    """Read what the study's jobs read of measured tests, and plan its diagnoses."""
+    calibrated = config.calibration.cases.values() if config.calibration else ()
+    for index, case in enumerate(config.cases):
+        if case.measured is not None:
+            with faults_of(source, f"cases.{index}.measured"):
+                measured_input(case.model_dump(), case.measured.model_dump())
+                if any(case.name in names for names in calibrated):
+                    _read_open_tests(case.measured.campaign)
+    for folder in config.diagnosis.campaigns:
+        with faults_of(source, "diagnosis.campaigns"):
+            campaign_lines(folder)
+            plan_diagnosis(folder, config.diagnosis.effort)
+
+
+def _read_open_tests(folder):
+    """Read the tests of a campaign that are not sealed, and their commands."""
+    campaign = load_campaign(folder)
+    for name, test in campaign.tests.items():
+        if test.role != "sealed":
+            load_test(campaign, name)
+            planned_motion(campaign, name)
+
+
+def _study_remarks(config, motions):
+    """Structures whose samples are all alike, and remarks on each structure and motion."""
+    structures = {
+        case.structure: typical_structure(load_structure(case.structure), config.ensemble)
+        for case in config.cases
+    }
+    for name, structure in structures.items():
+        if not any(has_parameter(structure, variable) for variable in config.ensemble.distributions):
+            yield f"{name}: no variable of ensemble.distributions is the structure's: all of its samples are alike"
+        yield from (f"{name}: {remark}" for remark in structure_remarks(structure))
+    for name, motion in motions.items():
+        yield from (f"{name}: {remark}" for remark in motion_remarks(motion))
+    for case in config.cases:
+        length, end = motions[case.motion].duration, strong_until(motions[case.motion])
+        if case.duration > length + _LATE:
+            yield f"{case.name}: {case.duration:g} s are simulated of a motion of {length:g} s"
+        if case.duration < end:
+            yield (
+                f"{case.name}: {case.duration:g} s are simulated of a motion that is strong until {end:.3g} s: blocks "
+                "that fall later count as standing"
+            )
+
+
+_LINES = {
+    StructureFile: _structure_line,
+    StudyConfig: _study_line,
+    CampaignFile: lambda source: _campaign_line(Path(source).parent),
+    ImportMap: _import_line,
+    VirtualCampaign: _virtual_line,
+    SyntheticMotion: _motion_line,
+}
+"""What is said of a file, by the schema that has most of its keys."""

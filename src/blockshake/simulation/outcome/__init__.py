@@ -1,0 +1,1 @@
+"""How a run ended: fallen, still falling or standing, and the sentence that says so."""

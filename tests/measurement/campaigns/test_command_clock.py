@@ -1,0 +1,94 @@
+"""The clock of a test counts from the command, whatever it showed, and however its times were written."""
+
+import numpy as np
+import pytest
+from resting_stack import MOTION, resting_stack, write_campaign
+
+from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.campaigns.command_clock import (
+    command_start,
+    from_first_reading,
+    reading_rate,
+    simulation_start,
+)
+from blockshake.measurement.checks.campaign_check import campaign_lines
+
+LEAD = 1.5  # s
+
+
+def _with_lead(test, lead=LEAD):
+    """The test with a rest before it, as long [s], by both clocks."""
+    for name, rate in (("time", 200.0), ("time_acc", 512.0)):
+        count = round(lead * rate)
+        generator = np.random.default_rng(3)
+        filled = test.pad({name: (count, 0)}, mode="edge")
+        filled = filled.assign_coords({name: np.arange(filled.sizes[name]) / rate})
+        for variable, noise in (("marker_displacement", 1e-4), ("accelerometer", 0.02)):
+            if name in filled[variable].dims:
+                part = filled[variable].values[:count]
+                part[:] = generator.normal(0.0, noise, part.shape)
+        test = filled
+    return test
+
+
+@pytest.mark.parametrize("rate", [100.0, 148.0, 200.0, 512.0, 1000.0])
+@pytest.mark.parametrize("zero", [-3.0, 0.5, 43200.0, 1.7e9])
+def test_an_even_clock_is_the_same_whatever_it_shows(rate, zero):
+    test = resting_stack()
+    time = np.arange(test.sizes["time"]) / rate
+    read = from_first_reading(test.assign_coords(time=zero + time, time_acc=zero + test["time_acc"]))
+    np.testing.assert_array_equal(read["time"], np.round(time, 9))
+    np.testing.assert_array_equal(read["time_acc"], test["time_acc"])
+    assert reading_rate(read["time"].to_numpy()) == rate
+
+
+def test_a_clock_that_lacks_rows_keeps_its_gaps():
+    test = resting_stack().isel(time=np.r_[0:100, 140:2001])
+    read = from_first_reading(test.assign_coords(time=test["time"] + 43200.0))
+    np.testing.assert_allclose(read["time"], np.r_[0:100, 140:2001] / 200.0, atol=1e-9)
+    assert reading_rate(read["time"].to_numpy()) == 200.0
+
+
+@pytest.mark.parametrize("start", [-2.0, 0.0, 1.2345, 4.0])
+def test_the_start_of_the_command_is_found(start):
+    """The table follows by 0.9, and is read with noise; a negative start lies before the first reading."""
+    time = np.arange(2001) / 200.0
+    moved = 0.9 * MOTION.evaluate(time - start)[:, 0] + np.random.default_rng(1).normal(0.0, 1e-4, len(time))
+    found = command_start(time, moved, MOTION)
+    assert found.time == pytest.approx(start, abs=5e-4)
+    assert found.correlation > 0.99
+    turned = command_start(time, -moved, MOTION)
+    assert (turned.time, turned.correlation) == pytest.approx((found.time, -found.correlation), abs=1e-5)
+
+
+def test_a_rest_before_the_command_changes_no_remark(tmp_path):
+    """The table moved by all that was commanded, and the noise is found in a half second of rest."""
+    lines = campaign_lines(write_campaign(tmp_path, _with_lead(resting_stack())))
+    assert "table moved by 100 % of the command" in lines[1]
+    assert "in the quiet 500 ms" in lines[1]
+    assert lines[-1] == "no inconsistency found"
+    test = load_test(load_campaign(tmp_path), "t1")
+    assert test["time"][0] == pytest.approx(-LEAD, abs=1e-3)
+    assert test["time_acc"][0] == test["time"][0]
+
+
+def test_axes_are_told_apart_whenever_the_command_starts(tmp_path):
+    test = _with_lead(resting_stack())
+    test["marker_displacement"].values[:] *= [-1.0, 1.0, 1.0]
+    folder = write_campaign(tmp_path, test)
+    with pytest.raises(Exception, match="x is reversed"):
+        campaign_lines(folder)
+
+
+def test_a_record_that_begins_after_the_strongest_shaking_is_remarked(tmp_path):
+    test = resting_stack().sel(time=slice(6.0, None), time_acc=slice(6.0, None))
+    test["marker_displacement"] -= test["marker_displacement"].isel(time=0)
+    lines = campaign_lines(write_campaign(tmp_path, test))
+    assert any("begins after the strongest shaking" in line for line in lines), lines
+
+
+@pytest.mark.parametrize(
+    ("first", "expected"), [(-1.5, 0.0), (0.0, 0.0), (-1.502, -0.002), (0.003, -0.002), (2.003, -0.002)]
+)
+def test_a_simulation_starts_with_a_reading_at_or_before_the_command(first, expected):
+    assert simulation_start(first + np.arange(2000) / 200.0) == pytest.approx(expected, abs=1e-9)

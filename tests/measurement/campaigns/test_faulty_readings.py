@@ -1,0 +1,111 @@
+"""Columns that are no readings become gaps, with a line; the good test is that of resting_stack.py."""
+
+import numpy as np
+import pytest
+from resting_stack import MARKERS, MOTION, STRUCTURE, resting_stack, write_campaign
+
+from blockshake.errors import InputError
+from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.campaigns.faulty_readings import without_faulty
+from blockshake.measurement.checks.campaign_check import campaign_lines
+
+OWN = MARKERS.index("block-1-lower")
+Z = 2
+
+
+def _spoilt(change):
+    test = resting_stack()
+    change(test["marker_displacement"].values)
+    return test
+
+
+def _kinds(test):
+    return [(fault.kind, fault.column) for fault in without_faulty(test, STRUCTURE).attrs["faulty"]]
+
+
+def _constant(values):
+    values[:, OWN, Z] = 0.0
+
+
+def _frozen(values):
+    values[800:1100, OWN] = values[800, OWN]
+
+
+def _clipped(values):
+    values[:, OWN, 0] = np.clip(values[:, OWN, 0], -0.02, 0.02)
+
+
+def _doubled(values):
+    values[:, OWN, 0] = -values[:, OWN + 1, 0]
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (_constant, [("constant", "block-1-lower.z")]),
+        (_frozen, [("frozen", f"block-1-lower.{axis}") for axis in "xyz"]),
+        (_clipped, [("clipped", "block-1-lower.x")]),
+        (_doubled, [("doubled", "block-1-lower.x"), ("doubled", "block-1-upper.x")]),
+    ],
+)
+def test_what_is_no_reading_is_a_gap(change, expected, tmp_path):
+    test = _spoilt(change)
+    assert _kinds(test) == expected
+    folder = write_campaign(tmp_path, test)
+    remarks = campaign_lines(folder)
+    for _, column in expected:
+        assert any("taken as gaps" in line and column in line for line in remarks), remarks
+    read = load_test(load_campaign(folder), "t1")["marker_displacement"].to_numpy()
+    sound = resting_stack()["marker_displacement"].to_numpy()
+    lost = np.isnan(read) & np.isfinite(sound)
+    changed = test["marker_displacement"].to_numpy() != sound
+    assert not (changed & ~lost & np.isfinite(sound))[:, OWN].any()
+    np.testing.assert_array_equal(read[~lost & np.isfinite(sound)], sound[~lost & np.isfinite(sound)])
+
+
+def test_a_sound_test_loses_nothing():
+    assert _kinds(resting_stack()) == []
+
+
+@pytest.mark.parametrize("digits", [3, 4])
+def test_coarse_digits_are_readings(digits):
+    test = resting_stack()
+    test["marker_displacement"].values[:] = np.round(test["marker_displacement"].values, digits)
+    assert _kinds(test) == []
+
+
+def test_rest_without_noise_is_a_reading():
+    """A synthetic test rests exactly for 2 s, and then moves along x alone."""
+    test = resting_stack()
+    moved = np.zeros(test["marker_displacement"].shape)
+    moved[400:, :, 0] = MOTION.evaluate(test["time"].to_numpy()[:-400])[:, :1]
+    test["marker_displacement"].values[:] = moved
+    assert _kinds(test) == []
+
+
+def test_directions_filled_with_zeros_are_not_measured(tmp_path):
+    def along_x(values):
+        values[..., 1:] = 0.0
+
+    folder = write_campaign(tmp_path, _spoilt(along_x))
+    test = load_test(load_campaign(folder), "t1")
+    assert test["marker_displacement"].sel(axis=["y", "z"]).isnull().all()
+    assert test["marker_displacement"].sel(axis="x").notnull().any("time").all()
+
+
+def test_a_dead_marker_and_a_dead_channel_are_left_out(tmp_path):
+    test = resting_stack()
+    test["marker_displacement"].values[:, OWN] = 0.0
+    test["accelerometer"].values[:, 1] = 9.81
+    read = load_test(load_campaign(write_campaign(tmp_path, test)), "t1")
+    assert "block-1-lower" not in read["marker"].values
+    assert read["channel"].values.tolist() == ["slab-acc-x"]
+
+
+def test_a_table_without_any_reading_is_refused(tmp_path):
+    def dead_slab(values):
+        values[:, [place for place, name in enumerate(MARKERS) if name.startswith("slab")]] = 0.0
+
+    folder = write_campaign(tmp_path, _spoilt(dead_slab))
+    with pytest.raises(InputError, match=r"t1\.nc: marker: expected a marker of the driven body"):
+        load_test(load_campaign(folder), "t1")

@@ -1,0 +1,170 @@
+"""A workflow that cannot succeed any more ends at once; its last lines are the reason, the job and the log."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from checkout import LIMIT, Checkout
+
+RUNS = "results/small/runs/nscd-rigid/configuration-1/000-004.nc"
+NOT_FINISHED = "Not finished. All that is finished is kept, and the same command goes on."
+REFUSED = 'raise InputError("{0}.csv", "key", "expected another {0}")'
+# two jobs without inputs, that wait for each other's start; and a simulation that keeps its state when interrupted
+BOTH = """
+import time
+from pathlib import Path
+while len(list(Path("logs").rglob("*.log"))) < 2:
+    time.sleep(0.01)
+"""
+LONG = """
+def simulate_samples(*_, **__):
+    import time
+    from pathlib import Path
+    try:
+        Path("simulates").touch()
+        time.sleep(1e5)
+    except KeyboardInterrupt:
+        Path("kept").touch()
+        raise
+"""
+
+
+def broken(checkout, module, function, body):
+    """Put a function with another body in the place of one of the package."""
+    lines = "".join(f"\n    {line}" for line in body.strip().splitlines())
+    checkout.append(f"{module}.py", f"\n\ndef {function}(*_, **__):{lines}\n")
+
+
+def describe_fails(checkout, body):
+    broken(checkout, "dynamics/describe_motion", "describe_motion", body)
+
+
+def drawing_fails(checkout, body):
+    broken(checkout, "study/sampling/latin_hypercube", "draw_design", body)
+
+
+IMPORT = "from blockshake.errors import InputError\n"
+
+
+def last_lines(answer, count):
+    return answer.stderr.splitlines()[-count:]
+
+
+def test_bad_input_of_the_first_job_ends_a_study_at_once(tmp_path):
+    checkout = Checkout(tmp_path)
+    drawing_fails(checkout, IMPORT + REFUSED.format("design"))
+    answer = checkout.snakemake(RUNS)
+    assert answer.returncode == 2
+    assert last_lines(answer, 4) == [
+        NOT_FINISHED,
+        "blockshake: design.csv: key: expected another design",
+        "  job: draw_samples, which makes results/small/design.csv, results/small/design.json",
+        "  log: logs/small/draw_samples.log",
+    ]
+    assert not (tmp_path / "results" / "store").exists()
+    assert "Ended with exit code 2" in (tmp_path / "logs" / "small" / "draw_samples.log").read_text()
+
+
+def test_a_bug_ends_a_study_at_once_with_exit_1(tmp_path):
+    checkout = Checkout(tmp_path)
+    drawing_fails(checkout, "return {}['a\\nb']")
+    answer = checkout.snakemake("results/small/design.csv")
+    assert answer.returncode == 1
+    assert last_lines(answer, 3)[0] == r"blockshake: KeyError: 'a\nb'"
+    assert last_lines(answer, 1) == ["  log: logs/small/draw_samples.log"]
+
+
+def test_a_job_that_is_killed_ends_a_study_too(tmp_path):
+    checkout = Checkout(tmp_path)
+    drawing_fails(checkout, "import os\nos.kill(os.getpid(), 9)")
+    answer = checkout.snakemake("results/small/design.csv")
+    assert answer.returncode == 1
+    assert "the job ended without a word, as one that is killed does" in last_lines(answer, 3)[0]
+
+
+@pytest.mark.parametrize("engine", [(), ("--keep-going",)])
+def test_two_jobs_fail(tmp_path, engine):
+    checkout = Checkout(tmp_path)
+    drawing_fails(checkout, BOTH + IMPORT + REFUSED.format("design"))
+    describe_fails(checkout, BOTH + IMPORT + REFUSED.format("motion"))
+    answer = checkout.snakemake("results/small/design.csv", "results/small/motions/alkion.nc", *engine)
+    assert answer.returncode == 2
+    ends = answer.stderr[answer.stderr.rindex(NOT_FINISHED) :].splitlines()
+    assert ends[-1].startswith("  log: logs/small/")
+    reasons = {f"blockshake: {name}.csv: key: expected another {name}" for name in ("design", "motion")}
+    assert set(ends) & reasons
+    if engine:
+        assert reasons <= set(ends)
+
+
+def test_jobs_that_need_no_failed_one_go_on_where_that_is_asked_for(tmp_path):
+    checkout = Checkout(tmp_path)
+    describe_fails(checkout, IMPORT + REFUSED.format("motion"))
+    answer = checkout.snakemake(
+        "results/small/motions/alkion.nc", "results/small/design.csv", "--keep-going", "--cores", "1"
+    )
+    assert answer.returncode == 2
+    assert (tmp_path / "results" / "small" / "design.csv").exists()
+
+
+def test_a_failure_ends_a_simulation_that_runs(tmp_path):
+    checkout = Checkout(tmp_path)
+    wait = (
+        'import time\nfrom pathlib import Path\nwhile not Path("simulates").exists():\n    time.sleep(0.01)\n'
+    )
+    describe_fails(checkout, wait + IMPORT + REFUSED.format("motion"))
+    checkout.append("study/ensembles/batch.py", LONG)
+    answer = checkout.snakemake(RUNS, "results/small/motions/alkion.nc")
+    assert (tmp_path / "simulates").exists()
+    assert answer.returncode == 2
+    assert last_lines(answer, 3)[0] == "blockshake: motion.csv: key: expected another motion"
+    assert (tmp_path / "kept").exists()
+    assert not (tmp_path / RUNS).exists()
+
+
+def test_an_interrupted_study_says_so_last(tmp_path):
+    checkout = Checkout(tmp_path)
+    checkout.append("study/ensembles/batch.py", LONG)
+    running = subprocess.Popen(
+        checkout.command(RUNS), cwd=tmp_path,
+        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )  # fmt: skip
+    deadline = time.monotonic() + LIMIT
+    while not (tmp_path / "simulates").exists():
+        assert time.monotonic() < deadline
+        assert running.poll() is None
+        time.sleep(0.05)
+    os.killpg(running.pid, signal.SIGINT)
+    _, said = running.communicate(timeout=LIMIT)
+    assert running.returncode == 130
+    assert said.splitlines()[-2:] == [NOT_FINISHED, "blockshake: interrupted"]
+    assert (tmp_path / "kept").exists()
+
+
+@pytest.mark.parametrize(
+    ("body", "code", "reason"),
+    [
+        (IMPORT + REFUSED.format("readings"), 2, "readings.csv: key: expected another readings"),
+        ("return 1 / 0", 1, "ZeroDivisionError: division by zero"),
+    ],
+)
+def test_a_diagnosis_ends_with_its_first_step(tmp_path, body, code, reason):
+    checkout = Checkout(tmp_path)
+    broken(checkout, "diagnosis/steps", "read_measured", body)
+    answer = subprocess.run(
+        [sys.executable, "-m", "blockshake", "diagnose", "data/virtual-campaign/configuration-1",
+         "--output", "new/output", "--effort", "quick", "--cores", "2"],
+        cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(tmp_path / "src")}, capture_output=True, text=True,
+        timeout=LIMIT, check=False,
+    )  # fmt: skip
+    assert answer.returncode == code
+    said, job, log = last_lines(answer, 3)
+    assert said == f"blockshake: {reason}"
+    assert job.startswith("  job: read_measured, which makes results/diagnosis/")
+    assert log.startswith("  log: logs/")
+    assert not (tmp_path / "new").exists()
+    assert not list(tmp_path.glob("results/libraries/**/*.nc"))
