@@ -2,7 +2,7 @@
 
 from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
 from blockshake.effects.places import blocks
-from blockshake.forces.wrench_histories import mass_centre_off
+from blockshake.forces.seen.wrench_histories import mass_centre_off
 
 _SCALE = 0.06  # m
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
 from blockshake.effects.places import face_of, joints, stated_joint
-from blockshake.forces.wrench_histories import edge_inward, normal_force
+from blockshake.forces.seen.wrench_histories import edge_inward, normal_force
 
 COMPLIANCES = np.geomspace(2e-11, 5e-9, 24)  # m3/N
 _SMALLEST = 1e-4  # rad

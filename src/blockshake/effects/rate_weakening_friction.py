@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
 from blockshake.effects.places import nowhere
-from blockshake.forces.wrench_histories import friction_against_slip
+from blockshake.forces.seen.wrench_histories import friction_against_slip
 
 _SCALE = 0.6
 _RATES = (0.003, 0.01, 0.03, 0.1)  # m/s

@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
 from blockshake.effects.places import face_of, joints, nowhere
-from blockshake.forces.wrench_histories import edge_inward
+from blockshake.forces.seen.wrench_histories import edge_inward
 
 _SCALE, _STEP = 0.05, 0.015  # m: of the inset, and of its change from knot to knot
 _KNOTS = np.array([0.3, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0]) * 1e-3  # rad, of a law of any shape

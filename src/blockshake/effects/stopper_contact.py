@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
 from blockshake.effects.places import blocks, stops
-from blockshake.forces.point_rows import point_rows
+from blockshake.forces.seen.point_rows import point_rows
 
 _SCALE = 1e7  # N/m
 _GAPS = np.concatenate([[0.002, 0.004], np.arange(0.006, 0.0601, 0.002)])  # m

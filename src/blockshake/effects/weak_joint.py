@@ -2,7 +2,7 @@
 
 from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
 from blockshake.effects.places import face_of, joints, stated_joint
-from blockshake.forces.wrench_histories import friction_against_slip
+from blockshake.forces.seen.wrench_histories import friction_against_slip
 
 _SCALE = 0.7  # of the coefficient that is missing
 

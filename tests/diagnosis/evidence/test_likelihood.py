@@ -35,7 +35,9 @@ def problem():
 
 def test_evidence_without_a_cause_is_the_density_of_the_rows(problem):
     likelihood, value, covariance, _ = problem
-    expected = multivariate_normal(cov=covariance).logpdf(value) + 0.5 * len(value) * np.log(2.0 * np.pi) - 0.7
+    expected = (
+        multivariate_normal(cov=covariance).logpdf(value) + 0.5 * len(value) * np.log(2.0 * np.pi) - 0.7
+    )
     assert likelihood.log_evidence == pytest.approx(expected, rel=1e-12)
 
 

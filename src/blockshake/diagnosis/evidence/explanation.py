@@ -1,4 +1,4 @@
-"""What a cause at a place explains of the rows: its evidence, and the forces that it would have made."""
+"""The explanation of the rows by a cause at a place: its evidence, and the forces that it would have made."""
 
 from dataclasses import dataclass, field
 

@@ -5,8 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from blockshake.forces.seen_test import SeenTest
-from blockshake.forces.wrench_histories import (
+from blockshake.forces.seen.seen_test import SeenTest
+from blockshake.forces.seen.wrench_histories import (
     edge_inward,
     edges_along,
     friction_against_slip,

@@ -1,4 +1,4 @@
-"""What nobody knows of sound blocks to the millimetre: small errors that every cause is compared beside.
+"""Small errors of sound blocks that nobody knows to the millimetre: every cause is compared beside them.
 
 Each is a column of the rows times its standard deviation, marginalised in closed form.
 """

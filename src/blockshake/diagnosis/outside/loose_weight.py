@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.effects.effect import Columns
-from blockshake.forces.wrench_histories import force_at
+from blockshake.forces.seen.wrench_histories import force_at
 
 _GRIPS = (0.05, 0.1, 0.2, 0.3, 0.4, 9.0)  # coefficients of friction; the last one holds
 _SCALE = 0.2  # of the block's mass

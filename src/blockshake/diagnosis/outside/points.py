@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from blockshake.effects.stopper_contact import HEIGHTS
-from blockshake.forces.point_rows import point_rows
+from blockshake.forces.seen.point_rows import point_rows
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,14 @@ import numpy as np
 import pytest
 from known_blocks import GRAVITY, HEIGHT, WIDTH, readings, rocking, shaken, sliding, stack
 
-from blockshake.forces.point_rows import point_rows
-from blockshake.forces.seen_test import see_test
-from blockshake.forces.wrench_histories import edge_inward, force_at, friction_against_slip, mass_centre_off
+from blockshake.forces.seen.point_rows import point_rows
+from blockshake.forces.seen.seen_test import see_test
+from blockshake.forces.seen.wrench_histories import (
+    edge_inward,
+    force_at,
+    friction_against_slip,
+    mass_centre_off,
+)
 
 STILL = 1e-6  # m, m/s2: noise of readings that have next to none
 
@@ -130,7 +135,7 @@ def test_a_body_that_no_sensor_reads_leaves_the_rows_of_the_others(quiet):
 
 def test_states_of_a_seen_test_can_be_replaced(rocked):
     """The rows follow from the states alone: a face that may carry all leaves none."""
-    from blockshake.forces.rows import equilibrium_rows
+    from blockshake.forces.seen.equilibrium_rows import equilibrium_rows
 
     closed = replace(rocked.states, edge=np.zeros_like(rocked.states.edge))
     rows = equilibrium_rows(rocked.frames, closed, rocked.motion, rocked.required, rocked.free)

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 
-from blockshake.forces.wrench_histories import force_at, moves_at
+from blockshake.forces.seen.wrench_histories import force_at, moves_at
 
 _FINER = 4  # instants between two of the motion: a force with a kink is smoothed after it is computed
 _REACH = 4.0  # widths of the kernel

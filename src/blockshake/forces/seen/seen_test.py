@@ -11,7 +11,7 @@ from blockshake.forces.joint_forces import from_rest
 from blockshake.forces.joint_motion import JointMotion, joint_motion
 from blockshake.forces.motion import WIDTH, Motion, smooth_motion
 from blockshake.forces.required import RequiredWrenches, required_wrenches
-from blockshake.forces.rows import (
+from blockshake.forces.seen.equilibrium_rows import (
     ContactForces,
     FaceFrames,
     Rows,
@@ -21,7 +21,7 @@ from blockshake.forces.rows import (
     face_frames,
     with_resultants,
 )
-from blockshake.forces.states import FaceStates, face_states
+from blockshake.forces.seen.states import FaceStates, face_states
 from blockshake.geometry.structure import Structure
 
 _STEP = 0.01  # s, between instants: less than the kernel's width

@@ -1,0 +1,1 @@
+"""All causes side by side, and the answer that the readings give."""
