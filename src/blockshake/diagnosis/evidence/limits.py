@@ -24,8 +24,8 @@ def detection_limit(likelihood, columns, scale, needed):
 
     Notes
     -----
-    With the standard deviation s of the amplitude, nuisances free, an amplitude a gains ``a^2 / (2 s^2) - ln(1 + scale^2
-    / s^2) / 2`` in the mean.
+    With the standard deviation s of the amplitude, nuisances free, an amplitude a gains
+    ``a^2 / (2 s^2) - ln(1 + scale^2 / s^2) / 2`` in the mean.
     """
     whitened = likelihood.whiten([rows[:, None] for rows in columns])
     gram = float(likelihood.normal_equations(whitened)[1][0, 0])

@@ -17,7 +17,7 @@ _EITHER = 99  # number of no state
 
 @dataclass(frozen=True)
 class FaceStates:
-    """What every face does at every instant, its own changes within three widths of the kernel left out.
+    """States of all faces at every instant, their own changes within three widths of the kernel left out.
 
     Attributes
     ----------
