@@ -163,4 +163,4 @@ _LINES = {
     VirtualCampaign: _virtual_line,
     SyntheticMotion: _motion_line,
 }
-"""What is said of a file, by the schema that has most of its keys."""
+"""Lines of a file, by the schema that has most of its keys."""
