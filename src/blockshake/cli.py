@@ -20,7 +20,12 @@ UNREAD = 141  # whoever reads the output has gone, as after `blockshake paramete
 
 
 class _Parser(argparse.ArgumentParser):
-    """Argument errors as one line and exit 2, like all bad input."""
+    """Argument errors as one line and exit 2, like all bad input; numbers without Python's ``1_000``."""
+
+    def __init__(self, *arguments, **named):
+        super().__init__(*arguments, **named)
+        for kind in (float, int):
+            self.register("type", kind, lambda text, kind=kind: kind(text.replace("_", "no digit")))
 
     def error(self, message):
         raise InputError(self.prog, "", message)

@@ -210,7 +210,7 @@ def test_tables_of_the_project_are_corrected_with_a_frequency_alone(tmp_path):
     assert "along z it ends with -0.3 m/s at -4500 mm" in read.attributes["baseline"]
 
 
-@pytest.mark.parametrize("value", ["correct", "", None, True, 0, -0.1, np.nan, np.inf, "0", [0.1]])
+@pytest.mark.parametrize("value", ["correct", "", None, True, 0, -0.1, np.nan, np.inf, "0", "1_0", [0.1]])
 def test_another_baseline_is_refused(value, tmp_path):
     with pytest.raises(ValueError, match="expected auto, none or a corner frequency"):
         checked_baseline(value)

@@ -12,6 +12,7 @@ from blockshake.dynamics.intensity import motion_figures
 from blockshake.dynamics.motion import CHANNELS, PITCH, ground_motion
 from blockshake.dynamics.print_rounding import may_be_rounding
 from blockshake.errors import InputError
+from blockshake.tables.numbers import plain_number
 from blockshake.validation import Positive
 
 AUTO, NONE = "auto", "none"
@@ -34,7 +35,8 @@ def checked_baseline(value):
     if value in (AUTO, NONE):
         return value
     try:
-        corner = np.nan if isinstance(value, bool) else float(value)
+        number = plain_number(value) if isinstance(value, str) else value
+        corner = np.nan if isinstance(number, bool) else float(number)
     except (TypeError, ValueError):
         corner = np.nan
     if not 0.0 < corner < np.inf:
