@@ -81,6 +81,8 @@ def test_numerical_failure_keeps_what_was_computed(tmp_path, capsys):
           "--set", "restitution", "--output", "x.nc"], "--set: restitution: expected KEY=VALUE"),
         (["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "ls-dem", "--set",
           "friction.wood.wood=1", "--output", "x.nc"], "friction.wood.wood"),
+        (["calibrate-stiffness", "--structure", "configuration-1", "--set", "restitution=0.1", "--set",
+          "restitution=0.2", "--output", "x.json"], "--set: restitution=0.2: expected restitution once"),
         (["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "ls-dem", "--duration", "-1",
           "--output", "x.nc"], "--duration: expected a positive number"),
         (["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "nscd-rigid", "--time-step",

@@ -215,6 +215,8 @@ def _settings(options):
         key, equals, value = setting.partition("=")
         if not equals or not key:
             raise InputError("--set", setting, "expected KEY=VALUE")
+        if key in settings:
+            raise InputError("--set", setting, f"expected {key} once")
         settings[key] = parse_yaml(value, f"--set {key}")
     return settings
 
