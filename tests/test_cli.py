@@ -98,6 +98,15 @@ def test_bad_input_is_one_line_and_exit_2(arguments, line, capsys, tmp_path, mon
     assert list(tmp_path.iterdir()) == []
 
 
+def test_simulate_remarks_a_motion_that_is_hardly_meant(capsys, caplog, tmp_path):
+    """Accelerations in g taken as m/s2; the run itself is refused."""
+    path = tmp_path / "weak.csv"
+    path.write_text("time_s,acceleration_x\n0,0\n0.5,0.3\n1,0\n")
+    run = ["--structure", "configuration-1", "--model", "nscd-rigid", "--duration", "-1"]
+    assert main(["simulate", *run, "--motion", str(path), "--output", str(tmp_path / "x.nc")]) == 2
+    assert "remark: the peak acceleration is 0.031 g: expected m/s2, not g" in caplog.text
+
+
 def test_parameters_lists_units_and_sources(capsys):
     assert main(["parameters"]) == 0
     table = capsys.readouterr().out

@@ -235,6 +235,7 @@ def _simulate(options):
     from blockshake.simulation.models import part_parameters
     from blockshake.simulation.outcome.ending import ending
     from blockshake.simulation.simulate import simulate_to_file
+    from blockshake.study.motion_remarks import motion_remarks
     from blockshake.study.structure_remarks import unusual_values
 
     _show_progress()
@@ -244,6 +245,8 @@ def _simulate(options):
     for remark in unusual_values(structure.with_parameters(part_parameters(settings)[0])):
         log.info("remark: %s", remark)
     motion = load_motion(options.motion, options.scale, options.baseline)
+    for remark in motion_remarks(motion):
+        log.info("remark: %s", remark)
     if not motion.attributes["synthetic"]:
         log.info("%s", provenance(motion.attributes))
     if Path(options.output).exists():
