@@ -13,6 +13,7 @@ from record_files import COUNT, KNET_SCALE, STEP, at2, cosmos, csmip, dyna, knet
 
 from blockshake.cli import main
 from blockshake.dynamics.load_motion import load_motion
+from blockshake.errors import InputError
 
 CASES = Path(os.environ.get("BLOCKSHAKE_SHARED", Path(__file__).parents[4] / "shared")) / "cases"
 G = 9.80665
@@ -324,6 +325,12 @@ def test_a_record_says_what_was_checked_and_assumed(tmp_path):
     attributes = load_motion(write(tmp_path, "b.v2", csmip(CM, channels=2)), channels={"y": "2"}).attributes
     assert attributes["assumed"] == "nothing"
     assert attributes["channels"] == "y: 180 Deg"
+
+
+def test_a_channel_is_of_one_axis(tmp_path):
+    path = write(tmp_path, "b.v2", csmip(CM, channels=2))
+    with pytest.raises(InputError, match="--column: y=180 deg: expected every channel for one axis"):
+        load_motion(path, channels={"x": "2", "y": "180 deg"})
 
 
 @pytest.mark.parametrize("name", ["alkion", "m.csv"])

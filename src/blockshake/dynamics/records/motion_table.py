@@ -44,14 +44,19 @@ def load_motion_table(source, layout, time, columns, unit, time_unit="s", baseli
     Raises
     ------
     InputError
-        A missing column, an unknown unit or channel, a cell that is no number, times that do not increase or have a
-        gap; a correction of other than evenly spaced accelerations.
+        A missing column, a column twice, an unknown unit or channel, a cell that is no number, times that do not
+        increase or have a gap; a correction of other than evenly spaced accelerations.
     """
     kind = kind_of_unit(unit, ("acceleration", "velocity", "displacement"), "--unit", unit)
     given = kind, unit_size(kind, unit, "--unit", unit)
     for channel in columns:
         if channel not in CHANNELS[:3]:
             raise InputError("--column", channel, f"expected {', '.join(CHANNELS[:3])}")
+    names = [name.strip() for name in columns.values()]
+    if len(set(names)) < len(names) or (time_step is None and time.strip() in names):
+        raise InputError(
+            "--column", ", ".join(names), "expected every column once, and not that of the times"
+        )
     assumed = f"{unit.strip()}, as given"
     if columns:
         table = read_table(source, layout)
