@@ -194,6 +194,7 @@ def test_there_are_many_made_files():
     assert len(MADE) >= 40
 
 
+FREE = {"approx": 4, "entries": {63: -999.0, 64: -999.0, 65: -999.0}}
 PEAK, AT = f"{0.01 * CM.min():.4g}"[:5], f"{STEP * np.argmin(CM):.3g}"
 REFUSED = [
     ("a.asc", dyna(CM, DURATION_S="6.000"), ("DURATION_S", "5 s", "6 s")),
@@ -216,6 +217,10 @@ REFUSED = [
     ("a.v2", cosmos(CM, entries={65: 3.5}), ("entry 65", AT, "3.5 s")),
     ("a.v2", cosmos(CM, approx=12), ("line 48", "5 s", "12 s")),
     ("a.v2", cosmos(CM, count=400), ("line 48", "more")),
+    ("a.v2", cosmos(CM - 200.0, count=400, layout="10F8.3", **FREE), ("line 48", "more")),  # they touch, by a sign
+    ("a.v2", cosmos(CM + 200.0, count=400, layout="10F7.3", **FREE), ("line 48", "more")),  # and without any
+    ("a.v2", csmip(CM - 200.0, units=", in cm/sec2. (10f8.3)", width=8, columns=10, decimals=3, count=400, points=400),
+     ("line 46", "more")),
     ("a.v2", cosmos(CM, text="Max = 90.0 cm/sec2 at 2.530 sec"), ("line 12", "0.9 m/s2")),
     ("a.v2", cosmos(CM, channels=2), ("1: 90 Deg; 2: 180 Deg", "--column x=NUMBER")),
     ("a.v2", csmip(CM, step="0.020"), ("line 17", "0.01 s", "0.02 s")),
@@ -239,6 +244,7 @@ REFUSED = [
     ("a.smc", smc(CM, real={31: 1.0}), ("real number 31", "1 s")),
     ("a.smc", smc(CM, peak="100.0"), ("line 7", "1 m/s2")),
     ("a.smc", smc(CM, whole={17: 480}), ("480", "more")),
+    ("a.smc", smc(-1e2 - abs(CM), whole={17: 480}), ("480", "more")),
     ("a.smc", smc(CM, kind="3 VELOCITY"), ("line 1", "3 VELOCITY")),
 ]  # fmt: skip
 

@@ -100,12 +100,7 @@ def free_values(lines, first, count, where, count_key):
         A value is not a finite number, stands for a missing one or is cut short, or there are more or fewer than
         ``count``, or fewer than two.
     """
-    cells = [
-        (text, index + 1)
-        for index in range(first, len(lines))
-        for token in lines[index].split()
-        for text in touching_numbers(token) or [token]
-    ]
+    cells = [(text, index + 1) for index in range(first, len(lines)) for text in _tokens(lines[index])]
     return _series(cells, count, where, count_key)
 
 
@@ -140,20 +135,30 @@ def fixed_values(lines, first, count, layout, where, count_key):
     for index in range(first, min(behind, len(lines))):
         line, expected = lines[index].rstrip(), min(columns, count - len(cells))
         if len(line) == expected * width:
-            texts = [line[start : start + width] for start in range(0, len(line), width)]
+            texts = cut_columns(line, width)
         else:
-            texts = [text for token in line.split() for text in touching_numbers(token) or [token]]
+            texts = _tokens(line)
         if len(texts) != expected and plain_number(texts[0] if texts else ""):
             expected = f"expected {expected} values, in {width} columns each, found {len(texts)}"
             raise InputError(where, f"line {index + 1}", expected)
         if len(texts) != expected:  # the next header, or the end
             break
         cells += [(text.strip(), index + 1) for text in texts]
-    if any(
-        tokens and all(map(plain_number, tokens)) for tokens in map(str.split, lines[behind : behind + 1])
-    ):
+    rest = "".join(lines[behind : behind + 1])
+    if any(texts and all(map(plain_number, texts)) for texts in (cut_columns(rest, width), _tokens(rest))):
         raise InputError(where, count_key, f"expected {count} values, found more in line {behind + 1}")
     return _series(cells, count, where, count_key)
+
+
+def cut_columns(line, width):
+    """Texts of one line, cut at fixed columns: they may touch."""
+    line = line.rstrip()
+    return [line[start : start + width] for start in range(0, len(line), width)]
+
+
+def _tokens(line):
+    """Texts of one line between blanks, or touching where a sign tells them apart."""
+    return [text for token in line.split() for text in touching_numbers(token) or [token]]
 
 
 def _series(cells, count, where, count_key):
