@@ -95,6 +95,7 @@ MADE = [
     Made("a.at2", at2(GS, sizes=f"DT= .0100 SEC, NPTS= {COUNT}"), G * scientific(GS, 7)),
     Made("a.at2", at2(GS, sizes=f"NPTS={COUNT},DT=0.01"), G * scientific(GS, 7)),
     Made("a.at2", at2(GS, cells=[fortran(value) for value in GS]), G * scientific(GS, 6)),
+    Made("a.at2", at2(GS, cells=[f" {value}" for value in GS.tolist()]), G * GS),  # zeros left out
     Made("a.txt", at2(GS).replace("\n", "\r\n"), G * scientific(GS, 7)),
     Made("a.AT2", "\ufeff" + at2(GS).strip(), G * scientific(GS, 7)),
     Made("a.at2", at2(GS).replace("MADE UP", "MÀDE UP").encode("latin-1"), G * scientific(GS, 7)),
@@ -206,6 +207,9 @@ REFUSED = [
     ("a.asc", dyna(CM).replace("STREAM: HNE", "UNITS: m/s^2"), ("UNITS", "once")),
     ("a.asc", dyna(CM)[:-4], ("line 564", "cut short")),
     ("a.at2", at2(GS).rstrip()[:-1], ("cut short",)),
+    ("a.asc", dyna(CM).replace(f"{CM[9]:.6f}", f"{CM[9]:.2f}", 1), ("line 74", "cut short")),
+    ("a.at2", at2(GS).replace(f"{GS[7]:15.7E}", f"{GS[7]:.7E}"[:-1].rjust(15)), ("line 6", "cut short")),
+    ("a.v2", cosmos(CM, **FREE).replace(f"{CM[3]:9.3f}", f"{CM[3]:9.1f}", 1), ("line 49", "cut short")),
     ("a.at2", at2(GS, sizes=f"NPTS= {COUNT - 5}, DT= .01 SEC"), ("NPTS", "495", "500")),
     ("a.at2", at2(GS).replace(f"{GS[7]:15.7E}", "  -0.9990000E+03"), ("looks like a code for none", "line 6")),
     ("a.at2", at2(GS, units="CM/S"), ("line 3", "'CM/S'")),

@@ -7,6 +7,8 @@ import numpy as np
 from blockshake.errors import InputError
 from blockshake.tables.numbers import missing_code, plain_number, touching_numbers
 
+_FEW = 0.01  # of all values, which have fewer digits than all others: a print of zeros left out has a tenth
+
 
 @dataclass(frozen=True)
 class Record:
@@ -168,11 +170,12 @@ def _series(cells, count, where, count_key):
         raise InputError(where, count_key, f"expected {count} values, found {len(values)}")
     if count < 2:
         raise InputError(where, count_key, f"expected at least two values, found {count}")
-    last, line = cells[-1]
-    digits = {len(text.partition(".")[2]) for text, _ in cells[:-1]}
-    if len(digits) == 1 and len(last.partition(".")[2]) < min(digits):  # 1.23E-0 for 1.23E-05
+    digits = [len(text.partition(".")[2]) for text, _ in cells]
+    short = [cell for cell, behind in zip(cells, digits, strict=True) if behind < max(digits)]
+    if 0 < len(short) <= max(1, _FEW * len(cells)):  # 1.23E-0 for 1.23E-05
+        text, line = short[0]
         raise InputError(
-            where, f"line {line}", f"expected as many digits as elsewhere, found '{last}': it is cut short"
+            where, f"line {line}", f"expected as many digits as elsewhere, found '{text}': it is cut short"
         )
     coded = missing_code(values)
     if coded is not None:
