@@ -46,7 +46,11 @@ def test_a_unit_before_other_words():
         ("mm/s2", "0.001"),
     ):
         assert leading_unit("acceleration", text, "here", "line") == Decimal(size)
-    for text in ("G X 10", "G / 10", "G * 10", "G 10", "CM PER SEC", ""):
+    assert leading_unit("acceleration", "(02)", "here", "line") == Decimal("9.80665")
+    for text in (
+        "G X 10", "G / 10", "G * 10", "G 10", "CM PER SEC", "", "G (x 1000)", "G TIMES 10", "G MULTIPLY BY 10",
+        "G, SCALED BY 10", "G, CORRECTED, SCALE FACTOR 10", "G SF= 10", "G (10)", "cm/s^2 (02)", "G (04)",
+    ):  # fmt: skip
         with pytest.raises(InputError, match="expected a unit of acceleration"):
             leading_unit("acceleration", text, "here", "line")
 

@@ -1,7 +1,7 @@
 """ESM and ITACA "DYNA 1.2" ASCII: header lines ``KEY: value``, then one value a line."""
 
 from blockshake.dynamics.records.header_checks import HeaderChecks
-from blockshake.dynamics.records.record import Record, free_values, positive_number
+from blockshake.dynamics.records.record import SPECTRUM, Record, free_values, positive_number
 from blockshake.errors import InputError
 from blockshake.tables.units import unit_size
 
@@ -57,7 +57,7 @@ def read_dyna(text, where):
     for key in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS", "DATA_TYPE"):
         if not header.get(key):
             raise InputError(where, key, "expected this key in the header, with a value")
-    if not header["DATA_TYPE"].upper().endswith("ACCELERATION"):
+    if not header["DATA_TYPE"].upper().endswith("ACCELERATION") or SPECTRUM.search(header["DATA_TYPE"]):
         raise InputError(where, "DATA_TYPE", f"expected ACCELERATION, found '{header['DATA_TYPE']}'")
     unit = float(unit_size("acceleration", header["UNITS"], where, "UNITS"))
     step = positive_number(header["SAMPLING_INTERVAL_S"], where, "SAMPLING_INTERVAL_S")

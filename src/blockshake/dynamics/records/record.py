@@ -1,5 +1,6 @@
 """Common result of all record formats: a uniform acceleration series in SI, and its metadata."""
 
+import re
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from blockshake.errors import InputError
 from blockshake.tables.numbers import missing_code, plain_number, touching_numbers
 
+SPECTRUM = re.compile("spectr|pseudo", re.IGNORECASE)  # of a header whose values are no motion
 _FEW = 0.01  # of all values, which have fewer digits than all others: a print of zeros left out has a tenth
 
 
