@@ -13,7 +13,7 @@ VALUES = series(503) / 1000.0  # g; a last line that is not full
     [
         None, "  503   0.0100   NPTS, DT", "NPTS=   503, DT= 0.01000 SEC", "NPTS=503,DT=.01",
         "DT= .0100 SEC, NPTS= 503", "DT=10.0 MSEC, NPTS=503", "503, .0100 NPTS, DT", "npts= 503, dt= 1.0D-02 sec",
-        "NPTS= 503, DT= .01 SEC, DURATION= 5.03 SEC, FS= 100 HZ",
+        "NPTS=503., DT=.01SEC", "DT=10.MSEC NPTS=503", "NPTS= 503, DT= .01 SEC, DURATION= 5.03 SEC, FS= 100 HZ",
     ],
 )  # fmt: skip
 def test_all_writings_of_the_sizes(sizes):

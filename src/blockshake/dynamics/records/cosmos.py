@@ -30,7 +30,7 @@ _UNKNOWN = -999.0
 
 def is_cosmos(text):
     """Whether a text looks like a COSMOS file."""
-    return any(_BLOCK.match(line) for line in text.splitlines()[:60])
+    return any(_BLOCK.match(line) for line in text.split("\n")[:60])
 
 
 def read_cosmos(text, where):
@@ -46,7 +46,7 @@ def read_cosmos(text, where):
         no acceleration series; or the length of entry 63 or of the line of the series, the peak or its time contradict
         the values.
     """
-    lines = text.splitlines()
+    lines = text.split("\n")
     records, real, start, index = [], None, 0, 0
     while index < len(lines):
         block, series = _BLOCK.match(lines[index]), _SERIES.match(lines[index])

@@ -24,7 +24,7 @@ _LENGTH, _STEP, _PEAK_TIME, _PEAK_VALUE = 60, 61, 65, 66  # entries of the real 
 
 def is_csmip(text):
     """Whether a text looks like a CSMIP V2 file."""
-    return any(map(_SERIES.match, text.splitlines()[:120]))
+    return any(map(_SERIES.match, text.split("\n")[:120]))
 
 
 def read_csmip(text, where):
@@ -38,7 +38,7 @@ def read_csmip(text, where):
         Data are missing or cut short, the unit is unknown, a value is not a finite number; or the number of values, the
         time step, the length, the peak or its time, in the text or in the real header, contradict the values.
     """
-    lines = text.splitlines()
+    lines = text.split("\n")
     records, start = [], 0
     for index, line in enumerate(lines):
         series = _SERIES.match(line)

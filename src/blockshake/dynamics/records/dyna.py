@@ -26,7 +26,7 @@ _METADATA = {
 def is_dyna(text):
     """Whether a text looks like a DYNA file."""
     return any(
-        line.startswith(("SAMPLING_INTERVAL_S:", "HEADER_FORMAT: DYNA")) for line in text.splitlines()[:80]
+        line.startswith(("SAMPLING_INTERVAL_S:", "HEADER_FORMAT: DYNA")) for line in text.split("\n")[:80]
     )
 
 
@@ -42,7 +42,7 @@ def read_dyna(text, where):
         A needed key is missing, wrong or twice, the data are not accelerations, a value is not a finite
         number, their number differs from ``NDATA``, or the length, the peak or its time from the header's.
     """
-    lines = text.splitlines()
+    lines = text.split("\n")
     header = {}
     first = len(lines)
     for index, line in enumerate(lines):

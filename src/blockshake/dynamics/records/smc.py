@@ -57,7 +57,7 @@ def read_smc(text, where):
         The file holds something else, is cut short, a value is not a finite number; or an extreme value, its time or
         the peak in line 7 contradicts the values.
     """
-    lines = text.splitlines()
+    lines = text.split("\n")
     kind = lines[0].strip() if lines else ""
     if kind.upper() not in _KINDS:
         raise InputError(where, "line 1", f"expected {' or '.join(_KINDS)}, found '{kind}'")
