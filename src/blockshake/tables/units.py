@@ -30,9 +30,9 @@ _FACTOR = re.compile(
 )
 _COSMOS_CODE = re.compile(r"\(\s*0*(\d+)\s*\)\s*$")
 _OF_CODE = {"2": "g", "4": "cm/s2"}  # COSMOS format 1.20, table 2
-# a unit in a column's name: in brackets, or after an underscore where no word ends so
+# a unit in a column's name: in brackets, or after an underscore or a stroke where no word ends so, or after "in"
 _IN_BRACKETS = re.compile(r"[\[(]([^\[\]()]*(?:\([^()]*\))?[^\[\]()]*)[\])]\s*$")
-_AFTER_UNDERSCORE = re.compile(r"_(ms|mm|cm|um|gal)$", re.IGNORECASE)
+_AT_END = re.compile(r"(?:_|/\s*)(ms|mm|cm|um|gal|mg)$|\bin\s+(\S+)$", re.IGNORECASE)
 
 
 def _plain(text):
@@ -48,7 +48,7 @@ def _plain(text):
     if unit.startswith("(") and unit.endswith(")"):
         unit = unit[1:-1]
     unit = _PER_SECOND_SQUARED.sub("/s2", unit)
-    return {"gs": "g", "gals": "gal"}.get(unit, unit)
+    return {"gs": "g", "gals": "gal", "millis": "ms", "millig": "mg", "milli-g": "mg"}.get(unit, unit)
 
 
 def unit_size(kind, text, where, key):
@@ -93,8 +93,8 @@ def kind_of_unit(text, kinds, where, key):
 
 def unit_of_name(name):
     """Kind and size in SI of the unit that a column's name holds, such as ``EW [cm/s2]`` or ``time_ms``; or None."""
-    match = _IN_BRACKETS.search(name) or _AFTER_UNDERSCORE.search(name)
-    return known_unit(match.group(1)) if match else None
+    match = _IN_BRACKETS.search(name) or _AT_END.search(name)
+    return known_unit(match.group(match.lastindex)) if match else None
 
 
 def known_unit(text):
