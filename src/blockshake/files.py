@@ -146,6 +146,7 @@ def read_foreign_text(path):
         text = content.decode("utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
     except UnicodeDecodeError:
         text = content.decode("cp1252", errors="replace")  # digits are the same in both
+    text = text.rstrip("\x1a")  # the end of a file of DOS
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 

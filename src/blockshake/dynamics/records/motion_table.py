@@ -64,7 +64,9 @@ def load_motion_table(source, layout, time, columns, unit, time_unit="s", baseli
         read = {channel: _finite(table, name, *reversed(given)) for channel, name in columns.items()}
     else:
         where = str(source)
-        read = {"x": _series(source, layout, time_step, given)}
+        read, width = _series(source, layout, time_step, given)
+        if width > 1:
+            assumed += f"; {width} values a line, row by row"
     if time_step is None:
         at = _finite(table, time, unit_size("time", time_unit, "--time-unit", time_unit), "time")
         check_times(at, table.lines, where, time)
@@ -93,8 +95,8 @@ def _finite(table, name, size, kind):
 
 
 def _series(source, layout, time_step, given):
-    """Values without times in SI, where the text above them does not contradict what was given."""
-    values, header = read_series(source, layout)
+    """Values without times in SI as x, and their number a line; the text above may not contradict what was given."""
+    values, header, width = read_series(source, layout)
     for pattern, actual, name in (
         (_STEP, time_step, "--time-step"),
         (_COUNT, len(values), "number of values"),
@@ -105,4 +107,4 @@ def _series(source, layout, time_step, given):
     for stated in _UNIT.findall(header):
         if known_unit(stated) not in (None, given):
             raise InputError(source, "--unit", f"expected '{stated}', as the file says")
-    return float(given[1]) * values
+    return {"x": float(given[1]) * values}, width
