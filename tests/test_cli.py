@@ -74,10 +74,15 @@ def test_numerical_failure_keeps_what_was_computed(tmp_path, capsys):
         (["jump"], "jump"),
         (["check", "nowhere.yaml"], "nowhere.yaml: expected a readable file"),
         (["sample", "--size", "5", "--output", "x.csv"], "10"),
+        (["sample", "--size", "1_0", "--output", "x.csv"], "invalid int value: '1_0'"),
+        (["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "ls-dem", "--scale", "1_0",
+          "--output", "x.nc"], "invalid float value: '1_0'"),
         (["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "ls-dem",
           "--set", "restitution", "--output", "x.nc"], "--set: restitution: expected KEY=VALUE"),
         (["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "ls-dem", "--set",
           "friction.wood.wood=1", "--output", "x.nc"], "friction.wood.wood"),
+        (["calibrate-stiffness", "--structure", "configuration-1", "--set", "restitution=0.1", "--set",
+          "restitution=0.2", "--output", "x.json"], "--set: restitution=0.2: expected restitution once"),
         (["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "ls-dem", "--duration", "-1",
           "--output", "x.nc"], "--duration: expected a positive number"),
         (["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "nscd-rigid", "--time-step",
@@ -91,6 +96,15 @@ def test_bad_input_is_one_line_and_exit_2(arguments, line, capsys, tmp_path, mon
     assert len(said) == 1
     assert line in said[0]
     assert list(tmp_path.iterdir()) == []
+
+
+def test_simulate_remarks_a_motion_that_is_hardly_meant(capsys, caplog, tmp_path):
+    """Accelerations in g taken as m/s2; the run itself is refused."""
+    path = tmp_path / "weak.csv"
+    path.write_text("time_s,acceleration_x\n0,0\n0.5,0.3\n1,0\n")
+    run = ["--structure", "configuration-1", "--model", "nscd-rigid", "--duration", "-1"]
+    assert main(["simulate", *run, "--motion", str(path), "--output", str(tmp_path / "x.nc")]) == 2
+    assert "remark: the peak acceleration is 0.031 g: expected m/s2, not g" in caplog.text
 
 
 def test_parameters_lists_units_and_sources(capsys):

@@ -51,7 +51,15 @@ def test_every_spelling_of_a_number_is_a_number(text, value):
 
 @pytest.mark.parametrize(
     ("text", "value"),
-    [("12", 12), ("configuration-1", "configuration-1"), ("true", True), ("1e-5 m", "1e-5 m")],
+    [
+        ("12", 12),
+        ("-0", 0),
+        ("configuration-1", "configuration-1"),
+        ("true", True),
+        ("1e-5 m", "1e-5 m"),
+        *((text, text) for text in ("02400", "-010", "02400.5", "1:30", "1:30.5", "0x10", "0b11", "0o17")),
+        *((text, text) for text in ("1_000", "1_0.5", "2026-01-31", "2026-01-31 10:00:00")),
+    ],
 )
 def test_other_values_keep_their_type(text, value):
     read = parse_yaml(f"key: {text}", "t")["key"]

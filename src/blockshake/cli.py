@@ -20,7 +20,12 @@ UNREAD = 141  # whoever reads the output has gone, as after `blockshake paramete
 
 
 class _Parser(argparse.ArgumentParser):
-    """Argument errors as one line and exit 2, like all bad input."""
+    """Argument errors as one line and exit 2, like all bad input; numbers without Python's ``1_000``."""
+
+    def __init__(self, *arguments, **named):
+        super().__init__(*arguments, **named)
+        for kind in (float, int):
+            self.register("type", kind, lambda text, kind=kind: kind(text.replace("_", "no digit")))
 
     def error(self, message):
         raise InputError(self.prog, "", message)
@@ -210,6 +215,8 @@ def _settings(options):
         key, equals, value = setting.partition("=")
         if not equals or not key:
             raise InputError("--set", setting, "expected KEY=VALUE")
+        if key in settings:
+            raise InputError("--set", setting, f"expected {key} once")
         settings[key] = parse_yaml(value, f"--set {key}")
     return settings
 
@@ -228,6 +235,7 @@ def _simulate(options):
     from blockshake.simulation.models import part_parameters
     from blockshake.simulation.outcome.ending import ending
     from blockshake.simulation.simulate import simulate_to_file
+    from blockshake.study.motion_remarks import motion_remarks
     from blockshake.study.structure_remarks import unusual_values
 
     _show_progress()
@@ -237,6 +245,8 @@ def _simulate(options):
     for remark in unusual_values(structure.with_parameters(part_parameters(settings)[0])):
         log.info("remark: %s", remark)
     motion = load_motion(options.motion, options.scale, options.baseline)
+    for remark in motion_remarks(motion):
+        log.info("remark: %s", remark)
     if not motion.attributes["synthetic"]:
         log.info("%s", provenance(motion.attributes))
     if Path(options.output).exists():

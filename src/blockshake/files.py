@@ -29,7 +29,10 @@ _MERGE = "tag:yaml.org,2002:merge"
 
 
 class _StrictLoader(yaml.CSafeLoader):
-    """YAML 1.2 numbers (``1e-5`` is one) and no key twice."""
+    """Decimal numbers alone, ``1e-5`` included, no dates and no key twice.
+
+    YAML 1.1 reads ``02400`` as an octal number, ``1:30`` as 90 and ``1_000`` as 1000: here each is a text.
+    """
 
     def construct_mapping(self, node, deep=False):
         known = set()
@@ -43,17 +46,24 @@ class _StrictLoader(yaml.CSafeLoader):
         return super().construct_mapping(node, deep)
 
 
+_StrictLoader.yaml_implicit_resolvers = {
+    first: [(tag, text) for tag, text in known if tag.rsplit(":")[-1] not in ("int", "float", "timestamp")]
+    for first, known in yaml.CSafeLoader.yaml_implicit_resolvers.items()
+}
+_StrictLoader.add_implicit_resolver(
+    "tag:yaml.org,2002:int", re.compile(r"^[-+]?(0|[1-9][0-9]*)$"), list("-+0123456789")
+)
 _StrictLoader.add_implicit_resolver(
     "tag:yaml.org,2002:float",
     re.compile(
-        r"^[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?$|^[-+]?\.(inf|Inf|INF)$|^\.(nan|NaN|NAN)$"
+        r"^[-+]?(\.[0-9]+|(0|[1-9][0-9]*)(\.[0-9]*)?)([eE][-+]?[0-9]+)?$|^[-+]?\.(inf|Inf|INF)$|^\.(nan|NaN|NAN)$"
     ),
     list("-+0123456789."),
 )
 
 
 def parse_yaml(text, where):
-    """Python value of a YAML text, every number read as one (``1e-5`` included).
+    """Python value of a YAML text, every decimal number read as one (``1e-5`` included).
 
     Raises
     ------
@@ -136,6 +146,7 @@ def read_foreign_text(path):
         text = content.decode("utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
     except UnicodeDecodeError:
         text = content.decode("cp1252", errors="replace")  # digits are the same in both
+    text = text.rstrip("\x1a")  # the end of a file of DOS
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 

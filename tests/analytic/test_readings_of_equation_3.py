@@ -10,6 +10,7 @@ SPEED = 0.01  # m/s; gravity off
 STEP = 2e-6
 K_N, K_S = 2.16e10, 9.0e9
 FLAT = (0.76, 2.36)
+INSET = 0.003 * min(FLAT)  # m, the default share of the narrower width
 # a slab that is the block's flat, so that the two sides' nodes are the same
 SEAT = {"slab": {"box": [0.8, 2.4, 0.2], "chamfer": 0.02}}
 BLOCK = {"name": "b", "shape": "block", "position": [0.0, 0.0, 0.8 + 1e-6], "velocity": [0.0, 0.0, -SPEED]}
@@ -70,7 +71,7 @@ def test_node_by_node_a_face_is_overdamped_by_the_root_of_its_nodes(
     zeta_face = zeta sum(sqrt(k_i)) / sqrt(sum(k_i)), zeta sqrt(N) for N alike. Two sides of 65 nodes make 11 of
     one; 9 and 15 nodes a side show that it is the number of nodes that decides.
     """
-    weights = [line_nodes(length, spacing, 0.005)[1] for length in FLAT]
+    weights = [line_nodes(length, spacing, INSET)[1] for length in FLAT]
     share = np.concatenate([np.outer(*weights).ravel()] * 2) / (2.0 * FLAT[0] * FLAT[1])
     excess = np.sqrt(share).sum()
     assert excess > at_least

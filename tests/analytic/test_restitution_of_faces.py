@@ -23,7 +23,8 @@ def test_a_small_anvil_has_the_law_of_its_own_face(restitution, make_structure, 
     structure = make_structure(
         [anvil, block], slab=False, restitution=restitution, gravity=[0.0, 0.0, 0.0], shapes=shapes
     )
-    run = run_ls_dem(structure, 0.13, time_step=10.0 * STEP, node_spacing=2.4)
+    # nodes within 0.1 mm of the anvil's own edge split the overlap less well: the rebound is then 4 % off
+    run = run_ls_dem(structure, 0.13, time_step=10.0 * STEP, node_spacing=2.4, perimeter_inset=0.02)
     assert np.abs(run.angular_velocity[-1]).max() < 1e-9
     zeta = critical_part(restitution)
     omega_dt = 10.0 * STEP * np.sqrt(K_N * 0.03**2 / structure.mass[1])

@@ -210,13 +210,25 @@ def test_tables_of_the_project_are_corrected_with_a_frequency_alone(tmp_path):
     assert "along z it ends with -0.3 m/s at -4500 mm" in read.attributes["baseline"]
 
 
-@pytest.mark.parametrize("value", ["correct", "", None, True, 0, -0.1, np.nan, np.inf, "0", [0.1]])
+@pytest.mark.parametrize("value", ["correct", "", None, True, 0, -0.1, np.nan, np.inf, "0", "1_0", [0.1]])
 def test_another_baseline_is_refused(value, tmp_path):
     with pytest.raises(ValueError, match="expected auto, none or a corner frequency"):
         checked_baseline(value)
     path = write_at2(tmp_path / "r.AT2", wavelet(LATE)[1])
     with pytest.raises(InputError, match=r"r\.AT2: baseline: expected auto, none"):
         load_motion(path, baseline=value)
+
+
+def test_a_corner_lies_below_the_nyquist_frequency_and_above_1_hz_is_remarked(tmp_path):
+    path = write_at2(tmp_path / "r.AT2", wavelet(LATE)[1])
+    nyquist = 0.5 / (TIME[1] - TIME[0])
+    with pytest.raises(
+        InputError, match=f"baseline: expected below the Nyquist frequency, {nyquist:g} Hz, not"
+    ):
+        load_motion(path, baseline=nyquist)
+    remark = "a corner above 1 Hz takes ground motion away"
+    for corner in (1.0, 1.1, 0.99 * nyquist):
+        assert (remark in load_motion(path, baseline=corner).attributes["baseline"]) == (corner > 1.0)
 
 
 def test_text_of_an_option_is_a_number():

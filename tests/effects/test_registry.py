@@ -77,7 +77,8 @@ def _readings(experiment, model):
         experiment.structure, experiment.motion, model, time_step=STEPS[model],
         duration=DURATION, accelerometers=False,
     )  # fmt: skip
-    assert run.attrs["status"] == "completed"
+    # the window ends while the blocks still rock, some towards a fall
+    assert run.attrs["status"] in ("completed", "falling")
     return run, observe(run, experiment.structure, experiment.instruments, seed=1)
 
 

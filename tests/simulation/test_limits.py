@@ -9,7 +9,7 @@ import pytest
 from blockshake.cli import BAD_INPUT, main
 from blockshake.errors import InputError
 from blockshake.geometry.structure import build_structure, load_structure
-from blockshake.simulation.limits import LARGEST_RUN, check_run, run_bytes
+from blockshake.simulation.limits import LARGEST_RUN, check_limits, run_bytes
 from blockshake.simulation.simulate import simulate
 
 MOTION = ["--structure", "configuration-1", "--motion", "alkion", "--output", "r.nc"]
@@ -27,10 +27,12 @@ def little_memory():
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (["--output-rate", "1e9"], r"--duration: expected a run of at most 8.6 GB, not .* GB: 25 s at 1e\+09 Hz"),
+        (["--output-rate", "1e9"], r"--output-rate: expected a run of at most 8.6 GB, not .* GB: 25 s at 1e\+09 Hz"),
         (["--duration", "1e9"], r"--time-step: expected at most 1e\+11 steps, not 1e\+12"),
         (["--duration", "1e7", "--time-step", "0.01"], r"--duration: expected a run of at most 8.6 GB"),
         (["--time-step", "1e-15"], r"--time-step: expected at most 1e\+11 steps, not 2.5e\+16"),
+        (["--duration", "0.1", "--output-rate", "7"], "--output-rate: expected at least 10 Hz of 0.1 s, not 7"),
+        (["--duration", "0.001"], "--output-rate: expected at least 1000 Hz of 0.001 s, not 200"),
         (["--set", "nscd.impact_parts=1000000000"], "nscd.impact_parts: input should be less than or equal to 1000"),
         *(
             ([f"--{name}", value], f"--{name}: expected a positive number, not")
@@ -74,7 +76,7 @@ def test_other_commands_refuse_what_no_memory_holds(command, tmp_path, monkeypat
 
 def test_an_hour_of_motion_is_within_the_limits():
     structure = load_structure("configuration-3")
-    check_run(structure, "ls-dem", 1e-5, 3600.0, 200.0, fine=True, in_memory=False)
+    check_limits(structure, "ls-dem", 1e-5, 3600.0, 200.0, fine=True, in_memory=False)
     assert run_bytes(structure, 720_000, 7_372_800, in_memory=False) < LARGEST_RUN
 
 
@@ -91,8 +93,8 @@ def test_the_viscoelastic_model_needs_a_viscous_modulus(make_mapping):
         with pytest.raises(InputError, match=refused):
             simulate(_stone(make_mapping, **viscous), "alkion", "nscd-viscoelastic", duration=0.01)
     numbers = 1e-3, 1.0, 200.0, False, True
-    check_run(_stone(make_mapping, viscous_modulus=1e8), "nscd-viscoelastic", *numbers)
-    check_run(_stone(make_mapping), "nscd-elastic", *numbers)
+    check_limits(_stone(make_mapping, viscous_modulus=1e8), "nscd-viscoelastic", *numbers)
+    check_limits(_stone(make_mapping), "nscd-elastic", *numbers)
 
 
 def test_a_motion_whose_name_is_not_utf_8_is_refused(tmp_path):

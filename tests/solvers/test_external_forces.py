@@ -11,6 +11,7 @@ from blockshake.simulation.simulate import simulate
 G = 9.81
 MASS = 2400.0  # of the cube
 TIME_STEP = {"ls-dem": 5e-5, "nscd-rigid": 1e-3, "nscd-elastic": 1e-3, "nscd-viscoelastic": 1e-3}
+STONE = {"density": MASS, "youngs_modulus": 3.45e10, "poisson_ratio": 0.2, "viscous_modulus": 1.5e8}
 AUDITED = ["ls-dem", "nscd-rigid"]
 
 REST = ground_motion("rest", np.array([0.0, 1.0]), {"x": np.zeros(2)}, "displacement", {"source": "test"})
@@ -29,6 +30,7 @@ def run(make_structure):
             friction=friction,
             slab=not floating,
             external_forces=[{"body": "cube", **force}],
+            materials={"stone": STONE},
             **({"gravity": [0.0, 0.0, 0.0]} if floating else {}),
         )
         return simulate(

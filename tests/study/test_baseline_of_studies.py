@@ -20,7 +20,7 @@ from blockshake.own_files.check import check_file
 from blockshake.study.config import StudyConfig, check_config
 from blockshake.study.ensembles.case_input import driving_motions
 from blockshake.virtual.generate import generate_campaign
-from blockshake.virtual.settings import VirtualCampaign
+from blockshake.virtual.settings import VirtualCampaign, load_settings
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "dynamics"))
 from made_records import wavelet, write_at2
@@ -57,8 +57,9 @@ def test_check_says_what_is_done_to_each_record(record, tmp_path):
     (tmp_path / "mine.yaml").write_text(yaml.safe_dump(study(record)))
     (line,) = [line for line in check_file(tmp_path / "mine.yaml").splitlines() if "baseline" in line]
     assert (
-        "drift.AT2 (PEER NGA AT2); baseline: corrected, not at rest: along x it ends with 0.3 m/s at" in line
+        "drift.AT2 (PEER NGA AT2); assumed: a component along x; baseline: corrected, not at rest: " in line
     )
+    assert "along x it ends with 0.3 m/s at" in line
     assert "PGD 4500 to 4" in line
     assert "\n" not in check_file(record).strip()
     assert "baseline: corrected" in check_file(record)
@@ -164,16 +165,10 @@ def test_virtual_campaign_shakes_the_record_so(record, tmp_path, monkeypatch):
                 settings, "configuration-1", tmp_path / "v", tmp_path / "truth", "source", print
             )
     assert ["record_start" in motion.attributes for motion in shaken] == [False, True]
-    with pytest.raises(InputError, match="v: duration: expected more than 30 s"):
-        generate_campaign(
-            VirtualCampaign(**given, duration=12.0),
-            "configuration-1",
-            tmp_path / "w",
-            tmp_path / "t",
-            "source",
-            print,
-        )
-    assert not (tmp_path / "w").exists()
+    settings = tmp_path / "v.yaml"
+    settings.write_text(yaml.safe_dump({**given, "duration": 12.0}))
+    with pytest.raises(InputError, match=r"v\.yaml: duration: expected more than 30 s"):
+        load_settings(settings)
 
 
 def test_simulate_says_and_keeps_what_was_done(record, tmp_path, caplog, capsys):
@@ -184,8 +179,9 @@ def test_simulate_says_and_keeps_what_was_done(record, tmp_path, caplog, capsys)
     assert "--duration: expected more than 30 s: drift is corrected" in capsys.readouterr().err
     assert main([*run, "--duration", "0.05", "--baseline", "none", *output]) == 0
     assert (
-        "drift.AT2 (PEER NGA AT2); baseline: none, as asked for; the record ends with 0.3 m/s" in caplog.text
+        "drift.AT2 (PEER NGA AT2); assumed: a component along x; baseline: none, as asked for" in caplog.text
     )
+    assert "the record ends with 0.3 m/s" in caplog.text
     with xr.open_dataset(tmp_path / "run.nc", decode_times=False) as made:
         assert made.attrs["motion_baseline"].startswith("none, as asked for")
     assert main([*run, "--baseline", "never", *output]) == 2

@@ -46,7 +46,11 @@ def test_a_unit_before_other_words():
         ("mm/s2", "0.001"),
     ):
         assert leading_unit("acceleration", text, "here", "line") == Decimal(size)
-    for text in ("G X 10", "G / 10", "G * 10", "G 10", "CM PER SEC", ""):
+    assert leading_unit("acceleration", "(02)", "here", "line") == Decimal("9.80665")
+    for text in (
+        "G X 10", "G / 10", "G * 10", "G 10", "CM PER SEC", "", "G (x 1000)", "G TIMES 10", "G MULTIPLY BY 10",
+        "G, SCALED BY 10", "G, CORRECTED, SCALE FACTOR 10", "G SF= 10", "G (10)", "cm/s^2 (02)", "G (04)",
+    ):  # fmt: skip
         with pytest.raises(InputError, match="expected a unit of acceleration"):
             leading_unit("acceleration", text, "here", "line")
 
@@ -55,5 +59,20 @@ def test_a_unit_in_a_column_s_name():
     assert unit_of_name("EW [cm/s\u00b2]") == ("acceleration", Decimal("0.01"))
     assert unit_of_name("time_ms") == ("time", Decimal("0.001"))
     assert unit_of_name("Weg (mm)") == ("displacement", Decimal("0.001"))
-    for name in ("time_s", "wall_m", "acc (filtered)", "a[3]", "U1", "peak_min"):
+    for name in ("t/ms", "Zeit in ms", "Time(milliseconds)", "t [msec]"):
+        assert unit_of_name(name) == ("time", Decimal("0.001"))
+    for name in ("EW_mg", "EW (milli-g)", "EW in mg"):
+        assert unit_of_name(name) == ("acceleration", Decimal("0.00980665"))
+    assert unit_of_name("EW in cm/s\u00b2") == ("acceleration", Decimal("0.01"))
+    for name in (
+        "v cm/s",
+        "EW/NS",
+        "in phase",
+        "time_s",
+        "wall_m",
+        "acc (filtered)",
+        "a[3]",
+        "U1",
+        "peak_min",
+    ):
         assert unit_of_name(name) is None

@@ -138,7 +138,7 @@ def test_what_is_carried_on_is_where_the_blocks_rest_and_not_where_a_record_was_
         folder, truth, _ = make(f"d{duration:g}", duration=duration, restored=False)
         left.append(np.array(json.loads((truth / "motion-200.json").read_text())["places_left"]))
         test = load_test(load_campaign(folder), "motion-200")
-        assert float(test["time"][-1]) == pytest.approx(duration)
+        assert float(test["time"][-1]) == pytest.approx(duration, abs=1e-4)  # from the start that is found
     assert np.abs(left[0][1:, 0]).max() > 5e-3
     np.testing.assert_allclose(left[0], left[1], atol=1e-9)
 
@@ -150,7 +150,8 @@ def test_a_clock_that_is_ahead_reads_to_the_end(make):
     )
     test = load_test(load_campaign(folder), "motion-100")
     assert np.isfinite(test["marker_displacement"]).all()
-    assert float(test["time"][-1]) == pytest.approx(SETTINGS["duration"])
+    # the times count from the start of the command, which this clock reads 20 ms early
+    assert float(test["time"][-1]) == pytest.approx(SETTINGS["duration"] + 0.02, abs=2e-4)
 
 
 def test_low_amplitude_tests_come_before_and_between(make):

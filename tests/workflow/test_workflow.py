@@ -182,6 +182,29 @@ def test_bad_configuration_ends_in_one_line_and_exit_2(tmp_path, change, line):
     assert not (tmp_path / "results").exists()
 
 
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("samples_per_job: 010", "samples_per_job: input should be a valid integer, not '010'"),
+        ("samples_per_job: 5\nsamples_per_job: 6", "the key 'samples_per_job' stands twice in line "),
+    ],
+)
+def test_a_study_is_read_as_every_other_file(tmp_path, text, line):
+    """Snakemake's own YAML reads 010 as 8, and takes the last of two keys."""
+    checkout, path = Checkout(tmp_path), tmp_path / "config" / "small.yaml"
+    path.write_text(path.read_text().replace("samples_per_job: 5", text))
+    answer = checkout.snakemake("-n")
+    assert answer.returncode == 2
+    assert line in answer.stderr
+
+
+def test_a_text_of_digits_stays_a_text_and_options_give_numbers(tmp_path):
+    checkout = Checkout(tmp_path, name="2024")
+    answer = checkout.snakemake("-n", "--config", "ladder={first: 1, increment: 0.5}")
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+    assert "results/2024/" in checkout.snakemake("-n", "results/2024/design.csv").stdout
+
+
 def test_study_without_measured_tests_compares_with_none(tmp_path):
     checkout = Checkout(tmp_path)
     config = {key: checkout.config[key] for key in ("name", "description", "models", "cases", "ensemble")}

@@ -18,9 +18,10 @@ os.environ.update(
 )
 
 from snakemake.logging import logger
+from snakemake.utils import update_config
 
 from blockshake.errors import BAD_INPUT, InputError
-from blockshake.files import HOME, PACKAGE, shipped
+from blockshake.files import HOME, PACKAGE, load_yaml, parse_yaml, shipped
 from blockshake.log import Failures
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.simulation.models import MODELS as SOLVERS
@@ -69,16 +70,30 @@ def study_config():
         refuse(error)
 
 
+def configuration():
+    """The configuration as the program reads YAML, which is not how Snakemake does: octal numbers, keys twice."""
+    given, read = workflow.config_settings, {}
+    own = [path for path in workflow.configfiles if path not in given.configfiles]
+    try:
+        for path in (*own, *given.configfiles):
+            update_config(read, load_yaml(path))
+    except InputError as error:
+        refuse(error)
+    update_config(read, with_numbers(dict(given.config)))
+    return read
+
+
 def with_numbers(value):
-    """Configuration with numbers where Snakemake's YAML reads text: `1e-3` is a number here."""
+    """A value of `--config` with the numbers in its lists and mappings, which Snakemake leaves as texts."""
     if isinstance(value, dict):
         return {key: with_numbers(entry) for key, entry in value.items()}
     if isinstance(value, list):
         return [with_numbers(entry) for entry in value]
     try:
-        return float(value) if isinstance(value, str) else value
-    except ValueError:
+        number = parse_yaml(value, "--config") if isinstance(value, str) else None
+    except InputError:
         return value
+    return number if isinstance(number, (int, float)) else value
 
 
 def definition(kind, name):
@@ -273,7 +288,7 @@ if workflow.remote_exec:
     end_with_folder(Path.cwd())
 
 
-config.update(with_numbers(config))
+config.update(configuration())
 CHECKED = study_config()
 config.update(CHECKED.model_dump(mode="json"))
 

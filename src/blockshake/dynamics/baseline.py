@@ -12,10 +12,12 @@ from blockshake.dynamics.intensity import motion_figures
 from blockshake.dynamics.motion import CHANNELS, PITCH, ground_motion
 from blockshake.dynamics.print_rounding import may_be_rounding
 from blockshake.errors import InputError
+from blockshake.tables.numbers import plain_number
 from blockshake.validation import Positive
 
 AUTO, NONE = "auto", "none"
 CORNER_FREQUENCY = 0.1  # Hz; below it analogue records hold more noise than ground motion
+_HIGH = 1.0  # Hz; a corner above it reaches frequencies that move blocks
 _ORDER = 2  # of the Butterworth filter, which is applied forwards and backwards
 _MOST_SAMPLES = 2e7  # a minute at 1 kHz has 120 000 with its pads at 0.1 Hz
 _UNEVEN = 1e-3  # of the step, by which rows of an even series may be uneven
@@ -34,7 +36,8 @@ def checked_baseline(value):
     if value in (AUTO, NONE):
         return value
     try:
-        corner = np.nan if isinstance(value, bool) else float(value)
+        number = plain_number(value) if isinstance(value, str) else value
+        corner = np.nan if isinstance(number, bool) else float(number)
     except (TypeError, ValueError):
         corner = np.nan
     if not 0.0 < corner < np.inf:
@@ -77,8 +80,8 @@ def settle(motion, baseline, where, published=False):
     Raises
     ------
     InputError
-        Another baseline; a correction of other than evenly spaced accelerations, or of more than 20 million samples
-        with the pads.
+        Another baseline; a correction of other than evenly spaced accelerations, with a corner that is not below the
+        Nyquist frequency, or of more than 20 million samples with the pads.
 
     Notes
     -----
@@ -213,6 +216,10 @@ def _corrected(motion, corner, where, reason):
         raise InputError(
             where, "baseline", "expected accelerations at even times, which alone can be corrected"
         )
+    if corner >= 0.5 / step:
+        raise InputError(
+            where, "baseline", f"expected below the Nyquist frequency, {0.5 / step:g} Hz, not {corner:g} Hz"
+        )
     pad = 1.5 * _ORDER / corner
     check_samples(len(breaks), step, pad, where)
     before, pad = _accelerations(motion), int(np.ceil(pad / step))
@@ -230,6 +237,8 @@ def _corrected(motion, corner, where, reason):
         f"kept at both ends, second-order Butterworth high-pass at {corner:g} Hz both ways; the record starts at "
         f"{pad * step:.4g} s"
     )
+    if corner > _HIGH:
+        words += f"; a corner above {_HIGH:g} Hz takes ground motion away, not its noise alone"
     return _with_words(corrected, words, record_start=pad * step)
 
 

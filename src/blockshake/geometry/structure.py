@@ -33,6 +33,7 @@ from blockshake.geometry.structure_file import (
 from blockshake.validation import validated
 
 DEEPEST_OVERLAP = 1e-3  # m; deeper is a wrong structure, not an initial penetration
+_ROUNDING = 1e-9  # m, of places typed to the millimetre
 # m; an equilibrium of elastic or shrunk contacts within this of the given poses is the start of a run, and bodies
 # nearer than this touch
 START_TOLERANCE = 1e-4
@@ -271,7 +272,7 @@ def _touching(file, source, solids, position, orientation):
     driven = np.array([body.driven for body in bodies])
     pairs = near_pairs([solids[name] for name in shape], position, orientation, START_TOLERANCE)
     depth = depths_of_pairs(pairs, shape, solids, position, orientation)
-    for place in np.flatnonzero(depth > DEEPEST_OVERLAP)[:1]:
+    for place in np.flatnonzero(depth > DEEPEST_OVERLAP + _ROUNDING)[:1]:
         a, b = pairs[place]
         raise InputError(
             source,

@@ -6,7 +6,7 @@ from pathlib import Path
 from blockshake.diagnosis.libraries.plan import plan_diagnosis, planned_motion
 from blockshake.dynamics.baseline import AUTO
 from blockshake.dynamics.intensity import strong_until
-from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.load_motion import load_motion, scaled
 from blockshake.dynamics.provenance import provenance
 from blockshake.dynamics.synthetic_schema import SyntheticMotion
 from blockshake.errors import InputError, faults_of
@@ -79,7 +79,10 @@ def _with_remarks(lines, remarks):
 
 
 def _campaign_line(folder):
-    return "\n".join([*campaign_lines(folder), *sight_lines(load_campaign(folder))])
+    campaign = load_campaign(folder)
+    lines = [*campaign_lines(folder), *sight_lines(campaign)]
+    remarks = structure_remarks(load_structure(campaign.structure))
+    return _with_remarks(lines, [one for one in remarks if not any(one in line for line in lines)])
 
 
 def _import_line(source):
@@ -142,8 +145,9 @@ def _study_remarks(config, motions):
         if not any(has_parameter(structure, variable) for variable in config.ensemble.distributions):
             yield f"{name}: no variable of ensemble.distributions is the structure's: all of its samples are alike"
         yield from (f"{name}: {remark}" for remark in structure_remarks(structure))
-    for name, motion in motions.items():
-        yield from (f"{name}: {remark}" for remark in motion_remarks(motion))
+    for name, scale in dict.fromkeys((case.motion, case.scale) for case in config.cases):
+        remarks = motion_remarks(scaled(motions[name], scale, name))
+        yield from (f"{name} at {scale:g}: {remark}" for remark in remarks)
     for case in config.cases:
         length, end = motions[case.motion].duration, strong_until(motions[case.motion])
         if case.duration > length + _LATE:
@@ -163,4 +167,4 @@ _LINES = {
     VirtualCampaign: _virtual_line,
     SyntheticMotion: _motion_line,
 }
-"""What is said of a file, by the schema that has most of its keys."""
+"""Lines of a file, by the schema that has most of its keys."""

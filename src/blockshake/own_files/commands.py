@@ -108,6 +108,8 @@ def _columns(options):
         key, equals, name = entry.partition("=")
         if not equals or not key or not name:
             raise InputError("--column", entry, "expected READING=COLUMN")
+        if key in columns:
+            raise InputError("--column", entry, f"expected {key} once")
         columns[key] = name
     return columns
 

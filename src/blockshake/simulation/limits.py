@@ -36,12 +36,18 @@ def check_limits(structure, model, time_step, duration, output_rate, fine, in_me
     Raises
     ------
     InputError
-        A number that is not positive, a step longer than an impact, more than `MOST_STEPS` steps, more than
-        `LARGEST_RUN` bytes, or a free block whose material lacks a property that the model is named after.
+        A number that is not positive, an output rate without a row after the start, a step longer than an impact, more
+        than `MOST_STEPS` steps, more than `LARGEST_RUN` bytes, or a free block whose material lacks a property that the
+        model is named after.
     """
     for name, value in (("time-step", time_step), ("duration", duration), ("output-rate", output_rate)):
         if not (np.isfinite(value) and value > 0.0):
             raise InputError(f"--{name}", "", f"expected a positive number, not {value}")
+    if duration * output_rate < 1.0 - 1e-9:
+        raise InputError(
+            "--output-rate", "", f"expected at least {1.0 / duration:g} Hz of {duration:g} s, not {output_rate:g}: "
+            "a run ends at its last row",
+        )  # fmt: skip
     if time_step > LONGEST_STEP:
         raise InputError(
             "--time-step", "", f"expected at most {LONGEST_STEP:g} s, not {time_step:g}: impacts last less"

@@ -66,7 +66,7 @@ def simulate(
     duration : float, optional
         [s]; the motion's by default; the ground rests after the motion's last row.
     output_rate : float, optional
-        [Hz]; the optical system's by default.
+        [Hz]; the optical system's by default. The run ends at its last whole row within the duration.
     accelerometers : bool
         Compute the accelerometer channels, which takes a fine record, and the displacement transducers beside them.
     checkpoint : path, optional

@@ -1,6 +1,5 @@
 """The configuration of a study: every key, its type and its limits, checked before the first job."""
 
-from datetime import date
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -34,8 +33,8 @@ def _links(ensemble):
 
 
 def _as_text(given):
-    """The text of a date, which YAML reads as one or as a year."""
-    return str(given) if isinstance(given, (date, int)) and not isinstance(given, bool) else given
+    """The text of a date, which YAML reads as a number where it is a year."""
+    return str(given) if isinstance(given, int) and not isinstance(given, bool) else given
 
 
 class Ensemble(Strict):

@@ -61,7 +61,7 @@ def structure_remarks(structure):
         if solid.polyhedron is None:
             remarks.append(
                 f"{name} is not convex: LS-DEM reads it from a lattice of ls_dem.grid_spacing, which rounds off the "
-                "edges on which others stand"
+                "edges on which others stand, and a run is not judged for a fall that the window cuts"
             )
     remarks += _misfits(structure)
     remarks += point_remarks(structure)

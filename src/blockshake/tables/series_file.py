@@ -1,5 +1,7 @@
 """Values of users without times: one column, or many values a line, below any text."""
 
+import re
+
 import numpy as np
 
 from blockshake.errors import InputError
@@ -7,6 +9,7 @@ from blockshake.files import read_foreign_text
 from blockshake.tables.numbers import missing_code, plain_number, touching_numbers
 from blockshake.tables.table_file import GAPS, SIGNS, WORKBOOK, cell_number, path_and_sheet, sheet_rows
 
+_SENTENCE = re.compile(r"=|\b(?:of|in)\b", re.IGNORECASE)  # in a line that is no line of names
 _TIMES = 4  # steps up without one down, which are times and no motion
 
 
@@ -25,12 +28,15 @@ def read_series(source, layout):
     values : float64 array, shape (n_values,)
         As written.
     header : str
+    width : int
+        Values a line.
 
     Raises
     ------
     InputError
-        Missing or damaged file; no values; text among them; rows of different lengths but for the last; a first column
-        that counts as times do; a first value that is the number of the others; a value that stands for a missing one.
+        Missing or damaged file; no values; text among them; rows of different lengths but for the last; names above
+        columns; a column that counts as times do; a first value that is the number of the others; a value that stands
+        for a missing one.
     """
     source, rows = _rows(source, layout)
     lines, values, lengths, header = [], [], [], []
@@ -51,12 +57,16 @@ def read_series(source, layout):
         raise InputError(source, "", f"expected at least two {expected}, found {len(values)}")
     values = np.array(values)
     _check_rows(source, lines, values, lengths)
+    names = header[-1].split() if header and layout.data is None else []
+    if len(names) == lengths[0] > 1 and not _SENTENCE.search(header[-1]):
+        wrong = f"expected values of one motion, not columns {', '.join(names)}: --column chooses, or --data"
+        raise InputError(source, f"line {lines[0]}", f"{wrong} says where values begin")
     coded = missing_code(values)
     if coded is not None:
         line = lines[int(np.searchsorted(np.cumsum(lengths), coded, side="right"))]
         wrong = f"expected a value; {values[coded]:g} looks like a code for none"
         raise InputError(source, f"line {line}", wrong)
-    return values, "\n".join(header)
+    return values, "\n".join(header), lengths[0]
 
 
 def _rows(source, layout):
@@ -70,7 +80,7 @@ def _rows(source, layout):
             dict.fromkeys("\t;|" if blank or not layout.separator else layout.separator, " ")
         )
         rows = enumerate(
-            (line.translate(table).split() for line in read_foreign_text(path).splitlines()), start=1
+            (line.translate(table).split() for line in read_foreign_text(path).split("\n")), start=1
         )
     filled = ((number, [cell for cell in row if cell not in (None, "")]) for number, row in rows)
     return source, [(number, cells) for number, cells in filled if cells]
@@ -90,10 +100,12 @@ def _check_rows(source, lines, values, lengths):
             source, f"line {lines[0]}",
             f"expected a value; {values[0]:g} is the number of those that follow: --data says where they begin",
         )  # fmt: skip
-    steps = np.diff(values[::width])
-    if width > 1 and len(steps) >= _TIMES and steps.min() > 0.0:
-        wrong = "expected values alone; the first column counts as times do: --time and --column name columns"
-        raise InputError(source, "", wrong)
+    for column in range(width if width > 1 else 0):
+        steps = np.diff(values[column::width])
+        if len(steps) >= _TIMES and steps.min() > 0.0:
+            name = "the first column" if column == 0 else f"column {column + 1}"
+            wrong = f"expected values alone; {name} counts as times do: --time and --column name columns"
+            raise InputError(source, "", wrong)
 
 
 def _is_text(cells):

@@ -23,18 +23,24 @@ _SHOWN = {kind: ", ".join(units) for kind, units in UNITS.items()}
 _SECOND = re.compile(r"sec(?:ond)?s?(?![a-z])")
 _PER_SECOND_SQUARED = re.compile(r"/s/s$|/\(s2\)$|(?<=m)/?s-2$")
 _MOST_WORDS = 5  # of a unit: CM / SEC / SEC
+# behind a unit: begins with a factor, or has the word for it anywhere
 _FACTOR = re.compile(
-    r"[x*/\d\N{MULTIPLICATION SIGN}]", re.IGNORECASE
-)  # what a word that changes a unit begins with
-# a unit in a column's name: in brackets, or after an underscore where no word ends so
+    r"^[(\[,;\s-]*[x*/\d\N{MULTIPLICATION SIGN}]|\btimes\s+[\d.]|\bmult|\bscal|\bsf\s*=|\bfactor",
+    re.IGNORECASE,
+)
+_COSMOS_CODE = re.compile(r"\(\s*0*(\d+)\s*\)\s*$")
+_OF_CODE = {"2": "g", "4": "cm/s2"}  # COSMOS format 1.20, table 2
+# a unit in a column's name: in brackets, or after an underscore or a stroke where no word ends so, or after "in"
 _IN_BRACKETS = re.compile(r"[\[(]([^\[\]()]*(?:\([^()]*\))?[^\[\]()]*)[\])]\s*$")
-_AFTER_UNDERSCORE = re.compile(r"_(ms|mm|cm|um|gal)$", re.IGNORECASE)
+_AT_END = re.compile(r"(?:_|/\s*)(ms|mm|cm|um|gal|mg)$|\bin\s+(\S+)$", re.IGNORECASE)
 
 
 def _plain(text):
     """A unit in the spelling of `UNITS`, whatever its case, blanks, brackets, powers and punctuation."""
     unit = unicodedata.normalize("NFKC", text).lower().replace("\N{GREEK SMALL LETTER MU}", "u")
-    unit = re.sub(r"\(\s*\d+\s*\)\s*$", "", unit)  # the code of COSMOS
+    if code := _COSMOS_CODE.search(unit):
+        coded, named = _OF_CODE.get(code.group(1)), _plain(unit[: code.start()])
+        return coded if coded and named in ("", coded) else text
     unit = _SECOND.sub("s", unit.replace("\N{MINUS SIGN}", "-").replace("**", ""))
     unit = re.sub(
         r"[\s\[\]{}\"'`\N{RIGHT SINGLE QUOTATION MARK}.,;:^*\N{MIDDLE DOT}\N{DOT OPERATOR}]", "", unit
@@ -42,7 +48,7 @@ def _plain(text):
     if unit.startswith("(") and unit.endswith(")"):
         unit = unit[1:-1]
     unit = _PER_SECOND_SQUARED.sub("/s2", unit)
-    return {"gs": "g", "gals": "gal"}.get(unit, unit)
+    return {"gs": "g", "gals": "gal", "millis": "ms", "millig": "mg", "milli-g": "mg"}.get(unit, unit)
 
 
 def unit_size(kind, text, where, key):
@@ -64,7 +70,7 @@ def leading_unit(kind, text, where, key):
     words = text.split()
     for count in range(min(_MOST_WORDS, len(words)), 0, -1):
         unit = _plain(" ".join(words[:count]))
-        if unit in UNITS[kind] and not _FACTOR.match(" ".join(words[count : count + 1])):
+        if unit in UNITS[kind] and not _FACTOR.search(" ".join(words[count:])):
             return UNITS[kind][unit]
     return unit_size(kind, text, where, key)
 
@@ -87,8 +93,8 @@ def kind_of_unit(text, kinds, where, key):
 
 def unit_of_name(name):
     """Kind and size in SI of the unit that a column's name holds, such as ``EW [cm/s2]`` or ``time_ms``; or None."""
-    match = _IN_BRACKETS.search(name) or _AFTER_UNDERSCORE.search(name)
-    return known_unit(match.group(1)) if match else None
+    match = _IN_BRACKETS.search(name) or _AT_END.search(name)
+    return known_unit(match.group(match.lastindex)) if match else None
 
 
 def known_unit(text):

@@ -15,13 +15,15 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.instruments import Instruments, check_instruments
 from blockshake.measurement.sensors.markers import RATE, driven_marker
-from blockshake.simulation.limits import LONGEST_STEP
+from blockshake.simulation.limits import LONGEST_STEP, MOST_STEPS
 from blockshake.simulation.models import ModelName, model_of, split_parameters
 from blockshake.simulation.simulate import check_run
 from blockshake.study.ensembles.rungs import Rungs
 from blockshake.validation import Count, Finite, NotNegative, Positive, Strict, validated
 from blockshake.virtual.table import Table
 from blockshake.virtual.truth import hidden_effect
+
+_FEWEST_READINGS = 40  # of a test
 
 
 class Intensities(Rungs):
@@ -101,10 +103,12 @@ def load_settings(path, structure=None):
         if name not in known:
             raise InputError(path, f"hidden.values.{name}", f"expected one of {', '.join(known)}")
     stems = [Path(motion).stem for motion in settings.motions]
-    if len(set(stems)) < len(stems) or (settings.sine and "sine" in stems):
-        raise InputError(
-            path, "motions", "expected motions of different names, none called sine beside `sine`"
-        )
+    if len(set(stems)) < len(stems):
+        raise InputError(path, "motions", "expected motions of different names")
+    if settings.sine and "sine" in stems:
+        raise InputError(path, "motions", "expected no motion called sine beside `sine`")
+    if settings.duration * RATE < _FEWEST_READINGS:
+        raise InputError(path, "duration", f"expected at least {_FEWEST_READINGS / RATE:g} s")
     for motion in settings.motions:
         with faults_of(path, "motions"):
             read = load_motion(motion, settings.intensities.highest, settings.baseline)
@@ -121,6 +125,9 @@ def _check_structure(settings, structure, path):
     driven_marker(structure)
     motion = load_motion(settings.motions[0], baseline=settings.baseline)
     time_step = settings.time_step or model_of(settings.model).time_step
+    steps = settings.duration / time_step
+    if steps > MOST_STEPS:
+        raise InputError(path, "duration", f"expected at most {MOST_STEPS:.0e} steps, not {steps:.2g}")
     with faults_of(path, "model"):
         check_run(structure, motion, settings.model, settings.numerics, time_step, settings.duration, RATE)
     with faults_of(path, "instruments"):

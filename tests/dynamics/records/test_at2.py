@@ -13,6 +13,7 @@ VALUES = series(503) / 1000.0  # g; a last line that is not full
     [
         None, "  503   0.0100   NPTS, DT", "NPTS=   503, DT= 0.01000 SEC", "NPTS=503,DT=.01",
         "DT= .0100 SEC, NPTS= 503", "DT=10.0 MSEC, NPTS=503", "503, .0100 NPTS, DT", "npts= 503, dt= 1.0D-02 sec",
+        "NPTS=503., DT=.01SEC", "DT=10.MSEC NPTS=503", "NPTS= 503, DT= .01 SEC, DURATION= 5.03 SEC, FS= 100 HZ",
     ],
 )  # fmt: skip
 def test_all_writings_of_the_sizes(sizes):
@@ -34,6 +35,15 @@ def test_all_writings_of_the_sizes(sizes):
         (at2(VALUES, sizes="no sizes"), "line 4: expected NPTS and DT"),
         (at2(VALUES, sizes="NPTS= many, DT= .01 SEC"), "NPTS: expected a positive integer, found 'many'"),
         (at2(VALUES, sizes="NPTS= 503, DT= .01 HERTZ"), "DT: expected a unit of time"),
+        (
+            at2(VALUES, sizes="NPTS= 503, NPTS= 500, DT= .01"),
+            "NPTS: expected this entry once, found 503 and 500",
+        ),
+        (at2(VALUES, sizes="NPTS= 503, DT= .01, DT= .02 SEC"), "DT: expected this entry once"),
+        (at2(VALUES, sizes="NPTS= 503, DT= .01, DURATION= 10.06"), "DURATION: expected a length of 5.03 s"),
+        (at2(VALUES, sizes="NPTS= 503, DT= .01, FS= 200 HZ"), "FS: expected a time step of 0.01 s"),
+        (at2(VALUES).replace("ACCELERATION", "PSEUDO-ACCELERATION"), "line 3: expected 'ACCELERATION"),
+        (at2(VALUES).replace("TIME SERIES", "SPECTRUM"), "line 3: expected 'ACCELERATION"),
         ("one line", "four header lines"),
     ],
 )

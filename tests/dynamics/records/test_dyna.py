@@ -33,6 +33,7 @@ def test_header_is_read_by_key_in_any_order():
         (dyna(series(), NDATA=None), "NDATA: expected this key"),
         (dyna(series(), SAMPLING_INTERVAL_S="0"), "SAMPLING_INTERVAL_S: expected a positive number"),
         (dyna(series(), DATA_TYPE="VELOCITY"), "DATA_TYPE: expected ACCELERATION"),
+        (dyna(series(), DATA_TYPE="SPECTRAL ACCELERATION"), "DATA_TYPE: expected ACCELERATION"),
         (
             dyna(series()).replace("\n0.000000\n", "\nnan\n", 1),
             "expected a finite number, found 'nan'",

@@ -13,6 +13,7 @@ from record_files import COUNT, KNET_SCALE, STEP, at2, cosmos, csmip, dyna, knet
 
 from blockshake.cli import main
 from blockshake.dynamics.load_motion import load_motion
+from blockshake.errors import InputError
 
 CASES = Path(os.environ.get("BLOCKSHAKE_SHARED", Path(__file__).parents[4] / "shared")) / "cases"
 G = 9.80665
@@ -95,9 +96,11 @@ MADE = [
     Made("a.at2", at2(GS, sizes=f"DT= .0100 SEC, NPTS= {COUNT}"), G * scientific(GS, 7)),
     Made("a.at2", at2(GS, sizes=f"NPTS={COUNT},DT=0.01"), G * scientific(GS, 7)),
     Made("a.at2", at2(GS, cells=[fortran(value) for value in GS]), G * scientific(GS, 6)),
+    Made("a.at2", at2(GS, cells=[f" {value}" for value in GS.tolist()]), G * GS),  # zeros left out
     Made("a.txt", at2(GS).replace("\n", "\r\n"), G * scientific(GS, 7)),
     Made("a.AT2", "\ufeff" + at2(GS).strip(), G * scientific(GS, 7)),
     Made("a.at2", at2(GS).replace("MADE UP", "MÀDE UP").encode("latin-1"), G * scientific(GS, 7)),
+    Made("a.at2", at2(GS).replace("MADE UP", "MADE\fUP\x85") + "\x1a", G * scientific(GS, 7)),
     Made("a.asc", dyna(CM), 0.01 * CM),
     Made("a.asc", dyna(CM / 100.0, **{"UNITS": "m/s^2", "PGA_CM/S^2": f"{CM.min():.6f}"}), printed(CM / 100.0, 6)),
     Made("a.asc", dyna(CM, **{"PGA_CM/S^2": "", "TIME_PGA_S": "", "DURATION_S": ""}), 0.01 * CM),
@@ -123,6 +126,9 @@ MADE = [
     Made("a.v2", csmip(CM, channels=3), 0.02 * CM, ("--column", "x=270 Deg")),
     Made("a.v2", csmip(CM, step="0.01", interval=".0100", reals={60: 0.0, 61: 0.0, 65: 0.0, 66: 0.0}), 0.01 * CM),
     Made("a.ew", knet(COUNTS), 0.01 * KNET_SCALE * COUNTS),
+    Made("a.ew", "\n" + knet(COUNTS), 0.01 * KNET_SCALE * COUNTS),
+    Made("a.txt", "\n" + at2(GS), G * scientific(GS, 7)),
+    Made("a.at2", at2(GS).replace("PEER NGA STRONG MOTION DATABASE RECORD", ""), G * scientific(GS, 7)),
     Made("a.ew2", knet(COUNTS, direction="5"), 0.01 * KNET_SCALE * COUNTS),
     Made("a.ns", knet(COUNTS, **{"Memo.": "地震"}).encode("shift-jis"), 0.01 * KNET_SCALE * COUNTS),
     Made("a.smc", smc(CM), 0.01 * scientific(CM, 4)),
@@ -149,6 +155,8 @@ MADE = [
     Made("t.txt", "\n".join(f"{value:.3f}" for value in CM), 0.01 * CM, (*SERIES, "cm/s2")),
     Made("t.txt", EIGHT, 0.01 * CM, (*SERIES, "cm/s2")),
     Made("t.txt", "Made up 2000\nStep 0.01 s\n" + EIGHT, 0.01 * CM, (*SERIES, "cm/s2")),
+    Made("t.txt", "in units of CM/S2, five a line\n" + "\n".join(rows([f"{value:10.3f}" for value in CM], 5)),
+         0.01 * CM, (*SERIES, "cm/s2")),
     Made("t.txt", f"{COUNT} {STEP}\n" + EIGHT, 0.01 * CM, (*SERIES, "cm/s2", "--data", "2")),
     Made("t.txt", TOUCHING, 0.01 * scientific(CM, 6), (*SERIES, "gal")),
     Made("t.txt", EIGHT.replace(".", ","), 0.01 * CM, (*SERIES, "gal", "--decimal", ",")),
@@ -194,6 +202,7 @@ def test_there_are_many_made_files():
     assert len(MADE) >= 40
 
 
+FREE = {"approx": 4, "entries": {63: -999.0, 64: -999.0, 65: -999.0}}
 PEAK, AT = f"{0.01 * CM.min():.4g}"[:5], f"{STEP * np.argmin(CM):.3g}"
 REFUSED = [
     ("a.asc", dyna(CM, DURATION_S="6.000"), ("DURATION_S", "5 s", "6 s")),
@@ -205,6 +214,9 @@ REFUSED = [
     ("a.asc", dyna(CM).replace("STREAM: HNE", "UNITS: m/s^2"), ("UNITS", "once")),
     ("a.asc", dyna(CM)[:-4], ("line 564", "cut short")),
     ("a.at2", at2(GS).rstrip()[:-1], ("cut short",)),
+    ("a.asc", dyna(CM).replace(f"{CM[9]:.6f}", f"{CM[9]:.2f}", 1), ("line 74", "cut short")),
+    ("a.at2", at2(GS).replace(f"{GS[7]:15.7E}", f"{GS[7]:.7E}"[:-1].rjust(15)), ("line 6", "cut short")),
+    ("a.v2", cosmos(CM, **FREE).replace(f"{CM[3]:9.3f}", f"{CM[3]:9.1f}", 1), ("line 49", "cut short")),
     ("a.at2", at2(GS, sizes=f"NPTS= {COUNT - 5}, DT= .01 SEC"), ("NPTS", "495", "500")),
     ("a.at2", at2(GS).replace(f"{GS[7]:15.7E}", "  -0.9990000E+03"), ("looks like a code for none", "line 6")),
     ("a.at2", at2(GS, units="CM/S"), ("line 3", "'CM/S'")),
@@ -216,6 +228,10 @@ REFUSED = [
     ("a.v2", cosmos(CM, entries={65: 3.5}), ("entry 65", AT, "3.5 s")),
     ("a.v2", cosmos(CM, approx=12), ("line 48", "5 s", "12 s")),
     ("a.v2", cosmos(CM, count=400), ("line 48", "more")),
+    ("a.v2", cosmos(CM - 200.0, count=400, layout="10F8.3", **FREE), ("line 48", "more")),  # they touch, by a sign
+    ("a.v2", cosmos(CM + 200.0, count=400, layout="10F7.3", **FREE), ("line 48", "more")),  # and without any
+    ("a.v2", csmip(CM - 200.0, units=", in cm/sec2. (10f8.3)", width=8, columns=10, decimals=3, count=400, points=400),
+     ("line 46", "more")),
     ("a.v2", cosmos(CM, text="Max = 90.0 cm/sec2 at 2.530 sec"), ("line 12", "0.9 m/s2")),
     ("a.v2", cosmos(CM, channels=2), ("1: 90 Deg; 2: 180 Deg", "--column x=NUMBER")),
     ("a.v2", csmip(CM, step="0.020"), ("line 17", "0.01 s", "0.02 s")),
@@ -239,6 +255,7 @@ REFUSED = [
     ("a.smc", smc(CM, real={31: 1.0}), ("real number 31", "1 s")),
     ("a.smc", smc(CM, peak="100.0"), ("line 7", "1 m/s2")),
     ("a.smc", smc(CM, whole={17: 480}), ("480", "more")),
+    ("a.smc", smc(-1e2 - abs(CM), whole={17: 480}), ("480", "more")),
     ("a.smc", smc(CM, kind="3 VELOCITY"), ("line 1", "3 VELOCITY")),
 ]  # fmt: skip
 
@@ -273,6 +290,10 @@ TABLES = [
     ("t.txt", f"{COUNT} {STEP}\n" + EIGHT, (*SERIES, "g"), "line 2: expected 2 values as in line 1, found 8; --data"),
     ("t.txt", f"{COUNT}\n" + "\n".join(f"{value:.3f}" for value in CM), (*SERIES, "g"), "--data says where"),
     ("t.txt", table(" ").partition("\n")[2], (*SERIES, "g"), "the first column counts as times do"),
+    ("t.csv", "EW;NS\n" + "\n".join(f"{value:.3f};{-value:.3f}" for value in CM), (*SERIES, "g"),
+     "line 2: expected values of one motion, not columns EW, NS: --column chooses"),
+    ("t.txt", "\n".join(f"{value:.3f} {time}" for value, time in zip(CM, TIMES, strict=True)), (*SERIES, "g"),
+     "column 2 counts as times do"),
     ("t.txt", "0,998\n1,012\n", (*SERIES, "g"), "line 1: expected numbers with a decimal point"),
     ("t.txt", "nan\n1.0\n2.0\n", (*SERIES, "g"), "line 1: expected numbers with a decimal point"),
     ("t.txt", EIGHT + "end\n", (*SERIES, "g"), "line 64: expected numbers"),
@@ -324,6 +345,12 @@ def test_a_record_says_what_was_checked_and_assumed(tmp_path):
     attributes = load_motion(write(tmp_path, "b.v2", csmip(CM, channels=2)), channels={"y": "2"}).attributes
     assert attributes["assumed"] == "nothing"
     assert attributes["channels"] == "y: 180 Deg"
+
+
+def test_a_channel_is_of_one_axis(tmp_path):
+    path = write(tmp_path, "b.v2", csmip(CM, channels=2))
+    with pytest.raises(InputError, match="--column: y=180 deg: expected every channel for one axis"):
+        load_motion(path, channels={"x": "2", "y": "180 deg"})
 
 
 @pytest.mark.parametrize("name", ["alkion", "m.csv"])

@@ -83,7 +83,13 @@ def test_a_corner_is_a_record_s_too(tmp_path):
         ([], "--unit: expected for a table; the unit and the columns are never guessed"),
         (["--unit", "furlong"], "--unit: furlong: expected a unit of acceleration"),
         (["--unit", "g", "--column", "u=EW"], "--column: u: expected x, y, z"),
-        (["--unit", "g", "--column", "x=NS"], "column 'NS': expected this column once; there are Zeit, EW"),
+        (["--unit", "g", "--column", "y=NS"], "column 'NS': expected this column once; there are Zeit, EW"),
+        (["--unit", "g", "--column", "x=NS"], "--column: x=NS: expected x once"),
+        (["--unit", "g", "--column", "y=EW"], "--column: EW, EW: expected every column once"),
+        (
+            ["--unit", "g", "--column", "y=Zeit"],
+            "--column: EW, Zeit: expected every column once, and not that of",
+        ),
         (["--unit", "g", "--column", "x"], "--column: x: expected READING=COLUMN"),
         (["--unit", "mm", "--baseline", "0.1"], "baseline: expected accelerations at even times"),
         (

@@ -63,6 +63,15 @@ def test_what_is_no_reading_is_a_gap(change, expected, tmp_path):
     np.testing.assert_array_equal(read[~lost & np.isfinite(sound)], sound[~lost & np.isfinite(sound)])
 
 
+def test_an_optical_system_that_hangs_reads_nothing():
+    def hang(values):
+        values[800:900] = values[800]
+
+    assert {kind for kind, _ in _kinds(_spoilt(hang))} == {"frozen"}
+    read = without_faulty(_spoilt(hang), STRUCTURE)["marker_displacement"].to_numpy()
+    assert np.isnan(read[801:899]).all()
+
+
 def test_a_sound_test_loses_nothing():
     assert _kinds(resting_stack()) == []
 

@@ -120,7 +120,8 @@ COLUMNS = ["--time", "Zeit", "--column", "slab-face.x=Tisch", "--column", "block
 def _transducers(path, change=lambda rows: rows):
     """A test of two displacement transducers along x, the second with an offset, and a column that nobody asks for."""
     rows = [[f"{step * 0.01:.2f}", "0,1", "57,3", "0,2"] for step in range(1300)]
-    text = ["Zeit;Tisch;Weg 1;frei", *(";".join(row).replace(".", ",") for row in change(rows))]
+    rows = [[cell.replace(".", ",") for cell in row] for row in rows]
+    text = ["Zeit;Tisch;Weg 1;frei", *(";".join(row) for row in change(rows))]
     path.write_text("\n".join(text))
     return str(path)
 
@@ -167,7 +168,7 @@ BAD = {
     "a point for thousands": (_set(9, 2, "1.012"), [], "line 11, Weg 1: expected a number with a decimal comma"),
     "a point and a comma": (_set(9, 2, "1.012,5"), [], "line 11, Weg 1: expected a number with a decimal comma"),
     "a code for none": (_set(9, 2, "-9999"), [], "line 11, Weg 1: expected a reading; '-9999' looks like a code"),
-    "a cell too many": (_set(9, 2, "57;3"), [], "v1.csv: line 11: expected at most 3 cells, found 4"),
+    "a cell too many": (_set(9, 2, "57;3"), [], "v1.csv: line 11: expected at most 4 cells, found 5"),
     "a gap of the clock": (_without(200, 230), [], "v1.csv: line 202, Zeit: expected an even clock; 0.31 s after 1.99"),
     "a clock in another unit": (_same, ["--time-unit", "ms"], "v1.csv: time: expected seconds, with 20 to 10000"),
     "an unknown marker": (_same, ["--column", "mystery.x=frei"], "v1.csv: mystery: expected markers of the structure"),

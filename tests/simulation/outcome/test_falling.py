@@ -225,3 +225,17 @@ def test_without_a_driven_body_or_gravity_nothing_falls(make_structure):
     assert weightless.turn([1], 1.2 * SLENDER, edge(1)).falls() is None
     alone = Ending(make_structure(blocks, slab=False))
     assert alone.falls() is None
+
+
+def test_a_beam_is_not_carried_by_a_slab_that_it_never_touched(make_structure):
+    """Foot and beam turn as one about the foot's edge; the beam's corner comes near the slab before it is down."""
+    shapes = {"foot": {"box": [0.8, 0.8, 0.9]}, "beam": {"box": [2.4, 2.4, 0.8]}}
+    bodies = [
+        {"name": "foot", "shape": "foot", "position": [0.0, 0.0, 0.45]},
+        {"name": "beam", "shape": "beam", "position": [0.0, 0.0, 1.3]},
+    ]
+    structure = make_structure(bodies, shapes=shapes, friction=0.75)
+    balance = np.arctan(B / (structure.mass[1:] @ [0.45, 1.3] / structure.mass[1:].sum()))
+    for angle, falls in ((0.98 * balance, False), (1.02 * balance, True), (np.radians(33.0), True)):
+        ending = Ending(structure).turn([1, 2], angle, np.array([B, 0.0, 0.0]))
+        assert bool(ending.falls()) == falls

@@ -5,7 +5,7 @@ import pytest
 from scipy.special import ndtr, ndtri
 
 from blockshake.errors import InputError
-from blockshake.study.ensembles.intervals import quantile_interval, sample_quantiles
+from blockshake.study.ensembles.intervals import sample_quantiles
 from blockshake.study.friction.replicates import replicate_error, replicate_seed, replicated_designs
 from blockshake.study.sampling.distributions import Lognormal
 
@@ -53,12 +53,6 @@ def test_error_of_a_quantile_is_the_known_one_where_the_design_cannot_help(chanc
     )  # 1 / n terms of the formula: a few per cent at 50
     assert mean == pytest.approx(quantile, abs=4.0 * of_mean + 0.03)  # interpolation in 50 values: 1 / (n f)
     assert of_mean == pytest.approx(of_one / np.sqrt(COUNT))
-    # the bootstrap of single designs says the same on average
-    widths = [
-        np.ptp(quantile_interval(one, np.array([probability]), np.random.default_rng(place))[:, 0])
-        for place, one in enumerate(score[:20])
-    ]
-    assert np.mean(widths) / 3.92 == pytest.approx(known, rel=0.25)
 
 
 def test_error_is_far_below_that_of_independent_draws_where_variables_add(chances):

@@ -3,20 +3,24 @@
 import re
 
 from blockshake.dynamics.records.header_checks import HeaderChecks
-from blockshake.dynamics.records.record import Record, free_values, positive_number
+from blockshake.dynamics.records.record import SPECTRUM, Record, free_values, positive_number
 from blockshake.errors import InputError
 from blockshake.tables.units import leading_unit, unit_size
 
 _COUNT = re.compile(r"NPTS\s*=\s*([^\s,;]+)", re.IGNORECASE)
-_STEP = re.compile(r"\bDT\s*=\s*([^\s,;]+)[\s,;]*([A-Z]+)?", re.IGNORECASE)
+_STEP = re.compile(
+    r"\bDT\s*=\s*([^\s,;]+?)(?=M?SEC\b|[\s,;]|$)[\s,;]*(?:([A-Z]+)\b(?!\s*[=:]))?", re.IGNORECASE
+)
 _TRAILING = re.compile(r"^\s*([^\s,]+)[\s,]+([^\s,]+)[\s,]+NPTS\s*,\s*DT", re.IGNORECASE)
+_LENGTH = re.compile(r"\bDUR(?:ATION)?\s*[=:]\s*([^\s,;]+)", re.IGNORECASE)
+_RATE = re.compile(r"\bFS\s*=\s*([^\s,;]+)", re.IGNORECASE)
 _UNIT = re.compile(r"ACCEL.*?\bUNITS?\b\s*(?:OF|IN|[:=])?\s*(.*)", re.IGNORECASE)
 _HEADER_LINES = 4
 
 
 def is_at2(text):
     """Whether a text looks like an AT2 file."""
-    return any("NPTS" in line.upper() for line in text.split("\n", _HEADER_LINES)[:_HEADER_LINES])
+    return any("NPTS" in line.upper() for line in text.lstrip().split("\n", _HEADER_LINES)[:_HEADER_LINES])
 
 
 def read_at2(text, where):
@@ -31,32 +35,43 @@ def read_at2(text, where):
         Line 3 names no unit of acceleration, line 4 gives no NPTS and DT, a value is not a
         finite number, or their number differs from NPTS.
     """
-    lines = text.splitlines()
+    lines = text.split("\n")
     if len(lines) < _HEADER_LINES:
         raise InputError(where, "", f"expected four header lines of an AT2 file, found {len(lines)} lines")
-    stated = _UNIT.search(lines[2])
-    if not stated:
+    sizes = [
+        index for index, line in enumerate(lines, 1) if index >= _HEADER_LINES and "NPTS" in line.upper()
+    ]
+    first = sizes[0] if sizes else _HEADER_LINES  # behind blank lines, if there are some
+    event, kind, line = lines[first - 3 : first]
+    stated = _UNIT.search(kind)
+    if not stated or SPECTRUM.search(kind):
         raise InputError(
-            where, "line 3", f"expected 'ACCELERATION ... IN UNITS OF G', found '{lines[2].strip()}'"
+            where,
+            f"line {first - 1}",
+            f"expected 'ACCELERATION ... IN UNITS OF G', found '{kind.strip()}'",
         )
-    unit = float(leading_unit("acceleration", stated.group(1), where, "line 3"))
-    count_text, step_text, step_unit = _sizes(lines[3], where)
-    count = positive_number(count_text, where, "NPTS", int)
+    unit = float(leading_unit("acceleration", stated.group(1), where, f"line {first - 1}"))
+    for pattern, key in ((_COUNT, "NPTS"), (_STEP, "DT")):
+        if len(twice := dict.fromkeys(match.group(1) for match in pattern.finditer(line))) > 1:
+            raise InputError(where, key, f"expected this entry once, found {' and '.join(twice)}")
+    count_text, step_text, step_unit = _sizes(line, where, f"line {first}")
+    count = positive_number(count_text.removesuffix("."), where, "NPTS", int)
     step = positive_number(step_text, where, "DT") * float(unit_size("time", step_unit or "s", where, "DT"))
-    values = unit * free_values(lines, _HEADER_LINES, count, where, "NPTS")
-    metadata = {"event": lines[1].strip()} if lines[1].strip() else {}
-    return [Record(values, step, "PEER NGA AT2", HeaderChecks(where, values, step).made, metadata=metadata)]
+    values = unit * free_values(lines, first, count, where, "NPTS")
+    metadata = {"event": event.strip()} if event.strip() else {}
+    checks = HeaderChecks(where, values, step)
+    if length := _LENGTH.search(line):
+        checks.length("DURATION", length.group(1))
+    if rate := _RATE.search(line):
+        checks.step("FS", repr(1.0 / positive_number(rate.group(1), where, "FS")))
+    return [Record(values, step, "PEER NGA AT2", checks.made, metadata=metadata)]
 
 
-def _sizes(line, where):
+def _sizes(line, where, key):
     """Texts of the number of values, of the time step, and of its unit or None."""
     count, step, trailing = _COUNT.search(line), _STEP.search(line), _TRAILING.search(line)
     if count and step:
-        return (
-            count.group(1),
-            step.group(1),
-            step.group(2) if (step.group(2) or "").upper() != "NPTS" else None,
-        )
+        return count.group(1), *step.groups()
     if trailing:
         return *trailing.groups(), None
-    raise InputError(where, "line 4", f"expected NPTS and DT, found '{line.strip()}'")
+    raise InputError(where, key, f"expected NPTS and DT, found '{line.strip()}'")

@@ -20,7 +20,8 @@ def chosen_records(records, channels, where):
     Raises
     ------
     InputError
-        Another axis, no such channel, several where none is named, or channels of different steps or lengths.
+        Another axis, no such channel, a channel twice, several where none is named, or channels of different steps or
+        lengths.
     """
     if channels is None and len(records) == 1:
         return {"x": records[0]}
@@ -40,6 +41,8 @@ def chosen_records(records, channels, where):
                 f"expected one of the {len(records)} acceleration channels ({listed}), which "
                 "`blockshake convert-motion --column x=NUMBER` chooses",
             )  # fmt: skip
+        if any(named[0] is other for other in chosen.values()):
+            raise InputError("--column", f"{axis}={name}", "expected every channel for one axis")
         chosen[axis] = named[0]
     first = next(iter(chosen.values()))
     for one in chosen.values():

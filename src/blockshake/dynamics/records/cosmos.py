@@ -7,7 +7,7 @@ announced by a line that says how many values follow and in which Fortran format
 import re
 
 from blockshake.dynamics.records.header_checks import HeaderChecks
-from blockshake.dynamics.records.record import Record, fixed_values, positive_number
+from blockshake.dynamics.records.record import Record, cut_columns, fixed_values, positive_number
 from blockshake.errors import InputError
 from blockshake.tables.numbers import plain_number
 from blockshake.tables.units import known_unit, leading_unit
@@ -30,7 +30,7 @@ _UNKNOWN = -999.0
 
 def is_cosmos(text):
     """Whether a text looks like a COSMOS file."""
-    return any(_BLOCK.match(line) for line in text.splitlines()[:60])
+    return any(_BLOCK.match(line) for line in text.split("\n")[:60])
 
 
 def read_cosmos(text, where):
@@ -46,7 +46,7 @@ def read_cosmos(text, where):
         no acceleration series; or the length of entry 63 or of the line of the series, the peak or its time contradict
         the values.
     """
-    lines = text.splitlines()
+    lines = text.split("\n")
     records, real, start, index = [], None, 0, 0
     while index < len(lines):
         block, series = _BLOCK.match(lines[index]), _SERIES.match(lines[index])
@@ -55,9 +55,8 @@ def read_cosmos(text, where):
             columns, width = _columns(block.group(3), where, index + 1)
             rows = -(-count // columns)
             if block.group(2).lower() == "real":
-                real = [
-                    entry for line in lines[index + 1 : index + 1 + rows] for entry in _split(line, width)
-                ]
+                block = lines[index + 1 : index + 1 + rows]
+                real = [entry for line in block for entry in cut_columns(line, width)]
             index += rows
         elif series:
             count = positive_number(series.group(1), where, f"line {index + 1}", int)
@@ -128,9 +127,3 @@ def _columns(fortran, where, line):
         )
     columns, width = match.group(1) or "1", match.group(2)
     return tuple(positive_number(number, where, f"line {line}, format", int) for number in (columns, width))
-
-
-def _split(line, width):
-    """Numbers of one line, cut at fixed columns: they may touch."""
-    line = line.rstrip()
-    return [line[start : start + width] for start in range(0, len(line), width)]

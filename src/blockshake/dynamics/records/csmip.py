@@ -3,7 +3,7 @@
 import re
 
 from blockshake.dynamics.records.header_checks import HeaderChecks
-from blockshake.dynamics.records.record import Record, fixed_values, positive_number
+from blockshake.dynamics.records.record import Record, cut_columns, fixed_values, positive_number
 from blockshake.errors import InputError
 from blockshake.tables.numbers import plain_number
 from blockshake.tables.units import leading_unit, unit_size
@@ -24,7 +24,7 @@ _LENGTH, _STEP, _PEAK_TIME, _PEAK_VALUE = 60, 61, 65, 66  # entries of the real 
 
 def is_csmip(text):
     """Whether a text looks like a CSMIP V2 file."""
-    return any(map(_SERIES.match, text.splitlines()[:120]))
+    return any(map(_SERIES.match, text.split("\n")[:120]))
 
 
 def read_csmip(text, where):
@@ -38,7 +38,7 @@ def read_csmip(text, where):
         Data are missing or cut short, the unit is unknown, a value is not a finite number; or the number of values, the
         time step, the length, the peak or its time, in the text or in the real header, contradict the values.
     """
-    lines = text.splitlines()
+    lines = text.split("\n")
     records, start = [], 0
     for index, line in enumerate(lines):
         series = _SERIES.match(line)
@@ -88,11 +88,7 @@ def _record(lines, index, start, series, where):
 def _check_real_header(lines, checks):
     """Hold the last hundred real numbers before the series against it, where they are such."""
     rows = -(-_REALS // _REAL_COLUMNS)
-    reals = [
-        line[start : start + _REAL_WIDTH]
-        for line in lines[-rows:]
-        for start in range(0, len(line.rstrip()), _REAL_WIDTH)
-    ]
+    reals = [text for line in lines[-rows:] for text in cut_columns(line, _REAL_WIDTH)]
     if len(reals) != _REALS or None in map(plain_number, reals):
         return
     texts = {number: reals[number - 1] for number in (_LENGTH, _STEP, _PEAK_TIME, _PEAK_VALUE)}

@@ -1,7 +1,7 @@
 """ESM and ITACA "DYNA 1.2" ASCII: header lines ``KEY: value``, then one value a line."""
 
 from blockshake.dynamics.records.header_checks import HeaderChecks
-from blockshake.dynamics.records.record import Record, free_values, positive_number
+from blockshake.dynamics.records.record import SPECTRUM, Record, free_values, positive_number
 from blockshake.errors import InputError
 from blockshake.tables.units import unit_size
 
@@ -26,7 +26,7 @@ _METADATA = {
 def is_dyna(text):
     """Whether a text looks like a DYNA file."""
     return any(
-        line.startswith(("SAMPLING_INTERVAL_S:", "HEADER_FORMAT: DYNA")) for line in text.splitlines()[:80]
+        line.startswith(("SAMPLING_INTERVAL_S:", "HEADER_FORMAT: DYNA")) for line in text.split("\n")[:80]
     )
 
 
@@ -42,7 +42,7 @@ def read_dyna(text, where):
         A needed key is missing, wrong or twice, the data are not accelerations, a value is not a finite
         number, their number differs from ``NDATA``, or the length, the peak or its time from the header's.
     """
-    lines = text.splitlines()
+    lines = text.split("\n")
     header = {}
     first = len(lines)
     for index, line in enumerate(lines):
@@ -57,7 +57,7 @@ def read_dyna(text, where):
     for key in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS", "DATA_TYPE"):
         if not header.get(key):
             raise InputError(where, key, "expected this key in the header, with a value")
-    if not header["DATA_TYPE"].upper().endswith("ACCELERATION"):
+    if not header["DATA_TYPE"].upper().endswith("ACCELERATION") or SPECTRUM.search(header["DATA_TYPE"]):
         raise InputError(where, "DATA_TYPE", f"expected ACCELERATION, found '{header['DATA_TYPE']}'")
     unit = float(unit_size("acceleration", header["UNITS"], where, "UNITS"))
     step = positive_number(header["SAMPLING_INTERVAL_S"], where, "SAMPLING_INTERVAL_S")

@@ -19,7 +19,7 @@ _METADATA = {"Origin Time": "event", "Mag.": "magnitude", "Station Code": "stati
 
 def is_knet(text):
     """Whether a text looks like a K-NET or KiK-net file."""
-    return text.startswith(_KEYS[0])
+    return text.lstrip().startswith(_KEYS[0])
 
 
 def read_knet(text, where):
@@ -33,9 +33,11 @@ def read_knet(text, where):
         A needed header line is missing or wrong, a value is not a finite number, or the number of values or the peak
         contradicts the header.
     """
-    lines = text.splitlines()
+    lines = text.split("\n")
     header, first = {}, len(lines)
     for index, line in enumerate(lines):
+        if not header and not line.strip():
+            continue
         key = next((key for key in _KEYS if line.startswith(key)), None)
         if key is None:
             first = index

@@ -44,14 +44,19 @@ def load_motion_table(source, layout, time, columns, unit, time_unit="s", baseli
     Raises
     ------
     InputError
-        A missing column, an unknown unit or channel, a cell that is no number, times that do not increase or have a
-        gap; a correction of other than evenly spaced accelerations.
+        A missing column, a column twice, an unknown unit or channel, a cell that is no number, times that do not
+        increase or have a gap; a correction of other than evenly spaced accelerations.
     """
     kind = kind_of_unit(unit, ("acceleration", "velocity", "displacement"), "--unit", unit)
     given = kind, unit_size(kind, unit, "--unit", unit)
     for channel in columns:
         if channel not in CHANNELS[:3]:
             raise InputError("--column", channel, f"expected {', '.join(CHANNELS[:3])}")
+    names = [name.strip() for name in columns.values()]
+    if len(set(names)) < len(names) or (time_step is None and time.strip() in names):
+        raise InputError(
+            "--column", ", ".join(names), "expected every column once, and not that of the times"
+        )
     assumed = f"{unit.strip()}, as given"
     if columns:
         table = read_table(source, layout)
@@ -59,7 +64,9 @@ def load_motion_table(source, layout, time, columns, unit, time_unit="s", baseli
         read = {channel: _finite(table, name, *reversed(given)) for channel, name in columns.items()}
     else:
         where = str(source)
-        read = {"x": _series(source, layout, time_step, given)}
+        read, width = _series(source, layout, time_step, given)
+        if width > 1:
+            assumed += f"; {width} values a line, row by row"
     if time_step is None:
         at = _finite(table, time, unit_size("time", time_unit, "--time-unit", time_unit), "time")
         check_times(at, table.lines, where, time)
@@ -88,8 +95,8 @@ def _finite(table, name, size, kind):
 
 
 def _series(source, layout, time_step, given):
-    """Values without times in SI, where the text above them does not contradict what was given."""
-    values, header = read_series(source, layout)
+    """Values without times in SI as x, and their number a line; the text above may not contradict what was given."""
+    values, header, width = read_series(source, layout)
     for pattern, actual, name in (
         (_STEP, time_step, "--time-step"),
         (_COUNT, len(values), "number of values"),
@@ -100,4 +107,4 @@ def _series(source, layout, time_step, given):
     for stated in _UNIT.findall(header):
         if known_unit(stated) not in (None, given):
             raise InputError(source, "--unit", f"expected '{stated}', as the file says")
-    return float(given[1]) * values
+    return {"x": float(given[1]) * values}, width

@@ -1,11 +1,15 @@
 """Common result of all record formats: a uniform acceleration series in SI, and its metadata."""
 
+import re
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from blockshake.errors import InputError
 from blockshake.tables.numbers import missing_code, plain_number, touching_numbers
+
+SPECTRUM = re.compile("spectr|pseudo", re.IGNORECASE)  # of a header whose values are no motion
+_FEW = 0.01  # of all values, which have fewer digits than all others: a print of zeros left out has a tenth
 
 
 @dataclass(frozen=True)
@@ -100,12 +104,7 @@ def free_values(lines, first, count, where, count_key):
         A value is not a finite number, stands for a missing one or is cut short, or there are more or fewer than
         ``count``, or fewer than two.
     """
-    cells = [
-        (text, index + 1)
-        for index in range(first, len(lines))
-        for token in lines[index].split()
-        for text in touching_numbers(token) or [token]
-    ]
+    cells = [(text, index + 1) for index in range(first, len(lines)) for text in _tokens(lines[index])]
     return _series(cells, count, where, count_key)
 
 
@@ -140,20 +139,30 @@ def fixed_values(lines, first, count, layout, where, count_key):
     for index in range(first, min(behind, len(lines))):
         line, expected = lines[index].rstrip(), min(columns, count - len(cells))
         if len(line) == expected * width:
-            texts = [line[start : start + width] for start in range(0, len(line), width)]
+            texts = cut_columns(line, width)
         else:
-            texts = [text for token in line.split() for text in touching_numbers(token) or [token]]
+            texts = _tokens(line)
         if len(texts) != expected and plain_number(texts[0] if texts else ""):
             expected = f"expected {expected} values, in {width} columns each, found {len(texts)}"
             raise InputError(where, f"line {index + 1}", expected)
         if len(texts) != expected:  # the next header, or the end
             break
         cells += [(text.strip(), index + 1) for text in texts]
-    if any(
-        tokens and all(map(plain_number, tokens)) for tokens in map(str.split, lines[behind : behind + 1])
-    ):
+    rest = "".join(lines[behind : behind + 1])
+    if any(texts and all(map(plain_number, texts)) for texts in (cut_columns(rest, width), _tokens(rest))):
         raise InputError(where, count_key, f"expected {count} values, found more in line {behind + 1}")
     return _series(cells, count, where, count_key)
+
+
+def cut_columns(line, width):
+    """Texts of one line, cut at fixed columns: they may touch."""
+    line = line.rstrip()
+    return [line[start : start + width] for start in range(0, len(line), width)]
+
+
+def _tokens(line):
+    """Texts of one line between blanks, or touching where a sign tells them apart."""
+    return [text for token in line.split() for text in touching_numbers(token) or [token]]
 
 
 def _series(cells, count, where, count_key):
@@ -163,11 +172,12 @@ def _series(cells, count, where, count_key):
         raise InputError(where, count_key, f"expected {count} values, found {len(values)}")
     if count < 2:
         raise InputError(where, count_key, f"expected at least two values, found {count}")
-    last, line = cells[-1]
-    digits = {len(text.partition(".")[2]) for text, _ in cells[:-1]}
-    if len(digits) == 1 and len(last.partition(".")[2]) < min(digits):  # 1.23E-0 for 1.23E-05
+    digits = [len(text.partition(".")[2]) for text, _ in cells]
+    short = [cell for cell, behind in zip(cells, digits, strict=True) if behind < max(digits)]
+    if 0 < len(short) <= max(1, _FEW * len(cells)):  # 1.23E-0 for 1.23E-05
+        text, line = short[0]
         raise InputError(
-            where, f"line {line}", f"expected as many digits as elsewhere, found '{last}': it is cut short"
+            where, f"line {line}", f"expected as many digits as elsewhere, found '{text}': it is cut short"
         )
     coded = missing_code(values)
     if coded is not None:

@@ -7,7 +7,13 @@ processing, whose entry 47 tells the files of higher precision.
 import re
 
 from blockshake.dynamics.records.header_checks import HeaderChecks
-from blockshake.dynamics.records.record import Record, finite_number, fixed_values, positive_number
+from blockshake.dynamics.records.record import (
+    Record,
+    cut_columns,
+    finite_number,
+    fixed_values,
+    positive_number,
+)
 from blockshake.errors import InputError
 from blockshake.tables.numbers import plain_number
 
@@ -51,7 +57,7 @@ def read_smc(text, where):
         The file holds something else, is cut short, a value is not a finite number; or an extreme value, its time or
         the peak in line 7 contradicts the values.
     """
-    lines = text.splitlines()
+    lines = text.split("\n")
     kind = lines[0].strip() if lines else ""
     if kind.upper() not in _KINDS:
         raise InputError(where, "line 1", f"expected {' or '.join(_KINDS)}, found '{kind}'")
@@ -83,11 +89,7 @@ def read_smc(text, where):
 def _header(lines, first, layout, where, name):
     """Texts of the numbers of a header."""
     count, columns, width = layout
-    texts = [
-        line[start : start + width]
-        for line in lines[first : first + count // columns]
-        for start in range(0, len(line.rstrip()), width)
-    ]
+    texts = [text for line in lines[first : first + count // columns] for text in cut_columns(line, width)]
     if len(texts) != count:
         raise InputError(
             where, f"line {first + 1}", f"expected {count} {name} from here on, found {len(texts)}"

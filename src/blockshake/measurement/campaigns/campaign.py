@@ -14,6 +14,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.command_clock import from_command
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 from blockshake.measurement.campaigns.recorded_test import read_test
+from blockshake.measurement.campaigns.recorder_clock import on_one_clock
 from blockshake.measurement.sensors import accelerometers, markers, transducers
 from blockshake.paths import check_plain, file_below
 from blockshake.validation import Finite, NotNegative, Strict, validated
@@ -121,5 +122,5 @@ def load_campaign(folder):
 def load_test(campaign, name):
     """Readings of one test, checked against the campaign's structure as by `read_test`, times as of `from_command`."""
     entry, structure = campaign.tests[name], load_structure(campaign.structure)
-    test = read_test(campaign.folder / entry.file, structure)
+    test = on_one_clock(read_test(campaign.folder / entry.file, structure), structure)
     return from_command(test, structure, commanded_motion(campaign, entry))

@@ -126,7 +126,8 @@ def _faults(values, groups):
     steps = np.diff(values, axis=0)
     changed = known & (steps != 0.0)
     varying = changed.any(axis=0)
-    noisy = _is_noisy(steps[:, varying], changed[:, varying])
+    hung = _long_enough(~changed.any(axis=1))
+    noisy = _is_noisy(steps[~hung][:, varying], changed[~hung][:, varying])
     faults, copies = [], {}
     for column, group in enumerate(groups):
         others = np.array([one == group for one in groups]) & varying
@@ -137,6 +138,7 @@ def _faults(values, groups):
         if not others.any() or not known[:, column].any():
             continue
         moving = changed[:, others].sum(axis=1) / np.maximum(known[:, others].sum(axis=1), 1)
+        moving = np.where(hung & noisy, 1.0, moving)  # where the whole instrument hangs, its noise says so
         repeats = known[:, column] & ~changed[:, column]
         if varying[column]:
             at_end, p = _at_end(values[:, column], 0.5 * _LEVEL / len(groups))
@@ -154,6 +156,15 @@ def _faults(values, groups):
         if rows.any():
             faults.append(_Fault("frozen" if varying[column] else "constant", column, rows, p))
     return faults
+
+
+def _long_enough(still):
+    """Steps, a mask, of the stretches of still ones that are long enough to be looked at."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]]))).reshape(-1, 2)
+    found = np.zeros(len(still), dtype=bool)
+    for begin, end in edges[np.diff(edges, axis=1)[:, 0] >= _SHORTEST]:
+        found[begin:end] = True
+    return found
 
 
 def _is_noisy(steps, changed):

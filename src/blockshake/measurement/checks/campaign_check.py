@@ -220,6 +220,12 @@ class _Described:
         if "accelerometer" not in self.test:
             return
         own = [str(name) in along_x for name in self.test["channel"].values]
+        if "recorder_late" in self.test.attrs:
+            late = self.test.attrs["recorder_late"]
+            words = "late" if late > 0.0 else "early"
+            self.remarks.append(
+                f"the accelerometers' clock is {abs(late):.3g} s {words} and was set by the slab's motion"
+            )
         if any(own):
             readings = self.test["accelerometer"].to_numpy()[:, own].mean(axis=1)
             self.remarks += clock_remarks(

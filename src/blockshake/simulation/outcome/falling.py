@@ -58,7 +58,8 @@ def still_falling(structure, position, orientation, angular_velocity):
     By the static theorem of limit analysis nothing falls where some compressive forces within friction carry all
     weights (Heyman 1966, The stone skeleton; Livesey 1978, Limit analysis of structures formed from rigid blocks).
     Forces act anywhere on two faces that lie over each other. An open joint counts as closed, as it does when a block
-    comes back, unless the block then lies lower than a collapse allows.
+    comes back, unless the block then lies lower than a collapse allows; bodies that did not touch at the start carry
+    each other only where they touch.
 
     The blocks are taken to be where they are bound to (the extrapolated mass centre of Hof, Gazendam and Sinke 2005,
     The condition for dynamic stability): ``u / p`` on, where ``u`` is the velocity by their turning alone and ``p`` the
@@ -66,13 +67,15 @@ def still_falling(structure, position, orientation, angular_velocity):
     energy takes them over the point of balance; the rate at which it does is right within 1 % where the height is four
     times the width, within 3 % where it is twice.
 
-    The ground moves on evenly. Slip and flight change nothing: friction and weight end them. Bodies that are not
-    convex count by their hulls.
+    The ground moves on evenly. Slip and flight change nothing: friction and weight end them. A structure with a free
+    body that is not convex is not judged.
     """
     watched, drop_limit = collapse_limits(structure)
     gravity = np.array(structure.file.gravity)
     strength = np.linalg.norm(gravity)
     if not watched.any() or strength == 0.0:
+        return None
+    if any(structure.solid(body).polyhedron is None for body in np.flatnonzero(watched)):
         return None
     up, base = -gravity / strength, int(np.argmax(structure.driven))
     fallen = (structure.position - structure.position[base] - position + position[base]) @ up
@@ -100,7 +103,7 @@ def still_falling(structure, position, orientation, angular_velocity):
 
 
 def _supports(structure, position, orientation, up, watched, most_gap):
-    """`_Support` of each pair that touches, or whose upper body has at most a gap [m] to come down by."""
+    """`_Support` of each pair that touches, or that touched and has at most a gap [m] to come down by."""
     taken = np.flatnonzero(watched | structure.driven)
     hulls, turns = [_hull(structure.solid(body)) for body in taken], rotation_matrices(orientation)[taken]
     corners = [
@@ -116,7 +119,8 @@ def _supports(structure, position, orientation, up, watched, most_gap):
         below, above = pair
         depth, height = corners[below] @ normal, corners[above] @ normal
         carries = normal @ up > COSINE_OF_TILT
-        if height.min() - depth.max() > (most_gap[taken[above]] if carries else _TOUCH):
+        laid = carries and structure.touching[taken[below], taken[above]]
+        if height.min() - depth.max() > (most_gap[taken[above]] if laid else _TOUCH):
             continue
         near = height < height.min() + _TOUCH
         supports.append(

@@ -24,6 +24,7 @@ from blockshake.solvers.ls_dem.start.equilibrium import (
 
 _MOST_PARTINGS = 20  # of a pair: one, but where it meets at several faces
 _ROUNDING = 1e-12  # m
+_TYPED = 2e-9  # m, of typed places: what a structure file may have is never refused here
 
 
 def joints_as_laid(structure, bodies, surfaces, interfaces, skin, state, settled):
@@ -69,7 +70,7 @@ def joints_as_laid(structure, bodies, surfaces, interfaces, skin, state, settled
     )
     pairs, shift = candidates.pairs, candidates.shift
     depth, rest = _part_into(candidates, surfaces, poses)
-    unsettled = (~bodies.driven & ~settled)[pairs].any(axis=1) & (depth > 0.0)
+    unsettled = (~bodies.driven & ~settled)[pairs].any(axis=1) & (depth > _ROUNDING)
     if not (unsettled | (depth > START_TOLERANCE)).any():
         return joints, 0.0
     stiffness, pull, _, _ = joint_stiffness(
@@ -85,7 +86,7 @@ def joints_as_laid(structure, bodies, surfaces, interfaces, skin, state, settled
     pressed = np.clip(-(apart * carried).sum(axis=1) / np.where(along > 0.0, along, np.inf), 0.0, 1.0)
     taken = unsettled | ((1.0 - pressed) * depth > START_TOLERANCE)
     depth, rest = np.where(taken, depth, 0.0), np.where(taken, rest, 0.0)
-    _refuse_above(DEEPEST_OVERLAP, structure, pairs, depth, "")
+    _refuse_above(DEEPEST_OVERLAP + _TYPED, structure, pairs, depth, "")
     _refuse_above(START_TOLERANCE, structure, pairs, rest, " on sides that no shift parts")
     joints.shift[candidates.joint] = shift * np.where(taken, 1.0 - pressed, 0.0)[:, None]
     return joints, float(depth.max())
