@@ -1,0 +1,47 @@
+"""From evidences to an answer: thresholds, coarsened odds, free forces and sets."""
+
+import numpy as np
+import pytest
+
+from blockshake.diagnosis.answer.answer import COARSENING, ODDS, Rival, coarsened, group_of, slab_group
+
+
+def rivals(**scores):
+    """By falling score; the gain is the score."""
+    found = [Rival(name.replace("_", "-"), "there", gain, gain, ("there",)) for name, gain in scores.items()]
+    return sorted(found, key=lambda one: -one.score)
+
+
+def test_odds_of_small_gains_are_plain_and_those_of_large_ones_a_share_of_what_is_explained():
+    assert coarsened(2.0, 0.0) == 2.0
+    # a form that leaves the share delta of a large gain unexplained is within the odds, just so
+    assert coarsened(COARSENING * 1e6, 1e6) == pytest.approx(ODDS, rel=1e-3)
+
+
+def test_nothing_strong_is_no_answer():
+    assert group_of(rivals(eccentricity=7.9, push=14.9)) is None
+    assert group_of(rivals(eccentricity=8.1)).effects == ("eccentricity",)
+
+
+def test_a_rival_within_the_odds_is_in_the_set_and_forms_from_outside_are_said():
+    group = group_of(rivals(eccentricity=30.0, push=29.0, drag=10.0))
+    assert group.effects == ("eccentricity",)
+    assert group.outside == ("push",)
+
+
+def test_forms_from_outside_alone_are_no_effect():
+    group = group_of(rivals(push=60.0, weak_joint=1.0))
+    assert (group.effects, group.outside) == ((), ("push",))
+
+
+def test_a_second_cause_needs_more_beside_a_large_first_one():
+    assert group_of(rivals(weak_joint=15.0), needed=10.0) is None
+    assert group_of(rivals(weak_joint=19.0), needed=10.0).effects == ("weak-joint",)
+
+
+def test_the_slab_s_rotation_and_its_vertical_motion_are_judged_apart():
+    gains = {"table-pitch": 40.0, "base-compliance": 39.5, "vertical-motion": -200.0}
+    (turning,) = slab_group(gains)
+    assert turning.effects == ("table-pitch", "base-compliance")
+    assert slab_group(dict.fromkeys(gains, -1.0)) == []
+    assert np.isfinite(turning.odds["base-compliance"])
