@@ -71,19 +71,22 @@ def _csv(text):
 
 
 def _at2(text):
-    lines = text.splitlines()
-    unit = _unit(re.search(r"accel.*?units?\b\s*(?:of|in|[:=])?\s*(.*)", lines[2], re.IGNORECASE).group(1))
-    count = int(re.search(r"npts\s*=\s*([^\s,;]+)", lines[3], re.IGNORECASE).group(1))
-    step = re.search(r"\bdt\s*=\s*([^\s,;]+)[\s,;]*([a-z]*)", lines[3], re.IGNORECASE)
+    lines = text.split("\n")
+    last = next(place for place, line in enumerate(lines) if place > 2 and "NPTS" in line.upper())
+    unit = _unit(
+        re.search(r"accel.*?units?\b\s*(?:of|in|[:=])?\s*(.*)", lines[last - 1], re.IGNORECASE).group(1)
+    )
+    count = int(re.search(r"npts\s*=\s*([^\s,;]+)", lines[last], re.IGNORECASE).group(1).removesuffix("."))
+    step = re.search(r"\bdt\s*=\s*([^\s,;]+?)(?=m?sec\b|[\s,;]|$)[\s,;]*([a-z]*)", lines[last], re.IGNORECASE)
     size = {"s": 1.0, "sec": 1.0, "": 1.0, "npts": 1.0, "min": 60.0, "ms": 1e-3}[step.group(2).lower()]
-    values = [unit * _number(text) for text in re.findall(_NUMBER, "\n".join(lines[4:]))]
+    values = [unit * _number(text) for text in re.findall(_NUMBER, "\n".join(lines[last + 1 :]))]
     if len(values) != count:
         raise ValueError(count)
     return _even(values, size * _number(step.group(1)))
 
 
 def _dyna(text):
-    lines = text.splitlines()
+    lines = text.split("\n")
     last = next(place for place, line in enumerate(lines) if ":" not in line)
     header = dict(line.split(":", 1) for line in lines[:last])
     header = {key.strip().upper(): value.strip() for key, value in header.items()}
@@ -107,7 +110,7 @@ def _series(lines, place, count):
 
 
 def _cosmos(text):
-    lines = text.splitlines()
+    lines = text.split("\n")
     place = next(
         number
         for number, line in enumerate(lines)
@@ -122,7 +125,7 @@ def _cosmos(text):
 
 
 def _csmip(text):
-    lines = text.splitlines()
+    lines = text.split("\n")
     said = [
         re.match(r"\s*(\d+) points of accel\S* data .*? at +(\S+) +sec, *in *([^(]*)", line, re.IGNORECASE)
         for line in lines
@@ -133,7 +136,7 @@ def _csmip(text):
 
 
 def _knet(text):
-    lines = text.splitlines()
+    lines = text.split("\n")
     last = next(place for place, line in enumerate(lines) if re.match(r"\s*[-\d]", line))
     said = {key: next(line[len(key) :] for line in lines[:last] if line.startswith(key)) for key in (
         "Sampling Freq(Hz)", "Scale Factor", "Duration Time(s)")}  # fmt: skip
@@ -147,7 +150,7 @@ def _knet(text):
 
 
 def _smc(text):
-    lines = text.splitlines()
+    lines = text.split("\n")
     whole, real = _cut(lines[11:17], 10), _cut(lines[17:27], 15)
     first, count = 27 + int(_number(whole[15])), int(_number(whole[16]))
     cells = _cut(lines[first : first + math.ceil(count / 8)], 10)
