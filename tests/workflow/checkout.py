@@ -3,6 +3,7 @@
 import copy
 import re
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -71,6 +72,8 @@ class Checkout:
             text=True,
             timeout=LIMIT,
             check=False,
+            # heeds interrupts also where the tests run in a shell's background and would ignore them
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
         )
 
     def jobs(self, *arguments):
