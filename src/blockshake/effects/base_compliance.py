@@ -99,4 +99,5 @@ EFFECT = Effect(
     places=nowhere,
     act=_act,
     turns=_turns,
+    reads=lambda values, size, between: {"compliance": np.maximum(size, 0.0)},
 )

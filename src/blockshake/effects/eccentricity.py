@@ -32,4 +32,5 @@ EFFECT = Effect(
     places=blocks,
     act=_act,
     columns=_columns,
+    reads=lambda values, size, between: {"offset": size},
 )  # fmt: skip

@@ -139,6 +139,12 @@ class Effect:
         Of the structure: places of the evidence, those of ``places`` by default.
     turns, lifts : callable, optional
         Of a `SlabMotion`: `Columns` of its rotation, and covariances of its vertical displacement.
+    reads : callable, optional
+        Of a variant's values, amplitudes, and places between two points of the grid, -0.5 to 0.5, float64 arrays: the
+        parameters, dict of str to float or array.
+    extends : callable, optional
+        Of an experiment, parameters that ``reads`` gave, and a place of the evidence: the experiment with the effect.
+        By default ``act`` at that place.
     """
 
     name: str
@@ -156,3 +162,5 @@ class Effect:
     seen_at: Callable | None = None
     turns: Callable | None = None
     lifts: Callable | None = None
+    reads: Callable | None = None
+    extends: Callable | None = None

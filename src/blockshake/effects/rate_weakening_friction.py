@@ -7,6 +7,7 @@ from blockshake.effects.places import nowhere
 from blockshake.forces.seen.wrench_histories import friction_against_slip
 
 _SCALE = 0.6
+_MOST = 0.99  # of the coefficient
 _RATES = (0.003, 0.01, 0.03, 0.1)  # m/s
 
 
@@ -35,6 +36,11 @@ def _lost(seen, scale):
     return lost
 
 
+def _reads(values, size, between):
+    ratio = _RATES[1] / _RATES[0]
+    return {"drop": np.minimum(size, _MOST), "scale": values["scale"] * ratio**between}
+
+
 EFFECT = Effect(
     name="rate-weakening-friction",
     title="friction that falls with slip rate",
@@ -51,4 +57,5 @@ EFFECT = Effect(
     places=nowhere,
     act=_act,
     columns=_columns,
+    reads=_reads,
 )

@@ -79,4 +79,6 @@ EFFECT = Effect(
     act=_act,
     columns=_columns,
     seen_at=_seen_at,
+    extends=lambda experiment, values, place: _act(experiment, values, {}),
+    reads=lambda values, size, between: {"inset": np.maximum(size, 0.0)},
 )

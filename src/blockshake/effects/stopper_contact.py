@@ -7,7 +7,9 @@ from blockshake.effects.places import blocks, stops
 from blockshake.forces.seen.point_rows import point_rows
 
 _SCALE = 1e7  # N/m
-_GAPS = np.concatenate([[0.002, 0.004], np.arange(0.006, 0.0601, 0.002)])  # m
+_GAP_STEP = 0.002  # m
+_GAPS = np.concatenate([[0.002, 0.004], np.arange(0.006, 0.0601, _GAP_STEP)])  # m
+_NEVER = 1e3  # m, gap of no stop
 HEIGHTS = (0.0, 0.42)  # of a force above the mass centre, over the block's height
 
 
@@ -47,6 +49,26 @@ def spring_rows(point, side, gap):
     return -side * point.unit * point.through_kernel(closure)
 
 
+def _reads(values, size, between):
+    """Stiffness and gap of the stop, or of the nearer of two; ``side`` of it, and ``other_gap`` of the other."""
+    near, *other = sorted(values["gaps"], key=values["gaps"].get)
+    return {
+        "stiffness": np.maximum(size, 0.0),
+        "gap": values["gaps"][near] + _GAP_STEP * between,
+        "side": float(near),
+        "other_gap": values["gaps"][other[0]] if other else _NEVER,
+    }
+
+
+def _extends(experiment, values, place):
+    for side, gap in ((values["side"], values["gap"]), (-values["side"], values["other_gap"])):
+        if gap < _NEVER:
+            axis = "+x" if side > 0.0 else "-x"
+            stop = {"stiffness": values["stiffness"], "gap": gap}
+            experiment = _act(experiment, stop, {"body": place["body"], "axis": axis})
+    return experiment
+
+
 EFFECT = Effect(
     name="stopper-contact",
     title="contact with a stop",
@@ -64,4 +86,6 @@ EFFECT = Effect(
     act=_act,
     columns=_columns,
     seen_at=_seen_at,
+    reads=_reads,
+    extends=_extends,
 )

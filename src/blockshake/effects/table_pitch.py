@@ -67,4 +67,5 @@ EFFECT = Effect(
     places=nowhere,
     act=_act,
     turns=_turns,
+    reads=lambda values, size, between: {"coefficient": size, "frequency": values["frequency"] + between},
 )  # fmt: skip

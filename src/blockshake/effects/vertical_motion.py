@@ -41,4 +41,5 @@ EFFECT = Effect(
     places=nowhere,
     act=_act,
     lifts=_lifts,
+    reads=lambda values, size, between: {"ratio": size, "delay": values["delay"] + 0.01 * between},
 )  # fmt: skip

@@ -1,5 +1,7 @@
 """One joint slides at less friction than the others of its materials."""
 
+import numpy as np
+
 from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
 from blockshake.effects.places import face_of, joints, stated_joint
 from blockshake.forces.seen.wrench_histories import friction_against_slip
@@ -32,4 +34,5 @@ EFFECT = Effect(
     places=joints,
     act=_act,
     columns=_columns,
+    reads=lambda values, size, between: {"factor": np.maximum(1.0 - size, 0.0)},
 )

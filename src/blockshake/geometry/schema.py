@@ -128,6 +128,9 @@ class ExternalForce(Strict):
         0.0, description="force against the point's displacement relative to the driven body [N/m]"
     )
     damping: Finite = Field(0.0, description="force against the point's velocity relative to it [N s/m]")
+    drag: NotNegative = Field(
+        0.0, description="force against the direction of that velocity, F tanh(v / 0.01 m/s) [N]"
+    )
 
     @model_validator(mode="after")
     def _ends(self):

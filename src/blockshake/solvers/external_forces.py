@@ -8,13 +8,15 @@ from blockshake.geometry.rotations import rotation_matrix_into
 from blockshake.geometry.schema import AXES
 from blockshake.jit import borrowing_kernel, kernel
 
+CREEP = 0.01  # m/s, below which a dry drag falls off
+
 
 class ExternalForces(NamedTuple):
     """Forces along fixed axes, one an entry.
 
     ``body`` int64 (n,); ``base``: first driven body, -1 without one; ``point`` (n, 3) from the mass centre, body frame
     [m]; ``axis`` (n, 3) unit vectors, world frame; ``amplitude`` (n,) [N]; ``start``, ``end`` (n,) [s];
-    ``stiffness`` (n,) [N/m]; ``damping`` (n,) [N s/m].
+    ``stiffness`` (n,) [N/m]; ``damping`` (n,) [N s/m]; ``drag`` (n,) [N].
     """
 
     body: np.ndarray
@@ -26,6 +28,7 @@ class ExternalForces(NamedTuple):
     end: np.ndarray
     stiffness: np.ndarray
     damping: np.ndarray
+    drag: np.ndarray
 
 
 def assemble_external_forces(structure):
@@ -39,7 +42,7 @@ def assemble_external_forces(structure):
         np.eye(3)[[AXES.index(force.axis) for force in forces]].reshape(-1, 3),
         *(
             np.array([getattr(force, name) for force in forces], dtype=float)
-            for name in ("amplitude", "start", "end", "stiffness", "damping")
+            for name in ("amplitude", "start", "end", "stiffness", "damping", "drag")
         ),
     )
 
@@ -63,7 +66,8 @@ def external_wrenches_into(bodies, forces, state, time, ahead, wrench):
     Notes
     -----
     ``amplitude`` from ``start`` until before ``end``, less ``stiffness`` times the point's displacement against the
-    driven body since the start of the run, less ``damping`` times its velocity against it.
+    driven body since the start of the run, less ``damping`` times its velocity v against it, less ``drag`` times
+    tanh(v / 0.01 m/s): dry friction, made smooth at rest.
     """
     wrench[:] = 0.0
     home, arm, rate, turn = np.empty(3), np.empty(3), np.empty(3), np.empty((3, 3))
@@ -82,6 +86,7 @@ def external_wrenches_into(bodies, forces, state, time, ahead, wrench):
                 moved -= axis[i] * (state.position[forces.base, i] - bodies.home[forces.base, i])
                 speed -= axis[i] * state.velocity[forces.base, i]
         size = -forces.stiffness[force] * (moved + ahead * speed) - forces.damping[force] * speed
+        size -= forces.drag[force] * np.tanh(speed / CREEP)
         if forces.start[force] <= time < forces.end[force]:
             size += forces.amplitude[force]
         _cross_into(arm, axis, rate)

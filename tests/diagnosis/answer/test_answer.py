@@ -1,15 +1,21 @@
 """From evidences to an answer: thresholds, coarsened odds, free forces and sets."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from blockshake.diagnosis.answer.answer import COARSENING, ODDS, Rival, coarsened, group_of, slab_group
+from blockshake.diagnosis.answer.answer import COARSENING, ODDS, Rival, coarsened, group_of, slab_groups
 
 
 def rivals(**scores):
     """By falling score; the gain is the score."""
     found = [Rival(name.replace("_", "-"), "there", gain, gain, ("there",)) for name, gain in scores.items()]
     return sorted(found, key=lambda one: -one.score)
+
+
+def causes(group):
+    return tuple(one.cause for one in group.rivals)
 
 
 def test_odds_of_small_gains_are_plain_and_those_of_large_ones_a_share_of_what_is_explained():
@@ -20,28 +26,27 @@ def test_odds_of_small_gains_are_plain_and_those_of_large_ones_a_share_of_what_i
 
 def test_nothing_strong_is_no_answer():
     assert group_of(rivals(eccentricity=7.9, push=14.9)) is None
-    assert group_of(rivals(eccentricity=8.1)).effects == ("eccentricity",)
+    assert causes(group_of(rivals(eccentricity=8.1))) == ("eccentricity",)
 
 
 def test_a_rival_within_the_odds_is_in_the_set_and_forms_from_outside_are_said():
     group = group_of(rivals(eccentricity=30.0, push=29.0, drag=10.0))
-    assert group.effects == ("eccentricity",)
-    assert group.outside == ("push",)
-
-
-def test_forms_from_outside_alone_are_no_effect():
-    group = group_of(rivals(push=60.0, weak_joint=1.0))
-    assert (group.effects, group.outside) == ((), ("push",))
+    assert causes(group) == ("eccentricity", "push")
+    assert group.gains["drag"] == 10.0
 
 
 def test_a_second_cause_needs_more_beside_a_large_first_one():
     assert group_of(rivals(weak_joint=15.0), needed=10.0) is None
-    assert group_of(rivals(weak_joint=19.0), needed=10.0).effects == ("weak-joint",)
+    assert causes(group_of(rivals(weak_joint=19.0), needed=10.0)) == ("weak-joint",)
+    # of any shape over the rotation: 20 and 10
+    assert group_of(rivals(reduced_bearing=29.0), needed=10.0) is None
 
 
 def test_the_slab_s_rotation_and_its_vertical_motion_are_judged_apart():
     gains = {"table-pitch": 40.0, "base-compliance": 39.5, "vertical-motion": -200.0}
-    (turning,) = slab_group(gains)
-    assert turning.effects == ("table-pitch", "base-compliance")
-    assert slab_group(dict.fromkeys(gains, -1.0)) == []
+    explained = {name: SimpleNamespace(gain=gain) for name, gain in gains.items()}
+    ((readings, turning),) = slab_groups(explained)
+    assert readings == "rotation of the slab"
+    assert causes(turning) == ("table-pitch", "base-compliance")
+    assert slab_groups({name: SimpleNamespace(gain=-1.0) for name in gains}) == []
     assert np.isfinite(turning.odds["base-compliance"])

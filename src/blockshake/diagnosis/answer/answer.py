@@ -5,15 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from blockshake.diagnosis.evidence.explanation import mean_evidence
+from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
+from blockshake.effects.registry import EFFECTS
 
 ODDS = float(np.log(20.0))  # within which causes are not told apart
 COARSENING = 0.05  # share of what it explains that the form of a cause may leave unexplained
 FREE_SHARE = 0.85  # of what any force at its place would explain, that a named form must
 FREE_FORCE = "unknown-force"
-OUTSIDE = (
-    "push", "blow", "rope", "drag", "dry-drag", "spring-once", "loose-weight", "changed-edge", FREE_FORCE,
-)  # fmt: skip
 _PRIOR, _PRIOR_OUTSIDE, _PRIOR_FREE = -3.0, -3.5, -6.0
 _NEEDED = 8.0  # nats over none that are no chance on clean campaigns
 _NEEDED_BY = {
@@ -47,11 +46,6 @@ class Rival:
     score: float
     places: tuple
 
-    @property
-    def strong(self):
-        """Whether the gain is no chance."""
-        return self.gain > _NEEDED_BY.get(self.cause, _NEEDED)
-
 
 @dataclass(frozen=True)
 class Group:
@@ -60,22 +54,13 @@ class Group:
     Attributes
     ----------
     rivals : tuple of Rival
-    odds : dict of str to float
-        Of the first over each other cause, as a logarithm, coarsened.
+    odds, gains : dict of str to float
+        Of the first over each cause, as a logarithm, coarsened; and of each over none.
     """
 
     rivals: tuple
     odds: dict
-
-    @property
-    def effects(self):
-        """Effects of the registry in the set."""
-        return tuple(one.cause for one in self.rivals if one.cause not in OUTSIDE)
-
-    @property
-    def outside(self):
-        """Forms from outside in the set."""
-        return tuple(one.cause for one in self.rivals if one.cause in OUTSIDE)
+    gains: dict
 
 
 def coarsened(difference, gain):
@@ -116,12 +101,15 @@ def _soft_joints(evidence, closed):
         for cause, place in (evidence.keys if evidence else ())
         if cause == JOINT_COMPLIANCE.name
     }
-    found = {}
-    for place in {**turned, **closed}:
-        alone = closed.get(place, 0.0)
-        both = turned.get(place, 0.0) + alone
-        found[place] = float(mean_evidence(np.logaddexp(both, alone) - np.log(2.0)))
-    return found
+    return {
+        place: float(mean_evidence(soft_gains(turned.get(place, 0.0), closed.get(place, 0.0))))
+        for place in {**turned, **closed}
+    }
+
+
+def soft_gains(turned, closed):
+    """Gain of every compliance of one joint, from the gains of the turned and of the closed joint."""
+    return np.logaddexp(turned + closed, closed) - np.log(2.0)
 
 
 def _rival(cause, places):
@@ -132,7 +120,7 @@ def _rival(cause, places):
         for place in sorted(places, key=lambda one: -places[one])
         if coarsened(places[best] - places[place], places[best]) < ODDS
     )
-    prior = _PRIOR_OUTSIDE if cause in OUTSIDE else _PRIOR
+    prior = _PRIOR_OUTSIDE if cause in FORMS else _PRIOR
     score = gain + prior if cause != FREE_FORCE else FREE_SHARE * gain + _PRIOR_FREE
     return Rival(cause, best, gain, score, near)
 
@@ -147,40 +135,44 @@ def group_of(ranked, needed=0.0):
     needed : float
         Gain that is needed beyond the usual one.
     """
-    strong = [one for one in ranked if one.strong and one.gain > _NEEDED + needed]
+    strong = [one for one in ranked if one.gain > needed_of(one.cause) + needed]
     if not strong:
         return None
     first = strong[0]
     odds = {one.cause: coarsened(first.score - one.score, first.score) for one in ranked}
-    near = [one for one in ranked if odds[one.cause] < ODDS]
-    return Group(tuple(near), odds)
+    near = tuple(one for one in ranked if odds[one.cause] < ODDS)
+    return Group(near, odds, {one.cause: one.gain for one in ranked})
 
 
-def second_group(evidence, first):
-    """`Group` beside that of a first cause, or None.
-
-    Parameters
-    ----------
-    evidence : Evidence
-    first : Rival
-    """
-    beside = evidence.beside((first.cause, first.place))
-    return group_of(rank(beside), _SECOND_SHARE * first.gain)
+def needed_beside(gain):
+    """Gain that is needed of a second cause beside a first one that gains ``gain``."""
+    return _SECOND_SHARE * gain
 
 
-def slab_group(gains):
-    """Groups of the slab's rotation and of its vertical motion.
+def needed_of(cause):
+    """Gain over none from which a cause is no chance."""
+    return max(_NEEDED_BY.get(cause, _NEEDED), _NEEDED)
+
+
+def slab_groups(explained):
+    """Groups of the slab's rotation and of its vertical motion, with the name of these readings.
 
     Parameters
     ----------
-    gains : dict of str to float
-        Over none, by effect.
+    explained : dict of str to Explanation
+        By effect.
+
+    Returns
+    -------
+    list of (str, Group)
     """
     found = []
-    for names in (("table-pitch", "base-compliance"), ("vertical-motion",)):
-        rivals = [Rival(name, "all", gains[name], gains[name], ("all",)) for name in names]
+    for readings, moves in (("rotation of the slab", "turns"), ("vertical motion of the slab", "lifts")):
+        gains = {name: one.gain for name, one in explained.items() if getattr(EFFECTS[name], moves)}
+        rivals = [Rival(name, "all", gain, gain, ("all",)) for name, gain in gains.items()]
         ranked = sorted(rivals, key=lambda one: -one.gain)
-        if ranked[0].gain > _NEEDED_OF_SLAB:
+        if ranked and ranked[0].gain > _NEEDED_OF_SLAB:
             odds = {one.cause: coarsened(ranked[0].gain - one.gain, ranked[0].gain) for one in ranked}
-            found.append(Group(tuple(one for one in ranked if odds[one.cause] < ODDS), odds))
+            near = tuple(one for one in ranked if odds[one.cause] < ODDS)
+            found.append((readings, Group(near, odds, gains)))
     return found

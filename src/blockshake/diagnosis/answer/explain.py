@@ -5,11 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
+from blockshake.diagnosis.answer.places import place_name
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.evidence.joint_rows import JointRows
 from blockshake.diagnosis.evidence.likelihood import from_rows
 from blockshake.diagnosis.evidence.nuisances import expected_rows, nuisance_columns
-from blockshake.diagnosis.evidence.row_covariance import row_covariance
+from blockshake.diagnosis.evidence.row_covariance import form_error, row_covariance
 from blockshake.diagnosis.evidence.stop_search import explain_stops
 from blockshake.diagnosis.outside.blow import explain_blow
 from blockshake.diagnosis.outside.changed_edge import explain_changed_edge
@@ -20,6 +21,7 @@ from blockshake.diagnosis.outside.points import force_points
 from blockshake.diagnosis.outside.push import explain_push
 from blockshake.diagnosis.outside.spring_once import explain_spring_once
 from blockshake.effects.registry import EFFECTS
+from blockshake.effects.stopper_contact import EFFECT as STOPPER_CONTACT
 
 NOISES = (0.75, 1.0, 1.3)  # standard deviation of the sensors over the stated one
 _UNHEARD = 20.0  # nats: a likelihood that says so much less for the first cause adds nothing
@@ -47,61 +49,64 @@ def likelihoods(tests, noises=NOISES, discrepancies=DISCREPANCIES):
     ]
 
 
-def heard(tests, points):
+@dataclass(frozen=True)
+class Tried:
+    """All that is tried on tests with rows: made once, for every likelihood.
+
+    Attributes
+    ----------
+    tests : list of JointRows
+    points : list of Points
+        At which forces from outside are tried.
+    variants : dict of (str, str) to list of list of Columns
+        By effect and place, by variant and test.
+    """
+
+    tests: list
+    points: list
+    variants: dict
+
+
+def all_tried(tests, without):
+    """`Tried` of tests with rows, but for some effects."""
+    structure, variants = tests[0].seen.structure, {}
+    for name, effect in EFFECTS.items():
+        if effect.columns is None or name in without:
+            continue
+        for place in (effect.seen_at or effect.places)(structure):
+            own = list(zip(*(effect.columns(test.seen, place) for test in tests), strict=True))
+            if any(one.rows.any() for variant in own for one in variant):
+                variants[name, place_name(place)] = own
+    return Tried(tests, force_points(tests), variants)
+
+
+def heard(tried):
     """Likelihoods that matter to any of the best causes of a first look: within 20 nats of the loudest beside it.
 
     Without a cause beside it, a large force that nobody modelled speaks for the widest errors alone.
     """
-    (first,) = likelihoods(tests, *_FIRST_LOOK)
+    (first,) = likelihoods(tried.tests, *_FIRST_LOOK)
     best = {}
-    for one in explain(first, tests, points).by_key.values():
+    for one in explain(first, tried).by_key.values():
         if one.cause not in best or one.gain > best[one.cause].gain:
             best[one.cause] = one
-    among, kept = likelihoods(tests), set()
+    among, kept = likelihoods(tried.tests), set()
     for cause in sorted(best.values(), key=lambda one: -one.gain)[:_LOOKED_AT]:
-        logs = np.array([one.beside(cause.columns, cause.scales).log_evidence for one in among])
+        logs = np.array([_with_cause(one, cause, tried.tests).log_evidence for one in among])
         kept |= set(np.flatnonzero(logs > logs.max() - _UNHEARD))
     return [among[index] for index in sorted(kept)]
 
 
-def explain(likelihood, tests, points):
-    """`Explained` by all causes at all places.
-
-    Parameters
-    ----------
-    likelihood : Likelihood
-    tests : list of JointRows
-        Those with rows.
-    points : list of Points
-        From `force_points`.
-    """
-    found = [*_by_effects(likelihood, tests), *_from_outside(likelihood, tests, points)]
+def explain(likelihood, tried):
+    """`Explained` by all causes at all places."""
+    found = [
+        explain_stops(likelihood, place, variants)
+        if name == STOPPER_CONTACT.name
+        else best_of(likelihood, name, place, variants)
+        for (name, place), variants in tried.variants.items()
+    ]
+    found += _from_outside(likelihood, tried.tests, tried.points)
     return Explained(likelihood, {(one.cause, one.place): one for one in found})
-
-
-def _by_effects(likelihood, tests):
-    structure = tests[0].seen.structure
-    for name, effect in EFFECTS.items():
-        if effect.columns is None:
-            continue
-        for place in (effect.seen_at or effect.places)(structure):
-            variants = list(zip(*(effect.columns(test.seen, place) for test in tests), strict=True))
-            if not any(one.rows.any() for variant in variants for one in variant):
-                continue
-            search = explain_stops if name == "stopper-contact" else best_of_cause(name)
-            yield search(likelihood, place_name(place), variants)
-
-
-def best_of_cause(name):
-    """Search of an effect whose variants have the same prior."""
-    return lambda likelihood, place, variants: best_of(likelihood, name, place, variants)
-
-
-def place_name(place):
-    """A place in words: body and height, or a joint; ``all`` where the effect is everywhere."""
-    if "joint" in place:
-        return "-".join(place["joint"])
-    return f"{place['body']}@{place['height']:g}" if "height" in place else place.get("body", "all")
 
 
 def _from_outside(likelihood, tests, points):
@@ -128,17 +133,18 @@ class Evidence:
 
     Attributes
     ----------
-    tests : list of JointRows
-        Those with rows.
-    points : list of Points
-        At which forces from outside were tried.
+    tried : Tried
     explained : list of Explained
         By likelihood.
     """
 
-    tests: list
-    points: list
+    tried: Tried
     explained: list
+
+    @property
+    def tests(self):
+        """`JointRows` of the tests with rows."""
+        return self.tried.tests
 
     def gain(self, key):
         """Gain of a cause at a place over none, summed over the likelihoods."""
@@ -153,21 +159,19 @@ class Evidence:
         speaks = [one.by_key[key].gain + one.likelihood.log_evidence for one in self.explained]
         return self.explained[int(np.argmax(speaks))].by_key[key]
 
-    def amplitudes(self, key):
-        """Mean and covariance of the best variant's amplitudes at a place, over the likelihoods of that variant."""
-        speaks = np.array([one.by_key[key].gain + one.likelihood.log_evidence for one in self.explained])
-        values = self.best(key).values
-        alike = [one.by_key[key].values == values for one in self.explained]
-        weights = np.where(alike, np.exp(speaks - speaks.max()), 0.0)
-        weights /= weights.sum()
-        parts = [one.by_key[key] for one, weight in zip(self.explained, weights, strict=True) if weight > 0.0]
-        weights = weights[weights > 0.0]
-        mean = sum(weight * one.mean for weight, one in zip(weights, parts, strict=True))
-        spread = sum(
-            weight * (one.covariance + np.outer(one.mean - mean, one.mean - mean))
-            for weight, one in zip(weights, parts, strict=True)
-        )
-        return mean, spread
+    def fits(self, key):
+        """All `Fit` of a cause at a place, with the logarithms of their weights over all likelihoods.
+
+        Returns
+        -------
+        list of Fit, float64 array
+        """
+        found, logs = [], []
+        for one in self.explained:
+            for fit in one.by_key[key].fits:
+                found.append(fit)
+                logs.append(fit.gain + one.likelihood.log_evidence)
+        return found, np.array(logs) - logsumexp(logs)
 
     @property
     def keys(self):
@@ -186,26 +190,28 @@ class Evidence:
             one for one, says in zip(self.explained, speaks, strict=True) if says > speaks.max() - _UNHEARD
         ]
         return Evidence(
-            self.tests,
-            self.points,
-            [explain(_beside(one, key), self.tests, self.points) for one in heard],
+            self.tried,
+            [explain(_with_cause(one.likelihood, one.by_key[key], self.tests), self.tried) for one in heard],
         )
 
 
-def _beside(explained, key):
-    first = explained.by_key[key]
-    return explained.likelihood.beside(first.columns, first.scales)
+def _with_cause(likelihood, cause, tests):
+    """A likelihood with the best fit of an `Explanation` among its nuisances."""
+    errors = [form_error(test.rows.time, rows) for test, rows in zip(tests, cause.rows, strict=True)]
+    return likelihood.beside(cause.best.columns, cause.best.scales, errors)
 
 
-def gather_evidence(seen):
+def gather_evidence(seen, without=()):
     """`Evidence` of seen tests; None where no test has rows: no joint turned, slipped or lifted.
 
     Parameters
     ----------
     seen : list of SeenTest
+    without : sequence of str
+        Effects that are left out.
     """
     tests = [JointRows(one) for one in seen if len(one.rows.value)]
     if not tests:
         return None
-    points = force_points(tests)
-    return Evidence(tests, points, [explain(one, tests, points) for one in heard(tests, points)])
+    tried = all_tried(tests, without)
+    return Evidence(tried, [explain(one, tried) for one in heard(tried)])

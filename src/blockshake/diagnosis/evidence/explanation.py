@@ -1,9 +1,50 @@
 """The explanation of the rows by a cause at a place: its evidence, and the forces that it would have made."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.special import logsumexp
+
+_NEGLIGIBLE = 12.0  # nats below the best variant
+
+
+@dataclass(frozen=True)
+class Fit:
+    """One variant of a cause at a place, its amplitudes fitted.
+
+    Attributes
+    ----------
+    values : dict
+        What the variant is: parameters that are not amplitudes.
+    gain : float
+        Logarithm of the evidence over that of no cause.
+    columns : list of float64 array, shape (n_rows, n_amplitudes)
+        By test.
+    scales : float64 array, shape (n_amplitudes,)
+        Standard deviations of the amplitudes' priors.
+    mean : float64 array, shape (n_amplitudes,)
+    covariance : float64 array, shape (n_amplitudes, n_amplitudes)
+    positive : bool
+        The first amplitude is not negative.
+    """
+
+    values: dict
+    gain: float
+    columns: list
+    scales: np.ndarray
+    mean: np.ndarray
+    covariance: np.ndarray
+    positive: bool = False
+
+    @property
+    def contrast(self):
+        """Weights by which the amplitudes together are one of the first column, (n_amplitudes,)."""
+        if len(self.mean) == 1:
+            return np.ones(1)
+        columns = np.concatenate(self.columns)
+        square = float(columns[:, 0] @ columns[:, 0])
+        return columns[:, 0] @ columns / square if square > 0.0 else np.eye(len(self.mean))[0]
 
 
 @dataclass(frozen=True)
@@ -18,33 +59,27 @@ class Explanation:
         Where it acts.
     gain : float
         Logarithm of the evidence over that of no cause, averaged over what is searched.
-    columns : list of float64 array, shape (n_rows, n_amplitudes)
-        By test, of the best variant.
-    scales : float64 array, shape (n_amplitudes,)
-        Standard deviations of the amplitudes' priors.
-    mean : float64 array, shape (n_amplitudes,)
-        Best amplitudes.
-    covariance : float64 array, shape (n_amplitudes, n_amplitudes)
-    values : dict
-        What the best variant is.
+    fits : tuple of Fit
+        Variants that matter.
     gains : float64 array, shape (n_variants,)
-        By variant, before the average.
+        By variant, before the average; empty where a search has no fixed variants.
     """
 
     cause: str
     place: str
     gain: float
-    columns: list
-    scales: np.ndarray
-    mean: np.ndarray
-    covariance: np.ndarray
-    values: dict = field(default_factory=dict)
-    gains: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    fits: tuple
+    gains: np.ndarray
+
+    @cached_property
+    def best(self):
+        """The likeliest `Fit`."""
+        return max(self.fits, key=lambda one: one.gain)
 
     @property
     def rows(self):
         """Rows of the forces at the best amplitudes, one array (n_rows,) a test."""
-        return [column @ self.mean for column in self.columns]
+        return [column @ self.best.mean for column in self.best.columns]
 
 
 def mean_evidence(gains, axis=None):
@@ -75,21 +110,18 @@ def best_of(likelihood, cause, place, variants):
         for rows, variant in zip(whitened, variants, strict=True)
     ]
     gains = np.array([one.gain for one in found])
-    best = int(np.argmax(gains))
-    return Explanation(
-        cause,
-        place,
-        float(mean_evidence(gains)),
-        [one.rows for one in variants[best]],
-        np.atleast_1d(variants[best][0].scales or 1.0),
-        found[best].mean,
-        found[best].covariance,
-        variants[best][0].values,
-        gains,
-    )
+    fits = tuple(
+        Fit(
+            variant[0].values, one.gain, [test.rows for test in variant], np.atleast_1d(variant[0].scales or 1.0),
+            one.mean, one.covariance, variant[0].positive,
+        )
+        for variant, one in zip(variants, found, strict=True)
+        if one.gain > gains.max() - _NEGLIGIBLE
+    )  # fmt: skip
+    return Explanation(cause, place, float(mean_evidence(gains)), fits, gains)
 
 
-def single(cause, place, gain, columns, scale, mean, values):
+def single(cause, place, gain, columns, scale, fitted, values):
     """`Explanation` by one amplitude.
 
     Parameters
@@ -98,10 +130,14 @@ def single(cause, place, gain, columns, scale, mean, values):
         Averaged over what was searched.
     columns : list of float64 array, shape (n_rows,)
         By test, per unit of the amplitude.
-    scale, mean : float
+    scale : float
+    fitted : (float, float)
+        Best amplitude and its standard deviation.
     values : dict
     """
-    return Explanation(
-        cause, place, float(gain), [column[:, None] for column in columns], np.array([scale]), np.array([mean]),
-        np.zeros((1, 1)), values,
+    mean, deviation = fitted
+    fit = Fit(
+        values, float(gain), [column[:, None] for column in columns], np.array([scale]), np.array([mean]),
+        np.array([[deviation**2]]),
     )  # fmt: skip
+    return Explanation(cause, place, float(gain), (fit,), np.zeros(0))

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import solve_triangular
@@ -121,7 +122,7 @@ class Likelihood:
         return whitened.T @ self._weighted, gram
 
     def single(self, whitened, scale, positive=False, test=None):
-        """Gain and mean of every column alone, each (n_columns,); of columns of one test alone if it is given."""
+        """`gain_of_one` of every column alone, each (n_columns,); of columns of one test alone if it is given."""
         own = slice(None) if test is None else slice(self.ends[test], self.ends[test + 1])
         target = whitened.T @ self._weighted[own]
         crossed = self.nuisances[own].T @ whitened
@@ -139,26 +140,47 @@ class Likelihood:
         )
 
     def gain_of_sum(self, target, square, crossed, scale):
-        """Gain and mean of columns that are sums over tests of such parts."""
+        """`gain_of_one` of columns that are sums over tests of such parts."""
         gram = np.maximum(
             square - np.einsum("i...,i...->...", crossed, np.tensordot(self._inner, crossed, 1)), 0.0
         )
         return gain_of_one(target, gram, scale, False)
 
-    def beside(self, columns, scales):
-        """The likelihood with the columns of a cause among the nuisances."""
-        added = self.whiten(columns) * np.atleast_1d(scales)
-        return Likelihood(self.roots, self.value, np.concatenate([self.nuisances, added], axis=1), self.prior)
+    def beside(self, columns, scales, errors):
+        """The likelihood with the columns of a cause among the nuisances, and errors of its form.
+
+        Parameters
+        ----------
+        columns : list of float64 array, shape (n_rows, n_columns)
+            By test.
+        scales : float64 array, shape (n_columns,)
+        errors : list of float64 array, shape (n_rows, n_rows)
+            By test: covariance of what the form of the cause leaves.
+        """
+        cut = [slice(a, b) for a, b in pairwise(self.ends)]
+        roots = [
+            np.linalg.cholesky(root @ root.T + own) for root, own in zip(self.roots, errors, strict=True)
+        ]
+        bare = Likelihood(roots, np.zeros(0), np.zeros((0, 0)), self.prior)
+        raw = [
+            root @ np.column_stack([self.value[own], self.nuisances[own]])
+            for root, own in zip(self.roots, cut, strict=True)
+        ]
+        again = bare.whiten([
+            np.concatenate([own, column * np.atleast_1d(scales)], axis=1)
+            for own, column in zip(raw, columns, strict=True)
+        ])  # fmt: skip
+        return Likelihood(roots, again[:, 0], again[:, 1:], self.prior)
 
 
 def gain_of_one(target, gram, scale, positive):
-    """Gain and mean of single amplitudes from ``H' Q y`` and ``H' Q H``."""
+    """Gain, mean and standard deviation of single amplitudes from ``H' Q y`` and ``H' Q H``."""
     precision = gram + scale**-2.0
     mean = target / precision
     gain = 0.5 * target * mean - 0.5 * np.log1p(gram * scale**2)
     if positive:
         gain = gain + np.log(2.0) + log_ndtr(mean * np.sqrt(precision))
-    return gain, mean
+    return gain, mean, precision**-0.5
 
 
 def from_rows(covariances, values, nuisances, prior=0.0):

@@ -4,6 +4,7 @@ import numpy as np
 
 _LEVER, _LEVER_MEMORY, _LEVER_WHITE = 0.001, 0.3, 0.0003  # m, s, m: of the point where a turned face bears
 _FRICTION = 0.04  # of the coefficient of a slipping face: half coloured, half white
+_FORM = 0.04  # of a cause's own rows, half coloured, half white
 _RIDGE = 1e-5  # of every variance, for the factorisation
 
 
@@ -39,3 +40,15 @@ def row_covariance(test, noise, discrepancy):
         covariance += np.outer(usual, usual) * friction
     covariance[np.diag_indices(len(covariance))] *= 1.0 + _RIDGE
     return covariance
+
+
+def form_error(time, force):
+    """Covariance of what a cause's form leaves of the rows that it explains, (n_rows, n_rows).
+
+    Parameters
+    ----------
+    time, force : float64 arrays, shape (n_rows,)
+        Of the rows, and of the cause in them at its best.
+    """
+    apart = np.abs(time[:, None] - time)
+    return (_FORM * np.outer(force, force)) * _FORM * (np.exp(-apart / _LEVER_MEMORY) + (apart < 1e-9))

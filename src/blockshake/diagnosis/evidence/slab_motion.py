@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from blockshake.diagnosis.evidence.explanation import mean_evidence
+from blockshake.diagnosis.evidence.explanation import Explanation, Fit, mean_evidence
 from blockshake.diagnosis.evidence.likelihood import from_rows
 from blockshake.effects.registry import EFFECTS
 from blockshake.geometry.rotations import rotation_matrices
@@ -17,6 +17,11 @@ _OFFSET, _BY_ACCELERATION, _BY_MOMENT = 3e-5, 1.5e-5, 2.5e-11  # rad, rad s2/m, 
 _LIFT_COLOURED, _LIFT_OFFSET, _LIFT_BY_FORCE = 1e-5, 3e-5, 3e-9  # m, m, m/N
 _MULTIPLES = ((1.0, 0.0), (3.0, -2.0), (9.0, -8.0))  # of the coloured error, and the logarithm of their prior
 _RIDGES = 0.05, 0.1
+_DELAYS, _RATIO = (
+    np.arange(-0.2, 0.2001, 0.01),
+    0.5,
+)  # s, 1: of a vertical motion that follows the horizontal one
+_FREE_SHARE, _FREE_MEMORY = 0.1, 0.15  # of the vertical motion, s: what of it does not follow
 
 
 @dataclass(frozen=True)
@@ -41,6 +46,7 @@ class SlabMotion:
     time: np.ndarray
     turn: np.ndarray
     lift: np.ndarray
+    travel: np.ndarray
     acceleration: np.ndarray
     moment: np.ndarray
     force: np.ndarray
@@ -60,7 +66,7 @@ def slab_motion(test):
     motion, body = test.motion, int(np.flatnonzero(test.structure.driven)[0])
     start = motion.rotation[:, body] @ rotation_matrices(test.structure.orientation[body]).T
     turn = _from_rest(np.arcsin(np.clip(start[:, 0, 2], -1.0, 1.0)), test.still)
-    lift = _from_rest(motion.position[:, body, 2], test.still)
+    lift, travel = (_from_rest(motion.position[:, body, axis], test.still) for axis in (2, 0))
     wrench = test.required.wrench[:, test.free]
     arm = motion.position[:, test.free] - motion.position[:, [body]]
     moment = _from_rest(-(wrench[..., 3:] + np.cross(arm, wrench[..., :3]))[..., 1].sum(axis=1), test.still)
@@ -72,8 +78,8 @@ def slab_motion(test):
         & np.isfinite(motion.acceleration[:, body, 0])
     )
     return SlabMotion(
-        motion.time, turn, lift, np.nan_to_num(motion.acceleration[:, body, 0]), np.nan_to_num(moment),
-        np.nan_to_num(force), np.flatnonzero(known)[::_EVERY],
+        motion.time, turn, lift, np.nan_to_num(travel), np.nan_to_num(motion.acceleration[:, body, 0]),
+        np.nan_to_num(moment), np.nan_to_num(force), np.flatnonzero(known)[::_EVERY],
         max(float(np.nanstd(turn[test.still])), _TURN_NOISE), max(float(np.nanstd(lift[test.still])), _LIFT_NOISE),
         motion.width,
     )  # fmt: skip
@@ -84,25 +90,26 @@ def _from_rest(values, still):
     return values - (rest.mean() if len(rest) else 0.0)
 
 
-def slab_gains(slabs):
-    """Gain of every effect that moves the slab, over none, and its best values.
+def explain_slab(slabs, without=()):
+    """`Explanation` by every effect that moves the slab.
 
     Parameters
     ----------
     slabs : list of SlabMotion
         By test.
+    without : sequence of str
+        Effects that are left out.
 
     Returns
     -------
-    dict of str to tuple of float and dict
+    dict of str to Explanation
     """
     found = {}
     likelihoods = [_turn_likelihood(slabs, multiple, prior) for multiple, prior in _MULTIPLES]
-    none = logsumexp([one.log_evidence for one in likelihoods])
     for name, effect in EFFECTS.items():
-        if effect.turns:
-            found[name] = _turning(effect, slabs, likelihoods, none)
-        if effect.lifts:
+        if effect.turns and name not in without:
+            found[name] = _turning(effect, slabs, likelihoods)
+        if effect.lifts and name not in without:
             found[name] = _lifting(effect, slabs)
     return found
 
@@ -123,36 +130,61 @@ def _turn_likelihood(slabs, multiple, prior):
     return from_rows(covariances, [slab.turn[slab.at] for slab in slabs], nuisances, prior)
 
 
-def _turning(effect, slabs, likelihoods, none):
-    variants = list(zip(*(effect.turns(slab) for slab in slabs), strict=True))
-    gains = np.empty((len(variants), len(likelihoods)))
-    means = []
-    for place, variant in enumerate(variants):
-        rows = [one.rows for one in variant]
-        fits = [one.amplitudes(one.whiten(rows), variant[0].scales) for one in likelihoods]
-        gains[place] = [fit.gain + one.log_evidence for fit, one in zip(fits, likelihoods, strict=True)]
-        means.append(float(fits[int(np.argmax(gains[place]))].mean[0]))
-    by_variant = logsumexp(gains, axis=1) - none
-    best = int(np.argmax(by_variant))
-    size = effect.parameters[0].name
-    return float(mean_evidence(by_variant)), {size: means[best], **variants[best][0].values}
+def _turning(effect, slabs, likelihoods):
+    none = logsumexp([one.log_evidence for one in likelihoods])
+    fits, gains = [], []
+    for variant in zip(*(effect.turns(slab) for slab in slabs), strict=True):
+        columns = [one.rows for one in variant]
+        own = []
+        for likelihood in likelihoods:
+            found = likelihood.amplitudes(likelihood.whiten(columns), variant[0].scales)
+            own.append(found.gain + likelihood.log_evidence - none)
+            scales = np.array(variant[0].scales)
+            fits.append(Fit(variant[0].values, own[-1], columns, scales, found.mean, found.covariance))
+        gains.append(logsumexp(own))
+    return Explanation(effect.name, "all", float(mean_evidence(gains)), tuple(fits), np.array(gains))
 
 
 def _lifting(effect, slabs):
-    """Gain of a random vertical motion of any size over none, with or without a force that compresses the base."""
+    """A random vertical motion of any size against none, with or without a force that compresses the base."""
     logs = np.zeros((2, 1 + len(effect.lifts(slabs[0]))))
     for slab in slabs:
-        apart = np.abs(slab.time[slab.at][:, None] - slab.time[slab.at])
-        noise = slab.lift_noise**2 * np.exp(-(apart**2) / (4.0 * slab.width**2))
-        noise += _LIFT_COLOURED**2 * np.exp(-apart / 0.1) + _LIFT_OFFSET**2
-        noise[np.diag_indices(len(apart))] += (_RIDGES[1] * slab.lift_noise) ** 2
         pressed = _LIFT_BY_FORCE**2 * np.outer(slab.force[slab.at], slab.force[slab.at])
-        for gives, base in enumerate((noise, noise + pressed)):
+        for gives, base in enumerate((_lift_noise(slab), _lift_noise(slab) + pressed)):
             for size, motion in enumerate((0.0, *effect.lifts(slab))):
                 logs[gives, size] += _log_density(slab.lift[slab.at], base + motion)
     prior = np.array([0.0, -1.0])[:, None]
     moved = logsumexp(logs[:, 1:] + prior) - np.log(2 * (logs.shape[1] - 1))
-    return float(moved - logsumexp(logs[:, :1] + prior)), {}
+    gain = float(moved - logsumexp(logs[:, :1] + prior))
+    return Explanation(effect.name, "all", gain, _ratios(effect, slabs), np.zeros(0))
+
+
+def _ratios(effect, slabs):
+    """`Fit` of the vertical by the horizontal motion, by delay; what is not in proportion is coloured noise."""
+    covariances = []
+    for slab in slabs:
+        apart = slab.time[slab.at][:, None] - slab.time[slab.at]
+        free = (_FREE_SHARE * np.std(slab.lift[slab.at])) ** 2 * np.exp(-0.5 * (apart / _FREE_MEMORY) ** 2)
+        covariances.append(_lift_noise(slab) + free)
+    likelihood = from_rows(covariances, [slab.lift[slab.at] for slab in slabs], [])
+    fits = []
+    for delay in _DELAYS:
+        columns = [np.interp(slab.time[slab.at] - delay, slab.time, slab.travel)[:, None] for slab in slabs]
+        found = likelihood.amplitudes(likelihood.whiten(columns), (_RATIO,))
+        fits.append(
+            Fit(
+                {"delay": float(delay)}, found.gain, columns, np.array([_RATIO]), found.mean, found.covariance
+            )
+        )
+    return tuple(fits)
+
+
+def _lift_noise(slab):
+    apart = np.abs(slab.time[slab.at][:, None] - slab.time[slab.at])
+    noise = slab.lift_noise**2 * np.exp(-(apart**2) / (4.0 * slab.width**2))
+    noise += _LIFT_COLOURED**2 * np.exp(-apart / 0.1) + _LIFT_OFFSET**2
+    noise[np.diag_indices(len(apart))] += (_RIDGES[1] * slab.lift_noise) ** 2
+    return noise
 
 
 def _log_density(values, covariance):

@@ -3,8 +3,10 @@
 import numpy as np
 from scipy.special import log_ndtr
 
-from blockshake.diagnosis.evidence.explanation import Explanation, mean_evidence
+from blockshake.diagnosis.evidence.explanation import Explanation, Fit, mean_evidence
 from blockshake.diagnosis.evidence.likelihood import gain_of_one
+
+_NEGLIGIBLE = 8.0  # nats below the best gaps
 
 
 def explain_stops(likelihood, place, variants):
@@ -21,27 +23,27 @@ def explain_stops(likelihood, place, variants):
     rows = [np.concatenate([one[test].rows for one in variants], axis=1) for test in range(len(variants[0]))]
     scale = variants[0][0].scales[0]
     target, gram = likelihood.normal_equations(likelihood.whiten(rows))
-    alone, means = gain_of_one(target, np.diag(gram), scale, True)
-    both, pairs = _gains_of_pairs(target, gram, half, scale)
+    alone = gain_of_one(target, np.diag(gram), scale, True)[0]
+    both, _ = _gains_of_pairs(target, gram, half, scale)
     sides = [mean_evidence(alone[:half]), mean_evidence(alone[half:]), mean_evidence(both)]
-    kind = int(np.argmax(sides))
-    if kind == 2:
-        first, second = np.unravel_index(np.argmax(both), both.shape)
-        chosen, mean = [first, half + second], pairs[:, first, second]
-    else:
-        chosen = [kind * half + int(np.argmax(alone[kind * half : (kind + 1) * half]))]
-        mean = means[chosen]
-    values = [variants[index][0].values for index in chosen]
-    return Explanation(
-        "stopper-contact",
-        place,
-        float(mean_evidence(sides)),
-        [one[:, chosen] for one in rows],
-        np.full(len(chosen), scale),
-        mean,
-        np.linalg.inv(gram[np.ix_(chosen, chosen)] + np.eye(len(chosen)) * scale**-2.0),
-        {"gaps": {f"{one['side']:+d}": one["gap"] for one in values}},
-    )
+    best = max(alone.max(), both.max())
+    chosen = [([index], gain) for index, gain in enumerate(alone) if gain > best - _NEGLIGIBLE]
+    chosen += [
+        ([first, half + second], both[first, second])
+        for first, second in np.argwhere(both > best - _NEGLIGIBLE)
+    ]
+    fits = tuple(_fit(index, gain, target, gram, scale, rows, variants) for index, gain in chosen)
+    return Explanation("stopper-contact", place, float(mean_evidence(sides)), fits, np.zeros(0))
+
+
+def _fit(index, gain, target, gram, scale, rows, variants):
+    """`Fit` of a stop on one side, or of two on both."""
+    covariance = np.linalg.inv(gram[np.ix_(index, index)] + np.eye(len(index)) * scale**-2.0)
+    sides = [variants[one][0].values for one in index]
+    return Fit(
+        {"gaps": {f"{one['side']:+d}": one["gap"] for one in sides}}, float(gain), [one[:, index] for one in rows],
+        np.full(len(index), scale), covariance @ target[index], covariance, positive=True,
+    )  # fmt: skip
 
 
 def _gains_of_pairs(target, gram, half, scale):

@@ -3,6 +3,7 @@
 import numpy as np
 
 from blockshake.diagnosis.evidence.explanation import mean_evidence, single
+from blockshake.diagnosis.outside.form import Form
 
 _STARTS_EVERY = 0.5  # s
 _SCALE = 0.05  # m
@@ -30,12 +31,16 @@ def explain_changed_edge(likelihood, tests, place, key):
                     for number, one in enumerate(tests):
                         columns[number].append(_rows(one, key, edge, number, own, start, lasts))
     whitened = likelihood.whiten([np.stack(rows, axis=1) for rows in columns])
-    gain, mean = likelihood.single(whitened, _SCALE, positive=True)
+    gain, mean, deviation = likelihood.single(whitened, _SCALE, positive=True)
     best = int(np.argmax(gain))
     own, start, lasts, edge = tried[best]
     return single(
-        "changed-edge", place, mean_evidence(gain), [rows[best] for rows in columns], _SCALE, mean[best],
-        {"test": tests[own].seen.name, "start": start, "lasts": lasts, "edge": edge},
+        "changed-edge", place, mean_evidence(gain), [rows[best] for rows in columns], _SCALE,
+        (float(mean[best]), float(deviation[best])),
+        {
+            "test": tests[own].seen.name, "start": start, "lasts": lasts, "edge": edge,
+            "before": [one.seen.name for one in tests[:own]],
+        },
     )  # fmt: skip
 
 
@@ -46,3 +51,20 @@ def _rows(test, key, edge, number, own, start, lasts):
     hinge = test.hinges[key]
     there = hinge.edge == edge if edge else np.ones(len(hinge.edge), dtype=bool)
     return hinge.inward * (there & ((number > own) | (test.rows.time >= start)))
+
+
+def _act(experiment, size, place, when, test):
+    """Edges of the joint's upper body further in, on all sides; the tests before the change have none."""
+    if test in when["before"]:
+        return experiment
+    file = experiment.structure.file
+    body = next(body for body in file.bodies if body.name == place["joint"][1])
+    shape = file.shapes[body.shape]
+    if shape.box is None:
+        return experiment
+    worn = {"box": list(shape.box), "chamfer": shape.chamfer + max(size, 0.0)}
+    name = f"{body.name}-worn"
+    return experiment.with_parameters(**{f"shapes.{name}": worn, f"bodies.{body.name}.shape": name})
+
+
+FORM = Form("changed-edge", "an edge that changed", "inset", "m", _act, lasts=lambda when: when["lasts"])

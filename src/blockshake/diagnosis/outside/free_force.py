@@ -5,7 +5,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import solve_triangular
 
-from blockshake.diagnosis.evidence.explanation import Explanation, mean_evidence
+from blockshake.diagnosis.evidence.explanation import Explanation, Fit, mean_evidence
+from blockshake.diagnosis.outside.form import Form
 
 _SIZES = (300.0, 1e3, 3e3, 1e4)  # N
 _MEMORY = 0.05  # s
@@ -23,10 +24,9 @@ def explain_free_force(likelihood, points):
     evidence = np.array([one[0] for one in found])
     best = int(np.argmax(evidence))
     columns = [one[:, None] for one in found[best][1]]
-    return Explanation(
-        "unknown-force", points.place, float(mean_evidence(evidence)), columns, np.ones(1), np.ones(1),
-        np.zeros((1, 1)), {"size": _SIZES[best], "history": found[best][2]},
-    )  # fmt: skip
+    values = {"size": _SIZES[best], "history": found[best][2]}
+    fit = Fit(values, float(evidence[best]), columns, np.ones(1), np.ones(1), np.zeros((1, 1)))
+    return Explanation("unknown-force", points.place, float(mean_evidence(evidence)), (fit,), np.zeros(0))
 
 
 def _with_force(likelihood, points, size):
@@ -65,3 +65,6 @@ def _with_force(likelihood, points, size):
 
 def _solve(root, values, lower=True):
     return solve_triangular(root, values, lower=lower, check_finite=False)
+
+
+FORM = Form("unknown-force", "a force of no known form", "size", "N")

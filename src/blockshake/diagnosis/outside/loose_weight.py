@@ -1,8 +1,11 @@
 """A weight that lies loose on the top block: it presses, slides by Coulomb's law, and drags."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from blockshake.diagnosis.evidence.explanation import best_of
+from blockshake.diagnosis.outside.form import Form
 from blockshake.effects.effect import Columns
 from blockshake.forces.seen.wrench_histories import force_at
 
@@ -66,3 +69,36 @@ def _slide(asked, pressed, grip, step):
         shear[now], rate = friction, faster
         slid[now] += rate * step
     return slid, shear
+
+
+_NAME = "loose-weight"
+_FLAT = 0.25  # height of the weight over the block's length
+
+
+def _act(experiment, size, place, when, test):
+    """A box of the mass ``size`` on the middle of the body's top."""
+    structure = experiment.structure
+    index = structure.body_names.index(place["body"])
+    body, solid = structure.file.bodies[index], structure.solids[structure.file.bodies[index].shape]
+    length, depth, height = np.ptp(solid.vertices, axis=0)
+    box = [0.5 * length, 0.5 * depth, _FLAT * length]
+    mapping = structure.file.model_dump(mode="json")
+    mapping["shapes"][_NAME] = {"box": [float(edge) for edge in box]}
+    above = structure.centroid[index] + np.array([0.0, 0.0, 0.5 * (height + box[2])])
+    mapping["bodies"].append({
+        "name": _NAME, "shape": _NAME, "material": body.material, "position": above.tolist(),
+        "density": float(max(size, 1e-3) / np.prod(box)),
+    })  # fmt: skip
+    mapping["joints"].append(
+        {"bodies": [body.name, _NAME], "friction_factor": _factor(structure, body, when["grip"])}
+    )
+    return replace(experiment, structure=structure.with_mapping(mapping))
+
+
+def _factor(structure, body, grip):
+    pair = {body.material}
+    coefficient = next(one.coefficient for one in structure.file.friction if set(one.pair) == pair)
+    return min(grip, 1.0) / coefficient
+
+
+FORM = Form("loose-weight", "a loose weight on top", "mass", "kg", _act)

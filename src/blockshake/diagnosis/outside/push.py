@@ -3,6 +3,7 @@
 import numpy as np
 
 from blockshake.diagnosis.evidence.explanation import mean_evidence, single
+from blockshake.diagnosis.outside.form import Form, force_entry, with_entry
 
 _STARTS_EVERY, _RISE = 0.1, 0.25  # s
 _SCALE = 0.1  # of the block's weight
@@ -28,10 +29,10 @@ def explain_push(likelihood, points, weight):
         columns.append(shapes)
         parts.append(likelihood.parts(likelihood.whiten_one(test, shapes), test))
     found = [_climb(likelihood, parts, scale, sign) for sign in (1.0, -1.0)]
-    evidence, chosen, mean = max(found, key=lambda one: one[0])
+    evidence, chosen, fitted = max(found, key=lambda one: one[0])
     return single(
         "push", points.place, evidence,
-        [shapes[:, place] for shapes, place in zip(columns, chosen, strict=True)], scale, mean,
+        [shapes[:, place] for shapes, place in zip(columns, chosen, strict=True)], scale, fitted,
         {"starts": {
             name: float(tried[place])
             for name, tried, place in zip(points.tests, starts, chosen, strict=True)
@@ -40,8 +41,8 @@ def explain_push(likelihood, points, weight):
 
 
 def _climb(likelihood, parts, scale, sign):
-    """Evidence averaged over the starts, the best start of every test, and the force, for one sign of the force."""
-    chosen = [_best(*likelihood.gain_of_sum(*part, scale), sign) for part in parts]
+    """For one sign of the force: evidence averaged over the starts, best start of each test, force with its error."""
+    chosen = [_best(*likelihood.gain_of_sum(*part, scale)[:2], sign) for part in parts]
     for _ in range(_SWEEPS):
         logs = []
         for test, part in enumerate(parts):
@@ -52,11 +53,21 @@ def _climb(likelihood, parts, scale, sign):
             ]
             target, square = (part[key] + sum(other[key] for other in others) for key in range(2))
             crossed = part[2] + sum((other[2][:, None] for other in others), 0.0)
-            gain, mean = likelihood.gain_of_sum(target, square, crossed, scale)
+            gain, mean, deviation = likelihood.gain_of_sum(target, square, crossed, scale)
             chosen[test] = _best(gain, mean, sign)
             logs.append(mean_evidence(gain - gain.max()))
-    return gain[chosen[-1]] + sum(logs), chosen, float(mean[chosen[-1]])
+    last = chosen[-1]
+    return gain[last] + sum(logs), chosen, (float(mean[last]), float(deviation[last]))
 
 
 def _best(gain, mean, sign):
     return int(np.argmax(np.where(sign * mean > 0.0, gain, -np.inf)))
+
+
+def _act(experiment, size, place, when, test):
+    start = when["starts"].get(test, float(np.median(list(when["starts"].values()))))
+    entry = force_entry(experiment.structure, place, amplitude=size, start=max(start, 0.0))
+    return with_entry(experiment, "external_forces", entry)
+
+
+FORM = Form("push", "a steady push from an instant of each test on", "force", "N", _act)

@@ -24,7 +24,7 @@ class PointRows:
     time : float64 array, shape (n_rows,)
         Of the rows [s].
     displacement, velocity : float64 arrays, shape (n_rows,)
-        Of the point along x, against the table, from rest [m, m/s].
+        Of the point along x, against the table, from rest [m, m/s]; zero where the table's motion is not known.
     fine : float64 array, shape (4 * n_times,)
         The displacement at instants four times as close [m].
     at : int array, shape (n_rows,)
@@ -68,6 +68,6 @@ def point_rows(seen, body, height):
     if known.sum() >= _FEWEST:
         fine = CubicSpline(time[known], displacement[known, 0])(time[0] + step * np.arange(len(fine)))
     return PointRows(
-        unit, rows.time, displacement[rows.instant, 0], velocity[rows.instant, 0], fine, rows.instant,
+        unit, rows.time, *(np.nan_to_num(one[rows.instant, 0]) for one in (displacement, velocity)), fine, rows.instant,
         seen.motion.width / step,
     )  # fmt: skip

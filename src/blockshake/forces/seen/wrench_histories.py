@@ -89,7 +89,10 @@ def force_at(seen, body, force, height=0.0, arm=None):
 
 
 def moves_at(seen, body, height=0.0):
-    """Displacement from rest and velocity of a point of a body against the first driven body, (n_times, 3) [m, m/s]."""
+    """Displacement from rest and velocity of a point of a body against the first driven body, (n_times, 3) [m, m/s].
+
+    NaN where either motion is not known.
+    """
     motion = seen.motion
     table = int(np.flatnonzero(seen.structure.driven)[0])
     point = motion.position[:, body] + height * motion.rotation[:, body, :, 2]

@@ -1,0 +1,156 @@
+"""The decision on seen tests: evidences of all causes ranked, the answer with its sizes, and what was seen of it."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from blockshake.diagnosis.answer.answer import (
+    coarsened,
+    group_of,
+    needed_beside,
+    rank,
+    slab_groups,
+    soft_gains,
+)
+from blockshake.diagnosis.answer.decision import Cause, Decision, Part
+from blockshake.diagnosis.answer.departures import departures, largest
+from blockshake.diagnosis.answer.explain import gather_evidence
+from blockshake.diagnosis.answer.limits import limits_of
+from blockshake.diagnosis.answer.places import place_of
+from blockshake.diagnosis.answer.size import size_of
+from blockshake.diagnosis.evidence.closed_joints import closed_joint_gains
+from blockshake.diagnosis.evidence.explanation import Fit
+from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
+from blockshake.effects.joint_compliance import COMPLIANCES
+from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
+from blockshake.effects.registry import EFFECTS
+
+_NOT_SHOWN = "no departure larger than chance"
+
+
+class Decided(NamedTuple):
+    """A decision, and for the report the rows as forces, measured and explained, from `departures`."""
+
+    decision: Decision
+    evidence: xr.Dataset
+
+
+def decide(seen, without=(), cannot_see=()):
+    """Decide what the tests speak for.
+
+    Parameters
+    ----------
+    seen : list of SeenTest
+        Open tests.
+    without : sequence of str
+        Effects that are left out, as if nobody had thought of them.
+    cannot_see : sequence of str
+
+    Returns
+    -------
+    Decided
+    """
+    evidence = gather_evidence(seen, without)
+    closed = {seen[0].faces[face].name: gains for face, gains in closed_joint_gains(seen).items()}
+    if JOINT_COMPLIANCE.name in without:
+        closed = {}
+    slab = explain_slab([slab_motion(test) for test in seen], without)
+    found = []
+    first = group_of(rank(evidence, closed))
+    if first:
+        found.append(_part("joints", first, seen, evidence, closed))
+        beside = _beside(evidence, first)
+        second = group_of(rank(beside), needed_beside(first.rivals[0].gain)) if beside else None
+        if second:
+            found.append(_part("joints, beside the first", second, seen, beside, {}))
+    for readings, group in slab_groups(slab):
+        found.append(_part(readings, group, seen, None, {}, slab))
+    parts = tuple(sorted(found, key=lambda part: -part.causes[0].gain))
+    shown = departures(seen, evidence, [(one.name, one.places[0]) for one in _of_joints(parts)])
+    decision = Decision(
+        decision=_kind(parts),
+        parts=parts,
+        probabilities=_probabilities(parts, without),
+        limits=limits_of(evidence, slab),
+        p=min(1.0, sum(float(np.exp(-min(part.causes[0].gain, 700.0))) for part in parts)) if parts else 1.0,
+        where=largest(shown) if parts else _NOT_SHOWN,
+        tests=[test.name for test in seen],
+        silent=[test.name for test in seen if not len(test.rows.value)],
+        n_rows=sum(len(test.rows.value) for test in seen),
+        cannot_see=cannot_see,
+    )
+    return Decided(decision, shown)
+
+
+def _of_joints(parts):
+    return [part.causes[0] for part in parts if part.readings.startswith("joints")]
+
+
+def _beside(evidence, first):
+    key = first.rivals[0].cause, first.rivals[0].place
+    return evidence.beside(key) if evidence and key in evidence.keys else None
+
+
+def _kind(parts):
+    """Kind of the answer: an outside form alone is unknown; beside an effect it keeps the effect from being alone."""
+    if not parts:
+        return "none"
+    effects = {one.name for part in parts for one in part.effects}
+    if not effects:
+        return "unknown"
+    if any(len(part.causes) > 1 and part.effects for part in parts):
+        return (
+            "ambiguous" if len(effects) > 1 or any(part.effects and part.forms for part in parts) else "named"
+        )
+    return "combination" if len(effects) > 1 else "named"
+
+
+def _probabilities(parts, without):
+    found = {name: 0.0 for name in EFFECTS if name not in without}
+    for part in parts:
+        best = part.causes[0].gain
+        none = coarsened(best, best)
+        total = float(np.exp(-none)) + sum(float(np.exp(-odds)) for odds in part.odds.values())
+        for name, odds in part.odds.items():
+            if name in found:
+                found[name] = max(found[name], float(np.exp(-odds)) / total)
+    return found
+
+
+def _part(readings, group, seen, evidence, closed, slab=None):
+    causes = []
+    for rival in group.rivals:
+        fits, logs = _fits(rival, evidence, closed, slab)
+        parameters, members = size_of(rival.cause, rival.place, fits, logs)
+        best = fits[int(np.argmax(logs))]
+        when = {key: value for key, value in best.values.items() if key != "history"}
+        causes.append(
+            Cause(
+                name=rival.cause,
+                place=place_of(rival.cause, rival.place, seen[0]),
+                places=rival.places,
+                gain=rival.gain,
+                odds=group.odds[rival.cause],
+                parameters=parameters,
+                members=members,
+                when=when,
+            )
+        )
+    return Part(readings=readings, causes=causes, odds=group.odds, gains=group.gains)
+
+
+def _fits(rival, evidence, closed, slab):
+    if slab is not None:
+        explained = slab[rival.cause]
+        return explained.fits, np.array([fit.gain for fit in explained.fits])
+    if rival.cause != JOINT_COMPLIANCE.name:
+        return evidence.fits((rival.cause, rival.place))
+    key = rival.cause, rival.place
+    turned = evidence.gains_of_variants(key) if evidence and key in evidence.keys else 0.0
+    gains = soft_gains(turned, closed.get(rival.place, 0.0)) * np.ones(len(COMPLIANCES))
+    fits = [
+        Fit({"compliance": float(value)}, float(gain), [], np.ones(1), np.ones(1), np.zeros((1, 1)))
+        for value, gain in zip(COMPLIANCES, gains, strict=True)
+    ]
+    return fits, gains

@@ -1,0 +1,162 @@
+"""The decision on a campaign's open tests: what acts, where, how large, and how the rivals stand."""
+
+from typing import Literal
+
+from pydantic import Field, JsonValue, model_validator
+
+from blockshake.diagnosis.outside.registry import FORMS
+from blockshake.effects.registry import title_of
+from blockshake.files import load_json, write_json
+from blockshake.validation import Count, Finite, Fraction, Strict, validated
+
+MEMBERS = 40  # sets of parameters by which a model is extended
+
+
+class Estimate(Strict):
+    """A parameter with its 90 % interval."""
+
+    estimate: Finite
+    lower: Finite
+    upper: Finite
+    unit: str
+
+    @model_validator(mode="after")
+    def _ordered(self):
+        if not self.lower <= self.estimate <= self.upper:
+            raise ValueError("expected lower <= estimate <= upper")
+        return self
+
+
+class Cause(Strict):
+    """A cause that the readings speak for, at its likeliest place.
+
+    Attributes
+    ----------
+    name : str
+        Effect of the registry, or form from outside.
+    place : dict
+        ``{"joint": [lower, upper]}``, ``{"body": name}`` and what else says where, empty of a cause that is everywhere.
+    places : tuple of str
+        In words, all that cannot be told from it.
+    gain : float
+        Logarithm of its evidence over that of none.
+    odds : float
+        Of the likeliest cause over this one, as a logarithm, coarsened.
+    parameters : dict of str to Estimate
+    members : tuple of dict
+        Parameters drawn from their posterior, in a fixed random order.
+    when : dict
+        Of a form from outside: starts, sides, gaps and the tests that it acts in.
+    """
+
+    name: str
+    place: dict[str, JsonValue]
+    places: tuple[str, ...]
+    gain: Finite
+    odds: Finite
+    parameters: dict[str, Estimate]
+    members: tuple[dict[str, Finite], ...]
+    when: dict[str, JsonValue] = Field(default_factory=dict)
+
+    @property
+    def outside(self):
+        """Whether it is no effect of the registry."""
+        return self.name in FORMS
+
+    @property
+    def title(self):
+        """In words."""
+        return FORMS[self.name].title if self.outside else title_of(self.name)
+
+
+class Part(Strict):
+    """One part of the readings that something acts on: the causes that cannot be told apart, the likeliest first.
+
+    Attributes
+    ----------
+    readings : str
+        ``joints``, ``joints, beside the first``, ``rotation of the slab`` or ``vertical motion of the slab``.
+    causes : tuple of Cause
+    odds : dict of str to float
+        Of the likeliest over every rival, as a logarithm, coarsened.
+    gains : dict of str to float
+        Logarithm of the evidence over none, by rival.
+    """
+
+    readings: str
+    causes: tuple[Cause, ...]
+    odds: dict[str, Finite]
+    gains: dict[str, Finite]
+
+    @property
+    def effects(self):
+        """Causes of the registry."""
+        return tuple(one for one in self.causes if not one.outside)
+
+    @property
+    def forms(self):
+        """Causes from outside."""
+        return tuple(one for one in self.causes if one.outside)
+
+
+class Decision(Strict):
+    """The whole file.
+
+    Attributes
+    ----------
+    decision : str
+        Kind of the answer.
+    parts : tuple of Part
+        By falling strength; empty where nothing acts.
+    probabilities : dict of str to float
+        Of every effect of the registry: in its part, among all rivals and none, coarsened.
+    limits : dict of str to dict of str to float
+        By effect and place: the size from which it would have been seen; places where the tests do not tell are left
+        out.
+    p : float
+        Largest chance of as much evidence against none, by Markov's inequality.
+    where : str
+        The largest departure in words.
+    tests, silent : tuple of str
+        Tests that were judged by, and those among them of which no joint turned, slipped or lifted.
+    cannot_see : tuple of str
+        What the sensors do not show.
+    """
+
+    decision: Literal["none", "named", "ambiguous", "combination", "unknown"]
+    parts: tuple[Part, ...]
+    probabilities: dict[str, Fraction]
+    limits: dict[str, dict[str, Finite]]
+    p: Fraction
+    where: str
+    tests: tuple[str, ...]
+    silent: tuple[str, ...]
+    n_rows: Count
+    cannot_see: tuple[str, ...] = ()
+
+    @property
+    def causes(self):
+        """Effects of the registry that are not excluded, the likeliest `Cause` of each name."""
+        return tuple({one.name: one for part in self.parts[::-1] for one in part.effects[::-1]}.values())[
+            ::-1
+        ]
+
+    @property
+    def forms(self):
+        """Forms from outside that are not excluded."""
+        return tuple(one for part in self.parts for one in part.forms)
+
+    @property
+    def extending(self):
+        """The likeliest cause of every part: together they extend the model."""
+        return tuple(part.causes[0] for part in self.parts)
+
+
+def write_decision(path, decision):
+    """Write a decision as JSON."""
+    write_json(path, decision.model_dump(mode="json"))
+
+
+def load_decision(path):
+    """`Decision` of a file."""
+    return validated(Decision, load_json(path), path)

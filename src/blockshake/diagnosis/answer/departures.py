@@ -1,0 +1,77 @@
+"""Rows of the tests as forces on blocks, measured and explained: what an engineer looks at."""
+
+import numpy as np
+import xarray as xr
+
+from blockshake.diagnosis.evidence.nuisances import expected_rows
+from blockshake.forces.seen.wrench_histories import force_at
+
+_NAMES = ("measured", "deviation", "explained")
+_LEAST = 1e-3  # of a virtual displacement along x, squared: below it a force on the block makes no row
+
+
+def departures(seen, evidence, keys):
+    """Forces on blocks that alone would make the rows, measured and by the causes.
+
+    Parameters
+    ----------
+    seen : list of SeenTest
+    evidence : Evidence or None
+    keys : list of (str, str)
+        Causes in the answer and their places.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``instant``, of all tests one after the other: ``test`` and ``time`` [s]; ``measured``, ``deviation`` and
+        ``explained(instant, body)`` [N]: the force along x at the mass centre that makes the instant's rows less what
+        sound blocks make, by least squares; its standard deviation by the sensors; that of the causes at their best.
+    """
+    names = [seen[0].structure.body_names[body] for body in seen[0].free]
+    parts = []
+    for number, test in enumerate(evidence.tests if evidence else ()):
+        rows = test.rows
+        explained = sum(
+            (evidence.best(key).rows[number] for key in keys if key in evidence.keys),
+            np.zeros(len(rows.value)),
+        )
+        measured = rows.value - expected_rows(test)
+        instants, index = np.unique(rows.instant, return_inverse=True)
+        found = np.full((3, len(instants), len(names)), np.nan)
+        for column, body in enumerate(test.seen.free):
+            unit = rows.along(force_at(test.seen, int(body), np.array([1.0, 0.0, 0.0])))
+            square = np.bincount(index, unit**2)
+            known = square > _LEAST
+            noise = np.stack([np.bincount(index, unit * one) for one in rows.noise.T])
+            for place, value in enumerate((np.bincount(index, unit * measured), np.sqrt((noise**2).sum(axis=0)),
+                                           np.bincount(index, unit * explained))):  # fmt: skip
+                found[place, known, column] = value[known] / square[known]
+        parts.append(
+            xr.Dataset(
+                {name: (("instant", "body"), found[place]) for place, name in enumerate(_NAMES)},
+                {
+                    "test": ("instant", [test.seen.name] * len(instants)),
+                    "time": ("instant", test.seen.motion.time[instants], {"units": "s"}),
+                    "body": names,
+                },
+            )
+        )
+    if not parts:
+        none = {name: (("instant", "body"), np.zeros((0, len(names)))) for name in _NAMES}
+        return xr.Dataset(
+            none, {"test": ("instant", np.zeros(0, "U1")), "time": ("instant", []), "body": names}
+        )
+    return xr.concat(parts, dim="instant").map(lambda one: one.assign_attrs(units="N"))
+
+
+def largest(shown):
+    """The largest departure in words."""
+    force = shown["measured"].to_numpy()
+    if not np.isfinite(force).any():
+        return "motion of the slab"
+    sure = np.abs(force) / shown["deviation"].to_numpy()
+    instant, body = np.unravel_index(np.nanargmax(sure), sure.shape)
+    return (
+        f"{shown['body'].values[body]} in {shown['test'].values[instant]} at {float(shown['time'][instant]):.2f} s: "
+        f"{force[instant, body] / 1e3:+.3g} kN that the model does not have"
+    )

@@ -1,0 +1,73 @@
+"""Parameters of a cause with their intervals, from its posterior over likelihoods, variants and amplitudes."""
+
+import zlib
+
+import numpy as np
+
+from blockshake.diagnosis.answer.answer import COARSENING
+from blockshake.diagnosis.answer.decision import MEMBERS, Estimate
+from blockshake.diagnosis.outside.registry import FORMS
+from blockshake.effects.registry import EFFECTS
+
+_DRAWS = 2000
+_INTERVAL = (0.05, 0.5, 0.95)
+
+
+def size_of(name, place, fits, logs):
+    """Parameters of a cause, and members drawn from them.
+
+    Parameters
+    ----------
+    name : str
+        Effect or form.
+    place : str
+        In words: with the name, the seed.
+    fits : list of Fit
+    logs : float64 array, shape (n_fits,)
+        Logarithms of their weights.
+
+    Returns
+    -------
+    dict of str to Estimate, tuple of dict
+        `MEMBERS` sets of parameters, the first draws.
+    """
+    generator = np.random.default_rng([_DRAWS, zlib.crc32(f"{name} {place}".encode())])
+    weights = np.exp(logs - logs.max())
+    counts = generator.multinomial(_DRAWS, weights / weights.sum())
+    parts = [
+        _read(name, fit.values, _amplitudes(fit, count, generator), generator.uniform(-0.5, 0.5, count))
+        for fit, count in zip(fits, counts, strict=True)
+        if count
+    ]
+    drawn = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
+    order = generator.permutation(_DRAWS)
+    members = tuple({key: float(values[draw]) for key, values in drawn.items()} for draw in order[:MEMBERS])
+    units = _units(name)
+    return {key: _estimate(drawn[key], unit) for key, unit in units.items()}, members
+
+
+def _amplitudes(fit, count, generator):
+    """Draws of a fit's amplitude, several as one of the first column; the form is as true as it is taken for."""
+    mean = float(fit.contrast @ fit.mean)
+    variance = float(fit.contrast @ fit.covariance @ fit.contrast) + (COARSENING * mean) ** 2
+    deviation = float(np.sqrt(max(variance, 0.0)))
+    drawn = mean + deviation * generator.standard_normal(count)
+    return np.abs(drawn) if fit.positive else drawn
+
+
+def _read(name, values, amplitudes, between):
+    if name in FORMS:
+        return {FORMS[name].size: amplitudes}
+    read = EFFECTS[name].reads(values, amplitudes, between)
+    return {key: np.broadcast_to(value, amplitudes.shape) for key, value in read.items()}
+
+
+def _units(name):
+    if name in FORMS:
+        return {FORMS[name].size: FORMS[name].unit}
+    return {one.name: one.unit for one in EFFECTS[name].parameters}
+
+
+def _estimate(values, unit):
+    lower, middle, upper = (float(value) for value in np.quantile(values, _INTERVAL))
+    return Estimate(estimate=middle, lower=lower, upper=upper, unit=unit)
