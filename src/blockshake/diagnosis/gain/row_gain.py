@@ -17,9 +17,8 @@ _WIDER = 10.0  # times the priors of the joints' own errors: a discrepancy witho
 _BLOCK = 0.5  # s, of rows that are drawn together
 _REPLICATES, _INTERVAL = 1000, (0.05, 0.95)
 _NOTHING = 1.645  # standard deviations of the floor, within which nothing is to gain
-NOTHING_TO_GAIN = (
-    "the sealed tests leave nothing to gain on forces: sound blocks explain them within their errors"
-)
+NOTHING = Contrast(estimate=0.0, lower=-1.0, upper=1.0)
+NOTHING_TO_GAIN = "nothing to gain on the sealed tests' forces against the {} model: it is within its errors"
 NO_ROWS = "no gain was measured on forces: the cause says nothing of those of the sealed tests"
 
 
