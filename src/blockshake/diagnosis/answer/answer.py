@@ -18,6 +18,7 @@ _NEEDED = 8.0  # nats over none that are no chance on clean campaigns
 _NEEDED_BY = {
     **dict.fromkeys(("push", "blow", "spring-once", "changed-edge"), 15.0),  # many starts are searched
     "reduced-bearing": 20.0,  # of any shape over the rotation
+    JOINT_COMPLIANCE.name: 12.0,  # readings of a shaken body turn by 1e-5 rad with it
     FREE_FORCE: 100.0,
 }
 _NEEDED_OF_SLAB = {"turns": 8.0, "lifts": 20.0}  # outliers of one marker lift the slab
