@@ -6,7 +6,6 @@ so that a step is rerun by an edit of what that step runs, and by no other: an e
 
 from typing import NamedTuple
 
-import numpy as np
 import xarray as xr
 
 from blockshake.store import load_made

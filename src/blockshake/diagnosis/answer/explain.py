@@ -20,6 +20,7 @@ from blockshake.diagnosis.outside.loose_weight import explain_loose_weight
 from blockshake.diagnosis.outside.points import force_points
 from blockshake.diagnosis.outside.push import explain_push
 from blockshake.diagnosis.outside.spring_once import explain_spring_once
+from blockshake.diagnosis.outside.unmodelled_mass import explain_unmodelled_mass
 from blockshake.effects.registry import EFFECTS
 from blockshake.effects.stopper_contact import EFFECT as STOPPER_CONTACT
 
@@ -117,6 +118,7 @@ def _from_outside(likelihood, tests, points):
         yield from explain_following(likelihood, one, weight)
         for search in (explain_push, explain_blow, explain_spring_once):
             yield search(likelihood, one, weight)
+        yield explain_unmodelled_mass(likelihood, tests, one)
     for one in {
         one.body: one for one in points
     }.values():  # the height hardly matters to a force of any history
