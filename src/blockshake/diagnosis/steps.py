@@ -40,11 +40,12 @@ def read_measured(folder, effort, without):
     from blockshake.diagnosis.laws.measured_forces import measured_forces
     from blockshake.diagnosis.libraries.efforts import EFFORTS, open_tests
     from blockshake.measurement.campaigns.campaign import load_campaign
+    from blockshake.measurement.campaigns.open_readings import read_open_tests
     from blockshake.parity.parity import campaign_parity
 
     campaign = load_campaign(folder)
     names = open_tests(campaign, EFFORTS[effort])
-    parity = campaign_parity(campaign, names, without)
+    parity = campaign_parity(read_open_tests(campaign, names), campaign.sensors, without)
     return Measured(
         parity,
         measured_readings(campaign, names, parity.findings),

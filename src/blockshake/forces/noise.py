@@ -46,4 +46,5 @@ def _lag_one(residual):
     first, second = residual[:-1], residual[1:]
     both = np.isfinite(first) & np.isfinite(second)
     one, two = np.where(both, first, 0.0), np.where(both, second, 0.0)
-    return (one * two).sum() / np.sqrt((one**2).sum() * (two**2).sum())
+    size = np.sqrt((one**2).sum() * (two**2).sum())
+    return (one * two).sum() / size if size > 0.0 else 0.0

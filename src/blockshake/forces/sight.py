@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from blockshake.forces.joint_forces import gives_forces, is_short, joint_forces
+from blockshake.forces.joint_forces import gives_forces, joint_forces
+from blockshake.forces.motion import is_short
 from blockshake.geometry.schema import AXES
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test

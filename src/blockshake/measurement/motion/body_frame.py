@@ -75,10 +75,10 @@ def see_from_body(points, readings, start_position, start_rotation):
         turn = np.tile(start_rotation, (len(times), 1, 1))
         seen = readings[np.ix_(times, own)]
         for step in range(_ITERATIONS + 1):
-            left = np.einsum("tji,tmj->tmi", turn, seen - x[:, None]) - arms
+            left = (seen - x[:, None]) @ turn - arms
             if step < _ITERATIONS:
                 change = left.reshape(len(times), -1) @ inverse.T
-                x = x + np.einsum("tij,tj->ti", turn, change[:, :3])
+                x = x + (turn @ change[:, :3, None])[..., 0]
                 turn = turn @ Rotation.from_rotvec(change[:, 3:]).as_matrix()
         position[times], rotation[times] = x - turn @ middle, turn
         residual[np.ix_(times, own)] = left

@@ -1,0 +1,57 @@
+"""A campaign from its files to the tests as the sensors show them: every file is read once."""
+
+from typing import NamedTuple
+
+from blockshake.forces.seen.seen_test import see_test, why_unseen
+from blockshake.measurement.campaigns.open_readings import read_open_tests
+from blockshake.measurement.motion.outliers import without_outliers
+from blockshake.parity.correction import judged_readings
+from blockshake.parity.parity import Parity, campaign_parity
+
+
+class SeenCampaign(NamedTuple):
+    """Open tests of a campaign.
+
+    Attributes
+    ----------
+    parity : Parity
+        Findings on the sensors, falls of blocks, and gaps.
+    tests : list of SeenTest
+        Faults of sensors and outliers taken out, until a block falls.
+    unseen : dict of str to str
+        Reason why no forces can be read of a test, by its name.
+    """
+
+    parity: Parity
+    tests: list
+    unseen: dict
+
+
+def see_campaign(campaign, names, without=()):
+    """`SeenCampaign` of the named open tests.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    names : sequence of str
+        None of a sealed test.
+    without : sequence of str
+        Sensors' effects that are left out, as if nobody had thought of them.
+
+    Raises
+    ------
+    InputError
+        A test that is sealed or not in the campaign, or a file that `load_test` refuses.
+    """
+    readings = read_open_tests(campaign, names)
+    structure, sensors = readings.structure, campaign.sensors
+    parity = campaign_parity(readings, sensors, without)
+    tests, unseen = [], {}
+    for name, test in readings.tests.items():
+        judged = judged_readings(test, name, structure, parity.findings)
+        reason = why_unseen(judged, structure)
+        if reason:
+            unseen[name] = reason
+        else:
+            tests.append(see_test(name, without_outliers(judged, structure), structure, sensors))
+    return SeenCampaign(parity, tests, unseen)
