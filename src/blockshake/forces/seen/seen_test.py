@@ -8,7 +8,7 @@ import xarray as xr
 
 from blockshake.forces.faces import find_faces
 from blockshake.forces.joint_motion import JointMotion, joint_motion
-from blockshake.forces.motion import WIDTH, Motion, is_short, smooth_motion
+from blockshake.forces.motion import Motion, is_short, smooth_motion
 from blockshake.forces.quiet_start import counted_from_rest
 from blockshake.forces.required import RequiredWrenches, required_wrenches
 from blockshake.forces.seen.equilibrium_rows import (
@@ -108,11 +108,11 @@ def see_test(name, readings, structure, sensors):
     """
     sensors = sensors.not_noiseless()
     readings, until = counted_from_rest(readings, structure, sensors)
-    motion = smooth_motion(readings, structure, sensors, _STEP, WIDTH)
+    motion = smooth_motion(readings, structure, sensors, _STEP)
     still = motion.time <= until
     faces = find_faces(structure)
     required = required_wrenches(structure, motion)
-    joints = joint_motion(structure, faces, motion, still, WIDTH)
+    joints = joint_motion(structure, faces, motion, still)
     frames, free = face_frames(structure, faces, motion), np.flatnonzero(~structure.driven)
     forces = contact_forces(frames, required, free)
     states = face_states(structure, faces, motion, joints, still)
