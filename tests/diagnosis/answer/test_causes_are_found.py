@@ -24,6 +24,7 @@ MOTIONS = {
     "weak": ("alkion", 1.0), "first": ("alkion", 2.5), "second": ("basso-tirreno", 2.0), "third": ("alkion", 3.0),
 }  # fmt: skip
 DURATION = 6.0  # s
+STARTS = {"weak": 3.0, "first": 2.5, "second": 2.0, "third": 3.0}  # s, of a push
 TOP = {"body": "block-2", "height": 0.42}
 BASE = {"joint": ["slab", "block-1"]}
 # cause, place, size, what else it is, structure; the first of the sizes is the one that is asked for
