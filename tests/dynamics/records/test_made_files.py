@@ -94,6 +94,8 @@ MADE = [
     Made("a.at2", at2(CM * 0.01, units="m/s**2"), scientific(CM * 0.01, 7)),
     Made("a.at2", at2(GS, sizes=f"{COUNT}   0.0100   NPTS, DT"), G * scientific(GS, 7)),
     Made("a.at2", at2(GS, sizes=f"DT= .0100 SEC, NPTS= {COUNT}"), G * scientific(GS, 7)),
+    *(Made("a.at2", at2(GS, sizes=f"NPTS={COUNT}, DT= .01 SEC, {more}"), G * scientific(GS, 7)) for more in (
+        f"PGA= {np.abs(GS).max():.4f}", f"PEAK: {np.abs(CM).max():.2f} CM/S2", "RATE= 100 HZ", "100 SPS", "LP= 33 HZ")),
     Made("a.at2", at2(GS, sizes=f"NPTS={COUNT},DT=0.01"), G * scientific(GS, 7)),
     Made("a.at2", at2(GS, cells=[fortran(value) for value in GS]), G * scientific(GS, 6)),
     Made("a.at2", at2(GS, cells=[f" {value}" for value in GS.tolist()]), G * GS),  # zeros left out
@@ -225,6 +227,9 @@ REFUSED = [
     ("a.at2", at2(GS).replace(f"{GS[7]:15.7E}", f"{GS[7]:.7E}"[:-1].rjust(15)), ("line 6", "cut short")),
     ("a.v2", cosmos(CM, **FREE).replace(f"{CM[3]:9.3f}", f"{CM[3]:9.1f}", 1), ("line 49", "cut short")),
     ("a.at2", at2(GS, sizes=f"NPTS= {COUNT - 5}, DT= .01 SEC"), ("NPTS", "495", "500")),
+    *(("a.at2", at2(GS, sizes=f"NPTS= {COUNT}, DT= .01 SEC, {more}"), words) for more, words in (
+        ("PGA= 0.9", ("PGA", "found 8.82")), ("PEAK: 90 cm/s2", ("PGA", "found 0.9 m/s2")),
+        ("RATE= 200 HZ", ("FS", "0.005")), ("200 SPS", ("FS", "0.005")))),
     ("a.at2", at2(GS).replace(f"{GS[7]:15.7E}", "  -0.9990000E+03"), ("looks like a code for none", "line 6")),
     ("a.at2", at2(GS, units="CM/S"), ("line 3", "'CM/S'")),
     ("a.v2", cosmos(CM, entries={62: 5.0}), ("entry 63", "2.5 s", "5 s")),
