@@ -1,7 +1,7 @@
 """The way of a diagnosis from readings to verdict, a function a step, in the order of the workflow.
 
 Each function imports what it runs inside its own body. `blockshake.sources` watches this file function by function,
-so that a step is rerun by an edit of what that step runs, and by no other: an edit of the gain reruns no library.
+so that a step is rerun by an edit of what that step runs, and by no other: an edit of the gain simulates no nominal model anew.
 """
 
 from typing import NamedTuple
@@ -52,32 +52,32 @@ def read_measured(folder, effort, without):
     )
 
 
-def simulate_library(name, solver, config, shared, store, source, progress):
-    """Simulate one open test by one solver: nominal draws, and draws with every candidate effect.
+def simulate_nominal(name, solver, config, shared, store, source, progress):
+    """Simulate one open test by one solver: the ensemble of nominal models, and twins.
 
     Parameters
     ----------
     name : str
-        Of the library, as of `Plan.library`.
+        Of the ensemble, as of `Plan.ensemble`.
     solver : str
     config : dict
         Entries ``diagnosed``, folders of campaigns, and ``diagnosis_effort``.
     shared : str
-        Digest of the sources that both solvers share, which is in the library's name.
+        Digest of the sources that both solvers share, which is in the ensemble's name.
     store, source, progress
-        As of `library`; ``source`` is the solver's own.
+        As of `simulate_members`; ``source`` is the solver's own.
 
     Returns
     -------
-    features, histories : xarray.Dataset
-        From `library`.
+    xarray.Dataset
+        From `simulate_members`.
     """
-    from blockshake.diagnosis.libraries.library import library
-    from blockshake.diagnosis.libraries.plan import plan_of_library
+    from blockshake.diagnosis.nominal.ensemble import nominal_members, simulate_members
+    from blockshake.diagnosis.nominal.plan import plan_of_ensemble
 
-    plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], shared)
-    draws = plan.effort.nominal_draws, plan.own_draws
-    return library(plan.tests[test], solver, plan.candidates, *draws, store, source, progress)
+    plan, test = plan_of_ensemble(name, config["diagnosed"], config["diagnosis_effort"], shared)
+    members = nominal_members(test, plan.tests[test], solver, plan.effort.draws, plan.effort.twins)
+    return simulate_members(members, store, source, progress)
 
 
 def calibrate_decision(libraries, effects, store, source, progress):
@@ -245,64 +245,80 @@ def size_cause(files, effects):
     return Sized(size_of_cause(library, left), measured["test"].values.tolist())
 
 
-def extend_model(folder, effort, solver, files, effects, store, source, progress):
-    """Simulate sealed tests by one solver: the nominal, the recalibrated and the extended model.
+def describe_misfit(folder, effort, files):
+    """Hold the nominal ensembles of both solvers beside the measured histories of the open tests.
+
+    Parameters
+    ----------
+    folder, effort : str
+        Of the campaign; one at which something is simulated.
+    files : object
+        Attributes ``parity`` and ``ensembles`` (by test and solver): files of the earlier steps.
+
+    Returns
+    -------
+    xarray.Dataset
+        From `misfit`.
+    """
+    from blockshake.diagnosis.misfit.judged_test import judged_test
+    from blockshake.diagnosis.misfit.misfit import misfit
+    from blockshake.diagnosis.nominal.measured import measured_histories
+    from blockshake.diagnosis.nominal.plan import plan_diagnosis
+    from blockshake.parity.parity import load_parity
+
+    plan = plan_diagnosis(folder, effort)
+    measured = measured_histories(plan.campaign, plan.tests, load_parity(files.parity).findings)
+    nominal = _by_test(plan, files.ensembles)
+    return misfit([judged_test(name, measured[name], nominal[name]) for name in plan.tests])
+
+
+def _by_test(plan, files):
+    """Ensembles of files that are listed by test and solver, or by test of one solver, a list for each test."""
+    runs = [load_made(path) for path in files]
+    count = len(runs) // len(plan.tests)
+    return {name: runs[place * count : (place + 1) * count] for place, name in enumerate(plan.tests)}
+
+
+def extend_model(folder, effort, solver, files, store, source, progress):
+    """Simulate sealed tests by one solver: the nominal, the recalibrated, the extended and the placebo model.
 
     Parameters
     ----------
     folder, effort, solver : str
     files : object
-        Attributes ``frozen``, ``decision``, ``readings``, ``libraries``, and ``posterior`` (the size and its hash) and
-        ``further``, both empty where the cause is unknown and a force from outside extends the model: files of the
+        Attributes ``frozen``, ``decision``, ``parity`` and ``ensembles`` (by test, of this solver): files of the
         earlier steps.
-    effects : sequence of str
     store, source, progress
-        As of `library`.
+        As of `simulate_members`.
 
     Returns
     -------
     xarray.Dataset
         From `extended_runs`.
     """
-    from blockshake.diagnosis.features.measured_readings import tamed_readings
-    from blockshake.diagnosis.gain.described_force import members_with_force
-    from blockshake.diagnosis.gain.extended_runs import extended_runs, members_with_cause, nominal_draws
-    from blockshake.diagnosis.gain.extension import open_features
-    from blockshake.diagnosis.inference.decision import CauseSize, Decision, load_result
-    from blockshake.diagnosis.inference.library_scores import load_tables, score_library
-    from blockshake.diagnosis.inference.size_of_cause import library_of_cause, without_second
-    from blockshake.diagnosis.libraries.plan import plan_diagnosis
+    from blockshake.diagnosis.answer.decision import load_decision
+    from blockshake.diagnosis.gain.extended_model import acting_causes, extended_runs
+    from blockshake.diagnosis.nominal.measured import measured_histories
+    from blockshake.diagnosis.nominal.plan import plan_diagnosis
     from blockshake.diagnosis.verdict.frozen import check_frozen
-    from blockshake.geometry.structure import load_structure
+    from blockshake.parity.parity import load_parity
 
     check_frozen(files.frozen, files.decision)
-    decision, tables = load_result(Decision, files.decision), load_tables(files.libraries)
-    library, scales = score_library(tables, effects)
-    features = tamed_readings(scales, load_made(files.readings))
-    plan = plan_diagnosis(folder, effort)
-    if files.posterior:
-        posterior, frozen = files.posterior
-        check_frozen(frozen, posterior)
-        size, left = load_result(CauseSize, posterior), without_second(library, features, decision)
-        library, _ = library_of_cause(tables, load_tables(files.further), size.key)
-        members = members_with_cause(plan, solver, decision, size, library, left)
-    else:
-        draws = nominal_draws(plan, solver)[: plan.effort.members]
-        members = members_with_force(decision.laws.outside, draws, load_structure(plan.campaign.structure))
-    known = open_features(library, solver)
-    return extended_runs(plan, solver, members, known, features, store, source, progress)
+    plan, causes = plan_diagnosis(folder, effort), acting_causes(load_decision(files.decision))
+    measured = measured_histories(plan.campaign, plan.tests, load_parity(files.parity).findings)
+    nominal = {name: runs for name, (runs,) in _by_test(plan, files.ensembles).items()}
+    return extended_runs(plan, solver, causes, nominal, measured, store, source, progress)
 
 
-def measure_gain(folder, files):
+def measure_gain(folder, effort, files):
     """Measure on the sealed tests what naming the cause gains: the one step that reads them.
 
     Parameters
     ----------
-    folder : str
-        Of the campaign.
+    folder, effort : str
     files : object
-        Attributes ``frozen``, ``decision``, ``readings``, ``libraries``, ``parity``, and ``posterior`` (the size and
-        its hash, or empty) and ``extended`` (by solver, or empty): files of the earlier steps.
+        Attributes ``frozen``, ``decision``, ``parity``, and ``ensembles`` (by test and solver) and ``extended`` (by
+        solver), both empty where nothing is simulated: files of the earlier steps.
 
     Returns
     -------
@@ -310,23 +326,27 @@ def measure_gain(folder, files):
     """
     from blockshake.diagnosis.gain.campaign_gain import campaign_gain
     from blockshake.diagnosis.gain.sensor_gain import sensors_gain
-    from blockshake.diagnosis.inference.decision import Decision, load_result
-    from blockshake.diagnosis.inference.library_scores import load_tables
+    from blockshake.diagnosis.nominal.measured import measured_histories
+    from blockshake.diagnosis.nominal.plan import plan_diagnosis, sealed_tests
     from blockshake.diagnosis.verdict.frozen import check_frozen
-    from blockshake.measurement.campaigns.campaign import load_campaign
-    from blockshake.parity.parity import load_parity
+    from blockshake.geometry.structure import load_structure
+    from blockshake.measurement.campaigns.campaign import load_test
+    from blockshake.parity.parity import check_parity, load_parity
 
     check_frozen(files.frozen, files.decision)
-    if files.posterior:
-        size, frozen_size = files.posterior
-        check_frozen(frozen_size, size)
-    campaign, readings = load_campaign(folder), load_made(files.readings)
+    plan, findings = plan_diagnosis(folder, effort), load_parity(files.parity).findings
+    campaign, names = plan.campaign, sealed_tests(plan.campaign)
     if not files.extended:
-        return sensors_gain(campaign, readings, load_parity(files.parity).findings)
-    runs = {one.attrs["model"]: one for one in map(load_made, files.extended)}
-    laws = load_result(Decision, files.decision).laws
-    broken = [one.name for one in laws.broken] if laws else []
-    return campaign_gain(campaign, readings, load_tables(files.libraries), runs, broken)
+        return sensors_gain(campaign, plan.open, names, findings)
+    tests = {name: load_test(campaign, name) for name in names}
+    faults = check_parity(tests, load_structure(campaign.structure), campaign.sensors).findings
+    return campaign_gain(
+        plan,
+        measured_histories(campaign, plan.tests, findings),
+        measured_histories(campaign, names, faults),
+        _by_test(plan, files.ensembles),
+        [load_made(path) for path in files.extended],
+    )
 
 
 def conclude(folder, effort, files):
@@ -369,26 +389,3 @@ def conclude(folder, effort, files):
     return conclude(
         decision, parity.findings, parity.recorder_sensors, judged, runs, caveats, effort, size, measured, scores,
     )  # fmt: skip
-
-
-def predict_twins(name, histories, config, shared, progress):
-    """Measure how long a test can be predicted, by all solvers.
-
-    Parameters
-    ----------
-    histories : sequence of str
-        Files from `simulate_library`, by solver.
-    name, config, shared, progress
-        As of `simulate_library`.
-
-    Returns
-    -------
-    xarray.Dataset
-        From `predictability_of`.
-    """
-    from blockshake.diagnosis.libraries.plan import plan_of_library
-    from blockshake.diagnosis.misfit.predictability import predictability_of
-
-    plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], shared)
-    nominal = {one.attrs["model"]: one for one in map(load_made, histories)}
-    return predictability_of(plan.tests[test], plan.effort.twins, nominal, progress)
