@@ -1,17 +1,14 @@
 """What the simulation of measured tests gets wrong, the cause, the extended model and its gain.
 
-Libraries and calibrations are named by their content: equal structures, motions and sensors have equal ones, whatever
-campaign they are of, so that a second campaign simulates nothing but its own extension and further draws of a cause
-that no campaign had before.
+Ensembles are named by their content: equal structures, motions and sensors have equal ones, whatever campaign they
+are of, so that a second campaign simulates nothing but its own extension.
 """
 
 
 wildcard_constraints:
     campaign="|".join(map(re.escape, CAMPAIGNS)) or "none",
     solver="|".join(NULL_MODELS),
-    library="[0-9a-f]{12}",
-    calibration="[0-9a-f]{12}",
-    candidate="[^/]+",
+    ensemble="[0-9a-f]{12}",
 
 
 rule diagnose:
@@ -30,15 +27,14 @@ rule verdicts:
         expand("results/diagnosis/{campaign}/verdict.json", campaign=CAMPAIGNS),
 
 
-rule simulate_library:
-    """Simulated tests of one structure under one motion: nominal ones, and with every candidate effect."""
+rule simulate_nominal:
+    """Simulated tests of one structure under one motion by nominal models, and twins."""
     input:
         kernels=lambda wildcards: kernels(wildcards.solver),
     output:
-        features="results/libraries/{library}/{solver}.nc",
-        histories="results/libraries/{library}/{solver}-histories.nc",
+        "results/ensembles/{ensemble}/{solver}.nc",
     log:
-        "logs/simulate_library/{library}-{solver}.log",
+        "logs/simulate_nominal/{ensemble}-{solver}.log",
     conda:
         "../envs/blockshake.yaml"
     threads: 1
@@ -46,11 +42,11 @@ rule simulate_library:
         mem_mb=2000,
         runtime=480,
     params:
-        shared=LIBRARY_SOURCE,
+        shared=ENSEMBLE_SOURCE,
         source=solver_source,
         store="results/store/diagnosis",
     script:
-        "../scripts/simulate_library.py"
+        "../scripts/simulate_nominal.py"
 
 
 rule calibrate_decision:
@@ -168,16 +164,37 @@ rule size_cause:
         "../scripts/size_cause.py"
 
 
+rule describe_misfit:
+    """The nominal ensembles beside what was measured, as long as each joint can be predicted."""
+    input:
+        parity="results/diagnosis/{campaign}/parity.json",
+        ensembles=lambda wildcards: ensemble_files(wildcards.campaign),
+        tests=lambda wildcards: test_files(wildcards.campaign, "open"),
+    output:
+        "results/diagnosis/{campaign}/misfit.nc",
+    log:
+        "logs/diagnosis/{campaign}/describe_misfit.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
+        effort=EFFORT,
+        source=source_of("describe_misfit"),
+    script:
+        "../scripts/describe_misfit.py"
+
+
 rule extend_model:
-    """Ensembles by one solver: recalibrated on the open tests, and extended by the cause, for sealed tests too."""
+    """Ensembles by one solver on the sealed tests: nominal, recalibrated, extended by the causes, and a placebo."""
     input:
         frozen="results/diagnosis/{campaign}/frozen.json",
         decision="results/diagnosis/{campaign}/decision.json",
-        posterior=size_files,
+        parity="results/diagnosis/{campaign}/parity.json",
         motions=lambda wildcards: sealed_motions(wildcards.campaign),
-        readings=rules.read_measured.output.readings,
-        libraries=lambda wildcards: library_files(wildcards.campaign),
-        further=cause_files,
+        tests=lambda wildcards: test_files(wildcards.campaign, "open"),
+        ensembles=lambda wildcards: ensemble_files(
+            wildcards.campaign, [wildcards.solver]
+        ),
         kernels=lambda wildcards: kernels(wildcards.solver),
     output:
         "results/diagnosis/{campaign}/extended/{solver}.nc",
@@ -192,8 +209,6 @@ rule extend_model:
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
-        members=lambda wildcards: effort().members,
-        effects=lambda wildcards: considered_effects(),
         store="results/store/diagnosis",
         source=solver_source,
         judged_by=source_of("extend_model"),
@@ -202,19 +217,17 @@ rule extend_model:
 
 
 rule measure_gain:
-    """What naming the cause gains on the sealed tests, against three rivals: the one rule that reads them."""
+    """What naming the cause gains on the sealed tests, against its rivals: the one rule that reads them."""
     input:
         frozen="results/diagnosis/{campaign}/frozen.json",
         decision="results/diagnosis/{campaign}/decision.json",
-        readings=rules.read_measured.output.readings,
-        libraries=lambda wildcards: library_files(wildcards.campaign),
-        posterior=size_files,
+        parity="results/diagnosis/{campaign}/parity.json",
+        tests=lambda wildcards: test_files(wildcards.campaign, "open"),
+        ensembles=lambda wildcards: ensemble_files(wildcards.campaign),
         extended=extended_files,
-        parity=rules.read_measured.output.parity,
         sealed=lambda wildcards: test_files(wildcards.campaign, "sealed"),
     output:
         gain="results/diagnosis/{campaign}/gain.nc",
-        consequences="results/diagnosis/{campaign}/consequences.nc",
         summary="results/diagnosis/{campaign}/gain.json",
     log:
         "logs/diagnosis/{campaign}/measure_gain.log",
@@ -222,6 +235,7 @@ rule measure_gain:
         "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
+        effort=EFFORT,
         source=source_of("measure_gain"),
     script:
         "../scripts/measure_gain.py"
@@ -251,27 +265,6 @@ rule conclude:
         source=source_of("conclude"),
     script:
         "../scripts/conclude.py"
-
-
-rule predict_twins:
-    """How long a test can be predicted: twins that differ by no more than what is measured can tell."""
-    input:
-        histories=expand(
-            "results/libraries/{{library}}/{solver}-histories.nc", solver=NULL_MODELS
-        ),
-        kernels=[kernels(solver) for solver in NULL_MODELS],
-    output:
-        "results/libraries/{library}/predictability.nc",
-    log:
-        "logs/predict_twins/{library}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    params:
-        shared=LIBRARY_SOURCE,
-        twins=lambda wildcards: effort().twins,
-        source=source_of("predict_twins", *NULL_MODELS),
-    script:
-        "../scripts/predict_twins.py"
 
 
 rule make_diagnosis_report:

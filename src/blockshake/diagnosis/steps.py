@@ -1,7 +1,7 @@
 """The way of a diagnosis from readings to verdict, a function a step, in the order of the workflow.
 
 Each function imports what it runs inside its own body. `blockshake.sources` watches this file function by function,
-so that a step is rerun by an edit of what that step runs, and by no other: an edit of the gain simulates no nominal model anew.
+so that a step is rerun by an edit of what that step runs, and by no other: an edit of the gain simulates nothing anew.
 """
 
 from typing import NamedTuple

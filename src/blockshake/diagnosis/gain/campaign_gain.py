@@ -1,19 +1,23 @@
 """Gain of a campaign's extended model: the sealed tests are opened, and predicted by rival ensembles."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
-import numpy as np
 import xarray as xr
 
 from blockshake.diagnosis.gain.discrepancy import members_with_discrepancy
-from blockshake.diagnosis.gain.extended_model import EXTENDED, PLACEBO, RECALIBRATED
 from blockshake.diagnosis.gain.response_gain import gain_of_verdict, response_gain
 from blockshake.diagnosis.misfit.judged_test import judged_test
-from blockshake.diagnosis.nominal.ensemble import NOMINAL, runs_of
+from blockshake.diagnosis.nominal.ensemble import (
+    DISCREPANCY,
+    EXTENDED,
+    NOMINAL,
+    PLACEBO,
+    RECALIBRATED,
+    runs_of,
+)
 from blockshake.diagnosis.verdict.verdict import MeasuredGain
-from dataclasses import replace
 
-DISCREPANCY = "discrepancy"
 _OF_PARAMETERS = ("prior", "posterior", "narrowing", "skill", "chance", "informed", "held")
 
 
@@ -47,9 +51,7 @@ def campaign_gain(plan, opened, sealed, nominal, runs):
     motions = {name: plan.campaign.tests[name].motion for name in planned}
     peaks = {name: one.peak_acceleration for name, one in planned.items()}
     known = [judged_test(name, opened[name], nominal[name]) for name in nominal]
-    kinds = [
-        kind for kind in (NOMINAL, RECALIBRATED, EXTENDED, PLACEBO) if (runs[0]["kind"] == kind).any()
-    ]
+    kinds = [kind for kind in (NOMINAL, RECALIBRATED, EXTENDED, PLACEBO) if (runs[0]["kind"] == kind).any()]
     tests = []
     for name, histories in sealed.items():
         test = judged_test(name, histories, [runs_of(one, test=name) for one in runs], kinds)

@@ -38,7 +38,8 @@ def members_with_discrepancy(test, opened, motions, peaks):
 
     def carried(name):
         same = [miss for other, miss in missed.items() if other != name and motions[other] == motions[name]]
-        return np.nan_to_num(np.nanmean(same, axis=0)) if same else np.zeros((len(time), len(names)))
+        same = np.array(same).reshape(-1, len(time), len(names))
+        return np.nansum(same, axis=0) / np.maximum(np.isfinite(same).sum(axis=0), 1)
 
     errors = np.array([miss - carried(name) for name, miss in missed.items()])
     spread = np.sqrt(np.nanmean(errors**2, axis=(0, 1)))

@@ -7,12 +7,19 @@ import xarray as xr
 from blockshake.diagnosis.answer.extension import can_extend, extended_experiment
 from blockshake.diagnosis.gain.recalibration import features_of, posterior_draws
 from blockshake.diagnosis.misfit.judged_test import judged_test
-from blockshake.diagnosis.nominal.ensemble import NOMINAL, TWIN, Member, nominal_members, simulate_members
+from blockshake.diagnosis.nominal.ensemble import (
+    EXTENDED,
+    NOMINAL,
+    PLACEBO,
+    RECALIBRATED,
+    TWIN,
+    Member,
+    nominal_members,
+    simulate_members,
+)
 from blockshake.diagnosis.nominal.nominal_model import draw_nominal
 from blockshake.effects.places import blocks, joints
 from blockshake.files import content_digest
-
-RECALIBRATED, EXTENDED, PLACEBO = "recalibrated", "extended", "placebo"
 
 
 @dataclass(frozen=True)
@@ -33,6 +40,7 @@ class Extension:
         return content_digest(acting, self.test if any(cause.outside for cause in self.causes) else "")
 
     def __call__(self, experiment):
+        """The experiment with the causes in it."""
         for cause in self.causes:
             experiment = extended_experiment(experiment, cause, self.number, self.test)
         return experiment
@@ -44,11 +52,10 @@ def acting_causes(decision):
 
 
 def placebo_of(causes, structure):
-    """The causes with the same sizes at other places; empty where one of them has no other place.
+    """The causes with the same sizes where the readings say that they are not; empty where one has no such place.
 
-    Places are mirrored: the highest block for the lowest, the joint above for the one below. A gain over this placebo
-    is that of the place that the readings speak for: any cause of this kind and size would have the rest of it, were
-    it anywhere in the structure.
+    Of the places that the readings tell from the cause's own it is the farthest along the structure. The gain over this
+    placebo is that of the place: the rest any cause of this kind and size would have, wherever it is.
     """
     moved = []
     for cause in causes:
@@ -56,16 +63,22 @@ def placebo_of(causes, structure):
         if key is None:
             return ()
         every = [one[key] for one in (joints if key == "joint" else blocks)(structure)]
+        near = {name.partition("@")[0] for name in cause.places}
         here = [sorted(one) for one in every].index(sorted(cause.place[key]))
-        other = len(every) - 1 - here
-        other = other if other != here else len(every) - 1
-        if other == here:
+        others = [number for number, one in enumerate(every) if not near & _names(one)]
+        if not others:
             return ()
-        moved.append(cause.model_copy(update={"place": {**cause.place, key: every[other]}}))
+        farthest = max(others, key=lambda number: abs(number - here))
+        moved.append(cause.model_copy(update={"place": {**cause.place, key: every[farthest]}}))
     return tuple(moved)
 
 
-def extended_runs(plan, model, causes, nominal, measured, store, source, progress):
+def _names(place):
+    """How the decision may call a body or a joint."""
+    return {place} if isinstance(place, str) else {"-".join(place), "-".join(place[::-1])}
+
+
+def extended_runs(plan, model, causes, nominal, measured, *made_by):
     """Simulated sealed tests of the nominal, the recalibrated, the extended and the placebo model.
 
     Parameters
@@ -79,8 +92,8 @@ def extended_runs(plan, model, causes, nominal, measured, store, source, progres
         By open test: its nominal ensemble by this solver.
     measured : dict of str to xarray.Dataset
         By open test: from `read_histories`.
-    store, source, progress
-        As of `simulate_members`.
+    *made_by
+        ``store``, ``source`` and ``progress`` of `simulate_members`.
 
     Returns
     -------
@@ -90,30 +103,30 @@ def extended_runs(plan, model, causes, nominal, measured, store, source, progres
 
     Notes
     -----
-    All but the nominal model are conditioned on the open tests, each beside what it has: the extended model and the
-    placebo as well, from simulations of the open tests with the cause. Member k of each is nominal draw k, so that two
-    of them differ by their causes and their conditioning alone.
+    The recalibrated and the extended model are conditioned on the open tests, each beside what it has: the latter from
+    simulations of the open tests with the cause. The placebo is the extended model with the cause elsewhere. Member k
+    of each is nominal draw k, so that two of them differ by their causes and their conditioning alone.
     """
     structure = next(iter(plan.tests.values())).structure
     draws = [draw_nominal(structure, model, number) for number in range(plan.effort.draws)]
     recalibration = _conditioned(draws, nominal, measured, NOMINAL)
     drawn = {RECALIBRATED: (recalibration.draws, ())}
-    for kind, acting in ((EXTENDED, causes), (PLACEBO, placebo_of(causes, structure))):
-        if not acting:
-            continue
-        ensembles = {}
-        for test, planned in plan.tests.items():
-            members = _members(kind, test, planned, draws, acting)
-            runs = simulate_members(members, store, source, progress)
-            twins = nominal[test].isel(run=nominal[test]["kind"].to_numpy() == TWIN)
-            ensembles[test] = xr.concat([runs, twins], dim="run", join="outer", combine_attrs="override")
-        drawn[kind] = _conditioned(draws, ensembles, measured, kind).draws, acting
+    if causes:
+        ensembles = {
+            test: _beside_twins(_members(EXTENDED, test, planned, draws, causes), nominal[test], *made_by)
+            for test, planned in plan.tests.items()
+        }
+        extended = _conditioned(draws, ensembles, measured, EXTENDED).draws
+        drawn[EXTENDED] = extended, causes
+        placebo = placebo_of(causes, structure)
+        drawn |= {PLACEBO: (extended, placebo)} if placebo else {}
     members = []
     for test, planned in plan.sealed.items():
-        members += nominal_members(test, planned, model, plan.effort.draws, plan.effort.twins)
+        count = plan.effort.members
+        members += nominal_members(test, planned, model, count, plan.effort.twins)
         for kind, (own, acting) in drawn.items():
-            members += _members(kind, test, planned, own, acting)
-    runs = simulate_members(members, store, source, progress)
+            members += _members(kind, test, planned, own[:count], acting)
+    runs = simulate_members(members, *made_by)
     return runs.merge(recalibration.informed, combine_attrs="override")
 
 
@@ -122,6 +135,15 @@ def _members(kind, test, planned, draws, causes):
         Member(kind, number, test, planned, draw, Extension(causes, number, test) if causes else None)
         for number, draw in enumerate(draws)
     ]
+
+
+def _beside_twins(members, nominal, *made_by):
+    """Ensemble of members of an open test, with the twins of its nominal ensemble."""
+    twins = nominal.isel(run=nominal["kind"].to_numpy() == TWIN)
+    runs = [simulate_members(members, *made_by), twins]
+    return xr.concat(
+        runs, dim="run", join="outer", coords="minimal", compat="override", combine_attrs="override"
+    )
 
 
 def _conditioned(draws, ensembles, measured, kind):

@@ -1,12 +1,12 @@
 """Gain on the responses of sealed tests: the share of a rival's error that the extended model removes."""
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
-from blockshake.diagnosis.gain.extended_model import EXTENDED, RECALIBRATED
-from blockshake.diagnosis.nominal.ensemble import NOMINAL
+from blockshake.diagnosis.nominal.ensemble import EXTENDED, NOMINAL, RECALIBRATED
 from blockshake.diagnosis.verdict.verdict import Contrast, Gain, MeasuredGain
 from blockshake.study.comparison.differences import (
     ensemble_score,
@@ -22,11 +22,42 @@ _FLOOR_QUANTILE = 0.95  # share of the extended members' own scores that a rival
 _CONFIRMING_SHARE = 0.5  # share of the fall that each solver must show by itself
 
 
-class _Apart(NamedTuple):
-    """Mean differences of an ensemble's members from the record and from each other, by test, in units of spread."""
+@dataclass(frozen=True)
+class _Cells:
+    """Cells of all tests that are judged, side by side; the first row of every weight is that of all, once each.
 
-    away: list
-    pairs: list
+    Attributes
+    ----------
+    test : int array, shape (n_cells,)
+        Number of each cell's test.
+    names : str array, shape (n_cells,)
+    away : dict of str to float64 array, shape (n_members, n_cells)
+        By kind: mean differences of the members from the record, in units of the cell's spread.
+    pairs : dict of str to float64 array, shape (n_members, n_members, n_cells)
+        The same of the members from each other.
+    weights : float64 array, shape (n_draws, n_cells)
+        Of a mean over tests of the mean over cells; sum 1.
+    members : float64 array, shape (n_draws, n_members)
+        How often each is drawn.
+    """
+
+    test: np.ndarray
+    names: np.ndarray
+    away: dict
+    pairs: dict
+    weights: np.ndarray
+    members: np.ndarray
+
+    def by_cell(self, kind, chosen=None):
+        """Score of every cell, (n_draws, n_cells); of some members alone in one row."""
+        if chosen is None:
+            return ensemble_score(self.away[kind], self.pairs[kind], self.members)
+        pairs = self.pairs[kind][np.ix_(chosen, chosen)]
+        return ensemble_score(self.away[kind][chosen], pairs, np.ones((1, chosen.sum())))
+
+    def whole(self, by_cell):
+        """Mean over tests of the mean over cells, (n_draws,)."""
+        return (self.weights[: len(by_cell)] * by_cell).sum(axis=1)
 
 
 def response_gain(tests):
@@ -65,60 +96,40 @@ def response_gain(tests):
     """
     kinds, models = list(tests[0].members), tests[0].models
     rivals = [kind for kind in kinds if kind != EXTENDED]
-    scales = [_scale(test) for test in tests]
-    apart = {kind: _apart(tests, scales, kind) for kind in kinds}
-    generator = np.random.default_rng(len(models))
     solvers = list(dict.fromkeys(models.tolist()))
-    drawn = np.zeros((len(resampled_weights(1, generator)), len(models)))
-    for solver in solvers:
-        drawn[:, models == solver] = resampled_weights((models == solver).sum(), generator)
-    of_tests = resampled_weights(len(tests), generator)
-    of_cells = [resampled_weights(len(scale), generator) * (scale > 0.0) for scale in scales]
-
-    def whole(by_test):
-        """Mean over tests of the mean over cells, drawn anew: (n_draws,)."""
-        means = [
-            (of * one).sum(axis=1) / np.maximum(of.sum(axis=1), 1e-12)
-            for of, one in zip(of_cells, by_test, strict=True)
-        ]
-        return (of_tests.T * means).sum(axis=0) / of_tests.sum(axis=1)
-
-    by_cell = {
-        kind: [ensemble_score(*both, drawn) for both in zip(one.away, one.pairs, strict=True)]
-        for kind, one in apart.items()
+    cells = _cells(tests)
+    by_cell = {kind: cells.by_cell(kind) for kind in kinds}
+    score = {kind: cells.whole(values) for kind, values in by_cell.items()}
+    floor = cells.whole(0.5 * mean_width(cells.pairs[EXTENDED], cells.members))
+    highest = np.quantile(member_scores(cells.pairs[EXTENDED]) @ cells.weights[0], _FLOOR_QUANTILE)
+    gain = np.array([_ratio(score[kind] - score[EXTENDED], score[kind] - floor) for kind in rivals])
+    able = np.array([score[kind][0] > highest for kind in rivals])
+    limits = np.where(able, limits_of(gain.T, _CONFIDENCE), np.nan)
+    of_solver = {
+        kind: [cells.whole(cells.by_cell(kind, models == solver))[0] for solver in solvers] for kind in kinds
     }
-    scores = {kind: whole(one) for kind, one in by_cell.items()}
-    floors = whole([0.5 * mean_width(pairs, drawn) for pairs in apart[EXTENDED].pairs])
-    own = np.mean([member_scores(pairs)[:, scale > 0.0].mean(axis=1) for pairs, scale in zip(apart[EXTENDED].pairs, scales, strict=True)], axis=0)
-    highest = np.quantile(own, _FLOOR_QUANTILE)
-    gains = {kind: _ratio(scores[kind] - scores[EXTENDED], scores[kind] - floors) for kind in rivals}
-    able = {kind: scores[kind][0] > highest for kind in rivals}
-    limits = np.array([np.where(able[kind], limits_of(gains[kind], _CONFIDENCE), np.nan) for kind in rivals])
-    of_solver = {kind: [_score_by(one, models == solver, scales) for solver in solvers] for kind, one in apart.items()}
+    fall = score[RECALIBRATED][0] - score[EXTENDED][0]
     falls = np.subtract(of_solver[RECALIBRATED], of_solver[EXTENDED])
-    fall = scores[RECALIBRATED][0] - scores[EXTENDED][0]
-    table = [
-        xr.DataArray(np.array([by_cell[kind][place][0] for kind in kinds]), dims=("kind", "cell"), coords={"cell": test.measured["cell"].values})
-        for place, test in enumerate(tests)
-    ]  # fmt: skip
+    index = pd.MultiIndex.from_arrays([cells.test, cells.names], names=["test", "cell"])
+    table = pd.DataFrame({kind: values[0] for kind, values in by_cell.items()}, index)
     found = xr.Dataset(
         {
-            "score": ("kind", [scores[kind][0] for kind in kinds]),
-            "score_of_cell": xr.concat(table, dim="test", join="outer").transpose("kind", "test", "cell"),
+            "score": ("kind", [score[kind][0] for kind in kinds]),
+            "score_of_cell": table.to_xarray().to_array("kind"),
             "score_of_solver": (("kind", "model"), [of_solver[kind] for kind in kinds]),
-            "floor": floors[0],
+            "floor": floor[0],
             "highest": highest,
-            "gain": ("rival", [gains[kind][0] if able[kind] else np.nan for kind in rivals]),
-            "gain_lower": ("rival", limits[:, 0]),
-            "gain_upper": ("rival", limits[:, 1]),
+            "gain": ("rival", np.where(able, gain[:, 0], np.nan)),
+            "gain_lower": ("rival", limits[0]),
+            "gain_upper": ("rival", limits[1]),
             "confirmed": bool(fall > 0.0 and (falls >= _CONFIRMING_SHARE * fall).all()),
         },
         {"kind": kinds, "rival": rivals, "model": solvers},
     )
-    shown = xr.concat(
-        [test.bands().merge(_largest(test)) for test in tests], dim="test", join="outer", coords="minimal", compat="override"
-    )  # fmt: skip
-    return found.merge(shown, compat="override").assign_coords(test=[test.name for test in tests])
+    shown = xr.concat([test.bands().merge(_largest(test)) for test in tests], dim="test", join="outer")
+    return found.merge(shown.assign_coords(test=range(len(tests))), join="outer").assign_coords(
+        test=[test.name for test in tests]
+    )
 
 
 def gain_of_verdict(gained, runs):
@@ -151,33 +162,47 @@ def contrast(estimate, lower, upper):
     return Contrast(**{name: float(np.clip(value, -1.0, 1.0)) for name, value in values.items()})
 
 
+def _cells(tests):
+    generator = np.random.default_rng([len(tests), len(tests[0].models)])
+    models, kinds = tests[0].models, list(tests[0].members)
+    scales = [_scale(test) for test in tests]
+    known = [scale > 0.0 for scale in scales]
+    away, pairs = {}, {}
+    for kind in kinds:
+        parts = []
+        for test, scale, judged in zip(tests, scales, known, strict=True):
+            members = test.until_horizon(test.members[kind].to_numpy())[..., judged] / scale[judged]
+            measured = test.until_horizon(test.measured.to_numpy())[None, :, judged] / scale[judged]
+            parts.append((mean_differences(members, measured)[:, 0], mean_differences(members, members)))
+        away[kind], pairs[kind] = (np.concatenate(one, axis=-1) for one in zip(*parts, strict=True))
+    of_tests = resampled_weights(len(tests), generator)
+    of_tests /= of_tests.sum(axis=1, keepdims=True)
+    of_cells = [resampled_weights(int(judged.sum()), generator) for judged in known]
+    of_members = [resampled_weights(int((models == one).sum()), generator) for one in dict.fromkeys(models)]
+    return _Cells(
+        test=np.repeat(np.arange(len(tests)), [judged.sum() for judged in known]),
+        names=np.concatenate(
+            [test.measured["cell"][judged] for test, judged in zip(tests, known, strict=True)]
+        ),
+        away=away,
+        pairs=pairs,
+        weights=np.concatenate(
+            [
+                of_tests[:, [number]] * one / one.sum(axis=1, keepdims=True)
+                for number, one in enumerate(of_cells)
+            ],
+            axis=1,
+        ),
+        members=np.concatenate(of_members, axis=1),
+    )
+
+
 def _scale(test):
     """Spread of each cell over nominal and extended members together, (n_cells,); 0 where nothing is judged."""
     both = np.concatenate([test.members[kind].to_numpy() for kind in (NOMINAL, EXTENDED)])
     known = test.judged & (np.isfinite(both).sum(axis=0) > 1) & np.isfinite(test.measured.to_numpy())
-    variance = np.where(known, np.nanvar(np.where(known, both, 0.0), axis=0, ddof=1), 0.0)
+    variance = np.nanvar(np.where(known, both, 0.0), axis=0, ddof=1)
     return np.sqrt(variance.sum(axis=0) / np.maximum(known.sum(axis=0), 1))
-
-
-def _apart(tests, scales, kind):
-    away, pairs = [], []
-    for test, scale in zip(tests, scales, strict=True):
-        unit = np.where(scale > 0.0, scale, 1.0)
-        members = test.until_horizon(test.members[kind].to_numpy()) / unit
-        measured = np.where(np.isfinite(test.measured.to_numpy()), test.until_horizon(test.measured.to_numpy()), np.nan)
-        away.append(np.nan_to_num(mean_differences(members, measured[None] / unit)[:, 0]))
-        pairs.append(np.nan_to_num(mean_differences(members, members)))
-    return _Apart(away, pairs)
-
-
-def _score_by(apart, chosen, scales):
-    """Score of the members of one solver by themselves."""
-    weights = np.ones((1, chosen.sum()))
-    means = [
-        ensemble_score(away[chosen], pairs[np.ix_(chosen, chosen)], weights)[0][scale > 0.0].mean()
-        for away, pairs, scale in zip(apart.away, apart.pairs, scales, strict=True)
-    ]
-    return float(np.mean(means))
 
 
 def _ratio(fall, to_gain):

@@ -24,9 +24,7 @@ def sensors_gain(campaign, opened, sealed, findings):
     ``opened`` and ``sealed`` are names of tests, ``findings`` those of the open ones.
     """
     structure = load_structure(campaign.structure)
-    opened, sealed = (
-        {name: load_test(campaign, name) for name in names} for names in (opened, sealed)
-    )
+    opened, sealed = ({name: load_test(campaign, name) for name in names} for names in (opened, sealed))
     return sensor_gain(gaining(findings, structure), opened, sealed, structure, campaign.sensors)
 
 

@@ -8,8 +8,10 @@ import xarray as xr
 from blockshake.diagnosis.misfit.predictability import horizons
 from blockshake.diagnosis.nominal.ensemble import NOMINAL, TWIN, runs_of
 from blockshake.diagnosis.nominal.histories import as_cells, at_readings, common_times
+from blockshake.study.ensembles.intervals import sample_quantiles
 
 BAND = (0.05, 0.5, 0.95)
+_MOVES = 5.0  # standard deviations of a reading
 _ENDED = 0.5  # share of an ensemble's members that have ended, from which on a test is not judged
 
 
@@ -28,7 +30,7 @@ class JudgedTest:
         Solver of each.
     horizon : float64 array, shape (n_cells,)
         Until which the cells are judged [s], by the solver that can be predicted for the shortest time; of a test in
-        which half the members of an ensemble fall, until then.
+        which half the members of an ensemble fall, until then. Below the first time of a cell in which nothing moves.
     """
 
     name: str
@@ -54,11 +56,11 @@ class JudgedTest:
         xarray.Dataset
             ``band(kind, quantile, time, cell)``, ``measured(time, cell)`` and ``horizon(cell)``, in single precision.
         """
-        rows = [one.quantile(BAND, dim="run", skipna=True).astype(np.float32) for one in self.members.values()]
-        band = xr.concat(rows, dim="kind", coords="minimal", compat="override")
+        rows = [sample_quantiles(one.to_numpy(), BAND) for one in self.members.values()]
+        band = self.measured.expand_dims(kind=list(self.members), quantile=list(BAND)).copy(data=rows)
         return xr.Dataset(
             {
-                "band": band.assign_coords(kind=list(self.members)),
+                "band": band.astype(np.float32),
                 "measured": self.measured.astype(np.float32),
                 "horizon": ("cell", self.horizon, {"units": "s"}),
             }
@@ -85,22 +87,21 @@ def judged_test(name, histories, ensembles, kinds=(NOMINAL,)):
     ]
     time = common_times(measured, *everywhere)
     measured = measured.sel(cell=names, time=time)
-    limits = [
-        _horizons(one, by_kind[-1].sel(cell=names), by_kind[0].sel(cell=names))
-        for one, by_kind in zip(ensembles, own, strict=True)
-    ]
+    noise = as_cells(histories, "_noise").sel(cell=names)
+    limits = [horizons(by_kind[-1].sel(cell=names), noise) for by_kind in own]
     members = {
         kind: xr.concat([at_readings(by_kind[place].sel(cell=names), time) for by_kind in own], dim="run")
         for place, kind in enumerate(kinds)
     }
-    models = np.concatenate([[one.attrs["model"]] * by_kind[0].sizes["run"] for one, by_kind in zip(ensembles, own, strict=True)])
+    models = np.concatenate(
+        [[one.attrs["model"]] * by_kind[0].sizes["run"] for one, by_kind in zip(ensembles, own, strict=True)]
+    )
     horizon = np.minimum(np.min(limits, axis=0), min(_last_standing(one) for one in members.values()))
+    farthest = np.max(
+        [np.abs(one).max(set(one.dims) - {"cell"}) for one in (measured, *members.values())], axis=0
+    )
+    horizon = np.where(farthest > _MOVES * noise.to_numpy(), horizon, -np.inf)
     return JudgedTest(name, measured, members, models, horizon)
-
-
-def _horizons(ensemble, twins, nominal):
-    noise = as_cells(runs_of(ensemble, kind=TWIN), "_noise").isel(run=0).sel(cell=twins["cell"])
-    return horizons(twins, noise, nominal)
 
 
 def _last_standing(cells):

@@ -47,9 +47,12 @@ def misfit(tests):
     worst = int(np.argmax([one.max() for one in excess]))
     place = int(excess[worst].argmax())
     whole = xr.concat(parts, dim="test", join="outer", coords="minimal", compat="override")
-    return whole.assign_coords(test=[test.name for test in tests]).assign(
-        p=_chance(excess[worst][place], largest)
-    ).assign_attrs(where=_where(tests[worst], parts[worst], place, excess[worst][place]), members=len(largest))  # fmt: skip
+    where = _where(tests[worst], parts[worst].isel(cell=place), excess[worst][place])
+    return (
+        whole.assign_coords(test=[test.name for test in tests])
+        .assign(p=_chance(excess[worst][place], largest))
+        .assign_attrs(where=where, members=len(largest))
+    )
 
 
 def _scores(test):
@@ -76,9 +79,8 @@ def _worst_times(test):
     return test.measured["time"].to_numpy()[away.argmax(axis=0)]
 
 
-def _where(test, part, place, excess):
-    cell = part.isel(cell=place)
+def _where(test, cell, excess):
     return (
-        f"{cell['quantity'].item()} of {cell['where'].item()} in {test.name}, most at {float(cell['worst_time']):.1f} s: "
-        f"{excess:.1f} times the usual error until {float(cell['horizon']):.1f} s"
+        f"{cell['quantity'].item()} of {cell['where'].item()} in {test.name}, most at "
+        f"{float(cell['worst_time']):.1f} s: {excess:.1f} times the usual error until {float(cell['horizon']):.1f} s"
     )

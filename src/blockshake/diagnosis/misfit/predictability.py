@@ -3,10 +3,10 @@
 import numpy as np
 
 _TOLD_APART_BY = 3.0  # standard deviations of a reading that twins must be apart to be told apart
-_SHARE_OF_NOMINAL = 0.3  # of the nominal ensemble's standard deviation
+_SHARE_OF_MOTION = 0.3  # of the farthest that a cell has moved until then
 
 
-def horizons(twins, noise, nominal):
+def horizons(twins, noise):
     """Time until which each cell of a test can be predicted.
 
     Parameters
@@ -15,8 +15,6 @@ def horizons(twins, noise, nominal):
         Cells of nominal draw 0 and of its twins, from `as_cells`; all with the same noise of the sensors.
     noise : xarray.DataArray, (cell,)
         Standard deviation of a reading.
-    nominal : xarray.DataArray, (run, time, cell)
-        Of nominal draws.
 
     Returns
     -------
@@ -26,12 +24,12 @@ def horizons(twins, noise, nominal):
     Notes
     -----
     The horizon is the first time at which the standard deviation over the twins is above three standard deviations of
-    a reading and above 0.3 of the nominal draws' standard deviation at that time: before it the twins cannot be told
-    apart, or what is not known of the parameters matters more. Twins of which one has ended are told apart.
+    a reading, so that they can be told apart, and above 0.3 of the farthest that draw 0 has moved until then, so that
+    it matters. Twins of which one has ended are told apart.
     """
     time, values = twins["time"].to_numpy(), twins.transpose("run", "time", "cell").to_numpy()
-    scatter = nominal.sel(time=twins["time"]).std("run", ddof=1).transpose("time", "cell").to_numpy()
-    limit = np.fmax(_SHARE_OF_NOMINAL * scatter, _TOLD_APART_BY * noise.to_numpy())
+    moved = np.maximum.accumulate(np.nan_to_num(np.abs(values[0])), axis=0)
+    limit = np.maximum(_SHARE_OF_MOTION * moved, _TOLD_APART_BY * noise.to_numpy())
     known = np.isfinite(values)
     started, going = np.logical_or.accumulate(known, axis=1), known[:, ::-1]
     going = np.logical_or.accumulate(going, axis=1)[:, ::-1]

@@ -9,7 +9,9 @@ from blockshake.diagnosis.nominal.nominal_model import Draw, draw_nominal, draw_
 from blockshake.diagnosis.nominal.planned_test import PlannedTest
 from blockshake.diagnosis.nominal.simulated_test import simulated_histories
 
+# kinds of members
 NOMINAL, TWIN = "nominal", "twin"
+RECALIBRATED, EXTENDED, PLACEBO, DISCREPANCY = "recalibrated", "extended", "placebo", "discrepancy"
 
 
 class Member(NamedTuple):
@@ -52,15 +54,15 @@ def simulate_members(members, store, source, progress):
     """
     parts = []
     for done, member in enumerate(members, start=1):
-        histories, how = simulated_histories(
-            member.planned, member.draw, store, source, member.extension
-        )
+        histories, how = simulated_histories(member.planned, member.draw, store, source, member.extension)
         parts.append(histories)
         progress(
             f"{member.test} {member.draw.model} {member.kind} {member.number} {done}/{len(members)} {how}: "
             f"{histories.attrs['status']}"
         )
-    whole = xr.concat(parts, dim="run", join="outer", coords="minimal", compat="override", combine_attrs="drop_conflicts")
+    whole = xr.concat(
+        parts, dim="run", join="outer", coords="minimal", compat="override", combine_attrs="drop_conflicts"
+    )
     labels = {
         "kind": [one.kind for one in members],
         "test": [one.test for one in members],

@@ -83,7 +83,9 @@ def open_tests(campaign):
     names = [test.name for test in campaign.tests.values() if test.role != "sealed"]
     if not names:
         raise InputError(
-            campaign.folder / "campaign.yaml", "tests", "expected a test with the role fit or select, found none"
+            campaign.folder / "campaign.yaml",
+            "tests",
+            "expected a test with the role fit or select, found none",
         )
     return without_repeats(campaign, names)
 

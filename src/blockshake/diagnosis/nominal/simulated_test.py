@@ -29,7 +29,7 @@ class SimulatedTest(NamedTuple):
 
 
 class KeptHistories(NamedTuple):
-    """Histories as from `read_histories`, with the run's ``status`` among their attributes; ``kept`` or ``simulated``."""
+    """Histories as from `read_histories`, the run's ``status`` an attribute; ``how``: ``kept`` or ``simulated``."""
 
     histories: xr.Dataset
     how: str
