@@ -71,6 +71,13 @@ def misfit_files(wildcards):
     return [f"results/diagnosis/{wildcards.campaign}/misfit.nc"] if simulated else []
 
 
+def effort():
+    """Amounts of simulation. The plan is no source of a rule: its numbers are in names of files and in parameters."""
+    from blockshake.diagnosis.nominal.efforts import EFFORTS
+
+    return EFFORTS[EFFORT]
+
+
 def test_files(campaign, role):
     """What describes a campaign, and the files of its tests that are sealed or that are judged by."""
     given = load_campaign(CAMPAIGNS[campaign])

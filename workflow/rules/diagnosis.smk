@@ -209,6 +209,7 @@ rule extend_model:
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
+        members=lambda wildcards: effort().members,
         store="results/store/diagnosis",
         source=solver_source,
         judged_by=source_of("extend_model"),

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+ENSEMBLES_OF_SEALED_TEST = 4  # nominal, recalibrated, extended, placebo
+
 
 @dataclass(frozen=True)
 class Effort:

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from blockshake.diagnosis.nominal.efforts import EFFORTS, Effort
+from blockshake.diagnosis.nominal.efforts import EFFORTS, ENSEMBLES_OF_SEALED_TEST, Effort
+from blockshake.diagnosis.nominal.nominal_model import MODELS
 from blockshake.diagnosis.nominal.planned_test import planned_sealed, planned_test
 from blockshake.diagnosis.nominal.repeated_readings import without_repeats
 from blockshake.effects.registry import EFFECTS
@@ -41,6 +42,18 @@ class Plan:
         """Sealed tests as they are simulated, by name; empty where nothing is simulated."""
         names = sealed_tests(self.campaign) if self.tests else []
         return {name: planned_sealed(self.campaign, name, self.tests) for name in names}
+
+    @property
+    def runs(self):
+        """Simulated tests in all nominal ensembles, twins with them."""
+        return len(MODELS) * len(self.tests) * (self.effort.draws + self.effort.twins)
+
+    @property
+    def runs_of_cause(self):
+        """Simulated tests at most, once a cause was found: of the open tests with it, and of the sealed ones."""
+        of_sealed = ENSEMBLES_OF_SEALED_TEST * self.effort.members + self.effort.twins
+        sealed = len(sealed_tests(self.campaign)) if self.tests else 0
+        return len(MODELS) * (len(self.tests) * self.effort.draws + sealed * of_sealed)
 
     def ensemble(self, test, source):
         """Name of the ensemble of a test: equal content and sources that both solvers share, equal name."""
