@@ -3,7 +3,8 @@
 import tempfile
 from pathlib import Path
 
-from blockshake.diagnosis.libraries.plan import plan_diagnosis, planned_motion
+from blockshake.diagnosis.nominal.plan import plan_diagnosis
+from blockshake.diagnosis.nominal.planned_test import planned_motion
 from blockshake.dynamics.baseline import AUTO
 from blockshake.dynamics.intensity import strong_until
 from blockshake.dynamics.load_motion import load_motion, scaled
