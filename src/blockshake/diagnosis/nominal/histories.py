@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from blockshake.forces.joint_forces import from_rest
+from blockshake.forces.quiet_start import counted_from_rest
 from blockshake.measurement.motion.compared_curves import histories_at
 from blockshake.measurement.motion.fall import find_fall, until_fall
 from blockshake.measurement.motion.joint_histories import joint_histories
@@ -37,7 +37,7 @@ def read_histories(test, structure, sensors):
     test = until_fall(test, find_fall(test, structure, sensors))
     known = np.flatnonzero(test["marker_displacement"].notnull().any(("marker", "axis")).to_numpy())
     test = without_outliers(test.isel(time=slice(known[-1] + 1 if len(known) else 0)), structure)
-    read = joint_histories(from_rest(test, structure, sensors)[0], structure, sensors)
+    read = joint_histories(counted_from_rest(test, structure, sensors)[0], structure, sensors)
     step = float(np.median(np.diff(test["time"].to_numpy())))
     stride = max(round(1.0 / (_RATE * step)), 1)
     number = np.rint(read["time"].to_numpy() / step).astype(int)
