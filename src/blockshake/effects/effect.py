@@ -137,6 +137,9 @@ class Effect:
         every test. None where the effect shows elsewhere than in the forces of joints.
     seen_at : callable, optional
         Of the structure: places of the evidence, those of ``places`` by default.
+    variant : callable, optional
+        Of a `SeenTest`, a place of the evidence and the values of a fit: the rows of that variant, (n_rows,
+        n_amplitudes). By default those of ``columns`` with these values.
     turns, lifts : callable, optional
         Of a `SlabMotion`: `Columns` of its rotation, and covariances of its vertical displacement.
     reads : callable, optional
@@ -160,7 +163,14 @@ class Effect:
     act: Callable
     columns: Callable | None = None
     seen_at: Callable | None = None
+    variant: Callable | None = None
     turns: Callable | None = None
     lifts: Callable | None = None
     reads: Callable | None = None
     extends: Callable | None = None
+
+    def rows_of(self, seen, place, values):
+        """Rows of the variant that a fit found, (n_rows, n_amplitudes)."""
+        if self.variant:
+            return self.variant(seen, place, values)
+        return next(one.rows for one in self.columns(seen, place) if one.values == values)

@@ -49,6 +49,11 @@ def spring_rows(point, side, gap):
     return -side * point.unit * point.through_kernel(closure)
 
 
+def _variant(seen, place, values):
+    point = point_rows(seen, place["body"], place["height"])
+    return np.stack([spring_rows(point, int(side), gap) for side, gap in values["gaps"].items()], axis=1)
+
+
 def _reads(values, size, between):
     """Stiffness and gap of the stop, or of the nearer of two; ``side`` of it, and ``other_gap`` of the other."""
     near, *other = sorted(values["gaps"], key=values["gaps"].get)
@@ -86,6 +91,7 @@ EFFECT = Effect(
     act=_act,
     columns=_columns,
     seen_at=_seen_at,
+    variant=_variant,
     reads=_reads,
     extends=_extends,
 )

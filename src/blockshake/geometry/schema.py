@@ -113,6 +113,9 @@ class Stopper(Strict):
     )
 
 
+CREEP = 0.01  # m/s, below which a dry drag falls off
+
+
 class ExternalForce(Strict):
     """A force from outside on a body, along a fixed axis; nothing of it acts on the driven body."""
 

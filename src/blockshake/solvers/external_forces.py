@@ -5,10 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrix_into
-from blockshake.geometry.schema import AXES
+from blockshake.geometry.schema import AXES, CREEP
 from blockshake.jit import borrowing_kernel, kernel
-
-CREEP = 0.01  # m/s, below which a dry drag falls off
 
 
 class ExternalForces(NamedTuple):

@@ -16,7 +16,7 @@ from blockshake.diagnosis.answer.answer import (
 from blockshake.diagnosis.answer.decision import Cause, Decision, Part
 from blockshake.diagnosis.answer.departures import departures, largest
 from blockshake.diagnosis.answer.explain import gather_evidence
-from blockshake.diagnosis.answer.limits import limits_of
+from blockshake.diagnosis.answer.limits import excluded_above, limits_of
 from blockshake.diagnosis.answer.places import place_of
 from blockshake.diagnosis.answer.size import size_of
 from blockshake.diagnosis.evidence.closed_joints import closed_joint_gains
@@ -68,11 +68,13 @@ def decide(seen, without=(), cannot_see=()):
         found.append(_part(readings, group, seen, None, {}, slab))
     parts = tuple(sorted(found, key=lambda part: -part.causes[0].gain))
     shown = departures(seen, evidence, [(one.name, one.places[0]) for one in _of_joints(parts)])
+    limits = limits_of(evidence, slab)
     decision = Decision(
         decision=_kind(parts),
         parts=parts,
         probabilities=_probabilities(parts, without),
-        limits=limits_of(evidence, slab),
+        limits=limits,
+        excluded_above=excluded_above(limits, seen[0].structure),
         p=min(1.0, sum(float(np.exp(-min(part.causes[0].gain, 700.0))) for part in parts)) if parts else 1.0,
         where=largest(shown) if parts else _NOT_SHOWN,
         tests=[test.name for test in seen],
@@ -135,6 +137,7 @@ def _part(readings, group, seen, evidence, closed, slab=None):
                 parameters=parameters,
                 members=members,
                 when=when,
+                amplitudes=best.mean.tolist(),
             )
         )
     return Part(readings=readings, causes=causes, odds=group.odds, gains=group.gains)

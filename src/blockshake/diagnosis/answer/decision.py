@@ -46,7 +46,9 @@ class Cause(Strict):
     members : tuple of dict
         Parameters drawn from their posterior, in a fixed random order.
     when : dict
-        Of a form from outside: starts, sides, gaps and the tests that it acts in.
+        The likeliest variant: parameters that are no amplitudes; of a form from outside starts, sides and tests.
+    amplitudes : tuple of float
+        Of the variant, at their best: what its rows on further tests are multiplied with.
     """
 
     name: str
@@ -57,6 +59,7 @@ class Cause(Strict):
     parameters: dict[str, Estimate]
     members: tuple[dict[str, Finite], ...]
     when: dict[str, JsonValue] = Field(default_factory=dict)
+    amplitudes: tuple[Finite, ...] = ()
 
     @property
     def outside(self):
@@ -113,6 +116,8 @@ class Decision(Strict):
     limits : dict of str to dict of str to float
         By effect and place: the size from which it would have been seen; places where the tests do not tell are left
         out.
+    excluded_above : dict of str to float
+        The same of effects that would have been seen wherever they may be: the largest of the places.
     p : float
         Largest chance of as much evidence against none, by Markov's inequality.
     where : str
@@ -127,6 +132,7 @@ class Decision(Strict):
     parts: tuple[Part, ...]
     probabilities: dict[str, Fraction]
     limits: dict[str, dict[str, Finite]]
+    excluded_above: dict[str, Finite]
     p: Fraction
     where: str
     tests: tuple[str, ...]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.diagnosis.answer.answer import needed_of
-from blockshake.diagnosis.answer.places import EVERYWHERE
+from blockshake.diagnosis.answer.places import EVERYWHERE, place_name
 from blockshake.diagnosis.evidence.limits import detection_limit
 from blockshake.effects.registry import EFFECTS
 
@@ -38,6 +38,19 @@ def limits_of(evidence, slab):
         limits = {place: _limit(name, none, own, needed) for place, own in variants.items()}
         size = EFFECTS[name].parameters[0]
         found[name] = {place: one for place, one in limits.items() if size.lower <= one <= size.upper}
+    return found
+
+
+def excluded_above(limits, structure):
+    """Sizes above which an effect would have been seen wherever it may be, by name; of effects that have one alone."""
+    found = {}
+    for name, by_place in limits.items():
+        effect = EFFECTS[name]
+        needed = {place_name(place) for place in effect.places(structure)}
+        stated = {place.partition("@")[0] for place in by_place}
+        if stated and (needed <= stated or needed == {EVERYWHERE}):
+            size = effect.parameters[0]
+            found[name] = max(by_place.values(), key=lambda value: abs(value - size.null))
     return found
 
 

@@ -114,6 +114,11 @@ def explain_slab(slabs, without=()):
     return found
 
 
+def slab_turns(slabs):
+    """`Likelihood` of the slab's rotation with the usual errors."""
+    return _turn_likelihood(slabs, *_MULTIPLES[0])
+
+
 def _turn_likelihood(slabs, multiple, prior):
     covariances = []
     for slab in slabs:

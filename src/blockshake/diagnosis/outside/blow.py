@@ -75,4 +75,4 @@ def _act(experiment, size, place, when, test):
     return with_entry(experiment, "external_forces", entry)
 
 
-FORM = Form("blow", "a blow", "impulse", "N s", _act, lasts=lambda when: False)
+FORM = Form("blow", "a blow", "impulse", "N s", None, _act, lasts=lambda when: False)

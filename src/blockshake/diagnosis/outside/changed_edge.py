@@ -39,7 +39,7 @@ def explain_changed_edge(likelihood, tests, place, key):
         (float(mean[best]), float(deviation[best])),
         {
             "test": tests[own].seen.name, "start": start, "lasts": lasts, "edge": edge,
-            "before": [one.seen.name for one in tests[:own]],
+            "before": [one.seen.name for one in tests[:own]], "tangent": key[1],
         },
     )  # fmt: skip
 
@@ -67,4 +67,19 @@ def _act(experiment, size, place, when, test):
     return experiment.with_parameters(**{f"shapes.{name}": worn, f"bodies.{body.name}.shape": name})
 
 
-FORM = Form("changed-edge", "an edge that changed", "inset", "m", _act, lasts=lambda when: when["lasts"])
+def _of_test(test, place, when):
+    """Rows of a test to come: the change is there from its start on."""
+    names = test.seen.structure.body_names
+    pair = [names.index(name) for name in place["joint"]]
+    face = next(index for index, one in enumerate(test.seen.faces) if [one.lower, one.upper] == pair)
+    found = np.zeros(len(test.rows.value))
+    for key, hinge in test.hinges.items():
+        if key == (face, when["tangent"]):
+            there = hinge.edge == when["edge"] if when["edge"] else np.ones(len(hinge.edge), dtype=bool)
+            found += hinge.inward * there
+    return found
+
+
+FORM = Form(
+    "changed-edge", "an edge that changed", "inset", "m", _of_test, _act, lasts=lambda when: when["lasts"]
+)

@@ -5,9 +5,10 @@ import numpy as np
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.outside.form import Form, force_entry, with_entry
 from blockshake.effects.effect import Columns
+from blockshake.forces.seen.point_rows import point_rows
+from blockshake.geometry.schema import CREEP
 
 _ROPE, _DRAG, _DRY = 3e5, 3e4, 0.05  # N/m, N s/m, of the block's weight
-_CREEP = 0.01  # m/s, below which a dry drag has no direction
 
 
 def explain_following(likelihood, points, weight):
@@ -20,17 +21,23 @@ def explain_following(likelihood, points, weight):
     weight : float
         Of the block [N].
     """
-    laws = {
-        "rope": (lambda one: one.displacement, _ROPE),
-        "drag": (lambda one: one.velocity, _DRAG),
-        "dry-drag": (lambda one: np.tanh(one.velocity / _CREEP), _DRY * weight),
-    }
-    for name, (law, scale) in laws.items():
-        rows = [Columns({}, -(one.unit * law(one))[:, None], (scale,), True) for one in points.by_test]
+    scales = {"rope": _ROPE, "drag": _DRAG, "dry-drag": _DRY * weight}
+    for name, scale in scales.items():
+        rows = [Columns({}, _against(name, one)[:, None], (scale,), True) for one in points.by_test]
         yield best_of(likelihood, name, points.place, [rows])
 
 
-def _against(name):
+def _against(name, point):
+    """Rows of a force against the displacement or the velocity of a point, at the size 1."""
+    moves = point.displacement if name == "rope" else point.velocity
+    return -point.unit * (np.tanh(moves / CREEP) if name == "dry-drag" else moves)
+
+
+def _rows(name):
+    return lambda test, place, when: _against(name, point_rows(test.seen, place["body"], place["height"]))
+
+
+def _acts(name):
     """A force entry whose value of a name is the size."""
 
     def act(experiment, size, place, when, test):
@@ -41,7 +48,7 @@ def _against(name):
 
 
 FORMS = (
-    Form("rope", "a rope or spring to either side", "stiffness", "N/m", _against("stiffness")),
-    Form("drag", "a viscous drag", "damping", "N s/m", _against("damping")),
-    Form("dry-drag", "a dry drag", "force", "N", _against("drag")),
+    Form("rope", "a rope or spring to either side", "stiffness", "N/m", _rows("rope"), _acts("stiffness")),
+    Form("drag", "a viscous drag", "damping", "N s/m", _rows("drag"), _acts("damping")),
+    Form("dry-drag", "a dry drag", "force", "N", _rows("dry-drag"), _acts("drag")),
 )

@@ -18,6 +18,9 @@ class Form:
         As in ``verdict.json``, and as in reports.
     size, unit : str
         Name and unit of the size.
+    rows : callable, optional
+        Of `JointRows`, the place and ``when``: rows of the form at the size 1, (n_rows,). None where the form says
+        nothing of tests to come.
     act : callable, optional
         Of an experiment, the size, the place, what else the form is (``when``), and the name of a test: the experiment
         with it. None of a form that no model holds.
@@ -29,6 +32,7 @@ class Form:
     title: str
     size: str
     unit: str
+    rows: Callable | None = None
     act: Callable | None = None
     lasts: Callable = lambda when: True
 

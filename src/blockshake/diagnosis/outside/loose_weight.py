@@ -101,4 +101,8 @@ def _factor(structure, body, grip):
     return min(grip, 1.0) / coefficient
 
 
-FORM = Form("loose-weight", "a loose weight on top", "mass", "kg", _act)
+def _of_test(test, place, when):
+    return _rows(test.seen, test.seen.structure.body_names.index(place["body"]), when["grip"])
+
+
+FORM = Form("loose-weight", "a loose weight on top", "mass", "kg", _of_test, _act)

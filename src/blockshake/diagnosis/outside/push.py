@@ -4,6 +4,7 @@ import numpy as np
 
 from blockshake.diagnosis.evidence.explanation import mean_evidence, single
 from blockshake.diagnosis.outside.form import Form, force_entry, with_entry
+from blockshake.forces.seen.point_rows import point_rows
 
 _STARTS_EVERY, _RISE = 0.1, 0.25  # s
 _SCALE = 0.1  # of the block's weight
@@ -23,8 +24,8 @@ def explain_push(likelihood, points, weight):
     scale = _SCALE * weight
     starts, columns, parts = [], [], []
     for test, one in enumerate(points.by_test):
-        tried = np.arange(one.time[0] - _RISE, one.time[-1], _STARTS_EVERY)
-        shapes = one.unit[:, None] * np.clip((one.time[:, None] - tried) / _RISE, 0.0, 1.0)
+        tried = _starts(one.time)
+        shapes = one.unit[:, None] * _rise(one.time, tried)
         starts.append(tried)
         columns.append(shapes)
         parts.append(likelihood.parts(likelihood.whiten_one(test, shapes), test))
@@ -64,10 +65,43 @@ def _best(gain, mean, sign):
     return int(np.argmax(np.where(sign * mean > 0.0, gain, -np.inf)))
 
 
+def _rise(time, starts):
+    """A push of 1 N that begins at each start, (n_rows, n_starts)."""
+    return np.clip((time[:, None] - starts) / _RISE, 0.0, 1.0)
+
+
+def _rows(test, place, when):
+    """As from the start that the test itself has; see `start_of_push`."""
+    point = point_rows(test.seen, place["body"], place["height"])
+    return point.unit * _rise(point.time, np.array([when["starts"][test.seen.name]]))[:, 0]
+
+
+def start_of_push(place, size, test, left):
+    """Start of a push of a known size in a further test: that which leaves the least.
+
+    Parameters
+    ----------
+    place : dict
+    size : float
+        [N]
+    test : JointRows
+    left : callable
+        Of rows that are taken off: their squared distance.
+    """
+    point = point_rows(test.seen, place["body"], place["height"])
+    tried = _starts(point.time)
+    shapes = size * point.unit[:, None] * _rise(point.time, tried)
+    return float(tried[int(np.argmin([left(rows) for rows in shapes.T]))])
+
+
+def _starts(time):
+    return np.arange(time[0] - _RISE, time[-1], _STARTS_EVERY)
+
+
 def _act(experiment, size, place, when, test):
     start = when["starts"].get(test, float(np.median(list(when["starts"].values()))))
     entry = force_entry(experiment.structure, place, amplitude=size, start=max(start, 0.0))
     return with_entry(experiment, "external_forces", entry)
 
 
-FORM = Form("push", "a steady push from an instant of each test on", "force", "N", _act)
+FORM = Form("push", "a steady push from an instant of each test on", "force", "N", _rows, _act)

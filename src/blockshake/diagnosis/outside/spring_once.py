@@ -45,4 +45,4 @@ def _act(experiment, size, place, when, test):
     return with_entry(experiment, "stoppers", entry)
 
 
-FORM = Form("spring-once", "a spring in one test", "stiffness", "N/m", _act, lasts=lambda when: False)
+FORM = Form("spring-once", "a spring in one test", "stiffness", "N/m", None, _act, lasts=lambda when: False)

@@ -1,152 +1,112 @@
 """The verdict of a campaign, from the sensors, the decision and the sealed tests."""
 
-from typing import NamedTuple
-
-from blockshake.diagnosis.inference.lawful_decision import READ
-from blockshake.diagnosis.libraries.candidates import effect_of
-from blockshake.diagnosis.libraries.plan import sealed_tests
 from blockshake.diagnosis.verdict.ladder import rung
 from blockshake.diagnosis.verdict.sensor_causes import sensor_causes
-from blockshake.diagnosis.verdict.verdict import BrokenLaw, Estimate, Misfit, Verdict
-from blockshake.effects.registry import EFFECTS
+from blockshake.diagnosis.verdict.verdict import MeasuredGain, Misfit, Outside, Verdict
+from blockshake.effects.registry import EFFECTS, title_of
+
+_WHERE = ("joint", "body")
 
 
-class Judged(NamedTuple):
-    """The largest misfit in words, and the number of open tests that were judged by."""
-
-    where: str
-    tests: int
-
-
-def no_gain(campaign, causes):
-    """Reason why no gain was measured, where there are causes, or a description of an unknown one."""
-    if not causes:
-        return []
-    if not sealed_tests(campaign):
-        return ["no gain was measured: there is no sealed test"]
-    return ["no gain was measured: an extension is not simulated at quick effort"]
-
-
-def conclude(decision, findings, kinds, judged, runs, caveats, effort, size=None, measured=None, scores=None):
+def conclude(decision, findings, kinds, caveats=(), measured=None):
     """`Verdict` of a campaign.
 
     Parameters
     ----------
     decision : Decision
     findings : sequence of Finding
-        Sensor faults, which were taken out before anything was simulated.
+        Sensor faults, which were taken out before the tests were judged.
     kinds : dict of str to str
         ``channel`` or ``transducer`` by the name of the recorder's sensor; any other sensor with a fault is a marker.
-    judged : Judged
-        Largest misfit and number of tests.
-    runs : int
-        Simulated tests.
     caveats : sequence of str
-    effort : str
-        One of `EFFORTS`.
-    size : CauseSize, optional
-        Of the first cause: better known than in the decision.
     measured : MeasuredGain, optional
-    scores : xarray.Dataset, optional
-        From `gain_on`, where a physical cause's gain was measured.
 
     Notes
     -----
-    A sensor fault beside a physical cause is a combination: it was corrected first, and the tests judged again. Where
-    the physical cause is unknown, so is the whole: misfit and gain are those of the corrected readings, a gain of the
-    sensors' faults is none of the verdict's, and the faults stand among the caveats. Its entry in
-    ``probabilities`` is 1 less the parity check's p: a score, neither a conformal p value nor a probability.
+    A sensor fault beside a physical cause is a combination: the fault was corrected first. Where the physical cause is
+    unknown, so is the whole, and the faults stand among the caveats. The entry of a fault in ``probabilities`` is 1
+    less the chance of the parity check.
     """
-    sensors = sensor_causes(findings, kinds)
-    kind, causes = decision.decision, [*sensors, *decision.causes]
-    gain, law_gain = (measured.gain, measured.laws) if measured else (None, None)
-    caveats = [*caveats]
-    if gain is not None and kind == "unknown" and decision.described is None:
-        gain = None  # of the sensors' faults alone: what is unknown extends no model
-        caveats.append("no gain was measured: the model was not extended, as no cause is known")
+    sensors, measured = sensor_causes(findings, kinds), measured or MeasuredGain()
+    kind, causes = decision.decision, [*sensors, *(one.name for one in decision.causes)]
+    caveats = [*caveats, *measured.caveats, *decision.cannot_see, *_told(decision)]
     if sensors and kind == "unknown":
         causes = []
-        titles = ", ".join(EFFECTS[name].title for name in sensors)
+        titles = ", ".join(title_of(name) for name in sensors)
         caveats.append(f"faults of sensors were found and taken out: {titles}")
-    elif sensors:
+    elif sensors and kind != "ambiguous":
         kind = "named" if len(causes) == 1 else "combination"
-        if decision.decision == "ambiguous":
-            names = " and ".join(decision.causes)
-            caveats.append(f"{names} cannot be told apart: one of them acts beside the sensor fault, not all")
-    if effort == "quick" and kind not in ("none", "unknown"):
-        caveats.append("quick effort: no stronger word than probable")
-    for solver in decision.solver_dependent:
-        caveats.append(f"solver-dependent: by {solver} alone another effect explains more")
-    physical = dict(decision.parameters)
-    if size:
-        cause = effect_of(size.key)
-        physical[cause] = size.parameters | _read_from_laws(cause, decision)
-    for name, values in physical.items():
-        unknown = [key for key, value in values.items() if not value.informed]
-        if unknown and name in causes:
-            caveats.append(f"{name}: {', '.join(unknown)} not informed by the tests, its prior is given")
-    parameters = {name: cause.parameters for name, cause in sensors.items() if cause.parameters} | physical
-    location = {name: cause.location for name, cause in sensors.items()} | decision.location
-    word, missing = rung(kind, decision, bool(sensors), effort, judged.tests, gain, scores)
+    word, missing = rung(kind, decision, bool(sensors), measured)
+    named = {one.name: one for one in decision.causes}
+    faults = {name: one for name, one in sensors.items() if name in causes}
+    shown = [one for part in decision.parts for one in part.causes]
     return Verdict(
         decision=kind,
         causes=causes,
-        probabilities=decision.probabilities | {name: 1.0 - cause.p for name, cause in sensors.items()},
-        parameters={
-            name: {
-                key: Estimate(**value.model_dump(exclude={"informed"}))
-                for key, value in parameters[name].items()
-            }
-            for name in causes
-            if name in parameters
-        },
-        location={name: location[name] for name in causes if location.get(name)},
-        misfit=_misfit(decision, sensors, judged.where),
-        excluded_above=_excluded(decision, causes),
-        next_test=_next_test(kind, causes),
-        gain=gain,
-        law_gain=law_gain,
-        runs=runs,
+        probabilities=decision.probabilities | {name: 1.0 - one.p for name, one in faults.items()},
+        parameters={name: one.parameters for name, one in (faults | named).items() if one.parameters},
+        location={name: one.location for name, one in faults.items() if one.location}
+        | {name: place for name, one in named.items() if (place := _location(one.place))},
+        misfit=_misfit(decision, sensors),
+        excluded_above={name: size for name, size in decision.excluded_above.items() if name not in causes},
+        next_test=_next_test(causes),
+        gain=measured.gain,
+        row_gain=measured.rows,
+        runs=measured.runs,
         caveats=caveats,
-        laws=[
-            BrokenLaw(name=one.name, unit=one.unit, measured=one.measured, departures=one.departures)
-            for one in (decision.laws.broken if decision.laws else ())
-        ],
-        outside=decision.laws.outside if decision.laws else None,
+        outside=_outside(decision.forms),
+        odds={one.name: one.odds for one in shown},
+        places={one.name: one.places for one in shown},
+        limits=decision.limits,
         word=word,
         missing=missing,
     )
 
 
-def _read_from_laws(cause, decision):
-    """Parameters of a cause that the laws isolate and read: sharper than those of simulated draws."""
-    isolated = decision.laws.isolated if decision.laws else ()
-    own = decision.parameters.get(cause, {})
-    return {name: own[name] for name in READ.get(cause, ()) if cause in isolated and own[name].informed}
+def _location(place):
+    return {key: tuple(value) if key == "joint" else value for key, value in place.items() if key in _WHERE}
 
 
-def _misfit(decision, sensors, where):
-    """The smaller chance of readings like these, with sound sensors or by the nominal model: the latter if unknown."""
+def _told(decision):
+    """What stands beside the causes, in words."""
+    for part in decision.parts:
+        names = [one.title for one in part.causes]
+        if len(names) > 1:
+            yield f"{' or '.join(names)}: the tests do not tell these apart"
+        elif part.forms and decision.causes:
+            yield f"beside the causes something acts that no effect of the registry is: {names[0]}"
+    if decision.silent:
+        yield f"no joint turned, slipped or lifted in {', '.join(decision.silent)}"
+
+
+def _outside(forms):
+    """`Outside` of the likeliest form; None without one."""
+    if not forms:
+        return None
+    first, when = forms[0], forms[0].when
+    starts = {test: blow["time"] for test, blow in when.get("blows", {}).items()} or when.get("starts", {})
+    if "start" in when:
+        starts = {when["test"]: when["start"]}
+    return Outside(
+        form=first.name,
+        title=first.title,
+        place=first.place,
+        places=first.places,
+        size=first.parameters,
+        starts=starts,
+    )
+
+
+def _misfit(decision, sensors):
+    """The smaller chance of readings like these: with sound sensors, or without a cause; the latter if unknown."""
     first = min(sensors.values(), key=lambda cause: cause.p, default=None)
-    if first is None or decision.decision == "unknown" or first.p >= decision.p_none:
-        return Misfit(p=decision.p_none, where=where)
+    if first is None or decision.decision == "unknown" or first.p >= decision.p:
+        return Misfit(p=decision.p, where=decision.where)
     (where,) = first.location.values() or ["the optical system"]
     return Misfit(p=first.p, where=f"readings of {where}, against the other sensors")
 
 
-def _excluded(decision, causes):
-    """Sizes above which the tests would have shown an effect, in the unit of the effect's first parameter."""
-    found = {}
-    for name, size in decision.shown_above.items():
-        if name not in causes and size is not None:
-            first = EFFECTS[name].parameters[0]
-            found[name] = first.null + size * (first.visible - first.null)
-    return found
-
-
-def _next_test(kind, causes):
+def _next_test(causes):
     """The measurement that would decide between what is left."""
-    if kind == "none" or not causes:
-        return None
-    told = dict.fromkeys(EFFECTS[name].told_apart_by for name in causes[:2] if name in EFFECTS)
-    return "; ".join(told) or None
+    known = dict.fromkeys(EFFECTS[name].told_apart_by for name in causes[:2] if name in EFFECTS)
+    return "; ".join(known) or None

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.diagnosis.inference.decision import ParameterEstimate
+from blockshake.diagnosis.answer.decision import Estimate
 from blockshake.effects.registry import EFFECTS
 
 _SIGMAS = 1.645  # of a Gaussian, within which nine tenths lie
@@ -50,11 +50,10 @@ def _estimates(finding):
     estimate = float(finding.estimate[component])
     error = float(np.hypot(finding.standard_error[component], _FORM * estimate))
     return {
-        size.name: ParameterEstimate(
+        size.name: Estimate(
             estimate=estimate,
             lower=estimate - _SIGMAS * error,
             upper=estimate + _SIGMAS * error,
             unit=size.unit,
-            informed=True,
         )
     }

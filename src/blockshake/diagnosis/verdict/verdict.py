@@ -3,29 +3,14 @@
 from pathlib import Path
 from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, JsonValue, model_validator
 
-from blockshake.diagnosis.laws.findings import OutsideForce
+from blockshake.diagnosis.answer.decision import Estimate
 from blockshake.diagnosis.verdict.ladder import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.files import load_json, write_json
-from blockshake.validation import Finite, Fraction, Strict, validated
+from blockshake.validation import Count, Finite, Fraction, Strict, validated
 
-VERSION = 2
-
-
-class Estimate(Strict):
-    """A parameter of a named effect with its 90 % interval."""
-
-    estimate: Finite
-    lower: Finite
-    upper: Finite
-    unit: str
-
-    @model_validator(mode="after")
-    def _ordered(self):
-        if not self.lower <= self.estimate <= self.upper:
-            raise ValueError("expected lower <= estimate <= upper")
-        return self
+VERSION = 3
 
 
 class Contrast(Strict):
@@ -45,28 +30,32 @@ class Gain(Strict):
 
 
 class MeasuredGain(Strict):
-    """The file ``gain.json``: gain on the sealed tests, on responses and laws, caveats, and simulated tests."""
+    """The file ``gain.json``: gain on the sealed tests, on rows and on responses, caveats, and simulated tests."""
 
-    gain: Gain | None
-    laws: Contrast | None = None
-    caveats: tuple[str, ...]
-    runs: int
+    rows: Gain | None = None
+    gain: Gain | None = None
+    caveats: tuple[str, ...] = ()
+    runs: Count = 0
 
 
 class Misfit(Strict):
-    """Chance of the tests by any nominal model, and the place of the largest misfit."""
+    """Largest chance of the readings without any cause, and the place of the largest departure."""
 
     p: Fraction
     where: str
 
 
-class BrokenLaw(Strict):
-    """A law of the joints that the tests break, see ``docs/diagnosis.md``."""
+class Outside(Strict):
+    """The likeliest form of a cause that no effect of the registry is."""
 
-    name: str
-    unit: str
-    measured: dict[str, Finite] = Field(description="by test, in the unit")
-    departures: dict[str, Finite] = Field(description="by test, in standard deviations of the nominal model")
+    form: str
+    title: str = Field(description="in words")
+    place: dict[str, JsonValue] = Field(
+        description="{body: name, height: over the body's own} or {joint: [lower, upper]}"
+    )
+    places: tuple[str, ...] = Field(description="in words, all that cannot be told from it")
+    size: dict[str, Estimate] = Field(description="by name of the size")
+    starts: dict[str, Finite] = Field(description="by test, of a form that starts [s]")
 
 
 class Verdict(Strict):
@@ -75,7 +64,7 @@ class Verdict(Strict):
     version: Literal[VERSION] = VERSION
     decision: Literal["none", "named", "ambiguous", "combination", "unknown"]
     causes: tuple[str, ...] = Field(description="names of the registry: the set that is not excluded")
-    probabilities: dict[str, Fraction] = Field(description="by name, conformal p value of each candidate")
+    probabilities: dict[str, Fraction] = Field(description="by name, among all rivals and none, coarsened")
     parameters: dict[str, dict[str, Estimate]] = Field({}, description="by cause and parameter")
     location: dict[str, dict[str, str | tuple[str, str]]] = Field(
         {},
@@ -87,19 +76,26 @@ class Verdict(Strict):
     )
     next_test: str | None = Field(None, description="the measurement that would decide")
     gain: Gain | None = Field(None, description="none before the sealed tests are opened")
-    runs: int = Field(ge=0, description="simulated tests")
+    runs: Count = Field(description="simulated tests")
     caveats: tuple[str, ...] = ()
-    laws: tuple[BrokenLaw, ...] = Field((), description="laws of the joints that the tests break")
-    outside: OutsideForce | None = Field(
-        None, description="force from outside that accounts for them where no effect of the registry does"
+    outside: Outside | None = Field(
+        None, description="form from outside that is not excluded, beside the causes or where there are none"
+    )
+    odds: dict[str, Finite] = Field(
+        {},
+        description="by cause or form: logarithm of the odds of the likeliest in its part of the readings over it",
+    )
+    places: dict[str, tuple[str, ...]] = Field({}, description="by cause: places that cannot be told apart")
+    limits: dict[str, dict[str, Finite]] = Field(
+        {}, description="by effect and place: size from which it would have been seen, in its own unit"
     )
     word: Literal[ESTABLISHED, PROBABLE, ONE_OF, UNKNOWN, NOTHING] = Field(
         description="rung of the ladder of words: how strong a statement is made"
     )
     missing: tuple[str, ...] = Field((), description="what a probable cause lacks to be called established")
-    law_gain: Contrast | None = Field(
+    row_gain: Gain | None = Field(
         None,
-        description="against the recalibrated model, on the laws of the joints that the open tests break",
+        description="share of the sealed tests' unexplained forces that the causes explain at their frozen sizes",
     )
 
     @model_validator(mode="after")
@@ -108,7 +104,7 @@ class Verdict(Strict):
         allowed = {
             "none": count == 0,
             "named": count == 1,
-            "ambiguous": count > 1,
+            "ambiguous": count > 1 or (count == 1 and self.outside is not None),
             "combination": count > 1,
             "unknown": count == 0,
         }
