@@ -282,21 +282,12 @@ rule make_diagnosis_report:
             "results/diagnosis/{{campaign}}/{name}",
             name=[
                 "parity.json",
-                "measured.nc",
-                "forces.nc",
                 "decision.json",
-                "misfit.nc",
                 "evidence.nc",
-                "frozen.json",
                 "verdict.json",
             ],
         ),
-        posterior=size_files,
         gain=gain_files,
-        horizons=lambda wildcards: [
-            f"results/libraries/{name}/predictability.nc"
-            for name in library_names(wildcards.campaign)
-        ],
         templates=TEMPLATES,
         track_record=[TRACK_RECORD] if Path(TRACK_RECORD).exists() else [],
     output:

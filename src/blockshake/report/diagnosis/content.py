@@ -98,7 +98,7 @@ def load_diagnosed(campaign, results, effort, track_record):
     files += [campaign.folder / campaign.tests[name].file for name in decision.tests]
     files += [results / name for name in _RESULTS]
     gain = results / _GAIN if verdict.gain else None  # a file of an earlier gain may still lie there
-    misfit = results / _MISFIT if (results / _MISFIT).exists() else None
+    misfit = results / _MISFIT if effort != "quick" and (results / _MISFIT).exists() else None
     files += [path for path in (gain, misfit) if path]
     return Diagnosed(
         campaign=campaign,

@@ -13,8 +13,14 @@ _RIVALS = {
     "discrepancy": "the nominal model with a discrepancy without a name",
     "placebo": "the same cause at another place",
 }
-_KINDS = {"nominal": "Without", "recalibrated": "Recalibrated without", "extended": "With the cause", "placebo": "Elsewhere"}
+_KINDS = {
+    "nominal": "Without",
+    "recalibrated": "Recalibrated without",
+    "extended": "With the cause",
+    "placebo": "Cause elsewhere",
+}
 _MOST_TESTS = 3
+OF_GAIN = ("gain was measured", "nothing to gain")  # by which caveats on the gain are known
 
 
 def gain_section(found):
@@ -22,16 +28,19 @@ def gain_section(found):
     verdict, gain = found.verdict, found.gain
     title = "Gain on sealed tests"
     if verdict.gain is None and verdict.row_gain is None:
-        reasons = [one for one in verdict.caveats if "gain was measured" in one]
-        words = "; ".join(reasons) or "no gain was measured: nothing acts by which the model could be extended"
+        reasons = [one for one in verdict.caveats if OF_GAIN[0] in one]
+        words = (
+            "; ".join(reasons) or "no gain was measured: nothing acts by which the model could be extended"
+        )
         return Section(title, "gain", (Text(sentence_case(words)),))
     blocks = [
         Text(
-            "The sealed tests were opened after the decision had been frozen; nothing was fitted to them. Gain: the share "
-            "of a rival's error that the model with the cause removes; 100 % leaves nothing to gain, below 0 the cause "
-            "makes the prediction worse."
+            "The sealed tests were opened after the decision had been frozen; nothing was fitted to them. Gain: "
+            "the share of a rival's error that the model with the cause removes; 100 % leaves nothing to gain, "
+            "below 0 the cause makes the prediction worse."
         ),
         _gains(verdict),
+        *(Text(sentence_case(one)) for one in verdict.caveats if any(words in one for words in OF_GAIN)),
     ]
     if gain is not None and "where" in gain.attrs:
         blocks.append(_of_sensor(gain))
@@ -48,9 +57,9 @@ def _gains(verdict):
         if any(own):
             rows.append((words, *(percent_words(one) if one else MISSING for one in own)))
     return Table(
-        "Gain against each rival with its interval of 90 %. Forces: those on the blocks that sound blocks do not make, at the "
-        "frozen sizes. Responses: simulated rotations and slips of the joints and the drift of the top, as long as each "
-        "can be predicted.",
+        "Gain against each rival with its interval of 90 %. Forces: those that sound blocks do not make, or the "
+        "motion of the slab that a sound table does not make, at the frozen sizes. Responses: simulated rotations "
+        "and slips of the joints and the drift of the top, as long as each can be predicted.",
         ("Rival", *(name for _, name in columns)),
         tuple(rows),
         "l" + "r" * len(columns),
@@ -60,13 +69,17 @@ def _gains(verdict):
 def _solvers(gain):
     kinds = [str(kind) for kind in gain["kind"].values]
     rows = [
-        (model_label(str(model)), *(number(gain["score_of_solver"].sel(model=model, kind=kind)) for kind in kinds))
+        (
+            model_label(str(model)),
+            *(number(gain["score_of_solver"].sel(model=model, kind=kind)) for kind in kinds),
+        )
         for model in gain["model"].values
     ]
     rows.append(("all together", *(number(gain["score"].sel(kind=kind)) for kind in kinds)))
     return Table(
-        "Scores by solver: continuous ranked probability score of the responses in units of their spread, lower is better. "
-        f"A record that the extended model had made itself would score {number(gain['floor'])} in the mean.",
+        "Scores by solver: continuous ranked probability score of the responses in units of their spread, lower "
+        f"is better. A record that the extended model had made itself would score {number(gain['floor'])} in the "
+        "mean.",
         ("Solver", *(_kind(kind) for kind in kinds)),
         tuple(rows),
         "l" + "r" * len(kinds),
@@ -87,8 +100,8 @@ def _largest(found):
             str(test), *(_with_band(own.sel(kind=kind)) for kind in kinds), number(1e3 * own["largest_measured"]),
         ))  # fmt: skip
     return Table(
-        "What it means for the structure: largest drift of the top against the table [mm], median of the members and their "
-        f"5 to 95 %, and {'of the virtual test' if found.synthetic else 'measured'}.",
+        "What it means for the structure: largest drift of the top against the table [mm], median of the members "
+        f"and their 5 to 95 %, and {'of the virtual test' if found.synthetic else 'measured'}.",
         ("Test", *(_KINDS[kind] for kind in kinds), "Virtual test" if found.synthetic else "Measured"),
         tuple(rows),
         "l" + "r" * (len(kinds) + 1),
@@ -111,7 +124,11 @@ def _drift(found):
 def _of_sensor(scores):
     """Gain of taking a sensor's fault out: its readings against those of the other sensors."""
     factor, unit = (1e3, "mm") if scores["score"].attrs["units"] == "m" else (1e3, "ms")
-    words = {"nominal": "As read", "extended": "Fault taken out", "discrepancy": "Mean of the open tests taken off"}
+    words = {
+        "nominal": "As read",
+        "extended": "Fault taken out",
+        "discrepancy": "Mean of the open tests taken off",
+    }
     rows = [
         (
             str(name), *(number(factor * float(scores["score"].sel(test=name, kind=kind))) for kind in words),

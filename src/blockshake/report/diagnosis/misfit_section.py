@@ -27,15 +27,26 @@ def misfit_section(found):
             f"{misfit.attrs['where']}. No cause was decided by it."
         ),
         Figure(
-            f"The {min(len(ranked), _MOST_PANELS)} histories that the nominal simulation predicts worst: 5 to 95 % and median "
-            f"of the members of all solvers, and {found.measured_word}. Shaded: beyond the time for which it can be "
-            "predicted.",
+            f"The {min(len(ranked), _MOST_PANELS)} histories that the nominal simulation predicts worst: 5 to 95 % "
+            f"and median of the members of all solvers, and {found.measured_word}. Shaded: beyond the time for "
+            "which it can be predicted.",
             svg_of(plot_misfit, misfit, ranked[:_MOST_PANELS], found.measured_word),
         ),
         Table(
-            f"Histories that are predicted worst, {len(rows)} of {len(ranked)}. Score: continuous ranked probability score, "
-            "mean until the horizon; usual: that of a nominal member; chance: share of the members that score as badly.",
-            ("Test", "History", "Unit", "Score", "Usual", "Score / usual", "Chance [%]", "Worst at [s]", "Horizon [s]"),
+            f"Histories that are predicted worst, {len(rows)} of {len(ranked)}. Score: continuous ranked "
+            "probability score, mean until the horizon; usual: that of a nominal member; chance: share of the "
+            "members that score as badly.",
+            (
+                "Test",
+                "History",
+                "Unit",
+                "Score",
+                "Usual",
+                "Score / usual",
+                "Chance [%]",
+                "Worst at [s]",
+                "Horizon [s]",
+            ),
             tuple(rows),
             "lllrrrrrr",
         ),

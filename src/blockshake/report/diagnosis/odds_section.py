@@ -1,5 +1,7 @@
 """Second section of a diagnosis: the odds of every cause that was tried, and how they were counted."""
 
+import numpy as np
+
 from blockshake.diagnosis.answer.answer import COARSENING, FREE_SHARE, ODDS, coarsened
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.report.diagnosis.figures.odds import plot_odds
@@ -8,7 +10,7 @@ from blockshake.report.document.blocks import Figure, Section, Text
 from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.wording import number, sentence_case
 
-_RATIO = 20  # of the odds within which causes are not told apart
+_RATIO = round(np.exp(ODDS))
 
 
 def odds_section(found):
@@ -16,31 +18,34 @@ def odds_section(found):
     parts = found.decision.parts
     blocks = [
         Text(
-            "Every cause states the forces that it would make under the measured motion; one likelihood of all instants, "
-            "joints and tests compares the causes, forms from outside among them, with nothing. Gain: the natural "
-            "logarithm of how much likelier the readings are with a cause than without, averaged over its sizes "
-            f"and places. Odds: a form may leave {100.0 * COARSENING:.0f} % of what it explains (Miller and Dunson "
-            "2019, coarsened posteriors), so that they differ less than the gains. A force of no known form counts with "
-            f"{FREE_SHARE:g} of its gain."
+            "Every cause states the forces that it would make under the measured motion. One likelihood of all "
+            "instants, joints and tests compares the causes with each other and with nothing. Gain [nats]: "
+            "natural logarithm of how many times likelier the readings are with a cause than without, averaged "
+            "over its sizes and places. Odds differ less than gains, because the form of a cause may leave "
+            f"{100.0 * COARSENING:.0f} % of what it explains (coarsened posterior, Miller and Dunson 2019). A "
+            f"force of no known form stands for all that nobody thought of, and counts with {FREE_SHARE:g} of its "
+            "gain."
         )
     ]
     if not parts:
-        blocks.append(Text("No cause gains more over none than clean campaigns do by chance; there are no odds to show."))
+        blocks.append(
+            Text(
+                "No cause gains more over none than clean campaigns do by chance; there are no odds to show."
+            )
+        )
     for part in parts:
         first = part.causes[0]
         names = sorted(part.odds, key=part.odds.get)
         nothing = coarsened(first.gain, first.gain)
-        rows = [(_label(name), part.odds[name], part.gains[name]) for name in names]
+        rows = [(name_of(name), part.odds[name], part.gains[name]) for name in names]
         blocks.append(
             Figure(
-                f"{sentence_case(part.readings)[:-1]}: odds against each cause, and its gain over none. Shaded: within 1 to "
-                f"{_RATIO} of the likeliest, which the tests do not tell apart. Forms from outside, which no effect of "
-                f"the registry is, are in italics. The likeliest gains {number(first.gain)}.",
+                f"{sentence_case(part.readings)[:-1]}: how many times less likely each cause is than "
+                f"{first.title}, the likeliest (left; arrows: beyond the axis), and its gain over nothing (right; "
+                f"of the likeliest {number(first.gain)}). Shaded: within {_RATIO} times, dashed, so that the tests "
+                "do not tell them apart. Blue: effects of the registry; orange, in italics: forms from outside, "
+                "which none of them is.",
                 svg_of(plot_odds, rows, [name in FORMS for name in names], nothing, ODDS),
             )
         )
     return Section("Odds of all causes", "odds", tuple(blocks))
-
-
-def _label(name):
-    return name_of(name).partition(" from an instant")[0]

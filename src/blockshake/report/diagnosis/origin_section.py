@@ -25,16 +25,19 @@ def _assumed(found):
         for name, one in found.motions.items()
     ]
     items = [
-        "Assumed: rigid blocks of the stated sizes and masses, of which edges, faces, mass centres and friction scatter as "
-        "sound blocks do; markers and accelerometers with the stated noise.",
+        "Assumed: rigid blocks of the stated sizes and masses, of which edges, faces, mass centres and friction "
+        "scatter as sound blocks do; markers and accelerometers with the stated noise.",
         "Forces are read off the measured motion; the decision rests on no simulation.",
     ]
     if found.verdict.runs:
-        items.append(f"{found.verdict.runs} simulated tests, for the gain on the responses and the misfit alone.")
+        items.append(
+            f"{found.verdict.runs} simulated tests, for the gain on the responses and the misfit alone."
+        )
     if motions:
         items.append(f"Commanded motions: {'; '.join(motions)}.")
     items += [
-        f"{test} is judged until {one.body} falls, at {one.time:.2f} s." for test, one in found.parity.falls.items()
+        f"{test} is judged until {one.body} falls, at {one.time:.2f} s."
+        for test, one in found.parity.falls.items()
     ]
     return tuple(items)
 

@@ -4,9 +4,8 @@ import numpy as np
 
 from blockshake.effects.registry import title_of
 from blockshake.parity.parity import LEVEL
-from blockshake.report.diagnosis.wording import chance_words
+from blockshake.report.diagnosis.wording import chance_words, size_words
 from blockshake.report.document.blocks import Section, Table, Text
-from blockshake.report.document.units import quantity
 from blockshake.report.document.wording import number
 
 # of an estimate by its quantity, for a marker or a displacement transducer, and for an accelerometer channel
@@ -42,8 +41,8 @@ def _sensors(parity):
         text += f"Displacement transducers whose gain the markers of their bodies tell: {', '.join(known)}. "
     if others:
         text += (
-            f"Displacement transducers whose gain nothing tells, as the markers do not see their ends or these hardly "
-            f"moved apart: {', '.join(others)}. "
+            "Displacement transducers whose gain nothing tells, as the markers do not see their ends or these "
+            f"hardly moved apart: {', '.join(others)}. "
         )
     return text if parity.findings else f"{text}No fault was found."
 
@@ -54,7 +53,7 @@ def _estimate(finding, channels):
     unit = of_channel if set(finding.where) <= set(channels) else of_marker
     axes = ("x ", "y ", "z ") if len(finding.estimate) == 3 else ("",)
     return ", ".join(
-        f"{axis}{quantity(value, unit)} ({quantity(error, unit, 2)})"
+        f"{axis}{size_words(value, unit)} ({size_words(error, unit, 2)})"
         for axis, value, error in zip(axes, finding.estimate, finding.standard_error, strict=False)
     )
 
@@ -72,9 +71,9 @@ def _findings(found):
         return []
     return [
         Table(
-            "Faults of sensors, taken out of the readings before any cause was looked for; the standard error of each "
-            "estimate stands in brackets. The place of a marker or of an end of a displacement transducer is in the "
-            "frame of its body.",
+            "Faults of sensors, taken out of the readings before any cause was looked for; the standard error of "
+            "each estimate stands in brackets. The place of a marker or of an end of a displacement transducer is "
+            "in the frame of its body.",
             ("Fault", "Where", "Quantity", "Estimate", "p", "Tests"),
             tuple(rows),
             "lllrrl",

@@ -18,9 +18,9 @@ def track_record_section(found):
         return Section("Track record of the procedure", "track-record", (Text(text, strong=True),))
     blocks = [
         Text(
-            f"The procedure was run on {record['date']}, sources {record['commit']}, on campaigns in which the truth was "
-            "known to the scorer alone (docs/hidden-effects.md). The figures hold for such campaigns; on another "
-            "structure they are an indication."
+            f"The procedure was run on {record['date']}, sources {record['commit']}, on campaigns in which the "
+            "truth was known to the scorer alone (docs/hidden-effects.md). The figures hold for such campaigns; "
+            "on another structure they are an indication."
         )
     ]
     if record["procedure"] != procedure_digest():
@@ -31,14 +31,13 @@ def track_record_section(found):
 
 def _shares(record):
     rows = []
-    for one in record["shares"].values():
-        share = one["hits"] / one["n"] if one["n"] else None
-        goal = one.get("goal")
-        met = None if share is None or goal is None else (share <= goal if one["side"] == "at most" else share >= goal)
+    for one in (one for one in record["shares"].values() if one.get("goal") is not None):
+        share, goal = one["hits"] / one["n"] if one["n"] else None, one["goal"]
+        met = None if share is None else share <= goal if one["side"] == "at most" else share >= goal
         rows.append((
             one["meaning"], MISSING if share is None else f"{percent(share)} %", f"{one['hits']} of {one['n']}",
             f"{percent(one['lower'])} to {percent(one['upper'])} %",
-            "" if goal is None else f"{one['side']} {percent(goal)} %", _MET.get(met, ""),
+            f"{one['side']} {percent(goal)} %", _MET.get(met, ""),
         ))  # fmt: skip
     return Table(
         "Shares of the cases with intervals of 95 %, and the goals set beforehand.",

@@ -1,13 +1,15 @@
 """Words of a diagnosis: causes, places, sizes, and what a form from outside is."""
 
+import numpy as np
+
 from blockshake.diagnosis.answer.places import EVERYWHERE
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS, title_of
-from blockshake.report.document.units import interval, printed, quantity, with_unit
+from blockshake.report.document.units import Printed, printed
 from blockshake.report.document.wording import number
 
-_SMALLEST_CHANCE = 1e-6  # that is told as a number
-_LARGEST_ODDS = 1e6
+_MANY = 1e6  # from which on odds are told in words
+_ALONG_X = ("force", "impulse", "offset")
 _HIGH = 0.25  # of a body's height above its middle, from which on a force acts near the top
 
 
@@ -16,11 +18,33 @@ def name_of(cause):
     return FORMS[cause].title if cause in FORMS else title_of(cause)
 
 
-def estimate_words(estimate):
-    """An estimate with its interval and its unit: ``0.62 (0.48 to 0.77) mrad per m/s2``."""
-    factor, _ = printed(estimate.unit)
-    ends = interval(estimate.lower, estimate.upper, estimate.unit)
-    return with_unit(f"{number(factor * estimate.estimate)} ({ends})", estimate.unit)
+def shown_unit(unit):
+    """Factor and name of the unit in which a size is shown: of a share, percent."""
+    return Printed(100.0, "%") if unit == "1" else printed(unit)
+
+
+def size_words(value, unit, digits=3):
+    """A size with its unit: ``19.6 mm``."""
+    factor, name = shown_unit(unit)
+    return f"{number(factor * value, digits)} {name}"
+
+
+def range_words(lower, upper, unit):
+    """Two ends with their unit: ``-150 to 150 mm``."""
+    factor, name = shown_unit(unit)
+    return f"{number(factor * lower)} to {number(factor * upper)} {name}"
+
+
+def estimate_words(name, estimate):
+    """An estimate of a parameter: ``0.62 mrad per m/s2 (0.48 to 0.77)``; of one along x with its side."""
+    factor, unit = shown_unit(estimate.unit)
+    values = [factor * one for one in (estimate.estimate, estimate.lower, estimate.upper)]
+    side = ""
+    if name in _ALONG_X and values[1] * values[2] > 0.0:
+        side = " towards +x" if values[0] > 0.0 else " towards -x"
+        values = [abs(values[0]), *sorted(map(abs, values[1:]))]
+    middle, lower, upper = map(number, values)
+    return f"{middle} {unit} ({lower} to {upper}){side}"
 
 
 def place_words(place):
@@ -44,8 +68,8 @@ def _level(height):
 
 
 def sizes_of(cause):
-    """Parameters of a `Cause` in words: ``offset 37.7 (30.4 to 44.8) mm``."""
-    return ", ".join(f"{name} {estimate_words(own)}" for name, own in cause.parameters.items())
+    """Parameters of a `Cause` in words: ``offset 37.7 mm (30.4 to 44.8) towards +x``."""
+    return ", ".join(f"{name} {estimate_words(name, own)}" for name, own in cause.parameters.items())
 
 
 def cause_words(cause, place):
@@ -78,18 +102,20 @@ def listed(words, last="and"):
     return f"{', '.join(others)} {last} {end}" if others else end
 
 
-def odds_words(odds):
-    """Odds against a cause from their logarithm: ``1 to 57``."""
-    ratio = 2.718281828459045 ** min(odds, 50.0)
-    return f"1 to {number(ratio, 2)}" if ratio < _LARGEST_ODDS else f"1 to more than {_LARGEST_ODDS:,.0f}"
+def times_words(odds):
+    """How many times likelier, from the logarithm of the odds: ``57 times``."""
+    if odds > np.log(_MANY):
+        return "more than a million times"
+    ratio = float(f"{np.exp(odds):.2g}")
+    return f"{ratio:,.0f} times" if ratio > 10.0 else f"{number(ratio, 2)} times"
 
 
 def beyond(effect, value):
     """A size in words from which on an effect would have been seen."""
     first = EFFECTS[effect].parameters[0]
-    return f"{'below ' if first.visible < first.null else ''}{quantity(value, first.unit)}"
+    return f"{'below' if first.visible < first.null else 'beyond'} {size_words(value, first.unit)}"
 
 
 def chance_words(p):
     """A chance, as a number where it is not too small for one."""
-    return f"p = {number(p, 2)}" if p > _SMALLEST_CHANCE else f"p below {_SMALLEST_CHANCE:g}"
+    return f"p = {number(p, 2)}" if p > 1.0 / _MANY else "less than 1 in a million"

@@ -37,6 +37,7 @@ def plot_misfit(misfit, chosen, measured_word):
     """Figure of histories of the nominal ensemble; ``chosen`` are places of test and cell."""
     rows = -(-len(chosen) // _COLUMNS)
     figure = new_figure(0.014 + 0.038 * rows)
+    figure.get_layout_engine().set(wspace=0.04)
     panels = figure.subplots(rows, _COLUMNS, squeeze=False)
     for axes in panels.flat[len(chosen) :]:
         axes.set_axis_off()

@@ -7,6 +7,8 @@ from blockshake.report.document.drawing import BLACK, BLUE, DARK_GREY, LIGHT_GRE
 _MOST_DECADES = 12.0  # of odds that are drawn
 _LINEAR = 10.0  # nats, below which the axis of gains is linear
 _MARGIN = 1.3
+_APART = 0.13  # of an axis, between two labels
+_TICKS = (-10, -5, 0, 5, *(first * 10**power for power in range(1, 6) for first in (1, 2, 5)))
 
 
 def plot_odds(rows, outside, nothing, within):
@@ -42,23 +44,34 @@ def plot_odds(rows, outside, nothing, within):
     ticks = [tick for tick in range(int(end) + 1) if tick % max(1, int(end) // 5) == 0]
     odds.set_xticks(ticks, [_power(tick) for tick in ticks])
     odds.set_xlim(-0.02 * end, 1.03 * end)
-    odds.set_xlabel("odds of the likeliest cause to this one, to 1")
+    odds.set_xlabel("times less likely than the likeliest [1]")
     values = np.array([one for _, _, one in rows])
     gains.plot(np.maximum(values, -_LINEAR), places, "s", color=BLACK, markersize=3.5)
     gains.axvline(0.0, color=BLACK, linewidth=0.7)
     gains.set_xscale("symlog", linthresh=_LINEAR)
-    gains.set_xlim(-_MARGIN * _LINEAR if values.min() < 0.0 else -1.0, _MARGIN * max(float(values.max()), _LINEAR))
-    ticks = [tick for tick in (-10, -5, 0, 5, 10, 30, 100, 300, 1000, 3000, 10000, 30000, 100000) if tick <= _MARGIN * values.max()]
-    ticks = [tick for tick in ticks if tick >= gains.get_xlim()[0]]
-    step = max(1, len(ticks) // 5)
-    gains.set_xticks(ticks[::-1][::step], [f"{tick:g}" for tick in ticks[::-1][::step]])
+    gains.set_xlim(
+        -_MARGIN * _LINEAR if values.min() < 0.0 else -1.0, _MARGIN * max(float(values.max()), _LINEAR)
+    )
+    ticks = _apart(gains)
+    gains.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     gains.set_xticks([], minor=True)
-    gains.set_xlabel("gain over nothing [1]")
+    gains.set_xlabel("gain over nothing [nats]")
     odds.set_yticks(places, [name for name, *_ in rows])
     for label, one in zip(odds.get_yticklabels(), [*outside, False], strict=True):
         label.set_style("italic" if one else "normal")
     odds.set_ylim(-0.6, len(rows) - 0.4)
     return figure
+
+
+def _apart(axes):
+    """Ticks of the axis of gains whose labels do not meet, 0 among them."""
+    low, high = axes.get_xlim()
+    scaled = axes.xaxis.get_transform().transform
+    least, chosen = _APART * float(np.ptp(scaled([low, high]))), [0]
+    for tick in (one for one in reversed(_TICKS) if low <= one <= high):
+        if all(abs(scaled(tick) - scaled(other)) > least for other in chosen):
+            chosen.append(tick)
+    return chosen
 
 
 def _power(tick):
