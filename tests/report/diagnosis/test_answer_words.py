@@ -6,8 +6,9 @@ from fake_findings import ECCENTRIC, KINDS, part
 
 from blockshake.diagnosis.answer.decision import Cause, Estimate, Part
 from blockshake.diagnosis.verdict.verdict import Contrast
-from blockshake.report.diagnosis.answer_section import not_told, percent_words, statement
+from blockshake.report.diagnosis.answer_section import percent_words
 from blockshake.report.diagnosis.content import load_diagnosed
+from blockshake.report.diagnosis.statement import not_told, statement
 from blockshake.report.diagnosis.wording import (
     chance_words,
     estimate_words,
@@ -60,7 +61,7 @@ def test_beside_the_answer_stands_what_is_not_told_from_it(found, kind):
 
 def test_every_part_of_a_combination_has_its_own_sentence(found):
     of_slab, of_joints = not_told(found["combination"])
-    assert of_slab == "Rotation of the slab: the tests tell pitch of the table from nothing."
+    assert of_slab == "Rotation of the slab: no other cause was tried on these readings."
     assert of_joints.startswith("Joints: the tests tell eccentric mass of a block from")
 
 

@@ -9,9 +9,9 @@ from blockshake.diagnosis.verdict.track_record import procedure_digest
 from blockshake.diagnosis.verdict.verdict import load_verdict
 from blockshake.errors import InputError
 from blockshake.files import write_json
-from blockshake.report.diagnosis.answer_section import not_told, statement
 from blockshake.report.diagnosis.content import load_diagnosed
 from blockshake.report.diagnosis.report import compose_diagnosis, make_diagnosis_report
+from blockshake.report.diagnosis.statement import not_told, statement
 from blockshake.report.document.html import write_html
 
 SIMULATED = "named"  # the fake with a misfit, a gain on the responses, and a track record

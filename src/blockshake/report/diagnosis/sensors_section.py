@@ -16,7 +16,7 @@ _UNITS = {
 
 
 def sensors_section(found):
-    """What was checked, and the faults with their estimates."""
+    """Checks that were made, and the faults with their estimates."""
     return Section("Sensors", "sensors", (Text(_sensors(found.parity)), *_findings(found)))
 
 

@@ -57,7 +57,9 @@ def plot_forces(departures, tests, bodies, explained, measured_word):
             axes.plot(one["time"], one["measured"], **_POINTS, label=measured_word)
             if explained:
                 axes.plot(one["time"], one["explained"], color=BLUE, linewidth=1.2, label=explained)
-        _limit(row, _KILO * departures[["measured", "explained"]].sel(body=body).to_array().to_numpy())
+        _limit(
+            row, *(_KILO * departures[name].sel(body=body).to_numpy() for name in ("measured", "explained"))
+        )
         row[0].set_ylabel(f"{body}\nforce [kN]")
     return _finished(figure, panels)
 
@@ -78,7 +80,7 @@ def plot_slab(departures, name, explained, measured_word):
         axes.plot(
             own["slab_time"], factor * own[f"{name}_explained"], color=BLUE, linewidth=0.9, label=explained
         )
-    _limit(row, factor * departures[[name, f"{name}_explained"]].to_array().to_numpy())
+    _limit(row, *(factor * departures[one].to_numpy() for one in (name, f"{name}_explained")))
     row[0].set_ylabel(f"{'rotation' if name == 'turn' else 'displacement'} [{unit}]")
     return _finished(figure, [row])
 
@@ -92,8 +94,9 @@ def _panels(tests, rows):
     return figure, panels
 
 
-def _limit(row, values):
-    end = _MARGIN * float(np.nanpercentile(np.abs(values), _FITTING))
+def _limit(row, measured, explained):
+    """Room for all that is explained, and for nearly all that was measured."""
+    end = _MARGIN * max(np.nanpercentile(np.abs(measured), _FITTING), np.nanmax(np.abs(explained)))
     row[0].set_ylim(-end, end)
     for axes in row:
         axes.axhline(0.0, color=BLACK, linewidth=0.6)
