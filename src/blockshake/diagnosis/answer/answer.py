@@ -20,7 +20,7 @@ _NEEDED_BY = {
     "reduced-bearing": 20.0,  # of any shape over the rotation
     FREE_FORCE: 100.0,
 }
-_NEEDED_OF_SLAB = 6.0
+_NEEDED_OF_SLAB = {"turns": 8.0, "lifts": 20.0}  # outliers of one marker lift the slab
 _SECOND_SHARE = 0.1  # of the first cause's gain, that a second one must gain beyond what is needed
 
 
@@ -171,7 +171,7 @@ def slab_groups(explained):
         gains = {name: one.gain for name, one in explained.items() if getattr(EFFECTS[name], moves)}
         rivals = [Rival(name, "all", gain, gain, ("all",)) for name, gain in gains.items()]
         ranked = sorted(rivals, key=lambda one: -one.gain)
-        if ranked and ranked[0].gain > _NEEDED_OF_SLAB:
+        if ranked and ranked[0].gain > _NEEDED_OF_SLAB[moves]:
             odds = {one.cause: coarsened(ranked[0].gain - one.gain, ranked[0].gain) for one in ranked}
             near = tuple(one for one in ranked if odds[one.cause] < ODDS)
             found.append((readings, Group(near, odds, gains)))
