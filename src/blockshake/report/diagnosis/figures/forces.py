@@ -13,7 +13,9 @@ _KILO = 1e-3
 _FITTING = 99.5  # percent of all instants that an axis has room for
 _MARGIN = 1.15
 _ALIKE = 0.98  # of two curves' product over their lengths, from which they are one but for a factor
-_POINTS = {"color": BLACK, "linestyle": "none", "marker": "o", "markersize": 1.3, "markeredgewidth": 0.0}
+_POINTS = {"color": BLACK, "linestyle": "none", "marker": "o", "markeredgewidth": 0.0}
+_SIZES = 1.3, 3.0  # of points, smallest and largest
+_MANY = 200  # points, from which on they are small
 
 
 def shown_tests(departures):
@@ -54,9 +56,17 @@ def plot_forces(departures, tests, bodies, explained, measured_word):
             axes.fill_between(
                 one["time"], -noise, noise, color=LIGHT_GREY, linewidth=0.0, label="noise of the sensors"
             )
-            axes.plot(one["time"], one["measured"], **_POINTS, label=measured_word)
+            _draw_points(axes, one["time"], one["measured"], measured_word)
             if explained:
-                axes.plot(one["time"], one["explained"], color=BLUE, linewidth=1.2, label=explained)
+                axes.plot(
+                    one["time"],
+                    one["explained"],
+                    "o-",
+                    color=BLUE,
+                    linewidth=1.2,
+                    markersize=1.2,
+                    label=explained,
+                )
         _limit(
             row, *(_KILO * departures[name].sel(body=body).to_numpy() for name in ("measured", "explained"))
         )
@@ -76,7 +86,7 @@ def plot_slab(departures, name, explained, measured_word):
     factor, unit = printed(departures[name].attrs["units"])
     for axes, test in zip(row, tests, strict=True):
         own = departures.isel(reading=np.flatnonzero(of_test == test))
-        axes.plot(own["slab_time"], factor * own[name], **_POINTS, label=measured_word)
+        _draw_points(axes, own["slab_time"], factor * own[name], measured_word)
         axes.plot(
             own["slab_time"], factor * own[f"{name}_explained"], color=BLUE, linewidth=0.9, label=explained
         )
@@ -94,6 +104,11 @@ def _panels(tests, rows):
     return figure, panels
 
 
+def _draw_points(axes, time, values, label):
+    size = float(np.clip(_MANY / len(time), *_SIZES))
+    axes.plot(time, values, **_POINTS, markersize=size, label=label)
+
+
 def _limit(row, measured, explained):
     """Room for all that is explained, and for nearly all that was measured."""
     end = _MARGIN * max(np.nanpercentile(np.abs(measured), _FITTING), np.nanmax(np.abs(explained)))
@@ -108,7 +123,7 @@ def _finished(figure, panels):
         axes.set_xlabel("time [s]")
     figure.align_ylabels([row[0] for row in panels])
     handles = panels[0][0].get_legend_handles_labels()
-    figure.legend(*handles, loc="outside upper center", ncols=len(handles[0]), markerscale=2.5)
+    figure.legend(*handles, loc="outside upper center", ncols=len(handles[0]), markerscale=2.0)
     return figure
 
 
