@@ -4,7 +4,6 @@ from blockshake.report.diagnosis.answer_section import percent_words
 from blockshake.report.diagnosis.figures.histories import plot_drift
 from blockshake.report.document.blocks import Figure, Section, Table, Text
 from blockshake.report.document.drawing import svg_of
-from blockshake.report.document.units import interval
 from blockshake.report.document.wording import MISSING, model_label, number, sentence_case
 
 _RIVALS = {
@@ -109,7 +108,8 @@ def _largest(found):
 
 
 def _with_band(own):
-    return f"{number(1e3 * own['largest'])} ({interval(own['largest_lower'], own['largest_upper'], 'm')})"
+    median, lower, upper = (number(1e3 * own[f"largest{end}"]) for end in ("", "_lower", "_upper"))
+    return f"{median} ({lower} to {upper})"
 
 
 def _drift(found):

@@ -23,8 +23,8 @@ def misfit_section(found):
     blocks = (
         Text(
             f"Nominal simulations by all solvers beside the open tests, as long as each history can be predicted: "
-            f"{chance_words(float(misfit['p']))} of a misfit as large as the largest by a nominal model. Largest: "
-            f"{misfit.attrs['where']}. No cause was decided by it."
+            f"chance of a misfit as large as the largest without anything wrong, {chance_words(float(misfit['p']))}. "
+            f"Largest: {misfit.attrs['where']}. No cause was decided by it."
         ),
         Figure(
             f"The {min(len(ranked), _MOST_PANELS)} histories that the nominal simulation predicts worst: 5 to 95 % "

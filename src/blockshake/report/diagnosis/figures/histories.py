@@ -61,7 +61,7 @@ def _draw(axes, own, color):
     axes.plot(time, middle, color=darker(color), linewidth=0.7)
     axes.plot(time, factor * own["measured"], **_MEASURED)
     if end < time[-1]:
-        axes.axvspan(max(end, time[0]), time[-1], color=LIGHT_GREY, linewidth=0.0, zorder=0)
+        axes.axvspan(max(end, time[0]), time[-1], color=LIGHT_GREY, alpha=0.45, linewidth=0.0, zorder=0)
     axes.set_xlim(time[0], time[-1])
 
 
