@@ -6,29 +6,26 @@ so that a step is rerun by an edit of what that step runs, and by no other: an e
 
 from typing import NamedTuple
 
-import numpy as np
 import xarray as xr
 
 from blockshake.store import load_made
 
 
 class Measured(NamedTuple):
-    """Outcome of the sensors' checks, the open tests read off, and their joint forces, see `measured_forces`."""
+    """Sensors checked against each other, what the tests speak for, and their rows as forces."""
 
     parity: object
-    readings: xr.Dataset
-    forces: xr.Dataset
+    decision: object
+    evidence: xr.Dataset
 
 
-def read_measured(folder, effort, without):
-    """Check the sensors of a campaign's open tests against each other, take their faults out, read the tests off.
+def decide(folder, without):
+    """Read the open tests of a campaign, take the faults of sensors out, and decide what acts.
 
     Parameters
     ----------
     folder : str
         Of the campaign.
-    effort : str
-        One of `EFFORTS`.
     without : sequence of str
         Effects that are left out, as if nobody had thought of them.
 
@@ -36,20 +33,12 @@ def read_measured(folder, effort, without):
     -------
     Measured
     """
-    from blockshake.diagnosis.features.measured_readings import measured_readings
-    from blockshake.diagnosis.laws.measured_forces import measured_forces
-    from blockshake.diagnosis.libraries.efforts import EFFORTS, open_tests
+    from blockshake.diagnosis.answer.decide import decide
+    from blockshake.diagnosis.answer.seen_campaign import see_open_tests
     from blockshake.measurement.campaigns.campaign import load_campaign
-    from blockshake.parity.parity import campaign_parity
 
-    campaign = load_campaign(folder)
-    names = open_tests(campaign, EFFORTS[effort])
-    parity = campaign_parity(campaign, names, without)
-    return Measured(
-        parity,
-        measured_readings(campaign, names, parity.findings),
-        measured_forces(campaign, names, parity.findings),
-    )
+    parity, seen = see_open_tests(load_campaign(folder), without)
+    return Measured(parity, *decide(seen, without))
 
 
 def simulate_library(name, solver, config, shared, store, source, progress):
@@ -111,75 +100,6 @@ def calibrate_decision(libraries, effects, store, source, progress):
         return cases_of(kept_value(store, key, lambda: rows_of(judge())))
 
     return library_cases(score_library(load_tables(libraries), effects)[0], progress, keep)
-
-
-class Decided(NamedTuple):
-    """A decision, the misfit of the nominal model, the features that decided, and the tests judged by."""
-
-    decision: object
-    misfit: xr.Dataset
-    evidence: xr.Dataset
-    tests: list
-
-
-def decide(folder, effects, files):
-    """Decide which effects the open tests speak for.
-
-    Parameters
-    ----------
-    folder : str
-        Of the campaign.
-    effects : sequence of str
-        Names of the effects that are considered.
-    files : object
-        Attributes ``readings``, ``forces``, ``libraries`` and ``histories`` (by test and solver), ``calibration``:
-        files of the earlier steps.
-
-    Returns
-    -------
-    Decided
-    """
-    from blockshake.diagnosis.features.measured_readings import reading_of, tamed_readings
-    from blockshake.diagnosis.inference.calibration import load_cases
-    from blockshake.diagnosis.inference.decide import decide
-    from blockshake.diagnosis.inference.deciding_features import deciding_features
-    from blockshake.diagnosis.inference.lawful_decision import with_laws
-    from blockshake.diagnosis.inference.library_scores import load_tables, score_library
-    from blockshake.diagnosis.laws.judged_laws import judge_laws
-    from blockshake.diagnosis.laws.measured_forces import outside_of
-    from blockshake.diagnosis.libraries.candidates import candidates
-    from blockshake.diagnosis.misfit.misfit import misfit
-    from blockshake.geometry.structure import load_structure
-    from blockshake.measurement.campaigns.campaign import load_campaign
-
-    measured = load_made(files.readings)
-    names = [str(name) for name in measured["test"].values]
-    library, scales = score_library(load_tables(files.libraries), effects)
-    structure = load_structure(load_campaign(folder).structure)
-    places = {one.key: one.place for one in candidates(structure)}
-    cases = load_cases(files.calibration)
-    decision = decide(library, tamed_readings(scales, measured), cases, places)
-    ensembles = [list(by_solver.values()) for by_solver in load_tables(files.histories)]
-    if measured.sizes["law"]:
-        draws = {
-            name: np.concatenate([one["law_value"].to_numpy() for one in own])
-            for name, own in zip(names, ensembles, strict=True)
-        }
-        own = {name: measured.sel(test=name) for name in names}
-        outside = outside_of(load_made(files.forces))
-        decision = with_laws(decision, judge_laws(own, draws, outside, structure.weight_shares()), places)
-    return Decided(
-        decision,
-        misfit(measured, dict(zip(names, ensembles, strict=True))),
-        deciding_features(
-            library,
-            scales,
-            [reading_of(measured, name) for name in names],
-            names,
-            decision.candidate(decision.first_key),
-        ),
-        names,
-    )
 
 
 def simulate_cause(name, solver, key, further_draws, config, shared, store, source, progress):
@@ -329,46 +249,35 @@ def measure_gain(folder, files):
     return campaign_gain(campaign, readings, load_tables(files.libraries), runs, broken)
 
 
-def conclude(folder, effort, files):
+def conclude(folder, files):
     """Put sensors, decision and gain together to the verdict.
 
     Parameters
     ----------
-    folder, effort : str
+    folder : str
     files : object
-        Attributes ``parity``, ``decision``, ``misfit``, and ``posterior`` (the size and its hash, or empty) and
-        ``gain`` (summary and scores, or empty): files of the earlier steps.
+        Attributes ``parity``, ``decision`` and ``gain`` (the summary, or empty): files of the earlier steps.
 
     Returns
     -------
     Verdict
     """
-    from blockshake.diagnosis.inference.decision import CauseSize, Decision, load_result
-    from blockshake.diagnosis.libraries.plan import plan_diagnosis
-    from blockshake.diagnosis.misfit.misfit import where
-    from blockshake.diagnosis.verdict.conclusion import Judged, conclude, no_gain
-    from blockshake.diagnosis.verdict.verdict import MeasuredGain
+    from blockshake.diagnosis.answer.decision import load_decision
+    from blockshake.diagnosis.verdict.conclusion import conclude, no_gain
+    from blockshake.diagnosis.verdict.verdict import load_gain
+    from blockshake.measurement.campaigns.campaign import load_campaign
     from blockshake.parity.parity import load_parity
 
-    parity, decision = load_parity(files.parity), load_result(Decision, files.decision)
-    misfit, plan = load_made(files.misfit), plan_diagnosis(folder, effort)
-    size = load_result(CauseSize, files.posterior[0]) if files.posterior else None
-    if files.gain:
-        measured, scores = load_result(MeasuredGain, files.gain[0]), load_made(files.gain[1])
-    else:
-        described = [decision.described] if decision.described else []
-        caveats = no_gain(plan.campaign, [*decision.causes, *parity.findings, *described])
-        measured, scores = MeasuredGain(gain=None, caveats=caveats, runs=0), None
-    runs = plan.runs + (plan.further_runs if size else 0) + measured.runs
-    judged = Judged(where(misfit), misfit.sizes["test"])
-    fell = [
+    parity, decision = load_parity(files.parity), load_decision(files.decision)
+    campaign = load_campaign(folder)
+    measured = load_gain(files.gain) if files.gain else None
+    caveats = [
         f"{test} is judged until {one.body} falls, at {one.time:.2f} s" for test, one in parity.falls.items()
     ]
-    gaps = [f"{test}: {line}" for test, lines in parity.gaps.items() for line in lines]
-    caveats = [*measured.caveats, *fell, *gaps]
-    return conclude(
-        decision, parity.findings, parity.recorder_sensors, judged, runs, caveats, effort, size, measured, scores,
-    )  # fmt: skip
+    caveats += [f"{test}: {line}" for test, lines in parity.gaps.items() for line in lines]
+    if not files.gain:
+        caveats += no_gain(campaign, [*decision.parts, *parity.findings])
+    return conclude(decision, parity.findings, parity.recorder_sensors, caveats, measured)
 
 
 def predict_twins(name, histories, config, shared, progress):

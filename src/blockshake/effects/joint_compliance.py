@@ -6,7 +6,7 @@ from blockshake.effects.effect import Columns, Effect, EffectParameter, Signatur
 from blockshake.effects.places import face_of, joints, stated_joint
 from blockshake.forces.seen.wrench_histories import edge_inward, normal_force
 
-COMPLIANCES = np.geomspace(2e-11, 2e-9, 20)  # m3/N
+COMPLIANCES = np.geomspace(2e-11, 1e-9, 18)  # m3/N
 _RATIO = COMPLIANCES[1] / COMPLIANCES[0]
 _SMALLEST = 1e-4  # rad
 _WIDEST = 2.0 / 3.0  # of the half width, by which the resultant of a soft face lies within the edge at most

@@ -4,13 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from blockshake.diagnosis.answer.odds import ODDS, coarsened
 from blockshake.diagnosis.evidence.explanation import mean_evidence
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
 
-ODDS = float(np.log(20.0))  # within which causes are not told apart
-COARSENING = 0.05  # share of what it explains that the form of a cause may leave unexplained
 FREE_SHARE = 0.85  # of what any force at its place would explain, that a named form must
 FREE_FORCE = "unknown-force"
 _PRIOR, _PRIOR_OUTSIDE, _PRIOR_FREE = -3.0, -3.5, -6.0
@@ -18,6 +17,7 @@ _NEEDED = 8.0  # nats over none that are no chance on clean campaigns
 _NEEDED_BY = {
     **dict.fromkeys(("push", "blow", "spring-once", "changed-edge"), 15.0),  # many starts are searched
     "reduced-bearing": 20.0,  # of any shape over the rotation
+    JOINT_COMPLIANCE.name: 12.0,  # readings of a shaken body turn by 1e-5 rad with it
     FREE_FORCE: 100.0,
 }
 _NEEDED_OF_SLAB = {"turns": 8.0, "lifts": 20.0}  # outliers of one marker lift the slab
@@ -61,15 +61,6 @@ class Group:
     rivals: tuple
     odds: dict
     gains: dict
-
-
-def coarsened(difference, gain):
-    """Logarithm of the odds of two causes whose scores differ, the better one gaining ``gain``.
-
-    The likelihood is raised to ``1 / (1 + delta gain / ln 20)``: a form may leave a share delta of what it explains
-    (Miller and Dunson 2019, coarsened posteriors).
-    """
-    return difference / (1.0 + COARSENING * max(gain, 0.0) / ODDS)
 
 
 def rank(evidence, closed=None):

@@ -8,7 +8,6 @@ from blockshake.effects.joint_compliance import COMPLIANCES, rotation_by_complia
 _WITHIN = 0.6  # of the half width: a resultant nearer to the edge may have opened the joint
 _FEWEST = 30  # instants
 _NOMINAL, _SPREAD = 6e-11, 4e-11  # m3/N, of the layer that stands for elastic blocks
-_BY_ACCELERATION = 5e-6  # rad s2/m, of readings of a body that is shaken
 _COLOURED, _MEMORY, _CONSTANT = 8e-6, 0.3, 2e-5  # rad, s, rad
 _NOISE_SHARE, _LEAST_NOISE, _RIDGE = 0.8, 1e-5, 0.1
 
@@ -32,17 +31,16 @@ def closed_joint_gains(tests):
         rows = [one for one in (_rows(test, face) for test in tests) if one is not None]
         if not rows:
             continue
-        covariances, turns, slopes, accelerations = zip(*rows, strict=True)
+        covariances, turns, slopes = zip(*rows, strict=True)
         values = [turn - _NOMINAL * slope for turn, slope in zip(turns, slopes, strict=True)]
-        nuisances = [[_SPREAD * slope for slope in slopes], [_BY_ACCELERATION * one for one in accelerations]]
-        likelihood = from_rows(covariances, values, nuisances)
+        likelihood = from_rows(covariances, values, [[_SPREAD * slope for slope in slopes]])
         target, gram = likelihood.normal_equations(likelihood.whiten([slope[:, None] for slope in slopes]))
         found[face] = COMPLIANCES * target[0] - 0.5 * COMPLIANCES**2 * gram[0, 0]
     return found
 
 
 def _rows(test, face):
-    """Covariance and values of the rotation, its slope on the compliance, and the acceleration; None where too short."""
+    """Covariance and values of the rotation, and its slope on the compliance, of one test; None where too short."""
     half, length = test.faces[face].half_width, float(np.ptp(test.faces[face].corners[:, 1]))
     normal, moment = test.forces.force[:, face, 2], test.forces.moment[:, face, 1]
     closed = test.states.closed[:, face] & (normal > 0.0) & (np.abs(moment) < _WITHIN * half * normal)
@@ -55,5 +53,4 @@ def _rows(test, face):
     covariance = noise**2 * np.exp(-(apart**2) / (4.0 * test.motion.width**2))
     covariance += _COLOURED**2 * np.exp(-apart / _MEMORY) + _CONSTANT**2
     covariance[np.diag_indices(len(chosen))] += (_RIDGE * noise) ** 2
-    acceleration = np.nan_to_num(test.motion.acceleration[chosen, test.faces[face].upper, 0])
-    return covariance, test.joints.rotation[chosen, face], slope, acceleration
+    return covariance, test.joints.rotation[chosen, face], slope

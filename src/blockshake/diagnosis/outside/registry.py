@@ -8,6 +8,7 @@ from blockshake.diagnosis.outside import (
     loose_weight,
     push,
     spring_once,
+    unmodelled_mass,
 )
 
 FORMS = {
@@ -19,6 +20,7 @@ FORMS = {
         spring_once.FORM,
         changed_edge.FORM,
         loose_weight.FORM,
+        unmodelled_mass.FORM,
         free_force.FORM,
     )
 }

@@ -8,6 +8,12 @@ from blockshake.effects.registry import EFFECTS, title_of
 _WHERE = ("joint", "body")
 
 
+def no_gain(campaign, acting):
+    """Reason why no gain was measured, where something acts."""
+    sealed = any(test.role == "sealed" for test in campaign.tests.values())
+    return ["no gain was measured: there is no sealed test"] if acting and not sealed else []
+
+
 def conclude(decision, findings, kinds, caveats=(), measured=None):
     """`Verdict` of a campaign.
 

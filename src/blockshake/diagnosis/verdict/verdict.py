@@ -129,3 +129,8 @@ def load_verdict(path):
         Not JSON, another version, an unknown key, or a decision that its causes contradict.
     """
     return validated(Verdict, load_json(path), Path(path))
+
+
+def load_gain(path):
+    """`MeasuredGain` of a file."""
+    return validated(MeasuredGain, load_json(path), Path(path))
