@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from blockshake.diagnosis.answer.answer import COARSENING, FREE_SHARE, ODDS, coarsened
+from blockshake.diagnosis.answer.answer import FREE_SHARE
+from blockshake.diagnosis.answer.odds import COARSENING, ODDS, coarsened
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.report.diagnosis.figures.odds import plot_odds
 from blockshake.report.diagnosis.wording import name_of
