@@ -11,7 +11,6 @@ from blockshake.diagnosis.features.measured_readings import reading_of
 from blockshake.diagnosis.laws.measured_forces import forces_of
 from blockshake.diagnosis.libraries.plan import plan_diagnosis
 from blockshake.files import PACKAGE, write_dataset
-from blockshake.report.diagnosis.figures.forces import plot_unexplained
 
 STRUCTURE = PACKAGE.parents[1] / "hidden_effects" / "structures" / "two-blocks.yaml"
 PITCH = {"name": "table-pitch", "values": {"coefficient": 1.2e-3, "frequency": 18.0}, "place": {}}
@@ -152,7 +151,3 @@ def test_a_test_at_another_rate_has_its_figure(campaign, tmp_path):
         np.testing.assert_allclose(np.diff(time), 1.0 / rate, atol=1e-9)
         own = forces_of(measured.forces, name)["unexplained"].sel(body="block-1")
         assert np.isfinite(own).mean() > 0.9
-    figure = plot_unexplained(measured.forces, {})
-    for axes in figure.axes:
-        known = [np.isfinite(np.asarray(line.get_ydata(), dtype=float)) for line in axes.get_lines()]
-        assert all(len(one) > 100 and one.mean() > 0.9 for one in known)

@@ -23,7 +23,7 @@ EDITS = {
     "diagnosis": (
         "solvers/ls_dem/driver.py", "diagnosis/libraries/library.py", "diagnosis/inference/decide.py",
         "diagnosis/misfit/predictability.py", "diagnosis/verdict/ladder.py", "parity/marker_faults.py",
-        "report/diagnosis/evidence_section.py",
+        "report/diagnosis/odds_section.py",
     ),
 }  # fmt: skip
 OF_LIBRARIES = ("simulate_cause", "extend_model", "predict_twins")

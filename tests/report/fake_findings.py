@@ -1,36 +1,19 @@
-"""Made-up findings of a diagnosis: decision, features, sealed tests, sensors, track record."""
+"""Made-up findings of a diagnosis: decision, forces, histories, sensors, gain."""
 
 import numpy as np
 import xarray as xr
 
-from blockshake.diagnosis.gain.sealed_prediction import SealedTest
-from blockshake.diagnosis.inference.decision import Decision
-from blockshake.diagnosis.libraries.candidates import candidates
-from blockshake.diagnosis.verdict.track_record import (
-    Answers,
-    JudgedCase,
-    Median,
-    Row,
-    Share,
-    TrackRecord,
-    write_track_record,
-)
+from blockshake.diagnosis.answer.decision import Decision
+from blockshake.diagnosis.verdict.verdict import Contrast, Gain
 from blockshake.effects.registry import EFFECTS
-from blockshake.files import write_dataset
 from blockshake.parity.finding import Finding
 from blockshake.parity.parity import Parity
 
 OPEN = ("alkion-100", "alkion-250", "basso-200")
 SEALED = ("alkion-300", "basso-250")
+KINDS = ("none", "named", "ambiguous", "combination", "unknown")
 MODELS = ("ls-dem", "nscd-rigid")
-DRAWS = 10
-CAUSES = {
-    "none": [],
-    "named": ["table-pitch"],
-    "ambiguous": ["weak-joint", "rate-weakening-friction"],
-    "combination": ["table-pitch", "eccentricity"],
-    "unknown": [],
-}
+PUSH = {"starts": {"alkion-250": 2.2, "basso-200": 2.7}}
 
 
 def gain_finding():
@@ -38,126 +21,179 @@ def gain_finding():
     return Finding("sensor-gain", ("block-2-face",), "gain", np.array([0.03]), np.array([[1e-6]]), 2e-4, OPEN)
 
 
-def made_up_decision(kind, structure):
-    """A decision with every physical effect among its candidates."""
-    keys = {}
-    for candidate in candidates(structure):
-        keys.setdefault(candidate.effect, []).append(candidate)
-    causes = CAUSES[kind]
-    order = [*causes, *(effect for effect in keys if effect not in causes)]
-    rows, sizes = [], np.linspace(-2.0, 2.0, 41)
-    for place, effect in enumerate(order):
-        for number, candidate in enumerate(keys[effect]):
-            ratio = (2.0 if kind == "none" else 60.0) - 7.0 * place - number
-            estimates = [0.8 + 0.1 * test for test in range(len(OPEN))]
-            rows.append({
-                "key": candidate.key, "effect": effect, "log_ratio": ratio,
-                "by_model": {MODELS[0]: ratio + 1.0, MODELS[1]: ratio - 2.0}, "size": 0.9, "sizes": sizes.tolist(),
-                "weights": np.exp(-0.5 * ((sizes - 0.9) / 0.2) ** 2).tolist(), "model": MODELS[0], "distance": 1.1,
-                "by_test": [{"estimate": one, "lower": one - 0.3, "upper": one + 0.4} for one in estimates],
-            })  # fmt: skip
-    rows.sort(key=lambda row: -row["log_ratio"])
-    by_key = {candidate.key: candidate for group in keys.values() for candidate in group}
-    best = {effect: group[0].key for effect, group in keys.items()}
-    others = [] if kind == "none" else [effect for effect in order if effect not in causes]
+def cause(name, place, places, sizes, odds=0.0, when=None):
+    """A cause as in ``decision.json``; ``sizes``: (estimate, unit) by parameter, intervals a tenth to either side."""
+    parameters = {
+        key: {
+            "estimate": value,
+            "lower": min(0.9 * value, 1.1 * value),
+            "upper": max(0.9 * value, 1.1 * value),
+            "unit": unit,
+        }
+        for key, (value, unit) in sizes.items()
+    }
+    members = [
+        {key: value * (1.0 + 0.02 * number) for key, (value, _) in sizes.items()} for number in range(-3, 4)
+    ]
+    return {
+        "name": name, "place": place, "places": places, "gain": 60.0 - odds, "odds": odds, "parameters": parameters,
+        "members": members, "when": when or {},
+    }  # fmt: skip
+
+
+ECCENTRIC = cause("eccentricity", {"body": "block-2"}, ["block-2"], {"offset": (0.05, "m")})
+PITCH = cause("table-pitch", {}, ["all"], {"coefficient": (5e-4, "rad s2/m"), "frequency": (11.0, "Hz")})
+WEAK = cause("weak-joint", {"joint": ["slab", "block-1"]}, ["slab-block-1"], {"factor": (0.41, "1")})
+RATE = cause("rate-weakening-friction", {}, ["all"], {"drop": (0.61, "1"), "scale": (0.012, "m/s")}, 1.5)
+PUSHED = cause(
+    "push",
+    {"body": "block-2", "height": 0.42},
+    ["block-2@0.42", "block-1@0"],
+    {"force": (-2e3, "N")},
+    when=PUSH,
+)
+
+
+def part(readings, *causes):
+    """A part of the readings with its causes, among rivals that are far less likely."""
+    others = (
+        {"table-pitch": 40.0}
+        if readings.startswith("rotation")
+        else {"changed-edge": 12.0, "eccentricity": 55.0}
+    )
+    odds = {**others, **{one["name"]: one["odds"] for one in causes}}
+    return {
+        "readings": readings,
+        "causes": causes,
+        "odds": odds,
+        "gains": {key: 60.0 - one for key, one in odds.items()},
+    }
+
+
+PARTS = {
+    "none": [],
+    "named": [part("joints", ECCENTRIC)],
+    "ambiguous": [part("joints", WEAK, RATE)],
+    "combination": [part("rotation of the slab", PITCH), part("joints", ECCENTRIC)],
+    "unknown": [part("joints", PUSHED)],
+}
+
+
+def made_up_decision(kind):
+    """A decision of a kind."""
     return Decision.model_validate({
         "decision": kind,
-        "causes": causes,
-        "places": {effect: best[effect] for effect in order},
-        "sizes": dict.fromkeys(causes, 0.9),
-        "p_none": 0.43 if kind == "none" else 0.012,
-        "probabilities": {effect: 0.6 if effect in causes else 0.04 for effect in order},
-        "adequacy": dict.fromkeys(order, 0.31),
-        "constancy": dict.fromkeys(order, 0.41),
-        "placebo": 6.5,
-        "struck_out": {
-            effect: ["another effect explains more", "its best fit leaves too much"] for effect in others
+        "parts": PARTS[kind],
+        "probabilities": {name: 0.0 for name, effect in EFFECTS.items() if effect.acts != "observation"},
+        "limits": {
+            "eccentricity": {"block-1": 0.021, "block-2": 0.019},
+            "weak-joint": {"slab-block-1": 0.66},
+            "stopper-contact": {"block-1@0": 4e5, "block-1@0.42": 2e4},
+            "table-pitch": {"all": 5e-5},
         },
-        "solver_dependent": [],
-        "shown_above": {effect: None if effect == "joint-compliance" else 0.45 for effect in order},
-        "nominal_distance": 2.3,
-        "parameters": {effect: _estimates(effect) for effect in causes[: 1 if kind == "combination" else 2]},
-        "location": {effect: by_key[best[effect]].place for effect in causes},
-        "candidates": rows,
+        "excluded_above": {"table-pitch": 5e-5, "eccentricity": 0.021},
+        "p": 1.0 if kind == "none" else 1e-12,
+        "where": "no departure larger than chance" if kind == "none" else "block-2 in basso-200 at 2.70 s: -2.1 kN",
+        "tests": OPEN,
+        "silent": OPEN[:1],
+        "n_rows": 672,
+        "cannot_see": ["the rotation of block-4, which has one marker"],
     })  # fmt: skip
 
 
-def _estimates(effect):
-    first, *others = EFFECTS[effect].parameters
-    step = first.visible - first.null
-    values = sorted(first.null + size * step for size in (0.7, 0.9, 1.1))
-    found = {
-        first.name: {
-            "lower": values[0],
-            "estimate": values[1],
-            "upper": values[2],
-            "unit": first.unit,
-            "informed": True,
-        }
-    }
-    for item in others:
-        found[item.name] = {
-            "lower": item.lower, "estimate": 0.5 * (item.lower + item.upper), "upper": item.upper, "unit": item.unit,
-            "informed": False,
-        }  # fmt: skip
-    return found
-
-
-def evidence(best, readings):
-    """Twelve features, the first explained best."""
-    names = [
-        f"joint{1 + place % 3}.rotation.{what}"
-        for place in range(4)
-        for what in ("onset+", "peak+", "residual")
-    ]
-    nominal = np.linspace(9.0, 1.0, len(names)) * np.where(np.arange(len(names)) % 2, 1.0, -1.0)
-    rows = {
-        "weight": nominal**2 - 0.04 * nominal**2,
-        "nominal": nominal,
-        "extended": 0.2 * nominal,
-        "value": 0.01 * nominal,
+def departures(kind, bodies):
+    """Forces on blocks and motion of the slab, as `departures` and `slab_departures` have them."""
+    time = np.concatenate([np.arange(2.0, 3.0, 0.02), np.arange(4.0, 6.0, 0.02)])
+    tests, count = OPEN[1:], len(bodies)
+    noise = np.random.default_rng(1).normal(size=(len(tests) * len(time), count)) * 300.0
+    explained = np.tile(np.where(time > 2.5, -2e3, 0.0), len(tests))[:, None] / np.arange(1, count + 1)
+    explained = explained if kind not in ("none",) else np.zeros_like(explained)
+    along, slab = np.tile(time, len(tests)), np.arange(0.0, 6.0, 0.05)
+    turn = np.tile(5e-4 * np.sin(6.0 * slab), len(OPEN))
+    made = turn if kind == "combination" else 0.0 * turn
+    values = {"measured": explained + noise, "deviation": np.full_like(noise, 300.0), "explained": explained}
+    moves = {
+        "turn": (made, "rad"),
+        "turn_explained": (made, "rad"),
+        "lift": (0.0 * turn, "m"),
+        "lift_explained": (0.0 * turn, "m"),
     }
     return xr.Dataset(
-        {name: ("row", values) for name, values in rows.items()},
         {
-            "unit": ("row", ["rad"] * len(names)), "test": ("row", [OPEN[place % 3] for place in range(len(names))]),
-            "feature": ("row", names),
+            **{name: (("instant", "body"), one, {"units": "N"}) for name, one in values.items()},
+            **{name: ("reading", one, {"units": unit}) for name, (one, unit) in moves.items()},
         },
-        {"candidate": best.key, "size": best.size, "model": best.model},
+        {
+            "test": ("instant", np.repeat(tests, len(time))), "time": ("instant", along), "body": list(bodies),
+            "slab_test": ("reading", np.repeat(OPEN, len(slab))), "slab_time": ("reading", np.tile(slab, len(OPEN))),
+        },
     )  # fmt: skip
 
 
-def sealed_tests(nearer):
-    """Sealed tests that the extended ensemble predicts better by a share of what the nominal one misses."""
-    names = [f"{family}.{what}" for family in ("joint1", "joint2", "base", "top") for what in "abc"]
-    tests = []
-    for place, name in enumerate(SEALED):
-        generator = np.random.default_rng(place)
-        truth = 6.0 * generator.normal(size=len(names))
-        centre = {"nominal": 0.0, "recalibrated": 0.1, "extended": nearer, "discrepancy": 0.3}
-        members = {
-            kind: {model: share * truth + generator.normal(size=(DRAWS, len(names))) for model in MODELS}
-            for kind, share in centre.items()
-        }
-        tests.append(SealedTest(name, names, truth, members))
-    return tests
-
-
-def informed():
-    """Information of the open tests on three nominal parameters, one of them a parameter of one solver alone."""
-    names = ["friction.concrete.concrete", "materials.concrete.youngs_modulus", "ls_dem.node_spacing"]
-    prior = np.array([[0.6, 40e9, 0.15], [0.75, 45e9, 0.2], [0.9, 50e9, 0.3]])
-    only = np.array([[True, True, True], [True, True, False]])
-    return xr.Dataset(
+def histories(tests, joints, top, kinds=None):
+    """Bands of ensembles beside measured curves, by kind where there are several."""
+    time = np.arange(0.0, 6.0, 0.02)
+    cells = [("rotation", joint, "rad") for joint in joints] + [("slip", joint, "m") for joint in joints]
+    cells.append(("drift", top, "m"))
+    sway = 0.02 * np.sin(5.0 * time)[:, None] * np.linspace(0.2, 1.0, len(cells))
+    measured = np.broadcast_to(1.3 * sway, (len(tests), *sway.shape))
+    band = np.stack([0.8 * sway, sway, 1.2 * sway])
+    band = np.broadcast_to(band, (len(tests), *band.shape))
+    dims = ("test", "quantile", "time", "cell")
+    if kinds:
+        factors = 1.0 + 0.3 * (np.array(kinds) == "extended")
+        band, dims = factors[:, None, None, None, None] * band, ("kind", *dims)
+    quantity, where, unit = zip(*cells, strict=True)
+    found = xr.Dataset(
         {
-            "prior": (("model", "quantile", "parameter"), np.where(only[:, None], prior, np.nan)),
-            "posterior": (("model", "quantile", "parameter"), np.where(only[:, None], 0.9 * prior, np.nan)),
-            "narrowing": (("model", "parameter"), np.where(only, 0.5, np.nan)),
-            "skill": (("model", "parameter"), np.where(only, 0.4, np.nan)),
-            "informed": (("model", "parameter"), only & [True, False, True]),
+            "band": (dims, band),
+            "measured": (("test", "time", "cell"), measured),
+            "horizon": (("test", "cell"), np.full((len(tests), len(cells)), 4.0), {"units": "s"}),
         },
-        {"model": list(MODELS), "parameter": names, "quantile": [0.05, 0.5, 0.95]},
-    )
+        {
+            "test": list(tests), "time": time, "quantile": [0.05, 0.5, 0.95],
+            "cell": [f"{a} {b}" for a, b, _ in cells],
+            "quantity": ("cell", list(quantity)), "where": ("cell", list(where)), "unit": ("cell", list(unit)),
+        },
+    )  # fmt: skip
+    return found.assign_coords(kind=list(kinds)) if kinds else found
+
+
+def misfit(joints, top):
+    """Misfit of the nominal simulation, as `misfit` has it."""
+    found = histories(OPEN, joints, top)
+    shape = (found.sizes["test"], found.sizes["cell"])
+    score = 1e-3 * (1.0 + np.arange(np.prod(shape)).reshape(shape))
+    return found.assign(
+        score=(("test", "cell"), score),
+        usual=(("test", "cell"), np.full(shape, 2e-3)),
+        chance=(("test", "cell"), np.full(shape, 0.04)),
+        worst_time=(("test", "cell"), np.full(shape, 3.1)),
+        p=0.04,
+    ).assign_attrs(where=f"drift of {top} in {OPEN[2]}", members=24)
+
+
+def responses(joints, top):
+    """Gain on the responses of sealed tests, as `response_gain` has it."""
+    kinds = ["nominal", "recalibrated", "extended", "placebo", "discrepancy"]
+    found = histories(SEALED, joints, top, kinds)
+    largest = np.outer([0.020, 0.021, 0.026, 0.021, 0.022], [1.0, 1.2])
+    score = np.array([0.9, 0.8, 0.3, 0.8, 0.7])
+    return found.assign(
+        score=("kind", score),
+        score_of_solver=(("kind", "model"), np.outer(score, [1.0, 1.1])),
+        floor=0.2,
+        largest=(("kind", "test"), largest),
+        largest_lower=(("kind", "test"), 0.8 * largest),
+        largest_upper=(("kind", "test"), 1.2 * largest),
+        largest_measured=("test", [0.0262, 0.0313]),
+    ).assign_coords(model=list(MODELS))
+
+
+def gain(estimate=0.8):
+    """The same gain against every rival."""
+    contrast = Contrast(estimate=estimate, lower=estimate - 0.1, upper=estimate + 0.1)
+    return Gain(recalibrated=contrast, nominal=contrast, discrepancy=contrast)
 
 
 def parity(structure, findings):
@@ -177,96 +213,26 @@ def parity(structure, findings):
 
 
 def track_record():
-    """A track record whose answers are many enough for an interval, with a goal missed."""
-    cases, seed = [], 0
-    rows = []
-    for truth, size, answers in (
-        ("none", None, {"none": 59, "wrong": 1}),
-        ("table-pitch", "large", {"right": 2, "set_with": 1}),
-        ("weak-joint", "small", {"none": 1, "set_with": 1, "unknown": 1}),
-    ):
-        rows.append(Row(truth=truth, size=size, answers=Answers(**answers)))
-        for answer, count in answers.items():
-            for _ in range(count):
-                seed += 1
-                cases.append(
-                    JudgedCase(
-                        name=f"case-{seed}",
-                        seed=seed,
-                        structure="two-blocks",
-                        truth=truth,
-                        size=size,
-                        answer=answer,
-                    )
-                )
-    return TrackRecord(
-        date="2026-11-20", commit="0123456789ab", procedure="ba9876543210", machine="two cores",
-        efforts={"two-blocks": "standard"}, seeds="fedcba987654",
-        shares={
-            "false-alarm": Share(
-                meaning="clean campaigns called an effect", hits=1, n=60, lower=0.0004, upper=0.0894, goal=0.05,
-                side="at most",
-            ),
-            "covered": Share(
-                meaning="truth named or in the set", hits=4, n=6, lower=0.2228, upper=0.9567, goal=0.88
-            ),
+    """A track record with a goal that is met and one that is missed, and a share without a goal."""
+
+    def share(meaning, hits, n, goal, side):
+        return {
+            "meaning": meaning,
+            "hits": hits,
+            "n": n,
+            "lower": 0.1,
+            "upper": 0.9,
+            "goal": goal,
+            "side": side,
+        }
+
+    return {
+        "date": "2026-11-20",
+        "commit": "0123456789ab",
+        "procedure": "ba9876543210",
+        "shares": {
+            "false-alarm": share("clean campaigns called an effect", 1, 60, 0.05, "at most"),
+            "covered": share("truth named or in the set", 4, 6, 0.88, "at least"),
+            "other": share("a share that has no goal", 1, 2, None, "at least"),
         },
-        medians={"gain": Median(meaning="sealed gain when named right", n=2, estimate=0.7, goal=0.6)},
-        confusion=tuple(rows), cases=tuple(cases),
-    )  # fmt: skip
-
-
-def write_made_up_track_record(path):
-    """Write `track_record` to a file."""
-    write_track_record(path, track_record())
-
-
-def write_horizons(folder):
-    """How long each open test can be predicted, by both solvers, a file each."""
-    paths = [folder / f"{name}-predictability.nc" for name in OPEN]
-    for path, horizon in zip(paths, ([3.0, 3.5], [2.0, 2.5], [5.0, 6.0]), strict=True):
-        write_dataset(path, xr.Dataset({"horizon": ("model", horizon)}, {"model": list(MODELS)}))
-    return paths
-
-
-def made_up_forces(tests, bodies):
-    """Joint forces of tests, as `measured_forces` has them."""
-    time = np.arange(0.0, 4.0, 0.01)
-    shape = len(tests), len(time)
-    swing = 0.39 * np.sign(np.sin(2.0 * np.pi * time))
-    joints = [f"{lower}-{upper}" for lower, upper in zip(["slab", *bodies], bodies, strict=False)]
-
-    def along(values, names):
-        return (("test", "time", "joint" if names is joints else "body"), np.broadcast_to(
-            np.asarray(values, dtype=np.float32)[None, :, None], (*shape, len(names))
-        ).copy())  # fmt: skip
-
-    columns = {
-        "lever": swing, "lever_error": np.full(len(time), 3e-3), "normal": np.full(len(time), 2e5),
-        "shear": 1e4 * swing, "side": np.sign(swing), "rotation": 0.01 * swing, "slip_rate": 0.05 * swing,
-        "work": 200.0 * time,
-    }  # fmt: skip
-    return xr.Dataset(
-        {
-            "read": (("test", "time"), np.ones(shape, np.int8)),
-            **{name: along(values, joints) for name, values in columns.items()},
-            "unexplained": along(-2e3 * (time > 2.0), bodies),
-            "told": (
-                ("test", "joint", "law", "time"),
-                np.ones((len(tests), len(joints), 3, len(time)), np.int8),
-            ),
-            "table_rotation": (("test", "time"), np.broadcast_to(1e-5 * swing, shape)),
-            "table_acceleration": (("test", "time"), np.broadcast_to(2.0 * swing, shape)),
-            "table_moment": (("test", "time"), np.broadcast_to(1e4 * np.cos(time), shape)),
-            "half_width": ("joint", np.full(len(joints), 0.38)),
-            "coefficient": ("joint", np.full(len(joints), 0.75)),
-        },
-        {
-            "test": list(tests),
-            "time": time,
-            "joint": joints,
-            "body": list(bodies),
-            "law": ["lever", "friction", "closed"],
-        },
-        {"outside": "null", "weight": 7.2e4},
-    )
+    }

@@ -177,7 +177,6 @@ rule make_diagnosis_report:
                 "parity.json",
                 "decision.json",
                 "evidence.nc",
-                "frozen.json",
                 "verdict.json",
             ],
         ),

@@ -3,5 +3,4 @@ from blockshake.report.diagnosis.report import make_diagnosis_report
 
 with logging_to(snakemake.log[0]):
     of, made = snakemake.params, snakemake.output
-    results = of.folder, of.results, of.effort, of.track_record
-    make_diagnosis_report(*results, made.html, made.pdf, snakemake.input.horizons)
+    make_diagnosis_report(of.folder, of.results, of.effort, of.track_record, made.html, made.pdf)

@@ -19,6 +19,7 @@ from blockshake.diagnosis.answer.limits import excluded_above, limits_of
 from blockshake.diagnosis.answer.odds import coarsened
 from blockshake.diagnosis.answer.places import place_of
 from blockshake.diagnosis.answer.size import members_of, size_of
+from blockshake.diagnosis.answer.slab_departures import slab_departures
 from blockshake.diagnosis.evidence.closed_joints import closed_joint_gains
 from blockshake.diagnosis.evidence.explanation import Fit
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
@@ -31,7 +32,7 @@ _NOT_SHOWN = "no departure larger than chance"
 
 
 class Decided(NamedTuple):
-    """A decision, and for the report the rows as forces, measured and explained, from `departures`."""
+    """A decision, and for the report what was measured and explained, from `departures` and `slab_departures`."""
 
     decision: Decision
     evidence: xr.Dataset
@@ -56,7 +57,8 @@ def decide(seen, without=(), cannot_see=()):
     closed = {seen[0].faces[face].name: gains for face, gains in closed_joint_gains(seen).items()}
     if JOINT_COMPLIANCE.name in without:
         closed = {}
-    slab = explain_slab([slab_motion(test) for test in seen], without)
+    slabs = [slab_motion(test) for test in seen]
+    slab = explain_slab(slabs, without)
     found = []
     first = group_of(rank(evidence, closed))
     if first:
@@ -83,7 +85,7 @@ def decide(seen, without=(), cannot_see=()):
         n_rows=sum(len(test.rows.value) for test in seen),
         cannot_see=cannot_see,
     )
-    return Decided(decision, shown)
+    return Decided(decision, shown.merge(slab_departures(seen, slabs, slab, parts)))
 
 
 def _of_joints(parts):

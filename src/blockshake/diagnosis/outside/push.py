@@ -104,4 +104,4 @@ def _act(experiment, size, place, when, test):
     return with_entry(experiment, "external_forces", entry)
 
 
-FORM = Form("push", "a steady push from an instant of each test on", "force", "N", _rows, _act)
+FORM = Form("push", "a steady push", "force", "N", _rows, _act)

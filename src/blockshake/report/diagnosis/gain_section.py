@@ -1,239 +1,145 @@
-"""Sixth page of a diagnosis: what the extension gains on tests that nothing was fitted to."""
+"""Fourth section of a diagnosis: what the cause means for the structure, on tests that nothing was fitted to."""
 
-import numpy as np
-
-from blockshake.report.diagnosis.figures.drift import plot_extended_drift
-from blockshake.report.diagnosis.parameters_table import nominal_parameters
-from blockshake.report.document.blocks import Figure, Items, Section, Table, Text
+from blockshake.report.diagnosis.answer_section import percent_words
+from blockshake.report.diagnosis.figures.histories import plot_drift
+from blockshake.report.document.blocks import Figure, Section, Table, Text
 from blockshake.report.document.drawing import svg_of
 from blockshake.report.document.wording import MISSING, model_label, number, sentence_case
 
-_KINDS = {
-    "nominal": "nominal",
-    "recalibrated": "recalibrated",
-    "discrepancy": "nominal with a discrepancy",
-    "extended": "extended",
+_RIVALS = {
+    "nominal": "the nominal model",
+    "recalibrated": "the nominal model, recalibrated on the open tests",
+    "discrepancy": "the nominal model with a discrepancy without a name",
+    "placebo": "the same cause at another place",
 }
-_MOST_FIGURES = 3  # rows of before and after
+_KINDS = {
+    "nominal": "Without",
+    "recalibrated": "Recalibrated without",
+    "extended": "With the cause",
+    "placebo": "Cause elsewhere",
+}
+_MOST_TESTS = 3
+OF_GAIN = ("gain was measured", "nothing to gain")  # by which caveats on the gain are known
 
 
 def gain_section(found):
-    """Scores against three rivals, what got worse, consequence, curves before and after."""
-    if found.sensor_gain is not None:
-        return _of_sensor(found)
-    if found.gain is None:
-        reasons = found.gain_caveats or ["no gain was measured: the model was not extended"]
-        return Section("Gain on sealed tests", "gain", (Text(sentence_case("; ".join(reasons))),))
-    gain = found.gain
-    tests = [str(name) for name in gain["test"].values]
+    """Gain on forces and responses against each rival, largest drift with and without the cause."""
+    verdict, gain = found.verdict, found.gain
+    title = "Gain on sealed tests"
+    if verdict.gain is None and verdict.row_gain is None:
+        reasons = [one for one in verdict.caveats if OF_GAIN[0] in one]
+        words = (
+            "; ".join(reasons) or "no gain was measured: nothing acts by which the model could be extended"
+        )
+        return Section(title, "gain", (Text(sentence_case(words)),))
     blocks = [
         Text(
-            f"Sealed tests: {', '.join(tests)}. They were opened after the decision had been frozen (digest "
-            f"{found.frozen['digest']}). Rivals of the extended model: the nominal one; the nominal "
-            "one recalibrated on the open tests; the nominal one with a statistical "
-            "discrepancy (Kennedy and O'Hagan 2001), which has no name. Score: continuous ranked probability score "
-            "of the features, each in units of its spread; lower is better."
+            "The sealed tests were opened after the decision had been frozen; nothing was fitted to them. Gain: "
+            "the share of a rival's error that the model with the cause removes; 100 % leaves nothing to gain, "
+            "below 0 the cause makes the prediction worse."
         ),
-        _scores(gain),
-        _gains(gain),
-        *_laws(gain),
-        _families(gain),
-        Text(_worse(gain), strong=bool(gain["worse"].any())),
-        _consequences(found),
+        _gains(verdict),
+        *(Text(sentence_case(one)) for one in verdict.caveats if any(words in one for words in OF_GAIN)),
     ]
-    shown = [str(name) for name in found.consequences["test"].values][:_MOST_FIGURES]
-    blocks.append(
-        Figure(
-            f"Displacement of {found.top} against the table on sealed tests, before and after: 5 to 95 % of both "
-            "solvers' members together, median, and the test.",
-            svg_of(plot_extended_drift, found.consequences, shown, found.top, found.measured_word),
-        )
+    if gain is not None and "where" in gain.attrs:
+        blocks.append(_of_sensor(gain))
+    elif gain is not None and "largest" in gain:
+        blocks += [_solvers(gain), _largest(found), _drift(found)]
+    return Section(title, "gain", tuple(blocks))
+
+
+def _gains(verdict):
+    columns = [one for one in ((verdict.row_gain, "Forces"), (verdict.gain, "Responses")) if one[0]]
+    rows = []
+    for rival, words in _RIVALS.items():
+        own = [getattr(gain, rival, None) for gain, _ in columns]
+        if any(own):
+            rows.append((words, *(percent_words(one) if one else MISSING for one in own)))
+    return Table(
+        "Gain against each rival with its interval of 90 %. Forces: those that sound blocks do not make, or the "
+        "motion of the slab that a sound table does not make, at the frozen sizes. Responses: simulated rotations "
+        "and slips of the joints and the drift of the top, as long as each can be predicted.",
+        ("Rival", *(name for _, name in columns)),
+        tuple(rows),
+        "l" + "r" * len(columns),
     )
-    blocks.append(nominal_parameters(gain))
-    caveats = found.gain_caveats
-    if caveats:
-        blocks.append(Items(tuple(map(sentence_case, caveats))))
-    return Section("Gain on sealed tests", "gain", tuple(blocks))
 
 
-def _of_sensor(found):
-    """Gain of taking a sensor's fault out: its readings against those of the other sensors."""
-    scores = found.sensor_gain
-    unit = scores["score"].attrs["units"]
-    shown, factor = ("mm", 1e3) if unit == "m" else ("ms", 1e3)
-    words = {
-        "nominal": "as read",
-        "extended": "fault taken out",
-        "discrepancy": "mean of the open tests taken off",
-    }
-    rows = tuple(
+def _solvers(gain):
+    kinds = [str(kind) for kind in gain["kind"].values]
+    rows = [
         (
-            str(name),
-            *(number(factor * float(scores["score"].sel(test=name, kind=kind)), 3) for kind in words),
-            number(factor * float(scores["floor"].sel(test=name)), 3),
+            model_label(str(model)),
+            *(number(gain["score_of_solver"].sel(model=model, kind=kind)) for kind in kinds),
+        )
+        for model in gain["model"].values
+    ]
+    rows.append(("all together", *(number(gain["score"].sel(kind=kind)) for kind in kinds)))
+    return Table(
+        "Scores by solver: continuous ranked probability score of the responses in units of their spread, lower "
+        f"is better. A record that the extended model had made itself would score {number(gain['floor'])} in the "
+        "mean.",
+        ("Solver", *(_kind(kind) for kind in kinds)),
+        tuple(rows),
+        "l" + "r" * len(kinds),
+    )
+
+
+def _kind(kind):
+    return _KINDS.get(kind, kind.capitalize())
+
+
+def _largest(found):
+    gain = found.gain
+    kinds = [kind for kind in _KINDS if kind in gain["kind"].values]
+    rows = []
+    for test in gain["test"].values:
+        own = gain.sel(test=test)
+        rows.append((
+            str(test), *(_with_band(own.sel(kind=kind)) for kind in kinds), number(1e3 * own["largest_measured"]),
+        ))  # fmt: skip
+    return Table(
+        "What it means for the structure: largest drift of the top against the table [mm], median of the members "
+        f"and their 5 to 95 %, and {'of the virtual test' if found.synthetic else 'measured'}.",
+        ("Test", *(_KINDS[kind] for kind in kinds), "Virtual test" if found.synthetic else "Measured"),
+        tuple(rows),
+        "l" + "r" * (len(kinds) + 1),
+    )
+
+
+def _with_band(own):
+    median, lower, upper = (number(1e3 * own[f"largest{end}"]) for end in ("", "_lower", "_upper"))
+    return f"{median} ({lower} to {upper})"
+
+
+def _drift(found):
+    tests = [str(name) for name in found.gain["test"].values][:_MOST_TESTS]
+    return Figure(
+        "Drift of the top against the table on sealed tests, without and with the cause: 5 to 95 % and median of the "
+        f"members of all solvers, and {found.measured_word}. Shaded: beyond the time for which it can be predicted.",
+        svg_of(plot_drift, found.gain, tests, ("recalibrated", "extended"), found.measured_word),
+    )
+
+
+def _of_sensor(scores):
+    """Gain of taking a sensor's fault out: its readings against those of the other sensors."""
+    factor, unit = (1e3, "mm") if scores["score"].attrs["units"] == "m" else (1e3, "ms")
+    words = {
+        "nominal": "As read",
+        "extended": "Fault taken out",
+        "discrepancy": "Mean of the open tests taken off",
+    }
+    rows = [
+        (
+            str(name), *(number(factor * float(scores["score"].sel(test=name, kind=kind))) for kind in words),
+            number(factor * float(scores["floor"].sel(test=name))),
         )
         for name in scores["test"].values
-    )
-    own = found.verdict.gain.nominal
-    return Section(
-        "Gain on sealed tests",
-        "gain",
-        (
-            Text(
-                f"The fault is one of the observation, so the extension acts there: the estimate from the open tests "
-                f"was taken out of the sealed ones, which were opened after the decision had been frozen (digest "
-                f"{found.frozen['digest']}). Of what could be gained it gains {100.0 * own.estimate:.0f} % "
-                f"({100.0 * own.lower:.0f} to {100.0 * own.upper:.0f} % in the single tests). No simulation enters it."
-            ),
-            Table(
-                f"Root mean square distance of the readings of {scores.attrs['where']} from where the other sensors "
-                f"put them [{shown}]; the floor is that while nothing moves.",
-                ("Test", *words.values(), "floor"),
-                rows,
-                "lrrrr",
-            ),
-        ),
-    )
-
-
-def _scores(gain):
-    models, tests = list(gain["model"].values), list(gain["test"].values)
-    rows = []
-    for kind, words in _KINDS.items():
-        own = gain.sel(kind=kind)
-        rows.append(
-            (
-                words,
-                number(own["score"]),
-                *(number(own["score_of_solver"].sel(model=model)) for model in models),
-                *(number(own["score_of_test"].sel(test=test)) for test in tests),
-            )
-        )
+    ]  # fmt: skip
     return Table(
-        "Scores: both solvers together, each by itself, and test by test. A record that the extended model had made "
-        f"itself would score {number(gain['floor'])} in the mean (the floor) and below {number(gain['highest'])} in 95 "
-        "of 100 cases. By one solver the ensembles are half as large.",
-        ("Model", "Both", *map(model_label, models), *map(str, tests)),
+        f"Root mean square distance of the readings of {scores.attrs['where']} from where the other sensors put them "
+        f"[{unit}]; the floor is that while nothing moves.",
+        ("Test", *words.values(), "Floor"),
         tuple(rows),
-        "l" + "r" * (1 + len(models) + len(tests)),
+        "lrrrr",
     )
-
-
-def _gains(gain):
-    rows = []
-    for rival in ("recalibrated", "nominal", "discrepancy"):
-        own = gain.sel(rival=rival)
-        there = np.isfinite(own["gain"])
-        rows.append(
-            (
-                _KINDS[rival],
-                _with_interval(own, "fall"),
-                _with_interval(own, "gain") if there else "nothing to gain",
-            )
-        )
-    confirmed = (
-        "each solver by itself shows at least half of the fall against the recalibrated model"
-        if bool(gain["confirmed"])
-        else "not each solver by itself shows half of the fall against the recalibrated model"
-    )
-    return Table(
-        "Against each rival, with intervals of 90 %: fall of the score, and gain, the fall over what there is to gain "
-        f"between the rival and the floor; 1 leaves nothing to gain (by chance it can be more), below 0 the "
-        f"extension is worse. Both solvers: {confirmed}.",
-        ("Rival", "Fall of the score", "Gain [1]"),
-        tuple(rows),
-        "lrr",
-    )
-
-
-def _laws(gain):
-    """Distances of the broken laws before and after, where sealed tests tell any; nothing of tests without laws."""
-    if "law_distance" not in gain or not gain.sizes["law_cell"]:
-        return []
-    kinds = [str(kind) for kind in gain["law_kind"].values]
-    rows = []
-    for place in range(gain.sizes["law_cell"]):
-        own = gain.isel(law_cell=place)
-        away = [number(own["law_distance"].sel(law_kind=kind), 2) for kind in kinds]
-        rows.append((str(own["cell_test"].item()), str(own["cell_law"].item()), *away))
-    gains = []
-    for rival in map(str, gain["law_rival"].values):
-        own = gain.sel(law_rival=rival)
-        words = _with_interval(own, "law_gain") if np.isfinite(own["law_gain"]) else "nothing to gain"
-        gains.append(f"{_KINDS[rival]}: {words}")
-    return [
-        Table(
-            "Laws of the joints that the open tests break, on the sealed tests: departure from each ensemble in "
-            "standard deviations of the nominal model. Laws are statics, and no chaos blurs them. Gain of the extended "
-            f"model on them, against {'; '.join(gains)} (1 leaves what chance leaves; interval of 90 %).",
-            ("Test", "Law", *(_KINDS[kind] for kind in kinds)),
-            tuple(rows),
-            "ll" + "r" * len(kinds),
-        )
-    ]
-
-
-def _families(gain):
-    rows = []
-    for family in gain["family"].values:
-        own = gain.sel(family=family)
-        rows.append(
-            (
-                str(family),
-                *(number(own["score_of_family"].sel(kind=kind)) for kind in _KINDS),
-                _with_interval(own, "fall_of_family"),
-                "worse" if bool(own["worse"]) else "",
-            )
-        )
-    return Table(
-        "Scores by family of features, and the fall against the recalibrated model with its interval of 90 %; worse: "
-        "the whole interval is below 0.",
-        ("Family", *_KINDS.values(), "Fall", ""),
-        tuple(rows),
-        "lrrrrrl",
-    )
-
-
-def _worse(gain):
-    worse = [str(name) for name in gain["family"].values[gain["worse"].to_numpy()]]
-    if not worse:
-        return "No family of features is predicted worse than by the recalibrated model beyond its interval."
-    return f"What got worse than by the recalibrated model: {', '.join(worse)}."
-
-
-def _consequences(found):
-    rows = []
-    for test in found.consequences["test"].values:
-        own = found.consequences.sel(test=test)
-        rows.append(
-            (
-                str(test),
-                *(_drift(own.sel(kind=kind)) for kind in own["kind"].values),
-                number(1e3 * own["measured"]),
-                *(_millimetres(own["crps"].sel(kind=kind, body=found.top)) for kind in own["kind"].values),
-            )
-        )
-    kinds = [str(kind) for kind in found.consequences["kind"].values]
-    return Table(
-        f"What it means for the user: median drift, the largest displacement of {found.top} against the table that "
-        "half of the members exceed, with its limits of 95 % by order statistics; the largest of the "
-        f"{'virtual test' if found.synthetic else 'test'}; score of the drift over time. All in mm.",
-        (
-            "Test", *(f"Median drift, {kind}" for kind in kinds), "Read off the test",
-            *(f"Score, {kind}" for kind in kinds),
-        ),
-        tuple(rows), "l" + "r" * (2 * len(kinds) + 1),
-    )  # fmt: skip
-
-
-def _drift(own):
-    return f"{number(1e3 * own['drift'])} ({number(1e3 * own['drift_lower'])} to {number(1e3 * own['drift_upper'])})"
-
-
-def _millimetres(value):
-    return number(1e3 * float(value)) if np.isfinite(value) else MISSING
-
-
-def _with_interval(own, name):
-    value, lower, upper = (float(own[key]) for key in (name, f"{name}_lower", f"{name}_upper"))
-    return f"{number(value)} ({number(lower)} to {number(upper)})"

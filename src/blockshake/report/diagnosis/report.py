@@ -1,33 +1,34 @@
 """The report of a diagnosis: one page and one PDF from the same content."""
 
-from blockshake.report.diagnosis.candidates_section import candidates_section
+from blockshake.report.diagnosis.answer_section import answer_section
 from blockshake.report.diagnosis.content import load_diagnosed
-from blockshake.report.diagnosis.evidence_section import evidence_section
-from blockshake.report.diagnosis.extension_section import extension_section
-from blockshake.report.diagnosis.forces_section import forces_section
 from blockshake.report.diagnosis.gain_section import gain_section
 from blockshake.report.diagnosis.limits_section import limits_section
 from blockshake.report.diagnosis.misfit_section import misfit_section
+from blockshake.report.diagnosis.odds_section import odds_section
+from blockshake.report.diagnosis.origin_section import origin_section
+from blockshake.report.diagnosis.sensors_section import sensors_section
+from blockshake.report.diagnosis.size_section import size_section
 from blockshake.report.diagnosis.track_record_section import track_record_section
-from blockshake.report.diagnosis.verdict_section import verdict_section
 from blockshake.report.document.blocks import Document, numbered
 from blockshake.report.document.html import write_html
 from blockshake.report.document.pdf import write_pdf
+from blockshake.report.document.wording import count_words
 
 _SECTIONS = (
-    verdict_section,
-    forces_section,
-    misfit_section,
-    candidates_section,
-    evidence_section,
-    extension_section,
+    answer_section,
+    odds_section,
+    size_section,
     gain_section,
-    track_record_section,
+    sensors_section,
+    misfit_section,
     limits_section,
+    track_record_section,
+    origin_section,
 )
 
 
-def make_diagnosis_report(campaign, results, effort, track_record, html, pdf, horizons=()):
+def make_diagnosis_report(campaign, results, effort, track_record, html, pdf):
     """Write the report of a diagnosis that has ended.
 
     Parameters
@@ -37,33 +38,32 @@ def make_diagnosis_report(campaign, results, effort, track_record, html, pdf, ho
     results : str or path
         Folder with its ``verdict.json`` and what that rests on.
     effort : str
-        One of `plan.EFFORTS`.
     track_record : str or path
         The procedure's track record; without one the report says so.
     html, pdf : str or path
         To write, each whole or not at all. Same results, same bytes.
-    horizons : sequence of str or path, optional
-        Files of the tests' predictability, in the order of the readings.
 
     Raises
     ------
     InputError
         A file is missing or holds something else.
     """
-    document = compose_diagnosis(load_diagnosed(campaign, results, effort, track_record, horizons))
+    document = compose_diagnosis(load_diagnosed(campaign, results, effort, track_record))
     write_html(html, document)
     write_pdf(pdf, document)
 
 
 def compose_diagnosis(found):
-    """The report's document from what was found."""
+    """The report's document from what was found; a section that has nothing to say is left out."""
+    tests = found.decision.tests
+    sections = (section(found) for section in _SECTIONS)
     return numbered(
         Document(
             title=f"blockshake: diagnosis of {found.campaign.name}",
             subtitle=(
-                f"{found.structure}, judged by {len(found.tests)} tests ({', '.join(found.tests)})"
+                f"{found.structure}, judged by {count_words(len(tests), 'test')} ({', '.join(tests)})"
                 f", effort {found.effort}"
             ),
-            sections=tuple(section(found) for section in _SECTIONS),
+            sections=tuple(section for section in sections if section),
         )
     )

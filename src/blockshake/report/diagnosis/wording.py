@@ -1,57 +1,121 @@
-"""Words of a diagnosis: effects, places, estimates."""
+"""Words of a diagnosis: causes, places, sizes, and what a form from outside is."""
 
+import numpy as np
+
+from blockshake.diagnosis.answer.places import EVERYWHERE
+from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS, title_of
-from blockshake.report.document.units import interval, printed, quantity, with_unit
+from blockshake.report.document.units import Printed, printed
 from blockshake.report.document.wording import number
 
-_WHERE = {
-    "input": "on the table's motion",
-    "contact": "in the contacts",
-    "geometry": "in the blocks' geometry and mass",
-    "force": "as a force on a block",
-    "observation": "in the sensors alone",
-}
+_MANY = 1e6  # from which on odds are told in words
+_ALONG_X = ("force", "impulse", "offset")
+_HIGH = 0.25  # of a body's height above its middle, from which on a force acts near the top
 
 
-def acting(effect):
-    """Where an effect of the registry acts, in words."""
-    return _WHERE[EFFECTS[effect].acts]
+def name_of(cause):
+    """A cause's name in words, effect of the registry or form from outside."""
+    return FORMS[cause].title if cause in FORMS else title_of(cause)
 
 
-def estimate_words(estimate):
-    """An estimate with its interval and its unit: ``0.62 (0.48 to 0.77) mrad per m/s2``."""
-    factor, _ = printed(estimate.unit)
-    ends = interval(estimate.lower, estimate.upper, estimate.unit)
-    return with_unit(f"{number(factor * estimate.estimate)} ({ends})", estimate.unit)
+def shown_unit(unit):
+    """Factor and name of the unit in which a size is shown: of a share, percent."""
+    return Printed(100.0, "%") if unit == "1" else printed(unit)
+
+
+def size_words(value, unit, digits=3):
+    """A size with its unit: ``19.6 mm``."""
+    factor, name = shown_unit(unit)
+    return f"{number(factor * value, digits)} {name}"
+
+
+def range_words(lower, upper, unit):
+    """Two ends with their unit: ``-150 to 150 mm``."""
+    factor, name = shown_unit(unit)
+    return f"{number(factor * lower)} to {number(factor * upper)} {name}"
+
+
+def estimate_words(name, estimate):
+    """An estimate of a parameter: ``0.62 mrad per m/s2 (0.48 to 0.77)``; of one along x with its side."""
+    factor, unit = shown_unit(estimate.unit)
+    values = [factor * one for one in (estimate.estimate, estimate.lower, estimate.upper)]
+    side = ""
+    if name in _ALONG_X and values[1] * values[2] > 0.0:
+        side = " towards +x" if values[0] > 0.0 else " towards -x"
+        values = [abs(values[0]), *sorted(map(abs, values[1:]))]
+    middle, lower, upper = map(number, values)
+    return f"{middle} {unit} ({lower} to {upper}){side}"
 
 
 def place_words(place):
-    """Where an effect is, such as ``joint slab / block-1``; empty where it has no place."""
-    words = [
-        value
-        if kind in ("body", "axis")
-        else f"{kind} {value if isinstance(value, str) else ' / '.join(value)}"
-        for kind, value in place.items()
-    ]
-    return ", ".join(words)
+    """A place of a file in words, such as ``joint slab / block-1``; empty where a cause has none."""
+    if "joint" in place:
+        return f"joint {' / '.join(place['joint'])}"
+    body = place.get("body", "")
+    return f"{_level(place['height'])} of {body}" if "height" in place else body
 
 
-def with_place(effect, place):
-    """An effect with where it is: ``joint of low friction (joint slab / block-1)``."""
-    words = place_words(place)
-    return f"{title_of(effect)} ({words})" if words else title_of(effect)
+def named_place(name, bodies):
+    """A place of the evidence in words, ``block-1@0.42`` as ``top of block-1``, among the names of all bodies."""
+    body, _, height = name.rpartition("@")
+    if body:
+        return f"{_level(float(height))} of {body}"
+    return name if name in (EVERYWHERE, *bodies) else f"joint {name}"
 
 
-def size_in_unit(effect, size):
-    """A size in units of the visible one as a value of the effect's first parameter, in SI."""
-    first = EFFECTS[effect].parameters[0]
-    return first.null + size * (first.visible - first.null)
+def _level(height):
+    return "top" if height > _HIGH else "middle"
+
+
+def sizes_of(cause):
+    """Parameters of a `Cause` in words: ``offset 37.7 mm (30.4 to 44.8) towards +x``."""
+    return ", ".join(f"{name} {estimate_words(name, own)}" for name, own in cause.parameters.items())
+
+
+def cause_words(cause, place):
+    """A `Cause` with its place in words, its sizes, and when it acts."""
+    name = f"{cause.title}{f' ({place})' if place else ''}"
+    return ", ".join(part for part in (name, sizes_of(cause), when_words(cause.when)) if part)
+
+
+def when_words(when):
+    """When a form from outside acts; empty of what acts all the time."""
+    if "starts" in when:
+        starts = (f"{_seconds(start)} of {test}" for test, start in when["starts"].items())
+        return f"from {listed(starts)} on"
+    if "blows" in when:
+        blows = (f"{_seconds(one['time'])} of {test}" for test, one in when["blows"].items())
+        return f"at {listed(blows)}"
+    if "start" in when:
+        after = " and in the tests after it" if when["lasts"] else ""
+        return f"from {_seconds(when['start'])} of {when['test']} on{after}"
+    return f"in {when['test']} alone" if "test" in when else ""
+
+
+def _seconds(time):
+    return f"{max(time, 0.0):.2f} s"
+
+
+def listed(words, last="and"):
+    """Words in a row: ``a, b and c``."""
+    *others, end = words
+    return f"{', '.join(others)} {last} {end}" if others else end
+
+
+def times_words(odds):
+    """How many times likelier, from the logarithm of the odds: ``57 times``."""
+    if odds > np.log(_MANY):
+        return "more than a million times"
+    ratio = float(f"{np.exp(odds):.2g}")
+    return f"{ratio:,.0f} times" if ratio > 10.0 else f"{number(ratio, 2)} times"
 
 
 def beyond(effect, value):
     """A size in words from which on an effect would have been seen."""
     first = EFFECTS[effect].parameters[0]
-    if first.visible < first.null:
-        return f"below {quantity(value, first.unit)}"
-    sign = "\N{PLUS-MINUS SIGN}" if first.lower < first.null else ""
-    return f"beyond {sign}{quantity(value, first.unit)}"
+    return f"{'below' if first.visible < first.null else 'beyond'} {size_words(value, first.unit)}"
+
+
+def chance_words(p):
+    """A chance, as a number where it is not too small for one."""
+    return f"p = {number(p, 2)}" if p > 1.0 / _MANY else "less than 1 in a million"

@@ -28,6 +28,9 @@ _PRINTED = {
     "Pa": Printed(1e-9, "GPa"),
     "Pa s": Printed(1e-6, "MPa s"),
     "rad/(N m)": Printed(1e9, "mrad per MN m"),
+    "N": Printed(1e-3, "kN"),
+    "N s": Printed(1e-3, "kN s"),
+    "N s/m": Printed(1e-3, "kN s/m"),
     "N/m": Printed(1e-6, "MN/m"),
     "N/m3": Printed(1e-9, f"GN/m{CUBED}"),
     "m3/N": Printed(1e9, "mm/MPa"),
@@ -49,16 +52,6 @@ def quantity(value, unit, digits=3):
     >>> quantity(0.0123, "m"), quantity(0.5, "1")
     ('12.3 mm', '0.500')
     """
-    return with_unit(number(printed(unit).factor * value, digits), unit)
-
-
-def with_unit(words, unit):
-    """Numbers in the printed unit, followed by its name; a share has none."""
-    name = printed(unit).name
+    factor, name = printed(unit)
+    words = number(factor * value, digits)
     return words if name == "1" else f"{words} {name}"
-
-
-def interval(lower, upper, unit, digits=3):
-    """Two ends in the printed unit, which is not named."""
-    factor, _ = printed(unit)
-    return f"{number(factor * lower, digits)} to {number(factor * upper, digits)}"
