@@ -1,4 +1,4 @@
-"""Names, needs, constants and efforts of docs/diagnosis.md are those of the program."""
+"""Names, needs, constants and efforts of docs/diagnosis.md, and fields of the verdict, are those of the program."""
 
 import importlib
 import re
@@ -7,10 +7,12 @@ import pytest
 
 from blockshake.diagnosis.answer.answer import _NEEDED_OF_SLAB, needed_of
 from blockshake.diagnosis.outside.registry import FORMS
+from blockshake.diagnosis.verdict.verdict import Verdict
 from blockshake.effects.registry import EFFECTS
 from blockshake.files import PACKAGE
 
-PAGE = (PACKAGE.parents[1] / "docs" / "diagnosis.md").read_text(encoding="utf-8")
+DOCS = PACKAGE.parents[1] / "docs"
+PAGE = (DOCS / "diagnosis.md").read_text(encoding="utf-8")
 ROWS = [
     [cell.strip() for cell in line.strip("|").split("|")]
     for line in PAGE.splitlines()
@@ -50,3 +52,14 @@ def test_the_efforts():
         row[0].strip("`"): [int(cell) for cell in row[1:]] for row in ROWS if row[0].strip("`") in efforts
     }
     assert stated == {name: [one.tests, one.draws, one.twins] for name, one in efforts.items()}
+
+
+def test_the_contract_has_every_field_of_the_verdict():
+    text = (DOCS / "contracts.md").read_text(encoding="utf-8")
+    section = text[text.index("\n## Verdict") : text.index("\n## Conventions")]
+    stated = [
+        name
+        for line in re.findall(r"^\| (`.*?) \|", section, re.MULTILINE)
+        for name in re.findall(r"`(\w+)`", line)
+    ]
+    assert sorted(stated) == sorted(Verdict.model_fields)
