@@ -14,23 +14,27 @@ _DAMPING = 0.05  # of critical; tables are lightly damped
 _PITCH = CHANNELS.index("pitch_y")
 
 
-_FREQUENCIES = (5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 15.0, 17.0, 20.0, 25.0, 30.0)  # Hz
+_FREQUENCIES = np.geomspace(5.0, 30.0, 60)  # Hz, closer than the width of the resonance
+_DAMPINGS = (_DAMPING, 0.2, 1.0)  # of critical: the last two real poles
+_RATIO = _FREQUENCIES[1] / _FREQUENCIES[0]
 _SCALE = 6e-4  # rad s2/m
 
 
 def _turns(slab):
-    """Rotations of the slab by every frequency; see `Effect`."""
+    """Rotations of the slab by every frequency and damping; see `Effect`."""
     found = []
-    for frequency in _FREQUENCIES:
-        turn = _response(slab.acceleration, slab.step, frequency)[slab.at]
-        found.append(Columns({"frequency": frequency}, turn[:, None], (_SCALE,), False))
+    for damping in _DAMPINGS:
+        for frequency in _FREQUENCIES:
+            turn = _response(slab.acceleration, slab.step, frequency, damping)[slab.at]
+            values = {"frequency": float(frequency), "damping": damping}
+            found.append(Columns(values, turn[:, None], (_SCALE,), False))
     return found
 
 
-def _response(acceleration, step, frequency):
-    """Rotation by 1 rad s2/m of a history of acceleration at uniform times."""
+def _response(acceleration, step, frequency, damping=_DAMPING):
+    """Rotation by 1 rad s2/m of a history of acceleration at uniform times, straight between them."""
     omega = 2.0 * np.pi * frequency
-    system = [omega**2], [1.0, 2.0 * _DAMPING * omega, omega**2]
+    system = [omega**2], [1.0, 2.0 * damping * omega, omega**2]
     return lsim(system, acceleration, step * np.arange(len(acceleration)))[1]
 
 
@@ -67,5 +71,5 @@ EFFECT = Effect(
     places=nowhere,
     act=_act,
     turns=_turns,
-    reads=lambda values, size, between: {"coefficient": size, "frequency": values["frequency"] + between},
+    reads=lambda values, size, between: {"coefficient": size, "frequency": values["frequency"] * _RATIO**between},
 )  # fmt: skip

@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from blockshake.diagnosis.answer.answer import COARSENING, ODDS, Rival, coarsened, group_of, slab_groups
+from blockshake.diagnosis.answer.answer import Rival, group_of, slab_groups
+from blockshake.diagnosis.answer.odds import COARSENING, ODDS, coarsened
 
 
 def rivals(**scores):

@@ -4,13 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from blockshake.diagnosis.answer.odds import ODDS, coarsened
 from blockshake.diagnosis.evidence.explanation import mean_evidence
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
 
-ODDS = float(np.log(20.0))  # within which causes are not told apart
-COARSENING = 0.05  # share of what it explains that the form of a cause may leave unexplained
 FREE_SHARE = 0.85  # of what any force at its place would explain, that a named form must
 FREE_FORCE = "unknown-force"
 _PRIOR, _PRIOR_OUTSIDE, _PRIOR_FREE = -3.0, -3.5, -6.0
@@ -62,15 +61,6 @@ class Group:
     rivals: tuple
     odds: dict
     gains: dict
-
-
-def coarsened(difference, gain):
-    """Logarithm of the odds of two causes whose scores differ, the better one gaining ``gain``.
-
-    The likelihood is raised to ``1 / (1 + delta gain / ln 20)``: a form may leave a share delta of what it explains
-    (Miller and Dunson 2019, coarsened posteriors).
-    """
-    return difference / (1.0 + COARSENING * max(gain, 0.0) / ODDS)
 
 
 def rank(evidence, closed=None):

@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 
 from blockshake.diagnosis.answer.answer import (
-    coarsened,
     group_of,
     needed_beside,
     rank,
@@ -17,6 +16,7 @@ from blockshake.diagnosis.answer.decision import Cause, Decision, Part
 from blockshake.diagnosis.answer.departures import departures, largest
 from blockshake.diagnosis.answer.explain import gather_evidence
 from blockshake.diagnosis.answer.limits import excluded_above, limits_of
+from blockshake.diagnosis.answer.odds import coarsened
 from blockshake.diagnosis.answer.places import place_of
 from blockshake.diagnosis.answer.size import size_of
 from blockshake.diagnosis.evidence.closed_joints import closed_joint_gains
@@ -125,7 +125,7 @@ def _part(readings, group, seen, evidence, closed, slab=None):
     for rival in group.rivals:
         fits, logs = _fits(rival, evidence, closed, slab)
         parameters, members = size_of(rival.cause, rival.place, fits, logs)
-        best = fits[int(np.argmax(logs))]
+        best = fits[int(np.argmax(logs))] if evidence is None else _best(rival, evidence, fits, logs)
         when = {key: value for key, value in best.values.items() if key != "history"}
         causes.append(
             Cause(
@@ -143,12 +143,22 @@ def _part(readings, group, seen, evidence, closed, slab=None):
     return Part(readings=readings, causes=causes, odds=group.odds, gains=group.gains)
 
 
+def _best(rival, evidence, fits, logs):
+    """The likeliest fit at the likeliest place."""
+    key = rival.cause, rival.place
+    return (
+        evidence.best(key).best
+        if key in evidence.keys and rival.cause != JOINT_COMPLIANCE.name
+        else fits[int(np.argmax(logs))]
+    )
+
+
 def _fits(rival, evidence, closed, slab):
     if slab is not None:
         explained = slab[rival.cause]
         return explained.fits, np.array([fit.gain for fit in explained.fits])
     if rival.cause != JOINT_COMPLIANCE.name:
-        return evidence.fits((rival.cause, rival.place))
+        return evidence.fits(rival.cause, rival.places)
     key = rival.cause, rival.place
     turned = evidence.gains_of_variants(key) if evidence and key in evidence.keys else 0.0
     gains = soft_gains(turned, closed.get(rival.place, 0.0)) * np.ones(len(COMPLIANCES))

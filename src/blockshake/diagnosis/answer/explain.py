@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
+from blockshake.diagnosis.answer.odds import coarsened
 from blockshake.diagnosis.answer.places import place_name
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.evidence.joint_rows import JointRows
@@ -161,19 +162,25 @@ class Evidence:
         speaks = [one.by_key[key].gain + one.likelihood.log_evidence for one in self.explained]
         return self.explained[int(np.argmax(speaks))].by_key[key]
 
-    def fits(self, key):
-        """All `Fit` of a cause at a place, with the logarithms of their weights over all likelihoods.
+    def fits(self, cause, places):
+        """All `Fit` of a cause at places that cannot be told apart, with the logarithms of their weights.
 
         Returns
         -------
         list of Fit, float64 array
+            Over all likelihoods; from place to place coarsened, see `coarsened`.
         """
+        gains = [self.gain((cause, place)) for place in places]
         found, logs = [], []
-        for one in self.explained:
-            for fit in one.by_key[key].fits:
-                found.append(fit)
-                logs.append(fit.gain + one.likelihood.log_evidence)
-        return found, np.array(logs) - logsumexp(logs)
+        for place, gain in zip(places, gains, strict=True):
+            own, weights = [], []
+            for one in self.explained:
+                for fit in one.by_key[cause, place].fits:
+                    own.append(fit)
+                    weights.append(fit.gain + one.likelihood.log_evidence)
+            found += own
+            logs += list(np.array(weights) - logsumexp(weights) - coarsened(max(gains) - gain, max(gains)))
+        return found, np.array(logs)
 
     @property
     def keys(self):

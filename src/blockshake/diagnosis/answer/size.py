@@ -4,8 +4,8 @@ import zlib
 
 import numpy as np
 
-from blockshake.diagnosis.answer.answer import COARSENING
 from blockshake.diagnosis.answer.decision import MEMBERS, Estimate
+from blockshake.diagnosis.answer.odds import FORM
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS
 
@@ -47,9 +47,9 @@ def size_of(name, place, fits, logs):
 
 
 def _amplitudes(fit, count, generator):
-    """Draws of a fit's amplitude, several as one of the first column; the form is as true as it is taken for."""
+    """Draws of a fit's amplitude, several as one of the first column, with the error of the form."""
     mean = float(fit.contrast @ fit.mean)
-    variance = float(fit.contrast @ fit.covariance @ fit.contrast) + (COARSENING * mean) ** 2
+    variance = float(fit.contrast @ fit.covariance @ fit.contrast) + (FORM * mean) ** 2
     deviation = float(np.sqrt(max(variance, 0.0)))
     drawn = mean + deviation * generator.standard_normal(count)
     return np.abs(drawn) if fit.positive else drawn

@@ -14,7 +14,8 @@ _EVERY = 3  # instants
 _TURN_NOISE, _LIFT_NOISE = 1.5e-5, 2e-5  # rad, m: no sensor is better
 _COLOURED, _MEMORY = 5e-6, 0.1  # rad, s: of the rotation
 _OFFSET, _BY_ACCELERATION, _BY_MOMENT = 3e-5, 1.5e-5, 2.5e-11  # rad, rad s2/m, rad/(N m): of sound tables
-_LIFT_COLOURED, _LIFT_OFFSET, _LIFT_BY_FORCE = 1e-5, 3e-5, 3e-9  # m, m, m/N
+_LIFT_COLOURED, _LIFT_OFFSET, _LIFT_BY_FORCE, _LIFT_BY_TURN = 1e-5, 3e-5, 1e-8, 0.6  # m, m, m/N, m
+_BOUNCE, _BOUNCE_MEMORY = 1.5e-4, 0.03  # m, s: of a base that gives
 _MULTIPLES = ((1.0, 0.0), (3.0, -2.0), (9.0, -8.0))  # of the coloured error, and the logarithm of their prior
 _RIDGES = 0.05, 0.1
 _DELAYS, _RATIO = (
@@ -34,7 +35,7 @@ class SlabMotion:
         Rotation about y and vertical displacement, from rest [s, rad, m].
     acceleration, moment, force : float64 arrays, shape (n_times,)
         Of the slab along x, and of the contacts on it: about y through its centre, and downwards, from rest [m/s2, N m,
-        N]; zero where unknown.
+        N]; zero where unknown; smoothed as displacements are.
     at : int array
         Instants that are compared.
     turn_noise, lift_noise : float
@@ -77,12 +78,23 @@ def slab_motion(test):
         & np.isfinite(moment)
         & np.isfinite(motion.acceleration[:, body, 0])
     )
+    drives = (np.nan_to_num(one) for one in (motion.acceleration[:, body, 0], moment, force))
     return SlabMotion(
-        motion.time, turn, lift, np.nan_to_num(travel), np.nan_to_num(motion.acceleration[:, body, 0]),
-        np.nan_to_num(moment), np.nan_to_num(force), np.flatnonzero(known)[::_EVERY],
+        motion.time, turn, lift, np.nan_to_num(travel), *(_as_fitted(one, motion) for one in drives),
+        np.flatnonzero(known)[::_EVERY],
         max(float(np.nanstd(turn[test.still])), _TURN_NOISE), max(float(np.nanstd(lift[test.still])), _LIFT_NOISE),
         motion.width,
     )  # fmt: skip
+
+
+def _as_fitted(history, motion):
+    """A history smoothed by the kernel alone, as the local quadratic fits of displacements smooth: ``h - w^2 h'' / 2``.
+
+    The fitted value passes ``(1 + s^2 / 2) exp(-s^2 / 2)`` of a frequency, ``s = omega w``, and the second derivative
+    passes the second factor alone.
+    """
+    step = motion.time[1] - motion.time[0]
+    return history - 0.5 * motion.width**2 * np.gradient(np.gradient(history, step), step)
 
 
 def _from_rest(values, still):
@@ -151,10 +163,13 @@ def _turning(effect, slabs, likelihoods):
 
 
 def _lifting(effect, slabs):
-    """A random vertical motion of any size against none, with or without a force that compresses the base."""
+    """A random vertical motion of any size against none, of a base that gives under the force on it or does not."""
     logs = np.zeros((2, 1 + len(effect.lifts(slabs[0]))))
     for slab in slabs:
-        pressed = _LIFT_BY_FORCE**2 * np.outer(slab.force[slab.at], slab.force[slab.at])
+        by = ((_LIFT_BY_FORCE, slab.force), (_LIFT_BY_TURN, slab.turn), (_LIFT_BY_TURN, np.abs(slab.turn)))
+        apart = np.abs(slab.time[slab.at][:, None] - slab.time[slab.at])
+        pressed = _BOUNCE**2 * np.exp(-apart / _BOUNCE_MEMORY)
+        pressed += sum(share**2 * np.outer(one[slab.at], one[slab.at]) for share, one in by)
         for gives, base in enumerate((_lift_noise(slab), _lift_noise(slab) + pressed)):
             for size, motion in enumerate((0.0, *effect.lifts(slab))):
                 logs[gives, size] += _log_density(slab.lift[slab.at], base + motion)

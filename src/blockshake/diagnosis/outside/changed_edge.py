@@ -7,6 +7,7 @@ from blockshake.diagnosis.outside.form import Form
 
 _STARTS_EVERY = 0.5  # s
 _SCALE = 0.05  # m
+_NEVER = -1e3  # nats
 
 
 def explain_changed_edge(likelihood, tests, place, key):
@@ -32,6 +33,8 @@ def explain_changed_edge(likelihood, tests, place, key):
                         columns[number].append(_rows(one, key, edge, number, own, start, lasts))
     whitened = likelihood.whiten([np.stack(rows, axis=1) for rows in columns])
     gain, mean, deviation = likelihood.single(whitened, _SCALE, positive=True)
+    widest = 0.5 * float(np.ptp(tests[0].seen.faces[key[0]].corners[:, key[1]]))
+    gain = np.where(mean < widest, gain, _NEVER)  # an edge lies on its face
     best = int(np.argmax(gain))
     own, start, lasts, edge = tried[best]
     return single(

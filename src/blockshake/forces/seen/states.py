@@ -7,9 +7,13 @@ from scipy.ndimage import minimum_filter1d, uniform_filter1d
 
 from blockshake.geometry.rotations import rotation_matrices
 
-_LIFTED = 1e-3  # m, between the edges that should bear
+_LIFTED, _FLIES = (
+    1e-3,
+    4e-3,
+)  # m, between the edges that should bear; within the first a bounce may have touched
 _SLIPS = 0.01  # m/s, mean over `_OVER`
 _OVER = 0.1  # s; a creep drowns in the rate's own noise and shows in the displacement over this time
+_STILL = 0.5  # of the mean, that a slip that goes on has at least
 _SURE = 5.0  # standard deviations
 _CALM = 3.0  # widths of the kernel: a change farther away moves a lever by less than a millimetre
 _EITHER = 99  # number of no state
@@ -65,9 +69,12 @@ def face_states(structure, faces, motion, joints, still):
     mean = uniform_filter1d(np.nan_to_num(joints.slip_rate), max(1, round(_OVER / step)), axis=0)
     least = np.maximum(_SLIPS, np.sqrt(2.0) * _SURE * joints.slip_error / _OVER)
     slip = np.where(np.abs(mean) > least, np.sign(mean), 0.0).astype(np.int8)
-    slip *= (np.sign(joints.slip_rate) == slip) & ~lifted
+    # the mean still remembers a slip that has ended
+    ends = np.sign(mean) * joints.slip_rate < _STILL * np.abs(mean)
+    slip *= ~ends & ~lifted
     slip *= _unchanged(slip, near)
-    return FaceStates(edge, slip, lifted & _unchanged(lifted, near), closed)
+    flies = minimum_filter1d(np.nan_to_num(away), 2 * near, axis=0, mode="nearest", origin=-1) > _FLIES
+    return FaceStates(edge, slip, flies, closed)
 
 
 def openings(structure, faces, motion, joints, still):
