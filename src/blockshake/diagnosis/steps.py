@@ -34,11 +34,12 @@ def decide(folder, without):
     Measured
     """
     from blockshake.diagnosis.answer.decide import decide
-    from blockshake.diagnosis.answer.seen_campaign import see_open_tests
+    from blockshake.diagnosis.evidence.seen_campaign import see_campaign
     from blockshake.measurement.campaigns.campaign import load_campaign
 
-    parity, seen = see_open_tests(load_campaign(folder), without)
-    return Measured(parity, *decide(seen, without))
+    seen = see_campaign(load_campaign(folder), without)
+    unseen = [f"{name} is not judged: {reason}" for name, reason in seen.unseen.items()]
+    return Measured(seen.parity, *decide(seen.tests, without, unseen))
 
 
 def simulate_library(name, solver, config, shared, store, source, progress):

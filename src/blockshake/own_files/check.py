@@ -11,7 +11,7 @@ from blockshake.dynamics.provenance import provenance
 from blockshake.dynamics.synthetic_schema import SyntheticMotion
 from blockshake.errors import InputError, faults_of
 from blockshake.files import load_yaml, shipped_names
-from blockshake.forces.sight import sight_lines
+from blockshake.forces.seen.sight import sight_lines
 from blockshake.geometry.schema import StructureFile
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import CampaignFile, load_campaign, load_test

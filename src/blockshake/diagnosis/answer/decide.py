@@ -18,10 +18,11 @@ from blockshake.diagnosis.answer.explain import gather_evidence
 from blockshake.diagnosis.answer.limits import excluded_above, limits_of
 from blockshake.diagnosis.answer.odds import coarsened
 from blockshake.diagnosis.answer.places import place_of
-from blockshake.diagnosis.answer.size import size_of
+from blockshake.diagnosis.answer.size import members_of, size_of
 from blockshake.diagnosis.evidence.closed_joints import closed_joint_gains
 from blockshake.diagnosis.evidence.explanation import Fit
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
+from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.joint_compliance import COMPLIANCES
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
@@ -123,10 +124,10 @@ def _probabilities(parts, without):
 def _part(readings, group, seen, evidence, closed, slab=None):
     causes = []
     for rival in group.rivals:
-        fits, logs = _fits(rival, evidence, closed, slab)
-        parameters, members = size_of(rival.cause, rival.place, fits, logs)
-        best = fits[int(np.argmax(logs))] if evidence is None else _best(rival, evidence, fits, logs)
-        when = {key: value for key, value in best.values.items() if key != "history"}
+        fits, logs = _fits(rival, [rival.place], evidence, closed, slab)
+        # a force is said where it is the likeliest; of an effect the places of its class give one size
+        alike = (fits, logs) if rival.cause in FORMS else _fits(rival, rival.places, evidence, closed, slab)
+        best = fits[int(np.argmax(logs))]
         causes.append(
             Cause(
                 name=rival.cause,
@@ -134,31 +135,22 @@ def _part(readings, group, seen, evidence, closed, slab=None):
                 places=rival.places,
                 gain=rival.gain,
                 odds=group.odds[rival.cause],
-                parameters=parameters,
-                members=members,
-                when=when,
+                parameters=size_of(rival.cause, rival.place, *alike),
+                members=members_of(rival.cause, rival.place, fits, logs),
+                when={key: value for key, value in best.values.items() if key != "history"},
                 amplitudes=best.mean.tolist(),
             )
         )
     return Part(readings=readings, causes=causes, odds=group.odds, gains=group.gains)
 
 
-def _best(rival, evidence, fits, logs):
-    """The likeliest fit at the likeliest place."""
-    key = rival.cause, rival.place
-    return (
-        evidence.best(key).best
-        if key in evidence.keys and rival.cause != JOINT_COMPLIANCE.name
-        else fits[int(np.argmax(logs))]
-    )
-
-
-def _fits(rival, evidence, closed, slab):
+def _fits(rival, places, evidence, closed, slab):
+    """Fits of a rival at some of its places, and the logarithms of their weights."""
     if slab is not None:
         explained = slab[rival.cause]
         return explained.fits, np.array([fit.gain for fit in explained.fits])
     if rival.cause != JOINT_COMPLIANCE.name:
-        return evidence.fits(rival.cause, rival.places)
+        return evidence.fits(rival.cause, places)
     key = rival.cause, rival.place
     turned = evidence.gains_of_variants(key) if evidence and key in evidence.keys else 0.0
     gains = soft_gains(turned, closed.get(rival.place, 0.0)) * np.ones(len(COMPLIANCES))

@@ -7,7 +7,7 @@ import xarray as xr
 from tiny_campaign import write_campaign
 
 from blockshake.files import PACKAGE, write_dataset
-from blockshake.forces.sight import sight_lines
+from blockshake.forces.seen.sight import sight_lines
 from blockshake.measurement.campaigns.campaign import load_campaign
 
 STRUCTURE = PACKAGE.parents[1] / "hidden_effects" / "structures" / "two-blocks.yaml"
@@ -45,7 +45,7 @@ def test_a_block_with_one_marker_gives_no_joint_forces(folder):
     kept.append(next(name for name in names if name.startswith("block-2")))
     write_dataset(folder / "one-100.nc", test.sel(marker=kept))
     (line,) = sight_lines(load_campaign(folder))
-    assert line == "joint forces: none, the rotation of block-2 is not read; whole tests alone are judged"
+    assert line == "joint forces: none, the rotation of block-2 is not read"
 
 
 def test_sensors_without_stated_noise_are_the_best_instruments(folder):
@@ -59,4 +59,10 @@ def test_a_record_of_three_readings_gives_no_joint_forces(folder):
     test = xr.load_dataset(folder / "one-100.nc")
     write_dataset(folder / "one-100.nc", test.isel(time=slice(3)))
     (line,) = sight_lines(load_campaign(folder))
-    assert line == "joint forces: none, the first open test is too short; whole tests alone are judged"
+    assert line == "joint forces: none, the test is too short"
+
+
+def test_a_frame_of_blocks_has_no_lever_of_a_single_joint(tmp_path):
+    write_campaign(tmp_path, STRUCTURE.with_name("bridged-walls.yaml"))
+    (line,) = sight_lines(load_campaign(tmp_path))
+    assert line.startswith("joint forces: sums over the joints that turn")
