@@ -74,7 +74,7 @@ EFFECT = Effect(
         EffectParameter("coefficient", "rad s2/m", "static pitch by acceleration", 0.0, -1.5e-3, 1.5e-3, 6e-4),
         EffectParameter("frequency", "Hz", "of the table's pitching", 15.0, 5.0, 30.0, 15.0),
     ),
-    signature=Signature("quiet", "symmetric", "slab"),
+    signature=Signature("quiet", "symmetric"),
     confused_with=("joint-compliance",),
     told_apart_by="vertical displacement of two markers on the slab, apart along x",
     places=nowhere,
