@@ -119,7 +119,7 @@ def _simulated(effect, scale):
     if effect is not None:
         experiment = with_effect(experiment, **effect)
     run = simulate(
-        experiment.structure, experiment.motion, "nscd-rigid", {},
+        experiment.structure, experiment.motion, "nscd-rigid", {"nscd.shrink": 0.01},
         time_step=5e-4, duration=DURATION, accelerometers=False,
     )  # fmt: skip
     return observe(run, experiment.structure, experiment.instruments, 1)["marker_displacement"]
