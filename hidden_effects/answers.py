@@ -1,4 +1,4 @@
-"""One answer beside its truth: what was named, asserted, placed and sized, and whether the tests could show it."""
+"""One verdict beside its truth: named, asserted, placed and sized, and whether the tests could show it."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -38,7 +38,7 @@ class Scored:
 
     @cached_property
     def causes(self):
-        """What is hidden, by name."""
+        """The hidden causes by name."""
         return {cause["name"]: cause for cause in self.truth["causes"]}
 
     @property
@@ -138,12 +138,6 @@ class Scored:
         side = 1.0 if place["axis"] == "+x" else -1.0
         open_tests = [test for test in self.truth["tests"].values() if test["role"] != "sealed"]
         return max(side * end for test in open_tests for end in test["drift"][place["body"]]) > gap
-
-    @property
-    def limit(self):
-        """Distance from the null value above which the verdict excludes the truth, where it says so."""
-        limit = self.verdict.excluded_above.get(self.cause["name"])
-        return None if limit is None else abs(limit - EFFECTS[self.cause["name"]].parameters[0].null)
 
     @property
     def placed(self):

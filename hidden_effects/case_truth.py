@@ -20,7 +20,7 @@ _EFFECT, _PARAMETERS, _NUMERICS, _TABLE, _PLACES = range(5)  # streams of the se
 
 
 def true_causes(names, size, structure, tests, seed):
-    """What is hidden in a case: by cause its name, values, place, and size in units of the visible one.
+    """Causes that are hidden in a case: name, values, place, and size in units of the visible one.
 
     Parameters
     ----------

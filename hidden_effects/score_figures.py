@@ -61,7 +61,6 @@ def _of_effects(known):
     large = [case for case in known if case.truth["size"] == "large"]
     right = [case for case in known if case.answer == "right"]
     held = [case for case in known if case.held]
-    silent = [case for case in known if case.verdict.decision == "none" and case.limit is not None]
     covered = [hit for case in right for hit in case.covered.values()]
     return {
         "can_be_seen": _share(
@@ -78,10 +77,6 @@ def _of_effects(known):
             [case.answer == "right" or case.within_class for case in large if case.can_be_seen],
         ),
         "exact_large_alone": _share("the same, named alone", [case.answer == "right" for case in large]),
-        "bound_holds": _share(
-            "no effect is called, and the truth is no larger than what is said to be excluded",
-            [case.size <= case.limit for case in silent],
-        ),
         "location": _share(
             "the place is right, or among those that cannot be told apart, where the truth is held",
             [case.placed for case in held if case.cause["place"]], 0.95,
