@@ -21,7 +21,7 @@ from blockshake.diagnosis.answer.places import place_of
 from blockshake.diagnosis.answer.size import members_of, size_of
 from blockshake.diagnosis.answer.slab_departures import slab_departures
 from blockshake.diagnosis.evidence.closed_joints import closed_joint_gains
-from blockshake.diagnosis.evidence.explanation import Fit
+from blockshake.diagnosis.evidence.explanation import Fit, mean_evidence
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.joint_compliance import COMPLIANCES
@@ -78,7 +78,7 @@ def decide(seen, without=(), cannot_see=()):
         probabilities=_probabilities(parts, without),
         limits=limits,
         excluded_above=excluded_above(limits, seen[0].structure),
-        p=min(1.0, sum(float(np.exp(-min(part.causes[0].gain, 700.0))) for part in parts)) if parts else 1.0,
+        p=min(1.0, sum(map(_chance, parts))) if parts else 1.0,
         where=largest(shown) if parts else _NOT_SHOWN,
         tests=[test.name for test in seen],
         silent=[test.name for test in seen if not len(test.rows.value)],
@@ -95,6 +95,12 @@ def _of_joints(parts):
 def _beside(evidence, first):
     key = first.rivals[0].cause, first.rivals[0].place
     return evidence.beside(key) if evidence and key in evidence.keys else None
+
+
+def _chance(part):
+    """Largest chance of as much without a cause: a mean of evidence ratios is more than x with the chance 1/x at most."""
+    gains = np.array(list(part.gains.values()))
+    return float(np.exp(-min(mean_evidence(gains), 700.0)))
 
 
 def _kind(parts):

@@ -7,7 +7,7 @@ from blockshake.diagnosis.outside.form import Form, force_entry, with_entry
 from blockshake.forces.motion import WIDTH
 
 _WIDTHS = (0.04, 0.08, 0.16, 0.4)  # s
-_APART = 0.02  # s, between the times tried of the shortest
+_APART = 0.02  # s, between the times tried of blows as short; of longer ones as long as they are
 _SCALE = 0.5  # of the block's weight
 _CLEAR = 3.0  # nats, from which a test counts as struck
 
