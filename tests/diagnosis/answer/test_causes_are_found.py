@@ -2,28 +2,17 @@
 
 import numpy as np
 import pytest
+from simulated_tests import cause_of, seen_tests
 
 from blockshake.diagnosis.answer.decide import decide
-from blockshake.diagnosis.answer.decision import Cause
-from blockshake.diagnosis.answer.extension import can_extend, extended_experiment
+from blockshake.diagnosis.answer.extension import can_extend
 from blockshake.diagnosis.answer.places import place_name
 from blockshake.diagnosis.outside.registry import FORMS
-from blockshake.dynamics.load_motion import load_motion
-from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import EFFECTS
-from blockshake.files import PACKAGE
-from blockshake.forces.seen.seen_test import see_test
-from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaigns.campaign import Sensors
-from blockshake.measurement.motion.outliers import without_outliers
-from blockshake.measurement.sensors.instruments import Instruments, observe
-from blockshake.simulation.simulate import simulate
 
-STRUCTURES = PACKAGE.parents[1] / "hidden_effects" / "structures"
 MOTIONS = {
     "weak": ("alkion", 1.0), "first": ("alkion", 2.5), "second": ("basso-tirreno", 2.0), "third": ("alkion", 3.0),
 }  # fmt: skip
-DURATION = 6.0  # s
 STARTS = {"weak": 3.0, "first": 2.5, "second": 2.0, "third": 3.0}  # s, of a push
 TOP = {"body": "block-2", "height": 0.42}
 BASE = {"joint": ["slab", "block-1"]}
@@ -69,44 +58,8 @@ WIDER = {"base-compliance": 1.0, "joint-compliance": 0.6, "loose-weight": 0.6}
 ALIKE = {"unmodelled-mass": {"loose-weight"}, "blow": {"push"}}  # cannot always be told apart by two blocks
 
 
-@pytest.fixture(scope="module")
-def clean():
-    """Seen tests of sound blocks, by structure."""
-    return {}
-
-
-def _seen(structure, motions, cause=None):
-    file, tests = load_structure(STRUCTURES / f"{structure}.yaml"), []
-    for seed, (name, (motion, scale)) in enumerate(motions.items()):
-        experiment = Experiment(file, load_motion(motion, scale), Instruments())
-        if cause:
-            experiment = extended_experiment(experiment, cause, 0, name)
-        run = simulate(
-            experiment.structure, experiment.motion, "nscd-rigid", {},
-            time_step=5e-4, duration=DURATION, output_rate=200.0,
-        )  # fmt: skip
-        readings = observe(run, experiment.structure, experiment.instruments, seed)
-        known = [marker.name for marker in file.file.markers]
-        readings = without_outliers(readings.sel(marker=known), file)
-        tests.append(see_test(name, readings, file, Sensors()))
-    return tests
-
-
-def _cause(name, place, values, when):
-    return Cause(
-        name=name,
-        place=place,
-        places=("there",),
-        gain=1.0,
-        odds=0.0,
-        parameters={},
-        members=(values,),
-        when=when,
-    )
-
-
 def _assert_found(name, place, values, when, structure):
-    decision = decide(_seen(structure, MOTIONS, _cause(name, place, values, when))).decision
+    decision = decide(seen_tests(structure, MOTIONS, cause_of(name, place, values, when))).decision
     found = {one.name: one for part in decision.parts for one in part.causes}
     assert found.keys() & ({name} | ALIKE.get(name, set())), decision.parts
     if name not in found:
@@ -133,7 +86,7 @@ def test_every_other_cause_is_found_with_its_size(name, place, values, when, str
 
 
 def test_sound_blocks_are_called_nothing():
-    decision = decide(_seen("two-blocks", MOTIONS)).decision
+    decision = decide(seen_tests("two-blocks", MOTIONS)).decision
     assert (decision.decision, decision.parts) == ("none", ())
     assert decision.p == 1.0
 
@@ -145,8 +98,8 @@ def test_every_effect_of_forces_and_every_form_is_tried():
 
 
 def test_what_ends_before_a_test_to_come_extends_no_model():
-    blow = _cause("blow", TOP, {"impulse": 1.0}, {"blows": {"first": {"time": 1.0, "width": 0.1}}})
+    blow = cause_of("blow", TOP, {"impulse": 1.0}, {"blows": {"first": {"time": 1.0, "width": 0.1}}})
     assert not can_extend(blow)
-    assert not can_extend(_cause("unknown-force", TOP, {"size": 1.0}, {}))
-    assert can_extend(_cause("rope", TOP, {"stiffness": 1.0}, {}))
+    assert not can_extend(cause_of("unknown-force", TOP, {"size": 1.0}, {}))
+    assert can_extend(cause_of("rope", TOP, {"stiffness": 1.0}, {}))
     assert np.isfinite(EFFECTS["eccentricity"].parameters[0].null)

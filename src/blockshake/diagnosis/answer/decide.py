@@ -98,7 +98,7 @@ def _beside(evidence, first):
 
 
 def _chance(part):
-    """Largest chance of as much without a cause: a mean of evidence ratios is more than x with the chance 1/x at most."""
+    """Largest chance of as much without a cause: a mean of evidence ratios exceeds x with the chance 1 / x at most."""
     gains = np.array(list(part.gains.values()))
     return float(np.exp(-min(mean_evidence(gains), 700.0)))
 

@@ -1,0 +1,48 @@
+"""Seen tests of two blocks that contact dynamics made, with a cause or without one."""
+
+from blockshake.diagnosis.answer.decision import Cause
+from blockshake.diagnosis.answer.extension import extended_experiment
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.effects.effect import Experiment
+from blockshake.files import PACKAGE
+from blockshake.forces.seen.seen_test import see_test
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign import Sensors
+from blockshake.measurement.motion.outliers import without_outliers
+from blockshake.measurement.sensors.instruments import Instruments, observe
+from blockshake.simulation.simulate import simulate
+
+STRUCTURES = PACKAGE.parents[1] / "hidden_effects" / "structures"
+DURATION = 6.0  # s
+
+
+def cause_of(name, place, values, when=None):
+    """A cause with one member."""
+    return Cause(
+        name=name,
+        place=place,
+        places=("there",),
+        gain=1.0,
+        odds=0.0,
+        parameters={},
+        members=(values,),
+        when=when or {},
+    )
+
+
+def seen_tests(structure, motions, cause=None):
+    """`SeenTest` of every motion, by name with its scale, as the sensors of the structure read it."""
+    file, tests = load_structure(STRUCTURES / f"{structure}.yaml"), []
+    for seed, (name, (motion, scale)) in enumerate(motions.items()):
+        experiment = Experiment(file, load_motion(motion, scale), Instruments())
+        if cause:
+            experiment = extended_experiment(experiment, cause, 0, name)
+        run = simulate(
+            experiment.structure, experiment.motion, "nscd-rigid", {},
+            time_step=5e-4, duration=DURATION, output_rate=200.0,
+        )  # fmt: skip
+        readings = observe(run, experiment.structure, experiment.instruments, seed)
+        known = [marker.name for marker in file.file.markers]
+        readings = without_outliers(readings.sel(marker=known), file)
+        tests.append(see_test(name, readings, file, Sensors()))
+    return tests
