@@ -85,7 +85,7 @@ def _carried_alone(seen, face):
     _, group = connected_components(links, directed=False)
     own = (group == group[seen.faces[face].upper]) & ~driven
     feet = [one for one in seen.faces if driven[one.lower] and own[one.upper]]
-    return np.flatnonzero(own) if feet == [seen.faces[face]] else np.zeros(0, dtype=int)
+    return np.flatnonzero(own) if [one.name for one in feet] == [seen.faces[face].name] else np.zeros(0, int)
 
 
 def _closings(side, turn):
@@ -117,7 +117,7 @@ def _impact(seen, face, above, last, first):
         bodies.momentum(line, window) / bodies.inertia(line, line)
         for line, window in zip((old, later), windows, strict=True)
     )
-    if not -side[last] * before > _LEAST_SPIN or not np.isfinite(after):
+    if not -side[last] * before > _LEAST_SPIN or not np.isfinite([after, error, error_after]).all():
         return None
     kept = after / before
     error = float(np.hypot(error_after, kept * error) / abs(before))
@@ -164,7 +164,7 @@ class _Bodies:
         seen = self.seen
         there = seen.states.edge[:, face, 0] == edge
         lever = np.abs(seen.forces.moment[there, face, 1] / seen.forces.force[there, face, 2])
-        away = edge * min(np.median(lever) if len(lever) > _BEARS else np.inf, seen.faces[face].half_width)
+        away = edge * min(np.nanmedian(lever) if len(lever) > _BEARS else np.inf, seen.faces[face].half_width)
         along, axis, _ = seen.frames.axes[self.now, face].T
         return seen.frames.middle[self.now, face] + away * along, axis
 
