@@ -154,3 +154,45 @@ def _specific_force(structure, poses, sensor, axis, t, step):
 def accelerations(poses, t, step=1e-3):
     """Second derivatives of all poses, (n_bodies, 3)."""
     return (poses(t - step) - 2.0 * poses(t) + poses(t + step)) / step**2
+
+
+def kicked(shares, height=HEIGHT, kick=0.5, table_acceleration=lambda t: 0.0):
+    """Turn of a body that is struck at 0.8 s, rocks freely on two edges, and keeps given shares of its spin.
+
+    Housner's (1963) equation ``phi'' = -p^2 (sin(alpha - phi) + a / g cos(alpha - phi))`` on the edge to +x and its
+    mirror image, by integration; a negative share turns the body back on the edge from which it came.
+
+    Parameters
+    ----------
+    shares : list of float
+        By impact, the last one for all others [1].
+    height : float
+        Of the body [m].
+    kick : float
+        Spin at first [rad/s].
+    table_acceleration : callable
+        Of a time [m/s2].
+    """
+    half, high = 0.5 * WIDTH, 0.5 * height
+    radius, alpha = np.hypot(half, high), np.arctan2(half, high)
+    inertia = (WIDTH**2 + height**2) / 12.0 + radius**2
+    step = 1e-4
+    grid = np.arange(int((DURATION + 0.1) / step)) * step
+    turn, angle, spin, side, impacts = np.zeros_like(grid), 0.0, 0.0, 1.0, 0
+    for row, time in enumerate(grid):
+        if row == round(0.8 / step):
+            spin = kick
+        if row < round(0.8 / step):
+            continue
+        pull = GRAVITY * np.sin(alpha - side * angle) + side * table_acceleration(time) * np.cos(
+            alpha - side * angle
+        )
+        faster = spin - step * side * radius * pull / inertia
+        angle, spin = angle + 0.5 * step * (spin + faster), faster
+        if side * angle < 0.0 and side * spin < 0.0:
+            share = shares[min(impacts, len(shares) - 1)]
+            impacts += 1
+            spin *= share
+            angle, side = (0.0, side) if share < 0.0 else (angle, -side)
+        turn[row] = angle
+    return lambda t: float(np.interp(t, grid, turn))

@@ -72,17 +72,12 @@ def slab_motion(test):
     arm = motion.position[:, test.free] - motion.position[:, [body]]
     moment = _from_rest(-(wrench[..., 3:] + np.cross(arm, wrench[..., :3]))[..., 1].sum(axis=1), test.still)
     force = _from_rest(wrench[..., 2].sum(axis=1), test.still)
-    known = (
-        np.isfinite(turn)
-        & np.isfinite(lift)
-        & np.isfinite(moment)
-        & np.isfinite(motion.acceleration[:, body, 0])
-    )
+    known = np.isfinite(turn + lift + moment + motion.acceleration[:, body, 0])
     drives = (np.nan_to_num(one) for one in (motion.acceleration[:, body, 0], moment, force))
     return SlabMotion(
         motion.time, turn, lift, np.nan_to_num(travel), *(_as_fitted(one, motion) for one in drives),
         np.flatnonzero(known)[::_EVERY],
-        max(float(np.nanstd(turn[test.still])), _TURN_NOISE), max(float(np.nanstd(lift[test.still])), _LIFT_NOISE),
+        _noise(turn, test, 4, _TURN_NOISE), _noise(lift, test, 2, _LIFT_NOISE),
         motion.width,
     )  # fmt: skip
 
@@ -95,6 +90,14 @@ def _as_fitted(history, motion):
     """
     step = motion.time[1] - motion.time[0]
     return history - 0.5 * motion.width**2 * np.gradient(np.gradient(history, step), step)
+
+
+def _noise(values, test, direction, least):
+    """Noise of a component of the slab's pose: its scatter at rest, and no less than that of its markers' readings."""
+    body = int(np.flatnonzero(test.structure.driven)[0])
+    rest = values[test.still & np.isfinite(values)]
+    stated = np.nan_to_num(test.motion.pose_covariance[body, direction, direction])
+    return float(max(rest.std() if len(rest) else 0.0, np.sqrt(stated), least))
 
 
 def _from_rest(values, still):

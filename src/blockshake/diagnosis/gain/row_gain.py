@@ -13,7 +13,7 @@ from blockshake.diagnosis.verdict.verdict import Contrast, Gain
 from blockshake.effects.registry import EFFECTS
 
 EXTENDED, RECALIBRATED, NOMINAL, DISCREPANCY = "extended", "recalibrated", "nominal", "discrepancy"
-_WIDER = 10.0  # times the priors of the joints' own errors: a discrepancy without a name
+_WIDER = (1.0, 3.0, 10.0)  # times the priors of the joints' own errors: a discrepancy without a name
 _BLOCK = 0.5  # s, of rows that are drawn together
 _REPLICATES, _INTERVAL = 1000, (0.05, 0.95)
 _NOTHING = 1.645  # standard deviations of the floor, within which nothing is to gain
@@ -51,7 +51,7 @@ def row_gain(decision, opened, sealed):
     -----
     The models predict the rows of a sealed test: nominal with the edges and coefficients of sound blocks, recalibrated
     with those that fit the open tests without the cause, extended with those that fit beside it, and a discrepancy
-    without a name whose edges and coefficients may lie ten times as far off. The gain is ``(D_rival - D_extended) /
+    without a name whose edges and coefficients lie once, three or ten times as far off, as the open tests say. The gain is ``(D_rival - D_extended) /
     (D_rival - D_floor)``; intervals of 90 % by a bootstrap of blocks of 0.5 s. A push starts in a sealed test when it
     fits best: its size is frozen, its start cannot be.
     """
@@ -125,12 +125,8 @@ def _loudest(models, rows, n_open):
     def says(model):
         stop = model.ends[n_open]
         value = (model.value - model.whiten([one[:, None] for one in rows])[:, 0])[:stop]
-        nuisances = model.nuisances[:stop]
-        inner = np.eye(nuisances.shape[1]) + nuisances.T @ nuisances
-        fitted = nuisances.T @ value
         spread = sum(np.log(np.diag(root)).sum() for root in model.roots[:n_open])
-        distance = value @ value - fitted @ np.linalg.solve(inner, fitted)
-        return -0.5 * distance - 0.5 * np.linalg.slogdet(inner)[1] - spread + model.prior
+        return _says(value, model.nuisances[:stop]) - spread + model.prior
 
     return max(models, key=says)
 
@@ -140,16 +136,28 @@ def _squares(model, rows, n_open, tests):
     off = model.whiten([one[:, None] for one in rows])[:, 0]
     seen, further = model.nuisances[:stop], model.nuisances[stop:]
     by_kind, none = {}, np.zeros(len(off))
+    unnamed = max(_WIDER, key=lambda wider: _says(model.value[:stop], seen * wider))
     for kind, taken, wider in (
-        (EXTENDED, off, 1.0), (RECALIBRATED, none, 1.0), (NOMINAL, none, 0.0), (DISCREPANCY, none, _WIDER),
+        (EXTENDED, off, 1.0), (RECALIBRATED, none, 1.0), (NOMINAL, none, 0.0), (DISCREPANCY, none, unnamed),
     ):  # fmt: skip
         value = model.value - taken
-        inner = np.linalg.inv(np.eye(seen.shape[1]) * max(wider, 1e-9) ** -2.0 + seen.T @ seen)
-        by_kind[kind] = (value[stop:] - further @ (inner @ (seen.T @ value[:stop]))) ** 2
+        fitted = _fitted(value[:stop], seen * wider)
+        by_kind[kind] = (value[stop:] - further @ (wider * fitted)) ** 2
     inner = np.linalg.inv(np.eye(seen.shape[1]) + seen.T @ seen)
     floor = 1.0 + np.einsum("ri,ij,rj->r", further, inner, further)
     times = [test.rows.time for test in tests[n_open:]]
     return Squares(_blocks(times), by_kind, floor)
+
+
+def _fitted(value, nuisances):
+    """Amplitudes of nuisances with standard normal priors, at their best."""
+    return np.linalg.solve(np.eye(nuisances.shape[1]) + nuisances.T @ nuisances, nuisances.T @ value)
+
+
+def _says(value, nuisances):
+    """Logarithm of the density of whitened rows, up to a constant."""
+    left = value @ value - (nuisances.T @ value) @ _fitted(value, nuisances)
+    return -0.5 * left - 0.5 * np.linalg.slogdet(np.eye(nuisances.shape[1]) + nuisances.T @ nuisances)[1]
 
 
 def _blocks(times):

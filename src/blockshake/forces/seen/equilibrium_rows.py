@@ -11,6 +11,7 @@ _EVERY = 0.02  # s, between instants: the kernel passes next to nothing beyond 2
 # of the largest singular value: a wrench that faces carry. In a loop of bodies the measured edges are parallel to
 # 1e-4 rad or so, which turns an exact zero into 1e-5; those that are carried have 1e-2 and more.
 _CARRIED = 1e-3
+_RESOLVED = 1.0 - 1e-6  # share of a contact force that the wrenches tell
 _BEYOND, _SURELY = 0.01, 4.0  # m, standard deviations: of the resultant beyond the edge of a closed face
 
 
@@ -52,7 +53,7 @@ class ContactForces:
     ----------
     force, moment : float64 arrays, shape (n_times, n_faces, 3)
         On the upper body, about the middle of the face, along its axes [N, N m]: exact where the faces are a tree, of
-        the least norm elsewhere. NaN where the motion is unknown.
+        the least norm elsewhere. NaN where motions are unknown that it follows from.
     moment_error : float64 array, shape (n_times, n_faces)
         Standard deviation of the moment about the second tangent [N m].
     """
@@ -76,14 +77,22 @@ def contact_forces(frames, required, free):
     columns = np.stack([frames.unit_wrenches(face) for face in range(n_faces)], axis=-2)
     # (n_times, n_bodies, 6, n_faces, 6) to one matrix an instant
     matrix = columns[:, free].reshape(n_times, 6 * len(free), 6 * n_faces)
-    known = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(required.wrench[:, free]).all(axis=(1, 2))
-    inverse = np.full((n_times, 6 * n_faces, 6 * len(free)), np.nan)
-    inverse[known] = np.linalg.pinv(matrix[known])
-    wanted = required.wrench[:, free].reshape(n_times, -1)
-    found = np.einsum("tij,tj->ti", inverse, wanted).reshape(n_times, n_faces, 6)
+    wanted, information, read = _of_read_bodies(required, free)
+    matrix = matrix * np.repeat(read, 6, axis=1)[..., None]
+    inverse = np.linalg.pinv(matrix)
+    found = np.einsum("tij,tj->ti", inverse, wanted.reshape(n_times, -1)).reshape(n_times, n_faces, 6)
+    resolved = np.einsum("tij,tji->ti", inverse, matrix).reshape(n_times, n_faces, 6) > _RESOLVED
+    found[~(resolved.all(axis=2) | read.all(axis=1, keepdims=True))] = np.nan
     about = inverse.reshape(n_times, n_faces, 6, len(free), 6)[:, :, 4]
-    errors = np.einsum("tfbi,tbij->tfbj", about, covariance_root(required.information[:, free]))
+    errors = np.einsum("tfbi,tbij->tfbj", about, covariance_root(information))
     return ContactForces(found[..., :3], found[..., 3:], np.sqrt((errors**2).sum(axis=(2, 3))))
+
+
+def _of_read_bodies(required, free):
+    """Wrenches and information of free bodies, none where a body's motion is unknown, and whether it is known."""
+    read = np.isfinite(required.wrench[:, free]).all(axis=2)
+    wrench = np.where(read[..., None], required.wrench[:, free], 0.0)
+    return wrench, np.where(read[..., None, None], required.information[:, free], 0.0), read
 
 
 @dataclass(frozen=True)
@@ -143,14 +152,16 @@ class FaceFrames:
 
 
 def face_frames(structure, faces, motion):
-    """`FaceFrames` of a motion."""
+    """`FaceFrames` of a motion; a body whose pose is unknown is where it started."""
     start = rotation_matrices(structure.orientation)
+    rotation = np.where(np.isfinite(motion.rotation), motion.rotation, start)
+    position = np.where(np.isfinite(motion.position), motion.position, structure.position)
     middle, axes = [], []
     for face in faces:
-        turn = motion.rotation[:, face.upper]
-        middle.append(motion.position[:, face.upper] + turn @ face.on_upper)
+        turn = rotation[:, face.upper]
+        middle.append(position[:, face.upper] + turn @ face.on_upper)
         axes.append(turn @ (start[face.upper].T @ face.axes))
-    return FaceFrames(faces, np.stack(middle, axis=1), np.stack(axes, axis=1), motion.position)
+    return FaceFrames(faces, np.stack(middle, axis=1), np.stack(axes, axis=1), position)
 
 
 def with_resultants(states, frames, forces, tree):
@@ -192,7 +203,7 @@ def equilibrium_rows(frames, states, motion, required, free):
     Returns
     -------
     Rows
-        At instants 20 ms apart at which the motion of every free body is known.
+        At instants 20 ms apart.
 
     Notes
     -----
@@ -200,28 +211,25 @@ def equilibrium_rows(frames, states, motion, required, free):
     about an edge on which it has turned; no shear beside friction where it slips; nothing where it is lifted. The rows
     are an orthonormal basis of what is orthogonal to it: the equations of virtual work of the mechanism that the turned
     joints make, whatever the statical indeterminacy of the others. A direction of a body that no sensor reads is free
-    like a joint's force.
+    like a joint's force, and so is all of a body whose motion is unknown.
     """
     n_bodies = frames.position.shape[1]
     step = float(np.median(np.diff(motion.time)))
-    known = np.isfinite(required.wrench[:, free]).all(axis=(1, 2)) & np.isfinite(frames.middle).all(
-        axis=(1, 2)
-    )
-    known &= np.isfinite(frames.axes).all(axis=(1, 2, 3))
-    chosen = np.flatnonzero(known)
+    wrench, information, read = _of_read_bodies(required, free)
+    chosen = np.flatnonzero(read.any(axis=1))
     chosen = chosen[chosen % max(1, round(_EVERY / step)) == 0]
     carried = np.concatenate(
         [_carried(frames, states, face)[chosen][:, free] for face in range(len(frames.faces))], axis=-1
     ).reshape(len(chosen), 6 * len(free), 6 * len(frames.faces))
-    matrix = np.concatenate([carried, _unread(required.information[chosen][:, free])], axis=-1)
+    matrix = np.concatenate([carried, _unread(information[chosen])], axis=-1)
     left, sizes, _ = np.linalg.svd(matrix, full_matrices=False)
     place, column = np.nonzero(sizes <= _CARRIED * sizes[:, :1])
     vectors = left[place, :, column]
     direction = np.zeros((len(place), n_bodies, 6))
     direction[:, free] = vectors.reshape(-1, len(free), 6)
     instant = chosen[place]
-    value = np.einsum("rbk,rbk->r", direction[:, free], required.wrench[instant][:, free])
-    roots = covariance_root(required.information[chosen][:, free])[place]
+    value = np.einsum("rbk,rbk->r", direction[:, free], wrench[instant])
+    roots = covariance_root(information[chosen])[place]
     noise = np.einsum("rbi,rbij->rbj", direction[:, free], roots).reshape(len(place), 6 * len(free))
     return Rows(instant, motion.time[instant], direction, value, noise)
 

@@ -25,6 +25,11 @@ from blockshake.forces.seen.states import FaceStates, face_states
 from blockshake.geometry.structure import Structure
 
 _STEP = 0.01  # s, between instants: less than the kernel's width
+_LEAST_STILL = 0.1  # s of rest before the table moves, from whose mean the readings count
+_DRIFT, _SURE = 1e-3, 5.0  # m, standard deviations: between the halves of a rest
+_MOTION = (
+    "position", "velocity", "acceleration", "rotation", "angular_velocity", "angular_acceleration",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -39,7 +44,7 @@ class SeenTest:
         As in a campaign's test file, faults of sensors and outliers taken out, counted from rest.
     motion : Motion
     still : bool array, shape (n_times,)
-        The quiet start.
+        The quiet start; nowhere where there is none, and then no motion is known: readings count from rest.
     joints : JointMotion
         Zero where it is not known: no face turns or slips there.
     required : RequiredWrenches
@@ -110,6 +115,13 @@ def see_test(name, readings, structure, sensors):
     readings, until = counted_from_rest(readings, structure, sensors)
     motion = smooth_motion(readings, structure, sensors, _STEP)
     still = motion.time <= until
+    if not _rests(readings, until, sensors.marker_noise):
+        still[:] = False
+        motion = replace(
+            motion,
+            information=np.zeros_like(motion.information),
+            **{name: np.full_like(getattr(motion, name), np.nan) for name in _MOTION},
+        )
     faces = find_faces(structure)
     required = required_wrenches(structure, motion)
     joints = joint_motion(structure, faces, motion, still)
@@ -122,3 +134,12 @@ def see_test(name, readings, structure, sensors):
     )
     rows = equilibrium_rows(frames, states, motion, required, free)
     return SeenTest(name, structure, readings, motion, still, joints, required, frames, states, forces, rows)
+
+
+def _rests(readings, until, noise):
+    """Whether all markers are at rest for long enough before the table moves."""
+    time = readings["time"].to_numpy()
+    moved = readings["marker_displacement"].transpose("time", "marker", "axis").to_numpy()[time <= until]
+    first, second = (np.ma.masked_invalid(half).mean(axis=0) for half in np.array_split(moved, 2))
+    drift = np.ma.filled(np.abs(second - first), 0.0)
+    return until - time[0] >= _LEAST_STILL and bool((drift < max(_DRIFT, _SURE * noise)).all())

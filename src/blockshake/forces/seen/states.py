@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import minimum_filter1d, uniform_filter1d
 
+from blockshake.forces.joint_motion import from_rest
 from blockshake.geometry.rotations import rotation_matrices
 
 _LIFTED, _FLIES = (
@@ -78,7 +79,7 @@ def face_states(structure, faces, motion, joints, still):
 
 
 def openings(structure, faces, motion, joints, still):
-    """Distance between the edges that should bear, less its median in the quiet start, (n_times, n_faces) [m]."""
+    """Distance between the edges that should bear, less its mean in the quiet start, (n_times, n_faces) [m]."""
     start = rotation_matrices(structure.orientation)
     found = np.empty((len(motion.time), len(faces)))
     for index, face in enumerate(faces):
@@ -87,10 +88,11 @@ def openings(structure, faces, motion, joints, still):
         middle = motion.position[:, upper] + motion.rotation[:, upper] @ face.on_upper
         beneath = motion.position[:, lower] + motion.rotation[:, lower] @ (start[lower].T @ apart)
         normal = motion.rotation[:, lower] @ (start[lower].T @ face.axes[:, 2])
-        found[:, index] = np.einsum("ti,ti->t", normal, middle - beneath)
-        found[:, index] -= face.half_width * np.abs(np.sin(joints.rotation[:, index]))
-    rest = found[still] if still.any() else found
-    return found - np.nan_to_num(np.nanmedian(rest, axis=0))
+        opening = np.einsum("ti,ti->t", normal, middle - beneath)
+        found[:, index] = from_rest(
+            opening - face.half_width * np.abs(np.sin(joints.rotation[:, index])), still
+        )
+    return found
 
 
 def _unchanged(states, near):
