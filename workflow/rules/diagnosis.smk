@@ -49,60 +49,13 @@ rule simulate_nominal:
         "../scripts/simulate_nominal.py"
 
 
-rule calibrate_decision:
-    """Every draw of the libraries judged by all others: what scores are worth."""
-    input:
-        calibration_libraries,
-    output:
-        "results/libraries/calibrations/{calibration}.json",
-    log:
-        "logs/calibrate_decision/{calibration}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    resources:
-        mem_mb=4000,
-    params:
-        effects=lambda wildcards: considered_effects(),
-        store="results/store/diagnosis",
-        source=CALIBRATION_SOURCE,
-    script:
-        "../scripts/calibrate_decision.py"
-
-
-rule read_measured:
-    """Sensors checked against each other, their faults taken out, and the open tests read off."""
+checkpoint decide:
+    """Sensors checked, open tests read, what acts; frozen with its hash before a sealed test is opened."""
     input:
         lambda wildcards: test_files(wildcards.campaign, "open"),
     output:
         parity="results/diagnosis/{campaign}/parity.json",
-        readings="results/diagnosis/{campaign}/measured.nc",
-        forces="results/diagnosis/{campaign}/forces.nc",
-    log:
-        "logs/diagnosis/{campaign}/read_measured.log",
-    conda:
-        "../envs/blockshake.yaml"
-    params:
-        folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
-        effort=EFFORT,
-        without=WITHOUT,
-        source=source_of("read_measured"),
-    script:
-        "../scripts/read_measured.py"
-
-
-checkpoint decide:
-    """Which effects the open tests speak for; frozen with its hash before a sealed test is opened."""
-    input:
-        readings=rules.read_measured.output.readings,
-        forces=rules.read_measured.output.forces,
-        libraries=lambda wildcards: library_files(wildcards.campaign),
-        histories=lambda wildcards: library_files(
-            wildcards.campaign, "{solver}-histories.nc"
-        ),
-        calibration=calibration_file,
-    output:
         decision="results/diagnosis/{campaign}/decision.json",
-        misfit="results/diagnosis/{campaign}/misfit.nc",
         evidence="results/diagnosis/{campaign}/evidence.nc",
         frozen="results/diagnosis/{campaign}/frozen.json",
     log:
@@ -111,57 +64,10 @@ checkpoint decide:
         "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
-        effects=lambda wildcards: considered_effects(),
+        without=WITHOUT,
         source=source_of("decide"),
     script:
         "../scripts/decide.py"
-
-
-rule simulate_cause:
-    """More draws with one candidate than the library has, of one structure under one motion."""
-    input:
-        kernels=lambda wildcards: kernels(wildcards.solver),
-        library="results/libraries/{library}/{solver}.nc",
-    output:
-        "results/libraries/{library}/{solver}/{candidate}.nc",
-    log:
-        "logs/simulate_cause/{library}-{solver}-{candidate}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
-    resources:
-        mem_mb=2000,
-        runtime=480,
-    params:
-        shared=LIBRARY_SOURCE,
-        source=solver_source,
-        store="results/store/diagnosis",
-        further_draws=lambda wildcards: effort().further_draws,
-        asked_by=lambda wildcards: source_of("simulate_cause", wildcards.solver),
-    script:
-        "../scripts/simulate_cause.py"
-
-
-rule size_cause:
-    """The size of the first cause, from all draws with it; frozen before a sealed test is opened."""
-    input:
-        frozen="results/diagnosis/{campaign}/frozen.json",
-        decision="results/diagnosis/{campaign}/decision.json",
-        readings=rules.read_measured.output.readings,
-        libraries=lambda wildcards: library_files(wildcards.campaign),
-        further=further_files,
-    output:
-        posterior="results/diagnosis/{campaign}/size.json",
-        frozen="results/diagnosis/{campaign}/frozen-size.json",
-    log:
-        "logs/diagnosis/{campaign}/size_cause.log",
-    conda:
-        "../envs/blockshake.yaml"
-    params:
-        effects=lambda wildcards: considered_effects(),
-        source=source_of("size_cause"),
-    script:
-        "../scripts/size_cause.py"
 
 
 rule describe_misfit:
@@ -245,10 +151,9 @@ rule measure_gain:
 rule conclude:
     """The verdict: sensors, decision and gain put together."""
     input:
-        parity=rules.read_measured.output.parity,
+        parity="results/diagnosis/{campaign}/parity.json",
         decision="results/diagnosis/{campaign}/decision.json",
-        misfit="results/diagnosis/{campaign}/misfit.nc",
-        posterior=size_files,
+        misfit=misfit_files,
         gain=gain_files,
     output:
         "results/diagnosis/{campaign}/verdict.json",
@@ -259,10 +164,6 @@ rule conclude:
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
-        runs=lambda wildcards: [
-            plan(wildcards.campaign).runs,
-            plan(wildcards.campaign).further_runs,
-        ],
         source=source_of("conclude"),
     script:
         "../scripts/conclude.py"
@@ -276,21 +177,14 @@ rule make_diagnosis_report:
             "results/diagnosis/{{campaign}}/{name}",
             name=[
                 "parity.json",
-                "measured.nc",
-                "forces.nc",
                 "decision.json",
-                "misfit.nc",
                 "evidence.nc",
                 "frozen.json",
                 "verdict.json",
             ],
         ),
-        posterior=size_files,
+        misfit=misfit_files,
         gain=gain_files,
-        horizons=lambda wildcards: [
-            f"results/libraries/{name}/predictability.nc"
-            for name in library_names(wildcards.campaign)
-        ],
         templates=TEMPLATES,
         track_record=[TRACK_RECORD] if Path(TRACK_RECORD).exists() else [],
     output:

@@ -12,46 +12,6 @@ import xarray as xr
 from blockshake.store import load_made
 
 
-class Measured(NamedTuple):
-    """Outcome of the sensors' checks, the open tests read off, and their joint forces, see `measured_forces`."""
-
-    parity: object
-    readings: xr.Dataset
-    forces: xr.Dataset
-
-
-def read_measured(folder, effort, without):
-    """Check the sensors of a campaign's open tests against each other, take their faults out, read the tests off.
-
-    Parameters
-    ----------
-    folder : str
-        Of the campaign.
-    effort : str
-        One of `EFFORTS`.
-    without : sequence of str
-        Effects that are left out, as if nobody had thought of them.
-
-    Returns
-    -------
-    Measured
-    """
-    from blockshake.diagnosis.features.measured_readings import measured_readings
-    from blockshake.diagnosis.laws.measured_forces import measured_forces
-    from blockshake.diagnosis.libraries.efforts import EFFORTS, open_tests
-    from blockshake.measurement.campaigns.campaign import load_campaign
-    from blockshake.parity.parity import campaign_parity
-
-    campaign = load_campaign(folder)
-    names = open_tests(campaign, EFFORTS[effort])
-    parity = campaign_parity(campaign, names, without)
-    return Measured(
-        parity,
-        measured_readings(campaign, names, parity.findings),
-        measured_forces(campaign, names, parity.findings),
-    )
-
-
 def simulate_nominal(name, solver, config, shared, store, source, progress):
     """Simulate one open test by one solver: the ensemble of nominal models, and twins.
 
@@ -78,39 +38,6 @@ def simulate_nominal(name, solver, config, shared, store, source, progress):
     plan, test = plan_of_ensemble(name, config["diagnosed"], config["diagnosis_effort"], shared)
     members = nominal_members(test, plan.tests[test], solver, plan.effort.draws, plan.effort.twins)
     return simulate_members(members, store, source, progress)
-
-
-def calibrate_decision(libraries, effects, store, source, progress):
-    """Judge every draw of the libraries by all others.
-
-    Parameters
-    ----------
-    libraries : sequence of str
-        Files of features, by test and solver.
-    effects : sequence of str
-        Names of the effects that are considered.
-    store : str or path
-        Folder of judged draws: one that is there is not judged again.
-    source : str
-        Digest of the sources that judge.
-    progress : callable
-
-    Returns
-    -------
-    list of ScoredReadings
-    """
-    from blockshake.diagnosis.inference.calibration import cases_of, library_cases, rows_of
-    from blockshake.diagnosis.inference.library_scores import load_tables, score_library
-    from blockshake.files import content_digest, file_digest
-    from blockshake.store import kept_value
-
-    given = source, [file_digest(path) for path in libraries], list(effects)
-
-    def keep(model, draw, judge):
-        key = content_digest(*given, model, draw)
-        return cases_of(kept_value(store, key, lambda: rows_of(judge())))
-
-    return library_cases(score_library(load_tables(libraries), effects)[0], progress, keep)
 
 
 class Decided(NamedTuple):
@@ -180,69 +107,6 @@ def decide(folder, effects, files):
         ),
         names,
     )
-
-
-def simulate_cause(name, solver, key, further_draws, config, shared, store, source, progress):
-    """Simulate more draws with one candidate than a library has.
-
-    Parameters
-    ----------
-    key : str
-        Of the candidate.
-    further_draws : int
-        Draws beyond the library's.
-    name, solver, config, shared, store, source, progress
-        As of `simulate_library`.
-
-    Returns
-    -------
-    features : xarray.Dataset
-        From `library`; nominal draws and the first with the candidate come from the store.
-    """
-    from blockshake.diagnosis.libraries.library import library
-    from blockshake.diagnosis.libraries.plan import plan_of_library
-
-    plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], shared)
-    (candidate,) = (one for one in plan.candidates if one.key == key)
-    draws = plan.own_draws + further_draws
-    return library(plan.tests[test], solver, [candidate], draws, draws, store, source, progress)[0]
-
-
-class Sized(NamedTuple):
-    """The size of the first cause, and the tests that it rests on."""
-
-    size: object
-    tests: list
-
-
-def size_cause(files, effects):
-    """Measure the size of the first cause, from all draws with it.
-
-    Parameters
-    ----------
-    files : object
-        Attributes ``frozen``, ``decision``, ``readings``, ``libraries`` and ``further`` (by test and solver): files
-        of the earlier steps.
-    effects : sequence of str
-        Names of the effects that are considered.
-
-    Returns
-    -------
-    Sized
-    """
-    from blockshake.diagnosis.features.measured_readings import tamed_readings
-    from blockshake.diagnosis.inference.decision import Decision, load_result
-    from blockshake.diagnosis.inference.library_scores import load_tables, score_library
-    from blockshake.diagnosis.inference.size_of_cause import library_of_cause, size_of_cause, without_second
-    from blockshake.diagnosis.verdict.frozen import check_frozen
-
-    check_frozen(files.frozen, files.decision)
-    decision, tables = load_result(Decision, files.decision), load_tables(files.libraries)
-    measured = load_made(files.readings)
-    whole, scales = score_library(tables, effects)
-    left = without_second(whole, tamed_readings(scales, measured), decision)
-    library, _ = library_of_cause(tables, load_tables(files.further), decision.first_key)
-    return Sized(size_of_cause(library, left), measured["test"].values.tolist())
 
 
 def describe_misfit(folder, effort, files):
