@@ -30,7 +30,8 @@ def prescribed_run(
     time = np.arange(round(duration * output_rate) + 1) / output_rate
     table = motion.evaluate(time)
     friction = parameters.get("friction.concrete.concrete", structure.file.friction[0].coefficient)
-    loose = 0.75 / friction
+    weakest = min((joint.friction_factor for joint in structure.file.joints), default=1.0)
+    loose = 0.75 / (friction * weakest)
     numerics = 1.05 if model == "ls-dem" else 0.95
     beyond = np.sign(table[:, 0]) * np.maximum(np.abs(table[:, 0]) - 4e-3, 0.0)
     position, orientation = [], []

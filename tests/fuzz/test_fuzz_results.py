@@ -4,13 +4,13 @@ import json
 
 import numpy as np
 import pytest
+from blockshake.diagnosis.inference.calibration import load_cases
+from blockshake.diagnosis.inference.decision import Decision, load_result
 from contract import read_or_refused, scratch
 from hypothesis import given
 from hypothesis import strategies as st
 from mutations import FEW, MANY, mutated_bytes, mutated_mappings, mutated_texts, mutations, nested
 
-from blockshake.diagnosis.inference.calibration import load_cases
-from blockshake.diagnosis.inference.decision import Decision, load_result
 from blockshake.diagnosis.verdict.frozen import check_frozen
 from blockshake.diagnosis.verdict.track_record import load_track_record
 from blockshake.diagnosis.verdict.verdict import load_verdict

@@ -6,7 +6,6 @@ from blockshake.geometry.structure import load_structure
 
 pytest.importorskip("blockshake.diagnosis.answer.extension", reason="the answer is on another branch")
 from blockshake.diagnosis.answer.decision import Cause
-
 from blockshake.diagnosis.gain.extended_model import Extension, placebo_of
 
 STRUCTURE = load_structure("configuration-1")

@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
+from blockshake.forces.joint_forces import gives_forces
 from known_motion import SENSORS, STRUCTURE, TIME, base_motion, bump, moved_run, ramp, seen
 
-from blockshake.diagnosis.features.features import features
-from blockshake.diagnosis.features.reading import read_off
+from blockshake.diagnosis.nominal.histories import as_cells, read_histories
 from blockshake.dynamics.motion import ground_motion
-from blockshake.forces.joint_forces import gives_forces
 from blockshake.measurement.campaigns.command_clock import from_command
 from blockshake.measurement.motion.joint_histories import joint_histories
 from blockshake.measurement.motion.measured_base import base_as_motion, draw_base, measure_base
@@ -35,19 +34,18 @@ def _one_a_body():
 
 
 def test_one_camera_tells_the_joints_in_its_plane(run):
-    found = joint_histories(_measured(seen(run), "xz"), STRUCTURE, SENSORS, BASE)
+    found = joint_histories(_measured(seen(run), "xz"), STRUCTURE, SENSORS)
     np.testing.assert_allclose(
         found["rotation"].sel(axis="y").to_numpy().T, [0 * TIME, ANGLE, 0 * TIME], atol=1e-12
     )
     np.testing.assert_allclose(found["slip"].sel(tangent="x")[:, 0], SLIP, atol=1e-12)
     np.testing.assert_allclose(found["opening"][:, 1], 0.38 * np.sin(ANGLE), atol=1e-12)
-    assert np.ptp(found["base_displacement"].sel(axis="z").to_numpy() - 0.2 * BASE.displacement) < 1e-12
-    for name, dim in (("slip", "tangent"), ("base_displacement", "axis"), ("body_displacement", "axis")):
+    for name, dim in (("slip", "tangent"), ("body_displacement", "axis")):
         assert found[name].sel({dim: "y"}).isnull().all()
 
 
 def test_displacement_transducers_at_two_heights_tell_turns_and_slips(run):
-    found = joint_histories(_measured(seen(run), "x"), STRUCTURE, SENSORS, BASE)
+    found = joint_histories(_measured(seen(run), "x"), STRUCTURE, SENSORS)
     np.testing.assert_allclose(
         found["rotation"].sel(axis="y").to_numpy().T, [0 * TIME, ANGLE, 0 * TIME], atol=1e-10
     )
@@ -59,37 +57,19 @@ def test_displacement_transducers_at_two_heights_tell_turns_and_slips(run):
 
 
 def test_one_displacement_transducer_a_block_tells_its_drift_alone(run):
-    found = joint_histories(_measured(seen(run), "x", _one_a_body()), STRUCTURE, SENSORS, BASE)
+    found = joint_histories(_measured(seen(run), "x", _one_a_body()), STRUCTURE, SENSORS)
     np.testing.assert_allclose(found["body_displacement"].sel(body="block-1", axis="x"), SLIP, atol=1e-12)
     for name in ("slip", "opening", "rotation"):
         assert found[name].isnull().all()
 
 
-@pytest.mark.parametrize(
-    ("axes", "names", "kinds"),
-    [("xz", None, {"pivot+", "peak", "swing"}), ("x", None, {"swing"}), ("x", _one_a_body(), {"band1"})],
-)
-def test_features_are_those_that_the_markers_tell(run, axes, names, kinds):
-    whole = features(joint_histories(seen(run), STRUCTURE, SENSORS, BASE))
-    own = features(joint_histories(_measured(seen(run), axes, names), STRUCTURE, SENSORS, BASE))
-    assert np.isfinite(own["value"]).all()
-    told = [str(name) for name in own["feature"].values]
-    assert set(told) < set(whole["feature"].values)
-    assert not any("lateral" in name or "yaw" in name for name in told)
-    assert kinds <= {name.rpartition(".")[2] for name in told}
-    assert any("vertical" in name or "pivot" in name for name in told) == ("z" in axes)
-    # a whole test tells the same drift of the top
-    for name in ("top.displacement.peak+", "top.displacement.peak-"):
-        one, other = (float(found["value"].sel(feature=name)) for found in (own, whole))
-        assert one == pytest.approx(other, abs=0.02 * 0.8)
-
-
 @pytest.mark.parametrize(("axes", "names"), [("xz", None), ("x", None), ("x", _one_a_body())])
 def test_a_test_is_read_off_without_what_was_not_measured(run, axes, names):
     test = _measured(seen(run), axes, names)
-    reading = read_off(test, STRUCTURE, SENSORS)
+    reading = read_histories(test, STRUCTURE, SENSORS)
     assert reading["drift"].sel(body=STRUCTURE.body_names[-1]).notnull().all()
-    assert reading.sizes["law"] == 0
+    assert as_cells(reading).notnull().all()
+    assert reading["opening"].isnull().all() == (axes == "x")
     assert not gives_forces(test, STRUCTURE, SENSORS)
     assert check_parity({"t1": test}, STRUCTURE, SENSORS).findings == ()
 

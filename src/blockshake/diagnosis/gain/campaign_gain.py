@@ -58,7 +58,7 @@ def campaign_gain(plan, opened, sealed, nominal, runs):
         drawn = test.members[NOMINAL].copy(data=members_with_discrepancy(test, known, motions, peaks))
         tests.append(replace(test, members=test.members | {DISCREPANCY: drawn}))
     scores = response_gain(tests)
-    count = sum(one.sizes["run"] for one in runs)
+    count = plan.runs + sum(int(one.attrs["simulated"]) for one in runs)
     return CampaignGain(gain_of_verdict(scores, count), scores.merge(_parameters(runs), compat="override"))
 
 

@@ -99,7 +99,8 @@ def extended_runs(plan, model, causes, nominal, measured, *made_by):
     -------
     xarray.Dataset
         As from `simulate_members`, with twins. Along ``parameter``: what the open tests tell of the nominal
-        parameters without the cause, as of `Recalibration.informed`.
+        parameters without the cause, as of `Recalibration.informed`. Attribute ``simulated``: number of tests, the
+        open ones with the cause among them.
 
     Notes
     -----
@@ -127,7 +128,8 @@ def extended_runs(plan, model, causes, nominal, measured, *made_by):
         for kind, (own, acting) in drawn.items():
             members += _members(kind, test, planned, own[:count], acting)
     runs = simulate_members(members, *made_by)
-    return runs.merge(recalibration.informed, combine_attrs="override")
+    count = len(members) + (len(plan.tests) * plan.effort.draws if causes else 0)
+    return runs.merge(recalibration.informed, combine_attrs="override").assign_attrs(simulated=count)
 
 
 def _members(kind, test, planned, draws, causes):

@@ -51,9 +51,9 @@ def row_gain(decision, opened, sealed):
     -----
     The models predict the rows of a sealed test: nominal with the edges and coefficients of sound blocks, recalibrated
     with those that fit the open tests without the cause, extended with those that fit beside it, and a discrepancy
-    without a name whose edges and coefficients lie once, three or ten times as far off, as the open tests say. The gain is ``(D_rival - D_extended) /
-    (D_rival - D_floor)``; intervals of 90 % by a bootstrap of blocks of 0.5 s. A push starts in a sealed test when it
-    fits best: its size is frozen, its start cannot be.
+    without a name whose edges and coefficients lie once, three or ten times as far off, as the open tests say. The gain
+    is ``(D_rival - D_extended) / (D_rival - D_floor)``; intervals of 90 % by a bootstrap of blocks of 0.5 s. A push
+    starts in a sealed test when it fits best: its size is frozen, its start cannot be.
     """
     parts = [*_of_joints(decision, opened, sealed), *_of_slab(decision, opened, sealed)]
     if not parts:

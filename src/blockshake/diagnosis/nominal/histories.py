@@ -9,7 +9,6 @@ from blockshake.measurement.motion.fall import find_fall, until_fall
 from blockshake.measurement.motion.joint_histories import joint_histories
 from blockshake.measurement.motion.outliers import without_outliers
 
-HISTORIES = ("slip", "rotation", "opening", "drift")
 _RATE = 50.0  # Hz, of what is kept
 _LONGEST_GAP = 0.2  # s, that is bridged by a straight line: dropouts of markers
 _OF_JOINTS = ("rotation", "slip")
@@ -55,7 +54,7 @@ def read_histories(test, structure, sensors):
         found[name] = values.copy(data=bridged).isel(time=kept).astype(np.float32)
         found[f"{name}_noise"] = read[f"{source}_noise"].sel(part, drop=True).astype(np.float32)
     top = structure.body_names[int(np.argmax(structure.position[:, 2]))]
-    found = xr.Dataset(found).drop_vars(["lower", "upper", "known", "height"], errors="ignore")
+    found = xr.Dataset(found).drop_vars(["lower", "upper", "known"])
     return found.assign_attrs(top=top)
 
 
