@@ -12,9 +12,10 @@ from known_blocks import readings, shaken, sliding, stack
 from blockshake.measurement.campaigns.campaign import Sensors
 from blockshake.parity.body_gain import body_gains
 from blockshake.parity.correction import corrected
+from blockshake.parity.finding import Level
 
 SENSORS = Sensors(marker_noise=1e-4, accelerometer_noise=0.02)
-LEVEL, HYPOTHESES = 0.01, 100
+LEVEL = Level(0.01, 100)
 
 
 def carried(t):
@@ -43,7 +44,7 @@ def gained(tests, body, gain):
 
 def test_sound_markers_have_no_gain(sound):
     structure, tests = sound
-    assert body_gains(structure, tests, SENSORS, LEVEL, HYPOTHESES) == []
+    assert body_gains(structure, tests, SENSORS, LEVEL) == []
 
 
 @pytest.mark.parametrize("gain", [0.08, -0.05])
@@ -51,7 +52,7 @@ def test_sound_markers_have_no_gain(sound):
 def test_a_gain_of_a_body_between_two_joints_is_found_and_taken_out(sound, body, gain):
     structure, tests = sound
     spoilt = gained(tests, body, gain)
-    (found,) = body_gains(structure, spoilt, SENSORS, LEVEL, HYPOTHESES)
+    (found,) = body_gains(structure, spoilt, SENSORS, LEVEL)
     assert (found.effect, found.quantity) == ("sensor-gain", "gain")
     assert all(name.startswith(body) for name in found.where)
     assert found.estimate[0] == pytest.approx(gain, abs=4.0 * found.standard_error[0] + 1e-3)
@@ -66,4 +67,4 @@ def test_a_gain_of_a_body_between_two_joints_is_found_and_taken_out(sound, body,
 def test_a_block_that_slides_has_no_gain():
     structure = stack(1, friction=0.2)
     tests = {"a": readings(structure, sliding(shaken(4.0), 0.2), 1e-4, 0.02)}
-    assert body_gains(structure, tests, SENSORS, LEVEL, HYPOTHESES) == []
+    assert body_gains(structure, tests, SENSORS, LEVEL) == []

@@ -166,6 +166,23 @@ def test_exchanged_names_are_found_and_put_back(clean_tests, three, variable, di
     np.testing.assert_array_equal(mended[variable], clean_tests["t2"][variable])
 
 
+@pytest.mark.parametrize(
+    ("quantity", "label", "order", "signs"),
+    [("axes", "x and z", [2, 1, 0], [1, 1, 1]), ("polarity", "x", [0, 1, 2], [-1, 1, 1])],
+)
+def test_axes_of_a_marker_that_are_exchanged_or_reversed(clean_tests, three, quantity, label, order, signs):
+    def turn(test, values):
+        marker = list(test["marker"].values).index("block-2-upper")
+        values[:, marker] = values[:, marker][:, order] * signs
+
+    tests = _with_readings(clean_tests, "marker_displacement", turn)
+    parity = _check(tests, three)
+    _only(parity, "channel-swap", ("block-2-upper", label), quantity)
+    for name, test in clean_tests.items():
+        mended = corrected(tests[name], name, three, parity.findings)
+        np.testing.assert_array_equal(mended["marker_displacement"], test["marker_displacement"])
+
+
 def test_a_reversed_channel(clean_tests, three):
     def reverse(test, values):
         values[:, list(test["channel"].values).index("block-2-acc-x")] *= -1.0

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from blockshake.parity.finding import Level
 from blockshake.parity.transducer_equations import HeldReading
 from blockshake.parity.transducer_faults import check_transducer, hypotheses
 
 TESTS = ("t1", "t2", "t3")
-LEVEL = 0.01
 NOISE = 4e-5  # m, of a mean over a tenth of a second
-LOOKED_AT = hypotheses(len(TESTS))
+LEVEL = Level(0.01, hypotheses(len(TESTS)))
 
 
 def held_readings(seed, gain=0.0, place=(0.0, 0.0, 0.0), slip=None):
@@ -44,7 +44,7 @@ def _waves(generator, time):
 
 
 def _only(held, effect, quantity):
-    check = check_transducer("wire", held, LEVEL, LOOKED_AT)
+    check = check_transducer("wire", held, LEVEL)
     assert [(one.effect, one.where, one.quantity) for one in check.findings] == [
         (effect, ("wire",), quantity)
     ]
@@ -76,7 +76,7 @@ def test_an_end_that_slips_is_named_with_its_time(test):
 
 def test_a_reversed_transducer_is_named_and_its_other_faults_too():
     held = {name: one.reversed() for name, one in held_readings(4, slip=("t2", -3e-3, 7.0)).items()}
-    check = check_transducer("wire", held, LEVEL, LOOKED_AT)
+    check = check_transducer("wire", held, LEVEL)
     assert [(one.effect, one.quantity) for one in check.findings] == [
         ("channel-swap", "polarity"), ("sensor-drift", "slip"),
     ]  # fmt: skip
@@ -86,7 +86,7 @@ def test_a_reversed_transducer_is_named_and_its_other_faults_too():
 
 
 def test_a_gain_and_a_slip_are_told_apart_and_both_named():
-    check = check_transducer("wire", held_readings(5, gain=0.06, slip=("t3", 4e-3, 6.5)), LEVEL, LOOKED_AT)
+    check = check_transducer("wire", held_readings(5, gain=0.06, slip=("t3", 4e-3, 6.5)), LEVEL)
     assert {one.quantity for one in check.findings} == {"gain", "slip"}
     assert check.gain == pytest.approx(0.06, abs=4.0 * np.hypot(5e-3, check.gain_error))
 
@@ -100,7 +100,7 @@ def test_bodies_that_do_not_move_apart_tell_no_gain_and_no_place(quieter):
         noise = generator.normal(0.0, NOISE, len(one.time))
         left = quieter * generator.normal(0.0, NOISE, len(one.time)) - noise
         held[name] = replace(one, expected=noise, left=left, places=0.0 * one.places + noise[:, None])
-    check = check_transducer("wire", held, LEVEL, LOOKED_AT)
+    check = check_transducer("wire", held, LEVEL)
     assert np.isnan(check.gain)
     assert check.findings == ()
 
@@ -109,7 +109,7 @@ def test_the_stated_gain_error_is_that_of_the_estimates():
     """The root mean square of 100 standard scores is 1 within 4 standard errors of 0.07; the errors are bounds."""
     scores = []
     for seed in range(100):
-        check = check_transducer("wire", held_readings(100 + seed), LEVEL, LOOKED_AT)
+        check = check_transducer("wire", held_readings(100 + seed), LEVEL)
         scores.append(check.gain / np.hypot(5e-3, check.gain_error))
     assert 0.5 < np.sqrt(np.mean(np.square(scores))) < 1.28
 
@@ -120,7 +120,7 @@ def test_false_alarms_of_sound_transducers():
     At a level of 20 % a share beyond 29 % of 300 has a chance of 1e-4 (binomial).
     """
     alarms = sum(
-        bool(check_transducer("wire", held_readings(1000 + seed), 0.2, LOOKED_AT).findings)
+        bool(check_transducer("wire", held_readings(1000 + seed), LEVEL._replace(chance=0.2)).findings)
         for seed in range(300)
     )
     assert alarms <= 87

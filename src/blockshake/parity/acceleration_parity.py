@@ -1,6 +1,8 @@
 """Accelerometers against the markers of the same body, in the band in which both are informative."""
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
@@ -8,15 +10,15 @@ from scipy.interpolate import make_interp_spline
 from blockshake.measurement.motion.body_frame import ON_LINE, outlying, rigid_jacobian, see_from_body
 from blockshake.parity.marker_equations import record_scale, take_out
 
-_SHORT_GAUSSIAN, _LONG_GAUSSIAN = (
-    0.02,
-    0.1,
-)  # s, standard deviations of the two Gaussians: a band of 1.5 to 10 Hz
+_SHORT_GAUSSIAN, _LONG_GAUSSIAN = 0.02, 0.1  # s, standard deviations of the two: a band of 1.5 to 10 Hz
 _FINE_GAUSSIAN = 0.012  # s, of the Gaussian within which a body's axes do not turn
 _SLOW_GAUSSIAN = 0.25  # s, of the Gaussian that shows drifts
+_COLOUR = 3.0  # of noise with a coefficient of 0.5 from reading to reading: its variance after a long filter
 _KERNEL_SUPPORT = 5.0  # standard deviations
 _LARGEST_GAP = 2  # readings that interpolation bridges
 _LARGEST_ROTATION = 0.3  # rad
+_READINGS = 50  # that a channel needs
+_SIGNAL_TO_NOISE = 10.0  # times its own noise that a channel must show in the band
 LARGEST_MAGNIFICATION = 3.0  # noise of the sensor's point over a marker's, above which nothing is compared
 LARGEST_UNSEEN_ARM = 0.1  # m per rad
 
@@ -50,8 +52,19 @@ class ChannelPair:
     noise: float
     unseen: bool
 
+    @cached_property
+    def informed(self):
+        """Whether the channel reads much more than its noise in the band."""
+        read = self.read(self.time)
+        return np.isfinite(read).sum() > _READINGS and np.nanstd(read) > _SIGNAL_TO_NOISE * self.noise
 
-def channel_pairs(structure, test, bodies, faults, accelerometer_noise):
+    def enough(self, read, expected=None):
+        """Times at which both readings and expectation are known, bool (n_times,); None where there are too few."""
+        known = np.isfinite(self.expected if expected is None else expected) & np.isfinite(read)
+        return known if known.sum() >= _READINGS else None
+
+
+def channel_pairs(structure, test, poses, accelerometer_noise):
     """Pairs of a test, for every channel on a body with three markers.
 
     Parameters
@@ -59,10 +72,8 @@ def channel_pairs(structure, test, bodies, faults, accelerometer_noise):
     structure : Structure
     test : xarray.Dataset
         As in a campaign.
-    bodies : dict of str to BodyMarkers
-        Of this test alone.
-    faults : dict of str to MarkerFaults
-        Of these bodies, for this test alone; taken out of the readings.
+    poses : dict of str to MeasuredPose
+        Of bodies in this test.
     accelerometer_noise : float
         Standard deviation of a reading [m/s2].
 
@@ -75,19 +86,16 @@ def channel_pairs(structure, test, bodies, faults, accelerometer_noise):
     """
     time_acc = test["time_acc"].to_numpy()
     read = {str(name): test["accelerometer"].sel(channel=name).to_numpy() for name in test["channel"].values}
-    poses = {name: measured_pose(body, faults[name]) for name, body in bodies.items()}
     pairs = []
     for sensor in structure.file.accelerometers:
         if sensor.body not in poses:
             continue
-        time, position, rotation, _ = poses[sensor.body]
+        points, time, position, rotation, _ = poses[sensor.body]
         for axis in sensor.axes:
             name = f"{sensor.name}-{axis}"
             if name not in read or len(time) < 2:
                 continue
-            magnified, unseen = sight(
-                bodies[sensor.body].points, sensor.position, np.eye(3)["xyz".index(axis)]
-            )
+            magnified, unseen = sight(points, sensor.position, np.eye(3)["xyz".index(axis)])
             if magnified > LARGEST_MAGNIFICATION:
                 continue
             point = position + rotation @ np.array(sensor.position, dtype=float)
@@ -97,10 +105,8 @@ def channel_pairs(structure, test, bodies, faults, accelerometer_noise):
                 for kernel in (_band, _low)
             )
             rate = (len(time_acc) - 1) / (time_acc[-1] - time_acc[0])
-            weights = _band(_lags(_LONG_GAUSSIAN, rate), 0) / rate
-            noise = accelerometer_noise * np.sqrt(
-                (weights**2).sum() * 3.0
-            )  # colour: 3 at a coefficient of 0.5
+            weights = _band(_lags(_LONG_GAUSSIAN, rate)) / rate
+            noise = accelerometer_noise * np.sqrt(_COLOUR * (weights**2).sum())
             pairs.append(ChannelPair(
                 name, sensor.name, time, expected, slow, _filtered(time_acc, read[name], _band, _LONG_GAUSSIAN),
                 _filtered(time_acc, read[name], _low, _SLOW_GAUSSIAN), noise, unseen > LARGEST_UNSEEN_ARM,
@@ -124,12 +130,33 @@ def sight(points, place, direction):
     return np.linalg.norm(row @ inverse), np.linalg.norm(row - row @ inverse @ jacobian)
 
 
-def measured_pose(body, faults):
-    """Even times, position and rotation of a body, NaN where gaps are too long; and whether each marker was read."""
-    time, displacement = body.readings[0]
+class MeasuredPose(NamedTuple):
+    """Pose of a body in one test.
+
+    Attributes
+    ----------
+    points : float64 array, shape (n_markers, 3)
+        Of its markers, as the structure has them, body frame [m].
+    time : float64 array, shape (n_times,)
+        Even [s]; none where too little was read.
+    position, rotation : float64 arrays, shapes (n_times, 3), (n_times, 3, 3)
+        NaN where gaps are too long.
+    read : bool array, shape (n_times, n_markers)
+    """
+
+    points: np.ndarray
+    time: np.ndarray
+    position: np.ndarray
+    rotation: np.ndarray
+    read: np.ndarray
+
+
+def measured_pose(body, faults, test):
+    """`MeasuredPose` of `BodyMarkers` in the test of this number, `MarkerFaults` taken out."""
+    time, displacement = body.readings[test]
     points = body.points + faults.place
     places = body.position + points @ body.rotation.T
-    readings = places + take_out(displacement, record_scale(time), faults, 0)
+    readings = places + take_out(displacement, record_scale(time), faults, test)
     pose = see_from_body(points, readings, body.position, body.rotation)
     readings[outlying(pose.residual)] = np.nan
     # steps where a marker comes or goes would look like acceleration
@@ -139,13 +166,15 @@ def measured_pose(body, faults):
     pose = see_from_body(points, readings, body.position, body.rotation)
     turned = np.einsum("tij,ij->t", pose.rotation, body.rotation)
     known = np.isfinite(turned) & (turned > 1.0 + 2.0 * np.cos(_LARGEST_ROTATION))
-    even = np.linspace(time[0], time[-1], len(time))
+    even = np.linspace(time[0], time[-1], len(time) if known.sum() > 1 else 0)
     flat = np.concatenate([pose.position, pose.rotation.reshape(-1, 9)], axis=1)
-    if known.sum() < 2:
-        return even[:0], flat[:0, :3], flat[:0, 3:].reshape(-1, 3, 3), np.empty((0, len(points)), dtype=bool)
-    filled = np.stack([np.interp(even, time[known], column[known]) for column in flat.T], axis=1)
-    filled[_far_from(even, time[known], time[1] - time[0])] = np.nan
-    return even, filled[:, :3], filled[:, 3:].reshape(-1, 3, 3), np.isfinite(readings).all(axis=2)
+    filled = np.full((len(even), 12), np.nan)
+    if len(even):
+        near = ~_far_from(even, time[known], time[1] - time[0])
+        for column, values in enumerate(flat.T):
+            filled[near, column] = np.interp(even[near], time[known], values[known])
+    read = np.isfinite(readings).all(axis=2)[: len(even)]
+    return MeasuredPose(body.points, even, filled[:, :3], filled[:, 3:].reshape(-1, 3, 3), read)
 
 
 def _far_from(even, known, step):
@@ -155,19 +184,19 @@ def _far_from(even, known, step):
     return (known[after] - known[before] > (_LARGEST_GAP + 1.5) * step) | (even > known[-1] + 1e-9)
 
 
-def _band(lag, order, done=0.0):
-    """Band-pass kernel or its second derivative at these times [1/s, 1/s3], less a Gaussian already passed."""
-    return _gaussian(lag, np.sqrt(_SHORT_GAUSSIAN**2 - done**2), order) - _gaussian(
-        lag, np.sqrt(_LONG_GAUSSIAN**2 - done**2), order
-    )
+def _band(lag, done=0.0):
+    """Band-pass kernel at these times [1/s], less a Gaussian already passed."""
+    short, long = (np.sqrt(spread**2 - done**2) for spread in (_SHORT_GAUSSIAN, _LONG_GAUSSIAN))
+    return _gaussian(lag, short) - _gaussian(lag, long)
 
 
-def _low(lag, order, done=0.0):
-    """Low-pass kernel or its second derivative."""
-    return _gaussian(lag, np.sqrt(_SLOW_GAUSSIAN**2 - done**2), order)
+def _low(lag, done=0.0):
+    """Low-pass kernel, the same way."""
+    return _gaussian(lag, np.sqrt(_SLOW_GAUSSIAN**2 - done**2))
 
 
-def _gaussian(lag, spread, order):
+def _gaussian(lag, spread, order=0):
+    """Gaussian [1/s] or its second derivative [1/s3]."""
     value = np.exp(-0.5 * (lag / spread) ** 2) / (np.sqrt(2.0 * np.pi) * spread)
     return value if order == 0 else value * ((lag / spread) ** 2 - 1.0) / spread**2
 
@@ -181,20 +210,17 @@ def _expected(time, point, own, gravity, kernel):
     """Specific force along the sensor's axis, through the kernel, shape (n_times,); NaN near gaps."""
     rate = (len(time) - 1) / (time[-1] - time[0])
     short = _lags(_FINE_GAUSSIAN, rate)
-    acceleration = np.stack(
-        [_convolved(point[:, i] - point[0, i], _gaussian(short, _FINE_GAUSSIAN, 2) / rate) for i in range(3)],
-        axis=1,
-    )
-    steady = np.stack(
-        [_convolved(own[:, i] - own[0, i], _gaussian(short, _FINE_GAUSSIAN, 0) / rate) for i in range(3)],
-        axis=1,
+    acceleration, steady = (
+        np.stack(
+            [_convolved(axis - axis[0], _gaussian(short, _FINE_GAUSSIAN, order) / rate) for axis in values.T],
+            axis=1,
+        )
+        for values, order in ((point, 2), (own, 0))
     )
     # the axis turns while the kernel lasts: the product comes before the long filter
     force = ((steady + own[0]) * acceleration).sum(axis=1) - steady @ gravity
-    return _convolved(
-        force,
-        kernel(_lags(_LONG_GAUSSIAN if kernel is _band else _SLOW_GAUSSIAN, rate), 0, _FINE_GAUSSIAN) / rate,
-    )
+    spread = _LONG_GAUSSIAN if kernel is _band else _SLOW_GAUSSIAN
+    return _convolved(force, kernel(_lags(spread, rate), _FINE_GAUSSIAN) / rate)
 
 
 def _convolved(values, weights):
@@ -214,7 +240,7 @@ def _convolved(values, weights):
 def _filtered(time, values, kernel, spread):
     rate = (len(time) - 1) / (time[-1] - time[0])
     level = np.nanmedian(values)
-    return between_readings(time, _convolved(values - level, kernel(_lags(spread, rate), 0) / rate))
+    return between_readings(time, _convolved(values - level, kernel(_lags(spread, rate)) / rate))
 
 
 def between_readings(time, values):

@@ -9,7 +9,7 @@ import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.body_poses import PLANAR, POSE, body_poses
-from blockshake.measurement.motion.joint_coordinates import joint_coordinates
+from blockshake.measurement.motion.joint_coordinates import find_joints, joint_coordinates
 from blockshake.measurement.motion.outliers import without_outliers
 from blockshake.parity.finding import Finding, chance_within
 
@@ -24,7 +24,7 @@ _SHARP = 0.01  # standard error of a gain along z that is taken over
 _REST = 10  # readings, whose mean counts as rest
 
 
-def body_gains(structure, tests, sensors, level, looked_at):
+def body_gains(structure, tests, sensors, level):
     """`Finding` of the body whose markers all have one gain; an empty list without one.
 
     Parameters
@@ -33,10 +33,7 @@ def body_gains(structure, tests, sensors, level, looked_at):
     tests : dict of str to xarray.Dataset
         By name.
     sensors : Sensors
-    level : float
-        Chance of a finding with sound sensors.
-    looked_at : int
-        Number of hypotheses.
+    level : Level
 
     Notes
     -----
@@ -47,27 +44,20 @@ def body_gains(structure, tests, sensors, level, looked_at):
     """
     if not structure.touching.any():
         return []
-    seen = [one for one in (_joints_of(structure, test, sensors) for test in tests.values()) if one]
-    found = []
-    for body in range(len(structure.mass)):
-        own = [_of_body(one, body) for one in seen]
-        along = _gain(own)
-        if along is None:
+    seen = [joints for joints in (_joints_of(structure, test, sensors) for test in tests.values()) if joints]
+    findings = []
+    for body, name in enumerate(structure.body_names):
+        gain = _gain([_of_body(joints, body) for joints in seen])
+        if gain is None:
             continue
-        gain, variance = along
-        across = _gain_across(structure, tests.values(), body, sensors, gain)
-        p = looked_at * chance_within(np.array([gain]), np.array([[variance]]), _TOLERANCE)
-        if p < level:
-            names = tuple(
-                marker.name for marker in structure.file.markers if marker.body == structure.body_names[body]
-            )
-            found.append(
-                Finding(
-                    "sensor-gain", names, "gain", np.array([gain, 0.0, across[0]]),
-                    np.diag([variance, _TOLERANCE**2, across[1]]), min(p, 1.0), tuple(tests),
-                )
-            )  # fmt: skip
-    return sorted(found, key=lambda one: one.p)[:1]
+        along, variance = gain
+        across, across_variance = _gain_across(structure, tests.values(), body, sensors, along)
+        p = level.hypotheses * chance_within(np.array([along]), np.array([[variance]]), _TOLERANCE)
+        if p < level.chance:
+            markers = tuple(marker.name for marker in structure.file.markers if marker.body == name)
+            covariance = np.diag([variance, _TOLERANCE**2, across_variance])
+            findings.append(Finding.of("gain", markers, p, tests, [along, 0.0, across], covariance))
+    return sorted(findings, key=lambda finding: finding.p)[:1]
 
 
 def _joints_of(structure, test, sensors):
@@ -81,27 +71,20 @@ def _joints_of(structure, test, sensors):
         return None
     position = np.concatenate([structure.position[None], poses.position])
     rotation = np.concatenate([rotation_matrices(structure.orientation)[None], poses.rotation])
-    joints = joint_coordinates(structure, position, rotation).isel(time=slice(1, None))
-    names = structure.body_names
-    return {
-        "slip": joints["slip"].to_numpy()[..., 0],
-        "lower": [names.index(name) for name in joints["lower"].values],
-        "upper": [names.index(name) for name in joints["upper"].values],
-        "moved": position[1:, :, 0] - structure.position[:, 0],
-        "noise": np.sqrt(poses.covariance[:, 0, 0]),
-        "segment": (np.arange(len(position) - 1) * _EVERY // _SEGMENT).astype(int),
-    }
+    slip = joint_coordinates(structure, position, rotation)["slip"].to_numpy()[1:, :, 0]
+    moved = poses.position[..., 0] - structure.position[:, 0]
+    segment = (np.arange(len(moved)) * _EVERY // _SEGMENT).astype(int)
+    return find_joints(structure)[0], slip, moved, np.sqrt(poses.covariance[:, 0, 0]), segment
 
 
-def _of_body(seen, body):
-    """Slips of the joints at a body, the displacement that would explain them, numbers of segments, and the noise."""
-    pairs = []
-    for joint, (lower, upper) in enumerate(zip(seen["lower"], seen["upper"], strict=True)):
-        if body in (lower, upper):
-            sign = 1.0 if body == upper else -1.0
-            noise = float(np.hypot(*seen["noise"][[lower, upper]]))
-            pairs.append((seen["slip"][:, joint], sign * seen["moved"][:, body], seen["segment"], noise))
-    return pairs
+def _of_body(joints, body):
+    """Of every joint at a body: slips, the displacement that would explain them, numbers of segments, and the noise."""
+    pairs, slip, moved, noise, segment = joints
+    return [
+        (slip[:, joint], (1.0 if body == pair[1] else -1.0) * moved[:, body], segment, np.hypot(*noise[pair]))
+        for joint, pair in enumerate(pairs)
+        if body in pair
+    ]
 
 
 def _gain_across(structure, tests, body, sensors, along):
@@ -129,22 +112,22 @@ def _gain_across(structure, tests, body, sensors, along):
 
 def _gain(tests):
     """Gain and its variance by all joints and tests; None where it does not explain every joint."""
-    n_joints = len(tests[0]) if tests else 0
-    if n_joints < _FEWEST_JOINTS:
+    joints = [_pooled(own) for own in zip(*tests, strict=True)]
+    if len(joints) < _FEWEST_JOINTS:
         return None
-    read = [_pooled([test[joint] for test in tests]) for joint in range(n_joints)]
-    slip, moved = (np.concatenate([one[key] for one in read]) for key in (0, 1))
+    slip, moved = (np.concatenate([joint[key] for joint in joints]) for key in (0, 1))
     if not (moved**2).sum() > 0.0:
         return None
     ratio = (slip @ moved) / (moved @ moved)  # reading over truth, less 1, over the reading
-    for own_slip, own_moved, noise in ((one[0], one[1], one[3]) for one in read):
-        size = (own_slip**2).mean()
-        if not size > (_SEEN * noise) ** 2 or ((own_slip - ratio * own_moved) ** 2).mean() > _LEFT * size:
+    for slip, along, _, noise in joints:
+        size = (slip**2).mean()
+        if not size > (_SEEN * noise) ** 2 or ((slip - ratio * along) ** 2).mean() > _LEFT * size:
             return None
-    scores = np.concatenate([np.bincount(one[2], one[1] * (one[0] - ratio * one[1])) for one in read])
+    scores = np.concatenate(
+        [np.bincount(segment, along * (slip - ratio * along)) for slip, along, segment, _ in joints]
+    )
     variance = (scores**2).sum() / (moved @ moved) ** 2
-    gain = ratio / (1.0 - ratio)
-    return gain, variance / (1.0 - ratio) ** 4
+    return ratio / (1.0 - ratio), variance / (1.0 - ratio) ** 4
 
 
 def _pooled(tests):
@@ -154,4 +137,4 @@ def _pooled(tests):
         known = np.isfinite(slip) & np.isfinite(moved)
         parts.append((slip[known], moved[known], first + segment[known]))
         first += int(segment[-1]) + 1
-    return (*(np.concatenate(column) for column in zip(*parts, strict=True)), tests[0][3])
+    return *map(np.concatenate, zip(*parts, strict=True)), tests[0][3]

@@ -8,9 +8,10 @@ from blockshake.measurement.campaigns.campaign import load_test
 from blockshake.measurement.campaigns.command_clock import simulation_start, since
 from blockshake.measurement.motion.body_frame import see_from_body
 from blockshake.measurement.motion.fall import find_fall, until_fall
+from blockshake.parity.finding import EFFECTS
+from blockshake.parity.marker_swaps import ORDERS
 
 _REST = 0.1  # s, whose mean is an accelerometer's reading at rest
-_ORDERS = {"x and y": [1, 0, 2], "x and z": [2, 1, 0], "y and z": [0, 2, 1]}
 
 
 def load_corrected_test(campaign, name, structure, findings):
@@ -53,23 +54,11 @@ def corrected(test, name, structure, findings):
     reading is right, of other points than the structure says.
     """
     test = test.transpose("time", "marker", "axis", ...).copy(deep=True)
-    own = [finding for finding in findings if name in finding.tests and finding.quantity != "range"]
-    order = (
-        "swap",
-        "axes",
-        "polarity",
-        "slip",
-        "drift",
-        "gain",
-        "place",
-        "reference place",
-        "lag",
-        "skew",
-    )
-    for finding in sorted(own, key=lambda finding: order.index(finding.quantity)):
-        if "place" in finding.quantity:
-            continue
-        _TAKE[finding.quantity](test, finding)
+    own = [finding for finding in findings if name in finding.tests]
+    for quantity in EFFECTS:
+        for finding in own:
+            if finding.quantity == quantity and quantity in _TAKE:
+                _TAKE[quantity](test, finding)
     places = {finding.where[0]: finding.estimate for finding in own if finding.quantity == "place"}
     _take_places(test, structure, places)
     return test
@@ -94,7 +83,7 @@ def _take_swap(test, finding):
 def _take_axes(test, finding):
     place = {"marker": finding.where[0]}
     values = test["marker_displacement"].loc[place].to_numpy()
-    test["marker_displacement"].loc[place] = values[:, _ORDERS[finding.where[1]]].copy()
+    test["marker_displacement"].loc[place] = values[:, ORDERS[finding.where[1]]].copy()
 
 
 def _take_polarity(test, finding):
@@ -111,16 +100,13 @@ def _take_slip(test, finding):
 
 
 def _take_drift(test, finding):
-    if len(finding.estimate) == 1:
-        time = test["time_acc"].to_numpy()
-        test["accelerometer"].loc[{"channel": finding.where[0]}] -= finding.estimate[0] * (time - time[0])
-        return
-    time = test["time"].to_numpy()
-    change = (time - time[0])[:, None] * finding.estimate
+    variable, place = _column(test, finding.where[0])
+    time = test["time" if variable == "marker_displacement" else "time_acc"].to_numpy()
+    change = np.squeeze((time - time[0])[:, None] * finding.estimate)
     if finding.where == ("optical frame",):
-        test["marker_displacement"] -= xr.DataArray(change, dims=("time", "axis"))
+        test[variable] -= xr.DataArray(change, dims=("time", "axis"))
     else:
-        test["marker_displacement"].loc[{"marker": finding.where[0]}] -= change
+        test[variable].loc[place] -= change
 
 
 def _take_gain(test, finding):
@@ -145,9 +131,8 @@ def _take_lag(test, finding):
 
 def _take_skew(test, finding):
     if "time_acc" in test.coords:
-        time = test["time"].to_numpy()
-        late = test["time_acc"] - 0.5 * (time[0] + time[-1])
-        test.coords["time_acc"] = test["time_acc"] + finding.estimate[0] * late
+        middle = 0.5 * float(test["time"][0] + test["time"][-1])
+        test.coords["time_acc"] = test["time_acc"] + finding.estimate[0] * (test["time_acc"] - middle)
 
 
 _TAKE = {

@@ -1,10 +1,34 @@
 """A sensor fault that was found, and the test of an estimate against its tolerance."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2, f
+
+# Kinds of faults, each by the quantity that is estimated, and the effects of the registry that they count as; in the
+# order in which they are taken out of readings.
+EFFECTS = {
+    "swap": "channel-swap",
+    "axes": "channel-swap",
+    "polarity": "channel-swap",
+    "slip": "sensor-drift",
+    "drift": "sensor-drift",
+    "gain": "sensor-gain",
+    "place": "marker-offset",
+    "reference place": "marker-offset",
+    "lag": "clock-lag",
+    "skew": "clock-lag",
+    "range": "sensor-saturation",
+}
+
+
+class Level(NamedTuple):
+    """Chance of any finding on a campaign of sound sensors, shared evenly by a number of hypotheses."""
+
+    chance: float
+    hypotheses: int
 
 
 @dataclass(frozen=True)
@@ -14,8 +38,7 @@ class Finding:
     Attributes
     ----------
     effect : str
-        Registry name: ``sensor-gain``, ``marker-offset``, ``sensor-drift``, ``channel-swap``, ``clock-lag`` or
-        ``sensor-saturation``.
+        Of the registry, as of `EFFECTS`.
     where : tuple of str
         Markers, channels or displacement transducers; ``("optical clock",)`` and ``("optical frame",)`` for faults of
         all markers.
@@ -43,6 +66,15 @@ class Finding:
     p: float
     tests: tuple
     rivals: tuple = ()
+
+    @classmethod
+    def of(cls, quantity, where, p, tests, estimate=(), covariance=None, rivals=()):
+        """The finding of a kind; without an estimate where nothing is to be estimated. p is 1 at most."""
+        estimate = np.asarray(estimate, dtype=float)
+        covariance = np.zeros((len(estimate),) * 2) if covariance is None else covariance
+        return cls(
+            EFFECTS[quantity], where, quantity, estimate, covariance, min(p, 1.0), tuple(tests), rivals
+        )
 
     @property
     def standard_error(self):

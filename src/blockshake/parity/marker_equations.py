@@ -12,78 +12,77 @@ _LARGEST_ROTATION = 0.3  # rad; a body that lies on its side is no longer checke
 _WEAK_LEVER = 0.1  # lever of the markers about an axis, over the largest: the turn about it is mostly noise
 _SMOOTHING = 101  # readings, half a second, over which such a turn is averaged
 _SEGMENT = 40  # readings over which coloured noise averages out, 0.2 s at 200 Hz
-CONSTANT, DRIFT, GAIN, PLACE = "constant", "drift", "gain", "place"
-_SIZES = {CONSTANT: 3, DRIFT: 3, GAIN: 1, PLACE: 3}
+DRIFT, GAIN, PLACE = "drift", "gain", "place"
 
 
 @dataclass(frozen=True)
 class MarkerFaults:
-    """Faults of the markers of one body in every test.
+    """Faults of the markers of one body in every test, as one vector: drifts by test and marker, gains, places.
 
     Attributes
     ----------
-    gain : float64 array, shape (n_markers,)
-        Reading over displacement, less 1 [1].
-    place : float64 array, shape (n_markers, 3)
-        True place of the marker less its stated place, body frame [m].
-    drift : float64 array, shape (n_tests, n_markers, 3)
-        Over the whole record, inertial frame [m].
+    values : float64 array, shape (n_unknowns,)
+    n_tests : int
     """
 
-    gain: np.ndarray
-    place: np.ndarray
-    drift: np.ndarray
+    values: np.ndarray
+    n_tests: int
 
     @classmethod
     def none(cls, n_tests, n_markers):
         """No fault."""
-        return cls(np.zeros(n_markers), np.zeros((n_markers, 3)), np.zeros((n_tests, n_markers, 3)))
+        return cls(np.zeros((3 * n_tests + 4) * n_markers), n_tests)
 
-    def plus(self, vector):
-        """Faults changed by a vector in the order of `columns`."""
-        n_drift, n_gain = self.drift.size, self.gain.size
-        drift, gain, place = np.split(vector, [n_drift, n_drift + n_gain])
-        return MarkerFaults(
-            self.gain + gain, self.place + place.reshape(-1, 3), self.drift + drift.reshape(self.drift.shape)
-        )
+    @property
+    def n_markers(self):
+        """Of the body."""
+        return len(self.values) // (3 * self.n_tests + 4)
+
+    @property
+    def drift(self):
+        """Over the whole record, inertial frame, (n_tests, n_markers, 3) [m]."""
+        return self.values[: 3 * self.n_tests * self.n_markers].reshape(self.n_tests, -1, 3)
+
+    @property
+    def gain(self):
+        """Reading over displacement, less 1, (n_markers,) [1]."""
+        return self.values[-4 * self.n_markers : -3 * self.n_markers]
+
+    @property
+    def place(self):
+        """True place of the marker less its stated place, body frame, (n_markers, 3) [m]."""
+        return self.values[-3 * self.n_markers :].reshape(-1, 3)
+
+    def columns(self, kind, marker, test=0):
+        """Where a marker's unknowns of a kind are in the vector."""
+        first, size = {
+            DRIFT: (3 * self.n_markers * test, 3),
+            GAIN: (3 * self.n_markers * self.n_tests, 1),
+            PLACE: (3 * self.n_markers * self.n_tests + self.n_markers, 3),
+        }[kind]
+        return first + size * marker + np.arange(size)
 
 
 @dataclass(frozen=True)
 class MarkerEquations:
-    """Normal equations of one body over its tests; parameters as in `columns`.
+    """Normal equations of one body over its tests; unknowns are constants by test and marker, then `MarkerFaults`.
 
     Attributes
     ----------
-    normal, right : float64 arrays, shapes (n_parameters, n_parameters), (n_parameters,)
-        [m2 over the parameters' units]
-    square : float
-        Sum of the squared residuals [m2].
+    normal, right : float64 arrays, shapes (n_unknowns, n_unknowns), (n_unknowns,)
+        [m2 over the unknowns' units]
     variance : float
         Of a reading, times the factor by which coloured noise averages out more slowly than white noise [m2].
-    noise : float64 array, shape (n_markers,)
-        Standard deviation of each marker's residual, scaled to that of a reading [m].
-    misfit : float64 array, shape (n_markers,)
-        The same before any fault is taken out [m].
+    noise, misfit : float64 arrays, shape (n_markers,)
+        Standard deviation of each marker's residual, scaled to that of a reading, after and before faults are taken
+        out [m].
     """
 
     normal: np.ndarray
     right: np.ndarray
-    square: float
     variance: float
     noise: np.ndarray
     misfit: np.ndarray
-
-
-def columns(kind, n_tests, n_markers, marker, test=0):
-    """Places of a marker's parameters in the vector [constants, drifts, gains, places]."""
-    first = {
-        CONSTANT: 3 * n_markers * test,
-        DRIFT: 3 * n_markers * (n_tests + test),
-        GAIN: 6 * n_markers * n_tests,
-        PLACE: 6 * n_markers * n_tests + n_markers,
-    }[kind]
-    size = _SIZES[kind]
-    return first + size * marker + np.arange(size)
 
 
 def marker_equations(points, start_position, start_rotation, tests, faults):
@@ -108,31 +107,22 @@ def marker_equations(points, start_position, start_rotation, tests, faults):
     nothing before it.
     """
     n_tests, n_markers = len(tests), len(points)
-    size = 6 * n_markers * n_tests + 4 * n_markers
-    normal, right, square = np.zeros((size, size)), np.zeros(size), 0.0
-    kept = []
+    size = 3 * n_markers * n_tests + len(faults.values)
+    normal, right, kept = np.zeros((size, size)), np.zeros(size), []
     for test, (time, displacement) in enumerate(tests):
         design, residual, projector = _one_test(
             points, start_position, start_rotation, time, displacement, faults, test
         )
-        own = np.concatenate(
-            [
-                np.arange(3 * n_markers) + columns(kind, n_tests, n_markers, 0, test)[0]
-                for kind in (CONSTANT, DRIFT)
-            ]
-            + [np.arange(6 * n_markers * n_tests, size)]
-        )
+        own = np.arange(3 * n_markers) + 3 * n_markers * test
+        own = np.concatenate([own, own + 3 * n_markers * n_tests, np.arange(6 * n_markers * n_tests, size)])
         flat = design.reshape(-1, design.shape[2])
         normal[np.ix_(own, own)] += flat.T @ flat
         right[own] += flat.T @ residual.ravel()
-        square += (residual**2).sum()
         kept.append((own, design, residual, projector))
-    free = np.linalg.lstsq(
-        normal + 1e-9 * np.diag(np.diagonal(normal)) + 1e-12 * np.eye(size), right, rcond=None
-    )[0]
+    ridge = 1e-9 * np.diag(np.diagonal(normal)) + 1e-12 * np.eye(size)
+    free = np.linalg.lstsq(normal + ridge, right, rcond=None)[0]
     variance, noise = _noise(kept, free, n_markers)
-    misfit = _noise(kept, None, n_markers)[1]
-    return MarkerEquations(normal, right, square, variance, noise, misfit)
+    return MarkerEquations(normal, right, variance, noise, _noise(kept, None, n_markers)[1])
 
 
 def take_out(displacement, scale, faults, test):
@@ -166,14 +156,19 @@ def _one_test(points, start_position, start_rotation, time, displacement, faults
     rotation = _steadied(points, pose.rotation[used], start_rotation)
     turned = np.einsum("tji,jk->tik", rotation, start_rotation)
     moved = pose.position[used, None] + np.einsum("tij,mj->tmi", rotation, points) - places
-    signatures = np.zeros((len(used), n_markers, 3, 10 * n_markers))
-    for marker in range(n_markers):
-        signatures[:, marker, :, 3 * marker : 3 * marker + 3] = np.eye(3)
-        drift = 3 * (n_markers + marker)
-        signatures[:, marker, :, drift : drift + 3] = scale[used, None, None] * rotation.transpose(0, 2, 1)
-        signatures[:, marker, :, 6 * n_markers + marker] = np.einsum("tji,tj->ti", rotation, moved[:, marker])
-        place = 7 * n_markers + 3 * marker
-        signatures[:, marker, :, place : place + 3] = np.eye(3) - turned
+    same = np.eye(n_markers)
+    back = rotation.transpose(0, 2, 1)
+    # (n_times, n_markers or 1, 3, n_unknowns of a marker)
+    parts = [
+        np.broadcast_to(np.eye(3), (len(used), 1, 3, 3)),
+        (scale[used, None, None] * back)[:, None],
+        (moved @ rotation)[..., None],
+        (np.eye(3) - turned)[:, None],
+    ]
+    signatures = [
+        (part[:, :, :, None] * same[:, None, :, None]).reshape(len(used), n_markers, 3, -1) for part in parts
+    ]
+    signatures = np.concatenate(signatures, axis=-1)
     projector = pose.projector[used]
     design = projector @ signatures.reshape(len(used), 3 * n_markers, -1)
     residual = np.nan_to_num(pose.residual[used]).reshape(len(used), -1)

@@ -1,32 +1,27 @@
 """Faults of the markers of one body: wrong place, gain or drift, found one after the other."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from blockshake.parity.finding import Finding, chance_within
+from blockshake.parity.finding import Finding
+from blockshake.parity.linear_faults import Fault, clearest, freed, judge, posterior
 from blockshake.parity.marker_equations import (
     DRIFT,
     GAIN,
     PLACE,
     MarkerEquations,
     MarkerFaults,
-    columns,
     marker_equations,
 )
-from blockshake.parity.posterior import VAGUE, data_alone, posterior
 
-# What a sound marker may have; its standard deviation is half of it.
-GAIN_TOLERANCE = 2e-3
-PLACE_TOLERANCE = 2e-3  # m, along any direction; markers are mounted within 1 mm along each axis
+# What a sound marker may have beside a drift; its standard deviation is half of it. Places are in m, along any
+# direction: markers are mounted within 1 mm along each axis.
+_TOLERANCE = {GAIN: 2e-3, PLACE: 2e-3}
 _CONSTANT_SPREAD = 5e-3  # m, of the first reading's own error: as good as unknown
-_SOUND_MARKERS_NEEDED = (
-    2  # markers of a body that must be left without a fault, or nothing says which is at fault
-)
+_SOUND_MARKERS = 2  # of a body, that must be left without a fault, or nothing says which is at fault
 _MOST_FAULTS = 8  # faults on one body
 _LINEARISATIONS = 4
-_GAIN_OVER_RIVALS = 9.0  # less in the sum of weighted squares than the best: not told apart
-_EFFECTS = {DRIFT: "sensor-drift", GAIN: "sensor-gain", PLACE: "marker-offset"}
 
 
 @dataclass(frozen=True)
@@ -54,20 +49,30 @@ class BodyMarkers:
     tests: tuple
     readings: list
 
-    def equations(self, faults):
-        """Equations about these faults."""
-        return marker_equations(self.points, self.position, self.rotation, self.readings, faults)
-
-    def without_faults(self):
-        """Faults of sound markers."""
-        return MarkerFaults.none(len(self.tests), len(self.markers))
-
     @property
     def hypotheses(self):
-        """All (kind, marker, test) that are looked at."""
-        count = range(len(self.markers))
-        single = [(kind, marker, 0) for kind in (GAIN, PLACE) for marker in count]
-        return single + [(DRIFT, marker, test) for marker in count for test in range(len(self.tests))]
+        """All faults that are looked at."""
+        markers = range(len(self.markers))
+        single = [Fault(quantity, marker) for quantity in (GAIN, PLACE) for marker in markers]
+        return single + [Fault(DRIFT, marker, test) for marker in markers for test in range(len(self.tests))]
+
+    @property
+    def sound(self):
+        """`MarkerFaults` of sound markers."""
+        return MarkerFaults.none(len(self.tests), len(self.markers))
+
+    def columns(self, fault):
+        """Unknowns of a fault, after the constants of all tests."""
+        constants = 3 * len(self.markers) * len(self.tests)
+        return constants + self.sound.columns(fault.quantity, fault.sensor, fault.test)
+
+    def spread(self, drift_tolerance):
+        """Standard deviation of each unknown of sound markers, as in `MarkerEquations`."""
+        n_tests, n_markers = len(self.tests), len(self.markers)
+        return np.repeat(
+            [_CONSTANT_SPREAD, drift_tolerance / 2.0, _TOLERANCE[GAIN] / 2.0, _TOLERANCE[PLACE] / 2.0],
+            [3 * n_markers * n_tests, 3 * n_markers * n_tests, n_markers, 3 * n_markers],
+        )
 
 
 @dataclass(frozen=True)
@@ -79,20 +84,7 @@ class MarkerCheck:
     equations: MarkerEquations
 
 
-def prior_spread(body, drift_tolerance):
-    """Standard deviation of each parameter of sound markers, in the order of `columns`."""
-    n_tests, n_markers = len(body.tests), len(body.markers)
-    return np.concatenate(
-        [
-            np.full(3 * n_markers * n_tests, _CONSTANT_SPREAD),
-            np.full(3 * n_markers * n_tests, drift_tolerance / 2.0),
-            np.full(n_markers, GAIN_TOLERANCE / 2.0),
-            np.full(3 * n_markers, PLACE_TOLERANCE / 2.0),
-        ]
-    )
-
-
-def check_body(body, marker_noise, level, looked_at):
+def check_body(body, marker_noise, level):
     """Name the faults of a body's markers, the clearest first, until what is left is within the tolerances.
 
     Parameters
@@ -100,94 +92,58 @@ def check_body(body, marker_noise, level, looked_at):
     body : BodyMarkers
     marker_noise : float
         Stated standard deviation [m]: the drift over a record that is tolerated.
-    level : float
-        Of all hypotheses together.
-    looked_at : int
-        Number of hypotheses in the campaign.
+    level : Level
 
     Returns
     -------
     MarkerCheck
     """
-    faults, named, findings = body.without_faults(), [], []
-    spread = prior_spread(body, marker_noise)
+    tolerance = _TOLERANCE | {DRIFT: marker_noise}
+    faults, named = body.sound, {}
     while True:
-        for _ in range(_LINEARISATIONS if named else 1):
-            equations = body.equations(faults)
-            if not named:
-                break
-            mean = posterior(equations, _freed(body, spread, named))[0]
-            change = np.zeros(len(mean))
-            for hypothesis in named:
-                place = _places(body, hypothesis)
-                change[place] = mean[place]
-            faults = faults.plus(change[3 * len(body.markers) * len(body.tests) :])
+        spread = freed(body.spread(marker_noise), map(body.columns, named))
+        faults, equations = _linearised(body, faults, spread, named)
         if not np.isfinite(equations.variance):
             return MarkerCheck(faults, (), equations)
-        findings = [
-            _updated(body, faults, equations, spread, named, hypothesis, finding)
-            for hypothesis, finding in zip(named, findings, strict=True)
-        ]
-        judged = _judge(body, equations, _freed(body, spread, named), marker_noise, named)
-        suspects = {marker for _, marker, _ in named}
-        full = len(suspects) >= len(body.markers) - _SOUND_MARKERS_NEEDED
-        clear = [
-            item
-            for item in judged
-            if item[1] * looked_at < level and not (full and item[2][1] not in suspects)
-        ]
-        if not clear or len(named) == _MOST_FAULTS:
+        open_to = {
+            fault: (body.columns(fault), tolerance[fault.quantity], 1)
+            for fault in body.hypotheses
+            if fault not in named
+        }
+        suspects = {fault.sensor for fault in named}
+        full = len(suspects) >= len(body.markers) - _SOUND_MARKERS
+        best = clearest(
+            judge(equations, spread, open_to, level), level, body.markers,
+            lambda fault, full=full, suspects=suspects: not full or fault.sensor in suspects,
+        )  # fmt: skip
+        if best is None or len(named) == _MOST_FAULTS:
+            covariance = posterior(equations, spread)[1]
+            findings = [_finding(body, faults, covariance, fault, *said) for fault, said in named.items()]
             return MarkerCheck(faults, tuple(findings), equations)
-        best = max(clear, key=lambda item: item[0])
-        rivals = [
-            (_EFFECTS[h[0]], (body.markers[h[1]],), h[0])
-            for gained, _, h in judged
-            if h[:2] != best[2][:2] and best[0] - gained < _GAIN_OVER_RIVALS
-        ]
-        named.append(best[2])
-        findings.append((best[1] * looked_at, tuple(rivals)))
+        named[best[0]] = best[1:]
 
 
-def _places(body, hypothesis):
-    kind, marker, test = hypothesis
-    return columns(kind, len(body.tests), len(body.markers), marker, test)
+def _linearised(body, faults, spread, named):
+    """Faults with the named ones at their best, and the equations about them."""
+    equations = marker_equations(body.points, body.position, body.rotation, body.readings, faults)
+    for _ in range(_LINEARISATIONS if named else 0):
+        mean, values = posterior(equations, spread)[0], faults.values.copy()
+        for fault in named:
+            columns = body.columns(fault)
+            values[columns - len(mean)] += mean[columns]
+        faults = replace(faults, values=values)
+        equations = marker_equations(body.points, body.position, body.rotation, body.readings, faults)
+    return faults, equations
 
 
-def _freed(body, spread, named):
-    spread = spread.copy()
-    for hypothesis in named:
-        spread[_places(body, hypothesis)] *= VAGUE
-    return spread
-
-
-def _judge(body, equations, spread, drift_tolerance, named):
-    """(gain in the sum of squares less twice the parameters, chance within the tolerance, hypothesis) of each."""
-    mean, covariance = posterior(equations, spread)
-    tolerance = {GAIN: GAIN_TOLERANCE, PLACE: PLACE_TOLERANCE, DRIFT: drift_tolerance}
-    judged = []
-    for hypothesis in body.hypotheses:
-        if hypothesis in named:
-            continue
-        place = _places(body, hypothesis)
-        estimate, own = data_alone(mean[place], covariance[np.ix_(place, place)], spread[place])
-        tied = own + np.diag(spread[place] ** 2)
-        gained = estimate @ np.linalg.solve(tied, estimate) - 2.0 * len(place)
-        judged.append((gained, chance_within(estimate, own, tolerance[hypothesis[0]]), hypothesis))
-    return judged
-
-
-def _updated(body, faults, equations, spread, named, hypothesis, finding):
+def _finding(body, faults, covariance, fault, p, rivals):
     """The finding with the estimate and covariance that hold with all that is named."""
-    p, rivals = finding if isinstance(finding, tuple) else (finding.p, finding.rivals)
-    kind, marker, test = hypothesis
-    covariance = posterior(equations, _freed(body, spread, named))[1]
-    place = _places(body, hypothesis)
-    covariance = covariance[np.ix_(place, place)]
-    if kind == DRIFT:
-        time = body.readings[test][0]
-        length = time[-1] - time[0]
+    quantity, marker, test = fault
+    covariance = covariance[np.ix_(body.columns(fault), body.columns(fault))]
+    if quantity == DRIFT:
+        length = np.ptp(body.readings[test][0])
         estimate, covariance = faults.drift[test, marker] / length, covariance / length**2
     else:
-        estimate = np.atleast_1d(faults.gain[marker] if kind == GAIN else faults.place[marker])
-    tests = (body.tests[test],) if kind == DRIFT else body.tests
-    return Finding(_EFFECTS[kind], (body.markers[marker],), kind, estimate, covariance, p, tests, rivals)
+        estimate = np.atleast_1d(faults.gain[marker] if quantity == GAIN else faults.place[marker])
+    tests = (body.tests[test],) if quantity == DRIFT else body.tests
+    return Finding.of(quantity, (body.markers[marker],), p, tests, estimate, covariance, rivals)

@@ -10,24 +10,27 @@ from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines
 from blockshake.measurement.motion.fall import Fall
 from blockshake.measurement.sensors.markers import whole_markers
-from blockshake.parity.acceleration_parity import channel_pairs
+from blockshake.parity.acceleration_parity import channel_pairs, measured_pose
 from blockshake.parity.body_gain import body_gains
-from blockshake.parity.channel_findings import channel_findings
+from blockshake.parity.channel_faults import channel_findings, channel_gains
+from blockshake.parity.clock import clock_findings, clock_lag
 from blockshake.parity.correction import corrected
-from blockshake.parity.finding import Finding
+from blockshake.parity.finding import Finding, Level
 from blockshake.parity.frame_drift import frame_drift
-from blockshake.parity.marker_equations import MarkerFaults
 from blockshake.parity.marker_faults import BodyMarkers, check_body
-from blockshake.parity.marker_swaps import unswapped
+from blockshake.parity.marker_swaps import marker_swaps
 from blockshake.parity.saturation import saturation
 from blockshake.parity.transducer_equations import held_readings
 from blockshake.parity.transducer_faults import check_transducer, hypotheses
 
 LEVEL = 0.01  # chance of any finding on a campaign of sound sensors
 _FEWEST_MARKERS = 3
-_MARKER_UNITS = {"noise": "m", "misfit": "m"}
-_CLOCK_UNITS = {"lag": "s", "lag_error": "s"}
-_GAIN_UNITS = {"gain": "1", "gain_error": "1"}
+_TABLES = {
+    "markers": ("marker", {"noise": "m", "misfit": "m"}),
+    "clock": ("test", {"lag": "s", "lag_error": "s"}),
+    "channels": ("channel", {"gain": "1", "gain_error": "1"}),
+    "transducers": ("transducer", {"gain": "1", "gain_error": "1"}),
+}
 
 
 @dataclass(frozen=True)
@@ -64,14 +67,11 @@ class Parity:
     gaps: dict
 
     def as_json(self):
-        """As JSON-like values, NaN as null."""
-        transducers = _columns(self.transducers, "transducer")
+        """As JSON-like values, NaN as null; of transducers only where there are any."""
+        tables = {name: _rows(getattr(self, name), dim) for name, (dim, _) in _TABLES.items()}
         return {
             "findings": [finding.as_json() for finding in self.findings],
-            "markers": _columns(self.markers, "marker"),
-            "clock": _columns(self.clock, "test"),
-            "channels": _columns(self.channels, "channel"),
-            **({"transducers": transducers} if transducers else {}),
+            **{name: rows for name, rows in tables.items() if rows or name != "transducers"},
             "looked_at": self.looked_at,
             "falls": {name: fall._asdict() for name, fall in self.falls.items()},
             "gaps": self.gaps,
@@ -91,10 +91,7 @@ class Parity:
         """The parity of such values."""
         return cls(
             findings=tuple(map(Finding.from_json, values["findings"])),
-            markers=_table(values["markers"], "marker", _MARKER_UNITS),
-            clock=_table(values["clock"], "test", _CLOCK_UNITS),
-            channels=_table(values["channels"], "channel", _GAIN_UNITS),
-            transducers=_table(values.get("transducers", {}), "transducer", _GAIN_UNITS),
+            **{name: _table(name, values.get(name, {})) for name in _TABLES},
             looked_at=values["looked_at"],
             falls={name: Fall(**fall) for name, fall in values["falls"].items()},
             gaps=values["gaps"],
@@ -112,27 +109,21 @@ def load_parity(path):
     return load_made_json(path, Parity.from_json)
 
 
-def _columns(table, dim):
-    """Columns of a table by the names along its dimension."""
+def _rows(table, dim):
+    """Values of every row of a table by its name, NaN as null."""
+    columns = {name: column.to_numpy() for name, column in table.data_vars.items()}
     return {
-        str(name): {
-            column: float(table[column].sel({dim: name}))
-            if np.isfinite(table[column].sel({dim: name}))
-            else None
-            for column in table.data_vars
-        }
-        for name in table[dim].values
+        str(name): {key: float(own[row]) if np.isfinite(own[row]) else None for key, own in columns.items()}
+        for row, name in enumerate(table[dim].values)
     }
 
 
-def _table(rows, dim, units):
-    """Table of such columns; null is NaN."""
+def _table(name, rows):
+    """Table of such rows; null is NaN."""
+    dim, units = _TABLES[name]
+    columns = {key: np.array([row[key] for row in rows.values()], dtype=float) for key in units}
     return xr.Dataset(
-        {
-            column: (dim, np.array([row[column] for row in rows.values()], dtype=float), {"units": unit})
-            for column, unit in units.items()
-        },
-        {dim: list(rows)},
+        {key: (dim, columns[key], {"units": unit}) for key, unit in units.items()}, {dim: list(rows)}
     )
 
 
@@ -171,40 +162,55 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     compared with the markers as corrected.
     """
     sensors = sensors.not_noiseless()
-    findings = saturation(tests, level, 2 * len(tests) * _channel_count(tests))
+    gaps = {name: faulty_lines(test) for name, test in tests.items()}
+    share = Level(level, _looked_at(_bodies(structure, tests), tests))
+    findings = body_gains(structure, tests, sensors, share)
+    tests = _without(findings, tests, structure)
+    swaps = marker_swaps(_bodies(structure, tests), sensors.marker_noise, share)
+    tests = _without(swaps, tests, structure)
     bodies = _bodies(structure, tests)
-    looked_at = _looked_at(bodies, tests)
-    of_bodies = body_gains(structure, tests, sensors, level, looked_at)
-    findings += of_bodies
-    tests = {name: corrected(test, name, structure, of_bodies) for name, test in tests.items()}
-    bodies = _bodies(structure, tests)
-    tests, found = unswapped(tests, bodies, sensors.marker_noise, level, looked_at)
-    findings += found
-    bodies = _bodies(structure, tests)
-    checks = {name: check_body(body, sensors.marker_noise, level, looked_at) for name, body in bodies.items()}
+    findings = saturation(tests, level) + findings + swaps
+    checks = {name: check_body(body, sensors.marker_noise, share) for name, body in bodies.items()}
     findings += [finding for check in checks.values() for finding in check.findings]
-    findings += frame_drift(structure, tests, sensors.marker_noise, level, looked_at)
+    findings += frame_drift(structure, tests, sensors.marker_noise, share)
+    shown = {
+        name: {key: measured_pose(body, checks[key].faults, index) for key, body in bodies.items()}
+        for index, name in enumerate(tests)
+    }
     pairs = {
-        name: channel_pairs(structure, test, *_of_one_test(name, bodies, checks), sensors.accelerometer_noise)
+        name: channel_pairs(structure, test, shown[name], sensors.accelerometer_noise)
         for name, test in tests.items()
         if "accelerometer" in test
     }
-    lags, gains, found = channel_findings(pairs, sensors.accelerometer_noise, level, looked_at)
-    transducers = _transducer_checks(structure, tests, bodies, checks, lags, level, looked_at)
-    found += [finding for check in transducers.values() for finding in check.findings]
+    clock = clock_lag(pairs)
+    lags = {name: clock.by_test[name].estimate[0] if name in clock.by_test else 0.0 for name in tests}
+    gains = channel_gains(pairs, lags)
+    findings += clock_findings(clock, share)
+    findings += channel_findings(pairs, lags, gains, sensors.accelerometer_noise, share)
+    held = {}
+    for name, test in tests.items():
+        for transducer in test["transducer"].values if "transducer_displacement" in test else ():
+            held.setdefault(str(transducer), {})
+        for transducer, reading in held_readings(structure, test, shown[name], lags[name]).items():
+            held[transducer][name] = reading
+    transducers = {name: check_transducer(name, one, share) for name, one in held.items()}
+    findings += [finding for check in transducers.values() for finding in check.findings]
+    names = [str(name) for name in next(iter(tests.values()))["marker"].values]
+    markers = {name: {"noise": np.nan, "misfit": np.nan} for name in names}
+    for body, check in checks.items():
+        for marker, noise, misfit in zip(
+            bodies[body].markers, check.equations.noise, check.equations.misfit, strict=True
+        ):
+            markers[marker] = {"noise": noise, "misfit": misfit}
     return Parity(
-        findings=tuple(findings + found),
-        markers=_table(_marker_rows(bodies, checks, tests), "marker", _MARKER_UNITS),
-        clock=_table(_scored_rows(lags, "lag"), "test", _CLOCK_UNITS),
-        channels=_table(_scored_rows(gains, "gain"), "channel", _GAIN_UNITS),
-        transducers=_table(
-            {name: {key: getattr(check, key) for key in _GAIN_UNITS} for name, check in transducers.items()},
-            "transducer",
-            _GAIN_UNITS,
-        ),
-        looked_at=looked_at,
+        findings=tuple(findings),
+        markers=_table("markers", markers),
+        clock=_table("clock", _sizes(clock.by_test, "lag")),
+        channels=_table("channels", _sizes(gains, "gain")),
+        transducers=_table("transducers", {name: check._asdict() for name, check in transducers.items()}),
+        looked_at=share.hypotheses,
         falls={},
-        gaps={name: faulty_lines(test) for name, test in tests.items()},
+        gaps=gaps,
     )
 
 
@@ -212,61 +218,29 @@ def _bodies(structure, tests):
     """`BodyMarkers` of every body that has three markers, with all directions measured, in all tests."""
     bodies = {}
     shared = set.intersection(*(set(whole_markers(test)) for test in tests.values()))
-    for index, name in enumerate(structure.body_names):
-        own = [marker for marker in structure.file.markers if marker.body == name and marker.name in shared]
-        if len(own) < _FEWEST_MARKERS:
+    for index, body in enumerate(structure.body_names):
+        markers = [one for one in structure.file.markers if one.body == body and one.name in shared]
+        if len(markers) < _FEWEST_MARKERS:
             continue
-        names = [marker.name for marker in own]
-        bodies[name] = BodyMarkers(
-            name,
-            tuple(names),
-            np.array([marker.position for marker in own], dtype=float),
-            structure.position[index],
-            rotation_matrices(structure.orientation[index]),
-            tuple(tests),
-            [
-                (
-                    test["time"].to_numpy(),
-                    test["marker_displacement"]
-                    .sel(marker=names)
-                    .transpose("time", "marker", "axis")
-                    .to_numpy(),
-                )
-                for test in tests.values()
-            ],
-        )
+        names = [marker.name for marker in markers]
+        readings = [
+            (
+                test["time"].to_numpy(),
+                test["marker_displacement"].sel(marker=names).transpose("time", "marker", "axis").to_numpy(),
+            )
+            for test in tests.values()
+        ]
+        points = np.array([marker.position for marker in markers], dtype=float)
+        start = structure.position[index], rotation_matrices(structure.orientation[index])
+        bodies[body] = BodyMarkers(body, tuple(names), points, *start, tuple(tests), readings)
     return bodies
 
 
-def _of_one_test(name, bodies, checks):
-    """Bodies as one test shows them, and the faults of their markers in it."""
-    single, faults = {}, {}
-    for key, body in bodies.items():
-        place, found = body.tests.index(name), checks[key].faults
-        single[key] = replace(body, tests=(name,), readings=[body.readings[place]])
-        faults[key] = MarkerFaults(found.gain, found.place, found.drift[[place]])
-    return single, faults
-
-
-def _transducer_checks(structure, tests, bodies, checks, lags, level, looked_at):
-    """`TransducerCheck` by name of every one that was read, the markers' faults taken out."""
-    held = {}
-    for name, test in tests.items():
-        if "transducer_displacement" in test:
-            for transducer in test["transducer"].values:
-                held.setdefault(str(transducer), {})
-            lag = lags[name].estimate[0] if name in lags else 0.0
-            of_test = held_readings(structure, test, *_of_one_test(name, bodies, checks), lag)
-            for transducer, one in of_test.items():
-                held[transducer][name] = one
-    return {name: check_transducer(name, one, level, looked_at) for name, one in held.items()}
-
-
-def _channel_count(tests):
-    return sum(
-        3 * test.sizes["marker"] + test.sizes.get("channel", 0) + test.sizes.get("transducer", 0)
-        for test in tests.values()
-    )
+def _without(findings, tests, structure):
+    """Tests without the faults that were found."""
+    if not findings:
+        return tests
+    return {name: corrected(test, name, structure, findings) for name, test in tests.items()}
 
 
 def _looked_at(bodies, tests):
@@ -279,18 +253,7 @@ def _looked_at(bodies, tests):
     return of_markers + 2 + 2 * len(tests) + of_channels
 
 
-def _marker_rows(bodies, checks, tests):
-    names = [str(name) for name in next(iter(tests.values()))["marker"].values]
-    rows = {name: {"noise": np.nan, "misfit": np.nan} for name in names}
-    for key, check in checks.items():
-        for index, marker in enumerate(bodies[key].markers):
-            rows[marker] = {
-                "noise": check.equations.noise[index], "misfit": check.equations.misfit[index],
-            }  # fmt: skip
-    return rows
-
-
-def _scored_rows(scores, name):
+def _sizes(scores, name):
     """Estimate and standard error of each score."""
     return {
         key: {name: one.estimate[0], f"{name}_error": np.sqrt(one.covariance[0, 0])}

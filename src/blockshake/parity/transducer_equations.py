@@ -9,7 +9,6 @@ from blockshake.parity.acceleration_parity import (
     LARGEST_MAGNIFICATION,
     LARGEST_UNSEEN_ARM,
     between_readings,
-    measured_pose,
     sight,
 )
 
@@ -55,7 +54,7 @@ class HeldReading:
         return replace(self, left=-self.left - 2.0 * self.expected, late=-self.late)
 
 
-def held_readings(structure, test, bodies, faults, lag):
+def held_readings(structure, test, poses, lag):
     """`HeldReading` of a test by transducer, of every one that was read and whose ends the markers both see.
 
     Parameters
@@ -63,10 +62,8 @@ def held_readings(structure, test, bodies, faults, lag):
     structure : Structure
     test : xarray.Dataset
         As in a campaign.
-    bodies : dict of str to BodyMarkers
-        Of this test alone.
-    faults : dict of str to MarkerFaults
-        Of these bodies, for this test alone; taken out of the readings of the markers.
+    poses : dict of str to MeasuredPose
+        Of bodies in this test.
     lag : float
         Of the optical clock behind the recorder's, as accelerometers tell it; 0 where they do not [s].
 
@@ -75,11 +72,9 @@ def held_readings(structure, test, bodies, faults, lag):
     The clock of the transducer is shifted until reading and expectation fit best: at 1 m/s a lag of half a
     millisecond, which no check finds, is five times the noise.
     """
-    needed = {
-        name for item in structure.file.displacement_transducers for name in (item.body, item.reference)
-    }
-    poses = {name: measured_pose(body, faults[name]) for name, body in bodies.items() if name in needed}
-    known = {name for name, pose in poses.items() if len(pose[0])}
+    if "transducer_displacement" not in test:
+        return {}
+    known = {name for name, pose in poses.items() if len(pose.time)}
     read = test["transducer_displacement"].transpose("transducer", "time_acc")
     names, clock = [str(name) for name in read["transducer"].values], test["time_acc"].to_numpy()
     held = {}
@@ -89,22 +84,22 @@ def held_readings(structure, test, bodies, faults, lag):
         expected, places = _expectation(structure, item, poses)
         first = places[np.isfinite(places).all(axis=1).argmax()]
         for point, direction in zip((item, item.anchor), np.split(first, 2), strict=True):
-            seen = _seen(bodies[point.body].points, poses[point.body][3], point.position, direction)
+            seen = _seen(poses[point.body], point.position, direction)
             expected[~seen] = np.nan
         reading = between_readings(clock, read.to_numpy()[names.index(item.name)])
-        found = _held(poses[item.body][0], expected, places, reading, lag)
+        found = _held(poses[item.body].time, expected, places, reading, lag)
         if found is not None:
             held[item.name] = found
     return held
 
 
-def _seen(points, read, place, direction):
+def _seen(pose, place, direction):
     """Times (n_times,) at which the markers that were read see a place of their body move along a direction of it."""
-    seen = np.zeros(len(read), dtype=bool)
-    for kept in np.unique(read[read.sum(axis=1) >= _FEWEST_MARKERS], axis=0):
-        magnified, unseen = sight(points[kept], place, direction)
+    seen = np.zeros(len(pose.read), dtype=bool)
+    for kept in np.unique(pose.read[pose.read.sum(axis=1) >= _FEWEST_MARKERS], axis=0):
+        magnified, unseen = sight(pose.points[kept], place, direction)
         if magnified <= LARGEST_MAGNIFICATION and unseen <= LARGEST_UNSEEN_ARM:
-            seen |= (read == kept).all(axis=1)
+            seen |= (pose.read == kept).all(axis=1)
     return seen
 
 
@@ -112,7 +107,7 @@ def _expectation(structure, item, poses):
     """Reach (n_times,) [m], and its derivatives with respect to the places of both ends (n_times, 6) [1]."""
     ends, turns = [], []
     for point in (item, item.anchor):
-        _, position, rotation, _ = poses[point.body]
+        position, rotation = poses[point.body].position, poses[point.body].rotation
         index = structure.body_names.index(point.body)
         # markers count from the centroid of the shape, and the poses put it where the mass centre is
         offset = structure.centroid[index] - structure.position[index]

@@ -1,0 +1,103 @@
+"""Lag and skew of the optical clock against the recorder's, from accelerometers against markers."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.parity.scored import Scored, scored
+
+_LAG_TOLERANCE = 5e-4  # s; half a millisecond of trigger jitter is no fault
+_SKEW_TOLERANCE = 5e-5  # two quartz clocks
+_SEGMENT = 0.5  # s; longer than the kernels, so that segments are independent
+_COARSE_STRIDE = 5  # readings, a quarter of the band's shortest period
+_FARTHEST_LAG = 0.1  # s, that is searched
+_STEPS = 4  # of Newton's method
+_STEP = 1e-3  # s, of the difference that gives the readings' rate
+
+
+class ClockLag(NamedTuple):
+    """Lag of each test [s]; lag at the middle of a record and skew of all tests together [s, 1], or None."""
+
+    by_test: dict
+    common: Scored | None
+
+
+def clock_lag(pairs_by_test):
+    """`ClockLag` of the optical clock against the accelerometers, test by test and over time, from the pairs by test.
+
+    Tests that tell nothing are missing.
+    """
+    lags, blocks = {}, []
+    for name, pairs in pairs_by_test.items():
+        informed = [pair for pair in pairs if pair.informed and not pair.unseen]
+        if not informed:
+            continue
+        lag = _coarse_lag(informed)
+        for _ in range(_STEPS):
+            normals, scores = _lag_equations(informed, lag)
+            if not len(normals):
+                break
+            lag += scores[:, 0].sum() / normals[:, 0, 0].sum()
+        if not len(normals):
+            continue
+        alone = scored(np.array([lag]), normals[:, :1, :1].sum(axis=0), scores[:, :1])
+        if alone is not None:
+            lags[name] = alone
+            blocks.append((np.array([lag, 0.0]), normals, scores))
+    if not blocks:
+        return ClockLag({}, None)
+    normal = sum(normals.sum(axis=0) for _, normals, _ in blocks)
+    right = sum(normals.sum(axis=0) @ start + scores.sum(axis=0) for start, normals, scores in blocks)
+    estimate = np.linalg.solve(normal, right)
+    left = [scores - normals @ (estimate - start) for start, normals, scores in blocks]
+    return ClockLag(lags, scored(estimate, normal, np.concatenate(left)))
+
+
+def clock_findings(clock, level):
+    """One lag and skew of all tests; the lag of single tests only where there is no common one: list of Finding."""
+    lags, common = clock
+    if common is None:
+        return []
+    where = ("optical clock",)
+    findings = common.part(0).finding("lag", where, lags, _LAG_TOLERANCE, level)
+    for name, lag in [] if findings else lags.items():
+        findings += lag.finding("lag", where, (name,), _LAG_TOLERANCE, level)
+    return findings + common.part(1).finding("skew", where, lags, _SKEW_TOLERANCE, level)
+
+
+def _coarse_lag(pairs):
+    """Lag of the largest correlation, on a grid of the markers' step."""
+    step = pairs[0].time[1] - pairs[0].time[0]
+    grid = np.arange(-_FARTHEST_LAG, _FARTHEST_LAG + 1e-9, step)
+    misfit = np.zeros(len(grid))
+    for pair in pairs:
+        rows = np.flatnonzero(np.isfinite(pair.expected))[::_COARSE_STRIDE]
+        time, expected = pair.time[rows], pair.expected[rows]
+        for index, lag in enumerate(grid):
+            read = np.nan_to_num(pair.read(time - lag))
+            slope = (read @ expected) / (read @ read)
+            misfit[index] += ((expected - slope * read) ** 2).sum() / (expected @ expected)
+    return grid[misfit.argmin()]
+
+
+def _lag_equations(pairs, lag):
+    """Normal matrices and scores of (change of lag, skew) in each segment, all channels together."""
+    normals, scores = {}, {}
+    for pair in pairs:
+        late = (pair.read(pair.time - lag - _STEP) - pair.read(pair.time - lag + _STEP)) / (2.0 * _STEP)
+        read = np.where(np.isfinite(late), pair.read(pair.time - lag), np.nan)
+        known = pair.enough(read)
+        if known is None:
+            continue
+        expected, read, time = pair.expected[known], read[known], pair.time[known]
+        late = late[known] * (read @ expected) / (read @ read)
+        design = np.column_stack([late, late * (time - 0.5 * (pair.time[0] + pair.time[-1]))])
+        design = design - np.outer(read, read @ design) / (read @ read)
+        left = expected - read * (read @ expected) / (read @ read)
+        weight = 1.0 / np.var(left - design @ np.linalg.lstsq(design, left, rcond=None)[0])
+        segment = np.floor((time - pair.time[0]) / _SEGMENT)
+        for one in np.unique(segment):
+            rows = segment == one
+            normals[one] = normals.get(one, 0.0) + weight * design[rows].T @ design[rows]
+            scores[one] = scores.get(one, 0.0) + weight * design[rows].T @ left[rows]
+    return np.array(list(normals.values())), np.array(list(scores.values()))
