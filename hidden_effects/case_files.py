@@ -1,6 +1,5 @@
 """The plans of the cases, and the places of their campaigns, truths and verdicts."""
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -45,25 +44,11 @@ class PlannedCase(Strict):
         return self
 
 
-class PlanFile(Strict):
-    """A file of seeds, such as ``seeds.yaml``."""
+class Plan(Strict):
+    """Cases of a file of seeds, such as ``seeds.yaml``."""
 
+    digest: str = Field(description="of the file")
     cases: tuple[PlannedCase, ...]
-
-
-@dataclass(frozen=True)
-class Plan:
-    """Cases of a file of seeds.
-
-    Attributes
-    ----------
-    cases : tuple of PlannedCase
-    digest : str
-        Of the file.
-    """
-
-    cases: tuple
-    digest: str
 
     @property
     def efforts(self):
@@ -76,7 +61,7 @@ class Plan:
 
 def load_plan(path=SEEDS):
     """The plan of a file of seeds."""
-    return Plan(validated(PlanFile, load_yaml(path), path).cases, file_digest(path))
+    return validated(Plan, {**load_yaml(path), "digest": file_digest(path)}, path)
 
 
 def campaign_of(results, name):

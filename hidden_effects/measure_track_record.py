@@ -87,19 +87,7 @@ def _is_made(case, results, maker):
 
 
 def diagnose(case, results, cores):
-    """The verdict on one campaign, by the command that a user types; what is there is kept.
-
-    Parameters
-    ----------
-    case : PlannedCase
-    results : Path
-    cores : int
-
-    Raises
-    ------
-    subprocess.CalledProcessError
-        The diagnosis failed.
-    """
+    """The verdict on one `PlannedCase`, by the command that a user types; what is there is kept."""
     verdict = verdict_of(results, case.name)
     if verdict.is_file():
         return

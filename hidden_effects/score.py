@@ -38,23 +38,10 @@ def score_plan(plan, results):
 
 
 def make_track_record(scored, efforts, seeds):
-    """Track record of scored cases, of today, this machine and these sources.
-
-    Parameters
-    ----------
-    scored : list of Scored
-    efforts : dict of str to str
-        By structure.
-    seeds : str
-        Digest of the plan.
-    """
+    """Track record of scored cases, with efforts by structure and the plan's digest: of today and these sources."""
     commit = subprocess.run(
-        ["git", "describe", "--always", "--dirty", "--abbrev=12"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+        ["git", "describe", "--always", "--dirty", "--abbrev=12"], cwd=ROOT, capture_output=True, text=True, check=False
+    )  # fmt: skip
     return TrackRecord(
         date=datetime.date.today().isoformat(),
         commit=commit.stdout.strip() or "not under version control",

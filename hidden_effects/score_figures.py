@@ -136,7 +136,6 @@ def _of_gains(scored):
 def _medians(clean, known, outside):
     right = [case for case in known if case.answer == "right"]
     described = [case for case in outside if case.held]
-    called = [case for case in known if case.truth["size"] == "large" and case.verdict.causes]
     found = {}
     for key, words, cases, goals in (
         ("named", "where an effect is rightly named", right, (0.8, 0.6)),
@@ -152,10 +151,6 @@ def _medians(clean, known, outside):
         "gain_clean": _median(
             "size of the gain on rows or responses where there is no cause",
             [abs(gain) for gain in _rows(clean) + _responses(clean)], 0.05, _MOST,
-        ),
-        "set_size_large": _median(
-            "number of causes at the larger size where an effect is called",
-            [len(case.verdict.causes) for case in called],
         ),
     }  # fmt: skip
 
