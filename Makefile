@@ -62,11 +62,11 @@ test-faults-few: setup
 test-cluster: cluster
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest -m cluster
 
-# four campaigns with and without a hidden effect, one of them twice, diagnosed by the ordinary rules: minutes
+# four campaigns with and without a hidden effect, diagnosed as a user would: minutes
 test-hidden-few: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest -m hidden_effects
 
-# all cases of hidden_effects/seeds.yaml, and the track record that reports print: hours, resumable
+# all cases of hidden_effects/seeds.yaml, and the track record that reports print: long, resumable
 test-hidden: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python hidden_effects/measure_track_record.py --cores $(CORES)
 

@@ -1,7 +1,7 @@
 """The program behind ``make bench-scale``: the largest works on one machine, their memory and their CPU time.
 
 Ten thousand samples of configuration 1 by rigid blocks, from the design to the report; an hour of motion in one run
-file; 2,000 blocks in one run; a library of 10,000 draws. Of the samples one batch is simulated, and its file is copied
+file; 2,000 blocks in one run; an ensemble of 10,000 draws. Of the samples one batch is simulated, its file is copied
 under the numbers of all others: what follows reads 10,000 samples, and most of the machine's time is saved.
 """
 
@@ -154,11 +154,11 @@ def _blocks(_, blocks):
 
 def _draws(_, draws):
     cost = _run(_CHILDREN, "draws", draws, 10.0)
-    gathered, scored = map(float, cost.output.split())
-    work = f"library of {draws:,} draws of 10 s"
+    gathered, read = map(float, cost.output.split())
+    work = f"ensemble of {draws:,} draws of 10 s"
     return [
         (work, "gathered and written, CPU s a draw", gathered / draws, _MOST_OVERHEAD),
-        (work, "read, and readings scored once, CPU s", scored, None),
+        (work, "read, CPU s", read, None),
         (work, "MiB", cost.memory, _MOST_MEMORY),
     ]
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import mean
 
-from blockshake.diagnosis.libraries.null_model import MODELS
-from blockshake.diagnosis.libraries.plan import plan_diagnosis
+from blockshake.diagnosis.nominal.nominal_model import MODELS
+from blockshake.diagnosis.nominal.plan import plan_diagnosis
 from blockshake.files import HOME
 from blockshake.log import read_cost
 from blockshake.measurement.campaigns.campaign import load_campaign
@@ -77,7 +77,7 @@ def shares(folder, study):
 
 
 def _jobs_done(folder, study):
-    """Rule, log and CPU seconds of the jobs of a study in a folder, its diagnoses and libraries included."""
+    """Rule, log and CPU seconds of the jobs of a study in a folder, its diagnoses and ensembles included."""
     rules = {path.stem for path in (HOME / "workflow" / "scripts").glob("*.py")}
     logs = Path(folder, "logs")
     for path in sorted(logs.rglob("*.log")):
@@ -176,31 +176,19 @@ def hours(jobs, cores):
 def deep_diagnosis(campaign, times):
     """Jobs of a deep diagnosis that finds a cause, from the times of a standard one."""
     done, plan = (plan_diagnosis(campaign, effort) for effort in ("standard", "deep"))
-    before, draws = (one.runs / len(one.tests) / len(MODELS) for one in (done, plan))
-    a_run, more = times["simulate_library", ()] / before, draws / before
-    members = plan.effort.members / done.effort.members
-
-    def job(rule, seconds, needs, makes):
-        return Job(rule, (), 1, needs, makes, seconds)
+    more = plan.runs / len(plan.tests) / (done.runs / len(done.tests))
+    of_cause = plan.runs_of_cause / done.runs_of_cause
 
     def as_there(rule, needs, makes, factor=1.0):
-        return job(rule, factor * times.get((rule, ()), _START), needs, makes)
+        return Job(rule, (), 1, needs, makes, factor * times.get((rule, ()), _START))
 
-    libraries = [f"{test} {model}" for test in plan.tests for model in MODELS]
-    further = [f"further {name}" for name in libraries]
+    ensembles = [f"{test} {model}" for test in plan.tests for model in MODELS]
     extended = [f"extended {model}" for model in MODELS]
-    jobs = [job("simulate_library", a_run * draws, [], [name]) for name in libraries]
-    jobs += [as_there("predict_twins", libraries, [f"twins {test}"]) for test in plan.tests]
-    jobs.append(
-        as_there("calibrate_decision", libraries, ["calibration"], more * len(plan.tests) / len(done.tests))
-    )
-    jobs.append(as_there("decide", ["calibration"], ["decision"], more))
-    jobs += [
-        job("simulate_cause", a_run * plan.effort.further_draws, ["decision"], [name]) for name in further
+    return [
+        *(as_there("simulate_nominal", [], [name], more) for name in ensembles),
+        as_there("decide", [], ["decision"]),
+        as_there("describe_misfit", ["decision", *ensembles], ["misfit"], more),
+        *(as_there("extend_model", ["decision", *ensembles], [name], of_cause) for name in extended),
+        as_there("measure_gain", extended, ["gain"], of_cause),
+        as_there("make_diagnosis_report", ["gain", "misfit"], ["report"]),
     ]
-    jobs += [as_there("extend_model", further, [name], members) for name in extended]
-    jobs.append(as_there("measure_gain", extended, ["gain"], members))
-    jobs.append(
-        as_there("make_diagnosis_report", ["gain", *(f"twins {test}" for test in plan.tests)], ["report"])
-    )
-    return jobs

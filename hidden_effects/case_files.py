@@ -1,4 +1,4 @@
-"""The plan of the cases, and the places of their campaigns, truths and verdicts."""
+"""The plans of the cases, and the places of their campaigns, truths and verdicts."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -7,13 +7,13 @@ from typing import Annotated, Literal
 from outside_forces import OUTSIDE
 from pydantic import Field, model_validator
 
-from blockshake.diagnosis.libraries.plan import result_name
 from blockshake.effects.registry import EFFECTS
 from blockshake.files import file_digest, load_yaml
-from blockshake.validation import Strict, validated
+from blockshake.validation import NotNegative, Strict, validated
 
 ROOT = Path(__file__).parents[1]
 SEEDS = Path(__file__).parent / "seeds.yaml"
+CALIBRATION_SEEDS = Path(__file__).parent / "calibration-seeds.yaml"
 SMALL_SEEDS = Path(__file__).parent / "small-seeds.yaml"
 TRACK_RECORD = ROOT / "data" / "track-record" / "hidden-effects.json"
 PAGE = ROOT / "docs" / "hidden-effects.md"
@@ -26,68 +26,69 @@ class PlannedCase(Strict):
     name: str
     seed: Seed
     structure: str = "two-blocks"
-    truth: str
-    size: Literal["small", "large"] | None = None
-    sealed: bool = Field(False, description="whether it has sealed tests, on which a gain is measured")
+    causes: tuple[Literal[*EFFECTS, *OUTSIDE], ...] = Field(
+        (), max_length=2, description="none: a clean case"
+    )
+    size: Literal["small", "large"] | None = Field(None, description="of effects of the registry")
+    gain: Literal["rows", "responses"] | None = Field(None, description="to be measured, on sealed tests")
+    hollow: NotNegative = Field(0.0, description="depth of the true blocks' faces, of LS-DEM [m]")
+
+    @property
+    def effort(self):
+        """Effort of its diagnosis: nothing is simulated but for a gain on responses."""
+        return "standard" if self.gain == "responses" else "quick"
 
     @model_validator(mode="after")
-    def _known(self):
-        if self.truth not in ("none", *EFFECTS, *OUTSIDE) or (self.size is not None) != (
-            self.truth in EFFECTS
-        ):
-            raise ValueError("expected none, a cause from outside, or an effect with its size")
+    def _sized(self):
+        if (self.size is not None) != any(name in EFFECTS for name in self.causes):
+            raise ValueError("expected a size of an effect of the registry, and of nothing else")
         return self
 
 
 class PlanFile(Strict):
-    """The file ``seeds.yaml``."""
+    """A file of seeds, such as ``seeds.yaml``."""
 
-    efforts: dict[str, Literal["quick", "standard", "deep"]] = Field(
-        {"two-blocks": "standard"}, description="by structure: effort of the diagnosis of its cases"
-    )
     cases: tuple[PlannedCase, ...]
-    removed: tuple[str, ...] = Field(
-        description="cases that are diagnosed again without their effect among the candidates"
-    )
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Cases of the long tests.
+    """Cases of a file of seeds.
 
     Attributes
     ----------
-    efforts : dict of str to str
-        By structure.
     cases : tuple of PlannedCase
-    removed : tuple of str
     digest : str
         Of the file.
     """
 
-    efforts: dict
     cases: tuple
-    removed: tuple
     digest: str
+
+    @property
+    def efforts(self):
+        """Efforts of the diagnoses in words, by structure."""
+        found = {}
+        for case in self.cases:
+            found.setdefault(case.structure, set()).add(case.effort)
+        return {structure: " and ".join(sorted(efforts)) for structure, efforts in found.items()}
 
 
 def load_plan(path=SEEDS):
-    """The plan of the long tests."""
-    file = validated(PlanFile, load_yaml(path), path)
-    return Plan(file.efforts, file.cases, file.removed, file_digest(path))
+    """The plan of a file of seeds."""
+    return Plan(validated(PlanFile, load_yaml(path), path).cases, file_digest(path))
 
 
 def campaign_of(results, name):
     """Folder of a case's campaign, which the diagnosis is given."""
-    return Path(results) / "campaigns" / name
+    return Path(results) / name / "campaign"
 
 
 def truth_of(results, name):
-    """Folder of a case's truth, which the diagnosis is not given."""
-    return Path(results) / "truths" / name
+    """File of a case's truth, which the diagnosis is not given."""
+    return Path(results) / name / "truth" / "truth.json"
 
 
-def verdict_of(results, name, without=None):
-    """File of the verdict on a case, with all candidates or with one effect left out."""
-    result = result_name(campaign_of(results, name), () if without is None else (without,))
-    return ROOT / "results" / "diagnosis" / result / "verdict.json"
+def verdict_of(results, name):
+    """File of the verdict on a case."""
+    return Path(results) / name / "verdict" / "verdict.json"

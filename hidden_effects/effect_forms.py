@@ -64,6 +64,12 @@ def _sensor_gain(experiment, values, place):
     return experiment  # the readings themselves are changed: `distort`
 
 
+def with_stops(experiment, stops):
+    """The same test with further stops."""
+    present = [stopper.model_dump() for stopper in experiment.structure.file.stoppers]
+    return experiment.with_parameters(stoppers=[*present, *stops])
+
+
 def _stopper_contact(experiment, values, place):
     file = experiment.structure.file
     body = next(body for body in file.bodies if body.name == place["body"])
@@ -76,7 +82,7 @@ def _stopper_contact(experiment, values, place):
         }
         for later in (1.0, 1.2)
     ]  # fmt: skip
-    return experiment.with_parameters(stoppers=stops)
+    return with_stops(experiment, stops)
 
 
 def _impact_restitution(experiment, values, place):

@@ -1,25 +1,19 @@
-"""A campaign with an effect hidden in it, or none, in one folder and its truth in another.
+"""A campaign with causes hidden in it, or none, in one folder and its truth in another.
 
-Runs in a process of its own: ``python hidden_effects/make_case.py --seed 7 --case table-pitch --size large
---output CAMPAIGN --truth TRUTH``. The diagnosis is given the campaign alone and shares no code with this but the
-solvers and the registry's parameters and places.
+The diagnosis is given the campaign alone and shares no code with this but the solvers and the registry's parameters and
+places.
 """
 
-import argparse
 import hashlib
 import shutil
-import sys
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 import yaml
 from case_noise import ACCELEROMETER_NOISE, MARKER_NOISE, add_noise, true_noise
 from case_truth import (
-    NONE,
-    SIZES,
     follow,
-    true_effect,
+    true_causes,
     true_numerics,
     true_parameters,
     true_places,
@@ -30,7 +24,6 @@ from outside_forces import OUTSIDE
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
-from blockshake.effects.registry import EFFECTS
 from blockshake.files import content_digest, write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.instruments import Instruments
@@ -43,7 +36,6 @@ from blockshake.virtual.shake_table import shake
 HERE = Path(__file__).parent
 STRUCTURES = HERE / "structures"
 DURATION = 6.0  # s
-# the same in every case: libraries of simulated tests depend on structure and motions alone
 PLAN = (
     ("alkion", 1.0, "fit"),
     ("alkion", 2.5, "fit"),
@@ -51,6 +43,21 @@ PLAN = (
     ("alkion", 3.0, "sealed"),
     ("basso-tirreno", 2.5, "sealed"),
 )
+# on the scales of the plan, so that blocks rock and do not topple
+STRONGER = {"single-block": 2.2, "trilithon": 1.15, "six-block-wall": 0.9}
+_SCALES = (0.92, 1.08)  # on them, drawn test by test; those of two tests never meet
+_STREAM = 6
+
+
+def tests_of(structure_name, seed, sealed):
+    """Motion, scale and role of every test of a case, with the sealed ones or without."""
+    drawn = np.random.default_rng([seed, _STREAM]).uniform(*_SCALES, len(PLAN))
+    factors = STRONGER.get(structure_name, 1.0) * drawn
+    return [
+        (motion, round(float(scale * factor), 2), role)
+        for (motion, scale, role), factor in zip(PLAN, factors, strict=True)
+        if sealed or role != "sealed"
+    ]
 
 
 def name_of_test(motion, scale):
@@ -75,16 +82,16 @@ def made_by():
     )
 
 
-def make_case(seed, name, size, folder, truth_folder, sealed=True, structure_name="two-blocks", hollow=0.0):
+def make_case(seed, names, size, folder, truth_folder, sealed=True, structure_name="two-blocks", hollow=0.0):
     """Write the campaign, then its truth, then the README that commits to the truth.
 
     Parameters
     ----------
     seed : int
         Of everything that is drawn.
-    name : str
-        Effect of the registry, cause from `OUTSIDE`, or ``none``.
-    size : str
+    names : sequence of str
+        Effects of the registry and causes from `OUTSIDE`, which act in this order; none of a clean case.
+    size : str or None
         ``small`` or ``large``; of no meaning without an effect of the registry.
     folder, truth_folder : Path
     sealed : bool
@@ -92,14 +99,15 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True, structure_nam
     structure_name : str
         File of `STRUCTURES`, without its suffix.
     hollow : float
-        Depth of the true blocks' faces in their middle, which the campaign's structure does not state [m].
+        Depth of the true blocks' faces in their middle, which the campaign's structure does not state [m]. Nonsmooth
+        contact has no faces that could be hollow.
     """
-    plan = [test for test in PLAN if sealed or test[2] != "sealed"]
+    plan = tests_of(structure_name, seed, sealed)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "README").unlink(missing_ok=True)
     structure = load_structure(structure_file(structure_name))
     shutil.copyfile(structure_file(structure_name), folder / "structure.yaml")
-    effect = true_effect(name, size, structure, len(plan), seed)
+    causes = true_causes(names, size, structure, len(plan), seed)
     parameters, wider = true_parameters(structure, seed)
     physical, own = part_parameters(parameters)
     physical |= {"shapes.block.hollow": hollow} if hollow else {}
@@ -111,25 +119,20 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True, structure_nam
             structure.with_parameters(physical), follow(load_motion(motion, scale), table),
             Instruments(marker_noise=0.0, accelerometer_noise=0.0),
         )  # fmt: skip
-        shaken = partial(
-            _shaken, experiment, number, own | numerics, true_places(structure, seed, number),
-            structure=structure, settings={"seed": seed, "model": model, "time_step": time_step},
+        test, run = _shaken(
+            experiment, number, own | numerics, causes, true_places(structure, seed, number), structure,
+            {"seed": seed, "model": model, "time_step": time_step},
         )  # fmt: skip
-        test, run = shaken(effect)
-        happened[name_of_test(motion, scale)] = _happened(test, run, structure)
-        if effect is not None:
-            _distort(test, effect)
-            if role != "sealed":
-                bare, _ = shaken(None)
-                happened[name_of_test(motion, scale)]["trace"] = _farthest(test, bare)
+        happened[name_of_test(motion, scale)] = {"role": role} | _happened(test, run, structure)
+        for cause in causes:
+            _distort(test, cause)
         test = add_noise(test, noise, seed, number)
         test.attrs |= {"motion": motion, "motion_scale": scale}
         write_dataset(folder / f"{name_of_test(motion, scale)}.nc", test, DECIMALS)
     write_text(folder / "campaign.yaml", _campaign_yaml(plan, structure_name))
     truth = {
-        "truth": name, "size_class": size if name in FORMS else None, "effect": effect,
-        "form": _words(name), "seed": seed, "structure": structure_name,
-        "sealed": sealed, "model": model, "time_step": time_step,
+        "causes": causes, "size": size, "forms": [_words(name) for name in names], "seed": seed,
+        "structure": structure_name, "sealed": sealed, "model": model, "time_step": time_step,
         "numerics": numerics, "parameters": parameters, "wider": wider, "table": table, "noise": noise,
         "hollow": hollow, "tests": happened, "made_by": made_by(),
     }  # fmt: skip
@@ -142,37 +145,33 @@ def make_case(seed, name, size, folder, truth_folder, sealed=True, structure_nam
     )
 
 
-def _shaken(experiment, number, solver, places, effect, structure, settings):
-    """Exact readings of a test and its run, with what is hidden or, without an effect, with nothing."""
-    if effect is not None and effect["name"] in OUTSIDE:
-        experiment = OUTSIDE[effect["name"]].act(experiment, effect, number)
-    elif effect is not None:
-        experiment = FORMS[effect["name"]][1](experiment, effect["values"], effect["place"])
-        solver = solver | FORM_NUMERICS.get(effect["name"], {})
+def _shaken(experiment, number, solver, causes, places, structure, settings):
+    """Exact readings of a test and its run, with what is hidden."""
+    for cause in causes:
+        name = cause["name"]
+        if name in OUTSIDE:
+            start = cause["start"][number]
+            experiment = experiment if start is None else OUTSIDE[name].act(experiment, cause, start)
+        else:
+            experiment = FORMS[name][1](experiment, cause["values"], cause["place"])
+            solver = solver | FORM_NUMERICS.get(name, {})
     campaign = VirtualCampaign(name="case", instruments=experiment.instruments, **settings)
     return shake(
         experiment.structure, solver, None, experiment.motion, campaign, places, DURATION, settings["seed"], structure,
     )  # fmt: skip
 
 
-def _distort(test, effect):
+def _distort(test, cause):
     """Readings of markers with their fault, in place."""
     markers = [str(marker) for marker in test["marker"].values]
     test["marker_displacement"].values[:] = distort(
-        test["time"].to_numpy(), test["marker_displacement"].to_numpy(), markers, effect
+        test["time"].to_numpy(), test["marker_displacement"].to_numpy(), markers, cause
     )
-
-
-def _farthest(test, bare):
-    """Largest difference that an effect makes to a marker's exact reading while both runs last [m]."""
-    return float(np.nanmax(np.abs(test["marker_displacement"] - bare["marker_displacement"])))
 
 
 def _words(name):
     """Form of what is hidden."""
-    if name in OUTSIDE:
-        return OUTSIDE[name].words
-    return FORMS[name][0] if name in FORMS else None
+    return OUTSIDE[name].words if name in OUTSIDE else FORMS[name][0]
 
 
 def _happened(test, run, structure):
@@ -207,27 +206,3 @@ def _campaign_yaml(plan, structure_name):
         ],
     }  # fmt: skip
     return yaml.safe_dump(mapping, sort_keys=False, default_flow_style=None, width=200)
-
-
-def main(arguments):
-    """Make one case, as the command line says."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seed", type=int, required=True)
-    parser.add_argument("--case", choices=[NONE, *EFFECTS, *OUTSIDE], required=True)
-    parser.add_argument("--size", choices=list(SIZES), default="large")
-    parser.add_argument(
-        "--structure", choices=sorted(path.stem for path in STRUCTURES.glob("*.yaml")), default="two-blocks"
-    )
-    parser.add_argument("--output", type=Path, required=True)
-    parser.add_argument("--truth", type=Path, required=True)
-    parser.add_argument(
-        "--no-sealed", dest="sealed", action="store_false", help="no tests to measure a gain on"
-    )
-    asked = parser.parse_args(arguments)
-    make_case(
-        asked.seed, asked.case, asked.size, asked.output, asked.truth, asked.sealed, asked.structure
-    )  # fmt: skip
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

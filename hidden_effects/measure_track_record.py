@@ -1,7 +1,7 @@
-"""Track record of the diagnosis: make every case of the plan, diagnose it by the ordinary rules, and score it.
+"""Track record of the diagnosis: make every case of a plan, diagnose it as a user would, and score it.
 
 ``python hidden_effects/measure_track_record.py --output results/hidden-effects --cores 2`` goes on where it was cut
-short. Every step is a line of ``log.jsonl`` in that folder.
+short. Every step is a line of ``log.jsonl`` in that folder. ``--make-only`` leaves the verdicts to others.
 """
 
 import argparse
@@ -10,13 +10,15 @@ import os
 import subprocess
 import sys
 import time
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from multiprocessing import get_context
 from pathlib import Path
 
-from case_files import ROOT, campaign_of, load_plan, truth_of, verdict_of
-from make_case import made_by
+import score
+from case_files import ROOT, SEEDS, campaign_of, load_plan, truth_of, verdict_of
+from make_case import made_by, make_case
 
-HERE = Path(__file__).parent
 ENVIRONMENT = {
     **os.environ,
     **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"),
@@ -41,109 +43,94 @@ class Log:
         sys.stdout.flush()
 
 
-def make_cases(plan, results, cores, log):
-    """Make the cases that are missing or that other sources made, each in a process of its own.
+def make_cases(cases, results, cores, log):
+    """Make the cases that are missing or that other sources made, in their order.
 
     Parameters
     ----------
-    plan : Plan
+    cases : sequence of PlannedCase
     results : Path
     cores : int
         Cases at a time.
     log : Log
-
-    Raises
-    ------
-    subprocess.CalledProcessError
-        A maker failed.
     """
     maker = made_by()
-    due = [case for case in plan.cases if not _is_made(case, results, maker)]
-    log("cases", due=len(due), ready=len(plan.cases) - len(due), maker=maker)
+    due = [case for case in cases if not _is_made(case, results, maker)]
+    log("cases", due=len(due), ready=len(cases) - len(due), maker=maker)
+    with ProcessPoolExecutor(cores, get_context("spawn")) as pool:
+        for name, seconds in pool.map(partial(_make, results), due):
+            log("made", case=name, cpu_seconds=round(seconds, 1))
 
-    def make(case):
-        begin = time.monotonic()
-        size = [] if case.size is None else ["--size", case.size]
-        sealed = [] if case.sealed else ["--no-sealed"]
-        command = [
-            sys.executable, str(HERE / "make_case.py"), "--seed", str(case.seed), "--case", case.truth, *size, *sealed,
-            "--structure", case.structure, "--output", str(campaign_of(results, case.name)),
-            "--truth", str(truth_of(results, case.name)),
-        ]  # fmt: skip
-        subprocess.run(command, env=ENVIRONMENT, check=True)
-        log("made", case=case.name, seconds=round(time.monotonic() - begin, 1))
 
-    with ThreadPoolExecutor(cores) as pool:
-        list(pool.map(make, due))
+def _make(results, case):
+    """Name of a case made, and the CPU time it took [s]."""
+    begin = time.process_time()
+    make_case(
+        case.seed, case.causes, case.size, campaign_of(results, case.name), truth_of(results, case.name).parent,
+        case.gain is not None, case.structure, case.hollow,
+    )  # fmt: skip
+    return case.name, time.process_time() - begin
 
 
 def _is_made(case, results, maker):
     """Whether the case is there whole; its README is written last."""
-    truth = truth_of(results, case.name) / "truth.json"
+    truth = truth_of(results, case.name)
     if not truth.is_file() or not (campaign_of(results, case.name) / "README").is_file():
         return False
-    told = json.loads(truth.read_text())
-    made = told["made_by"], told["seed"], told["structure"], told["truth"], told["size_class"]
-    return made == (maker, case.seed, case.structure, case.truth, case.size)
+    true = json.loads(truth.read_text())
+    names = tuple(cause["name"] for cause in true["causes"])
+    wanted = {
+        "made_by": maker, "seed": case.seed, "structure": case.structure, "size": case.size,
+        "sealed": case.gain is not None, "hollow": case.hollow,
+    }  # fmt: skip
+    return names == case.causes and {key: true[key] for key in wanted} == wanted
 
 
-def diagnose(names, results, effort, cores, without, log, target="verdicts"):
-    """Verdicts on campaigns by the ordinary rules, in one workflow; what an earlier one finished is kept.
+def diagnose(case, results, cores):
+    """The verdict on one campaign, by the command that a user types; what is there is kept.
 
     Parameters
     ----------
-    names : list of str
-        Of cases.
+    case : PlannedCase
     results : Path
-    effort : str
     cores : int
-    without : str or None
-        Effect that is not among the candidates.
-    log : Log
-    target : str
-        Of the workflow: ``verdicts``, or ``diagnose`` for the reports too.
 
     Raises
     ------
     subprocess.CalledProcessError
-        The workflow failed; it goes on where it stopped when it is started again.
+        The diagnosis failed.
     """
-    campaigns = ",".join(f"'{campaign_of(results, name).resolve()}'" for name in names)
-    left_out = [] if without is None else [f"without=['{without}']"]
-    begin = time.monotonic()
+    verdict = verdict_of(results, case.name)
+    if verdict.is_file():
+        return
     command = [
-        "snakemake", "--cores", str(cores), "--keep-going", "--rerun-incomplete", target,
-        "--config", f"campaigns=[{campaigns}]", f"effort={effort}", *left_out,
+        "blockshake", "diagnose", str(campaign_of(results, case.name)), "--output", str(verdict.parent),
+        "--effort", case.effort, "--cores", str(cores),
     ]  # fmt: skip
-    log("diagnosing", cases=len(names), without=without, effort=effort)
     subprocess.run(command, cwd=ROOT, env=ENVIRONMENT, check=True)
-    log(
-        "diagnosed", cases=len(names), without=without, seconds=round(time.monotonic() - begin, 1),
-        verdicts=sum(verdict_of(results, name, without).is_file() for name in names),
-    )  # fmt: skip
 
 
 def main(arguments):
     """Make, diagnose and score the plan, as the command line says."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, default=ROOT / "results" / "hidden-effects")
+    parser.add_argument("--seeds", type=Path, default=SEEDS, help="the plan")
+    parser.add_argument("--make-only", action="store_true", help="neither diagnose nor score")
     parser.add_argument("--cores", type=int, default=os.cpu_count())
     asked = parser.parse_args(arguments)
-    plan, log = load_plan(), Log(asked.output / "log.jsonl")
+    plan, log = load_plan(asked.seeds), Log(asked.output / "log.jsonl")
     log("started", cores=asked.cores, seeds=plan.digest)
-    make_cases(plan, asked.output, asked.cores, log)
-    for structure, effort in plan.efforts.items():
-        names = [case.name for case in plan.cases if case.structure == structure]
-        diagnose(names, asked.output, effort, asked.cores, None, log)
-    cases = {case.name: case for case in plan.cases}
-    for name in plan.removed:
-        effort = plan.efforts[cases[name].structure]
-        diagnose([name], asked.output, effort, asked.cores, cases[name].truth, log)
-    subprocess.run(
-        [sys.executable, str(HERE / "score.py"), "--results", str(asked.output)], env=ENVIRONMENT, check=True
-    )
+    make_cases(plan.cases, asked.output, asked.cores, log)
+    if asked.make_only:
+        return
+    for case in plan.cases:
+        begin = time.monotonic()
+        diagnose(case, asked.output, asked.cores)
+        log("diagnosed", case=case.name, effort=case.effort, seconds=round(time.monotonic() - begin, 1))
+    score.main(["--results", str(asked.output), "--seeds", str(asked.seeds)])
     log("scored")
 
 
 if __name__ == "__main__":
+    os.environ.update(ENVIRONMENT)
     main(sys.argv[1:])

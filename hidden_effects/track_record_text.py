@@ -43,7 +43,7 @@ def as_markdown(record):
     heads = [name.replace("_", " ") for name in Answers.model_fields]
     lines += ["", f"| truth | {' | '.join(heads)} |", "|---|" + "---|" * len(heads)]
     for row in record.confusion:
-        words = [row.truth, *([row.size] if row.size else []), *(["not a candidate"] if row.removed else [])]
+        words = [row.truth, *([row.size] if row.size else [])]
         counts = [str(count) if count else "" for count in row.answers.model_dump().values()]
         lines.append(f"| {', '.join(words)} | {' | '.join(counts)} |")
     return "\n".join(lines)
@@ -54,7 +54,7 @@ def _by_structure(record):
     yield "| structure | effort | none where nothing is hidden | truth named or in the set | outside called unknown |"
     yield "|---|---|---|---|---|"
     for structure, effort in record.efforts.items():
-        own = [case for case in record.cases if case.structure == structure and not case.removed]
+        own = [case for case in record.cases if case.structure == structure]
         counts = (
             _count(own, ("none",), lambda truth: truth == "none"),
             _count(own, ("right", "set_with"), lambda truth: truth in EFFECTS),

@@ -83,6 +83,8 @@ def test_numerical_failure_keeps_what_was_computed(tmp_path, capsys):
           "friction.wood.wood=1", "--output", "x.nc"], "friction.wood.wood"),
         (["calibrate-stiffness", "--structure", "configuration-1", "--set", "restitution=0.1", "--set",
           "restitution=0.2", "--output", "x.json"], "--set: restitution=0.2: expected restitution once"),
+        (["simulate", "--scale", "1", "--scale", "2"], "blockshake simulate: expected --scale once"),
+        (["convert-motion", "m.csv", "--decimal", ",", "--decimal", "."], "expected --decimal once"),
         (["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "ls-dem", "--duration", "-1",
           "--output", "x.nc"], "--duration: expected a positive number"),
         (["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "nscd-rigid", "--time-step",

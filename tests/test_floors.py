@@ -31,7 +31,7 @@ ROOMS_OF_DIAGNOSIS = [
     ["answer"],
     ["laws"],
     ["features"],
-    ["libraries"],
+    ["libraries", "nominal"],
     ["inference", "misfit"],
     ["verdict"],
     ["gain"],

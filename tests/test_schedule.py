@@ -45,12 +45,12 @@ def test_hours_on_some_cores(cores, hours, schedule):
 
 
 def test_times_are_those_of_one_study_and_its_diagnoses(schedule, tmp_path):
-    """Two batches of 10 and 5 samples of the study, one of another study, one library, and a job that was killed."""
+    """Two batches of 10 and 5 samples of the study, one of another study, one ensemble, and a job that was killed."""
     for name, text in {
         "study/simulate_batch/ls-dem/one/000-009": "Took 9.0 s, 20.0 CPU s.\n",
         "study/simulate_batch/ls-dem/one/010-014": "Took 9.0 s, 20.0 CPU s.\n",
         "paper/simulate_batch/ls-dem/one/000-009": "Took 9.0 s, 900.0 CPU s.\n",
-        "simulate_library/abc-ls-dem": "Took 9.0 s, 30.0 CPU s.\n",
+        "simulate_nominal/abc-ls-dem": "Took 9.0 s, 30.0 CPU s.\n",
         "study/run_twins/ls-dem/one": "sample 0, simulated: completed\n",
     }.items():
         path = tmp_path / "logs" / f"{name}.log"
@@ -59,6 +59,6 @@ def test_times_are_those_of_one_study_and_its_diagnoses(schedule, tmp_path):
     times = schedule.measured(tmp_path, "study")
     assert times["simulate_batch", ("ls-dem", "one")] == 3.0  # 2 s a sample in one batch, 4 s in the other
     assert times["simulate_batch", ()] == 20.0
-    assert times["simulate_library", ()] == 30.0
+    assert times["simulate_nominal", ()] == 30.0
     assert not [rule for rule, _ in times if rule == "run_twins"]
-    assert schedule.shares(tmp_path, "study") == [("simulate_batch", 2, 40.0), ("simulate_library", 1, 30.0)]
+    assert schedule.shares(tmp_path, "study") == [("simulate_batch", 2, 40.0), ("simulate_nominal", 1, 30.0)]

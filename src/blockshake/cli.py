@@ -19,11 +19,24 @@ NUMERICAL_FAILURE = 3
 UNREAD = 141  # whoever reads the output has gone, as after `blockshake parameters | head -1`
 
 
+class _Once(argparse.Action):
+    """An option that stands once: of two values the last would win without a word."""
+
+    stands = False
+
+    def __call__(self, parser, options, values, option=None):
+        if option and self.stands:
+            parser.error(f"expected {option} once")
+        self.stands = True
+        setattr(options, self.dest, values)
+
+
 class _Parser(argparse.ArgumentParser):
     """Argument errors as one line and exit 2, like all bad input; numbers without Python's ``1_000``."""
 
     def __init__(self, *arguments, **named):
         super().__init__(*arguments, **named)
+        self.register("action", None, _Once)
         for kind in (float, int):
             self.register("type", kind, lambda text, kind=kind: kind(text.replace("_", "no digit")))
 

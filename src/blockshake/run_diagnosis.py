@@ -12,8 +12,9 @@ from blockshake.errors import INTERRUPTED, InputError
 from blockshake.files import HOME, PACKAGE, check_output
 from blockshake.working_folder import hold, this_command
 
-_KEPT = ("verdict.json", "decision.json", "parity.json", "misfit.nc", "evidence.nc", "forces.nc")
-_OF_GAIN = ("gain.nc", "consequences.nc")  # where a cause was found and there are sealed tests
+_KEPT = ("verdict.json", "decision.json", "parity.json", "evidence.nc")
+_MISFIT = "misfit.nc"  # at an effort that simulates anything
+_GAIN = "gain.nc"  # where a cause was found and there are sealed tests
 _GRACE = 15.0  # s; for a workflow that is interrupted to end
 
 
@@ -36,7 +37,7 @@ def diagnose(campaign, output, effort="standard", cores=None):
 
     Simulates by the workflow's rules, in ``results`` of the checkout or, of an installed package, of the current
     folder: a run that was stopped goes on where it was, and a second campaign of the same structure and motions finds
-    their libraries there.
+    their ensembles there.
 
     Parameters
     ----------
@@ -61,12 +62,12 @@ def diagnose(campaign, output, effort="standard", cores=None):
     WorkflowError
         A job failed: the workflow's last lines are the reason, the job and the path of its log.
     """
-    from blockshake.diagnosis.libraries.plan import plan_diagnosis, result_name
+    from blockshake.diagnosis.nominal.plan import plan_diagnosis, result_name
     from blockshake.diagnosis.verdict.verdict import load_verdict
 
     if cores is not None and (not isinstance(cores, int) or cores < 1):
         raise InputError("diagnose", "cores", f"expected a whole number from 1, not {cores!r}")
-    plan_diagnosis(campaign, effort)
+    plan = plan_diagnosis(campaign, effort)
     work = working_place()
     os.close(hold(work))  # the workflow holds it again
     check_output(Path(output) / "verdict.json")
@@ -77,11 +78,12 @@ def diagnose(campaign, output, effort="standard", cores=None):
         raise WorkflowError(exit_code)
     name = result_name(campaign)
     results = work / "results" / "diagnosis" / name
-    kept = _KEPT if load_verdict(results / "verdict.json").gain is None else (*_KEPT, *_OF_GAIN)
+    made = {_MISFIT: bool(plan.tests), _GAIN: load_verdict(results / "verdict.json").gain is not None}
+    kept = [*_KEPT, *(name for name, there in made.items() if there)]
     found = [results / file for file in kept]
     found += [work / "reports" / f"diagnosis-{name}.{kind}" for kind in ("html", "pdf")]
     Path(output).mkdir(parents=True, exist_ok=True)
-    for file in _OF_GAIN:  # of an earlier diagnosis, where this one has none
+    for file in made:  # of an earlier diagnosis, where this one has none
         (Path(output) / file).unlink(missing_ok=True)
     for path in found:
         shutil.copyfile(path, Path(output) / path.name.replace(f"diagnosis-{name}", "report"))

@@ -17,9 +17,9 @@ _COMPUTE_NOTHING = (
     "caches.py",
     "log.py",
     "sources.py",
-    "diagnosis/libraries/efforts.py",
-    "diagnosis/libraries/plan.py",
-    "diagnosis/libraries/repeated_readings.py",
+    "diagnosis/nominal/efforts.py",
+    "diagnosis/nominal/plan.py",
+    "diagnosis/nominal/repeated_readings.py",
 )
 # Of these only the functions that are taken count, each with its own imports.
 _BY_FUNCTION = ("diagnosis/steps.py",)

@@ -6,7 +6,7 @@ import pytest
 
 from blockshake.cost import diagnosis_cost, study_cost
 from blockshake.cost.jobs import Jobs, planned_jobs
-from blockshake.diagnosis.libraries.plan import plan_diagnosis
+from blockshake.diagnosis.nominal.plan import plan_diagnosis
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE
 from blockshake.study.config import load_config
@@ -41,15 +41,16 @@ def test_every_run_of_the_default_study_is_counted(monkeypatch):
 
 def test_every_simulated_test_of_a_diagnosis_is_counted(monkeypatch):
     """A simulation costs a second and the readings nothing: CPU seconds are then the numbers of simulated tests."""
-    monkeypatch.setattr(diagnosis_cost, "_seconds_of_draws", lambda planned, model: (1.0, 0.0, 0.0))
+    monkeypatch.setattr(diagnosis_cost, "_seconds_of_draws", lambda planned, model: 1.0)
     folder, known = "data/virtual-campaign/configuration-2", {}
     plan = plan_diagnosis(folder, "standard")
-    *libraries, further, sealed = diagnosis_cost.diagnosis_cost(folder, "standard", known)
-    assert sum(part.seconds for part in libraries) == plan.runs
-    assert further.seconds == plan.further_runs
-    assert sealed.seconds == 2 * 3 * 2 * plan.effort.members  # solvers, ensembles, sealed tests
+    *ensembles, of_cause = diagnosis_cost.diagnosis_cost(folder, "standard", known)
+    assert sum(part.seconds for part in ensembles) == plan.runs == 2 * 3 * (40 + 4)
+    # solvers; open tests with the cause; four ensembles and twins of two sealed tests
+    assert of_cause.seconds == 2 * (3 * 40 + 2 * (4 * 12 + 4))
     again = diagnosis_cost.diagnosis_cost(folder, "standard", known)
-    assert len(again) == 2  # the libraries are there
+    assert len(again) == 1  # the ensembles are there
+    assert diagnosis_cost.diagnosis_cost(folder, "quick", {}) == []
 
 
 def test_jobs_are_those_of_the_workflow():

@@ -180,6 +180,9 @@ def test_an_entry_is_whole(name):
     assert effect.equation
     assert effect.source
     assert effect.told_apart_by
+    seen = any((effect.columns, effect.turns, effect.lifts))
+    # a size that the evidence finds is read as the effect's parameters
+    assert bool(effect.reads) == seen
 
 
 def test_what_does_not_exist_is_refused(structure):

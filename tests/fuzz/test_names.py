@@ -213,7 +213,7 @@ def test_a_diagnosis_is_told_the_very_folder(odd, tmp_path, monkeypatch):
         return 1
 
     monkeypatch.setattr(run_diagnosis, "run_workflow", taken)
-    monkeypatch.setattr("blockshake.diagnosis.libraries.plan.plan_diagnosis", lambda *_: None)
+    monkeypatch.setattr("blockshake.diagnosis.nominal.plan.plan_diagnosis", lambda *_: None)
     with pytest.raises(RuntimeError, match="workflow stopped"):
         run_diagnosis.diagnose(odd, tmp_path / "out", "quick", 1)
     (campaigns,) = [word for word in given if word.startswith("campaigns=")]

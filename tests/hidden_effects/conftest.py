@@ -13,7 +13,7 @@ def clean_campaign(tmp_path_factory):
     folder = tmp_path_factory.mktemp("clean")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(make_case, "PLAN", [test for test in make_case.PLAN if test[2] == "fit"])
-        make_case.make_case(SEED, "none", "large", folder / "campaign", folder / "truth")
+        make_case.make_case(SEED, (), None, folder / "campaign", folder / "truth")
     return load_campaign(folder / "campaign")
 
 

@@ -1,14 +1,9 @@
-"""The mirror image of structures, readings, effects and features: x to -x, everything else as it is."""
+"""The mirror image of structures, readings and effects: x to -x, everything else as it is."""
 
 import copy
 
 from blockshake.files import load_yaml
 from blockshake.geometry.structure import build_structure
-
-# of the features, those that change sign; those named for a side change sides too, and displacements both
-_ODD = ("slip.residual", "rotation.residual", "slip.asymmetry", "rotation.asymmetry")
-_ODD_BASE = ("base.vertical.acceleration", "base.vertical.displacement", "base.lateral.displacement")
-_SIDED = ("slip.peak", "rotation.peak", "displacement.peak")
 
 
 def mirrored_structure(path):
@@ -31,19 +26,6 @@ def mirrored_test(test):
     along_x = [name for name in test["channel"].values if str(name).endswith("-x")]
     test["accelerometer"].loc[{"channel": along_x}] *= -1.0
     return test
-
-
-def mirrored_features(values):
-    """Features of the mirror image of a test, by name, from those of the test."""
-    mirrored = {}
-    for name, value in values.items():
-        sign = -1.0 if name.endswith(_ODD) or name in _ODD_BASE else 1.0
-        other = name
-        if name[-1] in "+-":
-            other = name[:-1] + ("-" if name[-1] == "+" else "+")
-            sign = -1.0 if name[:-1].endswith(_SIDED) else 1.0
-        mirrored[other] = sign * value
-    return mirrored
 
 
 def mirrored_effect(effect):

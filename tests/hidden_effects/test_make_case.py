@@ -9,27 +9,31 @@ from pathlib import Path
 
 import make_case
 import numpy as np
+import outside_forces
 import pytest
 import xarray as xr
-from case_files import load_plan
+from case_files import CALIBRATION_SEEDS, SEEDS, load_plan
 from case_noise import ACCELEROMETER_NOISE, MARKER_NOISE, add_noise, true_noise
-from case_truth import SIZES, follow, true_effect, true_numerics, true_parameters, true_table
+from case_truth import SIZES, follow, true_causes, true_numerics, true_parameters, true_table
 from effect_forms import FORM_NUMERICS, FORMS, distort
-from make_case import structure_file
+from make_case import STRUCTURES, structure_file
 from outside_forces import OUTSIDE
 
 from blockshake.diagnosis.libraries.null_model import MODELS, draw_nominal
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.motion import ground_motion
+from blockshake.effects import places
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import EFFECTS, with_effect
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.instruments import Instruments
 from blockshake.own_files.check import check_file
+from blockshake.simulation.simulate import simulate
 
 STRUCTURE = structure_file("two-blocks")
 PROGRAMS = Path(make_case.__file__).parent
 SRC = PROGRAMS.parent / "src" / "blockshake"
+LS_DEM_SEED, NSCD_SEED = 28, 1
 MAKER = ("make_case", "effect_forms", "outside_forces", "case_noise", "case_truth")
 
 
@@ -40,9 +44,14 @@ def short(monkeypatch):
     monkeypatch.setattr(make_case, "DURATION", 2.0)
 
 
-def _make(folder, seed, name, size="large"):
-    make_case.make_case(seed, name, size, folder / "campaign", folder / "truth")
+def _make(folder, seed, *names, structure="two-blocks"):
+    size = "large" if set(names) & set(EFFECTS) else None
+    make_case.make_case(seed, names, size, folder / "campaign", folder / "truth", structure_name=structure)
     return folder
+
+
+def _truth(folder):
+    return json.loads((folder / "truth" / "truth.json").read_text())
 
 
 def test_the_same_seed_gives_the_same_bytes(short, tmp_path):
@@ -52,23 +61,73 @@ def test_the_same_seed_gives_the_same_bytes(short, tmp_path):
         for folder in folders
     ]
     assert files[0] == files[1]
-    assert sorted(files[0]) == [
-        "campaign/README", "campaign/alkion-100.nc", "campaign/alkion-250.nc", "campaign/campaign.yaml",
-        "campaign/structure.yaml", "truth/truth.json",
-    ]  # fmt: skip
+    tests = [f"campaign/{name}.nc" for name in _truth(tmp_path / "one")["tests"]]
+    assert len(tests) == 2
+    assert sorted(files[0]) == sorted(
+        ["campaign/README", "campaign/campaign.yaml", "campaign/structure.yaml", "truth/truth.json", *tests]
+    )
     committed = hashlib.sha256(files[0]["truth/truth.json"]).hexdigest()
     assert committed in files[0]["campaign/README"].decode()
 
 
-@pytest.mark.parametrize("name", ["none", *EFFECTS, *OUTSIDE])
-def test_a_campaign_of_every_class_is_in_order_and_says_nothing(name, short, tmp_path):
-    folder = _make(tmp_path, 30, name)
+CLASSES = [(), *((name,) for name in (*EFFECTS, *OUTSIDE)), ("reduced-bearing", "outside-blow")]
+
+
+@pytest.mark.parametrize("names", CLASSES)
+def test_a_campaign_of_every_class_is_in_order_and_says_nothing(names, short, tmp_path):
+    folder = _make(tmp_path, LS_DEM_SEED, *names)
     check_file(folder / "campaign")
-    truth = json.loads((folder / "truth" / "truth.json").read_text())
-    assert truth["truth"] == name
-    assert {test["status"] for test in truth["tests"].values()} == {"completed"}
+    truth = _truth(folder)
+    assert tuple(cause["name"] for cause in truth["causes"]) == names
+    # the pads of a brake hang on springs of the table
+    assert {test["status"] for test in truth["tests"].values()} <= {
+        "completed", "falling" if "outside-dry-drag" in names else "completed"
+    }  # fmt: skip
     known = b"".join(path.read_bytes() for path in (folder / "campaign").iterdir())
-    assert name == "none" or name.encode() not in known
+    assert not any(name.encode() in known for name in names)
+
+
+@pytest.fixture(scope="module")
+def bare(tmp_path_factory):
+    """A clean case whose blocks rock."""
+    return _make(tmp_path_factory.mktemp("bare"), NSCD_SEED)
+
+
+@pytest.mark.parametrize("name", OUTSIDE)
+def test_a_cause_from_outside_acts_in_its_tests_alone(name, bare, tmp_path):
+    folder = _make(tmp_path, NSCD_SEED, name)
+    truth, moved = _truth(folder), []
+    for test, start in zip(truth["tests"], truth["causes"][0]["start"], strict=True):
+        plain, other = (
+            xr.load_dataset(case / "campaign" / f"{test}.nc")["marker_displacement"].to_numpy()
+            for case in (bare, folder)
+        )
+        moved.append(float(np.nanmax(np.abs(plain - other))))
+        # noise is of the seed, so that a test without the cause is the same to the bit
+        assert start is not None or moved[-1] == 0.0
+    assert max(moved) > 1e-3
+
+
+def test_a_brake_gives_a_dry_drag():
+    """Against the block's velocity, of the stated size while it moves: springs of the pads tell the force."""
+    structure = load_structure(STRUCTURE)
+    cause = {"values": {"share": 0.07, "height": 0.0}, "place": {"body": "block-1"}}
+    plain = Experiment(structure, load_motion("alkion", 2.5), Instruments())
+    braked = outside_forces.OUTSIDE["outside-dry-drag"].act(plain, cause, 0.0)
+    run = simulate(
+        braked.structure, braked.motion, "nscd-rigid", {}, time_step=4e-4, duration=6.0, accelerometers=False
+    )
+    x = run["position"].sel(axis="x") - run["position"].sel(axis="x", time=0.0)
+    against = x - x.sel(body="slab", drop=True)
+    rate = np.gradient(against.sel(body="block-1").to_numpy(), run["time"].to_numpy())
+    springs = 2.0 * outside_forces._PAD_SPRING
+    drag = -springs * against.sel(body=["pad-front", "pad-back"]).sum("body").to_numpy()
+    fast = np.abs(rate) > 0.03
+    assert fast.sum() > 10
+    expected = 0.07 * structure.mass[structure.body_names.index("block-1")] * 9.81
+    assert (drag[fast] * rate[fast] < 0.0).all()
+    # the friction is along the slip, which is not quite along x
+    assert np.abs(drag[fast]).mean() == pytest.approx(expected, rel=0.1)
 
 
 def _imported(path):
@@ -101,17 +160,33 @@ def test_the_maker_loads_nothing_of_the_diagnosis():
         )
 
 
-def test_sizes_are_as_planned_and_within_the_priors():
-    structure, plan = load_structure(STRUCTURE), load_plan()
-    for case in plan.cases:
-        effect = true_effect(case.truth, case.size, structure, 3, case.seed)
-        if case.truth not in EFFECTS:
-            continue
-        low, high = SIZES[case.size]
-        assert low <= abs(effect["size"]) <= high
-        assert effect["place"] in EFFECTS[case.truth].places(structure)
-        for item in EFFECTS[case.truth].parameters:
-            assert item.lower <= effect["values"][item.name] <= item.upper
+@pytest.mark.parametrize("seeds", [SEEDS, CALIBRATION_SEEDS])
+def test_causes_are_as_planned_and_within_the_priors(seeds):
+    structures = {path.stem: load_structure(path) for path in STRUCTURES.glob("*.yaml")}
+    for case in load_plan(seeds).cases:
+        structure = structures[case.structure]
+        causes = true_causes(case.causes, case.size, structure, 3, case.seed)
+        assert tuple(cause["name"] for cause in causes) == case.causes
+        assert not case.hollow or true_numerics(case.seed)[0] == "ls-dem"
+        for cause in causes:
+            if cause["name"] in OUTSIDE:
+                assert {"body": cause["place"]["body"]} in places.blocks(structure)
+                continue
+            effect = EFFECTS[cause["name"]]
+            low, high = SIZES[case.size]
+            assert low <= abs(cause["size"]) <= high
+            assert cause["place"] in effect.places(structure)
+            for item in effect.parameters:
+                assert item.lower <= cause["values"][item.name] <= item.upper
+
+
+def test_a_third_of_the_cases_is_by_ls_dem_and_no_two_tests_have_one_name():
+    models = [true_numerics(seed)[0] for seed in range(900)]
+    # four standard deviations of a share of a third
+    assert abs(models.count("ls-dem") / 900 - 1.0 / 3.0) < 4.0 * np.sqrt(2.0 / 9.0 / 900)
+    for case in load_plan().cases:
+        tests = make_case.tests_of(case.structure, case.seed, sealed=True)
+        assert len({make_case.name_of_test(motion, scale) for motion, scale, _ in tests}) == 5
 
 
 def test_the_discretisation_is_outside_what_the_nominal_model_draws():
@@ -203,7 +278,7 @@ def _effect(name, structure):
 
 
 @pytest.mark.parametrize("name", EFFECTS)
-@pytest.mark.parametrize("structure", load_plan().efforts)
+@pytest.mark.parametrize("structure", sorted(path.stem for path in STRUCTURES.glob("*.yaml")))
 def test_every_effect_has_another_form_than_the_registrys(structure, name):
     """Not the registry's experiment, or other readings of it; and one that can be built."""
     structure = load_structure(structure_file(structure))

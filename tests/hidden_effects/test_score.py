@@ -2,18 +2,29 @@
 
 import json
 
+import make_case
 import numpy as np
 import pytest
 import score
-from case_files import PAGE, ROOT, SMALL_SEEDS, TRACK_RECORD, load_plan, truth_of
-from case_truth import true_effect
-from make_case import structure_file
+from answers import Scored
+from case_files import (
+    CALIBRATION_SEEDS,
+    PAGE,
+    ROOT,
+    SMALL_SEEDS,
+    TRACK_RECORD,
+    load_plan,
+    truth_of,
+    verdict_of,
+)
+from case_truth import true_causes
+from compare_decisions import read_verdict, table
+from make_case import name_of_test, structure_file
 from outside_forces import OUTSIDE
 from score import make_track_record
-from score_figures import Scored, figures
+from score_figures import LATE, figures
 from track_record_text import as_markdown, block_of, with_block
 
-from blockshake.diagnosis.laws.findings import OutsideForce
 from blockshake.diagnosis.verdict.track_record import load_track_record, write_track_record
 from blockshake.diagnosis.verdict.verdict import Verdict, write_verdict
 from blockshake.effects.registry import EFFECTS
@@ -24,123 +35,116 @@ from blockshake.geometry.structure import load_structure
 PLAN = load_plan()
 EMPTY = "<!-- figures: begin -->\nold\n<!-- figures: end -->"
 STRUCTURES = {name: load_structure(structure_file(name)) for name in PLAN.efforts}
-TESTS = ("one", "two", "three")
-GAIN = {"estimate": 0.7, "lower": 0.5, "upper": 0.9}
-LAW_GAIN = {"estimate": 0.9, "lower": 0.8, "upper": 1.0}
-# effects that are hidden in structures other than two blocks
-ELSEWHERE = (
-    "table-pitch", "vertical-motion", "stopper-contact", "reduced-bearing", "eccentricity", "weak-joint",
-    "joint-compliance", "base-compliance",
-)  # fmt: skip
+BAD = {"false_alarms", "confidently_wrong", "false_beside", "outside_named", "single_called_pair"}
+BODY, OTHER = "block-1", "block-2"
 
 
 def _truth(case):
-    effect = true_effect(case.truth, case.size, STRUCTURES[case.structure], len(TESTS), case.seed)
-    tests = {test: {"trace": 2e-4} for test in TESTS}
+    tests = make_case.tests_of(case.structure, case.seed, case.gain is not None)
+    structure = STRUCTURES[case.structure]
+    far = {body.name: [-1.0, 1.0] for body in structure.file.bodies}
     return {
-        "truth": case.truth, "size_class": case.size, "effect": effect, "seed": case.seed, "tests": tests,
-        "structure": case.structure,
-        "sealed": case.sealed,
+        "causes": true_causes(case.causes, case.size, structure, len(tests), case.seed), "size": case.size,
+        "seed": case.seed, "structure": case.structure, "sealed": case.gain is not None,
+        "tests": {name_of_test(motion, scale): {"role": role, "drift": far} for motion, scale, role in tests},
     }  # fmt: skip
+
+
+def _gain(value):
+    contrast = {"estimate": value, "lower": value - 0.1, "upper": value + 0.1}
+    return {rival: contrast for rival in ("recalibrated", "nominal", "discrepancy")}
 
 
 def _verdict(decision, causes=(), **keys):
     return Verdict(
-        decision=decision,
-        causes=tuple(causes),
-        probabilities={},
-        misfit={"p": 0.5, "where": ""},
-        runs=1,
-        word="one of",
-        **keys,
-    )
-
-
-def _perfect(truth):
-    if truth["effect"] is None:
-        nothing = dict.fromkeys(GAIN, 0.0)
-        return _verdict("none", gain=dict.fromkeys(("recalibrated", "nominal", "discrepancy"), nothing))
-    name, values, place = truth["truth"], truth["effect"]["values"], truth["effect"]["place"]
-    if name in OUTSIDE:
-        return _verdict(
-            "unknown", outside=_described(truth), law_gain=LAW_GAIN,
-            gain=dict.fromkeys(("recalibrated", "nominal", "discrepancy"), GAIN),
-        )  # fmt: skip
-    parameters = {
-        item.name: {
-            "estimate": values[item.name], "lower": values[item.name], "upper": values[item.name], "unit": item.unit,
-        }
-        for item in EFFECTS[name].parameters
-    }  # fmt: skip
-    return _verdict(
-        "named", [name], parameters={name: parameters}, location={name: place} if place else {},
-        gain=dict.fromkeys(("recalibrated", "nominal", "discrepancy"), GAIN), law_gain=LAW_GAIN,
+        decision=decision, causes=tuple(causes), probabilities={}, misfit={"p": 0.5, "where": ""}, runs=1,
+        word="one of", **keys,
     )  # fmt: skip
 
 
-def _described(truth):
-    """The force that a description without an error gives."""
-    starts = zip(TESTS, truth["effect"]["start"], strict=True)
-    return OutsideForce(
-        bodies=(truth["effect"]["place"]["body"],), law="constant", scores={"constant": 0.0}, amplitude=1.0,
-        lower=0.5, upper=1.5, unit="N", tests={test: {"start": at} for test, at in starts if at is not None},
+def _word(place):
+    return "-".join(place["joint"]) if "joint" in place else place.get("body", "all")
+
+
+def _form(cause, tests):
+    """The description of a cause from outside without an error."""
+    starts = zip(tests, cause["start"], strict=True)
+    place = cause["place"]["body"]
+    return {
+        "form": OUTSIDE[cause["name"]].form, "title": "", "place": {"body": place}, "places": (f"{place}@0.42",),
+        "size": {}, "starts": {test: at for test, at in starts if at is not None},
+    }  # fmt: skip
+
+
+def _perfect(truth):
+    known = [cause for cause in truth["causes"] if cause["name"] in EFFECTS]
+    outside = [_form(cause, truth["tests"]) for cause in truth["causes"] if cause["name"] in OUTSIDE]
+    gain = (0.9 if truth["causes"] else 0.0) if truth["sealed"] else None
+    parameters, limits = {}, {}
+    for cause in known:
+        first = EFFECTS[cause["name"]].parameters[0]
+        size = cause["values"][first.name]
+        limits[cause["name"]] = {_word(cause["place"]): first.null + 0.9 * (size - first.null)}
+        parameters[cause["name"]] = {
+            name: {"estimate": value, "lower": value, "upper": value, "unit": "1"}
+            for name, value in cause["values"].items()
+        }
+    decision = ("unknown" if outside else "none", "named", "combination")[len(known)]
+    return _verdict(
+        decision, [cause["name"] for cause in known], parameters=parameters, limits=limits,
+        location={cause["name"]: cause["place"] for cause in known if cause["place"]},
+        outside=outside[0] if outside else None,
+        odds=dict.fromkeys([*(cause["name"] for cause in known), *(one["form"] for one in outside)], 0.0),
+        **({} if gain is None else {"gain": _gain(gain), "row_gain": _gain(gain)}),
     )  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def perfect():
     truths = {case.name: _truth(case) for case in PLAN.cases}
-    scored = [Scored(name, truth, _perfect(truth)) for name, truth in truths.items()]
-    return scored + [Scored(name, truths[name], _verdict("unknown"), removed=True) for name in PLAN.removed]
+    return [Scored(name, truth, _perfect(truth)) for name, truth in truths.items()]
 
 
-def test_the_plan_is_what_the_docs_say():
-    wanted = {("two-blocks", "none", None): 60} | {("two-blocks", name, None): 4 for name in OUTSIDE}
-    wanted |= {("two-blocks", name, size): 3 for name in EFFECTS for size in ("small", "large")}
-    slides = (
-        ("weak-joint", "small"),
-        ("rate-weakening-friction", "small"),
-        ("rate-weakening-friction", "large"),
-    )
-    for kind in slides:
-        del wanted["two-blocks", *kind]
-    for structure in set(PLAN.efforts) - {"two-blocks", "sliding-blocks"}:
-        wanted |= {(structure, "none", None): 4} | {(structure, name, "large"): 1 for name in ELSEWHERE}
-        wanted |= {(structure, name, None): 1 for name in ("outside-push", "outside-blow", "outside-rope")}
-    wanted |= {("sliding-blocks", "none", None): 4, ("sliding-blocks", "weak-joint", "large"): 1}
-    wanted |= {("sliding-blocks", *kind): 3 for kind in slides}
-    wanted |= {("sliding-blocks", name, None): 1 for name in ("outside-push", "outside-rope", "outside-drag")}
-    counted = {}
+def test_the_plan_is_what_was_asked_for():
+    kinds, by_cause = {}, {}
     for case in PLAN.cases:
-        kind = (case.structure, case.truth, case.size)
-        counted[kind] = counted.get(kind, 0) + 1
-    assert counted == wanted
-    assert len({case.seed for case in PLAN.cases}) == len({case.name for case in PLAN.cases}) == 215
-    large = {case.name: case.truth for case in PLAN.cases if case.size == "large"}
-    assert [large[name] for name in PLAN.removed] == list(EFFECTS)
+        kind = "pair" if len(case.causes) == 2 else "single" if case.causes else "clean"
+        kinds.setdefault(kind, []).append(case.structure)
+        if len(case.causes) == 1:
+            key = case.causes[0], case.size
+            by_cause[key] = by_cause.get(key, 0) + 1
+    assert kinds["clean"].count("two-blocks") == 60
+    assert len(kinds["clean"]) == 80
+    assert len(kinds["pair"]) == 24
+    wanted = {(name, size): 3 for name in EFFECTS for size in ("small", "large")}
+    assert by_cause == wanted | {(name, None): 6 for name in OUTSIDE}
+    for structure in ("bridged-walls", "six-block-wall"):
+        assert [kinds[kind].count(structure) for kind in ("clean", "single", "pair")] == [5, 20, 4]
+    everywhere = [*PLAN.cases, *load_plan(CALIBRATION_SEEDS).cases]
+    assert (
+        len({case.seed for case in everywhere}) == len({case.name for case in everywhere}) == len(everywhere)
+    )
 
 
 def test_perfect_verdicts_score_full(perfect):
     found = figures(perfect)
     for name, share in found["shares"].items():
-        wrong = name in ("false_alarms", "confidently_wrong", "unknown_named", "outside_named")
-        assert share.hits == (0 if wrong else share.n), name
-        assert share.met in (True, None), name
-        assert share.n > 0 or name == "bound_holds"
-    assert found["medians"]["gain_named"].estimate == 0.7
-    assert found["medians"]["gain_clean"].estimate == 0.0
-    assert all(median.met in (True, None) for median in found["medians"].values())
-    assert found["medians"]["gain_laws_named"].estimate == 0.9
-    assert sum(row.answers.right for row in found["confusion"]) == sum(
-        case.truth in EFFECTS for case in PLAN.cases
-    )
+        assert share.hits == (0 if name in BAD else share.n), name
+        assert share.met in (True, None) or name == "sizes_hold_no_wider", name
+        assert share.n > 0, name
+    medians = found["medians"]
+    assert medians["gain_named"].estimate == medians["gain_rows_described"].estimate == 0.9
+    assert medians["gain_clean"].estimate == 0.0
+    assert all(median.met in (True, None) for median in medians.values())
+    assert sum(row.answers.n for row in found["confusion"]) == len(PLAN.cases)
+    assert sum(row.answers.unknown for row in found["confusion"]) == 48
 
 
 def test_shuffled_truths_score_chance(perfect):
     """A name given to a truth drawn from all is right as often as two cases have the same truth."""
-    known = [case for case in perfect if case.truth["truth"] in EFFECTS and not case.removed]
+    known = [case for case in perfect if case.kind == "effect"]
     count = len(known)
-    own = [sum(case.truth["truth"] == name for case in known) for name in EFFECTS]
+    own = [sum(name in case.causes for case in known) for name in EFFECTS]
     chance = sum(number**2 for number in own) / count**2
     generator = np.random.default_rng(1)
     shares = []
@@ -157,29 +161,33 @@ def test_shuffled_truths_score_chance(perfect):
 
 
 def test_always_none_is_never_wrong_and_finds_nothing(perfect):
-    silent = [Scored(case.name, case.truth, _verdict("none"), case.removed) for case in perfect]
-    found = figures(silent)["shares"]
-    assert found["false_alarms"].hits == found["confidently_wrong"].hits == 0
+    silent = figures([Scored(case.name, case.truth, _verdict("none")) for case in perfect])["shares"]
+    assert silent["false_alarms"].hits == silent["confidently_wrong"].hits == silent["false_beside"].hits == 0
     # 0 of n: 1 - 0.025^(1/n)
-    assert found["false_alarms"].n == 76
-    assert found["false_alarms"].upper == pytest.approx(1.0 - 0.025 ** (1.0 / 76.0))
-    assert found["truth_in_set"].met is False
-    assert found["unknown_recall"].met is False
+    assert silent["false_alarms"].n == 80
+    assert silent["false_alarms"].upper == pytest.approx(1.0 - 0.025 ** (1.0 / 80.0))
+    assert not any(silent[key].met for key in ("exact_large", "outside_unknown", "outside_form", "pairs_one"))
 
 
-def _case(verdict, truth="eccentricity", place=None, size="large", removed=False):
-    place = place or {"body": "block-1"}
-    effect = {"name": truth, "values": {"offset": -0.08}, "place": place}
-    told = {
-        "truth": truth,
-        "size_class": size,
-        "effect": effect,
-        "seed": 1,
-        "sealed": False,
-        "tests": {},
-        "structure": "two-blocks",
-    }
-    return Scored("case", told, verdict, removed)
+def _cause(name="eccentricity", **keys):
+    values = {"offset": -0.08, "stiffness": 1e7, "gap": 0.02}
+    return {"name": name, "values": values, "place": {"body": BODY}, **keys}
+
+
+def _case(verdict, *causes, tests=("one",), size="large", drift=0.03):
+    truth = {
+        "causes": causes or (_cause(),), "size": size, "seed": 1, "sealed": False, "structure": "two-blocks",
+        "tests": {name: {"role": "fit", "drift": {BODY: [-0.05, drift]}} for name in tests},
+    }  # fmt: skip
+    return Scored("case", truth, verdict)
+
+
+def _share(key, *cases):
+    found = figures(list(cases))["shares"][key]
+    return found.hits, found.n
+
+
+ROPE = {"form": "rope", "title": "", "place": {}, "places": (f"{BODY}@0.42",), "size": {}, "starts": {}}
 
 
 def test_every_answer_has_its_column():
@@ -193,42 +201,101 @@ def test_every_answer_has_its_column():
         "combination": _case(_verdict("combination", ["weak-joint", "eccentricity"])),
     }
     assert {name: case.answer for name, case in answers.items()} == {name: name for name in answers}
-    # its own name is no right answer where the candidates lacked it, for then it cannot have been given
-    assert _case(_verdict("named", ["eccentricity"]), removed=True).answer == "wrong"
 
 
-def test_sets_within_the_truths_own_group_are_left_out_of_exact_names():
+def test_a_class_is_the_truth_with_what_is_mistaken_for_it():
     group = _case(_verdict("ambiguous", ["eccentricity", "stopper-contact"]))
+    with_push = _case(_verdict("ambiguous", ["eccentricity"], outside={**ROPE, "form": "push"}))
+    with_rope = _case(_verdict("ambiguous", ["eccentricity"], outside=ROPE))
     wider = _case(_verdict("ambiguous", ["eccentricity", "weak-joint"]))
-    found = figures([group, wider])["shares"]
-    assert (found["exact_large"].n, found["exact_large_all"].n) == (1, 2)
+    cases = group, with_push, with_rope, wider
+    assert [case.within_class for case in cases] == [True, True, False, False]
+    assert (_share("exact_large", *cases), _share("exact_large_alone", *cases)) == ((2, 4), (0, 4))
+
+
+def test_what_is_asserted_beside_a_truth_is_counted_by_the_parts_of_the_answer():
+    right, false = {"eccentricity": 0.0}, {"table-pitch": 0.0}
+    single = [
+        _case(_verdict("combination", ["eccentricity", "table-pitch"], odds=right | false)),
+        _case(_verdict("named", ["eccentricity"], outside=ROPE, odds=right | {"rope": 0.0})),
+        _case(_verdict("combination", ["eccentricity", "marker-offset"], odds=right)),  # a sensor has no odds
+        _case(_verdict("ambiguous", ["eccentricity", "weak-joint"], odds=right | {"weak-joint": 1.2})),
+        _case(_verdict("named", ["table-pitch"], odds=false)),
+    ]
+    assert [case.asserted for case in single] == [2, 2, 2, 1, 1]
+    assert _share("false_beside", *single) == (3, 5)
+    assert _share("single_called_pair", *single) == (3, 5)
+    pair = _cause(), _cause("table-pitch", place={})
+    both = _case(_verdict("combination", ["eccentricity", "table-pitch"], odds=right | false), *pair)
+    assert (_share("false_beside", both), _share("pairs_both", both)) == ((0, 1), (1, 1))
+    half = _case(_verdict("named", ["eccentricity"], odds=right), *pair)
+    assert (_share("pairs_one", half), _share("pairs_both", half)) == ((1, 1), (0, 1))
 
 
 @pytest.mark.parametrize(
-    ("said", "right"),
-    [({"body": "block-1"}, 1), ({"body": "block-2"}, 0), ({}, 0), ({"body": "block-1", "axis": "-x"}, 0)],
+    ("limits", "seen"),
+    [
+        ({f"{BODY}": 0.07}, True), ({f"{BODY}": -0.09}, False), ({OTHER: 0.01}, False), ({}, False),
+        ({f"{BODY}@0": 0.09, f"{BODY}@0.42": 0.05}, True),
+    ],
+)  # fmt: skip
+def test_an_effect_can_be_seen_from_the_limit_at_its_place_on(limits, seen):
+    case = _case(_verdict("none", limits={"eccentricity": limits}))
+    assert case.can_be_seen is seen
+    assert _share("truth_in_set_seen", case) == (0, int(seen))
+
+
+@pytest.mark.parametrize(("drift", "seen"), [(0.03, True), (0.01, False)])
+def test_a_stop_that_is_not_reached_cannot_be_seen(drift, seen):
+    stop = _cause("stopper-contact", place={"body": BODY, "axis": "+x"})
+    limits = {"stopper-contact": {BODY: 1e6}}
+    assert _case(_verdict("none", limits=limits), stop, drift=drift).can_be_seen is seen
+
+
+@pytest.mark.parametrize(
+    ("location", "places", "right"),
+    [
+        ({"body": BODY}, (), 1), ({"body": OTHER}, (), 0), ({}, (), 0), ({"body": BODY, "axis": "-x"}, (), 0),
+        ({"body": OTHER}, (OTHER, BODY), 1), ({"body": OTHER}, (OTHER,), 0),
+    ],
+)  # fmt: skip
+def test_a_place_is_right_where_it_is_said_or_cannot_be_told_from_it(location, places, right):
+    verdict = _verdict(
+        "named", ["eccentricity"], location={"eccentricity": location}, places={"eccentricity": places}
+    )
+    case = _case(verdict, _cause(place={"body": BODY, "axis": "+x"}))
+    assert _share("location", case) == (right, 1)
+
+
+def test_a_rope_beside_a_stop_is_as_good_as_unknown():
+    rope = _cause("outside-rope", start=[0.0])
+    said = {
+        "class": _verdict("ambiguous", ["stopper-contact"], outside=ROPE),
+        "alone": _verdict("named", ["stopper-contact"]),
+        "wider": _verdict("ambiguous", ["stopper-contact", "eccentricity"], outside=ROPE),
+        "unknown": _verdict("unknown", outside={**ROPE, "form": "drag"}),
+    }
+    cases = {name: _case(verdict, rope, size=None) for name, verdict in said.items()}
+    assert {name: case.called_unknown for name, case in cases.items()} == {
+        "class": True, "alone": False, "wider": False, "unknown": True,
+    }  # fmt: skip
+    assert _share("outside_named", *cases.values()) == (1, 4)
+    assert _share("outside_form", *cases.values()) == (2, 4)
+    assert _share("outside_block", *cases.values()) == (2, 2)
+
+
+@pytest.mark.parametrize(
+    ("test", "at", "hits"), [("one", 2.0 + LATE - 0.01, 1), ("one", 2.3, 0), ("two", 2.0, 0)]
 )
-def test_a_place_is_right_where_all_that_is_said_is(said, right):
-    verdict = _verdict("named", ["eccentricity"], location={"eccentricity": said})
-    place = {"body": "block-1", "axis": "+x"}
-    assert figures([_case(verdict, place=place)])["shares"]["location"].hits == right
+def test_a_description_is_on_time_in_the_test_that_was_struck(test, at, hits):
+    blow = _cause("outside-blow", start=[2.0, None])
+    said = _verdict("unknown", outside={**ROPE, "form": "blow", "starts": {test: at}})
+    assert _share("outside_time", _case(said, blow, tests=("one", "two"), size=None)) == (hits, 1)
 
 
-@pytest.mark.parametrize(("limit", "hits"), [(0.09, 1), (-0.09, 1), (0.07, 0)])
-def test_a_bound_holds_where_the_truth_is_smaller(limit, hits):
-    found = figures([_case(_verdict("none", excluded_above={"eccentricity": limit}))])["shares"]
-    assert (found["bound_holds"].hits, found["bound_holds"].n) == (hits, 1)
-
-
-def test_intervals_of_medians_are_order_statistics(perfect):
+def test_intervals_of_medians_are_order_statistics():
     """Of 6 values the least and largest hold the median in 1 - 2 / 64 = 0.969; of 5 nothing does in 0.95."""
-    cases = [case for case in perfect if case.answer == "right"]
-    gained = []
-    for number, case in enumerate(cases[:6]):
-        gain = dict.fromkeys(("recalibrated", "nominal", "discrepancy"), dict.fromkeys(GAIN, number / 10))
-        gained.append(
-            Scored(case.name, case.truth, Verdict(**{**case.verdict.model_dump(), "gain": gain}), False)
-        )
+    gained = [_case(_verdict("named", ["eccentricity"], gain=_gain(number / 10))) for number in range(6)]
     six = figures(gained)["medians"]["gain_named"]
     assert (six.lower, six.estimate, six.upper) == (0.0, 0.25, 0.5)
     assert figures(gained[:5])["medians"]["gain_named"].lower is None
@@ -245,51 +312,45 @@ def test_the_track_record_comes_back_from_its_file(perfect, tmp_path):
     assert with_block(page, "figures", as_markdown(track_record)) == page
 
 
-def test_scoring_goes_from_the_files_of_a_run_to_track_record_and_page(tmp_path, monkeypatch, capsys):
-    plan = load_plan(SMALL_SEEDS)
-    verdicts = tmp_path / "verdicts"
-    monkeypatch.setattr(score, "load_plan", lambda: plan)
-    monkeypatch.setattr(
-        score, "verdict_of", lambda results, name, without: verdicts / f"{name}-{without}" / "verdict.json"
-    )
-    for case in plan.cases:
-        write_json(truth_of(tmp_path, case.name) / "truth.json", _truth(case))
-        write_verdict(verdicts / f"{case.name}-None" / "verdict.json", _perfect(_truth(case)))
-    write_verdict(verdicts / "small-4-eccentricity" / "verdict.json", _verdict("unknown"))
-    page = tmp_path / "page.md"
+def test_scoring_goes_from_the_files_of_a_run_to_track_record_and_page(perfect, tmp_path, capsys):
+    for case in perfect:
+        write_json(truth_of(tmp_path, case.name), case.truth)
+        write_verdict(verdict_of(tmp_path, case.name), case.verdict)
+    page, record = tmp_path / "page.md", tmp_path / "track-record.json"
     page.write_text(EMPTY)
-    told = [
-        "--results",
-        str(tmp_path),
-        "--track-record",
-        str(tmp_path / "track-record.json"),
-        "--page",
-        str(page),
-    ]
-    score.main(told)
-    track_record = load_track_record(tmp_path / "track-record.json")
-    assert [case.answer for case in track_record.cases] == ["none", "right", "right", "right", "unknown"]
-    assert (
-        block_of(page.read_text(), "figures") == as_markdown(track_record) == capsys.readouterr().out.strip()
-    )
-    (verdicts / "small-2-None" / "verdict.json").unlink()
+    asked = ["--results", str(tmp_path), "--track-record", str(record), "--page", str(page)]
+    score.main(asked)
+    text = as_markdown(load_track_record(record))
+    assert block_of(page.read_text(), "figures") == text == capsys.readouterr().out.strip()
+    verdict_of(tmp_path, perfect[0].name).unlink()
     with pytest.raises(InputError):
-        score.main(told)
+        score.main(asked)
+
+
+def test_another_plan_than_the_sealed_one_is_printed_alone(tmp_path, capsys):
+    for case in load_plan(SMALL_SEEDS).cases:
+        truth = _truth(case)
+        write_json(truth_of(tmp_path, case.name), truth)
+        write_verdict(verdict_of(tmp_path, case.name), _perfect(truth))
+    record = tmp_path / "track-record.json"
+    score.main(["--results", str(tmp_path), "--seeds", str(SMALL_SEEDS), "--track-record", str(record)])
+    assert "| eccentricity, large |  | 1 |" in capsys.readouterr().out
+    assert not record.exists()
 
 
 @pytest.mark.parametrize(
     ("change", "key"),
     [
-        (lambda told: told["shares"]["false_alarms"].update(hits=99), "hits"),
-        (lambda told: told["cases"].pop(), "cases"),
-        (lambda told: told.update(extra=1), "extra"),
-        (lambda told: told.update(version=2), "version"),
+        (lambda record: record["shares"]["false_alarms"].update(hits=99), "hits"),
+        (lambda record: record["cases"].pop(), "cases"),
+        (lambda record: record.update(extra=1), "extra"),
+        (lambda record: record.update(version=99), "version"),
     ],
 )
 def test_a_track_record_that_contradicts_itself_is_refused(perfect, tmp_path, change, key):
-    told = make_track_record(perfect, PLAN.efforts, PLAN.digest).model_dump(mode="json")
-    change(told)
-    (tmp_path / "track-record.json").write_text(json.dumps(told))
+    record = make_track_record(perfect, PLAN.efforts, PLAN.digest).model_dump(mode="json")
+    change(record)
+    (tmp_path / "track-record.json").write_text(json.dumps(record))
     with pytest.raises(InputError) as error:
         load_track_record(tmp_path / "track-record.json")
     assert key in str(error.value)
@@ -300,46 +361,37 @@ def test_a_missing_track_record_is_one_line(tmp_path):
         load_track_record(tmp_path / "none.json")
 
 
-def test_the_page_shows_what_the_file_says():
-    page = PAGE.read_text(encoding="utf-8")
-    if TRACK_RECORD.is_file():
-        assert block_of(page, "figures") == as_markdown(load_track_record(TRACK_RECORD))
-        # of the last plan that was run; the next one is fixed before it is
-        assert load_track_record(TRACK_RECORD).seeds == PLAN.digest
-    else:
-        assert block_of(page, "figures") == "Not run yet: no figures."
-
-
-def test_the_readme_says_what_the_file_says():
-    readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
-    record = load_track_record(TRACK_RECORD)
-    assert (
-        f"We made {sum(not row.removed for row in record.confusion for _ in range(row.answers.n))} " in readme
+def test_two_decisions_stand_beside_each_other(tmp_path):
+    write_json(
+        tmp_path / "verdict.json", {"version": 1, "decision": "named", "causes": ["table-pitch"], "old": 1}
     )
+    old, new = read_verdict(tmp_path / "verdict.json"), _verdict("named", ["eccentricity"])
+    rows = table({"old": [_case(old)], "new": [_case(new)]}).splitlines()
+    assert rows[0] == "| figure | old | new |"
+    assert "| the truth is named or in the set | 0 of 1 | 1 of 1 |" in rows
+
+
+@pytest.fixture(scope="module")
+def record():
+    """The record that the package ships, where it is of the plan of today."""
+    shipped = load_track_record(TRACK_RECORD)
+    if shipped.seeds != PLAN.digest:
+        pytest.skip("the track record is of an earlier plan: make test-hidden measures a new one")
+    return shipped
+
+
+def test_the_page_shows_what_the_file_says(record):
+    assert block_of(PAGE.read_text(encoding="utf-8"), "figures") == as_markdown(record)
+
+
+def test_the_readme_says_what_the_file_says(record):
+    readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    assert f"We made {len(record.cases)} " in readme
     for name, words in {
-        "truth_in_set": "in {share:.0f} % of the {n} (goal {goal:.0f} %)",
+        "truth_in_set_seen": "in {share:.0f} % of the {n} (goal {goal:.0f} %)",
         "false_alarms": "in {share:.0f} % of the {n} (goal {goal:.0f} %)",
         "outside_unknown": "in {share:.0f} % of the {n} (goal {goal:.0f} %)",
         "outside_named": "in {share:.0f} % (goal {goal:.0f} %)",
     }.items():
-        one = record.shares[name]
-        assert words.format(share=100.0 * one.estimate, n=one.n, goal=100.0 * one.goal) in readme, name
-
-
-def test_removed_and_known_cases_do_not_mix():
-    found = figures([_case(_verdict("unknown"), removed=True), _case(_verdict("named", ["eccentricity"]))])
-    assert found["shares"]["truth_in_set"].n == 1
-    assert found["shares"]["unknown_recall"].n == 1
-    assert [row.removed for row in found["confusion"]] == [False, True]
-
-
-@pytest.mark.parametrize(("late", "hits"), [(0.2, 1), (0.4, 0)])
-def test_a_description_is_on_time_within_three_tenths_of_a_second(late, hits):
-    case = next(case for case in PLAN.cases if case.truth == "outside-push")
-    truth = _truth(case)
-    told = _described(
-        truth | {"effect": truth["effect"] | {"start": [at + late for at in truth["effect"]["start"]]}}
-    )
-    found = figures([Scored(case.name, truth, _verdict("unknown", outside=told))])["shares"]
-    assert found["outside_time"].hits == hits
-    assert found["outside_block"].hits == 1
+        share = record.shares[name]
+        assert words.format(share=100.0 * share.estimate, n=share.n, goal=100.0 * share.goal) in readme, name

@@ -414,8 +414,12 @@ def test_a_study_remarks_what_its_structures_hardly_mean(mapping, cube, tmp_path
     cube["materials"]["stone"]["youngs_modulus"] = 34.5
     study = own_study(dict(mapping), tmp_path, cube, ensemble=stone())
     study["cases"][0]["duration"] = 80.0
+    study["output_rate"] = 5.0
+    study["ensemble"]["distributions"]["materials.stone.density"]["cov"] = 1.1
     (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
     told = check_file(tmp_path / "study.yaml")
+    assert "materials.stone.density has a cov of 1.1: expected a share, 0.1 for 10 %" in told
+    assert "5 rows a second miss the peaks of drifts and forces: 200 is usual" in told
     assert "materials.stone.youngs_modulus is 34.5 Pa: 1e+07 to 1e+12 Pa is usual" in told
     assert "80 s are simulated of a motion of" in told
 

@@ -64,8 +64,12 @@ def test_a_unit_in_a_column_s_name():
     for name in ("EW_mg", "EW (milli-g)", "EW in mg"):
         assert unit_of_name(name) == ("acceleration", Decimal("0.00980665"))
     assert unit_of_name("EW in cm/s\u00b2") == ("acceleration", Decimal("0.01"))
+    assert unit_of_name("v cm/s") == ("velocity", Decimal("0.01"))
+    for name, kind in (("acc_g", "acceleration"), ("t_s", "time"), ("wall/m", "displacement")):
+        assert unit_of_name(name, kind)[0] == kind
+    for name in ("EW_S", "peak_m", "a 3 g", "PGA = 0.35 g", "PGA: .35 g", "Peak 0.35e0 g"):
+        assert unit_of_name(name, "acceleration") is None
     for name in (
-        "v cm/s",
         "EW/NS",
         "in phase",
         "time_s",

@@ -1,17 +1,14 @@
 """What the simulation of measured tests gets wrong, the cause, the extended model and its gain.
 
-Libraries and calibrations are named by their content: equal structures, motions and sensors have equal ones, whatever
-campaign they are of, so that a second campaign simulates nothing but its own extension and further draws of a cause
-that no campaign had before.
+Ensembles are named by their content: equal structures, motions and sensors have equal ones, whatever campaign they
+are of, so that a second campaign simulates nothing but its own extension.
 """
 
 
 wildcard_constraints:
     campaign="|".join(map(re.escape, CAMPAIGNS)) or "none",
     solver="|".join(NULL_MODELS),
-    library="[0-9a-f]{12}",
-    calibration="[0-9a-f]{12}",
-    candidate="[^/]+",
+    ensemble="[0-9a-f]{12}",
 
 
 rule diagnose:
@@ -30,83 +27,13 @@ rule verdicts:
         expand("results/diagnosis/{campaign}/verdict.json", campaign=CAMPAIGNS),
 
 
-rule simulate_library:
-    """Simulated tests of one structure under one motion: nominal ones, and with every candidate effect."""
-    input:
-        kernels=lambda wildcards: kernels(wildcards.solver),
-    output:
-        features="results/libraries/{library}/{solver}.nc",
-        histories="results/libraries/{library}/{solver}-histories.nc",
-    log:
-        "logs/simulate_library/{library}-{solver}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
-    resources:
-        mem_mb=2000,
-        runtime=480,
-    params:
-        shared=LIBRARY_SOURCE,
-        source=solver_source,
-        store="results/store/diagnosis",
-    script:
-        "../scripts/simulate_library.py"
-
-
-rule calibrate_decision:
-    """Every draw of the libraries judged by all others: what scores are worth."""
-    input:
-        calibration_libraries,
-    output:
-        "results/libraries/calibrations/{calibration}.json",
-    log:
-        "logs/calibrate_decision/{calibration}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    resources:
-        mem_mb=4000,
-    params:
-        effects=lambda wildcards: considered_effects(),
-        store="results/store/diagnosis",
-        source=CALIBRATION_SOURCE,
-    script:
-        "../scripts/calibrate_decision.py"
-
-
-rule read_measured:
-    """Sensors checked against each other, their faults taken out, and the open tests read off."""
+checkpoint decide:
+    """The sensors checked, the open tests seen, and what they speak for; frozen before a sealed test is opened."""
     input:
         lambda wildcards: test_files(wildcards.campaign, "open"),
     output:
         parity="results/diagnosis/{campaign}/parity.json",
-        readings="results/diagnosis/{campaign}/measured.nc",
-        forces="results/diagnosis/{campaign}/forces.nc",
-    log:
-        "logs/diagnosis/{campaign}/read_measured.log",
-    conda:
-        "../envs/blockshake.yaml"
-    params:
-        folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
-        effort=EFFORT,
-        without=WITHOUT,
-        source=source_of("read_measured"),
-    script:
-        "../scripts/read_measured.py"
-
-
-checkpoint decide:
-    """Which effects the open tests speak for; frozen with its hash before a sealed test is opened."""
-    input:
-        readings=rules.read_measured.output.readings,
-        forces=rules.read_measured.output.forces,
-        libraries=lambda wildcards: library_files(wildcards.campaign),
-        histories=lambda wildcards: library_files(
-            wildcards.campaign, "{solver}-histories.nc"
-        ),
-        calibration=calibration_file,
-    output:
         decision="results/diagnosis/{campaign}/decision.json",
-        misfit="results/diagnosis/{campaign}/misfit.nc",
         evidence="results/diagnosis/{campaign}/evidence.nc",
         frozen="results/diagnosis/{campaign}/frozen.json",
     log:
@@ -115,21 +42,20 @@ checkpoint decide:
         "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
-        effects=lambda wildcards: considered_effects(),
+        without=WITHOUT,
         source=source_of("decide"),
     script:
         "../scripts/decide.py"
 
 
-rule simulate_cause:
-    """More draws with one candidate than the library has, of one structure under one motion."""
+rule simulate_nominal:
+    """Simulated tests of one structure under one motion by nominal models, and twins."""
     input:
         kernels=lambda wildcards: kernels(wildcards.solver),
-        library="results/libraries/{library}/{solver}.nc",
     output:
-        "results/libraries/{library}/{solver}/{candidate}.nc",
+        "results/ensembles/{ensemble}/{solver}.nc",
     log:
-        "logs/simulate_cause/{library}-{solver}-{candidate}.log",
+        "logs/simulate_nominal/{ensemble}-{solver}.log",
     conda:
         "../envs/blockshake.yaml"
     threads: 1
@@ -137,47 +63,44 @@ rule simulate_cause:
         mem_mb=2000,
         runtime=480,
     params:
-        shared=LIBRARY_SOURCE,
+        shared=ENSEMBLE_SOURCE,
         source=solver_source,
         store="results/store/diagnosis",
-        further_draws=lambda wildcards: effort().further_draws,
-        asked_by=lambda wildcards: source_of("simulate_cause", wildcards.solver),
     script:
-        "../scripts/simulate_cause.py"
+        "../scripts/simulate_nominal.py"
 
 
-rule size_cause:
-    """The size of the first cause, from all draws with it; frozen before a sealed test is opened."""
+rule describe_misfit:
+    """The nominal ensembles beside what was measured, as long as each joint can be predicted."""
     input:
-        frozen="results/diagnosis/{campaign}/frozen.json",
-        decision="results/diagnosis/{campaign}/decision.json",
-        readings=rules.read_measured.output.readings,
-        libraries=lambda wildcards: library_files(wildcards.campaign),
-        further=further_files,
+        parity="results/diagnosis/{campaign}/parity.json",
+        ensembles=lambda wildcards: ensemble_files(wildcards.campaign),
+        tests=lambda wildcards: test_files(wildcards.campaign, "open"),
     output:
-        posterior="results/diagnosis/{campaign}/size.json",
-        frozen="results/diagnosis/{campaign}/frozen-size.json",
+        "results/diagnosis/{campaign}/misfit.nc",
     log:
-        "logs/diagnosis/{campaign}/size_cause.log",
+        "logs/diagnosis/{campaign}/describe_misfit.log",
     conda:
         "../envs/blockshake.yaml"
     params:
-        effects=lambda wildcards: considered_effects(),
-        source=source_of("size_cause"),
+        folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
+        effort=EFFORT,
+        source=source_of("describe_misfit"),
     script:
-        "../scripts/size_cause.py"
+        "../scripts/describe_misfit.py"
 
 
 rule extend_model:
-    """Ensembles by one solver: recalibrated on the open tests, and extended by the cause, for sealed tests too."""
+    """Ensembles by one solver on the sealed tests: nominal, recalibrated, extended by the causes, and a placebo."""
     input:
         frozen="results/diagnosis/{campaign}/frozen.json",
         decision="results/diagnosis/{campaign}/decision.json",
-        posterior=size_files,
+        parity="results/diagnosis/{campaign}/parity.json",
         motions=lambda wildcards: sealed_motions(wildcards.campaign),
-        readings=rules.read_measured.output.readings,
-        libraries=lambda wildcards: library_files(wildcards.campaign),
-        further=cause_files,
+        tests=lambda wildcards: test_files(wildcards.campaign, "open"),
+        ensembles=lambda wildcards: ensemble_files(
+            wildcards.campaign, [wildcards.solver]
+        ),
         kernels=lambda wildcards: kernels(wildcards.solver),
     output:
         "results/diagnosis/{campaign}/extended/{solver}.nc",
@@ -193,7 +116,6 @@ rule extend_model:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
         members=lambda wildcards: effort().members,
-        effects=lambda wildcards: considered_effects(),
         store="results/store/diagnosis",
         source=solver_source,
         judged_by=source_of("extend_model"),
@@ -202,19 +124,17 @@ rule extend_model:
 
 
 rule measure_gain:
-    """What naming the cause gains on the sealed tests, against three rivals: the one rule that reads them."""
+    """What naming the cause gains on the sealed tests, against its rivals: the one rule that reads them."""
     input:
         frozen="results/diagnosis/{campaign}/frozen.json",
         decision="results/diagnosis/{campaign}/decision.json",
-        readings=rules.read_measured.output.readings,
-        libraries=lambda wildcards: library_files(wildcards.campaign),
-        posterior=size_files,
+        parity="results/diagnosis/{campaign}/parity.json",
+        tests=lambda wildcards: test_files(wildcards.campaign, "open"),
+        ensembles=lambda wildcards: ensemble_files(wildcards.campaign),
         extended=extended_files,
-        parity=rules.read_measured.output.parity,
         sealed=lambda wildcards: test_files(wildcards.campaign, "sealed"),
     output:
         gain="results/diagnosis/{campaign}/gain.nc",
-        consequences="results/diagnosis/{campaign}/consequences.nc",
         summary="results/diagnosis/{campaign}/gain.json",
     log:
         "logs/diagnosis/{campaign}/measure_gain.log",
@@ -222,6 +142,7 @@ rule measure_gain:
         "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
+        effort=EFFORT,
         source=source_of("measure_gain"),
     script:
         "../scripts/measure_gain.py"
@@ -230,10 +151,8 @@ rule measure_gain:
 rule conclude:
     """The verdict: sensors, decision and gain put together."""
     input:
-        parity=rules.read_measured.output.parity,
+        parity="results/diagnosis/{campaign}/parity.json",
         decision="results/diagnosis/{campaign}/decision.json",
-        misfit="results/diagnosis/{campaign}/misfit.nc",
-        posterior=size_files,
         gain=gain_files,
     output:
         "results/diagnosis/{campaign}/verdict.json",
@@ -243,35 +162,9 @@ rule conclude:
         "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
-        effort=EFFORT,
-        runs=lambda wildcards: [
-            plan(wildcards.campaign).runs,
-            plan(wildcards.campaign).further_runs,
-        ],
         source=source_of("conclude"),
     script:
         "../scripts/conclude.py"
-
-
-rule predict_twins:
-    """How long a test can be predicted: twins that differ by no more than what is measured can tell."""
-    input:
-        histories=expand(
-            "results/libraries/{{library}}/{solver}-histories.nc", solver=NULL_MODELS
-        ),
-        kernels=[kernels(solver) for solver in NULL_MODELS],
-    output:
-        "results/libraries/{library}/predictability.nc",
-    log:
-        "logs/predict_twins/{library}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    params:
-        shared=LIBRARY_SOURCE,
-        twins=lambda wildcards: effort().twins,
-        source=source_of("predict_twins", *NULL_MODELS),
-    script:
-        "../scripts/predict_twins.py"
 
 
 rule make_diagnosis_report:
@@ -287,6 +180,7 @@ rule make_diagnosis_report:
                 "verdict.json",
             ],
         ),
+        misfit=misfit_files,
         gain=gain_files,
         templates=TEMPLATES,
         track_record=[TRACK_RECORD] if Path(TRACK_RECORD).exists() else [],

@@ -4,5 +4,5 @@ from blockshake.log import logging_to
 
 with logging_to(snakemake.log[0]) as say:
     of, solver = snakemake.params, snakemake.wildcards.solver
-    runs = extend_model(of.folder, of.effort, solver, snakemake.input, of.effects, of.store, of.source, say)
+    runs = extend_model(of.folder, of.effort, solver, snakemake.input, of.store, of.source, say)
     write_dataset(snakemake.output[0], runs)

@@ -13,7 +13,6 @@ from blockshake.errors import InputError
 _USUAL = 7.0
 _FIXED = {
     "all": 0.0,
-    "calibrate_decision": 20.0,
     "calibrate_stiffness": 9.0,
     "compare_definitions": 18.0,
     "compare_models": 14.0,
@@ -23,8 +22,6 @@ _FIXED = {
     "make_report": 20.0,
     "measure_gain": 14.0,
     "measure_sensitivity": 9.0,
-    "predict_twins": 17.0,
-    "read_measured": 19.0,
     "study_convergence": 20.0,
 }
 _PLANNED = 6.0  # CPU s

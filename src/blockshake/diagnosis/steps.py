@@ -1,7 +1,7 @@
 """The way of a diagnosis from readings to verdict, a function a step, in the order of the workflow.
 
 Each function imports what it runs inside its own body. `blockshake.sources` watches this file function by function,
-so that a step is rerun by an edit of what that step runs, and by no other: an edit of the gain reruns no library.
+so that a step is rerun by an edit of what that step runs, and by no other: an edit of the gain simulates nothing anew.
 """
 
 from typing import NamedTuple
@@ -34,219 +34,150 @@ def decide(folder, without):
     Measured
     """
     from blockshake.diagnosis.answer.decide import decide
-    from blockshake.diagnosis.answer.seen_campaign import see_open_tests
+    from blockshake.diagnosis.evidence.seen_campaign import see_campaign
     from blockshake.measurement.campaigns.campaign import load_campaign
 
-    parity, seen = see_open_tests(load_campaign(folder), without)
-    return Measured(parity, *decide(seen, without))
+    seen = see_campaign(load_campaign(folder), without)
+    unseen = [f"{name} is not judged: {reason}" for name, reason in seen.unseen.items()]
+    return Measured(seen.parity, *decide(seen.tests, without, unseen))
 
 
-def simulate_library(name, solver, config, shared, store, source, progress):
-    """Simulate one open test by one solver: nominal draws, and draws with every candidate effect.
+def simulate_nominal(name, solver, config, shared, store, source, progress):
+    """Simulate one open test by one solver: the ensemble of nominal models, and twins.
 
     Parameters
     ----------
     name : str
-        Of the library, as of `Plan.library`.
+        Of the ensemble, as of `Plan.ensemble`.
     solver : str
     config : dict
         Entries ``diagnosed``, folders of campaigns, and ``diagnosis_effort``.
     shared : str
-        Digest of the sources that both solvers share, which is in the library's name.
+        Digest of the sources that both solvers share, which is in the ensemble's name.
     store, source, progress
-        As of `library`; ``source`` is the solver's own.
+        As of `simulate_members`; ``source`` is the solver's own.
 
     Returns
     -------
-    features, histories : xarray.Dataset
-        From `library`.
+    xarray.Dataset
+        From `simulate_members`.
     """
-    from blockshake.diagnosis.libraries.library import library
-    from blockshake.diagnosis.libraries.plan import plan_of_library
+    from blockshake.diagnosis.nominal.ensemble import nominal_members, simulate_members
+    from blockshake.diagnosis.nominal.plan import plan_of_ensemble
 
-    plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], shared)
-    draws = plan.effort.nominal_draws, plan.own_draws
-    return library(plan.tests[test], solver, plan.candidates, *draws, store, source, progress)
+    plan, test = plan_of_ensemble(name, config["diagnosed"], config["diagnosis_effort"], shared)
+    members = nominal_members(test, plan.tests[test], solver, plan.effort.draws, plan.effort.twins)
+    return simulate_members(members, store, source, progress)
 
 
-def calibrate_decision(libraries, effects, store, source, progress):
-    """Judge every draw of the libraries by all others.
+def describe_misfit(folder, effort, files):
+    """Hold the nominal ensembles of both solvers beside the measured histories of the open tests.
 
     Parameters
     ----------
-    libraries : sequence of str
-        Files of features, by test and solver.
-    effects : sequence of str
-        Names of the effects that are considered.
-    store : str or path
-        Folder of judged draws: one that is there is not judged again.
-    source : str
-        Digest of the sources that judge.
-    progress : callable
-
-    Returns
-    -------
-    list of ScoredReadings
-    """
-    from blockshake.diagnosis.inference.calibration import cases_of, library_cases, rows_of
-    from blockshake.diagnosis.inference.library_scores import load_tables, score_library
-    from blockshake.files import content_digest, file_digest
-    from blockshake.store import kept_value
-
-    given = source, [file_digest(path) for path in libraries], list(effects)
-
-    def keep(model, draw, judge):
-        key = content_digest(*given, model, draw)
-        return cases_of(kept_value(store, key, lambda: rows_of(judge())))
-
-    return library_cases(score_library(load_tables(libraries), effects)[0], progress, keep)
-
-
-def simulate_cause(name, solver, key, further_draws, config, shared, store, source, progress):
-    """Simulate more draws with one candidate than a library has.
-
-    Parameters
-    ----------
-    key : str
-        Of the candidate.
-    further_draws : int
-        Draws beyond the library's.
-    name, solver, config, shared, store, source, progress
-        As of `simulate_library`.
-
-    Returns
-    -------
-    features : xarray.Dataset
-        From `library`; nominal draws and the first with the candidate come from the store.
-    """
-    from blockshake.diagnosis.libraries.library import library
-    from blockshake.diagnosis.libraries.plan import plan_of_library
-
-    plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], shared)
-    (candidate,) = (one for one in plan.candidates if one.key == key)
-    draws = plan.own_draws + further_draws
-    return library(plan.tests[test], solver, [candidate], draws, draws, store, source, progress)[0]
-
-
-class Sized(NamedTuple):
-    """The size of the first cause, and the tests that it rests on."""
-
-    size: object
-    tests: list
-
-
-def size_cause(files, effects):
-    """Measure the size of the first cause, from all draws with it.
-
-    Parameters
-    ----------
+    folder, effort : str
+        Of the campaign; one at which something is simulated.
     files : object
-        Attributes ``frozen``, ``decision``, ``readings``, ``libraries`` and ``further`` (by test and solver): files
-        of the earlier steps.
-    effects : sequence of str
-        Names of the effects that are considered.
+        Attributes ``parity`` and ``ensembles`` (by test and solver): files of the earlier steps.
 
     Returns
     -------
-    Sized
+    xarray.Dataset
+        From `misfit`.
     """
-    from blockshake.diagnosis.features.measured_readings import tamed_readings
-    from blockshake.diagnosis.inference.decision import Decision, load_result
-    from blockshake.diagnosis.inference.library_scores import load_tables, score_library
-    from blockshake.diagnosis.inference.size_of_cause import library_of_cause, size_of_cause, without_second
-    from blockshake.diagnosis.verdict.frozen import check_frozen
+    from blockshake.diagnosis.misfit.judged_test import judged_test
+    from blockshake.diagnosis.misfit.misfit import misfit
+    from blockshake.diagnosis.nominal.measured import measured_histories
+    from blockshake.diagnosis.nominal.plan import plan_diagnosis
+    from blockshake.parity.parity import load_parity
 
-    check_frozen(files.frozen, files.decision)
-    decision, tables = load_result(Decision, files.decision), load_tables(files.libraries)
-    measured = load_made(files.readings)
-    whole, scales = score_library(tables, effects)
-    left = without_second(whole, tamed_readings(scales, measured), decision)
-    library, _ = library_of_cause(tables, load_tables(files.further), decision.first_key)
-    return Sized(size_of_cause(library, left), measured["test"].values.tolist())
+    plan = plan_diagnosis(folder, effort)
+    measured = measured_histories(plan.campaign, plan.tests, load_parity(files.parity).findings)
+    nominal = _by_test(plan, files.ensembles)
+    return misfit([judged_test(name, measured[name], nominal[name]) for name in plan.tests])
 
 
-def extend_model(folder, effort, solver, files, effects, store, source, progress):
-    """Simulate sealed tests by one solver: the nominal, the recalibrated and the extended model.
+def _by_test(plan, files):
+    """Ensembles of files that are listed by test and solver, or by test of one solver, a list for each test."""
+    runs = [load_made(path) for path in files]
+    count = len(runs) // len(plan.tests)
+    return {name: runs[place * count : (place + 1) * count] for place, name in enumerate(plan.tests)}
+
+
+def extend_model(folder, effort, solver, files, store, source, progress):
+    """Simulate sealed tests by one solver: the nominal, the recalibrated, the extended and the placebo model.
 
     Parameters
     ----------
     folder, effort, solver : str
     files : object
-        Attributes ``frozen``, ``decision``, ``readings``, ``libraries``, and ``posterior`` (the size and its hash) and
-        ``further``, both empty where the cause is unknown and a force from outside extends the model: files of the
+        Attributes ``frozen``, ``decision``, ``parity`` and ``ensembles`` (by test, of this solver): files of the
         earlier steps.
-    effects : sequence of str
     store, source, progress
-        As of `library`.
+        As of `simulate_members`.
 
     Returns
     -------
     xarray.Dataset
         From `extended_runs`.
     """
-    from blockshake.diagnosis.features.measured_readings import tamed_readings
-    from blockshake.diagnosis.gain.described_force import members_with_force
-    from blockshake.diagnosis.gain.extended_runs import extended_runs, members_with_cause, nominal_draws
-    from blockshake.diagnosis.gain.extension import open_features
-    from blockshake.diagnosis.inference.decision import CauseSize, Decision, load_result
-    from blockshake.diagnosis.inference.library_scores import load_tables, score_library
-    from blockshake.diagnosis.inference.size_of_cause import library_of_cause, without_second
-    from blockshake.diagnosis.libraries.plan import plan_diagnosis
+    from blockshake.diagnosis.answer.decision import load_decision
+    from blockshake.diagnosis.gain.extended_model import acting_causes, extended_runs
+    from blockshake.diagnosis.nominal.measured import measured_histories
+    from blockshake.diagnosis.nominal.plan import plan_diagnosis
     from blockshake.diagnosis.verdict.frozen import check_frozen
-    from blockshake.geometry.structure import load_structure
+    from blockshake.parity.parity import load_parity
 
     check_frozen(files.frozen, files.decision)
-    decision, tables = load_result(Decision, files.decision), load_tables(files.libraries)
-    library, scales = score_library(tables, effects)
-    features = tamed_readings(scales, load_made(files.readings))
-    plan = plan_diagnosis(folder, effort)
-    if files.posterior:
-        posterior, frozen = files.posterior
-        check_frozen(frozen, posterior)
-        size, left = load_result(CauseSize, posterior), without_second(library, features, decision)
-        library, _ = library_of_cause(tables, load_tables(files.further), size.key)
-        members = members_with_cause(plan, solver, decision, size, library, left)
-    else:
-        draws = nominal_draws(plan, solver)[: plan.effort.members]
-        members = members_with_force(decision.laws.outside, draws, load_structure(plan.campaign.structure))
-    known = open_features(library, solver)
-    return extended_runs(plan, solver, members, known, features, store, source, progress)
+    plan, causes = plan_diagnosis(folder, effort), acting_causes(load_decision(files.decision))
+    measured = measured_histories(plan.campaign, plan.tests, load_parity(files.parity).findings)
+    nominal = {name: runs for name, (runs,) in _by_test(plan, files.ensembles).items()}
+    return extended_runs(plan, solver, causes, nominal, measured, store, source, progress)
 
 
-def measure_gain(folder, files):
-    """Measure on the sealed tests what naming the cause gains: the one step that reads them.
+def measure_gain(folder, effort, files):
+    """Measure on the sealed tests what naming the causes gains: the one step that reads them.
 
     Parameters
     ----------
-    folder : str
-        Of the campaign.
+    folder, effort : str
     files : object
-        Attributes ``frozen``, ``decision``, ``readings``, ``libraries``, ``parity``, and ``posterior`` (the size and
-        its hash, or empty) and ``extended`` (by solver, or empty): files of the earlier steps.
+        Attributes ``frozen``, ``decision``, ``parity``, and ``ensembles`` (by test and solver) and ``extended`` (by
+        solver), both empty where nothing is simulated: files of the earlier steps.
 
     Returns
     -------
     CampaignGain
     """
-    from blockshake.diagnosis.gain.campaign_gain import campaign_gain
+    from blockshake.diagnosis.answer.decision import load_decision
+    from blockshake.diagnosis.evidence.seen_campaign import see_campaign, see_sealed
+    from blockshake.diagnosis.gain.campaign_gain import campaign_gain, with_rows
+    from blockshake.diagnosis.gain.row_gain import row_gain
     from blockshake.diagnosis.gain.sensor_gain import sensors_gain
-    from blockshake.diagnosis.inference.decision import Decision, load_result
-    from blockshake.diagnosis.inference.library_scores import load_tables
+    from blockshake.diagnosis.nominal.measured import measured_histories
+    from blockshake.diagnosis.nominal.plan import plan_diagnosis, sealed_tests
     from blockshake.diagnosis.verdict.frozen import check_frozen
     from blockshake.measurement.campaigns.campaign import load_campaign
     from blockshake.parity.parity import load_parity
 
     check_frozen(files.frozen, files.decision)
-    if files.posterior:
-        size, frozen_size = files.posterior
-        check_frozen(frozen_size, size)
-    campaign, readings = load_campaign(folder), load_made(files.readings)
+    campaign, decision = load_campaign(folder), load_decision(files.decision)
+    findings = load_parity(files.parity).findings
+    if not decision.parts:
+        return sensors_gain(campaign, decision.tests, sealed_tests(campaign), findings)
+    sealed = see_sealed(campaign)
+    rows = row_gain(decision, see_campaign(campaign).tests, sealed.tests)
     if not files.extended:
-        return sensors_gain(campaign, readings, load_parity(files.parity).findings)
-    runs = {one.attrs["model"]: one for one in map(load_made, files.extended)}
-    laws = load_result(Decision, files.decision).laws
-    broken = [one.name for one in laws.broken] if laws else []
-    return campaign_gain(campaign, readings, load_tables(files.libraries), runs, broken)
+        return with_rows(None, *rows)
+    plan = plan_diagnosis(folder, effort)
+    responses = campaign_gain(
+        plan,
+        measured_histories(campaign, plan.tests, findings),
+        measured_histories(campaign, sealed_tests(campaign), sealed.parity.findings),
+        _by_test(plan, files.ensembles),
+        [load_made(path) for path in files.extended],
+    )
+    return with_rows(responses, *rows)
 
 
 def conclude(folder, files):
@@ -270,7 +201,7 @@ def conclude(folder, files):
 
     parity, decision = load_parity(files.parity), load_decision(files.decision)
     campaign = load_campaign(folder)
-    measured = load_gain(files.gain) if files.gain else None
+    measured = load_gain(files.gain[0]) if files.gain else None
     caveats = [
         f"{test} is judged until {one.body} falls, at {one.time:.2f} s" for test, one in parity.falls.items()
     ]
@@ -278,26 +209,3 @@ def conclude(folder, files):
     if not files.gain:
         caveats += no_gain(campaign, [*decision.parts, *parity.findings])
     return conclude(decision, parity.findings, parity.recorder_sensors, caveats, measured)
-
-
-def predict_twins(name, histories, config, shared, progress):
-    """Measure how long a test can be predicted, by all solvers.
-
-    Parameters
-    ----------
-    histories : sequence of str
-        Files from `simulate_library`, by solver.
-    name, config, shared, progress
-        As of `simulate_library`.
-
-    Returns
-    -------
-    xarray.Dataset
-        From `predictability_of`.
-    """
-    from blockshake.diagnosis.libraries.plan import plan_of_library
-    from blockshake.diagnosis.misfit.predictability import predictability_of
-
-    plan, test = plan_of_library(name, config["diagnosed"], config["diagnosis_effort"], shared)
-    nominal = {one.attrs["model"]: one for one in map(load_made, histories)}
-    return predictability_of(plan.tests[test], plan.effort.twins, nominal, progress)

@@ -93,7 +93,7 @@ EFFECT = Effect(
     parameters=(
         EffectParameter("compliance", "rad/(N m)", "rotation of the base by moment", 0.0, 0.0, 6e-9, 2e-9),
     ),
-    signature=Signature("quiet", "symmetric", "slab"),
+    signature=Signature("quiet", "symmetric"),
     confused_with=("table-pitch", "joint-compliance"),
     told_apart_by="vertical displacement of two markers on the slab, apart along x, under blocks of another mass",
     places=nowhere,

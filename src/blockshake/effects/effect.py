@@ -77,13 +77,10 @@ class Signature:
         rocking or sliding, or only beyond a ``displacement``.
     symmetry : str
         ``symmetric``: the mirrored motion adds the mirror image; or ``one-sided``.
-    profile : str
-        Where: from the ``slab`` on up, at a ``joint``, a ``block`` or a ``marker``, or in ``all`` the stack.
     """
 
     phase: Literal["quiet", "onset", "displacement"]
     symmetry: Literal["symmetric", "one-sided"]
-    profile: Literal["slab", "joint", "block", "marker", "all"]
 
 
 class Columns(NamedTuple):

@@ -65,7 +65,7 @@ EFFECT = Effect(
     parameters=(
         EffectParameter("compliance", "m3/N", "closure of the joint by pressure", 0.0, 0.0, 6e-10, 3e-10),
     ),
-    signature=Signature("quiet", "symmetric", "joint"),
+    signature=Signature("quiet", "symmetric"),
     confused_with=("table-pitch", "clock-lag"),
     told_apart_by="rotation of the joint in a test below uplift; vertical displacement of the slab's markers",
     places=joints,

@@ -35,7 +35,7 @@ EFFECT = Effect(
         EffectParameter("ratio", "1", "vertical over horizontal motion", 0.0, -0.8, 0.8, 0.5),
         EffectParameter("delay", "s", "of the vertical motion", 0.0, -0.2, 0.2, 0.0),
     ),
-    signature=Signature("quiet", "one-sided", "slab"),
+    signature=Signature("quiet", "one-sided"),
     confused_with=("impact-restitution",),
     told_apart_by="vertical accelerometer on the slab",
     places=nowhere,

@@ -28,7 +28,7 @@ EFFECT = Effect(
     equation="mu of the joint = r mu",
     source="Coulomb",
     parameters=(EffectParameter("factor", "1", "on the coefficient of friction", 1.0, 0.1, 1.0, 0.25),),
-    signature=Signature("onset", "symmetric", "joint"),
+    signature=Signature("onset", "symmetric"),
     confused_with=("rate-weakening-friction",),
     told_apart_by="slip of each joint in a test that exceeds r mu g",
     places=joints,

@@ -4,12 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.solvers.nscd.contact.detection import detect_pair_into
-from blockshake.solvers.nscd.contact.polyhedra import empty_placed, pack_polyhedra, place_into
+from blockshake.measurement.motion.contact_normals import contact_normals
 
-_MARGIN = 2e-4  # m, of bodies that touch at the start: twice the contract's 0.1 mm
-_MOST_POINTS = 5
+_MARGIN = 2e-4  # m, between surfaces that touch at the start: twice the contract's 0.1 mm
 
 
 @dataclass(frozen=True)
@@ -21,7 +20,7 @@ class Face:
     name : str
         ``lower-upper``.
     lower, upper : int
-        Bodies, by the height of their mass centres.
+        Bodies, by the height of their centroids.
     friction : float
         Coulomb's coefficient of the pair, as the structure states it [1].
     corners : float64 array, shape (n_corners, 3)
@@ -62,25 +61,26 @@ def find_faces(structure):
     ------
     InputError
         A shape that is not convex.
+
+    Notes
+    -----
+    The common area is that of the two polygons that look at each other, each seen along the face's normal and clipped
+    by the edges of the other (Sutherland and Hodgman 1974), where they are nearer than 0.2 mm.
     """
-    order = np.arange(len(structure.mass))
-    polyhedra = pack_polyhedra(structure, order)
-    placed = empty_placed(polyhedra)
-    place_into(polyhedra, structure.position, structure.orientation, placed)
-    turns = rotation_matrices(structure.orientation)
-    memory = np.full((len(order), len(order)), -1, np.int64)
-    normal, points = np.empty(3), np.empty((_MOST_POINTS, 3))
-    gaps, areas = np.empty(_MOST_POINTS), np.empty(_MOST_POINTS)
+    for name, solid in structure.solids.items():
+        if solid.polyhedron is None:
+            raise InputError(structure.source, f"shapes.{name}", "expected a convex shape")
+    pairs = [
+        sorted(pair, key=lambda body: structure.centroid[body, 2])
+        for pair in np.argwhere(np.triu(structure.touching))
+    ]
     faces = []
-    for pair in np.argwhere(np.triu(structure.touching)):
-        lower, upper = sorted(pair, key=lambda body: structure.centroid[body, 2])
-        count = detect_pair_into(
-            polyhedra, placed, lower, upper, _MARGIN, 0.0, 0.0, memory, normal, points, gaps, areas
-        )
-        if not count:
-            continue
-        middle = points[:count].mean(axis=0)
+    for (lower, upper), normal in zip(pairs, contact_normals(structure, pairs), strict=True):
         axes = _face_axes(normal)
+        corners = _common_corners(*(_outline(structure, *one, axes) for one in ((lower, 1.0), (upper, -1.0))))
+        if not len(corners):
+            continue
+        middle = axes @ (0.5 * (corners.min(axis=0) + corners.max(axis=0)))
         names = structure.body_names
         faces.append(
             Face(
@@ -88,8 +88,9 @@ def find_faces(structure):
                 lower=int(lower),
                 upper=int(upper),
                 friction=float(structure.friction[lower, upper]),
-                corners=(points[:count] - middle) @ axes,
-                on_upper=(middle - structure.position[upper]) @ turns[upper],
+                corners=corners - middle @ axes,
+                on_upper=(middle - structure.position[upper])
+                @ rotation_matrices(structure.orientation[upper]),
                 axes=axes,
             )
         )
@@ -102,3 +103,33 @@ def _face_axes(normal):
     first = along - (along @ normal) * normal
     first /= np.linalg.norm(first)
     return np.column_stack([first, np.cross(normal, first), normal])
+
+
+def _outline(structure, body, sign, axes):
+    """Corners along the axes (n, 3) [m], counter-clockwise, of a body's face that looks along the last one, or back."""
+    turn = rotation_matrices(structure.orientation[body]).T @ axes
+    polyhedron = structure.solid(body).polyhedron
+    face = polyhedron.faces[int(np.argmax(sign * polyhedron.normals @ turn[:, 2]))]
+    corners = structure.position[body] @ axes + polyhedron.vertices[face] @ turn
+    return corners if sign > 0.0 else corners[::-1]
+
+
+def _common_corners(lower, upper):
+    """Corners of what two outlines have in common, midway between them, where these are near each other."""
+    common = upper
+    for start, end in zip(lower, np.roll(lower, -1, axis=0), strict=True):
+        along = end - start
+        inside = along[0] * (common[:, 1] - start[1]) - along[1] * (common[:, 0] - start[0])
+        kept = []
+        for here, there, at, then in zip(
+            common, np.roll(common, -1, axis=0), inside, np.roll(inside, -1), strict=True
+        ):
+            if at >= 0.0:
+                kept.append(here)
+            if at * then < 0.0:
+                kept.append(here + at / (at - then) * (there - here))
+        common = np.reshape(kept, (-1, 3))
+    # the lower outline is flat: its height at the common corners
+    plane = np.linalg.lstsq(np.column_stack([lower[:, :2], np.ones(len(lower))]), lower[:, 2], rcond=None)[0]
+    gap = common[:, 2] - common[:, :2] @ plane[:2] - plane[2]
+    return (common - 0.5 * gap[:, None] * np.eye(3)[2])[gap <= _MARGIN]

@@ -3,15 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import binary_dilation
 from scipy.spatial.transform import Rotation
 
-from blockshake.forces.local_fit import REACH
 from blockshake.geometry.rotations import rotation_matrices
 
 TURNED = 3e-4  # rad: a joint that bears on an edge; elastic joints turn by a tenth of it before they open
 _SURE = 5.0  # standard deviations
-_CALM = 3.0  # widths of the kernel: a change of edge farther away moves a lever by less than a millimetre
 
 
 @dataclass(frozen=True)
@@ -28,14 +25,10 @@ class JointMotion:
         [rad]
     slip_rate : float64 array, shape (n_times, n_joints)
         Along the first tangent, of the point of the upper body that bears [m/s].
-    slip_error, slip_rate_error : float64 arrays, shape (n_joints,)
-        Of the displacement and of its rate along the first tangent [m, m/s].
+    slip_error : float64 array, shape (n_joints,)
+        Of the displacement along the first tangent [m].
     side, across : int8 arrays, shape (n_times, n_joints)
         Edge that bears: 1 or -1 along the first, and along the second tangent, 0 for the whole face.
-    steady : bool array, shape (n_times,)
-        No joint's bearing edge changes within three widths of the kernel.
-    bears : bool array, shape (n_times, n_joints, 2, 2)
-        By tangent, for its negative and its positive edge: whether it bears at any time within the kernel's reach.
     """
 
     rotation: np.ndarray
@@ -43,14 +36,11 @@ class JointMotion:
     rotation_error: np.ndarray
     slip_rate: np.ndarray
     slip_error: np.ndarray
-    slip_rate_error: np.ndarray
     side: np.ndarray
     across: np.ndarray
-    steady: np.ndarray
-    bears: np.ndarray
 
 
-def joint_motion(structure, faces, motion, still, width):
+def joint_motion(structure, faces, motion, still):
     """Motion of all joints.
 
     Parameters
@@ -60,8 +50,6 @@ def joint_motion(structure, faces, motion, still, width):
     motion : Motion
     still : bool array, shape (n_times,)
         The quiet start, from whose mean rotations count.
-    width : float
-        Of the kernel of the motion [s].
 
     Returns
     -------
@@ -70,24 +58,12 @@ def joint_motion(structure, faces, motion, still, width):
     histories = [_one_joint(structure, face, motion, still) for face in faces]
     one = {name: np.stack([own[name] for own in histories], axis=-1) for name in histories[0]}
     side, across = (
-        sign * _bearing(one[name], one[f"{name}_bend"], one[f"{name}_error"], width)
+        sign * _bearing(one[name], one[f"{name}_bend"], one[f"{name}_error"], motion.width)
         for name, sign in (("rotation", 1), ("roll", -1))
     )
-    reach = int(np.ceil(REACH * width / np.median(np.diff(motion.time))))
-    calm = int(np.ceil(_CALM * width / np.median(np.diff(motion.time))))
-    changed = np.zeros(len(side), dtype=bool)
-    changed[1:] = (side[1:] != side[:-1]).any(axis=1)
-    near = np.ones((2 * reach + 1, 1), dtype=bool)
-    # beyond the ends of a record any edge may bear: an impact there is felt within the kernel's reach
-    bears = [
-        [binary_dilation(tangent * sign >= 0, near, border_value=1) for sign in (-1, 1)]
-        for tangent in (side, across)
-    ]
-    steady = ~binary_dilation(changed, iterations=calm, border_value=1)
     return JointMotion(
-        one["rotation"], one["roll"], one["rotation_error"], one["slip_rate"], one["slip_error"],
-        one["slip_rate_error"], side, across, steady, np.moveaxis(np.array(bears), (0, 1), (2, 3)),
-    )  # fmt: skip
+        one["rotation"], one["roll"], one["rotation_error"], one["slip_rate"], one["slip_error"], side, across
+    )
 
 
 def _bearing(rotation, bend, error, width):
@@ -114,10 +90,7 @@ def _one_joint(structure, face, motion, still):
     middle = motion.position[:, upper] + motion.rotation[:, upper] @ face.on_upper
     point = middle + bearing[:, None] * (turned @ face.axes[:, 0])
     rate = motion.velocity_at(upper, point) - motion.velocity_at(lower, point)
-    pose, rates = (
-        covariance[upper] + covariance[lower]
-        for covariance in (motion.pose_covariance, motion.rate_covariance)
-    )
+    pose = motion.pose_covariance[upper] + motion.pose_covariance[lower]
     bend = motion.angular_acceleration[:, upper] - motion.angular_acceleration[:, lower]
     arm = rotation_matrices(structure.orientation[upper]) @ face.on_upper
     along = np.concatenate([face.axes[:, 0], np.cross(arm, face.axes[:, 0])])
@@ -130,19 +103,16 @@ def _one_joint(structure, face, motion, still):
         "roll_error": np.sqrt(face.axes[:, 0] @ pose[3:, 3:] @ face.axes[:, 0]),
         "slip_rate": np.einsum("ti,ti->t", axes[..., 0], rate),
         "slip_error": np.sqrt(along @ pose @ along),
-        "slip_rate_error": np.sqrt(along @ rates @ along),
     }
 
 
 def _turn_about(turns, axis, still):
-    """Component of the rotation vectors of some matrices along an axis, less its mean in the quiet start."""
+    """Component of the rotation vectors of some matrices along an axis, less its mean in the quiet start.
+
+    Where none is known there, rotations count from rest already.
+    """
     found = np.full(len(turns), np.nan)
     known = np.isfinite(turns).all(axis=(-2, -1))
     found[known] = Rotation.from_matrix(turns[known]).as_rotvec() @ axis
-    return from_rest(found, still)
-
-
-def from_rest(values, still):
-    """Values less their mean in the quiet start; as they are where none is known there, counted from rest already."""
-    rest = still & np.isfinite(values)
-    return values - (values[rest].mean() if rest.any() else 0.0)
+    rest = still & np.isfinite(found)
+    return found - (found[rest].mean() if rest.any() else 0.0)

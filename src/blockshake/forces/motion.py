@@ -6,13 +6,14 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from blockshake.forces.equations import AccelerationEquations
-from blockshake.forces.local_fit import fit_locally
+from blockshake.forces.local_fit import REACH, fit_locally
 from blockshake.forces.noise import noise_memory
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.body_poses import PLANAR, TRANSLATION, body_poses
 
 WIDTH = 0.015  # s, standard deviation of the smoothing kernel
 _COVERED = 2.5  # of it: an instant nearer to an end of the record is left out
+_SHORTEST = 0.5  # s of instants
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,11 @@ class Motion:
         return self.velocity[:, body] + np.cross(
             self.angular_velocity[:, body], point - self.position[:, body]
         )
+
+
+def is_short(test):
+    """Whether a test is too short for the kernel, to either side of half a second of instants."""
+    return float(test["time"][-1] - test["time"][0]) < 2.0 * REACH * WIDTH + _SHORTEST
 
 
 def smooth_motion(test, structure, sensors, step, width=WIDTH):

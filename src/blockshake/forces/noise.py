@@ -2,11 +2,8 @@
 
 import numpy as np
 
-from blockshake.geometry.rotations import rotation_matrices
-from blockshake.measurement.motion.body_frame import see_from_body
-from blockshake.measurement.sensors.markers import whole_markers
+from blockshake.measurement.motion.body_frame import frames_of_bodies
 
-_FEWEST = 3  # markers on a body, that their residuals show noise
 _LARGEST = 0.95
 
 
@@ -25,25 +22,18 @@ def noise_memory(test, structure):
         Median over the bodies with at least three markers that measure all directions, between 0 and 0.95; 0
         where there is none [1].
     """
-    read, whole = [str(name) for name in test["marker"].values], whole_markers(test)
-    displacement = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()
-    found = []
-    for index, body in enumerate(structure.body_names):
-        own = [marker for marker in structure.file.markers if marker.body == body and marker.name in whole]
-        if len(own) < _FEWEST:
-            continue
-        points, start = structure.arms(own), rotation_matrices(structure.orientation[index])
-        places = structure.position[index] + points @ start.T
-        columns = [read.index(marker.name) for marker in own]
-        frame = see_from_body(points, places + displacement[:, columns], structure.position[index], start)
-        found.append(_lag_one(frame.residual.reshape(len(displacement), -1)))
-    return float(np.clip(np.nanmedian(found), 0.0, _LARGEST)) if found else 0.0
+    known = [
+        _lag_one(frame.residual.reshape(len(test["time"]), -1))
+        for _, frame in frames_of_bodies(test, structure)
+    ]
+    return float(np.clip(np.median(known), 0.0, _LARGEST)) if known else 0.0
 
 
 def _lag_one(residual):
-    """Correlation of a residual with the next one, over all columns."""
+    """Correlation of a residual with the next one, over all columns; 0 of none."""
     residual = residual - np.nanmean(residual, axis=0)
     first, second = residual[:-1], residual[1:]
     both = np.isfinite(first) & np.isfinite(second)
-    one, two = np.where(both, first, 0.0), np.where(both, second, 0.0)
-    return (one * two).sum() / np.sqrt((one**2).sum() * (two**2).sum())
+    first, second = np.where(both, first, 0.0), np.where(both, second, 0.0)
+    size = np.sqrt((first**2).sum() * (second**2).sum())
+    return (first * second).sum() / size if size > 0.0 else 0.0

@@ -51,12 +51,6 @@ def required_wrenches(structure, motion):
     return RequiredWrenches(np.concatenate([force, moment], axis=-1), information)
 
 
-def information_root(information):
-    """Roots W of information matrices, ``W^T W`` the matrix; rows of directions that are not read are zero."""
-    values, vectors = np.linalg.eigh(information)
-    return np.sqrt(np.maximum(values, 0.0))[..., :, None] * np.swapaxes(vectors, -1, -2)
-
-
 def unread_directions(information):
     """Unit vectors, in columns, along which information matrices hold none; zero columns for the others."""
     values, vectors = np.linalg.eigh(information)

@@ -3,7 +3,8 @@
 import tempfile
 from pathlib import Path
 
-from blockshake.diagnosis.libraries.plan import plan_diagnosis, planned_motion
+from blockshake.diagnosis.nominal.plan import plan_diagnosis
+from blockshake.diagnosis.nominal.planned_test import planned_motion
 from blockshake.dynamics.baseline import AUTO
 from blockshake.dynamics.intensity import strong_until
 from blockshake.dynamics.load_motion import load_motion, scaled
@@ -11,7 +12,7 @@ from blockshake.dynamics.provenance import provenance
 from blockshake.dynamics.synthetic_schema import SyntheticMotion
 from blockshake.errors import InputError, faults_of
 from blockshake.files import load_yaml, shipped_names
-from blockshake.forces.sight import sight_lines
+from blockshake.forces.seen.sight import sight_lines
 from blockshake.geometry.schema import StructureFile
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import CampaignFile, load_campaign, load_test
@@ -26,6 +27,8 @@ from blockshake.study.sampling.sample_parameters import has_parameter
 from blockshake.study.structure_remarks import structure_lines, structure_remarks
 from blockshake.virtual.settings import VirtualCampaign, load_settings
 
+_WIDEST = 1.0  # of a variable, its standard deviation over its mean
+_SLOWEST = 50.0  # Hz; impacts and peaks of a rocking stack lie between rows that are farther apart
 _LATE = 5.0  # s of rest after a motion that need no remark
 
 
@@ -145,6 +148,11 @@ def _study_remarks(config, motions):
         if not any(has_parameter(structure, variable) for variable in config.ensemble.distributions):
             yield f"{name}: no variable of ensemble.distributions is the structure's: all of its samples are alike"
         yield from (f"{name}: {remark}" for remark in structure_remarks(structure))
+    for name, variable in config.ensemble.distributions.items():
+        if variable.cov > _WIDEST:
+            yield f"{name} has a cov of {variable.cov:g}: expected a share, 0.1 for 10 %"
+    if config.output_rate < _SLOWEST:
+        yield f"{config.output_rate:g} rows a second miss the peaks of drifts and forces: 200 is usual"
     for name, scale in dict.fromkeys((case.motion, case.scale) for case in config.cases):
         remarks = motion_remarks(scaled(motions[name], scale, name))
         yield from (f"{name} at {scale:g}: {remark}" for remark in remarks)

@@ -75,12 +75,12 @@ def _joints_of(structure, test, sensors):
     displacement = test["marker_displacement"]
     rest = displacement.isel(time=slice(0, _REST)).mean("time").fillna(0.0)
     counted = without_outliers(test.assign(marker_displacement=displacement - rest), structure)
-    poses = body_poses(counted, structure, sensors.marker_noise)
+    every = max(1, round(_EVERY / float(np.median(np.diff(test["time"])))))
+    poses = body_poses(counted.isel(time=slice(None, None, every)), structure, sensors.marker_noise)
     if any(known not in (POSE, PLANAR) for known in poses.known):
         return None
-    every = max(1, round(_EVERY / float(np.median(np.diff(test["time"])))))
-    position = np.concatenate([structure.position[None], poses.position[::every]])
-    rotation = np.concatenate([rotation_matrices(structure.orientation)[None], poses.rotation[::every]])
+    position = np.concatenate([structure.position[None], poses.position])
+    rotation = np.concatenate([rotation_matrices(structure.orientation)[None], poses.rotation])
     joints = joint_coordinates(structure, position, rotation).isel(time=slice(1, None))
     names = structure.body_names
     return {

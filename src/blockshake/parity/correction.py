@@ -14,13 +14,17 @@ _ORDERS = {"x and y": [1, 0, 2], "x and z": [2, 1, 0], "y and z": [0, 2, 1]}
 
 
 def load_corrected_test(campaign, name, structure, findings):
-    """Load a test of a campaign without the faults that were found, until a block falls.
-
-    All its times count from `simulation_start`, as those of the tests that are simulated beside it; what was read
-    before is left out.
-    """
-    test = load_test(campaign, name)
+    """Load a test of a campaign as of `judged_readings`, until a block falls."""
+    test = load_test(campaign, name, structure)
     test = until_fall(test, find_fall(test, structure, campaign.sensors))
+    return judged_readings(test, name, structure, findings)
+
+
+def judged_readings(test, name, structure, findings):
+    """A test without the faults that were found, its times from `simulation_start` on.
+
+    Times count as those of the tests that are simulated beside it; what was read before is left out.
+    """
     test = corrected(test, name, structure, findings)
     return since(test, simulation_start(test["time"].to_numpy()))
 

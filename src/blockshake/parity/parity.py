@@ -5,13 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from blockshake.errors import InputError
 from blockshake.files import load_made_json
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaigns.campaign import load_test
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines
-from blockshake.measurement.motion.fall import Fall, find_fall, until_fall
+from blockshake.measurement.motion.fall import Fall
 from blockshake.measurement.sensors.markers import whole_markers
 from blockshake.parity.acceleration_parity import channel_pairs
 from blockshake.parity.body_gain import body_gains
@@ -139,30 +136,20 @@ def _table(rows, dim, units):
     )
 
 
-def campaign_parity(campaign, names, without=()):
-    """Parity of the named tests of a campaign; see `check_parity`.
+def campaign_parity(readings, sensors, without=()):
+    """`Parity` of the open tests of a campaign; see `check_parity`.
 
     Findings of the effects ``without`` are left out, as if nobody had thought of them: the readings keep the fault.
 
-    Raises
-    ------
-    InputError
-        A name that is not in the campaign, or of a sealed test: its file is not opened.
+    Parameters
+    ----------
+    readings : OpenReadings
+    sensors : Sensors
+    without : sequence of str
     """
-    for name in names:
-        if name not in campaign.tests or campaign.tests[name].role == "sealed":
-            usable = [test.name for test in campaign.tests.values() if test.role != "sealed"]
-            raise InputError(campaign.folder, f"tests.{name}", f"expected one of {', '.join(usable)}")
-    structure = load_structure(campaign.structure)
-    tests = {name: load_test(campaign, name) for name in names}
-    falls = {name: find_fall(test, structure, campaign.sensors) for name, test in tests.items()}
-    tests = {name: until_fall(test, falls[name]) for name, test in tests.items()}
-    parity = check_parity(tests, structure, campaign.sensors)
-    return replace(
-        parity,
-        findings=tuple(one for one in parity.findings if one.effect not in without),
-        falls={name: fall for name, fall in falls.items() if fall},
-    )
+    parity = check_parity(readings.tests, readings.structure, sensors)
+    findings = tuple(finding for finding in parity.findings if finding.effect not in without)
+    return replace(parity, findings=findings, falls=readings.falls)
 
 
 def check_parity(tests, structure, sensors, level=LEVEL):
@@ -183,6 +170,7 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     Markers are checked body by body against a rigid motion first; accelerometers and displacement transducers are then
     compared with the markers as corrected.
     """
+    sensors = sensors.not_noiseless()
     findings = saturation(tests, level, 2 * len(tests) * _channel_count(tests))
     bodies = _bodies(structure, tests)
     looked_at = _looked_at(bodies, tests)

@@ -23,11 +23,15 @@ def structure_lines(structure):
     free = np.flatnonzero(~structure.driven)
     alike = Counter(_block_words(structure, body) for body in free)
     joints = np.count_nonzero(np.triu(structure.touching))
-    weight = f"{structure.mass[free].sum():.0f} kg in all"
+    weight = f"{_kilograms(structure.mass[free].sum())} in all"
     return [
         f"a structure of {_counted(len(free), 'block')} of {weight}, and {_counted(joints, 'joint')}",
         *(f"  {count} of {words}" for words, count in alike.items()),
     ]
+
+
+def _kilograms(mass):
+    return f"{mass:.0f} kg" if mass >= 100.0 else f"{mass:.3g} kg"
 
 
 def _counted(number, name):
@@ -40,7 +44,7 @@ def _block_words(structure, body):
     turned = solid.vertices @ rotation_matrices(structure.orientation[body]).T
     length, depth, height = np.ptp(turned, axis=0)
     return (
-        f"{length:.3g} x {depth:.3g} x {height:.3g} m, {structure.mass[body]:.0f} kg, "
+        f"{length:.3g} x {depth:.3g} x {height:.3g} m, {_kilograms(structure.mass[body])}, "
         f"height over width {height / min(length, depth):.2g}"
     )
 

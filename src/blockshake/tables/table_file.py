@@ -101,7 +101,7 @@ class Table(NamedTuple):
             raise InputError(self.source, f"column '{name}'", "expected numbers of usual size") from None
 
     def _check_unit(self, place, kind, size):
-        stated = [unit_of_name(self.names[place])]
+        stated = [unit_of_name(self.names[place], kind)]
         noted = (str(row[place]) for row in self.notes if place < len(row) and row[place])
         stated += [known_unit(note) for note in noted if note != "min"]  # of rows of min, max and mean
         for unit in filter(None, stated):

@@ -21,7 +21,7 @@ UNITS = {
 }  # fmt: skip
 _SHOWN = {kind: ", ".join(units) for kind, units in UNITS.items()}
 _SECOND = re.compile(r"sec(?:ond)?s?(?![a-z])")
-_PER_SECOND_SQUARED = re.compile(r"/s/s$|/\(s2\)$|(?<=m)/?s-2$")
+_PER_SECOND_SQUARED = re.compile(r"/s/s$|/\(s2\)$|(?<=m)(?:[/_p]|per)?s-?2$")
 _MOST_WORDS = 5  # of a unit: CM / SEC / SEC
 # behind a unit: begins with a factor, or has the word for it anywhere
 _FACTOR = re.compile(
@@ -30,9 +30,10 @@ _FACTOR = re.compile(
 )
 _COSMOS_CODE = re.compile(r"\(\s*0*(\d+)\s*\)\s*$")
 _OF_CODE = {"2": "g", "4": "cm/s2"}  # COSMOS format 1.20, table 2
-# a unit in a column's name: in brackets, or after an underscore or a stroke where no word ends so, or after "in"
-_IN_BRACKETS = re.compile(r"[\[(]([^\[\]()]*(?:\([^()]*\))?[^\[\]()]*)[\])]\s*$")
-_AT_END = re.compile(r"(?:_|/\s*)(ms|mm|cm|um|gal|mg)$|\bin\s+(\S+)$", re.IGNORECASE)
+# a unit in a column's name: in brackets, or behind a blank or another sign that is not behind a value
+_IN_BRACKETS = re.compile(r"[\[({<]([^\[\]()]*(?:\([^()]*\))?[^\[\]()]*)[\])}>]\s*$")
+_BEFORE = re.compile(r"^|[\s_/,:;=-]+")
+_VALUE = re.compile(r"(?:^|[\s=:])[-+.\d]+(?:e[-+]?\d+)?$", re.IGNORECASE)
 
 
 def _plain(text):
@@ -91,10 +92,20 @@ def kind_of_unit(text, kinds, where, key):
     raise InputError(where, key, f"expected a unit {shown}; found '{text.strip()}'")
 
 
-def unit_of_name(name):
-    """Kind and size in SI of the unit that a column's name holds, such as ``EW [cm/s2]`` or ``time_ms``; or None."""
-    match = _IN_BRACKETS.search(name) or _AT_END.search(name)
-    return known_unit(match.group(match.lastindex)) if match else None
+def unit_of_name(name, kind=None):
+    """Kind and size in SI of the unit that a name of a column ends with, such as ``EW [cm/s2]`` or ``acc_g``; or None.
+
+    Outside of brackets a unit of one letter is one of the ``kind`` alone, since other words end so.
+    """
+    match = _IN_BRACKETS.search(name)
+    if match:
+        return known_unit(match.group(1))
+    for before in _BEFORE.finditer(name):
+        text = name[before.end() :]
+        unit = None if _VALUE.search(name[: before.start()]) else known_unit(text)
+        if unit and (unit[0] == kind or (len(text.strip()) > 1 and text.lower() != "min")):
+            return unit
+    return None
 
 
 def known_unit(text):

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from blockshake.diagnosis.gain.recalibration import posterior_draws
-from blockshake.diagnosis.libraries.null_model import Draw
+from blockshake.diagnosis.nominal.nominal_model import Draw
 
 FRICTION, DENSITY, SPACING = 0.10, 0.04, (0.3, 0.6)
 NAMES = ("friction.concrete.concrete", "materials.concrete.density", "ls_dem.node_spacing", "amplitude")
@@ -120,32 +120,6 @@ def test_features_that_tell_nothing_leave_the_prior():
             np.testing.assert_array_equal(result.informed["narrowing"], 1.0)
     # 100 parameters at a chance of 1 %: more than 5 are seen in 3 of 10 000 such tests
     assert sum(moved) <= 5
-
-
-def test_what_a_candidate_adds_is_taken_off_the_measured():
-    generator = np.random.default_rng(4)
-    world = World(4, 30)
-    scores = generator.normal(size=(40, 4))
-    draws, features = draws_of(scores), world.features(scores, generator)
-    measured = world.features(np.array([[0.5, 0.5, 0.5, 0.0]]), generator)[0]
-    effect = 3.0 * generator.normal(size=30)
-    sizes = np.linspace(0.5, 1.5, 25)[:, None]
-    plain = posterior_draws(draws, features, measured).draws[:25]
-    shifted = np.array(
-        [posterior_draws(draws, features, measured + size * effect).draws for size in sizes[:2]]
-    )
-    result = posterior_draws(
-        draws, features, measured + sizes[0] * effect, sizes[:1] * effect + np.zeros((25, 1))
-    )
-    np.testing.assert_allclose(scores_of(result.draws), scores_of(plain), atol=1e-9)
-    assert (
-        np.abs(scores_of(shifted[0]) - scores_of(posterior_draws(draws, features, measured).draws)).max()
-        > 0.1
-    )
-    for new, old in zip(result.draws, draws[:25], strict=True):
-        assert (new.seed, new.time_step, new.model) == (old.seed, old.time_step, old.model)
-        np.testing.assert_array_equal(new.places, old.places)
-        assert new.parameters["ls_dem.normal_stiffness"] == 1e9
 
 
 def test_an_absurd_feature_counts_as_one_at_the_edge_of_the_draws():

@@ -94,6 +94,8 @@ MADE = [
     Made("a.at2", at2(CM * 0.01, units="m/s**2"), scientific(CM * 0.01, 7)),
     Made("a.at2", at2(GS, sizes=f"{COUNT}   0.0100   NPTS, DT"), G * scientific(GS, 7)),
     Made("a.at2", at2(GS, sizes=f"DT= .0100 SEC, NPTS= {COUNT}"), G * scientific(GS, 7)),
+    *(Made("a.at2", at2(GS, sizes=f"NPTS={COUNT}, DT= .01 SEC, {more}"), G * scientific(GS, 7)) for more in (
+        f"PGA= {np.abs(GS).max():.4f}", f"PEAK: {np.abs(CM).max():.2f} CM/S2", "RATE= 100 HZ", "100 SPS", "LP= 33 HZ")),
     Made("a.at2", at2(GS, sizes=f"NPTS={COUNT},DT=0.01"), G * scientific(GS, 7)),
     Made("a.at2", at2(GS, cells=[fortran(value) for value in GS]), G * scientific(GS, 6)),
     Made("a.at2", at2(GS, cells=[f" {value}" for value in GS.tolist()]), G * GS),  # zeros left out
@@ -157,6 +159,13 @@ MADE = [
     Made("t.txt", "Made up 2000\nStep 0.01 s\n" + EIGHT, 0.01 * CM, (*SERIES, "cm/s2")),
     Made("t.txt", "in units of CM/S2, five a line\n" + "\n".join(rows([f"{value:10.3f}" for value in CM], 5)),
          0.01 * CM, (*SERIES, "cm/s2")),
+    *(Made("t.txt", f"{line}\n{EIGHT}", 0.01 * CM, (*SERIES, "cm/s2")) for line in (
+        f"NPTS={COUNT} DT=.01SEC", "Sampling rate: 100 Hz", "dt = 10 ms, HP=0.2 Hz LP=33.0 Hz", "PGA = 0.35 g",
+        "Station G", "Depth (m)", "printed as 8 points a line", "Acceleration (Gal)", "1/100 s")),
+    Made("t.txt", "DT= 0,010 s\n" + EIGHT.replace(".", ","), 0.01 * CM, (*SERIES, "gal", "--decimal", ",")),
+    Made("t.csv", table(names=("row", "a"), times=[str(row + 1) for row in range(COUNT)]), 0.01 * CM,
+         (*SERIES, "cm/s2", "--column", "x=a")),
+    Made("t.csv", table(), 0.01 * CM, (*SERIES, "cm/s2", "--column", "x=a")),
     Made("t.txt", f"{COUNT} {STEP}\n" + EIGHT, 0.01 * CM, (*SERIES, "cm/s2", "--data", "2")),
     Made("t.txt", TOUCHING, 0.01 * scientific(CM, 6), (*SERIES, "gal")),
     Made("t.txt", EIGHT.replace(".", ","), 0.01 * CM, (*SERIES, "gal", "--decimal", ",")),
@@ -218,6 +227,9 @@ REFUSED = [
     ("a.at2", at2(GS).replace(f"{GS[7]:15.7E}", f"{GS[7]:.7E}"[:-1].rjust(15)), ("line 6", "cut short")),
     ("a.v2", cosmos(CM, **FREE).replace(f"{CM[3]:9.3f}", f"{CM[3]:9.1f}", 1), ("line 49", "cut short")),
     ("a.at2", at2(GS, sizes=f"NPTS= {COUNT - 5}, DT= .01 SEC"), ("NPTS", "495", "500")),
+    *(("a.at2", at2(GS, sizes=f"NPTS= {COUNT}, DT= .01 SEC, {more}"), words) for more, words in (
+        ("PGA= 0.9", ("PGA", "found 8.82")), ("PEAK: 90 cm/s2", ("PGA", "found 0.9 m/s2")),
+        ("RATE= 200 HZ", ("FS", "0.005")), ("200 SPS", ("FS", "0.005")))),
     ("a.at2", at2(GS).replace(f"{GS[7]:15.7E}", "  -0.9990000E+03"), ("looks like a code for none", "line 6")),
     ("a.at2", at2(GS, units="CM/S"), ("line 3", "'CM/S'")),
     ("a.v2", cosmos(CM, entries={62: 5.0}), ("entry 63", "2.5 s", "5 s")),
@@ -304,6 +316,27 @@ TABLES = [
     ("t.txt", "DT= 0.005 SEC\n" + EIGHT, (*SERIES, "g"), "--time-step: expected 0.005, as the file says, found 0.01"),
     ("t.txt", "NPTS= 400\n" + EIGHT, (*SERIES, "g"), "number of values: expected 400, as the file says, found 500"),
     ("t.txt", "acc in units of CM/SEC**2\n" + EIGHT, (*SERIES, "g"), "--unit: expected 'CM/SEC**2', as the file says"),
+    *(("t.txt", f"{line}\n{EIGHT}", (*SERIES, "g"), f"--time-step: expected {step}, as the file says, found 0.01")
+      for line, step in (
+          ("DT=.005SEC", "0.005"), ("DT 5 ms", "0.005"), ("dt (ms): 5", "0.005"), ("DT= 5.0D-3 SEC", "0.005"),
+          ("Sampling rate: 200 Hz", "0.005"), ("Sampling frequency (Hz) = 200", "0.005"), ("FS=200", "0.005"),
+          ("Abtastrate 200 Hz", "0.005"), ("200 Hz", "0.005"), (f"{COUNT} 0.0050 NPTS, DT", "0.005"),
+          ("Sampling interval 0.02 s", "0.02"), ("Time step (s): 0.02", "0.02"), ("delta t = 0.02", "0.02"),
+      )),
+    *(("t.txt", f"{line}\n{EIGHT}", (*SERIES, "g"), "number of values: expected 400, as the file says, found 500")
+      for line in ("Number of points: 400", "400 points", "400 0.0100 NPTS, DT")),
+    *(("t.txt", f"{line}\n{EIGHT}", (*SERIES, "g"), f"--unit: expected '{line}', as the file says")
+      for line in ("Acceleration (cm/s2)", "Acceleration [m/s\u00b2]:", "acc in gal", "cm/s2", "acc, mg")),
+    ("t.txt", f"acceleration, g\n{EIGHT}", (*SERIES, "gal"), "--unit: expected 'acceleration, g', as the file says"),
+    *(("t.csv", table(names=("t", name)), ("--time", "t", "--column", f"x={name}", "--unit", "cm/s2"),
+       f"column '{name}': expected the unit of acceleration that was given; the header has another one")
+      for name in ("acc_g", "acc/g", "acc g", "acc - g", "acc=g", "a{g}", "a<g>", "acc_m/s2", "acc_m_s2", "acc_mps2",
+                   "acc m/s/s", "v cm/s", "EW_mm")),
+    *(("t.csv", table(names=(name, "a")), ("--time", name, "--time-unit", "ms", "--column", "x=a", "--unit", "g"),
+       f"column '{name}': expected the unit of time that was given; the header has another one, of time")
+      for name in ("t_s", "time_s", "Zeit/s", "t s", "time - min")),
+    ("t.csv", table(), ("--time-step", "0.02", "--column", "x=a", "--unit", "g"),
+     "--time-step: 0.02: expected a table without times; 't' counts as they do: --time and --time-unit"),
     ("t.csv", table(), ("--time-step", "0.01"), "--unit: expected for a table"),
     ("t.csv", table(), ("--unit", "g"), "--column: expected for a table, or --time-step"),
     ("m.csv", "time_s,acceleration_x\n" + "".join(f"{row / 100 + 3 * (row > 99)},{row % 7}\n" for row in range(200)),

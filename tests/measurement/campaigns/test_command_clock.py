@@ -42,11 +42,20 @@ def test_an_even_clock_is_the_same_whatever_it_shows(rate, zero):
     assert reading_rate(read["time"].to_numpy()) == rate
 
 
-def test_a_clock_that_lacks_rows_keeps_its_gaps():
-    test = resting_stack().isel(time=np.r_[0:100, 140:2001])
-    read = from_first_reading(test.assign_coords(time=test["time"] + 43200.0))
-    np.testing.assert_allclose(read["time"], np.r_[0:100, 140:2001] / 200.0, atol=1e-9)
+def test_rows_that_a_clock_lacks_become_gaps():
+    whole = resting_stack()
+    test = whole.isel(time=np.r_[0:100, 140:2001], time_acc=np.r_[0:900, 1000 : whole.sizes["time_acc"]])
+    shifted = {name: test[name] + 43200.0 for name in ("time", "time_acc")}
+    read = from_first_reading(test.assign_coords(shifted))
     assert reading_rate(read["time"].to_numpy()) == 200.0
+    for name, variable, lost in (
+        ("time", "marker_displacement", slice(100, 140)),
+        ("time_acc", "accelerometer", slice(900, 1000)),
+    ):
+        np.testing.assert_allclose(read[name], whole[name], atol=1e-9)
+        expected = whole[variable].transpose(name, ...).to_numpy().copy()
+        expected[lost] = np.nan
+        np.testing.assert_array_equal(read[variable].transpose(name, ...), expected)
 
 
 @pytest.mark.parametrize("start", [-2.0, 0.0, 1.2345, 4.0])

@@ -78,6 +78,11 @@ BAD = {
     "stated ms": (_stated("time", "ms"), "time.units: expected s, not 'ms'"),
     "a calendar": (_stated("time", "seconds since 2020-01-01"), "time.units: expected s, not 'seconds since"),
     "infinite": (_set("marker_displacement", (7, 3, 1), np.inf), "marker_displacement: expected finite readings"),
+    "a code": (_set("accelerometer", (7, 1), -999.0), "accelerometer: expected readings, and NaN in a gap; -999 looks"),
+    "netCDF's code": (_set("accelerometer", (slice(7, 9), 0), 9.96921e36), "accelerometer: expected readings, and NaN"),
+    "two records": (
+        _timed("time", lambda t: t + 1e6 * (t > 5.0)), "time: expected one record; more rows are missing than there",
+    ),
     "words": (_words, "marker_displacement: expected numbers, not"),
     "absolute": (_displaced(lambda x: x + 0.5), f"{MARKERS[0]}.x: expected displacements since the first reading"),
     "negative step": (_timed("time", _back), "time: expected times that increase; 0.49 s follows 0.495 s"),

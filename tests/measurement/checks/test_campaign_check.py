@@ -130,6 +130,19 @@ def test_a_record_without_the_strong_part_is_remarked(tmp_path):
     assert any("ends before the strongest shaking" in line for line in lines)
 
 
+def test_rows_that_are_missing_are_remarked_with_time_and_length(tmp_path):
+    test = resting_stack()
+    rows = np.r_[0:800, 1000 : test.sizes["time"]]
+    lines = campaign_lines(write_campaign(tmp_path, test.isel(time=rows)))
+    for name in ("marker of a slab", "marker of a block"):
+        remark = rf"  t1: no {name} reads anything for 1 s after 3.99\d? s, the longest such gap"
+        assert any(re.fullmatch(remark, line) for line in lines), lines
+    (tmp_path / "t1.nc").unlink()
+    test = resting_stack().isel(time_acc=np.r_[0:512, 1024 : test.sizes["time_acc"]])
+    lines = campaign_lines(write_campaign(tmp_path, test))
+    assert any("  t1: no accelerometer reads anything for 1 s after 0.99" in line for line in lines), lines
+
+
 def _swap(test):
     test["marker_displacement"][:] = test["marker_displacement"].to_numpy()[..., [1, 0, 2]]
 

@@ -8,10 +8,10 @@ import trimesh
 
 from blockshake.errors import InputError
 from blockshake.geometry.level_set_grid import box_grid
-from blockshake.geometry.structure import build_structure
+from blockshake.geometry.structure import build_structure, load_structure
 from blockshake.solvers.ls_dem import surfaces as surfaces_module
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
-from blockshake.solvers.ls_dem.surfaces import assemble_surfaces
+from blockshake.solvers.ls_dem.surfaces import assemble_surfaces, check_shapes
 
 G = 9.81
 K_N = LsDemParameters().normal_stiffness
@@ -263,6 +263,16 @@ def test_edges_that_cross_meet_by_the_nodes_of_the_chamfers(make_structure, run_
         depth[spacing] = 2.0 * reach - (run.position[:, 1, 2] - run.position[:, 0, 2]).min()
     assert depth[0.02] < 5e-3
     assert depth[0.0] > 2.0 * depth[0.02]
+
+
+def test_a_lattice_too_coarse_to_see_a_shape_is_an_error():
+    """From the thickness of the slab on no point lies inside of it, and blocks at rest fell through it."""
+    structure = load_structure("configuration-1")
+    properties = structure.solids["slab"].properties
+    widest = 4.0 / 3.0 * properties.volume / properties.area
+    check_shapes(structure, LsDemParameters(level_set="grid", grid_spacing=0.99 * widest))
+    with pytest.raises(InputError, match=r"shapes.slab: expected a ls_dem.grid_spacing of at most [\d.]+ m"):
+        check_shapes(structure, LsDemParameters(level_set="grid", grid_spacing=1.01 * widest))
 
 
 def test_a_lattice_too_fine_to_hold_is_an_error(make_structure):

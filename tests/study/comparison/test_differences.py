@@ -10,6 +10,7 @@ from blockshake.study.comparison.differences import (
     limits_of,
     mean_differences,
     mean_width,
+    member_scores,
     parting_time,
     resampled_weights,
 )
@@ -134,3 +135,14 @@ def test_curves_part_where_one_is_beyond_the_limit_or_has_ended():
     assert parting_time(time, own, other, 0.6) == np.inf
     other[1:] = np.nan
     assert parting_time(time, own, other, 0.6) == 1.0
+
+
+def test_members_are_scored_by_the_others():
+    """Against the score of each by the ensemble without it; their mean is half of the width."""
+    curves = np.random.default_rng(SEED).normal(size=(6, 4, 2))
+    differences = mean_differences(curves, curves)
+    expected = [crps(np.delete(curves, place, axis=0), curves[place]).mean(axis=0) for place in range(6)]
+    np.testing.assert_allclose(member_scores(differences), expected, rtol=1e-12)
+    np.testing.assert_allclose(
+        member_scores(differences).mean(axis=0), 0.5 * mean_width(differences, np.ones((1, 6)))[0], rtol=1e-12
+    )

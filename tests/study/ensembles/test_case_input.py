@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
@@ -106,3 +107,23 @@ def test_a_record_that_ends_before_the_window_is_refused_where_it_is_the_input(c
     with pytest.raises(InputError, match=r"t1: duration: expected at most 3 s, .* or input: commanded"):
         measured_input({**longer, "input": "measured"}, named)
     assert np.isfinite(measured_input({**longer, "input": "commanded"}, named).attrs["gain"])
+
+
+@pytest.mark.parametrize("lost", ["rows", "readings of the slab"])
+def test_a_gap_in_which_the_slab_s_motion_is_lost_is_refused_where_it_is_the_input(
+    lost, case, score, tmp_path
+):
+    score(Table(), "commanded")
+    path, named = tmp_path / "t1.nc", {"campaign": str(tmp_path), "test": "t1"}
+    whole = xr.load_dataset(path, decode_times=False)
+    inside = (whole["time"] > 1.0) & (whole["time"] < 1.8)
+    slab = whole["marker"].isin(["slab-left", "slab-right", "slab-end"])
+    test = whole.drop_dims("time_acc")
+    test["marker_displacement"] = whole["marker_displacement"].where(~(inside & slab))
+    test = test.isel(time=~inside) if lost == "rows" else test
+    write_dataset(path, test)
+    with pytest.raises(
+        InputError, match=r"expected readings of the slab .* or input: commanded; .* to [\d.]+ mm alone"
+    ):
+        measured_input({**case, "input": "measured"}, named)
+    measured_input({**case, "input": "commanded"}, named)

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from blockshake.diagnosis.libraries.null_model import draw_nominal
+from blockshake.diagnosis.nominal.nominal_model import draw_nominal
 from blockshake.errors import InputError
 from blockshake.geometry.reference_block import half_width, reference_block
 from blockshake.geometry.structure import load_structure

@@ -145,6 +145,11 @@ def needed_of(cause):
     return max(_NEEDED_BY.get(cause, _NEEDED), _NEEDED)
 
 
+def needed_of_slab(name):
+    """The same of an effect that moves the slab."""
+    return _NEEDED_OF_SLAB["turns" if EFFECTS[name].turns else "lifts"]
+
+
 def slab_groups(explained):
     """Groups of the slab's rotation and of its vertical motion, with the name of these readings.
 

@@ -18,11 +18,12 @@ from blockshake.diagnosis.answer.explain import gather_evidence
 from blockshake.diagnosis.answer.limits import excluded_above, limits_of
 from blockshake.diagnosis.answer.odds import coarsened
 from blockshake.diagnosis.answer.places import place_of
-from blockshake.diagnosis.answer.size import size_of
+from blockshake.diagnosis.answer.size import members_of, size_of
 from blockshake.diagnosis.answer.slab_departures import slab_departures
 from blockshake.diagnosis.evidence.closed_joints import closed_joint_gains
-from blockshake.diagnosis.evidence.explanation import Fit
+from blockshake.diagnosis.evidence.explanation import Fit, mean_evidence
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
+from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.joint_compliance import COMPLIANCES
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
@@ -77,7 +78,7 @@ def decide(seen, without=(), cannot_see=()):
         probabilities=_probabilities(parts, without),
         limits=limits,
         excluded_above=excluded_above(limits, seen[0].structure),
-        p=min(1.0, sum(float(np.exp(-min(part.causes[0].gain, 700.0))) for part in parts)) if parts else 1.0,
+        p=min(1.0, sum(map(_chance, parts))) if parts else 1.0,
         where=largest(shown) if parts else _NOT_SHOWN,
         tests=[test.name for test in seen],
         silent=[test.name for test in seen if not len(test.rows.value)],
@@ -94,6 +95,12 @@ def _of_joints(parts):
 def _beside(evidence, first):
     key = first.rivals[0].cause, first.rivals[0].place
     return evidence.beside(key) if evidence and key in evidence.keys else None
+
+
+def _chance(part):
+    """Largest chance of as much without a cause: a mean of evidence ratios is more than x with the chance 1/x at most."""
+    gains = np.array(list(part.gains.values()))
+    return float(np.exp(-min(mean_evidence(gains), 700.0)))
 
 
 def _kind(parts):
@@ -125,10 +132,10 @@ def _probabilities(parts, without):
 def _part(readings, group, seen, evidence, closed, slab=None):
     causes = []
     for rival in group.rivals:
-        fits, logs = _fits(rival, evidence, closed, slab)
-        parameters, members = size_of(rival.cause, rival.place, fits, logs)
-        best = fits[int(np.argmax(logs))] if evidence is None else _best(rival, evidence, fits, logs)
-        when = {key: value for key, value in best.values.items() if key != "history"}
+        fits, logs = _fits(rival, [rival.place], evidence, closed, slab)
+        # a force is said where it is the likeliest; of an effect the places of its class give one size
+        alike = (fits, logs) if rival.cause in FORMS else _fits(rival, rival.places, evidence, closed, slab)
+        best = fits[int(np.argmax(logs))]
         causes.append(
             Cause(
                 name=rival.cause,
@@ -136,31 +143,22 @@ def _part(readings, group, seen, evidence, closed, slab=None):
                 places=rival.places,
                 gain=rival.gain,
                 odds=group.odds[rival.cause],
-                parameters=parameters,
-                members=members,
-                when=when,
+                parameters=size_of(rival.cause, rival.place, *alike),
+                members=members_of(rival.cause, rival.place, fits, logs),
+                when={key: value for key, value in best.values.items() if key != "history"},
                 amplitudes=best.mean.tolist(),
             )
         )
     return Part(readings=readings, causes=causes, odds=group.odds, gains=group.gains)
 
 
-def _best(rival, evidence, fits, logs):
-    """The likeliest fit at the likeliest place."""
-    key = rival.cause, rival.place
-    return (
-        evidence.best(key).best
-        if key in evidence.keys and rival.cause != JOINT_COMPLIANCE.name
-        else fits[int(np.argmax(logs))]
-    )
-
-
-def _fits(rival, evidence, closed, slab):
+def _fits(rival, places, evidence, closed, slab):
+    """Fits of a rival at some of its places, and the logarithms of their weights."""
     if slab is not None:
         explained = slab[rival.cause]
         return explained.fits, np.array([fit.gain for fit in explained.fits])
     if rival.cause != JOINT_COMPLIANCE.name:
-        return evidence.fits(rival.cause, rival.places)
+        return evidence.fits(rival.cause, places)
     key = rival.cause, rival.place
     turned = evidence.gains_of_variants(key) if evidence and key in evidence.keys else 0.0
     gains = soft_gains(turned, closed.get(rival.place, 0.0)) * np.ones(len(COMPLIANCES))

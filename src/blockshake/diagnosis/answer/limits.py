@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.diagnosis.answer.answer import needed_of
+from blockshake.diagnosis.answer.answer import needed_of, needed_of_slab
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_name
 from blockshake.diagnosis.evidence.limits import detection_limit
 from blockshake.effects.registry import EFFECTS
@@ -27,8 +27,12 @@ def limits_of(evidence, slab):
     for name, explained in slab.items():
         fit = explained.best
         error = float(np.sqrt(fit.covariance[0, 0]))
-        size = error * np.sqrt(2.0 * needed_of(name) + 2.0 * np.log(fit.scales[0] / error + 1.0))
-        found[name] = {EVERYWHERE: _parameter(name, fit.values, size)}
+        needed = needed_of_slab(name)
+        limit = _parameter(
+            name, fit.values, error * np.sqrt(2.0 * needed + 2.0 * np.log(fit.scales[0] / error + 1.0))
+        )
+        if _possible(name, limit):
+            found[name] = {EVERYWHERE: limit}
     if evidence is None:
         return found
     none = max(evidence.explained, key=lambda one: one.likelihood.log_evidence).likelihood
@@ -36,9 +40,13 @@ def limits_of(evidence, slab):
         variants = {place: own for (effect, place), own in evidence.tried.variants.items() if effect == name}
         needed = needed_of(name) + np.log(len(variants))
         limits = {place: _limit(name, none, own, needed) for place, own in variants.items()}
-        size = EFFECTS[name].parameters[0]
-        found[name] = {place: one for place, one in limits.items() if size.lower <= one <= size.upper}
+        found[name] = {place: one for place, one in limits.items() if _possible(name, one)}
     return found
+
+
+def _possible(name, limit):
+    size = EFFECTS[name].parameters[0]
+    return size.lower <= limit <= size.upper
 
 
 def excluded_above(limits, structure):

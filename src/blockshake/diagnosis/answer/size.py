@@ -13,8 +13,14 @@ _DRAWS = 2000
 _INTERVAL = (0.05, 0.5, 0.95)
 
 
+def members_of(name, place, fits, logs):
+    """Sets of parameters of a cause at one place, tuple of `MEMBERS` dict; arguments as of `size_of`."""
+    drawn, order = _drawn(name, place, fits, logs)
+    return tuple({key: float(values[draw]) for key, values in drawn.items()} for draw in order[:MEMBERS])
+
+
 def size_of(name, place, fits, logs):
-    """Parameters of a cause, and members drawn from them.
+    """Parameters of a cause.
 
     Parameters
     ----------
@@ -28,9 +34,14 @@ def size_of(name, place, fits, logs):
 
     Returns
     -------
-    dict of str to Estimate, tuple of dict
-        `MEMBERS` sets of parameters, the first draws.
+    dict of str to Estimate
     """
+    drawn, _ = _drawn(name, place, fits, logs)
+    return {key: _estimate(drawn[key], unit) for key, unit in _units(name).items()}
+
+
+def _drawn(name, place, fits, logs):
+    """Draws by parameter, and a fixed random order of them."""
     generator = np.random.default_rng([_DRAWS, zlib.crc32(f"{name} {place}".encode())])
     weights = np.exp(logs - logs.max())
     counts = generator.multinomial(_DRAWS, weights / weights.sum())
@@ -40,10 +51,7 @@ def size_of(name, place, fits, logs):
         if count
     ]
     drawn = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
-    order = generator.permutation(_DRAWS)
-    members = tuple({key: float(values[draw]) for key, values in drawn.items()} for draw in order[:MEMBERS])
-    units = _units(name)
-    return {key: _estimate(drawn[key], unit) for key, unit in units.items()}, members
+    return drawn, generator.permutation(_DRAWS)
 
 
 def _amplitudes(fit, count, generator):

@@ -33,4 +33,6 @@ def slab_departures(seen, slabs, explained, parts):
             found[key] = ("reading", np.concatenate(values), {"units": unit})
     names = [test.name for test, slab in zip(seen, slabs, strict=True) for _ in slab.at]
     time = np.concatenate([slab.time[slab.at] for slab in slabs])
-    return xr.Dataset(found, {"slab_test": ("reading", names), "slab_time": ("reading", time, {"units": "s"})})
+    return xr.Dataset(
+        found, {"slab_test": ("reading", names), "slab_time": ("reading", time, {"units": "s"})}
+    )

@@ -101,7 +101,7 @@ class Likelihood:
         Notes
         -----
         With the posterior ``N(m, C)``: ``ln B = m' C^-1 m / 2 - ln |1 + G L| / 2``, plus ``ln 2 Phi(m / s)`` of a
-        positive amplitude (Rasmussen and Williams 2006, Eq. 2.8 for the marginal likelihood).
+        positive amplitude (Rasmussen and Williams 2006, Eq. 2.30, for the marginal likelihood).
         """
         target, gram = self.normal_equations(whitened)
         if scales is None:

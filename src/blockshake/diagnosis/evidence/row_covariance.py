@@ -3,8 +3,8 @@
 import numpy as np
 
 _LEVER, _LEVER_MEMORY, _LEVER_WHITE = 0.001, 0.3, 0.0003  # m, s, m: of the point where a turned face bears
-_FRICTION = 0.04  # of the coefficient of a slipping face: half coloured, half white
-_FORM = 0.04  # of a cause's own rows, half coloured, half white
+_FRICTION = 0.04  # of the coefficient of a slipping face: as much coloured and as much white
+_FORM = 0.04  # of a cause's own rows: as much coloured and as much white
 _RIDGE = 1e-5  # of every variance, for the factorisation
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy.special import ndtr, ndtri
 
-from blockshake.diagnosis.libraries.null_model import MODELS
+from blockshake.diagnosis.nominal.nominal_model import MODELS
 from blockshake.simulation.models import model_of
 
 # drawn evenly in `draw_nominal`; hollows are so in their logarithm, and all others log-normally
@@ -14,6 +14,7 @@ _EVEN = {one.name for name in MODELS for one in model_of(name).perturbation.unce
 _REGULARISATION = np.logspace(-2.0, 3.0, 11)  # over the mean square that a draw's features have
 _SHUFFLES = 199
 _INFORMED_CHANCE = 0.01  # below which a parameter is held to be informed
+_INTERVAL = 0.1  # s, between instants that parameters are conditioned on
 _REACH = 3.0  # standard deviations of the draws within which a parameter stays and a feature counts
 QUANTILES = (0.05, 0.5, 0.95)
 
@@ -37,24 +38,51 @@ class Recalibration:
     informed: xr.Dataset
 
 
-def posterior_draws(draws, features, measured, added=None):
-    """`Recalibration`: nominal draws of one solver, conditioned on measured features.
+def features_of(tests):
+    """What parameters are conditioned on: the histories of the open tests.
+
+    Parameters
+    ----------
+    tests : list of JudgedTest
+        Of ensembles of one kind by one solver, the same members in all.
+
+    Returns
+    -------
+    features : float64 array, shape (n_draws, n_features)
+        Every cell some ten times a second until its horizon, in units of its spread over the members (root mean
+        square over the time); instants that a member or the measured test lacks are left out.
+    measured : float64 array, shape (n_features,)
+    """
+    features, measured = [], []
+    for test in tests:
+        ((_, members),) = test.members.items()
+        time = test.measured["time"].to_numpy()
+        stride = max(round(_INTERVAL / np.median(np.diff(time))), 1)
+        values, read = members.to_numpy()[:, ::stride], test.measured.to_numpy()[::stride]
+        known = test.judged[::stride] & np.isfinite(read) & np.isfinite(values).all(axis=0)
+        variance = np.where(known, np.where(known, values, 0.0).var(axis=0, ddof=1), 0.0)
+        spread = np.sqrt(variance.sum(axis=0) / np.maximum(known.sum(axis=0), 1))
+        known &= spread > 0.0
+        scale = np.where(spread > 0.0, spread, 1.0)
+        features.append((values / scale)[:, known])
+        measured.append((read / scale)[known])
+    return np.concatenate(features, axis=1), np.concatenate(measured)
+
+
+def posterior_draws(draws, features, measured):
+    """`Recalibration`: draws of one solver, conditioned on the open tests.
 
     Parameters
     ----------
     draws : list of Draw, length n_draws
         Of one solver.
     features : float64 array, shape (n_draws, n_features)
-        Tamed features that they gave, noise of the sensors in them, of all open tests together.
+        That they gave, noise of the sensors in them, from `features_of`.
     measured : float64 array, shape (n_features,)
-        The same features, measured.
-    added : float64 array, shape (n_conditioned, n_features), optional
-        Addition of a candidate to each draw. Only the first so many draws are conditioned; without it all are, and
-        nothing is added.
 
     Notes
     -----
-    Conditional simulation of a joint Gaussian, ``theta_i + K (measured - added_i - y_i)`` with
+    Conditional simulation of a joint Gaussian, ``theta_i + K (measured - y_i)`` with
     ``K = C_ty (C_yy + lambda I)^-1``: Matheron's rule, which is one step of an ensemble Kalman filter with perturbed
     observations (Evensen 2003, Ocean Dynamics 53; Iglesias, Law and Stuart 2013, Inverse Problems 29), as draws with
     noise in their features are. ``theta`` is the logarithm of a parameter, or the normal score of one that is drawn
@@ -67,8 +95,7 @@ def posterior_draws(draws, features, measured, added=None):
     fitted too well and the posterior come out too narrow.
 
     The gain was learnt within the draws. A measured feature that lies more than three standard deviations off them
-    counts as one at three (a weak joint moves the correlation of the top with the lowest block by 16 000 of the
-    nominal spread), and parameters stop at three prior standard deviations.
+    counts as one at three, and parameters stop at three prior standard deviations.
 
     Places, time step and seed stay each draw's own, and so does a parameter in which all draws agree.
     """
@@ -81,30 +108,26 @@ def posterior_draws(draws, features, measured, added=None):
     strength, skill, chance = _regularisation(scores, features)
     informed = chance <= _INFORMED_CHANCE
 
-    added = np.zeros_like(features) if added is None else added
-    moved = scores[: len(added)].copy()
+    moved = scores.copy()
     reach = features.mean(axis=0) + _REACH * features.std(axis=0, ddof=1) * [[-1.0], [1.0]]
-    innovations = np.clip(measured - added, *reach) - features[: len(added)]
+    innovations = np.clip(measured, *reach) - features
     moved[:, informed] += _shifts(scores[:, informed], features, innovations, strength[informed])
     mean, deviation = scores.mean(axis=0), scores.std(axis=0, ddof=1)
     kept = np.where(informed, np.clip(moved, mean - _REACH * deviation, mean + _REACH * deviation), moved)
     posterior = np.column_stack(
         [_unscore(name, column, end) for name, column, end in zip(names, kept.T, ends, strict=True)]
     )
-    posterior = np.where(informed, posterior, values[: len(added)])
+    posterior = np.where(informed, posterior, values)
     return Recalibration(
         draws=[
             _with_values(draw, dict(zip(names, row.tolist(), strict=True)))
-            for draw, row in zip(draws[: len(added)], posterior, strict=True)
+            for draw, row in zip(draws, posterior, strict=True)
         ],
         informed=xr.Dataset(
             {
                 "prior": (("quantile", "parameter"), np.quantile(values, QUANTILES, axis=0)),
                 "posterior": (("quantile", "parameter"), np.quantile(posterior, QUANTILES, axis=0)),
-                "narrowing": (
-                    "parameter",
-                    kept.std(axis=0, ddof=1) / scores[: len(added)].std(axis=0, ddof=1),
-                ),
+                "narrowing": ("parameter", kept.std(axis=0, ddof=1) / scores.std(axis=0, ddof=1)),
                 "skill": ("parameter", skill),
                 "chance": ("parameter", chance),
                 "informed": ("parameter", informed),
@@ -183,13 +206,13 @@ def _regularisation(scores, features):
 
 
 def _shifts(scores, features, innovations, strengths):
-    """Shift of each draw's scores, shape (n_conditioned, n_parameters), by the gain learnt from the other draws."""
+    """Shift of each draw's scores, shape (n_draws, n_parameters), by the gain learnt from the other draws."""
     shifts = np.empty((len(innovations), scores.shape[1]))
     for draw, innovation in enumerate(innovations):
         others = np.arange(len(scores)) != draw
         known = features[others] - features[others].mean(axis=0)
         power, axes = np.linalg.eigh(known @ known.T)
         seen = axes.T @ (known @ innovation)
-        told = axes.T @ (scores[others] - scores[others].mean(axis=0))
-        shifts[draw] = (told * (seen[:, None] / (power[:, None] + strengths))).sum(axis=0)
+        known_of = axes.T @ (scores[others] - scores[others].mean(axis=0))
+        shifts[draw] = (known_of * (seen[:, None] / (power[:, None] + strengths))).sum(axis=0)
     return shifts

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from blockshake.diagnosis.gain.gain import CampaignGain
-from blockshake.diagnosis.libraries.plan import sealed_tests
+from blockshake.diagnosis.gain.campaign_gain import CampaignGain
 from blockshake.diagnosis.verdict.verdict import Contrast, Gain, MeasuredGain
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import load_structure
@@ -19,16 +18,13 @@ OF_MARKERS = ("place", "gain")
 _REST = 1.0  # s, before which nothing has moved: what is left there is noise
 
 
-def sensors_gain(campaign, readings, findings):
-    """`CampaignGain` on a campaign's sealed tests of the sensor fault whose gain can be measured.
+def sensors_gain(campaign, opened, sealed, findings):
+    """`CampaignGain` of the sensor fault whose gain can be measured.
 
-    ``readings`` from `measured_readings` and ``findings`` are of the open tests.
+    ``opened`` and ``sealed`` are names of tests, ``findings`` those of the open ones.
     """
     structure = load_structure(campaign.structure)
-    opened, sealed = (
-        {name: load_test(campaign, name) for name in names}
-        for names in (map(str, readings["test"].values), sealed_tests(campaign))
-    )
+    opened, sealed = ({name: load_test(campaign, name) for name in names} for names in (opened, sealed))
     return sensor_gain(gaining(findings, structure), opened, sealed, structure, campaign.sensors)
 
 
@@ -60,7 +56,7 @@ def sensor_gain(finding, opened, sealed, structure, sensors):
     """
     if finding is None:
         caveat = "no gain was measured: the sensors' faults do not hold in all tests"
-        return CampaignGain(MeasuredGain(gain=None, caveats=[caveat], runs=0), xr.Dataset(), xr.Dataset())
+        return CampaignGain(MeasuredGain(gain=None, caveats=[caveat], runs=0), xr.Dataset())
     of_clock = finding.quantity == "lag"
     score = _lag_left if of_clock else _distance
     rows, floors = [], []
@@ -84,7 +80,7 @@ def sensor_gain(finding, opened, sealed, structure, sensors):
         {"effect": finding.effect, "where": finding.where[0]},
     )
     caveat = "the gain of a sensor's fault is that of its readings against the other sensors'; no simulation enters it"
-    return CampaignGain(MeasuredGain(gain=gain, caveats=[caveat], runs=0), scores, xr.Dataset())
+    return CampaignGain(MeasuredGain(gain=gain, caveats=[caveat], runs=0), scores)
 
 
 def gaining(findings, structure):

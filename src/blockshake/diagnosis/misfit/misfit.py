@@ -1,87 +1,86 @@
-"""Misfit of the nominal model, test by test: joint, phase, quantity and size."""
+"""Misfit of the nominal model: its ensembles beside the measured histories of the open tests."""
 
 import numpy as np
 import xarray as xr
 
-from blockshake.diagnosis.features.measured_readings import reading_of
-from blockshake.diagnosis.features.reading import HISTORIES
-from blockshake.diagnosis.misfit.curve_scores import curve_scores, joint_curves
-from blockshake.diagnosis.misfit.residual_atlas import code_word, residual_atlas
-from blockshake.diagnosis.misfit.whole_curve import whole_curve_probability
-from blockshake.measurement.motion.compared_curves import histories_at
-
-_QUANTILES = (0.05, 0.5, 0.95)  # quantiles of the ensemble
-_LONGEST_DROPOUT = 40  # readings at an end that a dropout may lose; more is a run cut short
-_STRIDE = 4  # readings, of which one enters the test of whole curves: 50 a second
+from blockshake.diagnosis.nominal.ensemble import NOMINAL
+from blockshake.study.comparison.differences import ensemble_score, mean_differences, member_scores
 
 
-def misfit(readings, ensembles):
-    """Measured histories of all joints held against the nominal ensemble of both solvers.
+def misfit(tests):
+    """How far measured tests are from the nominal ensemble of all solvers, joint by joint.
 
     Parameters
     ----------
-    readings : xarray.Dataset
-        From `measured_readings`.
-    ensembles : dict of str to list of xarray.Dataset
-        By test: histories of nominal draws, one dataset a solver, from `library`.
+    tests : list of JudgedTest
+        Of the nominal ensemble; the same members in all, in one order.
 
     Returns
     -------
     xarray.Dataset
-        Along ``test``: ``residual``, ``measured``, ``mean``, ``sd`` and ``limit`` as of `residual_atlas`;
-        ``intensity``, the base's peak acceleration [m/s2]; along ``quantile`` and ``time`` the ensemble's ``slip``,
-        ``rotation``, ``opening`` and ``drift``; along ``curve`` what `curve_scores` gives; ``p_curves``, chance of
-        curves as extreme, all tests at once (`whole_curve_probability`). Attributes ``phase``, ``symmetry``,
-        ``profile``, ``law``, ``joint`` and ``quantity``: the code word.
+        Along ``test`` and ``cell`` what `JudgedTest.bands` gives, the only kind left out; ``score``, the continuous
+        ranked probability score of the ensemble, mean over the times until the horizon [unit of the cell];
+        ``usual``, the median of the members' own, each by the others; ``chance``, the share of the members, the
+        measured test counted with them, whose score is as large [1]; ``worst_time``, at which the measured curve
+        is farthest from the median in units of the spread [s]; and ``p``, chance of the largest score over its usual
+        one in all tests and cells. Attributes ``where``, the place of the largest in words, and ``members``.
+
+    Notes
+    -----
+    Members hold the noise of the sensors, so that a nominal test is one more member and ``chance`` is a rank
+    (1 / (n + 1) at least). The scale of ``p`` is the members' own, so that it needs no correction for many cells.
     """
-    atlases, curves, bands, all_measured, all_simulated = [], [], [], {}, {}
-    names = [str(name) for name in readings["test"].values]
-    for name in names:
-        reading = reading_of(readings, name)
-        members = xr.concat([one[list(HISTORIES)] for one in ensembles[name]], dim="draw", join="outer")
-        members = histories_at(members, reading["time"].to_numpy())
-        members = members.transpose("draw", "time", ...).assign_coords(draw=np.arange(members.sizes["draw"]))
-        members = members.map(_without_dropouts)
-        atlases.append(residual_atlas(reading, members))
-        measured, simulated = joint_curves(reading, name), joint_curves(members, name)
-        curves.append(curve_scores(measured, simulated))
-        all_measured |= {key: one[::_STRIDE] for key, one in measured.items()}
-        all_simulated |= {key: one[:, ::_STRIDE] for key, one in simulated.items()}
-        bands.append(members.quantile(_QUANTILES, dim="draw", skipna=True).astype(np.float32))
-    word = code_word(atlases)
-    found = xr.concat(atlases, dim="test", join="outer", combine_attrs="drop_conflicts")
-    found = found.merge(xr.concat(bands, dim="test", join="outer")).assign(
-        p_curves=whole_curve_probability(all_measured, all_simulated),
-        intensity=("test", [atlas.attrs["intensity"] for atlas in atlases], {"units": "m/s2"}),
-    )
-    scores = xr.concat(curves, dim="curve").rename({"quantile": "reference"})
-    return found.merge(scores).assign_coords(test=names).assign_attrs(vars(word))
-
-
-def where(found):
-    """The place of the largest misfit in words."""
-    if found.attrs["phase"] == "none":
-        return "no cell of the residual atlas is beyond its limit"
-    phase = {
-        "quiet": "before the first onset",
-        "strong": "while shaken strongly",
-        "after": "after the shaking",
-    }
-    sides = {"both": "to both sides", "one-sided": "to one side"}
+    scores, own = zip(*(_scores(test) for test in tests), strict=True)
+    usual = [np.median(one, axis=0) for one in own]
+    largest = np.max([_excess(one, by).max(axis=-1) for one, by in zip(own, usual, strict=True)], axis=0)
+    excess = [_excess(one, by) for one, by in zip(scores, usual, strict=True)]
+    parts = []
+    for test, score, members, by in zip(tests, scores, own, usual, strict=True):
+        parts.append(
+            test.bands().sel(kind=NOMINAL, drop=True).assign(
+                score=("cell", score),
+                usual=("cell", by),
+                chance=("cell", _chance(score, members)),
+                worst_time=("cell", _worst_times(test), {"units": "s"}),
+            )
+        )  # fmt: skip
+    worst = int(np.argmax([one.max() for one in excess]))
+    place = int(excess[worst].argmax())
+    whole = xr.concat(parts, dim="test", join="outer", coords="minimal", compat="override")
+    where = _where(tests[worst], parts[worst].isel(cell=place), excess[worst][place])
     return (
-        f"{found.attrs['quantity']} of {found.attrs['joint']}, {phase[found.attrs['phase']]}, "
-        f"{sides[found.attrs['symmetry']]}"
+        whole.assign_coords(test=[test.name for test in tests])
+        .assign(p=_chance(excess[worst][place], largest))
+        .assign_attrs(where=where, members=len(largest))
     )
 
 
-def _without_dropouts(histories):
-    """Histories, time second, with what a dropout lost filled; what a run that was cut short lacks stays NaN."""
-    values = histories.to_numpy().copy()
-    times = np.arange(values.shape[1])
-    for draw in np.ndindex(values.shape[0], *values.shape[2:]):
-        one = values[(draw[0], slice(None), *draw[1:])]
-        known = np.flatnonzero(np.isfinite(one))
-        if len(known) and len(known) < len(one):
-            end = len(one) if len(one) - 1 - known[-1] <= _LONGEST_DROPOUT else known[-1] + 1
-            one[:end] = np.interp(times[:end], known, one[known])
-    return histories.copy(data=values)
+def _scores(test):
+    """Score of the measured test by cell, and of every member by the others, (n_cells,) and (n_members, n_cells)."""
+    members = test.until_horizon(test.members[NOMINAL].to_numpy())
+    differences = mean_differences(members, members)
+    away = mean_differences(members, test.until_horizon(test.measured.to_numpy())[None])[:, 0]
+    return ensemble_score(away, differences, np.ones((1, len(members))))[0], member_scores(differences)
+
+
+def _excess(score, usual):
+    return np.nan_to_num(score / np.where(usual > 0.0, usual, np.inf))
+
+
+def _chance(score, members):
+    return (1.0 + (members >= score).sum(axis=0)) / (1.0 + len(members))
+
+
+def _worst_times(test):
+    members = test.members[NOMINAL]
+    spread = members.std("run", ddof=1).to_numpy()
+    away = np.abs(test.measured - members.median("run")).to_numpy() / np.where(spread > 0.0, spread, np.inf)
+    away = np.nan_to_num(test.until_horizon(away))
+    return test.measured["time"].to_numpy()[away.argmax(axis=0)]
+
+
+def _where(test, cell, excess):
+    return (
+        f"{cell['quantity'].item()} of {cell['where'].item()} in {test.name}, most at "
+        f"{float(cell['worst_time']):.1f} s: {excess:.1f} times the usual error until {float(cell['horizon']):.1f} s"
+    )

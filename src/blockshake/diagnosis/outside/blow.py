@@ -7,7 +7,7 @@ from blockshake.diagnosis.outside.form import Form, force_entry, with_entry
 from blockshake.forces.motion import WIDTH
 
 _WIDTHS = (0.04, 0.08, 0.16, 0.4)  # s
-_APART = 0.02  # s, between the times tried of the shortest
+_APART = 0.02  # s, between the times tried of blows as short; of longer ones as long as they are
 _SCALE = 0.5  # of the block's weight
 _CLEAR = 3.0  # nats, from which a test counts as struck
 
@@ -51,7 +51,8 @@ def explain_blow(likelihood, points, weight):
 
 def _pulses(point):
     """Rows of all pulses of one test, (n_rows, n_pulses), and their times and widths; widened by the kernel."""
-    times = np.unique(np.round(point.time, 3))
+    # a blow that turns a joint over leaves rows before and after it alone
+    times = np.arange(point.time[0] - _APART, point.time[-1] + _APART, _APART)
     shapes, tried = [], []
     for width in _WIDTHS:
         at = times[:: max(1, round(width / _APART))]

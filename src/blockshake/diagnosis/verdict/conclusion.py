@@ -74,7 +74,7 @@ def _location(place):
 
 
 def _told(decision):
-    """What stands beside the causes, in words."""
+    """Lines on rivals, on forms beside the causes, and on tests that tell nothing."""
     for part in decision.parts:
         names = [one.title for one in part.causes]
         if len(names) > 1:

@@ -5,7 +5,6 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from blockshake.diagnosis.libraries.null_model import MODELS
 from blockshake.files import load_json, write_json
 from blockshake.sources import script_sources, source_digest
 from blockshake.validation import Count, Finite, Fraction, Strict, validated
@@ -118,7 +117,7 @@ class TrackRecord(Strict):
     version: Literal[VERSION] = VERSION
     date: str = Field(description="day of the scoring, year-month-day")
     commit: str = Field(description="of the sources that were tried")
-    procedure: str = Field(description="digest of the sources that simulated the libraries and decided")
+    procedure: str = Field(description="digest of the sources that decided")
     machine: str
     efforts: dict[str, str] = Field(description="by structure: effort of the diagnosis of its cases")
     seeds: str = Field(description="digest of the list of seeds, fixed before the run")
@@ -146,9 +145,8 @@ class TrackRecord(Strict):
 
 
 def procedure_digest():
-    """Digest of the sources that simulate libraries and decide today; a record of another is of an earlier program."""
-    libraries = script_sources("simulate_library", *MODELS)
-    return source_digest(*libraries, *script_sources("calibrate_decision"), *script_sources("decide"))
+    """Digest of the sources that decide today; a record of another is of an earlier program."""
+    return source_digest(*script_sources("decide"))
 
 
 def load_track_record(path):

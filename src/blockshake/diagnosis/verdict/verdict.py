@@ -27,6 +27,7 @@ class Gain(Strict):
     recalibrated: Contrast
     nominal: Contrast
     discrepancy: Contrast
+    placebo: Contrast | None = Field(None, description="none where the cause has no other place")
 
 
 class MeasuredGain(Strict):

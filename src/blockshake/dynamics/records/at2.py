@@ -5,7 +5,7 @@ import re
 from blockshake.dynamics.records.header_checks import HeaderChecks
 from blockshake.dynamics.records.record import SPECTRUM, Record, free_values, positive_number
 from blockshake.errors import InputError
-from blockshake.tables.units import leading_unit, unit_size
+from blockshake.tables.units import known_unit, leading_unit, unit_size
 
 _COUNT = re.compile(r"NPTS\s*=\s*([^\s,;]+)", re.IGNORECASE)
 _STEP = re.compile(
@@ -13,7 +13,8 @@ _STEP = re.compile(
 )
 _TRAILING = re.compile(r"^\s*([^\s,]+)[\s,]+([^\s,]+)[\s,]+NPTS\s*,\s*DT", re.IGNORECASE)
 _LENGTH = re.compile(r"\bDUR(?:ATION)?\s*[=:]\s*([^\s,;]+)", re.IGNORECASE)
-_RATE = re.compile(r"\bFS\s*=\s*([^\s,;]+)", re.IGNORECASE)
+_RATE = re.compile(r"\b(?:FS|RATE)\s*[=:]\s*([^\s,;]+)|([^\s,;]+)\s*SPS\b", re.IGNORECASE)
+_PEAK = re.compile(r"\b(?:PGA|PEAK)\s*[=:]\s*([-+.\d]+(?:E[-+]?\d+)?)\s*([^\s,;]*)", re.IGNORECASE)
 _UNIT = re.compile(r"ACCEL.*?\bUNITS?\b\s*(?:OF|IN|[:=])?\s*(.*)", re.IGNORECASE)
 _HEADER_LINES = 4
 
@@ -63,7 +64,10 @@ def read_at2(text, where):
     if length := _LENGTH.search(line):
         checks.length("DURATION", length.group(1))
     if rate := _RATE.search(line):
-        checks.step("FS", repr(1.0 / positive_number(rate.group(1), where, "FS")))
+        checks.step("FS", repr(1.0 / positive_number(rate.group(1) or rate.group(2), where, "FS")))
+    if peak := _PEAK.search(f"{kind}, {line}"):
+        of_peak = known_unit(peak.group(2))
+        checks.peak("PGA", peak.group(1), float(of_peak[1]) if of_peak else unit)
     return [Record(values, step, "PEER NGA AT2", checks.made, metadata=metadata)]
 
 

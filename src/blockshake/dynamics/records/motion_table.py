@@ -12,12 +12,28 @@ from blockshake.errors import InputError
 from blockshake.tables.numbers import plain_number
 from blockshake.tables.series_file import read_series
 from blockshake.tables.table_file import read_table
-from blockshake.tables.units import kind_of_unit, known_unit, unit_size
+from blockshake.tables.units import kind_of_unit, known_unit, unit_of_name, unit_size
 
-# of the text above values without times
-_STEP = re.compile(r"\b(?:dt|time step)\s*[=:]?\s*([^\s,;]+)", re.IGNORECASE)
-_COUNT = re.compile(r"\bnpts\s*[=:]?\s*([^\s,;]+)", re.IGNORECASE)
+# in the text above values without times
+_NUMBER = r"((?:\d+\.?\d*|\.\d+)(?:[ed][-+]?\d+)?)"
+_STEP = re.compile(
+    r"\b(?:dt|delta[ _-]?t|(?:time|sampl\w*)[ _-]?(?:step|interval|period))\b\s*(?:[\[(](\w+)[\])])?\s*[=:]?\s*"
+    rf"{_NUMBER}\s*([a-z]*)",
+    re.IGNORECASE,
+)
+_RATE = re.compile(
+    rf"(?:\bsampl\w*[ _-]*(?:rate|freq\w*)|\babtast\w*|\bfs\b)[^\n\d]*?{_NUMBER}|^\s*{_NUMBER}\s*(?:hz|sps)\s*$",
+    re.IGNORECASE | re.MULTILINE,
+)
+_COUNT = re.compile(
+    r"\b(?:npts|(?:number|no\.?) of (?:points|values|samples|data))\s*[=:]?\s*(\d+)|"
+    r"\b(\d+)\s+(?:points|samples)\b(?!\s*(?:/|per|a|each)\b)",
+    re.IGNORECASE,
+)
+_COUNT_AND_STEP = re.compile(rf"(\d+)[\s,]+{_NUMBER}[\s,]+npts\s*,\s*dt", re.IGNORECASE)
 _UNIT = re.compile(r"\bunits?\s*(?:of|in|[=:])\s*([^\s,;]+)", re.IGNORECASE)
+_OF_VALUES = re.compile(r"acc|vel|disp|\bin\b|^\S+$", re.IGNORECASE)  # in a line that may end with their unit
+_ROUNDING = 1e-3  # of a stated time step, such as 1/150 s
 
 
 def load_motion_table(source, layout, time, columns, unit, time_unit="s", baseline=AUTO, time_step=None):
@@ -62,6 +78,8 @@ def load_motion_table(source, layout, time, columns, unit, time_unit="s", baseli
         table = read_table(source, layout)
         where = table.source
         read = {channel: _finite(table, name, *reversed(given)) for channel, name in columns.items()}
+        if time_step is not None:
+            _check_untimed(table, names, time_step)
     else:
         where = str(source)
         read, width = _series(source, layout, time_step, given)
@@ -94,17 +112,47 @@ def _finite(table, name, size, kind):
     return values
 
 
+def _check_untimed(table, columns, time_step):
+    """Refuse another column that counts as times do, in other steps than the given one; numbers of rows may."""
+    for name in table.names:
+        try:
+            time = None if name in columns else table.column(name)
+        except InputError:  # words
+            time = None
+        if time is None or len(time) < 2 or not (np.diff(time) > 0.0).all():
+            continue
+        if not np.isclose((time[-1] - time[0]) / (len(time) - 1), [1.0, time_step], rtol=_ROUNDING).any():
+            wrong = f"expected a table without times; '{name}' counts as they do: --time and --time-unit"
+            raise InputError("--time-step", f"{time_step:g}", wrong)
+
+
 def _series(source, layout, time_step, given):
     """Values without times in SI as x, and their number a line; the text above may not contradict what was given."""
     values, header, width = read_series(source, layout)
-    for pattern, actual, name in (
-        (_STEP, time_step, "--time-step"),
-        (_COUNT, len(values), "number of values"),
+    text = header.replace(layout.decimal, ".")
+    steps = [_seconds(number, one or two) for one, number, two in _STEP.findall(text)]
+    steps += [1.0 / (_seconds(one or two, "") or np.inf) for one, two in _RATE.findall(text)]
+    counts = [float(one or two) for one, two in _COUNT.findall(text)]
+    for count, step in _COUNT_AND_STEP.findall(text):
+        counts, steps = [*counts, float(count)], [*steps, _seconds(step, "")]
+    for stated, actual, name in (
+        (steps, time_step, "--time-step"),
+        (counts, len(values), "number of values"),
     ):
-        stated = pattern.search(header)
-        if stated and plain_number(stated.group(1)) and float(plain_number(stated.group(1))) != actual:
-            raise InputError(source, name, f"expected {stated.group(1)}, as the file says, found {actual:g}")
-    for stated in _UNIT.findall(header):
-        if known_unit(stated) not in (None, given):
+        for one in stated:
+            if abs(one - actual) > _ROUNDING * actual * (name == "--time-step"):
+                raise InputError(source, name, f"expected {one:g}, as the file says, found {actual:g}")
+    named = [(stated, known_unit(stated)) for stated in _UNIT.findall(header)]
+    for line in header.split("\n"):
+        own = given[0] if _OF_VALUES.search(line) else None
+        named.append((line, unit_of_name(line.rstrip(" :.,;"), own)))
+    for stated, unit in named:
+        if unit and unit != given and unit[0] in ("acceleration", given[0]):
             raise InputError(source, "--unit", f"expected '{stated}', as the file says")
     return {"x": float(given[1]) * values}, width
+
+
+def _seconds(number, unit):
+    """A text's number in a unit of time, s where it is none [s]."""
+    kind, size = known_unit(unit) or ("", 1)
+    return float(plain_number(number)) * (float(size) if kind == "time" else 1.0)

@@ -17,7 +17,7 @@ EFFECT = Effect(
     parameters=(
         EffectParameter("lag", "s", "of the optical clock behind the accelerometers'", 0.0, -0.03, 0.03, 0.01),
     ),
-    signature=Signature("quiet", "symmetric", "all"),
+    signature=Signature("quiet", "symmetric"),
     confused_with=("joint-compliance",),
     told_apart_by="phase between a marker and an accelerometer on the same body",
     places=nowhere,

@@ -17,7 +17,7 @@ EFFECT = Effect(
     equation="reading = displacement of the point (0, 0, e) above the stated one, body frame",
     source="rigid-body kinematics",
     parameters=(EffectParameter("height", "m", "of the marker above its stated place", 0.0, -0.1, 0.1, 0.05),),
-    signature=Signature("onset", "symmetric", "marker"),
+    signature=Signature("onset", "symmetric"),
     confused_with=("sensor-gain", "eccentricity"),
     told_apart_by="rigid fit of at least four markers of the block while it rotates",
     places=markers,

@@ -18,7 +18,7 @@ EFFECT = Effect(
     equation="reading = (1 + g) displacement",
     source="scale error of a camera, by definition",
     parameters=(EffectParameter("error", "1", "relative error of the gain", 0.0, -0.1, 0.1, 0.03),),
-    signature=Signature("quiet", "symmetric", "marker"),
+    signature=Signature("quiet", "symmetric"),
     confused_with=("marker-offset",),
     told_apart_by="rigid fit of at least four markers of the block; a test in which the blocks do not move",
     places=markers,

@@ -212,7 +212,7 @@ def equilibrium_rows(frames, states, motion, required, free):
     chosen = chosen[chosen % max(1, round(_EVERY / step)) == 0]
     carried = np.concatenate(
         [_carried(frames, states, face)[chosen][:, free] for face in range(len(frames.faces))], axis=-1
-    ).reshape(len(chosen), 6 * len(free), -1)
+    ).reshape(len(chosen), 6 * len(free), 6 * len(frames.faces))
     matrix = np.concatenate([carried, _unread(required.information[chosen][:, free])], axis=-1)
     left, sizes, _ = np.linalg.svd(matrix, full_matrices=False)
     place, column = np.nonzero(sizes <= _CARRIED * sizes[:, :1])

@@ -7,9 +7,9 @@ import numpy as np
 import xarray as xr
 
 from blockshake.forces.faces import find_faces
-from blockshake.forces.joint_forces import from_rest
 from blockshake.forces.joint_motion import JointMotion, joint_motion
-from blockshake.forces.motion import WIDTH, Motion, smooth_motion
+from blockshake.forces.motion import Motion, is_short, smooth_motion
+from blockshake.forces.quiet_start import counted_from_rest
 from blockshake.forces.required import RequiredWrenches, required_wrenches
 from blockshake.forces.seen.equilibrium_rows import (
     ContactForces,
@@ -82,6 +82,15 @@ class SeenTest:
         return bearing_points(self.frames, self.states)
 
 
+def why_unseen(readings, structure):
+    """Reason why a test cannot be seen, or None."""
+    if is_short(readings):
+        return "the test is too short"
+    if any(solid.polyhedron is None for solid in structure.solids.values()):
+        return "a shape is not convex"
+    return None if structure.touching.any() else "no bodies touch"
+
+
 def see_test(name, readings, structure, sensors):
     """`SeenTest` of readings.
 
@@ -97,12 +106,13 @@ def see_test(name, readings, structure, sensors):
     -------
     SeenTest
     """
-    readings, until = from_rest(readings, structure, sensors)
-    motion = smooth_motion(readings, structure, sensors, _STEP, WIDTH)
+    sensors = sensors.not_noiseless()
+    readings, until = counted_from_rest(readings, structure, sensors)
+    motion = smooth_motion(readings, structure, sensors, _STEP)
     still = motion.time <= until
     faces = find_faces(structure)
     required = required_wrenches(structure, motion)
-    joints = joint_motion(structure, faces, motion, still, WIDTH)
+    joints = joint_motion(structure, faces, motion, still)
     frames, free = face_frames(structure, faces, motion), np.flatnonzero(~structure.driven)
     forces = contact_forces(frames, required, free)
     states = face_states(structure, faces, motion, joints, still)

@@ -26,6 +26,7 @@ def _not_zero(value):
     return value
 
 
+_LEAST_NOISE = {"marker_noise": 1e-6, "accelerometer_noise": 1e-4, "transducer_noise": 1e-6}  # m, m/s2, m
 Scale = Annotated[Finite, AfterValidator(_not_zero)]
 
 
@@ -41,6 +42,12 @@ class Sensors(Strict):
         description="of a displacement transducer's reading [m]",
         exclude_if=lambda noise: noise == transducers.NOISE,  # sensors without it keep their digest
     )
+
+    def not_noiseless(self):
+        """The same with at least the noise of the best instruments: a stated 0 says that there is none to speak of."""
+        return self.model_copy(
+            update={name: max(getattr(self, name), least) for name, least in _LEAST_NOISE.items()}
+        )
 
 
 class MeasuredTest(Strict):
@@ -119,8 +126,11 @@ def load_campaign(folder):
     )
 
 
-def load_test(campaign, name):
-    """Readings of one test, checked against the campaign's structure as by `read_test`, times as of `from_command`."""
-    entry, structure = campaign.tests[name], load_structure(campaign.structure)
+def load_test(campaign, name, structure=None):
+    """Readings of one test, checked against the campaign's structure as by `read_test`, times as of `from_command`.
+
+    ``structure`` is the campaign's, where it is loaded already.
+    """
+    entry, structure = campaign.tests[name], load_structure(structure or campaign.structure)
     test = on_one_clock(read_test(campaign.folder / entry.file, structure), structure)
     return from_command(test, structure, commanded_motion(campaign, entry))

@@ -13,6 +13,7 @@ _SPAN = 0.06  # s, over which velocities are means: half a period of 8 Hz, some 
 _EVEN = (
     1e-5  # s, by which an even clock may err as written: in five digits, in 32 bits, or in seconds since 1970
 )
+_GAP = 1.5  # usual steps, beyond which a clock lacks a row
 _DIGITS = 9  # of a time after the decimal point: nanoseconds
 
 
@@ -75,12 +76,24 @@ def command_start(time, moved, command):
     return Start(float(start), float(exactly(start)))
 
 
+def missing_rows(time):
+    """Number of rows that a clock (n_times,) lacks between each one and the next, int64 (n_times - 1,)."""
+    steps = np.diff(time)
+    rows = steps / np.median(steps)
+    return np.where(rows > _GAP, np.rint(rows) - 1, 0).astype(np.int64)
+
+
 def from_first_reading(test):
     """The test with all its times counted from the markers' first reading, whatever its clock showed then.
 
-    A clock that is even but for the digits it was written with becomes even, at the rate of fewest decimals.
+    Rows that a clock lacks become gaps of all its readings. A clock that is even but for the digits it was written with
+    becomes even, at the rate of fewest decimals.
     """
     zero = float(test["time"][0])
+    for name in _clocks(test):
+        time = test[name].to_numpy()
+        rows = np.concatenate([[0], np.cumsum(missing_rows(time) + 1)])
+        test = test.reindex({name: np.interp(np.arange(rows[-1] + 1), rows, time)})
     return _with_clocks(test, lambda time: _even(time - zero))
 
 

@@ -6,12 +6,13 @@ import numpy as np
 
 from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES
-from blockshake.measurement.campaigns.command_clock import from_first_reading
+from blockshake.measurement.campaigns.command_clock import from_first_reading, missing_rows
 from blockshake.measurement.campaigns.faulty_readings import without_faulty
 from blockshake.measurement.campaigns.initial_places import check_initial_places
 from blockshake.measurement.campaigns.reading_files import read_netcdf, read_tables
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.transducers import transducer_names
+from blockshake.tables.numbers import missing_code
 
 _FARTHEST = 20.0  # m; no table moves so far, a file in millimetres does
 # Readings a second. Shaking has 0.5 to 50 Hz, most of it below 10 Hz, which takes 20 readings a second. 10 kHz are
@@ -95,6 +96,13 @@ def _check_times(time, path, name):
             name,
             f"expected seconds, with {_RATES[0]:g} to {_RATES[1]:g} readings in each, not {rate:.3g}",
         )
+    if missing_rows(time).sum() > len(time):
+        place = int(steps.argmax())
+        raise InputError(
+            path,
+            name,
+            f"expected one record; more rows are missing than there are, {steps[place]:.4g} s after {time[place]:g} s",
+        )
 
 
 def _ordered_axes(test, path):
@@ -153,8 +161,14 @@ def _check_channels(test, structure, path):
 
 def _check_readings(test, path):
     for name, variable in test.data_vars.items():
-        if np.isinf(variable.to_numpy()).any():
+        values = variable.to_numpy()
+        if np.isinf(values).any():
             raise InputError(path, name, "expected finite readings, and nothing or NaN in a gap")
+        for column in values.reshape(len(values), -1).T if variable.dims[0] in ("time", "time_acc") else ():
+            coded = missing_code(column)
+            if coded is not None:
+                wrong = f"expected readings, and NaN in a gap; {column[coded]:g} looks like a code for none"
+                raise InputError(path, name, wrong)
     displacement = test["marker_displacement"]
     silent = displacement.isnull().all(("time", "axis")).to_numpy()
     if silent.any():

@@ -36,6 +36,7 @@ from blockshake.measurement.sensors.transducers import transducer_names
 _QUIET = 0.5  # s at most that are taken as the quiet start
 _QUIET_PART = 0.02  # of the commanded peak displacement: the record is quiet until the command reaches it
 _FIRST = 10  # readings whose mean is the start
+_SILENT = 10  # readings in a row that all are gaps
 _START = 10.0  # times the noise, within which displacements start: the first reading's own is in all others
 
 
@@ -136,6 +137,13 @@ class _Described:
             )
         if np.ptp(np.diff(time)) > 0.01 * np.median(np.diff(time)):
             self.remarks.append("the marker times are not even")
+        for name, own in (("slab", self.on_slab), ("block", ~self.on_slab)):
+            self.remarks += _silence(
+                f"marker of a {name}", time, self.readings[:, own].reshape(len(time), -1)
+            )
+        if "accelerometer" in test:
+            read = test["accelerometer"].transpose("time_acc", "channel").to_numpy()
+            self.remarks += _silence("accelerometer", test["time_acc"].to_numpy(), read)
 
     def _quiet_end(self):
         """Time before which nothing moves, by the command or, where that is not at hand, by habit [s]."""
@@ -236,6 +244,17 @@ class _Described:
                 self.slab_noise,
                 self.path,
             )
+
+
+def _silence(name, time, readings):
+    """Remark on the longest gap of all readings (n_times, n_readings) of an instrument at once."""
+    read = np.flatnonzero(np.isfinite(readings).any(axis=1))
+    rows = np.diff(read)
+    if not len(rows) or rows.max() <= _SILENT:
+        return []
+    last = read[int(rows.argmax())]
+    gap = time[last + rows.max()] - time[last]
+    return [f"no {name} reads anything for {gap:.3g} s after {time[last]:.4g} s, the longest such gap"]
 
 
 def _unread_words(unread, n_markers):

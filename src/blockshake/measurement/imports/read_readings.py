@@ -5,12 +5,11 @@ import xarray as xr
 
 from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES
+from blockshake.measurement.campaigns.command_clock import missing_rows
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.transducers import transducer_names
 from blockshake.tables.table_file import read_table
 from blockshake.tables.units import unit_size
-
-_GAP = 1.5  # usual steps, beyond which the clock lacks a row
 
 
 def read_readings(test, asked, structure, where):
@@ -100,7 +99,7 @@ def _readings(source, names, asked, kind, where):
         if np.isnan(read).all():
             raise InputError(table.source, f"column '{column.column}'", "expected readings; all are missing")
         columns.append(read + 0.0)  # no minus zero
-    return _with_rows(table, time, np.column_stack(columns), asked)
+    return time, np.column_stack(columns)
 
 
 def _clock(table, asked, where):
@@ -117,29 +116,16 @@ def _clock(table, asked, where):
             table.source, f"line {table.lines[back[0] + 1]}, {name}",
             f"expected times that increase; {after:g} s follows {before:g} s",
         )  # fmt: skip
-    return time
-
-
-def _with_rows(table, time, readings, asked):
-    """The same with empty rows where the clock lacks some, if that is asked for."""
-    steps = np.diff(time)
-    usual = float(np.median(steps)) if len(steps) else 0.0
-    wide = np.flatnonzero(steps > _GAP * usual)
-    if not len(wide):
-        return time, readings
-    if not asked.fill_gaps:
+    missing = missing_rows(time) if len(time) > 1 else np.zeros(0)
+    if missing.any() and not asked.fill_gaps:
+        row, steps = int(np.argmax(missing > 0)), np.diff(time)
         raise InputError(
-            table.source, f"line {table.lines[wide[0] + 1]}, {asked.time.column}",
-            f"expected an even clock; {steps[wide[0]]:.4g} s after {time[wide[0]]:g} s lie between two rows "
-            f"{usual:.4g} s apart elsewhere, {len(wide)} such gaps in all: fill_gaps makes them gaps of the readings",
+            table.source, f"line {table.lines[row + 1]}, {name}",
+            f"expected an even clock; {steps[row]:.4g} s after {time[row]:g} s lie between two rows "
+            f"{np.median(steps):.4g} s apart elsewhere, {np.count_nonzero(missing)} such gaps in all: fill_gaps makes "
+            "them gaps of the readings",
         )  # fmt: skip
-    counts = np.ones(len(time), dtype=int)
-    counts[wide] = np.rint(steps[wide] / usual).astype(int)
-    rows = np.concatenate([[0], np.cumsum(counts)[:-1]])
-    places = np.arange(rows[-1] + 1)
-    filled = np.full((len(places), readings.shape[1]), np.nan)
-    filled[rows] = readings
-    return np.interp(places, rows, time), filled
+    return time
 
 
 def _rest(time, column, length, source, key):

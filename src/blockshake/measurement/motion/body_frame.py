@@ -6,7 +6,10 @@ import numpy as np
 from scipy.ndimage import median_filter
 from scipy.spatial.transform import Rotation
 
-_FEWEST = 3
+from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.sensors.markers import whole_markers
+
+_FEWEST = 3  # markers of a body, whose residual shows anything
 _ITERATIONS = 4  # Gauss-Newton converges quadratically: enough for 0.3 rad
 ON_LINE = 0.02  # lever of the markers about an axis, over the largest: no turn about it can be read
 _WINDOW = 9  # readings in which an outlier must stand alone
@@ -33,6 +36,29 @@ class BodyFrame:
     rotation: np.ndarray
     residual: np.ndarray
     projector: np.ndarray
+
+
+def frames_of_bodies(test, structure):
+    """Columns among the markers, and `BodyFrame`, of every body with three markers that measure all directions.
+
+    Parameters
+    ----------
+    test : xarray.Dataset
+        As in a campaign's test file.
+    structure : Structure
+    """
+    read, whole = [str(name) for name in test["marker"].values], whole_markers(test)
+    displacement = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()
+    starts = rotation_matrices(structure.orientation)
+    for body, position, start in zip(structure.body_names, structure.position, starts, strict=True):
+        markers = [
+            marker for marker in structure.file.markers if marker.body == body and marker.name in whole
+        ]
+        if len(markers) < _FEWEST:
+            continue
+        points, columns = structure.arms(markers), [read.index(marker.name) for marker in markers]
+        readings = position + points @ start.T + displacement[:, columns]
+        yield columns, see_from_body(points, readings, position, start)
 
 
 def see_from_body(points, readings, start_position, start_rotation):
@@ -75,10 +101,10 @@ def see_from_body(points, readings, start_position, start_rotation):
         turn = np.tile(start_rotation, (len(times), 1, 1))
         seen = readings[np.ix_(times, own)]
         for step in range(_ITERATIONS + 1):
-            left = np.einsum("tji,tmj->tmi", turn, seen - x[:, None]) - arms
+            left = (seen - x[:, None]) @ turn - arms
             if step < _ITERATIONS:
                 change = left.reshape(len(times), -1) @ inverse.T
-                x = x + np.einsum("tij,tj->ti", turn, change[:, :3])
+                x = x + (turn @ change[:, :3, None])[..., 0]
                 turn = turn @ Rotation.from_rotvec(change[:, 3:]).as_matrix()
         position[times], rotation[times] = x - turn @ middle, turn
         residual[np.ix_(times, own)] = left

@@ -10,7 +10,7 @@ _STILL = 5.0  # standard deviations of the base's displacement that it stays wit
 _LONGEST_STILL = 1.0  # s
 
 
-def joint_histories(test, structure, sensors, base):
+def joint_histories(test, structure, sensors, base=None):
     """Slip, opening and rotation of every joint, the motion of the base and of every body, with their noise.
 
     Parameters
@@ -46,8 +46,9 @@ def joint_histories(test, structure, sensors, base):
     With markers on a line a yaw of the table shows as a slip: it cannot be told from one.
     """
     time = test["time"].to_numpy()
-    still = _still_times(time, base, sensors.marker_noise)
-    poses = body_poses(_from_rest(test, still), structure, sensors.marker_noise)
+    still = np.ones(len(time), dtype=bool) if base is None else _still_times(time, base, sensors.marker_noise)
+    counted = test if base is None else _from_rest(test, still)
+    poses = body_poses(counted, structure, sensors.marker_noise)
     driven = driven_body(structure, poses)
     # joint_coordinates counts from its first time: give it the mean pose of the structure file
     position = np.concatenate([structure.position[None], poses.position])
@@ -69,10 +70,10 @@ def joint_histories(test, structure, sensors, base):
     for name, told in (("rotation", known_joints), ("body_rotation", whole & whole[driven])):
         histories[name][..., [0, 2]] = np.where(told[:, None], histories[name][..., [0, 2]], np.nan)
     _leave_unmeasured(histories, poses.told, driven, pairs)
-    for name in ("displacement", "velocity", "acceleration"):
+    for name in ("displacement", "velocity", "acceleration") if base is not None else ():
         histories[name] = ("time", getattr(base, name)[: len(time)])
     histories = histories.assign(_noise(structure, poses, driven, 1.0 + 1.0 / max(still.sum(), 1)))
-    if "accelerometer" in test:
+    if base is not None and "accelerometer" in test:
         force = test["accelerometer"].transpose("time_acc", "channel")
         before = test["time_acc"].to_numpy() <= time[still][-1] + 1e-9
         carriers = {

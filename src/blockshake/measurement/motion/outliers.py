@@ -1,12 +1,6 @@
 """Readings that stand alone from their neighbours, which no motion of a body explains."""
 
-import numpy as np
-
-from blockshake.geometry.rotations import rotation_matrices
-from blockshake.measurement.motion.body_frame import outlying, see_from_body
-from blockshake.measurement.sensors.markers import whole_markers
-
-_FEWEST = 3  # markers of a body, that one of them can be told to be wrong
+from blockshake.measurement.motion.body_frame import frames_of_bodies, outlying
 
 
 def without_outliers(test, structure):
@@ -22,18 +16,9 @@ def without_outliers(test, structure):
     -------
     xarray.Dataset
     """
-    read, whole = [str(name) for name in test["marker"].values], whole_markers(test)
     displacement = test["marker_displacement"].transpose("time", "marker", "axis")
     values = displacement.to_numpy().copy()
-    for index, body in enumerate(structure.body_names):
-        own = [marker for marker in structure.file.markers if marker.body == body and marker.name in whole]
-        if len(own) < _FEWEST:
-            continue
-        columns = [read.index(marker.name) for marker in own]
-        points = structure.arms(own)
-        start = rotation_matrices(structure.orientation[index])
-        places = structure.position[index] + points @ start.T
-        frame = see_from_body(points, places + values[:, columns], structure.position[index], start)
+    for columns, frame in frames_of_bodies(test, structure):
         for column, wrong in zip(columns, outlying(frame.residual).T, strict=True):
-            values[wrong, column] = np.nan
+            values[wrong, column] = float("nan")
     return test.assign(marker_displacement=displacement.copy(data=values))

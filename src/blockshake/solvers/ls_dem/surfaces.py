@@ -14,6 +14,7 @@ from blockshake.jit import kernel
 
 # Columns of ``Surfaces.lattice``
 FIRST, ORIGIN_X, ORIGIN_Y, ORIGIN_Z, COUNT_X, COUNT_Y, COUNT_Z, INVERSE_SPACING, N_LATTICE = range(9)
+_COARSEST = 4.0 / 3.0  # cell of a lattice over volume per surface: two thirds of a plate's thickness
 _MOST_POINTS = 5e7  # of a lattice: 400 MB
 _MOST_NODES = 1e6  # of a shape: a step then takes a second
 _MOST_PLANES = 64  # of a convex mesh whose distance is found by them
@@ -184,13 +185,21 @@ def check_shapes(structure, parameters):
 
 
 def _check_grid(structure, name, parameters):
-    """Refuse a hollow face, and a lattice of too many points."""
+    """Refuse a hollow face, and a lattice that is too coarse or of too many points."""
     spacing = parameters.grid_spacing
     if structure.file.shapes[name].hollow:
         raise InputError(
             structure.source,
             f"shapes.{name}.hollow",
             f"expected the exact distance with hollow faces: ls_dem.level_set is {parameters.level_set}",
+        )
+    properties = structure.solids[name].properties
+    widest = _COARSEST * properties.volume / properties.area
+    if spacing > widest:
+        raise InputError(
+            structure.source,
+            f"shapes.{name}",
+            f"expected a ls_dem.grid_spacing of at most {widest:.2g} m, not {spacing:g} m: others fall through",
         )
     if np.prod(np.ptp(structure.solids[name].vertices, axis=0) / spacing + 4.0) > _MOST_POINTS:
         raise InputError(

@@ -109,17 +109,28 @@ def mean_width(differences, weights):
 
 
 def ensemble_score(away, differences, weights):
-    """Continuous ranked probability score of an ensemble against a curve, fair to few members: float64 (n_draws,).
+    """Continuous ranked probability score of an ensemble against curves, fair to few members: float64 (n_draws, ...).
 
-    ``away`` (n,): mean differences of the members from the curve; the others as of `mean_width`. The score of
+    ``away`` (n, ...): mean differences of the members from each curve; the others as of `mean_width`. The score of
     `blockshake.study.ensembles.scores.crps`, mean over the times.
     """
-    return weights @ away / weights.sum(axis=1) - 0.5 * mean_width(differences, weights)
+    total = weights.sum(axis=1).reshape(-1, *[1] * (away.ndim - 1))
+    return weights @ away / total - 0.5 * mean_width(differences, weights)
 
 
-def limits_of(drawn):
-    """Bootstrap interval of 95 % of values along the first axis: float64 array, shape (2, ...)."""
-    tail = 0.5 - 0.5 * CONFIDENCE
+def member_scores(differences):
+    """Score of every member by the others, as of `ensemble_score`: float64 (n, ...); their mean is half the width.
+
+    ``differences`` as of `mean_width`, of three members at least.
+    """
+    count, away = len(differences), differences.sum(axis=1)
+    pairs = 0.5 * away.sum(axis=0)
+    return away / (count - 1) - (pairs - away) / ((count - 1) * (count - 2))
+
+
+def limits_of(drawn, confidence=CONFIDENCE):
+    """Bootstrap interval of values along the first axis: float64 array, shape (2, ...)."""
+    tail = 0.5 - 0.5 * confidence
     return sample_quantiles(drawn, (tail, 1.0 - tail))
 
 

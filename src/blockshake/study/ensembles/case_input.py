@@ -16,6 +16,7 @@ from blockshake.measurement.sensors.markers import driven_marker, unread_directi
 from blockshake.store import load_made
 
 MEASURED, COMMANDED = "measured", "commanded"
+_UNKNOWN, _GAP = 0.1, 10.0  # of the slab's range and of the usual error: a larger error is that of a gap
 _SHORT = 0.05  # s, by which a record may end before the simulated window
 
 
@@ -40,7 +41,8 @@ def measured_input(case, named):
     Raises
     ------
     InputError
-        A record that ends before the simulated window, where it is the input.
+        A record that ends before the simulated window, or with a gap in which the slab's motion is lost, where it is
+        the input.
     """
     campaign = load_campaign(named["campaign"])
     test = load_test(campaign, named["test"])
@@ -49,6 +51,7 @@ def measured_input(case, named):
     length = base.attrs["end"] - base.attrs["start"]
     if case["input"] == MEASURED:
         check_record(length, case["duration"], named["test"], "duration")
+        _check_known(base, case["duration"], named["test"])
     base.attrs |= {"test": named["test"], "synthetic": int(test.attrs.get("synthetic", 0))}
     base.attrs |= dict(zip(("gain", "departure"), _against(base, command, case["duration"]), strict=True))
     return base
@@ -66,6 +69,21 @@ def check_record(length, duration, where, key):
             where,
             key,
             f"expected at most {length:.4g} s, the record of the slab's motion, or input: {COMMANDED}",
+        )
+
+
+def _check_known(base, duration, where):
+    """Refuse a window of which the slab's displacement along x is not known, in a gap of its readings."""
+    since_start = base["time"] - base.attrs["start"]
+    slab = base.sel(channel="x").isel(time=np.flatnonzero((since_start >= 0.0) & (since_start <= duration)))
+    error, moved = slab["displacement_error"].to_numpy(), slab["displacement"].to_numpy()
+    worst = int(error.argmax())
+    if error[worst] > max(_UNKNOWN * np.ptp(moved), _GAP * np.median(error)):
+        raise InputError(
+            where,
+            "marker_displacement",
+            f"expected readings of the slab along x without a long gap, or input: {COMMANDED}; its displacement is "
+            f"known to {1e3 * error[worst]:.3g} mm alone at {float(slab['time'][worst]):.4g} s",
         )
 
 

@@ -1,0 +1,68 @@
+"""A campaign from its files to the tests as the sensors show them: every file is read once."""
+
+from typing import NamedTuple
+
+from blockshake.errors import InputError
+from blockshake.forces.seen.seen_test import see_test, why_unseen
+from blockshake.measurement.campaigns.open_readings import read_open_tests, read_sealed_tests
+from blockshake.measurement.motion.outliers import without_outliers
+from blockshake.parity.correction import judged_readings
+from blockshake.parity.parity import Parity, campaign_parity
+
+
+class SeenCampaign(NamedTuple):
+    """Tests of a campaign as they are judged.
+
+    Attributes
+    ----------
+    parity : Parity
+        Findings on the sensors, falls of blocks, and gaps.
+    tests : list of SeenTest
+        Faults of sensors and outliers taken out, until a block falls.
+    unseen : dict of str to str
+        Reason why no forces can be read of a test, by its name.
+    """
+
+    parity: Parity
+    tests: list
+    unseen: dict
+
+
+def see_campaign(campaign, without=()):
+    """`SeenCampaign` of the open tests.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    without : sequence of str
+        Sensors' effects that are left out, as if nobody had thought of them.
+
+    Raises
+    ------
+    InputError
+        No open test, or a file that `load_test` refuses.
+    """
+    names = [test.name for test in campaign.tests.values() if test.role != "sealed"]
+    if not names:
+        expected = "expected a test with the role fit or select, found none"
+        raise InputError(campaign.folder / "campaign.yaml", "tests", expected)
+    return _seen(campaign, read_open_tests(campaign, names), without)
+
+
+def see_sealed(campaign):
+    """`SeenCampaign` of the sealed tests: for the gain alone, once all is decided."""
+    return _seen(campaign, read_sealed_tests(campaign), ())
+
+
+def _seen(campaign, readings, without):
+    structure, sensors = readings.structure, campaign.sensors
+    parity = campaign_parity(readings, sensors, without)
+    tests, unseen = [], {}
+    for name, test in readings.tests.items():
+        judged = judged_readings(test, name, structure, parity.findings)
+        reason = why_unseen(judged, structure)
+        if reason:
+            unseen[name] = reason
+        else:
+            tests.append(see_test(name, without_outliers(judged, structure), structure, sensors))
+    return SeenCampaign(parity, tests, unseen)

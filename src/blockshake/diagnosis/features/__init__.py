@@ -1,1 +1,0 @@
-"""Features of a test, each with its error."""

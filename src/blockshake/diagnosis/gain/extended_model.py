@@ -1,0 +1,152 @@
+"""Members of the recalibrated, the extended and the placebo model, by one solver."""
+
+from dataclasses import dataclass
+
+import xarray as xr
+
+from blockshake.diagnosis.answer.extension import can_extend, extended_experiment
+from blockshake.diagnosis.gain.recalibration import features_of, posterior_draws
+from blockshake.diagnosis.misfit.judged_test import judged_test
+from blockshake.diagnosis.nominal.ensemble import (
+    EXTENDED,
+    NOMINAL,
+    PLACEBO,
+    RECALIBRATED,
+    TWIN,
+    Member,
+    nominal_members,
+    simulate_members,
+)
+from blockshake.diagnosis.nominal.nominal_model import draw_nominal
+from blockshake.effects.places import blocks, joints
+from blockshake.files import content_digest
+
+
+@dataclass(frozen=True)
+class Extension:
+    """Causes that act in a test, each with its member of one number: a change of an `Experiment`."""
+
+    causes: tuple
+    number: int
+    test: str
+
+    @property
+    def digest(self):
+        """Of all that the change follows from."""
+        acting = [
+            [cause.name, cause.place, cause.members[self.number % len(cause.members)], cause.when]
+            for cause in self.causes
+        ]
+        return content_digest(acting, self.test if any(cause.outside for cause in self.causes) else "")
+
+    def __call__(self, experiment):
+        """The experiment with the causes in it."""
+        for cause in self.causes:
+            experiment = extended_experiment(experiment, cause, self.number, self.test)
+        return experiment
+
+
+def acting_causes(decision):
+    """Causes that extend the model: of every part of the readings the likeliest, where a model can hold it."""
+    return tuple(cause for cause in decision.extending if can_extend(cause))
+
+
+def placebo_of(causes, structure):
+    """The causes with the same sizes where the readings say that they are not; empty where one has no such place.
+
+    Of the places that the readings tell from the cause's own it is the farthest along the structure. The gain over this
+    placebo is that of the place: the rest any cause of this kind and size would have, wherever it is.
+    """
+    moved = []
+    for cause in causes:
+        key = next((name for name in ("joint", "body") if name in cause.place), None)
+        if key is None:
+            return ()
+        every = [one[key] for one in (joints if key == "joint" else blocks)(structure)]
+        near = {name.partition("@")[0] for name in cause.places}
+        here = [sorted(one) for one in every].index(sorted(cause.place[key]))
+        others = [number for number, one in enumerate(every) if not near & _names(one)]
+        if not others:
+            return ()
+        farthest = max(others, key=lambda number: abs(number - here))
+        moved.append(cause.model_copy(update={"place": {**cause.place, key: every[farthest]}}))
+    return tuple(moved)
+
+
+def _names(place):
+    """How the decision may call a body or a joint."""
+    return {place} if isinstance(place, str) else {"-".join(place), "-".join(place[::-1])}
+
+
+def extended_runs(plan, model, causes, nominal, measured, *made_by):
+    """Simulated sealed tests of the nominal, the recalibrated, the extended and the placebo model.
+
+    Parameters
+    ----------
+    plan : Plan
+    model : str
+        Solver.
+    causes : tuple of Cause
+        From `acting_causes`.
+    nominal : dict of str to xarray.Dataset
+        By open test: its nominal ensemble by this solver.
+    measured : dict of str to xarray.Dataset
+        By open test: from `read_histories`.
+    *made_by
+        ``store``, ``source`` and ``progress`` of `simulate_members`.
+
+    Returns
+    -------
+    xarray.Dataset
+        As from `simulate_members`, with twins. Along ``parameter``: what the open tests tell of the nominal
+        parameters without the cause, as of `Recalibration.informed`.
+
+    Notes
+    -----
+    The recalibrated and the extended model are conditioned on the open tests, each beside what it has: the latter from
+    simulations of the open tests with the cause. The placebo is the extended model with the cause elsewhere. Member k
+    of each is nominal draw k, so that two of them differ by their causes and their conditioning alone.
+    """
+    structure = next(iter(plan.tests.values())).structure
+    draws = [draw_nominal(structure, model, number) for number in range(plan.effort.draws)]
+    recalibration = _conditioned(draws, nominal, measured, NOMINAL)
+    drawn = {RECALIBRATED: (recalibration.draws, ())}
+    if causes:
+        ensembles = {
+            test: _beside_twins(_members(EXTENDED, test, planned, draws, causes), nominal[test], *made_by)
+            for test, planned in plan.tests.items()
+        }
+        extended = _conditioned(draws, ensembles, measured, EXTENDED).draws
+        drawn[EXTENDED] = extended, causes
+        placebo = placebo_of(causes, structure)
+        drawn |= {PLACEBO: (extended, placebo)} if placebo else {}
+    members = []
+    for test, planned in plan.sealed.items():
+        count = plan.effort.members
+        members += nominal_members(test, planned, model, count, plan.effort.twins)
+        for kind, (own, acting) in drawn.items():
+            members += _members(kind, test, planned, own[:count], acting)
+    runs = simulate_members(members, *made_by)
+    return runs.merge(recalibration.informed, combine_attrs="override")
+
+
+def _members(kind, test, planned, draws, causes):
+    return [
+        Member(kind, number, test, planned, draw, Extension(causes, number, test) if causes else None)
+        for number, draw in enumerate(draws)
+    ]
+
+
+def _beside_twins(members, nominal, *made_by):
+    """Ensemble of members of an open test, with the twins of its nominal ensemble."""
+    twins = nominal.isel(run=nominal["kind"].to_numpy() == TWIN)
+    runs = [simulate_members(members, *made_by), twins]
+    return xr.concat(
+        runs, dim="run", join="outer", coords="minimal", compat="override", combine_attrs="override"
+    )
+
+
+def _conditioned(draws, ensembles, measured, kind):
+    """`Recalibration` of draws whose ensembles of open tests are of one kind."""
+    tests = [judged_test(name, measured[name], [one], (kind,)) for name, one in ensembles.items()]
+    return posterior_draws(draws, *features_of(tests))

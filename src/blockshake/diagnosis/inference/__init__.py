@@ -1,1 +1,0 @@
-"""Inference: evidence of each candidate, decision, and size of the cause."""

@@ -1,1 +1,0 @@
-"""Simulated tests: nominal draws, and draws with each candidate effect."""

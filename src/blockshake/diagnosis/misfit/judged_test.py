@@ -1,0 +1,112 @@
+"""A measured test beside ensembles that predict it, cell by cell, as long as each cell can be predicted."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from blockshake.diagnosis.misfit.predictability import horizons
+from blockshake.diagnosis.nominal.ensemble import NOMINAL, TWIN, runs_of
+from blockshake.diagnosis.nominal.histories import as_cells, at_readings, common_times
+from blockshake.study.ensembles.intervals import sample_quantiles
+
+BAND = (0.05, 0.5, 0.95)
+_MOVES = 5.0  # standard deviations of a reading
+_ENDED = 0.5  # share of an ensemble's members that have ended, from which on a test is not judged
+
+
+@dataclass(frozen=True)
+class JudgedTest:
+    """One test.
+
+    Attributes
+    ----------
+    name : str
+    measured : xarray.DataArray, (time, cell)
+        Cells of `as_cells`.
+    members : dict of str to xarray.DataArray, (run, time, cell)
+        By kind, at the measured times: the members of all solvers, one solver after the other.
+    models : str array, shape (n_members,)
+        Solver of each.
+    horizon : float64 array, shape (n_cells,)
+        Until which the cells are judged [s], by the solver that can be predicted for the shortest time; of a test in
+        which half the members of an ensemble fall, until then. Below the first time of a cell in which nothing moves.
+    """
+
+    name: str
+    measured: xr.DataArray
+    members: dict
+    models: np.ndarray
+    horizon: np.ndarray
+
+    @property
+    def judged(self):
+        """Times and cells that are judged, bool (n_times, n_cells)."""
+        return self.measured["time"].to_numpy()[:, None] <= self.horizon
+
+    def until_horizon(self, values):
+        """Values (..., n_times, n_cells) with NaN beyond the horizon."""
+        return np.where(self.judged, values, np.nan)
+
+    def bands(self):
+        """Quantiles of the ensembles beside what was measured, and the horizon.
+
+        Returns
+        -------
+        xarray.Dataset
+            ``band(kind, quantile, time, cell)``, ``measured(time, cell)`` and ``horizon(cell)``, in single precision.
+        """
+        rows = [sample_quantiles(one.to_numpy(), BAND) for one in self.members.values()]
+        band = self.measured.expand_dims(kind=list(self.members), quantile=list(BAND)).copy(data=rows)
+        return xr.Dataset(
+            {
+                "band": band.astype(np.float32),
+                "measured": self.measured.astype(np.float32),
+                "horizon": ("cell", self.horizon, {"units": "s"}),
+            }
+        )
+
+
+def judged_test(name, histories, ensembles, kinds=(NOMINAL,)):
+    """`JudgedTest` of a measured test.
+
+    Parameters
+    ----------
+    name : str
+    histories : xarray.Dataset
+        From `read_histories`, measured.
+    ensembles : list of xarray.Dataset
+        One a solver, from `simulate_members`: runs of this test alone, of all kinds, and twins.
+    kinds : sequence of str
+    """
+    measured = as_cells(histories)
+    own = [[as_cells(runs_of(one, kind=kind)) for kind in (*kinds, TWIN)] for one in ensembles]
+    everywhere = [one for by_kind in own for one in by_kind]
+    names = [
+        cell for cell in measured["cell"].values if all(cell in one["cell"].values for one in everywhere)
+    ]
+    time = common_times(measured, *everywhere)
+    measured = measured.sel(cell=names, time=time)
+    noise = as_cells(histories, "_noise").sel(cell=names)
+    limits = [horizons(by_kind[-1].sel(cell=names), noise) for by_kind in own]
+    members = {
+        kind: xr.concat([at_readings(by_kind[place].sel(cell=names), time) for by_kind in own], dim="run")
+        for place, kind in enumerate(kinds)
+    }
+    models = np.concatenate(
+        [[one.attrs["model"]] * by_kind[0].sizes["run"] for one, by_kind in zip(ensembles, own, strict=True)]
+    )
+    horizon = np.minimum(np.min(limits, axis=0), min(_last_standing(one) for one in members.values()))
+    farthest = np.max(
+        [np.abs(one).max(set(one.dims) - {"cell"}) for one in (measured, *members.values())], axis=0
+    )
+    horizon = np.where(farthest > _MOVES * noise.to_numpy(), horizon, -np.inf)
+    return JudgedTest(name, measured, members, models, horizon)
+
+
+def _last_standing(cells):
+    """Last time at which more than half the members of an ensemble have not ended [s]."""
+    known = np.isfinite(cells.to_numpy()).any(axis=2)
+    going = np.logical_or.accumulate(known[:, ::-1], axis=1)[:, ::-1]
+    standing = np.flatnonzero(going.mean(axis=0) > _ENDED)
+    return cells["time"].to_numpy()[standing[-1]] if len(standing) else -np.inf

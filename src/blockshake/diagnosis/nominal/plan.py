@@ -1,0 +1,170 @@
+"""The plan of a diagnosis: its open tests, and those of them that are simulated."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from blockshake.diagnosis.nominal.efforts import EFFORTS, ENSEMBLES_OF_SEALED_TEST, Effort
+from blockshake.diagnosis.nominal.nominal_model import MODELS
+from blockshake.diagnosis.nominal.planned_test import planned_sealed, planned_test
+from blockshake.diagnosis.nominal.repeated_readings import without_repeats
+from blockshake.effects.registry import EFFECTS
+from blockshake.errors import InputError
+from blockshake.files import PACKAGE, content_digest
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign import Campaign, load_campaign
+
+_CHECKOUT = PACKAGE.parents[1].resolve()
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Simulations of a campaign.
+
+    Attributes
+    ----------
+    campaign : Campaign
+    effort : Effort
+    open : list of str
+        Tests that are judged by.
+    tests : dict of str to PlannedTest
+        By name, those of them that are simulated.
+    """
+
+    campaign: Campaign
+    effort: Effort
+    open: list
+    tests: dict
+
+    @property
+    def sealed(self):
+        """Sealed tests as they are simulated, by name; empty where nothing is simulated."""
+        names = sealed_tests(self.campaign) if self.tests else []
+        return {name: planned_sealed(self.campaign, name, self.tests) for name in names}
+
+    @property
+    def runs(self):
+        """Simulated tests in all nominal ensembles, twins with them."""
+        return len(MODELS) * len(self.tests) * (self.effort.draws + self.effort.twins)
+
+    @property
+    def runs_of_cause(self):
+        """Simulated tests at most, once a cause was found: of the open tests with it, and of the sealed ones."""
+        of_sealed = ENSEMBLES_OF_SEALED_TEST * self.effort.members + self.effort.twins
+        sealed = len(sealed_tests(self.campaign)) if self.tests else 0
+        return len(MODELS) * (len(self.tests) * self.effort.draws + sealed * of_sealed)
+
+    def ensemble(self, test, source):
+        """Name of the ensemble of a test: equal content and sources that both solvers share, equal name."""
+        return content_digest(self.tests[test].digest(), self.effort.draws, self.effort.twins, source)
+
+
+def plan_diagnosis(folder, effort):
+    """Plan of a campaign's diagnosis.
+
+    Parameters
+    ----------
+    folder : str or path
+        Of the campaign.
+    effort : str
+        One of `EFFORTS`.
+
+    Raises
+    ------
+    InputError
+    """
+    if effort not in EFFORTS:
+        raise InputError("effort", str(effort), f"expected one of {', '.join(EFFORTS)}")
+    campaign = load_campaign(folder)
+    names = open_tests(campaign)
+    chosen = simulated_tests(campaign, names, EFFORTS[effort].tests)
+    structure = load_structure(campaign.structure) if chosen else None
+    return Plan(
+        campaign, EFFORTS[effort], names, {name: planned_test(campaign, name, structure) for name in chosen}
+    )
+
+
+def open_tests(campaign):
+    """Names of the tests that a diagnosis judges by, in the campaign's order; none is sealed, none a copy of another.
+
+    Raises
+    ------
+    InputError
+        All tests are sealed.
+    """
+    names = [test.name for test in campaign.tests.values() if test.role != "sealed"]
+    if not names:
+        raise InputError(
+            campaign.folder / "campaign.yaml",
+            "tests",
+            "expected a test with the role fit or select, found none",
+        )
+    return without_repeats(campaign, names)
+
+
+def simulated_tests(campaign, names, most):
+    """Those of the open tests that are simulated, in the campaign's order.
+
+    The strongest of each motion, then the weakest of all, where the blocks may not move yet, then the others by
+    falling scale.
+    """
+    falling = sorted((campaign.tests[name] for name in names), key=lambda test: (-abs(test.scale), test.name))
+    strongest = {}
+    for test in falling:
+        strongest.setdefault(test.motion, test)
+    order = dict.fromkeys(test.name for test in [*strongest.values(), falling[-1], *falling])
+    chosen = list(order)[:most]
+    return [name for name in names if name in chosen]
+
+
+def sealed_tests(campaign):
+    """Names of the sealed tests."""
+    return [test.name for test in campaign.tests.values() if test.role == "sealed"]
+
+
+def result_name(folder, without=()):
+    """Name of a campaign's results: the folder's, with digits of its path unless it lies in the checkout."""
+    path = Path(folder).resolve()
+    name = path.name if _CHECKOUT in path.parents else f"{path.name}-{content_digest(str(path))[:6]}"
+    return "-without-".join([re.sub(r"[^A-Za-z0-9._-]", "-", name), *without])
+
+
+class PlannedEnsemble(NamedTuple):
+    """The plan of a campaign, and the name of the test that an ensemble is of."""
+
+    plan: Plan
+    test: str
+
+
+def plan_of_ensemble(ensemble, folders, effort, source):
+    """`PlannedEnsemble`: plan and test of the first of several campaigns that has an ensemble.
+
+    Parameters
+    ----------
+    ensemble : str
+        Name, as of `Plan.ensemble`.
+    folders : sequence of str
+        Of campaigns.
+    effort, source : str
+    """
+    for folder in folders:
+        plan = plan_diagnosis(folder, effort)
+        for test in plan.tests:
+            if plan.ensemble(test, source) == ensemble:
+                return PlannedEnsemble(plan, test)
+    raise InputError("ensemble", ensemble, f"expected the ensemble of a test of {', '.join(folders)}")
+
+
+def considered(without=()):
+    """Names of the effects that a diagnosis considers.
+
+    Raises
+    ------
+    InputError
+        A name to leave out that is not in the registry.
+    """
+    for name in without:
+        if name not in EFFECTS:
+            raise InputError("without", str(name), f"expected one of {', '.join(EFFECTS)}")
+    return [name for name in EFFECTS if name not in without]

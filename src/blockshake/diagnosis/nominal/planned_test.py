@@ -1,0 +1,151 @@
+"""A commanded test as it is simulated: all that its simulations depend on."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.dynamics.motion import GroundMotion
+from blockshake.errors import InputError
+from blockshake.files import content_digest
+from blockshake.geometry.structure import Structure
+from blockshake.measurement.campaigns.campaign import Sensors, load_test
+from blockshake.measurement.campaigns.command_clock import reading_rate, simulation_start, since
+from blockshake.measurement.campaigns.commanded_motion import commanded_motion
+from blockshake.measurement.motion.fall import find_fall, until_fall
+from blockshake.measurement.sensors.markers import RATE, unread_directions
+from blockshake.simulation.structure_digest import structure_digest
+
+_SAME_READING = 1e-3  # steps, within which two readings are at one time
+
+
+class Clock(NamedTuple):
+    """Times at which a test was read, counted from `simulation_start`.
+
+    ``late``: start of the command, less than a step [s]; ``rate`` of the markers [Hz]; ``first``: the first reading,
+    where the record begins after the command [s].
+    """
+
+    late: float = 0.0
+    rate: float = RATE
+    first: float = 0.0
+
+
+_SIMULATED = Clock()
+
+
+@dataclass(frozen=True)
+class PlannedTest:
+    """A commanded test. Of the readings only their times enter.
+
+    Attributes
+    ----------
+    structure : Structure
+        The campaign's.
+    motion : GroundMotion
+        Commanded, scaled.
+    duration : float
+        [s]
+    sensors : Sensors
+        Whose noise is read.
+    markers : tuple of str
+        That were read.
+    unread : tuple of (str, str)
+        Marker and axis of the directions that were not measured.
+    clock : Clock
+    """
+
+    structure: Structure
+    motion: GroundMotion
+    duration: float
+    sensors: Sensors
+    markers: tuple[str, ...]
+    unread: tuple[tuple[str, str], ...] = ()
+    clock: Clock = _SIMULATED
+
+    @property
+    def driving(self):
+        """The commanded motion on the clock of the readings."""
+        return self.motion.delayed(self.clock.late)
+
+    @property
+    def peak_acceleration(self):
+        """Of the commanded motion along x [m/s2]."""
+        return float(np.abs(self.motion.evaluate(self.motion.table.breaks, derivative=2)[:, 0]).max())
+
+    def digest(self):
+        """Of the content: equal for equal tests, whatever their files are called."""
+        return content_digest(
+            structure_digest(self.structure),
+            *(part.tobytes() for part in self.motion.table),
+            self.duration,
+            self.sensors.model_dump(),
+            self.markers,
+            self.unread,
+            self.clock,
+        )
+
+
+def planned_test(campaign, name, structure):
+    """A test that is not sealed as it is simulated: as long and with the markers that were read in it.
+
+    Of a test in which a block falls it is the part before.
+
+    Raises
+    ------
+    InputError
+        A commanded motion that is neither shipped nor in the campaign's folder, or bad readings.
+    """
+    test = load_test(campaign, name)
+    test = until_fall(test, find_fall(test, structure, campaign.sensors))
+    late = -simulation_start(test["time"].to_numpy())
+    test = since(test, -late)
+    time, rate = test["time"].to_numpy(), reading_rate(test["time"].to_numpy())
+    return PlannedTest(
+        structure=structure,
+        motion=planned_motion(campaign, name),
+        duration=float(np.ceil(time[-1] * rate - _SAME_READING) / rate),
+        sensors=campaign.sensors,
+        markers=tuple(map(str, test["marker"].values)),
+        unread=tuple(unread_directions(test)),
+        clock=Clock(late, rate, float(time[0])),
+    )
+
+
+def planned_sealed(campaign, name, tests):
+    """A sealed test as it is simulated, its file unread: as long and with the sensors as an open one.
+
+    ``tests``: open `PlannedTest` by name; of these the longest under the same motion, or else the longest.
+    """
+    motion = campaign.tests[name].motion
+    like = max(
+        tests, key=lambda opened: (campaign.tests[opened].motion == motion, tests[opened].duration, opened)
+    )
+    like = tests[like]
+    return PlannedTest(
+        structure=like.structure,
+        motion=planned_motion(campaign, name),
+        duration=like.duration,
+        sensors=campaign.sensors,
+        markers=like.markers,
+        unread=like.unread,
+        clock=like.clock._replace(first=0.0),
+    )
+
+
+def planned_motion(campaign, name):
+    """Commanded `Motion` of a test.
+
+    Raises
+    ------
+    InputError
+        It is neither shipped nor in the campaign's folder.
+    """
+    motion = commanded_motion(campaign, campaign.tests[name])
+    if motion is None:
+        raise InputError(
+            campaign.folder / "campaign.yaml",
+            f"tests.{name}.motion",
+            f"expected a shipped motion or a file in the folder, found {campaign.tests[name].motion}",
+        )
+    return motion

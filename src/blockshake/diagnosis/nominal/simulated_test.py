@@ -1,0 +1,111 @@
+"""Synthetic readings that one sampled model gives for a planned test, and the histories that they show."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import CubicSpline
+from scipy.ndimage import gaussian_filter1d
+
+from blockshake.diagnosis.nominal.histories import read_histories
+from blockshake.effects.effect import Experiment
+from blockshake.files import content_digest
+from blockshake.measurement.campaigns.command_clock import since
+from blockshake.measurement.sensors.instruments import Instruments, observe
+from blockshake.simulation.models import part_parameters
+from blockshake.simulation.placement import placed
+from blockshake.simulation.simulate import simulate
+from blockshake.store import keep_dataset, kept, load_made
+
+_SLOW = 0.04  # s, standard deviation of a Gaussian that is some 0.1 s wide at half its height
+
+
+class SimulatedTest(NamedTuple):
+    """Synthetic readings as in a campaign's test file, and the outcome of the run."""
+
+    test: xr.Dataset
+    status: str
+
+
+class KeptHistories(NamedTuple):
+    """Histories as from `read_histories`, the run's ``status`` an attribute; ``how``: ``kept`` or ``simulated``."""
+
+    histories: xr.Dataset
+    how: str
+
+
+def simulated_test(planned, draw, extension=None):
+    """`SimulatedTest`: synthetic readings that a sampled model gives for a planned test.
+
+    Parameters
+    ----------
+    planned : PlannedTest
+        The draw says how the table followed its motion.
+    draw : Draw
+    extension : callable, optional
+        Of an `Experiment`: the experiment with what the extended model has beside the nominal one.
+    """
+    physical, numerics = part_parameters(draw.parameters)
+    readings = {name: value for name, value in draw.noise.items() if name != "louder"}
+    instruments = Instruments(
+        marker_noise=draw.noise["louder"] * planned.sensors.marker_noise,
+        **readings,
+    )
+    structure = planned.structure.with_parameters(physical | placed(planned.structure, draw.places))
+    experiment = Experiment(structure, planned.driving.scaled(draw.amplitude), instruments)
+    experiment = experiment.with_motion(0, draw.fast * faster_part(experiment.motion))
+    if extension is not None:
+        experiment = extension(experiment)
+    run = simulate(
+        experiment.structure, experiment.motion, draw.model, numerics,
+        time_step=draw.time_step, duration=planned.duration, output_rate=planned.clock.rate, accelerometers=False,
+    )  # fmt: skip
+    test = observe(run, experiment.structure, experiment.instruments, draw.seed).sel(
+        marker=list(planned.markers)
+    )
+    for marker, axis in planned.unread:
+        test["marker_displacement"].loc[{"marker": marker, "axis": axis}] = np.nan
+    if planned.clock.first > 0.0:
+        test = since(test, 0.0, planned.clock.first)
+        moved = test["marker_displacement"].transpose("time", "marker", "axis")
+        first = np.isfinite(moved.to_numpy()).argmax(axis=0)
+        test["marker_displacement"] = moved - np.take_along_axis(moved.to_numpy(), first[None], axis=0)[0]
+    return SimulatedTest(test, run.attrs["status"])
+
+
+def faster_part(motion):
+    """Fast part of a motion's displacement along x, less its running mean over about 0.1 s, as polynomials."""
+    breaks = motion.table.breaks
+    step = float(np.median(np.diff(breaks)))
+    times = np.arange(breaks[0], breaks[-1] + 0.5 * step, step)
+    displacement = motion.evaluate(times)[:, 0]
+    fast = displacement - gaussian_filter1d(displacement, _SLOW / step, mode="nearest")
+    return CubicSpline(breaks, np.interp(breaks, times, fast)).c[::-1].T
+
+
+def simulated_histories(planned, draw, store, source, extension=None):
+    """`KeptHistories` of a simulated test, from the store if it was simulated before.
+
+    Parameters
+    ----------
+    planned : PlannedTest
+    draw : Draw
+    store : str or path
+        Folder of finished tests: one that is there is not simulated again.
+    source : str
+        Digest of the sources that compute.
+    extension : callable, optional
+        As of `simulated_test`, with an attribute ``digest`` of all that it does.
+    """
+    key = content_digest(
+        source, planned.digest(), draw.model, draw.time_step, draw.parameters, draw.amplitude, draw.fast,
+        draw.noise, draw.places.tobytes(), draw.seed, extension.digest if extension else "",
+    )  # fmt: skip
+    path = Path(store) / f"{key}.nc"
+    if kept(path):
+        return KeptHistories(load_made(path), "kept")
+    test, status = simulated_test(planned, draw, extension)
+    histories = read_histories(test, planned.structure, planned.sensors).assign_attrs(status=status)
+    keep_dataset(path, histories)
+    return KeptHistories(histories, "simulated")

@@ -1,0 +1,74 @@
+"""Readings of the open tests of a campaign: every file is read once, and a sealed one never."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.errors import InputError
+from blockshake.geometry.structure import Structure, load_structure
+from blockshake.measurement.campaigns.campaign import load_test
+from blockshake.measurement.motion.fall import find_fall, until_fall
+
+
+class OpenReadings(NamedTuple):
+    """Open tests of a campaign as their files have them.
+
+    Attributes
+    ----------
+    structure : Structure
+    tests : dict of str to xarray.Dataset
+        By name, until a block falls; of tests with the same readings the first alone.
+    falls : dict of str to Fall
+        By name, of those in which a block falls.
+    """
+
+    structure: Structure
+    tests: dict
+    falls: dict
+
+
+def read_open_tests(campaign, names):
+    """`OpenReadings` of the named tests.
+
+    Raises
+    ------
+    InputError
+        A name that is not in the campaign, or of a sealed test: its file is not opened.
+
+    Notes
+    -----
+    Noise makes two tests differ in every reading, however alike they are. Equal readings are one test under two names,
+    and evidence that counts them twice would be as sure of one test as of two.
+    """
+    for name in names:
+        if name not in campaign.tests or campaign.tests[name].role == "sealed":
+            usable = [test.name for test in campaign.tests.values() if test.role != "sealed"]
+            raise InputError(campaign.folder, f"tests.{name}", f"expected one of {', '.join(usable)}")
+    return _readings(campaign, names)
+
+
+def read_sealed_tests(campaign):
+    """`OpenReadings` of the sealed tests: for the gain alone, once all is decided."""
+    return _readings(campaign, [test.name for test in campaign.tests.values() if test.role == "sealed"])
+
+
+def _readings(campaign, names):
+    structure = load_structure(campaign.structure)
+    tests, falls, known = {}, {}, set()
+    for name in names:
+        test = load_test(campaign, name, structure)
+        content = _content(test)
+        if content in known:
+            continue
+        known.add(content)
+        fall = find_fall(test, structure, campaign.sensors)
+        tests[name] = until_fall(test, fall)
+        if fall:
+            falls[name] = fall
+    return OpenReadings(structure, tests, falls)
+
+
+def _content(test):
+    """Displacements of the markers by name, as bytes; gaps are equal."""
+    values = test["marker_displacement"].transpose("time", "marker", "axis").sortby("marker").to_numpy()
+    return (np.round(values, 12) + 0.0).tobytes()  # no minus zero

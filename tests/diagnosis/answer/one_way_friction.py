@@ -1,0 +1,42 @@
+"""An effect that the registry does not have, as docs/effects.md says: friction is larger for slip to one side."""
+
+import numpy as np
+
+from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
+from blockshake.effects.places import nowhere
+from blockshake.forces.seen.wrench_histories import friction_against_slip
+
+_SCALE = 0.3
+
+
+def _act(experiment, values, place):
+    changed = {
+        f"friction.{'.'.join(one.pair)}.asymmetry": one.asymmetry + values["asymmetry"]
+        for one in experiment.structure.file.friction
+    }
+    return experiment.with_parameters(**changed)
+
+
+def _columns(seen, place):
+    rows = np.zeros(len(seen.rows.value))
+    for index, face in enumerate(seen.faces):
+        towards = seen.states.slip[seen.rows.instant, index]
+        rows += face.friction * towards * seen.rows.along(friction_against_slip(seen, index))
+    return [Columns({}, rows[:, None], (_SCALE,), False)]
+
+
+EFFECT = Effect(
+    name="one-way-friction",
+    title="friction of two sides",
+    acts="contact",
+    equation="mu (1 + a) for slip of the upper body towards +x, mu (1 - a) towards -x",
+    source="Coulomb",
+    parameters=(EffectParameter("asymmetry", "1", "of the coefficient", 0.0, -0.5, 0.5, 0.3),),
+    signature=Signature("onset", "one-sided"),
+    confused_with=("eccentricity",),
+    told_apart_by="a test with the motion reversed",
+    places=nowhere,
+    act=_act,
+    columns=_columns,
+    reads=lambda values, size, between: {"asymmetry": size},
+)

@@ -1,0 +1,97 @@
+"""A campaign on its way from files to seen tests: every file is read once, copies and sealed tests never count."""
+
+import shutil
+
+import numpy as np
+import pytest
+import xarray as xr
+import yaml
+from tiny_campaign import write_campaign
+
+from blockshake.diagnosis.evidence.seen_campaign import see_campaign, see_sealed
+from blockshake.errors import InputError
+from blockshake.files import PACKAGE, write_dataset
+from blockshake.measurement.campaigns import campaign as campaign_module
+from blockshake.measurement.campaigns.campaign import load_campaign
+
+STRUCTURE = PACKAGE.parents[1] / "hidden_effects" / "structures" / "two-blocks.yaml"
+OPEN = ["one-100", "two-100"]
+
+
+@pytest.fixture
+def folder(tmp_path):
+    write_campaign(tmp_path, STRUCTURE)
+    return tmp_path
+
+
+def _with_test(folder, name, like):
+    path = folder / "campaign.yaml"
+    file = yaml.safe_load(path.read_text())
+    entry = next(test for test in file["tests"] if test["name"] == like)
+    file["tests"].append(entry | {"name": name, "file": f"{name}.nc"})
+    path.write_text(yaml.safe_dump(file))
+
+
+def test_every_open_file_is_read_once_and_the_sealed_one_never(folder, monkeypatch):
+    read = []
+    original = campaign_module.read_test
+    monkeypatch.setattr(
+        campaign_module,
+        "read_test",
+        lambda path, structure: read.append(path.name) or original(path, structure),
+    )
+    found = see_campaign(load_campaign(folder))
+    assert read == ["one-100.nc", "two-100.nc"]
+    assert [test.name for test in found.tests] == OPEN
+    assert (found.parity.findings, found.parity.falls, found.unseen) == ((), {}, {})
+    assert all(np.isfinite(test.forces.force).any() for test in found.tests)
+
+
+def test_a_copy_of_a_test_is_no_new_evidence(folder):
+    shutil.copy(folder / "one-100.nc", folder / "again.nc")
+    _with_test(folder, "again", "one-100")
+    found = see_campaign(load_campaign(folder))
+    assert [test.name for test in found.tests] == OPEN
+    assert list(found.parity.gaps) == OPEN
+
+
+def test_a_sealed_test_is_not_opened(folder):
+    (folder / "one-150.nc").write_text("not a netCDF file: opening it would be another error")
+    campaign = load_campaign(folder)
+    see_campaign(campaign)
+    with pytest.raises(InputError, match="one-150"):
+        see_sealed(campaign)
+
+
+def test_a_fault_is_taken_out_before_a_test_is_seen(folder):
+    path = folder / "one-100.nc"
+    test = xr.load_dataset(path)
+    own = test["marker"] == "block-2-upper"
+    write_dataset(
+        path, test.assign(marker_displacement=test["marker_displacement"] * xr.where(own, 1.1, 1.0))
+    )
+    campaign = load_campaign(folder)
+    found, kept = see_campaign(campaign), see_campaign(campaign, ["sensor-gain"])
+    assert [(finding.effect, finding.where) for finding in found.parity.findings] == [
+        ("sensor-gain", ("block-2-upper",))
+    ]
+    assert kept.parity.findings == ()
+    factor = kept.tests[0].readings["marker_displacement"] / found.tests[0].readings["marker_displacement"]
+    assert float(factor.sel(marker="block-2-upper", axis="x").median()) == pytest.approx(1.1, abs=2e-3)
+
+
+def test_a_test_too_short_for_the_kernel_is_said(folder):
+    write_dataset(folder / "one-100.nc", xr.load_dataset(folder / "one-100.nc").isel(time=slice(40)))
+    found = see_campaign(load_campaign(folder))
+    assert found.unseen == {"one-100": "the test is too short"}
+    assert [test.name for test in found.tests] == ["two-100"]
+
+
+def test_sensors_without_stated_noise_are_the_best_instruments(folder):
+    campaign = load_campaign(folder)
+    silent = {"marker_noise": 0.0, "accelerometer_noise": 0.0}
+    path = folder / "campaign.yaml"
+    path.write_text(yaml.safe_dump(yaml.safe_load(path.read_text()) | {"sensors": silent}))
+    found = see_campaign(load_campaign(folder))
+    assert all(np.isfinite(test.rows.noise).all() for test in found.tests)
+    assert [test.name for test in found.tests] == [test.name for test in see_campaign(campaign).tests]

@@ -1,0 +1,75 @@
+import shutil
+
+import pytest
+
+from blockshake.diagnosis.nominal.plan import (
+    considered,
+    open_tests,
+    plan_diagnosis,
+    plan_of_ensemble,
+    sealed_tests,
+    simulated_tests,
+)
+from blockshake.errors import InputError
+from blockshake.files import PACKAGE
+from blockshake.measurement.campaigns.campaign import load_campaign
+
+CAMPAIGN = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-2"
+
+
+def test_strongest_of_each_motion_then_the_weakest_then_by_falling_scale():
+    campaign = load_campaign(CAMPAIGN)
+    names = open_tests(campaign)
+    assert not set(names) & set(sealed_tests(campaign))
+    assert simulated_tests(campaign, names, 2) == ["alkion-275", "basso-tirreno-200"]
+    assert simulated_tests(campaign, names, 3) == ["alkion-275", "basso-tirreno-050", "basso-tirreno-200"]
+    assert simulated_tests(campaign, names, 99) == names
+
+
+def test_quick_effort_simulates_nothing():
+    plan = plan_diagnosis(CAMPAIGN, "quick")
+    assert plan.open == open_tests(plan.campaign)
+    assert not plan.tests
+    assert not plan.sealed
+
+
+def test_a_copy_of_a_campaign_has_the_same_ensembles(tmp_path):
+    copy = tmp_path / "another-name"
+    shutil.copytree(CAMPAIGN, copy)
+    plan, other = (plan_diagnosis(folder, "standard") for folder in (CAMPAIGN, copy))
+    test = next(iter(plan.tests))
+    assert plan.ensemble(test, "s") == other.ensemble(test, "s")
+    assert plan.ensemble(test, "s") != plan.ensemble(test, "t")
+    found, name = plan_of_ensemble(plan.ensemble(test, "s"), [str(copy)], "standard", "s")
+    assert (name, found.campaign.folder) == (test, copy)
+
+
+def test_a_sealed_test_is_simulated_as_an_open_one_under_its_motion():
+    plan = plan_diagnosis(CAMPAIGN, "standard")
+    for name, planned in plan.sealed.items():
+        motion = plan.campaign.tests[name].motion
+        like = [one for other, one in plan.tests.items() if plan.campaign.tests[other].motion == motion]
+        assert planned.duration == max(one.duration for one in like)
+        assert planned.markers == like[0].markers
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda text: text.replace("fit", "sealed").replace("select", "sealed"), "found none"),
+        (lambda text: text.replace("motion: alkion,", "motion: unheard-of,"), "expected a shipped motion"),
+    ],
+)
+def test_bad_campaigns_are_refused(tmp_path, change, message):
+    copy = tmp_path / "campaign"
+    shutil.copytree(CAMPAIGN, copy)
+    path = copy / "campaign.yaml"
+    path.write_text(change(path.read_text()))
+    with pytest.raises(InputError, match=message):
+        plan_diagnosis(copy, "standard")
+
+
+def test_an_effect_can_be_left_out_by_its_name_alone():
+    assert "weak-joint" not in considered(["weak-joint"])
+    with pytest.raises(InputError, match="expected one of"):
+        considered(["weak_joint"])
