@@ -1,10 +1,12 @@
 import re
+from dataclasses import replace
 
 import pytest
 from fake_diagnosis import FakeDiagnosis
-from fake_findings import KINDS, OPEN, SEALED, gain_finding, track_record
+from fake_findings import KINDS, OPEN, PUSHED, SEALED, gain_finding, part, track_record
 from page import CLAIMS, Page
 
+from blockshake.diagnosis.answer.decision import Part
 from blockshake.diagnosis.verdict.track_record import procedure_digest
 from blockshake.diagnosis.verdict.verdict import load_verdict
 from blockshake.errors import InputError
@@ -213,6 +215,24 @@ def test_a_sensor_s_fault_alone_is_the_answer(tmp_path):
     document = compose_diagnosis(one)
     (table,) = blocks_of(document, "table", "sensors")
     assert table.rows[0][:4] == ("gain of a marker", "block-2-face", "gain", "3 % (0.10 %)")
+
+
+def test_a_blow_is_drawn_near_its_time(found):
+    blow = {**PUSHED, "name": "blow", "when": {"blows": {OPEN[2]: {"time": 2.5, "width": 0.08}}}}
+    decision = found["unknown"].decision.model_copy(
+        update={"parts": (Part.model_validate(part("joints", blow)),)}
+    )
+    document = compose_diagnosis(replace(found["unknown"], decision=decision))
+    (figure,) = blocks_of(document, "figure", "answer")
+    assert "within 0.5 s of a blow" in figure.caption
+    assert figure.caption.endswith(f"Not drawn: {OPEN[0]}, {OPEN[1]}.")
+
+
+def test_tests_without_any_movement_of_joints_have_words_in_place_of_a_figure(found):
+    still = found["none"].departures.isel(instant=slice(0))
+    document = compose_diagnosis(replace(found["none"], departures=still))
+    assert blocks_of(document, "figure", "answer") == []
+    assert blocks_of(document, "text", "answer")[-1].text.startswith("No joint turned, slipped or lifted")
 
 
 def test_html_and_pdf_are_the_same_bytes_again(fakes, tmp_path):

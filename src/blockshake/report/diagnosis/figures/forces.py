@@ -14,6 +14,7 @@ _FITTING = 99.5  # percent of all instants that an axis has room for
 _MARGIN = 1.15
 _ALIKE = 0.98  # of two curves' product over their lengths, from which they are one but for a factor
 _POINTS = {"color": BLACK, "linestyle": "none", "marker": "o", "markeredgewidth": 0.0}
+_EXPLAINED = {"color": BLUE, "linewidth": 1.0, "marker": "o", "markersize": 1.2}
 _SIZES = 1.3, 3.0  # of points, smallest and largest
 _MANY = 200  # points, from which on they are small
 
@@ -58,15 +59,7 @@ def plot_forces(departures, tests, bodies, explained, measured_word):
             )
             _draw_points(axes, one["time"], one["measured"], measured_word)
             if explained:
-                axes.plot(
-                    one["time"],
-                    one["explained"],
-                    "o-",
-                    color=BLUE,
-                    linewidth=1.2,
-                    markersize=1.2,
-                    label=explained,
-                )
+                axes.plot(one["time"], one["explained"], **_EXPLAINED, label=explained)
         _limit(
             row, *(_KILO * departures[name].sel(body=body).to_numpy() for name in ("measured", "explained"))
         )
@@ -77,11 +70,7 @@ def plot_forces(departures, tests, bodies, explained, measured_word):
 def plot_slab(departures, name, explained, measured_word):
     """Figure of the ``turn`` or ``lift`` of the slab over time, a column a test."""
     of_test = departures["slab_test"].to_numpy()
-    size = [
-        float(np.abs(departures[name].to_numpy()[of_test == test]).max()) for test in dict.fromkeys(of_test)
-    ]
-    order = np.sort(np.argsort(size)[::-1][:_MOST_TESTS])
-    tests = [list(dict.fromkeys(of_test))[place] for place in order]
+    tests = list(dict.fromkeys(of_test))[:_MOST_TESTS]
     figure, (row,) = _panels(tests, 1)
     factor, unit = printed(departures[name].attrs["units"])
     for axes, test in zip(row, tests, strict=True):
