@@ -7,14 +7,14 @@ import argparse
 from pathlib import Path
 
 import numpy as np
+from blockshake.forces.joint_forces import joint_forces
+from blockshake.forces.laws.lever import bears_on_an_edge
 from figures_of_docs import top_drift
 from matplotlib.collections import PolyCollection
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
-from blockshake.forces.joint_forces import joint_forces
-from blockshake.forces.laws.lever import bears_on_an_edge
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Sensors
 from blockshake.measurement.motion.outliers import without_outliers

@@ -114,5 +114,10 @@ def _turn_about(turns, axis, still):
     found = np.full(len(turns), np.nan)
     known = np.isfinite(turns).all(axis=(-2, -1))
     found[known] = Rotation.from_matrix(turns[known]).as_rotvec() @ axis
-    rest = still & np.isfinite(found)
-    return found - (found[rest].mean() if rest.any() else 0.0)
+    return from_rest(found, still)
+
+
+def from_rest(values, still):
+    """Values less their mean in the quiet start; as they are where none is known there, counted from rest already."""
+    rest = still & np.isfinite(values)
+    return values - (values[rest].mean() if rest.any() else 0.0)

@@ -8,6 +8,7 @@ import xarray as xr
 from blockshake.diagnosis.answer.answer import (
     group_of,
     needed_beside,
+    needed_of,
     rank,
     slab_groups,
     soft_gains,
@@ -17,13 +18,16 @@ from blockshake.diagnosis.answer.departures import departures, largest
 from blockshake.diagnosis.answer.explain import gather_evidence
 from blockshake.diagnosis.answer.limits import excluded_above, limits_of
 from blockshake.diagnosis.answer.odds import coarsened
-from blockshake.diagnosis.answer.places import place_of
+from blockshake.diagnosis.answer.places import EVERYWHERE, place_of
+from blockshake.diagnosis.answer.sight import cannot_see
 from blockshake.diagnosis.answer.size import members_of, size_of
 from blockshake.diagnosis.answer.slab_departures import slab_departures
 from blockshake.diagnosis.evidence.closed_joints import closed_joint_gains
 from blockshake.diagnosis.evidence.explanation import Fit, mean_evidence
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
+from blockshake.diagnosis.evidence.spin_kept import restitution_gain
 from blockshake.diagnosis.outside.registry import FORMS
+from blockshake.effects.impact_restitution import EFFECT as RESTITUTION
 from blockshake.effects.joint_compliance import COMPLIANCES
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
@@ -38,7 +42,7 @@ class Decided(NamedTuple):
     evidence: xr.Dataset
 
 
-def decide(seen, without=(), cannot_see=()):
+def decide(seen, without=(), unseen=()):
     """Decide what the tests speak for.
 
     Parameters
@@ -47,7 +51,8 @@ def decide(seen, without=(), cannot_see=()):
         Open tests.
     without : sequence of str
         Effects that are left out, as if nobody had thought of them.
-    cannot_see : sequence of str
+    unseen : sequence of str
+        Lines on tests of which nothing was read.
 
     Returns
     -------
@@ -69,6 +74,9 @@ def decide(seen, without=(), cannot_see=()):
             found.append(_part("joints, beside the first", second, seen, beside, {}))
     for readings, group in slab_groups(slab):
         found.append(_part(readings, group, seen, None, {}, slab))
+    impacts = restitution_gain(seen)
+    if impacts.gain > needed_of(RESTITUTION.name) and RESTITUTION.name not in without:
+        found.append(_of_impacts(impacts))
     parts = tuple(sorted(found, key=lambda part: -part.causes[0].gain))
     shown = departures(seen, evidence, [(one.name, one.places[0]) for one in _of_joints(parts)])
     limits = limits_of(evidence, slab)
@@ -83,9 +91,24 @@ def decide(seen, without=(), cannot_see=()):
         tests=[test.name for test in seen],
         silent=[test.name for test in seen if not len(test.rows.value)],
         n_rows=sum(len(test.rows.value) for test in seen),
-        cannot_see=cannot_see,
+        impacts=impacts.statement,
+        cannot_see=(*unseen, *cannot_see(seen)),
     )
     return Decided(decision, shown.merge(slab_departures(seen, slabs, slab, parts)))
+
+
+def _of_impacts(impacts):
+    """`Part` of impacts that lose less than any sound model; by how much the solvers' restitution is not told."""
+    cause = Cause(
+        name=RESTITUTION.name,
+        place={},
+        places=(EVERYWHERE,),
+        gain=impacts.gain,
+        odds=0.0,
+        parameters={},
+        members=(),
+    )
+    return Part(readings="impacts", causes=(cause,), odds={cause.name: 0.0}, gains={cause.name: impacts.gain})
 
 
 def _of_joints(parts):

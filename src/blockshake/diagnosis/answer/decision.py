@@ -78,7 +78,8 @@ class Part(Strict):
     Attributes
     ----------
     readings : str
-        ``joints``, ``joints, beside the first``, ``rotation of the slab`` or ``vertical motion of the slab``.
+        ``joints``, ``joints, beside the first``, ``impacts``, ``rotation of the slab`` or ``vertical motion of the
+        slab``.
     causes : tuple of Cause
     odds : dict of str to float
         Of the likeliest over every rival, as a logarithm, coarsened.
@@ -124,6 +125,8 @@ class Decision(Strict):
         The largest departure in words.
     tests, silent : tuple of str
         Tests that were judged by, and those among them of which no joint turned, slipped or lifted.
+    impacts : str
+        Statement on the share of spin that impacts kept.
     cannot_see : tuple of str
         What the sensors do not show.
     """
@@ -138,6 +141,7 @@ class Decision(Strict):
     tests: tuple[str, ...]
     silent: tuple[str, ...]
     n_rows: Count
+    impacts: str = ""
     cannot_see: tuple[str, ...] = ()
 
     @property

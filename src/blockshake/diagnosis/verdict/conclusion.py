@@ -36,6 +36,7 @@ def conclude(decision, findings, kinds, caveats=(), measured=None):
     sensors, measured = sensor_causes(findings, kinds), measured or MeasuredGain()
     kind, causes = decision.decision, [*sensors, *(one.name for one in decision.causes)]
     caveats = [*caveats, *measured.caveats, *decision.cannot_see, *_told(decision)]
+    caveats += [decision.impacts] if decision.impacts else []
     if sensors and kind == "unknown":
         causes = []
         titles = ", ".join(title_of(name) for name in sensors)
