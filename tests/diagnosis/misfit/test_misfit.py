@@ -54,3 +54,10 @@ def test_a_departure_is_found_where_it_is():
     band = found["band"].sel(test="t2", cell="slip a-b")
     assert band.dims == ("quantile", "time")
     assert (band.isel(quantile=0) <= band.isel(quantile=2)).all()
+
+
+def test_a_test_in_which_nothing_moves_has_no_score_and_no_misfit():
+    still = misfit([_test(9, horizon=[-np.inf] * len(CELLS))])
+    assert still.attrs["where"] == "no joint moves"
+    assert float(still["p"]) == 1.0
+    assert still["chance"].isnull().all()

@@ -18,6 +18,7 @@ from blockshake.diagnosis.nominal.ensemble import (
 )
 from blockshake.diagnosis.verdict.verdict import MeasuredGain
 
+_STILL = "no gain was measured on the responses: no joint moves in the sealed tests"
 _OF_PARAMETERS = ("prior", "posterior", "narrowing", "skill", "chance", "informed", "held")
 
 
@@ -57,8 +58,11 @@ def campaign_gain(plan, opened, sealed, nominal, runs):
         test = judged_test(name, histories, [runs_of(one, test=name) for one in runs], kinds)
         drawn = test.members[NOMINAL].copy(data=members_with_discrepancy(test, known, motions, peaks))
         tests.append(replace(test, members=test.members | {DISCREPANCY: drawn}))
-    scores = response_gain(tests)
     count = plan.runs + sum(int(one.attrs["simulated"]) for one in runs)
+    tests = [test for test in tests if test.judged.any()]
+    if not tests:
+        return CampaignGain(MeasuredGain(gain=None, caveats=[_STILL], runs=count), xr.Dataset())
+    scores = response_gain(tests)
     return CampaignGain(gain_of_verdict(scores, count), scores.merge(_parameters(runs), compat="override"))
 
 

@@ -11,7 +11,8 @@ from blockshake.diagnosis.nominal.histories import as_cells, at_readings, common
 from blockshake.study.ensembles.intervals import sample_quantiles
 
 BAND = (0.05, 0.5, 0.95)
-_MOVES = 5.0  # standard deviations of a reading
+_MOVES = 5.0  # standard deviations of a reading, beyond which a cell moves
+_OFTEN = 0.99  # of the time that a cell is nearer
 _ENDED = 0.5  # share of an ensemble's members that have ended, from which on a test is not judged
 
 
@@ -30,7 +31,8 @@ class JudgedTest:
         Solver of each.
     horizon : float64 array, shape (n_cells,)
         Until which the cells are judged [s], by the solver that can be predicted for the shortest time; of a test in
-        which half the members of an ensemble fall, until then. Below the first time of a cell in which nothing moves.
+        which half the members of an ensemble fall, until then. Minus infinity of a cell in
+        which nothing moves.
     """
 
     name: str
@@ -97,11 +99,15 @@ def judged_test(name, histories, ensembles, kinds=(NOMINAL,)):
         [[one.attrs["model"]] * by_kind[0].sizes["run"] for one, by_kind in zip(ensembles, own, strict=True)]
     )
     horizon = np.minimum(np.min(limits, axis=0), min(_last_standing(one) for one in members.values()))
-    farthest = np.max(
-        [np.abs(one).max(set(one.dims) - {"cell"}) for one in (measured, *members.values())], axis=0
-    )
-    horizon = np.where(farthest > _MOVES * noise.to_numpy(), horizon, -np.inf)
+    moves = np.max([_moved(one) for one in (measured, *members.values())], axis=0) > _MOVES * noise.to_numpy()
+    horizon = np.where(moves, horizon, -np.inf)
     return JudgedTest(name, measured, members, models, horizon)
+
+
+def _moved(cells):
+    """How far a cell is away for a hundredth of the time, of several runs the median, (n_cells,)."""
+    away = sample_quantiles(np.abs(cells.transpose("time", ...).to_numpy()), (_OFTEN,))[0]
+    return away if away.ndim == 1 else np.median(away, axis=0)
 
 
 def _last_standing(cells):

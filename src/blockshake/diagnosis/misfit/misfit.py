@@ -68,7 +68,7 @@ def _excess(score, usual):
 
 
 def _chance(score, members):
-    return (1.0 + (members >= score).sum(axis=0)) / (1.0 + len(members))
+    return np.where(np.isnan(score), np.nan, (1.0 + (members >= score).sum(axis=0)) / (1.0 + len(members)))
 
 
 def _worst_times(test):
@@ -80,6 +80,8 @@ def _worst_times(test):
 
 
 def _where(test, cell, excess):
+    if not excess:
+        return "no joint moves"
     return (
         f"{cell['quantity'].item()} of {cell['where'].item()} in {test.name}, most at "
         f"{float(cell['worst_time']):.1f} s: {excess:.1f} times the usual error until {float(cell['horizon']):.1f} s"
