@@ -8,6 +8,8 @@ from blockshake.diagnosis.evidence.slab_motion import slab_gains, slab_motion
 from blockshake.forces.seen.seen_test import see_test
 from blockshake.measurement.campaigns.campaign import Sensors
 
+NOISE = 3e-4  # m
+
 
 def moved(t):
     """A table that moves along x alone."""
@@ -19,10 +21,14 @@ def moved(t):
 def test_a_rest_that_is_quiet_by_chance_is_no_vertical_motion(seed):
     structure = stack(1)
     read = readings(
-        structure, lambda t: np.array([[moved(t), 0.0, 0.0], [moved(t), 0.0, 0.0]]), 1e-4, 0.02, seed
+        structure, lambda t: np.array([[moved(t), 0.0, 0.0], [moved(t), 0.0, 0.0]]), NOISE, 0.02, seed
     )
     # the markers of the slab say a third of their noise while the table rests
     own = [str(name).startswith("slab") for name in read["marker"].values]
     read["marker_displacement"][dict(time=slice(0, 120), marker=own)] /= 3.0
-    seen = see_test("still", read, structure, Sensors(marker_noise=1e-4, accelerometer_noise=0.02))
-    assert slab_gains([slab_motion(seen)])["vertical-motion"][0] < 0.0
+    seen = see_test("still", read, structure, Sensors(marker_noise=NOISE, accelerometer_noise=0.02))
+    slab = slab_motion(seen)
+    moving = seen.motion.time > 0.7
+    assert slab.lift_noise == pytest.approx(slab.lift[moving].std(), rel=0.25)
+    assert slab.turn_noise == pytest.approx(slab.turn[moving].std(), rel=0.25)
+    assert slab_gains([slab])["vertical-motion"][0] < 0.0
