@@ -21,7 +21,7 @@ def moved(t):
 def test_a_rest_that_is_quiet_by_chance_is_no_vertical_motion(seed):
     structure = stack(1)
     read = readings(
-        structure, lambda t: np.array([[moved(t), 0.0, 0.0], [moved(t), 0.0, 0.0]]), 1e-4, 0.02, seed
+        structure, lambda t: np.array([[moved(t), 0.0, 0.0], [moved(t), 0.0, 0.0]]), NOISE, 0.02, seed
     )
     # the markers of the slab say a third of their noise while the table rests
     own = [str(name).startswith("slab") for name in read["marker"].values]

@@ -6,7 +6,7 @@ from known_blocks import GRAVITY, kicked, readings, rocking, stack
 
 from blockshake.diagnosis.answer.explain import gather_evidence
 from blockshake.diagnosis.answer.sight import cannot_see
-from blockshake.diagnosis.evidence.slab_motion import slab_gains, slab_motion
+from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
 from blockshake.diagnosis.evidence.spin_kept import restitution_gain
 from blockshake.forces.seen.seen_test import see_test
 
@@ -72,7 +72,7 @@ def test_nothing_is_said_of_what_is_not_read(structure, read, sensors, body):
     seen = [see_test("less", without(read, body), structure, sensors)]
     gathered = gather_evidence(seen)
     assert gathered is None or all(gathered.gain(key) < 8.0 for key in gathered.keys)
-    assert all(gain <= 0.0 for gain, _ in slab_gains([slab_motion(one) for one in seen]).values())
+    assert all(one.gain <= 0.0 for one in explain_slab([slab_motion(one) for one in seen]).values())
     assert restitution_gain(seen).gain <= 0.0
     assert f"{body}: its rotation is not read; forces of the joints at it are not judged" in cannot_see(seen)
 
