@@ -214,7 +214,7 @@ def check_parity(tests, structure, sensors, level=LEVEL):
 
 
 def _saturation(tests, level):
-    """Findings of readings that stop at the end of a sensor's range, made gaps when read; two ends a column looked at."""
+    """Findings of readings that stop at the end of a sensor's range, which were made gaps; a column has two ends."""
     looked_at = 2 * sum(
         3 * test.sizes["marker"] + test.sizes.get("channel", 0) + test.sizes.get("transducer", 0)
         for test in tests.values()
