@@ -19,7 +19,6 @@ from blockshake.parity.finding import Finding, Level
 from blockshake.parity.frame_drift import frame_drift
 from blockshake.parity.marker_faults import BodyMarkers, check_body
 from blockshake.parity.marker_swaps import marker_swaps
-from blockshake.parity.saturation import saturation
 from blockshake.parity.transducer_equations import held_readings
 from blockshake.parity.transducer_faults import check_transducer, hypotheses
 
@@ -169,7 +168,7 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     swaps = marker_swaps(_bodies(structure, tests), sensors.marker_noise, share)
     tests = _without(swaps, tests, structure)
     bodies = _bodies(structure, tests)
-    findings = saturation(tests, level) + findings + swaps
+    findings = _saturation(tests, level) + findings + swaps
     checks = {name: check_body(body, sensors.marker_noise, share) for name, body in bodies.items()}
     findings += [finding for check in checks.values() for finding in check.findings]
     findings += frame_drift(structure, tests, sensors.marker_noise, share)
@@ -212,6 +211,20 @@ def check_parity(tests, structure, sensors, level=LEVEL):
         falls={},
         gaps=gaps,
     )
+
+
+def _saturation(tests, level):
+    """Findings of readings that stop at the end of a sensor's range, which were made gaps; a column has two ends."""
+    looked_at = 2 * sum(
+        3 * test.sizes["marker"] + test.sizes.get("channel", 0) + test.sizes.get("transducer", 0)
+        for test in tests.values()
+    )
+    return [
+        Finding.of("range", (fault.sensor,), fault.p * looked_at, (name,), [abs(fault.value)])
+        for name, test in tests.items()
+        for fault in test.attrs.get("faulty", ())
+        if fault.kind == "clipped" and fault.p * looked_at < level
+    ]
 
 
 def _bodies(structure, tests):
