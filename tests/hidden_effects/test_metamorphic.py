@@ -4,23 +4,25 @@ On the functions that every diagnosis goes through, with the readings of a clean
 """
 
 import copy
+import shutil
 
 import numpy as np
 import pytest
-from blockshake.measurement.campaigns.repeats import without_repeats
+import yaml
 from make_case import DURATION, structure_file
 from mirror import mirrored_effect, mirrored_structure, mirrored_test
 
 from blockshake.diagnosis.answer.answer import rank
 from blockshake.diagnosis.answer.explain import gather_evidence
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
+from blockshake.diagnosis.nominal.repeated_readings import without_repeats
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
 from blockshake.files import load_yaml
 from blockshake.forces.seen.seen_test import see_test
 from blockshake.geometry.structure import build_structure, load_structure
-from blockshake.measurement.campaigns.campaign import Sensors
+from blockshake.measurement.campaigns.campaign import Sensors, load_campaign
 from blockshake.measurement.motion.outliers import without_outliers
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.parity.parity import check_parity
@@ -165,9 +167,17 @@ def test_another_order_of_bodies_and_markers_changes_nothing(seen, open_tests, p
     np.testing.assert_allclose(other.clock["lag"], parity.clock["lag"], atol=1e-6)
 
 
-def test_a_copy_of_a_test_is_no_further_test(open_tests):
-    again = {**open_tests, "again": list(open_tests.values())[-1].isel(marker=slice(None, None, -1))}
-    assert list(without_repeats(again)) == list(open_tests)
+def test_a_copy_of_a_test_is_no_further_test(clean_campaign, tmp_path):
+    folder = tmp_path / "campaign"
+    shutil.copytree(clean_campaign.folder, folder)
+    file = load_yaml(folder / "campaign.yaml")
+    slow, strong = file["tests"]
+    shutil.copyfile(folder / strong["file"], folder / "again.nc")
+    file["tests"].append({**strong, "name": "again", "file": "again.nc"})
+    (folder / "campaign.yaml").write_text(yaml.safe_dump(file))
+    names = [slow["name"], strong["name"], "again"]
+    assert without_repeats(load_campaign(folder), names) == names[:-1]
+    assert without_repeats(load_campaign(folder), names[::-1]) == ["again", slow["name"]]
 
 
 def test_the_mirrored_structure_is_one():
