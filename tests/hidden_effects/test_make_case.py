@@ -12,7 +12,7 @@ import numpy as np
 import outside_forces
 import pytest
 import xarray as xr
-from blockshake.diagnosis.libraries.null_model import MODELS, draw_nominal
+from blockshake.diagnosis.nominal.nominal_model import MODELS, draw_nominal
 from case_files import CALIBRATION_SEEDS, SEEDS, load_plan
 from case_noise import ACCELEROMETER_NOISE, MARKER_NOISE, add_noise, true_noise
 from case_truth import SIZES, follow, true_causes, true_numerics, true_parameters, true_table
