@@ -6,6 +6,7 @@ import re
 import pytest
 
 from blockshake.diagnosis.answer.answer import _NEEDED_OF_SLAB, needed_of
+from blockshake.diagnosis.nominal.efforts import EFFORTS as AMOUNTS
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.diagnosis.verdict.verdict import Verdict
 from blockshake.effects.registry import EFFECTS
@@ -47,11 +48,10 @@ def test_a_constant_has_the_value_of_its_home(row):
 
 
 def test_the_efforts():
-    efforts = pytest.importorskip("blockshake.diagnosis.nominal.efforts").EFFORTS
     stated = {
-        row[0].strip("`"): [int(cell) for cell in row[1:]] for row in ROWS if row[0].strip("`") in efforts
+        row[0].strip("`"): [int(cell) for cell in row[1:]] for row in ROWS if row[0].strip("`") in AMOUNTS
     }
-    assert stated == {name: [one.tests, one.draws, one.twins] for name, one in efforts.items()}
+    assert stated == {name: [one.tests, one.draws, one.twins] for name, one in AMOUNTS.items()}
 
 
 def test_the_contract_has_every_field_of_the_verdict():

@@ -12,7 +12,6 @@ import numpy as np
 import outside_forces
 import pytest
 import xarray as xr
-from blockshake.diagnosis.nominal.nominal_model import MODELS, draw_nominal
 from case_files import CALIBRATION_SEEDS, SEEDS, load_plan
 from case_noise import ACCELEROMETER_NOISE, MARKER_NOISE, add_noise, true_noise
 from case_truth import SIZES, follow, true_causes, true_numerics, true_parameters, true_table
@@ -20,6 +19,7 @@ from effect_forms import FORM_NUMERICS, FORMS, distort
 from make_case import STRUCTURES, structure_file
 from outside_forces import OUTSIDE
 
+from blockshake.diagnosis.nominal.nominal_model import MODELS, draw_nominal
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.motion import ground_motion
 from blockshake.effects import places

@@ -5,7 +5,7 @@ import numpy as np
 from blockshake.measurement.sensors.markers import marker_bodies
 
 LONGEST = 0.5  # s
-_STILL = 5.0  # standard deviations of a marker
+_STILL, _LEAST = 5.0, 5e-4  # standard deviations of a marker, m: a noise of nothing may be stated
 _FIRST = 10  # readings, whose median is where a marker starts
 
 
@@ -16,7 +16,7 @@ def counted_from_rest(test, structure, sensors):
     table = [body in driven for body in marker_bodies(structure, test["marker"].values)]
     moved = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()[:, table, 0]
     moved = moved[:, np.isfinite(moved[:_FIRST]).any(axis=0)]
-    away = np.abs(moved - np.nanmedian(moved[:_FIRST], axis=0)) > _STILL * sensors.marker_noise
+    away = np.abs(moved - np.nanmedian(moved[:_FIRST], axis=0)) > max(_STILL * sensors.marker_noise, _LEAST)
     moving = away.all(axis=1) & (moved.shape[1] > 0)
     end = time[np.argmax(moving)] if moving.any() else time[-1]
     until = float(min(end, time[0] + LONGEST))

@@ -39,7 +39,7 @@ class Recalibration:
 
 
 def features_of(tests):
-    """What parameters are conditioned on: the histories of the open tests.
+    """The histories of the open tests, on which parameters are conditioned.
 
     Parameters
     ----------
