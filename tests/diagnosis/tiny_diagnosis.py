@@ -10,7 +10,9 @@ from blockshake.diagnosis import steps
 from blockshake.diagnosis.nominal import efforts, plan, simulated_test
 from blockshake.diagnosis.verdict.frozen import freeze
 from blockshake.files import write_dataset, write_json, write_text
-from blockshake.parity.parity import campaign_parity
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign import load_test
+from blockshake.parity.parity import check_parity
 
 TINY = efforts.Effort(tests=2, draws=10, members=6, twins=2)
 SOLVERS = ("ls-dem", "nscd-rigid")
@@ -37,7 +39,9 @@ def simulate_open_tests(folder, campaign):
     )
     planned = plan.plan_diagnosis(campaign, "tiny")
     files = SimpleNamespace(parity=str(folder / "parity.json"), ensembles=[])
-    write_json(files.parity, campaign_parity(planned.campaign, planned.open).as_json())
+    tests = {name: load_test(planned.campaign, name) for name in planned.open}
+    parity = check_parity(tests, load_structure(planned.campaign.structure), planned.campaign.sensors)
+    write_json(files.parity, parity.as_json())
     for test in planned.tests:
         name = planned.ensemble(test, "shared")
         for solver in SOLVERS:

@@ -1,16 +1,16 @@
-"""Results in JSON with mutations - decisions, verdicts, parity, scored cases, track record - are read or refused."""
+"""Results in JSON with mutations - decisions, verdicts, parity, track record - are read or refused."""
 
 import json
 
 import numpy as np
 import pytest
-from blockshake.diagnosis.inference.calibration import load_cases
-from blockshake.diagnosis.inference.decision import Decision, load_result
 from contract import read_or_refused, scratch
 from hypothesis import given
 from hypothesis import strategies as st
+from made_up_decision import made_up_decision
 from mutations import FEW, MANY, mutated_bytes, mutated_mappings, mutated_texts, mutations, nested
 
+from blockshake.diagnosis.answer.decision import load_decision
 from blockshake.diagnosis.verdict.frozen import check_frozen
 from blockshake.diagnosis.verdict.track_record import load_track_record
 from blockshake.diagnosis.verdict.verdict import load_verdict
@@ -23,31 +23,19 @@ pytestmark = pytest.mark.slow  # a limit of CPU time, which kernels that are com
 
 _ESTIMATE = {"estimate": 0.3, "lower": 0.2, "upper": 0.4, "unit": "1"}
 _CONTRAST = {"estimate": 0.8, "lower": 0.7, "upper": 0.9}
+_GAIN = {"recalibrated": _CONTRAST, "nominal": _CONTRAST, "discrepancy": _CONTRAST, "placebo": None}
 VERDICT = {
-    "version": 2, "decision": "named", "causes": ["weak-joint"], "probabilities": {"weak-joint": 0.6,
+    "version": 3, "decision": "named", "causes": ["weak-joint"], "probabilities": {"weak-joint": 0.6,
     "table-pitch": 0.02},
     "parameters": {"weak-joint": {"factor": _ESTIMATE}}, "location": {"weak-joint": {"joint": ["slab", "block-1"]}},
     "misfit": {"p": 0.01, "where": "slip"}, "excluded_above": {"table-pitch": 1e-4}, "next_test": None,
-    "gain": {"recalibrated": _CONTRAST, "nominal": _CONTRAST, "discrepancy": _CONTRAST}, "runs": 400,
-    "caveats": ["few"],
-    "laws": [{"name": "friction", "unit": "1", "measured": {"t1": 0.3}, "departures": {"t1": 4.0}}], "outside": None,
-    "word": "probable", "missing": ["the effort was quick"], "law_gain": _CONTRAST,
+    "gain": _GAIN, "row_gain": _GAIN, "runs": 400, "caveats": ["few"], "odds": {"weak-joint": 0.0},
+    "places": {"weak-joint": ["slab-block-1"]}, "limits": {"weak-joint": {"slab-block-1": 0.6}},
+    "outside": {"form": "push", "title": "a push", "place": {"body": "block-1", "height": 0.0}, "places": ["block-1"],
+    "size": {"force": _ESTIMATE}, "starts": {"t1": 2.0}},
+    "word": "probable", "missing": ["two causes act together"],
 }  # fmt: skip
-DECISION = {
-    "decision": "named", "causes": ["weak-joint"], "places": {"weak-joint": "weak-joint@slab-block-1"},
-    "sizes": {"weak-joint": 0.9}, "p_none": 0.01, "probabilities": {"weak-joint": 0.6}, "adequacy": {"weak-joint": 0.5},
-    "constancy": {"weak-joint": 0.5}, "placebo": 1.0, "struck_out": {"table-pitch": ["p"]}, "solver_dependent": [],
-    "shown_above": {"weak-joint": None}, "nominal_distance": 2.0,
-    "parameters": {"weak-joint": {"factor": _ESTIMATE | {"informed": True}}},
-    "location": {"weak-joint": {"joint": ["slab", "block-1"]}},
-    "candidates": [{
-        "key": "weak-joint@slab-block-1", "effect": "weak-joint", "log_ratio": 3.0, "by_model": {"ls-dem": 3.0},
-        "size": 0.9,
-        "sizes": [0.5, 1.0], "weights": [0.2, 0.8], "model": "ls-dem", "distance": 1.0,
-        "by_test": [{"estimate": 0.9, "lower": 0.8, "upper": 1.0}],
-    }],
-    "laws": None,
-}  # fmt: skip
+DECISION = made_up_decision("named", ("weak-joint",)).model_dump(mode="json")
 _FINDING = Finding(
     "sensor-gain", ("a-x",), "gain", np.array([0.1]), np.array([[1e-4]]), 0.01, ("t1",), (("b", ("c",), "d"),)
 )
@@ -58,10 +46,6 @@ PARITY = {
     "falls": {"t1": {"body": "a", "time": 2.5}},
     "gaps": {"t1": ["0 m throughout while others change, taken as gaps: a.z"]},
 }  # fmt: skip
-CASES = [{
-    "truth": "none", "size": 0.0, "strongest": 1.0, "nominal": 1.0, "shortfall": {"weak-joint": 0.1},
-    "distance": {"weak-joint": 1.0}, "constancy": {"weak-joint": 0.5}, "missed": None,
-}]  # fmt: skip
 FROZEN = {"digest": "0123456789ab", "tests": ["t1"]}
 
 
@@ -72,9 +56,8 @@ def frozen(path):
 
 READERS = {
     "verdict": (VERDICT, load_verdict),
-    "decision": (DECISION, lambda path: load_result(Decision, path)),
+    "decision": (DECISION, load_decision),
     "parity": (PARITY, load_parity),
-    "cases": (CASES, load_cases),
     "frozen": (FROZEN, frozen),
     "track record": (
         load_json(HOME / "data" / "track-record" / "hidden-effects.json"), load_track_record,

@@ -106,14 +106,13 @@ def open_tests(campaign):
 def simulated_tests(campaign, names, most):
     """Those of the open tests that are simulated, in the campaign's order.
 
-    The strongest of each motion, then the weakest of all, where the blocks may not move yet, then the others by
-    falling scale.
+    The strongest of each motion, then the others by falling scale: where nothing moves, nothing is told.
     """
     falling = sorted((campaign.tests[name] for name in names), key=lambda test: (-abs(test.scale), test.name))
     strongest = {}
     for test in falling:
         strongest.setdefault(test.motion, test)
-    order = dict.fromkeys(test.name for test in [*strongest.values(), falling[-1], *falling])
+    order = dict.fromkeys(test.name for test in [*strongest.values(), *falling])
     chosen = list(order)[:most]
     return [name for name in names if name in chosen]
 
