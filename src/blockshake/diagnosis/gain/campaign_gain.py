@@ -75,13 +75,12 @@ def with_rows(responses, rows, table, caveats):
     rows, table, caveats
         From `row_gain`.
     """
+    table = table.rename({name: f"row_{name}" for name in [*table.data_vars, *table.dims]})
     if responses is None:
-        return CampaignGain(
-            MeasuredGain(rows=rows, caveats=tuple(caveats)), table.rename(kind="model_of_rows")
-        )
+        return CampaignGain(MeasuredGain(rows=rows, caveats=tuple(caveats)), table)
     own = responses.summary
     summary = own.model_copy(update={"rows": rows, "caveats": (*own.caveats, *caveats)})
-    return CampaignGain(summary, responses.scores.merge(table.rename(kind="model_of_rows")))
+    return CampaignGain(summary, responses.scores.merge(table))
 
 
 def _parameters(runs):
