@@ -39,7 +39,7 @@ class Recalibration:
 
 
 def features_of(tests):
-    """What parameters are conditioned on: the histories of the open tests.
+    """Histories of the open tests, which parameters are conditioned on.
 
     Parameters
     ----------
