@@ -19,7 +19,6 @@ _COMPUTE_NOTHING = (
     "sources.py",
     "diagnosis/nominal/efforts.py",
     "diagnosis/nominal/plan.py",
-    "diagnosis/nominal/repeated_readings.py",
 )
 # Of these only the functions that are taken count, each with its own imports.
 _BY_FUNCTION = ("diagnosis/steps.py",)

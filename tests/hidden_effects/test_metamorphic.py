@@ -15,7 +15,6 @@ from mirror import mirrored_effect, mirrored_structure, mirrored_test
 from blockshake.diagnosis.answer.answer import rank
 from blockshake.diagnosis.answer.explain import gather_evidence
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
-from blockshake.diagnosis.nominal.repeated_readings import without_repeats
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
@@ -23,6 +22,7 @@ from blockshake.files import load_yaml
 from blockshake.forces.seen.seen_test import see_test
 from blockshake.geometry.structure import build_structure, load_structure
 from blockshake.measurement.campaigns.campaign import Sensors, load_campaign
+from blockshake.measurement.campaigns.open_readings import read_open_tests
 from blockshake.measurement.motion.outliers import without_outliers
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.parity.parity import check_parity
@@ -176,8 +176,9 @@ def test_a_copy_of_a_test_is_no_further_test(clean_campaign, tmp_path):
     file["tests"].append({**strong, "name": "again", "file": "again.nc"})
     (folder / "campaign.yaml").write_text(yaml.safe_dump(file))
     names = [slow["name"], strong["name"], "again"]
-    assert without_repeats(load_campaign(folder), names) == names[:-1]
-    assert without_repeats(load_campaign(folder), names[::-1]) == ["again", slow["name"]]
+    campaign = load_campaign(folder)
+    assert list(read_open_tests(campaign, names).tests) == names[:-1]
+    assert list(read_open_tests(campaign, names[::-1]).tests) == ["again", slow["name"]]
 
 
 def test_the_mirrored_structure_is_one():

@@ -162,6 +162,7 @@ rule conclude:
         "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
+        effort=EFFORT,
         source=source_of("conclude"),
     script:
         "../scripts/conclude.py"

@@ -3,4 +3,6 @@ from blockshake.diagnosis.verdict.verdict import write_verdict
 from blockshake.log import logging_to
 
 with logging_to(snakemake.log[0]):
-    write_verdict(snakemake.output[0], conclude(snakemake.params.folder, snakemake.input))
+    write_verdict(
+        snakemake.output[0], conclude(snakemake.params.folder, snakemake.params.effort, snakemake.input)
+    )

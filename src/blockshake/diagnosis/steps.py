@@ -180,12 +180,12 @@ def measure_gain(folder, effort, files):
     return with_rows(responses, *rows)
 
 
-def conclude(folder, files):
+def conclude(folder, effort, files):
     """Put sensors, decision and gain together to the verdict.
 
     Parameters
     ----------
-    folder : str
+    folder, effort : str
     files : object
         Attributes ``parity``, ``decision`` and ``gain`` (the summary, or empty): files of the earlier steps.
 
@@ -194,6 +194,7 @@ def conclude(folder, files):
     Verdict
     """
     from blockshake.diagnosis.answer.decision import load_decision
+    from blockshake.diagnosis.nominal.plan import plan_diagnosis
     from blockshake.diagnosis.verdict.conclusion import conclude, no_gain
     from blockshake.diagnosis.verdict.verdict import load_gain
     from blockshake.measurement.campaigns.campaign import load_campaign
@@ -208,4 +209,5 @@ def conclude(folder, files):
     caveats += [f"{test}: {line}" for test, lines in parity.gaps.items() for line in lines]
     if not files.gain:
         caveats += no_gain(campaign, [*decision.parts, *parity.findings])
-    return conclude(decision, parity.findings, parity.recorder_sensors, caveats, measured)
+    verdict = conclude(decision, parity.findings, parity.recorder_sensors, caveats, measured)
+    return verdict.model_copy(update={"runs": plan_diagnosis(folder, effort).runs + verdict.runs})

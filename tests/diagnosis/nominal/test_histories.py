@@ -1,4 +1,4 @@
-"""Histories that are read of a test: prescribed motion of joints, gaps, falls, and the clock of the readings."""
+"""Histories read of a test: joints whose motion is prescribed, gaps, and the clock of the readings."""
 
 import numpy as np
 from known_motion import SENSORS, STRUCTURE, TIME, base_motion, bump, moved_run, ramp, seen

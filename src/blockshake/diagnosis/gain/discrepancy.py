@@ -42,11 +42,12 @@ def members_with_discrepancy(test, opened, motions, peaks):
         return np.nansum(same, axis=0) / np.maximum(np.isfinite(same).sum(axis=0), 1)
 
     errors = np.array([miss - carried(name) for name, miss in missed.items()])
-    spread = np.sqrt(np.nanmean(errors**2, axis=(0, 1)))
+    known = np.isfinite(errors).sum(axis=(0, 1))
+    spread = np.sqrt(np.nansum(errors**2, axis=(0, 1)) / np.maximum(known, 1))
     members = test.members[NOMINAL].to_numpy()
     strata = ndtri((np.arange(len(members)) + 0.5) / len(members))
     orders = [np.random.default_rng([len(members), *name.encode()]).permutation(strata) for name in names]
-    drawn = np.array(orders).T[:, None] * np.nan_to_num(spread)
+    drawn = np.array(orders).T[:, None] * spread
     return members + peaks[test.name] * (carried(test.name) + drawn)
 
 

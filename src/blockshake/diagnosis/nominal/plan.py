@@ -8,12 +8,12 @@ from typing import NamedTuple
 from blockshake.diagnosis.nominal.efforts import EFFORTS, ENSEMBLES_OF_SEALED_TEST, Effort
 from blockshake.diagnosis.nominal.nominal_model import MODELS
 from blockshake.diagnosis.nominal.planned_test import planned_sealed, planned_test
-from blockshake.diagnosis.nominal.repeated_readings import without_repeats
 from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Campaign, load_campaign
+from blockshake.measurement.campaigns.open_readings import read_open_tests
 
 _CHECKOUT = PACKAGE.parents[1].resolve()
 
@@ -100,7 +100,7 @@ def open_tests(campaign):
             "tests",
             "expected a test with the role fit or select, found none",
         )
-    return without_repeats(campaign, names)
+    return list(read_open_tests(campaign, names).tests)
 
 
 def simulated_tests(campaign, names, most):
