@@ -67,7 +67,7 @@ def test_the_right_cause_gains_and_a_wrong_size_less(found):
     assert gained.summary.gain.placebo.estimate == pytest.approx(0.0, abs=0.3)  # the formula knows no joint
     assert gained.summary.runs > 0
     nothing = gain_of(folder, campaign, files, _decision(0.98))
-    assert nothing.summary.gain.nominal.estimate < 0.3
+    assert nothing.summary.gain.recalibrated.estimate < 0.3
     gone = gain_of(folder, campaign, files, _decision(0.5, ("block-1-block-2", "slab-block-1")))
     assert gone.summary.gain.placebo is None
 
