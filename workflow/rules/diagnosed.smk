@@ -20,8 +20,19 @@ def by_name(folders, without):
     return named
 
 
+def check_left_out(without):
+    """Refuse to leave an effect out that does not exist."""
+    from blockshake.diagnosis.nominal.plan import considered
+
+    try:
+        considered(without)
+    except InputError as error:
+        refuse(error)
+
+
 EFFORT = config.get("effort", config["diagnosis"]["effort"])
 WITHOUT = config.get("without", [])
+check_left_out(WITHOUT)
 if "campaign" in config:
     CAMPAIGNS = by_name([config["campaign"]], WITHOUT)
 else:

@@ -119,11 +119,6 @@ class Structure:
         """Centroids of the shapes at the start: float64 array, shape (n_bodies, 3), world frame [m]."""
         return np.array([body.position for body in self.file.bodies])
 
-    def weight_shares(self):
-        """Share of the weight of all free bodies that each of them has, by name [1]."""
-        free = np.flatnonzero(~self.driven)
-        return {self.body_names[body]: float(self.mass[body] / self.mass[free].sum()) for body in free}
-
     def with_parameters(self, parameters):
         """The same structure with other values by dotted name, as of `load_structure`; its file is not read again.
 

@@ -94,7 +94,6 @@ class Row(Strict):
 
     truth: str = Field(description="name of an effect, or none")
     size: Literal["small", "large"] | None = None
-    removed: bool = Field(False, description="the truth was taken out of the diagnosis' candidates")
     answers: Answers
 
 
@@ -106,7 +105,6 @@ class JudgedCase(Strict):
     structure: str
     truth: str
     size: Literal["small", "large"] | None = None
-    removed: bool = False
     answer: Literal["none", "right", "wrong", "set_with", "set_without", "unknown", "combination"]
     causes: tuple[str, ...] = ()
 
