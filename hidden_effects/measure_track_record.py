@@ -14,10 +14,17 @@ from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
+from types import SimpleNamespace
 
 import score
 from case_files import ROOT, SEEDS, campaign_of, load_plan, truth_of, verdict_of
 from make_case import made_by, make_case
+
+from blockshake.diagnosis import steps
+from blockshake.diagnosis.answer.decision import write_decision
+from blockshake.diagnosis.verdict.frozen import freeze
+from blockshake.diagnosis.verdict.verdict import write_verdict
+from blockshake.files import write_json
 
 ENVIRONMENT = {
     **os.environ,
@@ -86,16 +93,54 @@ def _is_made(case, results, maker):
     return names == case.causes and {key: true[key] for key in wanted} == wanted
 
 
-def diagnose(case, results, cores):
-    """The verdict on one `PlannedCase`, by the command that a user types; what is there is kept."""
-    verdict = verdict_of(results, case.name)
-    if verdict.is_file():
-        return
-    command = [
-        "blockshake", "diagnose", str(campaign_of(results, case.name)), "--output", str(verdict.parent),
-        "--effort", case.effort, "--cores", str(cores),
-    ]  # fmt: skip
-    subprocess.run(command, cwd=ROOT, env=ENVIRONMENT, check=True)
+def diagnose(cases, results, cores, log):
+    """The verdict on every case that has none yet: without a simulation several at a time, with simulations in turn.
+
+    Parameters
+    ----------
+    cases : sequence of PlannedCase
+    results : Path
+    cores : int
+    log : Log
+    """
+    due = [case for case in cases if not verdict_of(results, case.name).is_file()]
+    quick = [case for case in due if case.effort == "quick"]
+    with ProcessPoolExecutor(cores, get_context("spawn")) as pool:
+        for name, seconds in pool.map(partial(_diagnose_quickly, results), quick):
+            log("diagnosed", case=name, effort="quick", seconds=round(seconds, 1))
+    for case in due:
+        if case.effort != "quick":
+            begin = time.monotonic()
+            command = [
+                "blockshake", "diagnose", str(campaign_of(results, case.name)), "--output",
+                str(verdict_of(results, case.name).parent), "--effort", case.effort, "--cores", str(cores),
+            ]  # fmt: skip
+            subprocess.run(command, cwd=ROOT, env=ENVIRONMENT, check=True)
+            log("diagnosed", case=case.name, effort=case.effort, seconds=round(time.monotonic() - begin, 1))
+
+
+def _diagnose_quickly(results, case):
+    """Name of a case diagnosed by the steps of the rules, as at quick effort, and the time it took [s]."""
+    begin, folder, out = (
+        time.monotonic(),
+        campaign_of(results, case.name),
+        verdict_of(results, case.name).parent,
+    )
+    out.mkdir(parents=True, exist_ok=True)
+    files = SimpleNamespace(
+        parity=str(out / "parity.json"), decision=str(out / "decision.json"), frozen=str(out / "frozen.json"),
+        ensembles=[], extended=[], gain=[],
+    )  # fmt: skip
+    found = steps.decide(str(folder), ())
+    write_json(files.parity, found.parity.as_json())
+    write_decision(files.decision, found.decision)
+    freeze(files.frozen, files.decision, found.decision.tests)
+    if case.gain is not None and (found.decision.parts or found.parity.findings):
+        gained = steps.measure_gain(str(folder), "quick", files)
+        files.gain = [str(out / "gain.json")]
+        write_json(files.gain[0], gained.summary.model_dump(mode="json"))
+    write_verdict(verdict_of(results, case.name), steps.conclude(str(folder), "quick", files))
+    return case.name, time.monotonic() - begin
 
 
 def main(arguments):
@@ -111,10 +156,7 @@ def main(arguments):
     make_cases(plan.cases, asked.output, asked.cores, log)
     if asked.make_only:
         return
-    for case in plan.cases:
-        begin = time.monotonic()
-        diagnose(case, asked.output, asked.cores)
-        log("diagnosed", case=case.name, effort=case.effort, seconds=round(time.monotonic() - begin, 1))
+    diagnose(plan.cases, asked.output, asked.cores, log)
     score.main(["--results", str(asked.output), "--seeds", str(asked.seeds)])
     log("scored")
 
