@@ -1,4 +1,4 @@
-"""The small tier: a clean case and three effects, by the command that a user types.
+"""The small tier: a clean case and three effects, made, diagnosed and held against their truths.
 
 Its seeds were fixed before any of the cases was diagnosed, and are not changed when a test fails.
 """
@@ -31,8 +31,7 @@ def _silent(step, **facts):
 def scored():
     """Cases with their verdicts."""
     make_cases(PLAN.cases, RESULTS, CORES, _silent)
-    for case in PLAN.cases:
-        diagnose(case, RESULTS, CORES)
+    diagnose(PLAN.cases, RESULTS, CORES, _silent)
     return {
         name: Scored(name, load_json(truth_of(RESULTS, name)), load_verdict(verdict_of(RESULTS, name)))
         for name in CASES
@@ -55,6 +54,5 @@ def test_an_effect_is_named_or_in_a_small_set(name, scored):
 
 def test_what_is_finished_is_not_done_again(scored):
     before = {name: verdict_of(RESULTS, name).stat().st_mtime_ns for name in scored}
-    for case in PLAN.cases:
-        diagnose(case, RESULTS, CORES)
+    diagnose(PLAN.cases, RESULTS, CORES, _silent)
     assert {name: verdict_of(RESULTS, name).stat().st_mtime_ns for name in scored} == before
