@@ -45,8 +45,8 @@ def friction_against_slip(seen, face):
 
 
 def normal_force(seen, face):
-    """Normal force of a face as if it were closed, (n_times,) [N]."""
-    return seen.forces.force[:, face, 2]
+    """Normal force of a face as if it were closed, (n_times,) [N]; zero where it is not known."""
+    return np.nan_to_num(seen.forces.force[:, face, 2])
 
 
 def mass_centre_off(seen, body, axis=0):
