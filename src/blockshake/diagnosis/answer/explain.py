@@ -125,7 +125,7 @@ def _from_outside(likelihood, tests, points):
     }.values():  # the height hardly matters to a force of any history
         yield explain_free_force(likelihood, one)
     for key in sorted({key for test in tests for key in test.hinges}):
-        yield explain_changed_edge(likelihood, tests, tests[0].seen.faces[key[0]].name, key)
+        yield from explain_changed_edge(likelihood, tests, tests[0].seen.faces[key[0]].name, key)
     top = int(tests[0].seen.free[np.argmax(structure.position[tests[0].seen.free, 2])])
     yield explain_loose_weight(likelihood, tests, structure.body_names[top], top)
 

@@ -11,7 +11,7 @@ _NEVER = -1e3  # nats
 
 
 def explain_changed_edge(likelihood, tests, place, key):
-    """`Explanation` of an inset of one edge, or of both, of one hinge.
+    """`Explanation` of an inset of one edge, or of both, of one hinge; none where the tests leave nothing to change.
 
     Parameters
     ----------
@@ -31,13 +31,15 @@ def explain_changed_edge(likelihood, tests, place, key):
                     tried.append((own, float(start), lasts, edge))
                     for number, one in enumerate(tests):
                         columns[number].append(_rows(one, key, edge, number, own, start, lasts))
+    if not tried:
+        return
     whitened = likelihood.whiten([np.stack(rows, axis=1) for rows in columns])
     gain, mean, deviation = likelihood.single(whitened, _SCALE, positive=True)
     widest = 0.5 * float(np.ptp(tests[0].seen.faces[key[0]].corners[:, key[1]]))
     gain = np.where(mean < widest, gain, _NEVER)  # an edge lies on its face
     best = int(np.argmax(gain))
     own, start, lasts, edge = tried[best]
-    return single(
+    yield single(
         "changed-edge", place, mean_evidence(gain), [rows[best] for rows in columns], _SCALE,
         (float(mean[best]), float(deviation[best])),
         {
