@@ -73,29 +73,29 @@ def test_numbas_options_are_watched_by_what_they_compile():
 
 
 def test_what_judges_is_no_source_of_what_is_simulated():
-    for script in ("simulate_batch", "simulate_library"):
+    for script in ("simulate_batch", "simulate_nominal"):
         assert not any(
-            one.startswith(("report/", "diagnosis/inference/", "diagnosis/gain/", "diagnosis/verdict/"))
+            one.startswith(("report/", "diagnosis/evidence/", "diagnosis/gain/", "diagnosis/verdict/"))
             for one in script_sources(script)
         )
 
 
-def test_a_library_watches_the_sizes_of_its_candidates_and_one_step():
-    listed = script_sources("simulate_library")
-    assert "diagnosis/libraries/candidates.py" in listed
-    assert [one for one in listed if "steps.py" in one] == ["diagnosis/steps.py:simulate_library"]
+def test_an_ensemble_watches_its_draws_and_one_step():
+    listed = script_sources("simulate_nominal")
+    assert "diagnosis/nominal/nominal_model.py" in listed
+    assert [one for one in listed if "steps.py" in one] == ["diagnosis/steps.py:simulate_nominal"]
 
 
 @pytest.mark.parametrize(("model", "other"), [("ls-dem", "nscd-rigid"), ("nscd-rigid", "ls-dem")])
-def test_a_library_of_one_solver_does_not_watch_the_driver_of_the_other(model, other):
+def test_an_ensemble_of_one_solver_does_not_watch_the_driver_of_the_other(model, other):
     own, unwatched = (kernel_sources(one) for one in (model, other))
-    listed = script_sources("simulate_library", model)
+    listed = script_sources("simulate_nominal", model)
     assert set(own) <= set(listed)
     assert not {one for one in unwatched if one.endswith("driver.py")} & set(listed)
-    # the rules name the solver, and the libraries' names none
+    # the rules name the solver, and the ensembles' names none
     rules = [(PACKAGE.parents[1] / "workflow" / "rules" / f"{name}.smk").read_text() for name in RULES]
-    assert 'source_of("simulate_library", wildcards.solver)' in rules[0]
-    assert rules[1].count("source=solver_source") == 3
+    assert 'source_of("simulate_nominal", wildcards.solver)' in rules[0]
+    assert rules[1].count("source=solver_source") == 2
 
 
 def test_every_module_with_kernels_is_in_the_cache_digest():

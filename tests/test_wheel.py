@@ -89,5 +89,5 @@ def test_a_diagnosis_is_planned_in_the_current_folder(run, installed, tmp_path):
         "--configfile", shipped / "config" / "diagnosis.yaml", "--config", "campaign=campaign", "effort=quick",
     )  # fmt: skip
     assert answer.returncode == 0, answer.stderr
-    assert "simulate_library" in answer.stdout
+    assert "decide" in answer.stdout
     assert not any(str(ROOT / name) in answer.stdout for name in COPIED)

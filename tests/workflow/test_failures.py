@@ -154,7 +154,7 @@ def test_an_interrupted_study_says_so_last(tmp_path):
 )
 def test_a_diagnosis_ends_with_its_first_step(tmp_path, body, code, reason):
     checkout = Checkout(tmp_path)
-    broken(checkout, "diagnosis/steps", "read_measured", body)
+    broken(checkout, "diagnosis/steps", "decide", body)
     answer = subprocess.run(
         [sys.executable, "-m", "blockshake", "diagnose", "data/virtual-campaign/configuration-1",
          "--output", "new/output", "--effort", "quick", "--cores", "2"],
@@ -164,7 +164,7 @@ def test_a_diagnosis_ends_with_its_first_step(tmp_path, body, code, reason):
     assert answer.returncode == code
     said, job, log = last_lines(answer, 3)
     assert said == f"blockshake: {reason}"
-    assert job.startswith("  job: read_measured, which makes results/diagnosis/")
+    assert job.startswith("  job: decide, which makes results/diagnosis/")
     assert log.startswith("  log: logs/")
     assert not (tmp_path / "new").exists()
-    assert not list(tmp_path.glob("results/libraries/**/*.nc"))
+    assert not list(tmp_path.glob("results/ensembles/**/*.nc"))

@@ -20,7 +20,13 @@ from blockshake.measurement.sensors.markers import driven_marker
 from blockshake.simulation.simulate import simulate
 from blockshake.simulation.structure_digest import structure_digest
 from blockshake.store import keep_dataset, kept, load_made
-from blockshake.study.ensembles.case_input import MEASURED, driving_motions, measured_input, measured_on_clock
+from blockshake.study.ensembles.case_input import (
+    MEASURED,
+    check_known,
+    driving_motions,
+    measured_input,
+    measured_on_clock,
+)
 from blockshake.study.sampling.sample_parameters import sample_parameters
 
 _SEGMENT = 1.0  # s, of the spectra: lines 1 Hz apart
@@ -65,6 +71,7 @@ def open_test(case, campaign, name):
     case = {**case, "motion": motion, "scale": listed.scale, "baseline": listed.baseline, "input": MEASURED}
     base = measured_input({**case, "duration": 0.0}, named)
     duration = min(case["duration"], float(base.attrs["end"] - base.attrs["start"]))
+    check_known(base, duration, name)
     measured, _ = measured_on_clock(named, base)
     sensors = loaded.sensors
     instruments = Instruments(

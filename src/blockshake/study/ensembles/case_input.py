@@ -51,7 +51,7 @@ def measured_input(case, named):
     length = base.attrs["end"] - base.attrs["start"]
     if case["input"] == MEASURED:
         check_record(length, case["duration"], named["test"], "duration")
-        _check_known(base, case["duration"], named["test"])
+        check_known(base, case["duration"], named["test"])
     base.attrs |= {"test": named["test"], "synthetic": int(test.attrs.get("synthetic", 0))}
     base.attrs |= dict(zip(("gain", "departure"), _against(base, command, case["duration"]), strict=True))
     return base
@@ -72,11 +72,13 @@ def check_record(length, duration, where, key):
         )
 
 
-def _check_known(base, duration, where):
+def check_known(base, duration, where):
     """Refuse a window of which the slab's displacement along x is not known, in a gap of its readings."""
     since_start = base["time"] - base.attrs["start"]
     slab = base.sel(channel="x").isel(time=np.flatnonzero((since_start >= 0.0) & (since_start <= duration)))
     error, moved = slab["displacement_error"].to_numpy(), slab["displacement"].to_numpy()
+    if not len(error):
+        return
     worst = int(error.argmax())
     if error[worst] > max(_UNKNOWN * np.ptp(moved), _GAP * np.median(error)):
         raise InputError(
