@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import xarray as xr
 
+from blockshake.errors import InputError
 from blockshake.store import load_made
 
 
@@ -39,6 +40,10 @@ def decide(folder, without):
 
     seen = see_campaign(load_campaign(folder), without)
     unseen = [f"{name} is not judged: {reason}" for name, reason in seen.unseen.items()]
+    if not seen.tests:
+        raise InputError(
+            folder, "tests", f"expected an open test whose forces can be read; {'; '.join(unseen)}"
+        )
     return Measured(seen.parity, *decide(seen.tests, without, unseen))
 
 

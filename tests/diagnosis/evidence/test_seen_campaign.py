@@ -8,6 +8,7 @@ import xarray as xr
 import yaml
 from tiny_campaign import write_campaign
 
+from blockshake.diagnosis import steps
 from blockshake.diagnosis.evidence.seen_campaign import see_campaign, see_sealed
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, write_dataset
@@ -86,6 +87,13 @@ def test_a_test_too_short_for_the_kernel_is_said(folder):
     found = see_campaign(load_campaign(folder))
     assert found.unseen == {"one-100": "the test is too short"}
     assert [test.name for test in found.tests] == ["two-100"]
+
+
+def test_a_campaign_of_which_no_test_is_seen_is_refused_with_the_reasons(folder):
+    for name in OPEN:
+        write_dataset(folder / f"{name}.nc", xr.load_dataset(folder / f"{name}.nc").isel(time=slice(40)))
+    with pytest.raises(InputError, match="one-100 is not judged: the test is too short; two-100"):
+        steps.decide(str(folder), ())
 
 
 def test_sensors_without_stated_noise_are_the_best_instruments(folder):

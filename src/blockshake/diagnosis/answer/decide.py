@@ -48,7 +48,7 @@ def decide(seen, without=(), unseen=()):
     Parameters
     ----------
     seen : list of SeenTest
-        Open tests.
+        Open tests, at least one.
     without : sequence of str
         Effects that are left out, as if nobody had thought of them.
     unseen : sequence of str
@@ -64,21 +64,25 @@ def decide(seen, without=(), unseen=()):
         closed = {}
     slabs = [slab_motion(test) for test in seen]
     slab = explain_slab(slabs, without)
-    found = []
+    found, explained = [], []
     first = group_of(rank(evidence, closed))
     if first:
         found.append(_part("joints", first, seen, evidence, closed))
-        beside = _beside(evidence, first)
-        second = group_of(rank(beside), needed_beside(first.rivals[0].gain)) if beside else None
-        if second:
-            found.append(_part("joints, beside the first", second, seen, beside, {}))
+        key = _key(first)
+        if evidence and key in evidence.keys:
+            explained.append(evidence.best(key))
+            beside = evidence.beside(key)
+            second = group_of(rank(beside), needed_beside(first.rivals[0].gain))
+            if second:
+                found.append(_part("joints, beside the first", second, seen, beside, {}))
+                explained.append(beside.best(_key(second)))
     for readings, group in slab_groups(slab):
         found.append(_part(readings, group, seen, None, {}, slab))
     impacts = restitution_gain(seen)
     if impacts.gain > needed_of(RESTITUTION.name) and RESTITUTION.name not in without:
         found.append(_of_impacts(impacts))
     parts = tuple(sorted(found, key=lambda part: -part.causes[0].gain))
-    shown = departures(seen, evidence, [(one.name, one.places[0]) for one in _of_joints(parts)])
+    shown = departures(seen, evidence, explained)
     limits = limits_of(evidence, slab)
     decision = Decision(
         decision=_kind(parts),
@@ -111,13 +115,8 @@ def _of_impacts(impacts):
     return Part(readings="impacts", causes=(cause,), odds={cause.name: 0.0}, gains={cause.name: impacts.gain})
 
 
-def _of_joints(parts):
-    return [part.causes[0] for part in parts if part.readings.startswith("joints")]
-
-
-def _beside(evidence, first):
-    key = first.rivals[0].cause, first.rivals[0].place
-    return evidence.beside(key) if evidence and key in evidence.keys else None
+def _key(group):
+    return group.rivals[0].cause, group.rivals[0].place
 
 
 def _chance(part):

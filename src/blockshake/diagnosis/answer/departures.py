@@ -10,15 +10,15 @@ _NAMES = ("measured", "deviation", "explained")
 _LEAST = 1e-3  # of a virtual displacement along x, squared: below it a force on the block makes no row
 
 
-def departures(seen, evidence, keys):
+def departures(seen, evidence, explained):
     """Forces on blocks that alone would make the rows, measured and by the causes.
 
     Parameters
     ----------
     seen : list of SeenTest
     evidence : Evidence or None
-    keys : list of (str, str)
-        Causes in the answer and their places.
+    explained : list of Explanation
+        Of the causes in the answer, a second one beside the first.
 
     Returns
     -------
@@ -31,10 +31,7 @@ def departures(seen, evidence, keys):
     parts = []
     for number, test in enumerate(evidence.tests if evidence else ()):
         rows = test.rows
-        explained = sum(
-            (evidence.best(key).rows[number] for key in keys if key in evidence.keys),
-            np.zeros(len(rows.value)),
-        )
+        forces = sum((one.rows[number] for one in explained), np.zeros(len(rows.value)))
         measured = rows.value - expected_rows(test)
         instants, index = np.unique(rows.instant, return_inverse=True)
         found = np.full((3, len(instants), len(names)), np.nan)
@@ -44,7 +41,7 @@ def departures(seen, evidence, keys):
             known = square > _LEAST
             noise = np.stack([np.bincount(index, unit * one) for one in rows.noise.T])
             for place, value in enumerate((np.bincount(index, unit * measured), np.sqrt((noise**2).sum(axis=0)),
-                                           np.bincount(index, unit * explained))):  # fmt: skip
+                                           np.bincount(index, unit * forces))):  # fmt: skip
                 found[place, known, column] = value[known] / square[known]
         parts.append(
             xr.Dataset(

@@ -46,7 +46,9 @@ def conclude(decision, findings, kinds, caveats=(), measured=None):
     word, missing = rung(kind, decision, bool(sensors), measured)
     named = {one.name: one for one in decision.causes}
     faults = {name: one for name, one in sensors.items() if name in causes}
-    shown = [one for part in decision.parts for one in part.causes]
+    shown = [one for part in decision.parts for one in part.causes][
+        ::-1
+    ]  # of one name the stronger part's last
     return Verdict(
         decision=kind,
         causes=causes,
@@ -83,7 +85,7 @@ def _told(decision):
         elif part.forms and decision.causes:
             yield f"beside the causes something acts that no effect of the registry is: {names[0]}"
     if decision.silent:
-        yield f"no joint turned, slipped or lifted in {', '.join(decision.silent)}"
+        yield f"no joint was seen to turn, slip or lift in {', '.join(decision.silent)}"
 
 
 def _outside(forms):
