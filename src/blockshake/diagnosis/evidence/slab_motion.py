@@ -18,10 +18,8 @@ _LIFT_COLOURED, _LIFT_OFFSET, _LIFT_BY_FORCE, _LIFT_BY_TURN = 1e-5, 3e-5, 1e-8, 
 _BOUNCE, _BOUNCE_MEMORY = 1.5e-4, 0.03  # m, s: of a base that gives
 _MULTIPLES = ((1.0, 0.0), (3.0, -2.0), (9.0, -8.0))  # of the coloured error, and the logarithm of their prior
 _RIDGES = 0.05, 0.1
-_DELAYS, _RATIO = (
-    np.arange(-0.2, 0.2001, 0.01),
-    0.5,
-)  # s, 1: of a vertical motion that follows the horizontal one
+# s, 1: of a vertical motion that follows the horizontal one
+_DELAYS, _RATIO = np.arange(-0.2, 0.2001, 0.01), 0.5
 _FREE_SHARE, _FREE_MEMORY = 0.1, 0.15  # of the vertical motion, s: what of it does not follow
 
 
@@ -31,8 +29,8 @@ class SlabMotion:
 
     Attributes
     ----------
-    time, turn, lift : float64 arrays, shape (n_times,)
-        Rotation about y and vertical displacement, from rest [s, rad, m].
+    time, turn, lift, travel : float64 arrays, shape (n_times,)
+        Rotation about y, vertical displacement, and displacement along x, from rest [s, rad, m, m].
     acceleration, moment, force : float64 arrays, shape (n_times,)
         Of the slab along x, and of the contacts on it: about y through its centre, and downwards, from rest [m/s2, N m,
         N]; zero where unknown; smoothed as displacements are.

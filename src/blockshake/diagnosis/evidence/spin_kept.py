@@ -9,15 +9,10 @@ from blockshake.forces.seen.impacts import find_impacts
 
 # Losses over Housner's: flat elastic faces lose least (nodes 0.05 m apart, restitution 0.5), edges and grains most
 _LEAST_LOST, _MOST_LOST, _LOSS_ERROR = 0.41, 1.1, 0.03
-_OF_ONE, _OF_STACKS = (
-    0.01,
-    0.03,
-)  # of the share kept: errors of the loss's law, of single blocks and of stacks
+_OF_ONE, _OF_STACKS = 0.01, 0.03  # of the share kept: errors of the loss's law, of single blocks and stacks
 _SCATTERS = np.array([0.0, 0.01, 0.02, 0.04, 0.08, 0.16])  # of single impacts, beyond their errors
-_STRAY, _STRAYS = (
-    0.05,
-    0.5,
-)  # share of impacts that something else strikes; standard deviation of the share they keep
+# share of impacts that something else strikes; standard deviation of the share they keep
+_STRAY, _STRAYS = 0.05, 0.5
 _ANYTHING = 1e-6  # probability of a share that no impact explains
 _SHARES = np.linspace(-1.0, 2.0, 6001)
 _TELLING = 8.0  # nats by which nothing lost would have to stand out, where a verdict is possible

@@ -9,10 +9,10 @@ from blockshake.diagnosis.answer.cause_rows import cause_rows
 from blockshake.diagnosis.answer.explain import likelihoods
 from blockshake.diagnosis.evidence.joint_rows import JointRows
 from blockshake.diagnosis.evidence.slab_motion import slab_motion, slab_turns
+from blockshake.diagnosis.nominal.ensemble import DISCREPANCY, EXTENDED, NOMINAL, RECALIBRATED
 from blockshake.diagnosis.verdict.verdict import Contrast, Gain
 from blockshake.effects.registry import EFFECTS
 
-EXTENDED, RECALIBRATED, NOMINAL, DISCREPANCY = "extended", "recalibrated", "nominal", "discrepancy"
 _WIDER = (1.0, 3.0, 10.0)  # times the priors of the joints' own errors: a discrepancy without a name
 _BLOCK = 0.5  # s, of rows that are drawn together
 _REPLICATES, _INTERVAL = 1000, (0.05, 0.95)
@@ -173,7 +173,7 @@ def _blocks(times):
 def _of_slab(decision, opened, sealed):
     """`Squares` of the slab's rotation, of an effect that turns it."""
     causes = [part.causes[0] for part in decision.parts if part.readings.startswith("rotation of the slab")]
-    if not causes:
+    if not causes or not sealed:
         return []
     (cause,) = causes
     slabs = [slab_motion(one) for one in [*opened, *sealed]]
