@@ -384,6 +384,19 @@ def test_the_page_shows_what_the_file_says(record):
     assert block_of(PAGE.read_text(encoding="utf-8"), "figures") == as_markdown(record)
 
 
+@pytest.mark.parametrize(
+    "name",
+    [
+        "false_alarms", "confidently_wrong", "truth_in_set", "truth_in_set_seen", "exact_large_alone", "false_beside",
+        "single_called_pair", "pairs_one", "pairs_both", "outside_unknown", "outside_named",
+    ],
+)  # fmt: skip
+def test_the_words_of_the_page_say_what_the_file_says(record, name):
+    _, words = PAGE.read_text(encoding="utf-8").split("<!-- figures: end -->")
+    share = record.shares[name]
+    assert f"{share.hits} of {share.n}" in " ".join(words.split())
+
+
 def test_the_readme_says_what_the_file_says(record):
     readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
     assert f"We made {len(record.cases)} " in readme
@@ -395,3 +408,15 @@ def test_the_readme_says_what_the_file_says(record):
     }.items():
         share = record.shares[name]
         assert words.format(share=100.0 * share.estimate, n=share.n, goal=100.0 * share.goal) in readme, name
+    answers = {row.truth: row.answers for row in record.confusion}
+    for names, words in {
+        ("drag", "dry-drag"): "drags and dry drags are called unknown in {hits} of {n}",
+        ("push", "spring-once"): "springs and pushes in {hits} of {n}",
+        ("rope",): "ropes in {hits} of {n}",
+        ("edge", "weight"): "changed edges and loose weights in {hits} of {n}",
+        ("blow",): "blows in {hits} of {n}",
+    }.items():
+        own = [answers[f"outside-{name}"] for name in names]
+        assert words.format(hits=sum(one.unknown for one in own), n=sum(one.n for one in own)) in readme, (
+            names
+        )

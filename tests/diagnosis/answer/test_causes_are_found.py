@@ -1,6 +1,5 @@
 """Every cause that has a column: put into the simulation, it is found in the readings, where it is and as large."""
 
-import numpy as np
 import pytest
 from simulated_tests import cause_of, seen_tests
 
@@ -23,7 +22,7 @@ CAUSES = [
         "push",
         TOP,
         {"force": 4000.0},
-        {"starts": {"weak": 3.0, "first": 2.5, "second": 2.0, "third": 3.0}},
+        {"starts": STARTS},
         "two-blocks",
     ),
     ("rope", TOP, {"stiffness": 2e5}, {}, "two-blocks"),
@@ -52,10 +51,19 @@ SLOW = [
     ("unmodelled-mass", TOP, {"mass": 1500.0}, {}, "two-blocks"),
 ]
 WITHIN = 0.25  # of the size: the forms in the solvers are the columns' own, the discretisation is not
-# a base that lifts off at one side gives more than it does pressed; four corners stand for a soft face; a slide that is
-# integrated over seconds
-WIDER = {"base-compliance": 1.0, "joint-compliance": 0.6, "loose-weight": 0.6}
-ALIKE = {"unmodelled-mass": {"loose-weight"}, "blow": {"push"}}  # cannot always be told apart by two blocks
+# sizes that are read too large or too small, and between which shares of the true one: see docs/diagnosis.md
+BIASED = {
+    "base-compliance": (1.5, 2.3), "joint-compliance": (1.2, 1.9), "dry-drag": (0.5, 0.85),
+    "loose-weight": (0.35, 0.7), "spring-once": (1.0, 1.5),
+}  # fmt: skip
+# a force elsewhere makes the same rows by its moment; one that follows the motion there by the arm squared
+ARMS = {"rope": 2, "drag": 2, "spring-once": 2, "stopper-contact": 2}
+ALIKE = {"unmodelled-mass": {"loose-weight"}}  # a weight that holds is one
+
+
+def _arm(place):
+    """Height of a point over the edge that the stack turns about [m]: blocks of 1.6 m."""
+    return 1.6 * (int(place["body"][-1]) - 0.5 + place.get("height", 0.0))
 
 
 def _assert_found(name, place, values, when, structure):
@@ -66,12 +74,15 @@ def _assert_found(name, place, values, when, structure):
         return
     size = next(iter(values))
     assert not place or place_name(place) in found[name].places or found[name].places == ("all",)
-    if name == "vertical-motion" or ("height" in place and found[name].place != place):
-        return  # a force at another point has another size
+    arm = _arm(found[name].place) / _arm(place) if "height" in place else 1.0
+    true = values[size] / arm ** ARMS.get(name, 1)
     estimate = found[name].parameters[size]
-    assert estimate.estimate == pytest.approx(values[size], rel=WIDER.get(name, WITHIN)) or (
-        estimate.lower <= values[size] <= estimate.upper
-    )
+    if name in BIASED:
+        least, most = BIASED[name]
+        assert least * true < estimate.estimate < most * true
+    else:
+        near = estimate.estimate == pytest.approx(true, rel=WITHIN)
+        assert near or estimate.lower <= true <= estimate.upper
 
 
 @pytest.mark.parametrize(("name", "place", "values", "when", "structure"), CAUSES)
@@ -102,4 +113,3 @@ def test_what_ends_before_a_test_to_come_extends_no_model():
     assert not can_extend(blow)
     assert not can_extend(cause_of("unknown-force", TOP, {"size": 1.0}, {}))
     assert can_extend(cause_of("rope", TOP, {"stiffness": 1.0}, {}))
-    assert np.isfinite(EFFECTS["eccentricity"].parameters[0].null)
