@@ -181,6 +181,9 @@ def test_a_track_record_of_an_earlier_program_is_called_so(fakes, pages):
     write_json(fakes["none"].track_record, track_record() | {"procedure": procedure_digest()})
     of_today = compose_diagnosis(load_diagnosed(*fakes["none"].arguments()))
     assert not any(words in block.text for block in blocks_of(of_today, "text", "track-record"))
+    write_json(fakes["none"].track_record, track_record() | {"shares": {"false-alarm": {"hits": 2, "n": 1}}})
+    with pytest.raises(InputError, match=r"hidden-effects\.json: shares"):
+        load_diagnosed(*fakes["none"].arguments())
     fakes["none"].track_record.unlink()
 
 

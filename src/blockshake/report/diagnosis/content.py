@@ -6,8 +6,9 @@ from pathlib import Path
 import xarray as xr
 
 from blockshake.diagnosis.answer.decision import Decision, load_decision
+from blockshake.diagnosis.verdict.track_record import TrackRecord, load_track_record
 from blockshake.diagnosis.verdict.verdict import Verdict, load_verdict
-from blockshake.files import file_digest, load_json
+from blockshake.files import file_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Campaign, load_campaign, load_test
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
@@ -44,8 +45,8 @@ class Diagnosed:
     bodies : tuple of str
     motions : dict of str to dict
         By name of a commanded motion: its provenance.
-    track_record : dict or None
-        The file of the track record, None while the procedure has none.
+    track_record : TrackRecord or None
+        None while the procedure has none.
     digests, versions : dict of str to str
         Of the files that the report rests on, and of the software that made it.
     """
@@ -62,7 +63,7 @@ class Diagnosed:
     structure: str
     bodies: tuple
     motions: dict
-    track_record: dict | None
+    track_record: TrackRecord | None
     digests: dict
     versions: dict
 
@@ -113,7 +114,7 @@ def load_diagnosed(campaign, results, effort, track_record):
         structure=structure.file.name,
         bodies=tuple(structure.body_names),
         motions=_motions(campaign),
-        track_record=load_json(track_record) if track_record.exists() else None,
+        track_record=load_track_record(track_record) if track_record.exists() else None,
         digests={"/".join(path.parts[-2:]): file_digest(path) for path in files},
         versions=software_versions(_PACKAGES),
     )

@@ -18,12 +18,12 @@ def track_record_section(found):
         return Section("Track record of the procedure", "track-record", (Text(text, strong=True),))
     blocks = [
         Text(
-            f"The procedure was run on {record['date']}, sources {record['commit']}, on campaigns in which the "
+            f"The procedure was run on {record.date}, sources {record.commit}, on campaigns in which the "
             "truth was known to the scorer alone (docs/hidden-effects.md). The figures hold for such campaigns; "
             "on another structure they are an indication."
         )
     ]
-    if record["procedure"] != procedure_digest():
+    if record.procedure != procedure_digest():
         words = "The program that decides has been changed since: the track record is that of an earlier one."
         blocks.append(Text(words, strong=True))
     return Section("Track record of the procedure", "track-record", (*blocks, _shares(record)))
@@ -31,13 +31,11 @@ def track_record_section(found):
 
 def _shares(record):
     rows = []
-    for one in (one for one in record["shares"].values() if one.get("goal") is not None):
-        share, goal = one["hits"] / one["n"] if one["n"] else None, one["goal"]
-        met = None if share is None else share <= goal if one["side"] == "at most" else share >= goal
+    for one in (one for one in record.shares.values() if one.goal is not None):
         rows.append((
-            one["meaning"], MISSING if share is None else f"{percent(share)} %", f"{one['hits']} of {one['n']}",
-            f"{percent(one['lower'])} to {percent(one['upper'])} %",
-            f"{one['side']} {percent(goal)} %", _MET.get(met, ""),
+            one.meaning, MISSING if one.estimate is None else f"{percent(one.estimate)} %", f"{one.hits} of {one.n}",
+            f"{percent(one.lower)} to {percent(one.upper)} %",
+            f"{one.side} {percent(one.goal)} %", _MET.get(one.met, ""),
         ))  # fmt: skip
     return Table(
         "Shares of the cases with intervals of 95 %, and the goals set beforehand.",
