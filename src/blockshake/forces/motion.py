@@ -9,7 +9,7 @@ from blockshake.forces.equations import AccelerationEquations
 from blockshake.forces.local_fit import REACH, fit_locally
 from blockshake.forces.noise import noise_memory
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.measurement.motion.body_poses import PLANAR, TRANSLATION, body_poses
+from blockshake.measurement.motion.body_poses import NOTHING, PLANAR, TRANSLATION, body_poses
 
 WIDTH = 0.015  # s, standard deviation of the smoothing kernel
 _COVERED = 2.5  # of it: an instant nearer to an end of the record is left out
@@ -102,9 +102,11 @@ def smooth_motion(test, structure, sensors, step, width=WIDTH):
     equations = AccelerationEquations(len(time), len(structure.mass))
     turning = np.where(np.isfinite(rotation), rotation, start), np.where(np.isfinite(spin), spin, 0.0)
     _add_markers(equations, test, structure, sensors, time, turning, width, memory)
-    if "accelerometer" in test:
-        _add_accelerometers(equations, test, structure, sensors, time, turning, width)
     _hold_unread(equations, structure, poses.known)
+    if "accelerometer" in test:
+        posed = np.array([known != NOTHING for known in poses.known])
+        by_markers = np.where(posed[:, None], equations.solve()[0], np.nan)
+        _add_accelerometers(equations, test, structure, sensors, by_markers, time, turning, width)
     acceleration, information = equations.solve()
     return Motion(
         time, position, velocity, acceleration[..., :3], rotation, spin, acceleration[..., 3:], information,
@@ -161,8 +163,14 @@ def _add_markers(equations, test, structure, sensors, time, turning, width, memo
         equations.add(body, axes, arm, second[:, place] - towards, variance[:, place])
 
 
-def _add_accelerometers(equations, test, structure, sensors, time, turning, width):
-    """Equations of all channels: specific force along an axis of the body, less its value at rest."""
+def _add_accelerometers(equations, test, structure, sensors, by_markers, time, turning, width):
+    """Equations of all channels: specific force along an axis of the body, less its offset.
+
+    The offset is the mean distance from the accelerations that the markers give, (n_times, n_bodies, 6): their own mean
+    is the change of velocity over the test, known to a few mm/s. A mean of the reading at rest would hold the first
+    motion of the table, which is in the accelerations before it shows in the markers. It stays where the markers give
+    none.
+    """
     read_at = test["time_acc"].to_numpy()
     rotation, spin = turning
     gravity = np.array(structure.file.gravity)
@@ -181,8 +189,13 @@ def _add_accelerometers(equations, test, structure, sensors, time, turning, widt
             )
             fit = fit_locally(read_at, force[:, None], time, width, degree=0)
             towards = (direction * _centripetal(spin[:, body], arm)).sum(axis=-1)
+            values = fit.values[0, :, 0] - towards
+            moved = by_markers[:, body, :3] + np.cross(by_markers[:, body, 3:], arm)
+            away = values - (direction * moved).sum(axis=-1)
+            away = away[np.isfinite(away)]
+            values = values - (away.mean() if len(away) else 0.0)
             equations.add(
-                body, direction[:, None], arm, fit.values[0] - towards[:, None],
+                body, direction[:, None], arm, values[:, None],
                 sensors.accelerometer_noise**2 * fit.variances[0],
             )  # fmt: skip
 
