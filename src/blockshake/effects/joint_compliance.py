@@ -71,5 +71,5 @@ EFFECT = Effect(
     places=joints,
     act=_act,
     columns=_columns,
-    reads=lambda values, size, between: {"compliance": values["compliance"] * _RATIO**between},
+    reads=lambda values, size, between: {"compliance": size * values["compliance"] * _RATIO**between},
 )

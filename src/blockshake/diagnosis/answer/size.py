@@ -51,6 +51,8 @@ def _drawn(name, place, fits, logs):
         if count
     ]
     drawn = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
+    for key in list(_units(name))[1:]:  # the first one follows the amplitude, which has that error
+        drawn[key] = drawn[key] * np.exp(FORM * generator.standard_normal(_DRAWS))
     return drawn, generator.permutation(_DRAWS)
 
 
