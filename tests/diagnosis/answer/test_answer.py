@@ -43,6 +43,12 @@ def test_a_second_cause_needs_more_beside_a_large_first_one():
     assert group_of(rivals(reduced_bearing=29.0), needed=10.0) is None
 
 
+def test_lost_friction_needs_more_where_no_normal_force_is_known():
+    assert group_of(rivals(weak_joint=39.0), tree=False) is None
+    assert causes(group_of(rivals(weak_joint=41.0), tree=False)) == ("weak-joint",)
+    assert causes(group_of(rivals(eccentricity=9.0), tree=False)) == ("eccentricity",)
+
+
 def test_the_slab_s_rotation_and_its_vertical_motion_are_judged_apart():
     gains = {"table-pitch": 40.0, "base-compliance": 39.5, "vertical-motion": -200.0}
     explained = {name: SimpleNamespace(gain=gain) for name, gain in gains.items()}

@@ -8,7 +8,9 @@ from blockshake.diagnosis.answer.odds import ODDS, coarsened
 from blockshake.diagnosis.evidence.explanation import mean_evidence
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
+from blockshake.effects.rate_weakening_friction import EFFECT as RATE_WEAKENING
 from blockshake.effects.registry import EFFECTS
+from blockshake.effects.weak_joint import EFFECT as WEAK_JOINT
 
 FREE_SHARE = 0.85  # of what any force at its place would explain, that a named form must
 FREE_FORCE = "unknown-force"
@@ -20,8 +22,9 @@ _NEEDED_BY = {
     JOINT_COMPLIANCE.name: 12.0,  # readings of a shaken body turn by 1e-5 rad with it
     FREE_FORCE: 100.0,
 }
+_NEEDED_IN_LOOPS = 40.0  # of lost friction: where joints make a loop, the normal force of none is known
 _NEEDED_OF_SLAB = {"turns": 8.0, "lifts": 20.0}  # outliers of one marker lift the slab
-_SECOND_SHARE = 0.1  # of the first cause's gain, that a second one must gain beyond what is needed
+_SECOND_SHARE = 0.05  # of the first cause's gain, that a second one must gain beyond what is needed
 
 
 @dataclass(frozen=True)
@@ -116,7 +119,7 @@ def _rival(cause, places):
     return Rival(cause, best, gain, score, near)
 
 
-def group_of(ranked, needed=0.0):
+def group_of(ranked, needed=0.0, tree=True):
     """`Group` of the strongest cause and all that cannot be told from it; None where nothing is strong.
 
     Parameters
@@ -125,8 +128,10 @@ def group_of(ranked, needed=0.0):
         By falling score.
     needed : float
         Gain that is needed beyond the usual one.
+    tree : bool
+        The joints make no loop.
     """
-    strong = [one for one in ranked if one.gain > needed_of(one.cause) + needed]
+    strong = [one for one in ranked if one.gain > needed_of(one.cause, tree) + needed]
     if not strong:
         return None
     first = strong[0]
@@ -140,9 +145,11 @@ def needed_beside(gain):
     return _SECOND_SHARE * gain
 
 
-def needed_of(cause):
-    """Gain over none from which a cause is no chance."""
-    return max(_NEEDED_BY.get(cause, _NEEDED), _NEEDED)
+def needed_of(cause, tree=True):
+    """Gain over none from which a cause is no chance, where joints make a tree or a loop."""
+    if not tree and cause in (WEAK_JOINT.name, RATE_WEAKENING.name):
+        return _NEEDED_IN_LOOPS
+    return _NEEDED_BY.get(cause, _NEEDED)
 
 
 def needed_of_slab(name):

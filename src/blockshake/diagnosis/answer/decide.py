@@ -65,14 +65,14 @@ def decide(seen, without=(), unseen=()):
     slabs = [slab_motion(test) for test in seen]
     slab = explain_slab(slabs, without)
     found, explained = [], []
-    first = group_of(rank(evidence, closed))
+    first = group_of(rank(evidence, closed), tree=seen[0].tree)
     if first:
         found.append(_part("joints", first, seen, evidence, closed))
         key = _key(first)
         if evidence and key in evidence.keys:
             explained.append(evidence.best(key))
             beside = evidence.beside(key)
-            second = group_of(rank(beside), needed_beside(first.rivals[0].gain))
+            second = group_of(rank(beside), needed_beside(first.rivals[0].gain), seen[0].tree)
             if second:
                 found.append(_part("joints, beside the first", second, seen, beside, {}))
                 explained.append(beside.best(_key(second)))

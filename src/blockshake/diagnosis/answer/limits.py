@@ -38,7 +38,7 @@ def limits_of(evidence, slab):
     none = max(evidence.explained, key=lambda one: one.likelihood.log_evidence).likelihood
     for name in {name: None for name, _ in evidence.tried.variants}:
         variants = {place: own for (effect, place), own in evidence.tried.variants.items() if effect == name}
-        needed = needed_of(name) + np.log(len(variants))
+        needed = needed_of(name, evidence.tests[0].seen.tree) + np.log(len(variants))
         limits = {place: _limit(name, none, own, needed) for place, own in variants.items()}
         found[name] = {place: one for place, one in limits.items() if _possible(name, one)}
     return found
