@@ -58,7 +58,11 @@ def unread_directions(information):
 
 
 def covariance_root(information):
-    """Roots C of the inverses of information matrices, ``C C^T`` the covariance; directions not read are left out."""
+    """Symmetric roots C of the inverses of information matrices; directions not read are left out.
+
+    They go smoothly from instant to instant, as roots of eigenvectors with their free signs do not.
+    """
     values, vectors = np.linalg.eigh(information)
     read = values > _UNREAD * values[..., -1:]
-    return vectors * np.where(read, 1.0 / np.sqrt(np.where(read, values, 1.0)), 0.0)[..., None, :]
+    scaled = vectors * np.where(read, 1.0 / np.sqrt(np.where(read, values, 1.0)), 0.0)[..., None, :]
+    return scaled @ np.swapaxes(vectors, -1, -2)
