@@ -13,6 +13,7 @@ _EVERY = 0.02  # s, between instants: the kernel passes next to nothing beyond 2
 _CARRIED = 1e-3
 _RESOLVED = 1.0 - 1e-6  # share of a contact force that the wrenches tell
 _BEYOND, _SURELY = 0.01, 4.0  # m, standard deviations: of the resultant beyond the edge of a closed face
+_TURNS = 3.0  # standard deviations, by which such a face turns to that side: a force from outside moves a resultant too
 
 
 @dataclass(frozen=True)
@@ -164,10 +165,10 @@ def face_frames(structure, faces, motion):
     return FaceFrames(faces, np.stack(middle, axis=1), np.stack(axes, axis=1), position)
 
 
-def with_resultants(states, frames, forces, tree):
+def with_resultants(states, frames, forces, joints, tree):
     """States in which a closed face whose resultant lies surely beyond an edge bears on that edge.
 
-    A joint of a tree alone has a resultant that is known.
+    It has to turn to that side as well. A joint of a tree alone has a resultant that is known.
     """
     edge = states.edge.copy()
     for index, face in enumerate(frames.faces):
@@ -176,7 +177,8 @@ def with_resultants(states, frames, forces, tree):
         normal, moment = forces.force[:, index, 2], forces.moment[:, index, 1]
         over = np.abs(moment) - face.half_width * normal
         surely = over > _SURELY * forces.moment_error[:, index] + _BEYOND * normal
-        beyond = surely & (normal > 0.0) & (edge[:, index, 0] == 0) & ~states.lifted[:, index]
+        turns = -np.sign(moment) * joints.rotation[:, index] > _TURNS * joints.rotation_error[index]
+        beyond = surely & turns & (normal > 0.0) & (edge[:, index, 0] == 0) & ~states.lifted[:, index]
         edge[beyond, index, 0] = -np.sign(moment[beyond])
     return replace(states, edge=edge)
 

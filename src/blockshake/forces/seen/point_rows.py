@@ -25,8 +25,8 @@ class PointRows:
         Of the rows [s].
     displacement, velocity : float64 arrays, shape (n_rows,)
         Of the point along x, against the table, from rest [m, m/s]; zero where the table's motion is not known.
-    fine : float64 array, shape (4 * n_times,)
-        The displacement at instants four times as close [m].
+    fine, fine_velocity : float64 arrays, shape (4 * n_times,)
+        The displacement at instants four times as close, and its rate [m, m/s].
     at : int array, shape (n_rows,)
         Instants of the rows.
     width : float
@@ -38,6 +38,7 @@ class PointRows:
     displacement: np.ndarray
     velocity: np.ndarray
     fine: np.ndarray
+    fine_velocity: np.ndarray
     at: np.ndarray
     width: float
 
@@ -68,6 +69,7 @@ def point_rows(seen, body, height):
     if known.sum() >= _FEWEST:
         fine = CubicSpline(time[known], displacement[known, 0])(time[0] + step * np.arange(len(fine)))
     return PointRows(
-        unit, rows.time, *(np.nan_to_num(one[rows.instant, 0]) for one in (displacement, velocity)), fine, rows.instant,
+        unit, rows.time, *(np.nan_to_num(one[rows.instant, 0]) for one in (displacement, velocity)), fine,
+        np.gradient(fine, step), rows.instant,
         seen.motion.width / step,
     )  # fmt: skip

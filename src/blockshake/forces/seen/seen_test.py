@@ -128,7 +128,7 @@ def see_test(name, readings, structure, sensors):
     frames, free = face_frames(structure, faces, motion), np.flatnonzero(~structure.driven)
     forces = contact_forces(frames, required, free)
     states = face_states(structure, faces, motion, joints, still)
-    states = with_resultants(states, frames, forces, len(faces) == len(free))
+    states = with_resultants(states, frames, forces, joints, len(faces) == len(free))
     joints = replace(
         joints, **{name: np.nan_to_num(getattr(joints, name)) for name in ("rotation", "roll", "slip_rate")}
     )
