@@ -14,6 +14,7 @@ from blockshake.measurement.motion.body_poses import NOTHING, PLANAR, TRANSLATIO
 WIDTH = 0.015  # s, standard deviation of the smoothing kernel
 _COVERED = 2.5  # of it: an instant nearer to an end of the record is left out
 _SHORTEST = 0.5  # s of instants
+_OUTLIER = 6.0  # median distances, four standard deviations
 
 
 @dataclass(frozen=True)
@@ -166,10 +167,10 @@ def _add_markers(equations, test, structure, sensors, time, turning, width, memo
 def _add_accelerometers(equations, test, structure, sensors, by_markers, time, turning, width):
     """Equations of all channels: specific force along an axis of the body, less its offset.
 
-    The offset is the mean distance from the accelerations that the markers give, (n_times, n_bodies, 6): their own mean
-    is the change of velocity over the test, known to a few mm/s. A mean of the reading at rest would hold the first
-    motion of the table, which is in the accelerations before it shows in the markers. It stays where the markers give
-    none.
+    The offset is the mean distance from the accelerations that the markers give, (n_times, n_bodies, 6), but for
+    outliers as of impacts: their own mean is the change of velocity over the test, known to a few mm/s. A mean of the
+    reading at rest would hold the first motion of the table, which is in the accelerations before it shows in the
+    markers. It stays where the markers give none.
     """
     read_at = test["time_acc"].to_numpy()
     rotation, spin = turning
@@ -192,12 +193,19 @@ def _add_accelerometers(equations, test, structure, sensors, by_markers, time, t
             values = fit.values[0, :, 0] - towards
             moved = by_markers[:, body, :3] + np.cross(by_markers[:, body, 3:], arm)
             away = values - (direction * moved).sum(axis=-1)
-            away = away[np.isfinite(away)]
-            values = values - (away.mean() if len(away) else 0.0)
+            values = values - _usual(away[np.isfinite(away)])
             equations.add(
                 body, direction[:, None], arm, values[:, None],
                 sensors.accelerometer_noise**2 * fit.variances[0],
             )  # fmt: skip
+
+
+def _usual(values):
+    """Mean of the values within four robust standard deviations of their median, 0 of none."""
+    if len(values) == 0:
+        return 0.0
+    away = np.abs(values - np.median(values))
+    return values[away <= _OUTLIER * np.median(away)].mean()
 
 
 def _carried(structure, sensor, rotation):
