@@ -10,9 +10,7 @@ from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import DEEPEST_OVERLAP
 
 _THICKNESS = 0.2  # m, of the body beneath; it is driven, so that its mass does not count
-_WIDER = (
-    1.5  # width of the bed over that of what stands on it: a rocking block's edge stays within its middle
-)
+_WIDER = 3.0  # width of the bed over that of what stands on it: an edge stays within its middle third
 _SINK = 0.8 * DEEPEST_OVERLAP  # nodes of LS-DEM sink farther than the layer: 4 % were seen
 _SCALE = 2e-9  # rad/(N m)
 _GRIP = 2.0  # coefficient of friction towards it: the driven body does not slide on its bed

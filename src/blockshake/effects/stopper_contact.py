@@ -10,7 +10,7 @@ _SCALE = 1e7  # N/m
 _GAP_STEP = 0.002  # m
 _GAPS = np.concatenate([[0.002, 0.004], np.arange(0.006, 0.0601, _GAP_STEP)])  # m
 _NEVER = 1e3  # m, gap of no stop
-HEIGHTS = (0.0, 0.42)  # of a force above the mass centre, over the block's height
+_HEIGHTS = (0.0, 0.5)  # of the stop above the mass centre, over the block's height
 
 
 def _act(experiment, values, place):
@@ -30,7 +30,7 @@ def _act(experiment, values, place):
 
 
 def _seen_at(structure):
-    return [{**place, "height": height} for place in blocks(structure) for height in HEIGHTS]
+    return [{**place, "height": height} for place in blocks(structure) for height in _HEIGHTS]
 
 
 def _columns(seen, place):

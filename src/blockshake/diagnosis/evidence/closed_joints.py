@@ -1,6 +1,7 @@
 """Rotation of closed joints against the moment that they carry: evidence of a soft layer, by joint and compliance."""
 
 import numpy as np
+from scipy.linalg import solveh_banded
 
 from blockshake.diagnosis.evidence.likelihood import from_rows
 from blockshake.effects.joint_compliance import COMPLIANCES, rotation_by_compliance
@@ -53,4 +54,16 @@ def _rows(test, face):
     covariance = noise**2 * np.exp(-(apart**2) / (4.0 * test.motion.width**2))
     covariance += _COLOURED**2 * np.exp(-apart / _MEMORY) + _CONSTANT**2
     covariance[np.diag_indices(len(chosen))] += (_RIDGE * noise) ** 2
-    return covariance, test.joints.rotation[chosen, face], slope
+    return covariance, _as_forces(test.joints.rotation[:, face], test.motion)[chosen], slope
+
+
+def _as_forces(rotation, motion):
+    """A rotation smoothed by the kernel alone, as forces are: ``h`` of ``h - w^2 h'' / 2 = rotation``.
+
+    The local parabola passes ``1 + (omega w)^2 / 2`` times as much of a frequency as the kernel does.
+    """
+    share = 0.5 * (motion.width / (motion.time[1] - motion.time[0])) ** 2
+    bands = np.full((2, len(rotation)), -share)
+    bands[1] = 1.0 + 2.0 * share
+    bands[1, [0, -1]] = 1.0 + share
+    return solveh_banded(bands, rotation)

@@ -66,10 +66,14 @@ def slab_motion(test):
     start = motion.rotation[:, body] @ rotation_matrices(test.structure.orientation[body]).T
     turn = _from_rest(np.arcsin(np.clip(start[:, 0, 2], -1.0, 1.0)), test.still)
     lift, travel = (_from_rest(motion.position[:, body, axis], test.still) for axis in (2, 0))
-    wrench = test.required.wrench[:, test.free]
-    arm = motion.position[:, test.free] - motion.position[:, [body]]
+    carried = [body, *test.free]
+    wrench = test.required.wrench[:, carried]
+    wrench[:, 0, 3:] = 0.0  # the slab hardly turns, and its own readings' noise would go with the rotation's
+    vertices = test.structure.solids[test.structure.file.bodies[body].shape].vertices
+    bottom = motion.position[:, body] + [0.0, 0.0, vertices[:, 2].min()]
+    arm = motion.position[:, carried] - bottom[:, None]
     moment = _from_rest(-(wrench[..., 3:] + np.cross(arm, wrench[..., :3]))[..., 1].sum(axis=1), test.still)
-    force = _from_rest(wrench[..., 2].sum(axis=1), test.still)
+    force = _from_rest(wrench[:, 1:, 2].sum(axis=1), test.still)
     known = np.isfinite(turn + lift + moment + motion.acceleration[:, body, 0])
     drives = (np.nan_to_num(one) for one in (motion.acceleration[:, body, 0], moment, force))
     return SlabMotion(
@@ -87,7 +91,8 @@ def _as_fitted(history, motion):
     passes the second factor alone.
     """
     step = motion.time[1] - motion.time[0]
-    return history - 0.5 * motion.width**2 * np.gradient(np.gradient(history, step), step)
+    bend = np.pad(np.diff(history, 2), 1) / step**2
+    return history - 0.5 * motion.width**2 * bend
 
 
 def _noise(values, test, direction, least):

@@ -29,8 +29,9 @@ def explain_following(likelihood, points, weight):
 
 def _against(name, point):
     """Rows of a force against the displacement or the velocity of a point, at the size 1."""
-    moves = point.displacement if name == "rope" else point.velocity
-    return -point.unit * (np.tanh(moves / CREEP) if name == "dry-drag" else moves)
+    if name == "dry-drag":  # it has a kink: computed before it is smoothed
+        return -point.unit * point.through_kernel(np.tanh(point.fine_velocity / CREEP))
+    return -point.unit * (point.displacement if name == "rope" else point.velocity)
 
 
 def _rows(name):

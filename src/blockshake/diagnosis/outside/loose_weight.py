@@ -3,13 +3,14 @@
 from dataclasses import replace
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.outside.form import Form
 from blockshake.effects.effect import Columns
 from blockshake.forces.seen.wrench_histories import force_at
 
-_GRIPS = (0.05, 0.1, 0.2, 0.3, 0.4, 9.0)  # coefficients of friction; the last one holds
+_GRIPS = (0.05, 0.1, 0.2, 0.3)  # coefficients of friction; one that holds is an unmodelled mass
 _SCALE = 0.2  # of the block's mass
 
 
@@ -44,7 +45,9 @@ def _rows(seen, body, grip):
         np.nan_to_num((force * along).sum(axis=1)),
         np.nan_to_num((force * up).sum(axis=1), nan=9.81),
     )
-    slid, shear = _slide(asked, np.maximum(pressed, 0.0), grip, motion.time[1] - motion.time[0])
+    step = motion.time[1] - motion.time[0]
+    slid, shear = _slide(asked, np.maximum(pressed, 0.0), grip, step)
+    shear = gaussian_filter1d(shear, motion.width / step)  # it jumps where the weight turns back
     weight = -(shear[:, None] * along + np.maximum(pressed, 0.0)[:, None] * up)
     return seen.rows.along(force_at(seen, body, weight, arm=top * up + slid[:, None] * along))
 
@@ -58,16 +61,10 @@ def _slide(asked, pressed, grip, step):
     slid, shear, rate = np.zeros(len(asked)), np.zeros(len(asked)), 0.0
     for now in range(1, len(asked)):
         limit = grip * pressed[now]
-        slid[now] = slid[now - 1]
-        if rate == 0.0 and abs(asked[now]) <= limit:
-            shear[now] = asked[now]
-            continue
-        friction = limit * np.sign(asked[now] if rate == 0.0 else -rate)
-        faster = rate + (friction - asked[now]) * step
-        if rate != 0.0 and faster * rate < 0.0 and abs(asked[now]) <= limit:
-            faster, friction = 0.0, asked[now]
-        shear[now], rate = friction, faster
-        slid[now] += rate * step
+        # what would bring it to rest within the step, within the cone: the friction at the end of the step
+        shear[now] = np.clip(asked[now] - rate / step, -limit, limit)
+        rate += (shear[now] - asked[now]) * step
+        slid[now] = slid[now - 1] + rate * step
     return slid, shear
 
 

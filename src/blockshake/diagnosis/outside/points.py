@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass
 
-from blockshake.effects.stopper_contact import HEIGHTS
 from blockshake.forces.seen.point_rows import point_rows
+
+_HEIGHTS = (0.0, 0.42)  # above the mass centre, over the block's height
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ def force_points(tests):
     found = []
     for body in seen.free:
         name = seen.structure.body_names[body]
-        for height in HEIGHTS:
+        for height in _HEIGHTS:
             rows = [point_rows(test.seen, name, height) for test in tests]
             if any(one.unit.any() for one in rows):
                 found.append(

@@ -6,7 +6,7 @@ from blockshake.diagnosis.evidence.explanation import mean_evidence, single
 from blockshake.diagnosis.outside.form import Form, above_centre, with_entry
 from blockshake.effects.stopper_contact import spring_rows
 
-_GAPS = np.concatenate([[-0.02], np.arange(0.0, 0.0401, 0.004)])  # m; below 0 it is taut from the start
+_GAPS = np.concatenate([[-0.02], np.arange(0.0, 0.0401, 0.002)])  # m; below 0 it is taut from the start
 _SCALE = 1e7  # N/m
 
 
