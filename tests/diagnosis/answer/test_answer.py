@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from blockshake.diagnosis.answer.answer import Rival, group_of, slab_groups
+from blockshake.diagnosis.answer.answer import Rival, group_of, needed_beside, slab_groups
 from blockshake.diagnosis.answer.odds import COARSENING, ODDS, coarsened
 
 
@@ -26,8 +26,8 @@ def test_odds_of_small_gains_are_plain_and_those_of_large_ones_a_share_of_what_i
 
 
 def test_nothing_strong_is_no_answer():
-    assert group_of(rivals(eccentricity=7.9, push=14.9)) is None
-    assert causes(group_of(rivals(eccentricity=8.1))) == ("eccentricity",)
+    assert group_of(rivals(eccentricity=5.9, unknown_force=19.9)) is None
+    assert causes(group_of(rivals(eccentricity=6.1))) == ("eccentricity",)
 
 
 def test_a_rival_within_the_odds_is_in_the_set_and_forms_from_outside_are_said():
@@ -37,10 +37,11 @@ def test_a_rival_within_the_odds_is_in_the_set_and_forms_from_outside_are_said()
 
 
 def test_a_second_cause_needs_more_beside_a_large_first_one():
+    assert needed_beside(False) == 0.0
+    assert needed_beside(False, 1000.0) - needed_beside(False, 0.0) == pytest.approx(50.0)
+    assert needed_beside(True, 0.0) > needed_beside(False, 0.0) > 0.0
     assert group_of(rivals(weak_joint=15.0), needed=10.0) is None
-    assert causes(group_of(rivals(weak_joint=19.0), needed=10.0)) == ("weak-joint",)
-    # of any shape over the rotation: 20 and 10
-    assert group_of(rivals(reduced_bearing=29.0), needed=10.0) is None
+    assert causes(group_of(rivals(weak_joint=17.0), needed=10.0)) == ("weak-joint",)
 
 
 def test_lost_friction_needs_more_where_no_normal_force_is_known():

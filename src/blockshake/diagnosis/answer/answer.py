@@ -15,16 +15,15 @@ from blockshake.effects.weak_joint import EFFECT as WEAK_JOINT
 FREE_SHARE = 0.85  # of what any force at its place would explain, that a named form must
 FREE_FORCE = "unknown-force"
 _PRIOR, _PRIOR_OUTSIDE, _PRIOR_FREE = -3.0, -3.5, -6.0
-_NEEDED = 8.0  # nats over none that are no chance on clean campaigns
-_NEEDED_BY = {
-    **dict.fromkeys(("push", "blow", "spring-once", "changed-edge"), 15.0),  # many starts are searched
-    "reduced-bearing": 20.0,  # of any shape over the rotation
-    JOINT_COMPLIANCE.name: 12.0,  # readings of a shaken body turn by 1e-5 rad with it
-    FREE_FORCE: 100.0,
-}
+_NEEDED = 6.0  # nats over none that are no chance: of 50 sound sets of joints none gained 2
+_NEEDED_OF_FREE = 20.0  # any error of the joints' model speaks for a force without a form
 _NEEDED_IN_LOOPS = 40.0  # of lost friction: where joints make a loop, the normal force of none is known
 _NEEDED_OF_SLAB = {"turns": 8.0, "lifts": 20.0}  # outliers of one marker lift the slab
-_SECOND_SHARE = 0.05  # of the first cause's gain, that a second one must gain beyond what is needed
+_BESIDE_SLAB = 12.0  # nats more of a cause in the joints of a slab that has one of its own
+_BESIDE, _BESIDE_SHARE = (
+    5.0,
+    0.05,
+)  # nats more of a second cause in the joints, and share of the first one's gain
 
 
 @dataclass(frozen=True)
@@ -140,16 +139,25 @@ def group_of(ranked, needed=0.0, tree=True):
     return Group(near, odds, {one.cause: one.gain for one in ranked})
 
 
-def needed_beside(gain):
-    """Gain that is needed of a second cause beside a first one that gains ``gain``."""
-    return _SECOND_SHARE * gain
+def needed_beside(slab, first=None):
+    """Gain that is needed beyond the usual one, beside causes of the slab, and of a first cause in the joints.
+
+    Parameters
+    ----------
+    slab : bool
+        Whether the slab's own motion has a cause.
+    first : float, optional
+        Gain of the first cause.
+    """
+    more = _BESIDE_SLAB if slab else 0.0
+    return more if first is None else more + _BESIDE + _BESIDE_SHARE * first
 
 
 def needed_of(cause, tree=True):
     """Gain over none from which a cause is no chance, where joints make a tree or a loop."""
     if not tree and cause in (WEAK_JOINT.name, RATE_WEAKENING.name):
         return _NEEDED_IN_LOOPS
-    return _NEEDED_BY.get(cause, _NEEDED)
+    return _NEEDED_OF_FREE if cause == FREE_FORCE else _NEEDED
 
 
 def needed_of_slab(name):

@@ -64,19 +64,21 @@ def decide(seen, without=(), unseen=()):
         closed = {}
     slabs = [slab_motion(test) for test in seen]
     slab = explain_slab(slabs, without)
+    of_slab, tree = slab_groups(slab), seen[0].tree
     found, explained = [], []
-    first = group_of(rank(evidence, closed), tree=seen[0].tree)
+    first = group_of(rank(evidence, closed), needed_beside(bool(of_slab)), tree)
     if first:
         found.append(_part("joints", first, seen, evidence, closed))
         key = _key(first)
         if evidence and key in evidence.keys:
             explained.append(evidence.best(key))
             beside = evidence.beside(key)
-            second = group_of(rank(beside), needed_beside(first.rivals[0].gain), seen[0].tree)
+            needed = needed_beside(bool(of_slab), first.rivals[0].gain)
+            second = group_of(rank(beside), needed, tree)
             if second:
                 found.append(_part("joints, beside the first", second, seen, beside, {}))
                 explained.append(beside.best(_key(second)))
-    for readings, group in slab_groups(slab):
+    for readings, group in of_slab:
         found.append(_part(readings, group, seen, None, {}, slab))
     impacts = restitution_gain(seen)
     if impacts.gain > needed_of(RESTITUTION.name) and RESTITUTION.name not in without:
