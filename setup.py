@@ -18,7 +18,6 @@ SHIPPED = (
     "config/virtual-campaign.yaml",
     "workflow",
     "profiles/default",
-    "data/peers",
     "data/track-record",
 )
 

@@ -18,6 +18,7 @@ from key_tables import HEADER as KEYS_HEADER
 from key_tables import key_rows
 from paper_run import HEADER as PAPER_HEADER
 from paper_run import paper_rows
+from recorded_lmgc90 import SPEED_HEADER, speed_rows
 from schedule import deep_diagnosis, hours, measured, planned, shares, timed_study
 from shear_damping import HEADER as SHEAR_HEADER
 from shear_damping import shear_damping_rows, shear_damping_words
@@ -322,6 +323,7 @@ MAKERS = {
     "cost-of-samples": cost_of_samples,
     "times-on-a-cluster": times_on_a_cluster,
     "paper-run": paper_run,
+    "lmgc90-speed": lambda: markdown(SPEED_HEADER, speed_rows()),
     "faults": faults,
     "structure-keys": keys_of("structure"),
     "study-keys": keys_of("study"),

@@ -10,7 +10,6 @@ rule make_report:
             for place in (1, 2, 3, 4)
         ]
         + [beside(HOME / "config" / f"{name}.yaml") for name in ("study", "paper")],
-        peer=beside(HOME / "data" / "peers" / "lmgc90.nc"),
         convergence=(
             f"results/{STUDY}/convergence.csv" if config.get("convergence") else []
         ),

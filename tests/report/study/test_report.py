@@ -10,7 +10,7 @@ from fake_study import COLLAPSE_REASON, CPU_TIME, MODELS
 from page import CLAIMS, Page, texts
 
 from blockshake.errors import InputError
-from blockshake.files import load_json
+from blockshake.files import HOME, load_json
 from blockshake.report.document.blocks import Table
 from blockshake.report.document.html import write_html
 from blockshake.report.document.pdf import write_pdf
@@ -61,7 +61,7 @@ def test_style_and_drawings_refer_to_nothing_outside(report, page):
         "Models against each other",
         "Causes of the thickness of the envelopes", "Completion, energy and computation", "Timings", "Origin",
         "Limits of this study", "The paper, statement by statement",
-        "Annex: numerical parameters of LS-DEM", "Annex: NSCD rigid beside LMGC90",
+        "Annex: numerical parameters of LS-DEM",
     ],
 )  # fmt: skip
 def test_sections_and_contents(text, title):
@@ -135,6 +135,12 @@ def test_a_model_without_words_of_its_own_has_its_figures(fake, monkeypatch):
     made = checks(load_content(fake.study, fake.results, fake.logs))
     titles = [block.caption for block in made.blocks if block.kind == "table"]
     assert [f"{label}: figures" in " ".join(titles) for label in ("LS-DEM", "NSCD rigid")] == [True, True]
+
+
+def test_pages_that_the_report_names_are_there(text):
+    pages = set(re.findall(r"docs/[\w/.-]+\.md", text))
+    assert pages >= {"docs/peers.md"}
+    assert [page for page in pages if not (HOME / page).is_file()] == []
 
 
 def test_origin_holds_configuration_digests_and_seed(text):
@@ -213,7 +219,7 @@ def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
     assert "1 case, 4 models" in said
     assert "reports/fake-configuration-4.html" in said
     assert {"summary", "structures", "responses", "models", "limits", "origin"} <= set(parsed.ids)
-    assert not {"statements", "convergence", "peer"} & set(parsed.ids)
+    assert not {"statements", "convergence"} & set(parsed.ids)
     before = said[: said.index("Configuration used")]
     assert "configuration-1" not in before
 

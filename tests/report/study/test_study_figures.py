@@ -15,12 +15,10 @@ from blockshake.report.study.figures.convergence import plot_convergence
 from blockshake.report.study.figures.displacement import plot_displacements
 from blockshake.report.study.figures.interactive import interactive_displacements
 from blockshake.report.study.figures.motion import plot_spectra
-from blockshake.report.study.figures.peer import plot_peer
 from blockshake.report.study.figures.samples import bin_count
 from blockshake.report.study.figures.structure import plot_structure
 from blockshake.simulation.models import MODELS
 from blockshake.study.convergence.findings import value_scales
-from blockshake.study.peer_record import load_peer_record
 
 
 @pytest.fixture(scope="module")
@@ -130,18 +128,3 @@ def test_svg_says_no_date_loads_nothing_and_leaves_the_style_alone():
 
 def test_histograms_have_about_the_root_of_the_samples_as_bins():
     assert [bin_count(size) for size in (10, 50)] == [5, 9]
-
-
-def test_lmgc90_is_drawn_from_the_record_to_each_history_s_end():
-    record = load_peer_record()
-    figure = plot_peer(record)
-    upper, lower = figure.axes[: len(record["history"])], figure.axes[len(record["history"]) :]
-    for axes, below, name in zip(upper, lower, record["history"].values, strict=True):
-        curves = record["displacement"].sel(history=name).dropna("time")
-        ours, theirs = (line.get_ydata() for line in axes.lines)
-        np.testing.assert_array_equal(ours, 1e3 * curves.sel(program="blockshake"))
-        np.testing.assert_array_equal(theirs, 1e3 * curves.sel(program="LMGC90"))
-        assert axes.lines[1].is_dashed()
-        exact = curves.sel(program="LMGC90").astype(float) - curves.sel(program="blockshake").astype(float)
-        np.testing.assert_array_equal(below.lines[0].get_ydata(), 1e3 * exact)
-        assert below.get_xlim()[1] == float(curves["time"][-1])

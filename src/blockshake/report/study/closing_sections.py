@@ -30,6 +30,7 @@ def checks(content):
     for model in content.study["models"]:
         words = [Text(_COMPUTATION[model])] if model in _COMPUTATION else []
         blocks += [*words, computation_table(content, model)]
+    blocks.append(Text("Rigid NSCD beside LMGC90, the program of Zhou et al. (2023): docs/peers.md."))
     return Section("Completion, energy and computation", "checks", tuple(blocks))
 
 

@@ -17,7 +17,6 @@ from blockshake.study.convergence.table import load_convergence
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.measured import measured_curves
 from blockshake.study.ensembles.timing import read_timings
-from blockshake.study.peer_record import PEER_RECORD, load_peer_record
 from blockshake.study.sampling.distributions import load_distributions
 from blockshake.study.sampling.latin_hypercube import load_design
 from blockshake.study.sampling.sample_parameters import has_parameter
@@ -134,8 +133,6 @@ class Content:
         From `fragility`, by case; empty where the study asks for none.
     convergence : pandas.DataFrame or None
         From `study_convergence`, where the study has one; a case alone has none.
-    peer : xarray.Dataset or None
-        From `load_peer_record`; a case alone has none.
     timings : tuple of Timing
     digests : dict of str to str
         Of input files and of tables that all samples come from, by path.
@@ -156,7 +153,6 @@ class Content:
     calibration: dict | None
     fragility: dict
     convergence: pd.DataFrame | None
-    peer: xr.Dataset | None
     timings: tuple
     digests: dict
     versions: dict
@@ -206,7 +202,6 @@ def load_content(study, results, logs, only=None):
         named_file(f"{kind}s", case[kind]) for kind in ("structure", "motion") for case in cases.values()
     ]
     tests = [case.test_file for case in loaded.values() if case.test_file]
-    peers = [] if only else [PEER_RECORD]
     return Content(
         study=study,
         only=only,
@@ -233,14 +228,13 @@ def load_content(study, results, logs, only=None):
         convergence=(
             load_convergence(results / "convergence.csv") if study.get("convergence") and not only else None
         ),
-        peer=None if only else load_peer_record(),
         timings=read_timings(
             logs,
             {(model, case.name): one.samples for case in loaded.values() for model, one in case.responses.items()},
         ),
         digests={
             "configuration of the study": content_digest(study),
-            **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, *stiffness, *peers]},
+            **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, *stiffness]},
         },
         versions=software_versions(_PACKAGES),
     )  # fmt: skip
