@@ -6,12 +6,13 @@ alone. The findings on the paper are those of the default study, and stay where 
 
 import re
 import sys
-import tempfile
 import textwrap
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from convergence import HEADER as CONVERGENCE_HEADER
+from convergence import convergence_rows
 from hollow_faces import HEADER as HOLLOW_HEADER
 from hollow_faces import hollow_rows
 from key_tables import HEADER as KEYS_HEADER
@@ -29,7 +30,6 @@ from blockshake.geometry.structure import load_structure
 from blockshake.report.document.wording import model_label, number
 from blockshake.report.study.calibrations.all_tests import answers_table, tests_table
 from blockshake.report.study.content import load_content
-from blockshake.report.study.convergence_section import numbers_table
 from blockshake.report.study.definition_tables import definition_table, definition_words
 from blockshake.report.study.sensitivity.summary import markers_by_height
 from blockshake.report.study.sensitivity.words import sentence
@@ -38,8 +38,6 @@ from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.simulate import simulate
 from blockshake.store import load_made
 from blockshake.study.config import load_config
-from blockshake.study.convergence.convergence import study_convergence
-from blockshake.study.convergence.settings import Convergence
 from blockshake.study.sampling.distributions import LINKED, TABLE_2
 from blockshake.study.sampling.sample_parameters import sample_parameters
 from blockshake.study.stiffness.wave_speed import calibrate_stiffness, stiffness_parameters
@@ -67,14 +65,6 @@ _SHOWN = 8  # rules that take most of the time
 LITERAL = DOCS.parent / "config" / "literal.yaml"
 _FINE_IMPACTS = {"nscd.impact_parts": 20}  # as in config/study.yaml
 _GRID = "ls_dem.level_set", "ls_dem.grid_spacing"  # mean nothing without each other
-
-
-def convergence():
-    """Table of LS-DEM's numerical parameters."""
-    with tempfile.TemporaryDirectory() as store:
-        found = study_convergence(Convergence(structure="configuration-1"), store, "", lambda line: None)
-    table = numbers_table(found)
-    return markdown(table.header, table.rows)
 
 
 def slenderness():
@@ -307,7 +297,7 @@ def _words(parameters):
 
 
 MAKERS = {
-    "convergence": convergence,
+    "convergence": lambda: markdown(CONVERGENCE_HEADER, convergence_rows()),
     "slenderness": slenderness,
     "single-changes": single_changes,
     "statements": statements,

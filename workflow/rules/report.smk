@@ -10,9 +10,6 @@ rule make_report:
             for place in (1, 2, 3, 4)
         ]
         + [beside(HOME / "config" / f"{name}.yaml") for name in ("study", "paper")],
-        convergence=(
-            f"results/{STUDY}/convergence.csv" if config.get("convergence") else []
-        ),
     output:
         html=report("reports/{study}.html", category="Study"),
         pdf=report("reports/{study}.pdf", category="Study"),

@@ -22,7 +22,6 @@ _FIXED = {
     "make_report": 20.0,
     "measure_gain": 14.0,
     "measure_sensitivity": 9.0,
-    "study_convergence": 20.0,
 }
 _PLANNED = 6.0  # CPU s
 _ROW = re.compile(r"^(\w+) +(\d+)$", re.MULTILINE)

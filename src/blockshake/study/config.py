@@ -13,7 +13,6 @@ from blockshake.simulation.models import MODELS, ModelName
 from blockshake.study.calibration.settings import CalibrationSettings
 from blockshake.study.comparison.differences import FEWEST
 from blockshake.study.config_checks import check_named
-from blockshake.study.convergence.settings import Convergence
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED
 from blockshake.study.ensembles.rungs import Rungs
 from blockshake.study.fragility.settings import FragilitySettings
@@ -179,7 +178,6 @@ class StudyConfig(Strict):
     calibration: CalibrationSettings | None = Field(
         None, description="none: friction, restitution and contact stiffness are taken as they are"
     )
-    convergence: Convergence | None = Field(None, description="none: no study of the numerical parameters")
     diagnosis: Diagnosis = Field(Diagnosis(), description="none: no campaign is diagnosed")
 
     @model_validator(mode="after")

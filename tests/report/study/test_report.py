@@ -61,7 +61,6 @@ def test_style_and_drawings_refer_to_nothing_outside(report, page):
         "Models against each other",
         "Causes of the thickness of the envelopes", "Completion, energy and computation", "Timings", "Origin",
         "Limits of this study", "The paper, statement by statement",
-        "Annex: numerical parameters of LS-DEM",
     ],
 )  # fmt: skip
 def test_sections_and_contents(text, title):
@@ -139,7 +138,7 @@ def test_a_model_without_words_of_its_own_has_its_figures(fake, monkeypatch):
 
 def test_pages_that_the_report_names_are_there(text):
     pages = set(re.findall(r"docs/[\w/.-]+\.md", text))
-    assert pages >= {"docs/peers.md"}
+    assert pages >= {"docs/method.md", "docs/peers.md"}
     assert [page for page in pages if not (HOME / page).is_file()] == []
 
 
@@ -206,7 +205,7 @@ def test_own_structures_by_rigid_models_need_no_contact_stiffness(copied, monkey
 
 def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
     fake = copied
-    others = [*fake.results.rglob("configuration-1*"), fake.results / "convergence.csv"]
+    others = fake.results.rglob("configuration-1*")
     for path in [*others, fake.results / "motions" / "alkion.nc", fake.results / "stiffness-definitions.nc"]:
         path.unlink()
     html, pdf = tmp_path / "case.html", tmp_path / "case.pdf"
@@ -219,7 +218,7 @@ def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
     assert "1 case, 4 models" in said
     assert "reports/fake-configuration-4.html" in said
     assert {"summary", "structures", "responses", "models", "limits", "origin"} <= set(parsed.ids)
-    assert not {"statements", "convergence"} & set(parsed.ids)
+    assert not {"statements"} & set(parsed.ids)
     before = said[: said.index("Configuration used")]
     assert "configuration-1" not in before
 

@@ -5,20 +5,17 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
-from fake_study import convergence_table
 from matplotlib.collections import FillBetweenPolyCollection
 
 from blockshake.geometry.structure import load_structure
 from blockshake.report.document.drawing import svg_of
 from blockshake.report.study.content import load_content
-from blockshake.report.study.figures.convergence import plot_convergence
 from blockshake.report.study.figures.displacement import plot_displacements
 from blockshake.report.study.figures.interactive import interactive_displacements
 from blockshake.report.study.figures.motion import plot_spectra
 from blockshake.report.study.figures.samples import bin_count
 from blockshake.report.study.figures.structure import plot_structure
 from blockshake.simulation.models import MODELS
-from blockshake.study.convergence.findings import value_scales
 
 
 @pytest.fixture(scope="module")
@@ -100,20 +97,6 @@ def test_spectrum_of_a_recorded_motion_has_no_target():
     axes = plot_spectra([motion]).axes[0]
     assert axes.get_title() == "own record"
     assert len(axes.lines) == 1
-
-
-def test_convergence_is_drawn_with_its_floor_but_equal_values_are_not():
-    table = convergence_table()
-    figure = plot_convergence(table)
-    first = figure.axes[0]
-    drawn = {line.get_label(): line for line in first.lines if not line.get_label().startswith("_")}
-    assert len(drawn["sink"].get_xdata()) == 0
-    ((setting,), (size,)) = drawn["impact ratio"].get_data()
-    assert setting == pytest.approx(100.0, rel=1e-12)  # microseconds
-    scale = value_scales(table)["impact_ratio"]
-    assert size == pytest.approx(0.1 * (1.0 - 1e-2) / scale, rel=1e-12)
-    floors = [line.get_ydata()[0] for line in first.lines if line.get_label().startswith("_")]
-    assert floors == pytest.approx([1e-5 / scale] * 3, rel=1e-12)
 
 
 def test_svg_says_no_date_loads_nothing_and_leaves_the_style_alone():

@@ -13,7 +13,6 @@ from blockshake.measurement.sensors import markers
 from blockshake.report.document.origin import software_versions
 from blockshake.store import load_made
 from blockshake.study.config import is_of_the_paper, shows_stiffness
-from blockshake.study.convergence.table import load_convergence
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.measured import measured_curves
 from blockshake.study.ensembles.timing import read_timings
@@ -131,8 +130,6 @@ class Content:
         From `calibrate`, where the study asks for one; a case alone has none.
     fragility : dict of str to xarray.Dataset
         From `fragility`, by case; empty where the study asks for none.
-    convergence : pandas.DataFrame or None
-        From `study_convergence`, where the study has one; a case alone has none.
     timings : tuple of Timing
     digests : dict of str to str
         Of input files and of tables that all samples come from, by path.
@@ -152,7 +149,6 @@ class Content:
     friction: dict
     calibration: dict | None
     fragility: dict
-    convergence: pd.DataFrame | None
     timings: tuple
     digests: dict
     versions: dict
@@ -225,9 +221,6 @@ def load_content(study, results, logs, only=None):
             for name in (study.get("fragility") or {}).get("cases", ())
             if name in cases
         },
-        convergence=(
-            load_convergence(results / "convergence.csv") if study.get("convergence") and not only else None
-        ),
         timings=read_timings(
             logs,
             {(model, case.name): one.samples for case in loaded.values() for model, one in case.responses.items()},

@@ -8,7 +8,6 @@ from blockshake.report.study.calibrations.all_tests import calibration
 from blockshake.report.study.calibrations.friction import friction
 from blockshake.report.study.closing_sections import checks, limits, origin, timings
 from blockshake.report.study.content import load_content
-from blockshake.report.study.convergence_section import convergence
 from blockshake.report.study.fragility_section import fragility
 from blockshake.report.study.models.section import models
 from blockshake.report.study.opening_sections import motions, samples, stiffness, structures, summary
@@ -33,10 +32,9 @@ _SECTIONS = (
     timings,
     limits,
     origin,
-    convergence,
 )
 # these judge the study as a whole
-_NOT_OF_A_CASE = (calibration, statements, convergence)
+_NOT_OF_A_CASE = (calibration, statements)
 
 
 def make_report(study, results, logs, html, pdf, paper):
