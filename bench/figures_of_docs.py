@@ -11,6 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from arrival_definitions import HEADER as ARRIVAL_HEADER
+from arrival_definitions import arrival_rows, arrival_words, stiffness_by_definition, top_peaks
 from convergence import HEADER as CONVERGENCE_HEADER
 from convergence import convergence_rows
 from hollow_faces import HEADER as HOLLOW_HEADER
@@ -30,13 +32,11 @@ from blockshake.geometry.structure import load_structure
 from blockshake.report.document.wording import model_label, number
 from blockshake.report.study.calibrations.all_tests import answers_table, tests_table
 from blockshake.report.study.content import load_content
-from blockshake.report.study.definition_tables import definition_table, definition_words
 from blockshake.report.study.sensitivity.summary import markers_by_height
 from blockshake.report.study.sensitivity.words import sentence
 from blockshake.report.study.statements.section import DEPARTURES_HEADER, HEADER, count_words, departures
 from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.simulate import simulate
-from blockshake.store import load_made
 from blockshake.study.config import load_config
 from blockshake.study.sampling.distributions import LINKED, TABLE_2
 from blockshake.study.sampling.sample_parameters import sample_parameters
@@ -164,14 +164,10 @@ def published_settings():
 
 
 def arrival_definitions():
-    """Stiffness of the default study by the definition of a wave's arrival; None where it has not been run."""
-    path = STUDY.with_name("stiffness-definitions.nc")
-    if not path.is_file():
-        return None
-    found = load_made(path)
-    table = definition_table(found)
-    words = textwrap.wrap(definition_words(found), 100, break_on_hyphens=False)
-    return "\n".join([*words, "", markdown(table.header, table.rows)])
+    """Stiffness by the definition of a wave's arrival and by damping, with the peaks of a stack."""
+    found = stiffness_by_definition(load_structure("configuration-1"))
+    peaks = top_peaks(found)
+    return f"{arrival_words(found, peaks)}\n\n{markdown(ARRIVAL_HEADER, arrival_rows(found, peaks))}"
 
 
 def cost_of_samples():

@@ -1,25 +1,16 @@
 """The runs behind the convergence of LS-DEM in docs/method.md, made by bench/convergence.py."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from convergence import HEADER, convergence_rows
+from shaken_stack import shaken_stack
 
 from blockshake.geometry.structure import load_structure
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 
-BENCH = str(Path(__file__).parents[2] / "bench")
-
-
-@pytest.fixture(autouse=True)
-def _bench_importable(monkeypatch):
-    monkeypatch.syspath_prepend(BENCH)
-
 
 def test_order_in_the_time_step_is_two_where_nothing_opens():
     """A stack that is shaken too weakly to rock sways as a linear chain: its error goes with the step squared."""
-    from shaken_stack import shaken_stack
-
     stack, parameters = load_structure("configuration-1"), LsDemParameters()
     found = {}
     for step in (1e-5, 5e-5, 1e-4):
@@ -32,16 +23,12 @@ def test_order_in_the_time_step_is_two_where_nothing_opens():
 
 
 def test_stack_that_falls_has_a_sink_and_nothing_else():
-    from shaken_stack import shaken_stack
-
     read = shaken_stack(load_structure("configuration-1"), LsDemParameters(), 1e-4, 6.0, 0.8, 3.0)
     assert read.pop("sink") > 0.0
     assert np.isnan(list(read.values())).all()
 
 
 def test_a_row_for_every_setting_with_the_default_marked_once_and_the_floor_last():
-    from convergence import HEADER, convergence_rows
-
     settings = {"time_step": (1e-5, 2e-5), "node_spacing": (0.2, 0.4), "grid_spacing": (0.0, 0.1)}
     rows = convergence_rows(settings, {"acceleration": 2.5, "frequency": 5.0, "duration": 0.1})
     assert {len(row) for row in rows} == {len(HEADER)}

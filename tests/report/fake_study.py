@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import xarray as xr
-from fake_inputs import calibrated, definitions, motion, waves
+from fake_inputs import calibrated, motion, waves
 
 from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
@@ -116,7 +116,6 @@ class FakeStudy:
         for place, name in enumerate(("basso-tirreno", "alkion")):
             write_dataset(self.results / "motions" / f"{name}.nc", motion(name, place))
         self._write_design()
-        write_dataset(self.results / "stiffness-definitions.nc", definitions())
         for case in self.study["cases"]:
             self._write_case(case)
 

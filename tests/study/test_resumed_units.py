@@ -1,6 +1,5 @@
 """A killed rule of many runs goes on from those that are finished: each is made once, and the bytes are the same."""
 
-import numpy as np
 import pandas as pd
 import pytest
 
@@ -8,7 +7,7 @@ from blockshake.files import content_digest, write_json
 from blockshake.study.config import Ladder
 from blockshake.study.ensembles import ladder
 from blockshake.study.sampling.latin_hypercube import write_design
-from blockshake.study.stiffness import definitions, wave_speed
+from blockshake.study.stiffness import wave_speed
 
 CASE = {
     "structure": "configuration-1",
@@ -42,25 +41,11 @@ def _calibrate(path, store):
     write_design(path, wave_speed.calibrate_design("configuration-2", DESIGN, {}, store, "source"))
 
 
-def _compare(path, store):
-    compared = definitions.compare_definitions({**CASE, "duration": 0.02}, 1e-4, store, "source")
-    path.write_bytes(b"".join(np.ascontiguousarray(one).tobytes() for one in compared.data_vars.values()))
-
-
 # what makes the rule's file, the module and the function that makes a unit, and how many units are let through
 RULES = {
     "ladder": (_climb, ladder, "simulate", 2),
     "stiffness": (_calibrate, wave_speed, "calibrate_stiffness", 1),
-    "definitions, wave tests": (_compare, definitions, "send_step", 5),
-    "definitions, peaks": (_compare, definitions, "simulate", 1),
 }
-
-
-@pytest.fixture(autouse=True)
-def _few(monkeypatch):
-    monkeypatch.setattr(definitions, "RESTITUTIONS", (0.5,))
-    monkeypatch.setattr(definitions, "FREE_FACTORS", (1.0,))
-    monkeypatch.setattr(definitions, "DEFINITIONS", ("10 %", "50 %"))
 
 
 @pytest.mark.parametrize("rule", RULES)

@@ -14,7 +14,6 @@ _USUAL = 7.0
 _FIXED = {
     "all": 0.0,
     "calibrate_stiffness": 9.0,
-    "compare_definitions": 18.0,
     "compare_models": 14.0,
     "compile_kernels": 53.0,
     "decide": 13.0,

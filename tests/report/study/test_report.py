@@ -138,7 +138,7 @@ def test_a_model_without_words_of_its_own_has_its_figures(fake, monkeypatch):
 
 def test_pages_that_the_report_names_are_there(text):
     pages = set(re.findall(r"docs/[\w/.-]+\.md", text))
-    assert pages >= {"docs/method.md", "docs/peers.md"}
+    assert pages >= {"docs/method.md", "docs/peers.md", "docs/uncertainty.md"}
     assert [page for page in pages if not (HOME / page).is_file()] == []
 
 
@@ -196,7 +196,6 @@ def test_own_structures_by_rigid_models_need_no_contact_stiffness(copied, monkey
         monkeypatch.setattr(module, "is_of_the_paper", lambda structure: False)
     for name in ("stiffness", "waves"):
         shutil.rmtree(copied.results / name)
-    (copied.results / "stiffness-definitions.nc").unlink()
     study = {**copied.study, "models": {"nscd-rigid": MODELS["nscd-rigid"]}}
     found = load_content(study, copied.results, copied.logs)
     assert not {"stiffness", "statements"} & {section.key for section in compose(found).sections}
@@ -206,7 +205,7 @@ def test_own_structures_by_rigid_models_need_no_contact_stiffness(copied, monkey
 def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
     fake = copied
     others = fake.results.rglob("configuration-1*")
-    for path in [*others, fake.results / "motions" / "alkion.nc", fake.results / "stiffness-definitions.nc"]:
+    for path in [*others, fake.results / "motions" / "alkion.nc"]:
         path.unlink()
     html, pdf = tmp_path / "case.html", tmp_path / "case.pdf"
     make_case_report(fake.study, "configuration-4", fake.results, fake.logs, html, pdf)

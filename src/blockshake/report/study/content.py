@@ -122,8 +122,6 @@ class Content:
     distributions : dict of str to Lognormal
     calibrated : tuple of Calibrated
         Every case in one of them; empty where the study tells of no contact stiffness.
-    definitions : xarray.Dataset or None
-        Of the study's first case; none where that is not reported, or where the study tells of no contact stiffness.
     friction : dict of str to dict
         Friction calibrations by case; empty where the study asks for none.
     calibration : dict or None
@@ -145,7 +143,6 @@ class Content:
     design_summary: dict
     distributions: dict
     calibrated: tuple
-    definitions: xr.Dataset | None
     friction: dict
     calibration: dict | None
     fragility: dict
@@ -207,9 +204,6 @@ def load_content(study, results, logs, only=None):
         design_summary=load_json(results / "design.json"),
         distributions=load_distributions(study["ensemble"].get("distributions"), study["name"]),
         calibrated=_calibrated(results, cases) if stiffness else (),
-        definitions=(
-            load_made(results / "stiffness-definitions.nc") if stiffness and next(iter(every)) in cases else None
-        ),
         friction={
             name: load_json(results / "friction" / f"{name}.json")
             for name in (study.get("friction_calibration") or {}).get("cases", ())

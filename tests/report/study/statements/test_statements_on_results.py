@@ -137,26 +137,12 @@ def test_higher_blocks_follow_later(content):
     assert stiffness.delayed(calibrated(content, one.stiffness, waves)).verdict == NOT_MET
 
 
-def test_a_similar_velocity_is_not_where_the_study_reads(content):
-    found = stiffness.similar_velocity(content)
-    assert found.verdict == NOT_MET
-    assert "normal 1.00 to 1.00" in found.words
-    one = content.calibrated[0]
-    waves = one.waves.copy(deep=True)
-    waves["velocity"][1, :, 1] *= 0.75
-    found = stiffness.similar_velocity(calibrated(content, one.stiffness, waves))
-    assert found.verdict == NOT_MET
-    assert "never within 10.0 or 20.0 %" in found.words
-
-
 def test_restitution_is_not_calibrated(content):
     found = stiffness.restitution(content)
     assert found.verdict == UNJUDGED
-    assert "201.3 mm at 0.1, 150.7 mm at 0.5" in found.words
     case = content.cases[FIRST]
     content.cases[FIRST] = replace(case, structure=case.structure.with_parameters({"restitution": 0.3}))
     assert stiffness.restitution(content).verdict == NOT_MET
-    assert "0.50 to 1.00 times over levels" in stiffness.definitions(content).words
     assert "k_n 15.0 to 22 GN" in stiffness.histograms(content).words
 
 

@@ -240,15 +240,6 @@ STATEMENTS = {
             stiffness.delayed, _WAVES,
         ),
         Statement(
-            f"{_CALIBRATION}, Fig. 9",
-            "The speed is read once all blocks of a tower of four have a similar velocity.",
-            stiffness.similar_velocity, _WAVES,
-        ),
-        Statement(
-            f"{_CALIBRATION}, Fig. 9", "The matched wave speed approximates the stiffness.", stiffness.definitions,
-            "results/{study}/stiffness-definitions.nc",
-        ),
-        Statement(
             f"{_CALIBRATION}, Fig. 10", "Histograms of the stiffness of the samples.", stiffness.histograms,
             _STIFFNESS,
         ),
@@ -261,7 +252,7 @@ STATEMENTS = {
         ),
         Statement(
             _CALIBRATION, "A moderate damping with C_res 0.5 is needed because k_n is large.", stiffness.restitution,
-            "results/{study}/stiffness-definitions.nc",
+            "results/{study}/calibration.json",
         ),
         Statement(
             _CALIBRATION, "That C_res lies in the range of Harmon et al. (2022).",
