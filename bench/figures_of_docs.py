@@ -34,7 +34,7 @@ from blockshake.report.study.calibrations.all_tests import answers_table, tests_
 from blockshake.report.study.content import load_content
 from blockshake.report.study.sensitivity.summary import markers_by_height
 from blockshake.report.study.sensitivity.words import sentence
-from blockshake.report.study.statements.section import DEPARTURES_HEADER, HEADER, count_words, departures
+from blockshake.report.study.statements.section import HEADER, count_words
 from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.simulate import simulate
 from blockshake.study.config import load_config
@@ -133,11 +133,6 @@ def _findings(path):
         shown = [(*row[:-1], f"`{row[-1]}`") for row in rows]
         lines += ["", f"### {heading}", "", markdown(HEADER, shown)]
     return "\n".join(lines)
-
-
-def departure_table():
-    """Departures from the paper, from the program's own constants."""
-    return markdown(DEPARTURES_HEADER, departures())
 
 
 def published_settings():
@@ -298,7 +293,6 @@ MAKERS = {
     "single-changes": single_changes,
     "statements": statements,
     "paper-statements": paper_statements,
-    "departures": departure_table,
     "published-settings": published_settings,
     "shear-damping": shear_damping,
     "joint-calibration": joint_calibration,

@@ -8,8 +8,7 @@ rule make_report:
         shipped=[
             definition("structures", f"configuration-{place}")
             for place in (1, 2, 3, 4)
-        ]
-        + [beside(HOME / "config" / f"{name}.yaml") for name in ("study", "paper")],
+        ],
     output:
         html=report("reports/{study}.html", category="Study"),
         pdf=report("reports/{study}.pdf", category="Study"),

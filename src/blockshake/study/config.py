@@ -21,7 +21,7 @@ from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, 
 from blockshake.study.sampling.latin_hypercube import LARGEST_SIZE, SMALLEST_SIZE
 from blockshake.validation import Count, Positive, Strict, Whole, validated
 
-_OF_THE_PAPER = tuple(f"configuration-{place}" for place in (1, 2, 3, 4))
+OF_THE_PAPER = tuple(f"configuration-{place}" for place in (1, 2, 3, 4))
 
 
 def _links(ensemble):
@@ -227,7 +227,7 @@ def shows_stiffness(study):
 
 def is_of_the_paper(structure):
     """Whether a structure is one of Zhou et al. (2023), by its shipped name."""
-    return structure in _OF_THE_PAPER
+    return structure in OF_THE_PAPER
 
 
 def load_config(path):

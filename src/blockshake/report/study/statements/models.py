@@ -5,7 +5,6 @@ import numpy as np
 from blockshake.report.document.rows import face_markers
 from blockshake.report.document.wording import model_label, number, percent, share_words
 from blockshake.report.study.models.words import order_words
-from blockshake.report.study.statements.specimens import HEIGHTS
 from blockshake.report.study.statements.statement import (
     Verdict,
     against_tests,
@@ -15,6 +14,7 @@ from blockshake.report.study.statements.statement import (
     unjudged,
 )
 from blockshake.study.comparison.ranking import CLAIMS, MET, OPEN, judge
+from blockshake.study.config import OF_THE_PAPER
 from blockshake.study.ensembles.coverage import UNLIKELY, is_likely
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.ensembles.intervals import SURE_FROM
@@ -52,7 +52,7 @@ def best_model(content):
     """Viscoelastic blocks nearest to the tests."""
     models = (_RIGID, _ELASTIC, _VISCOELASTIC)
     if absent := missing(content, *models):
-        return unjudged(f"{absent} config/paper.yaml has them.")
+        return unjudged(absent)
     cases = compared(content)
     if not cases:
         return unjudged(_NO_TEST)
@@ -66,11 +66,11 @@ def best_model(content):
 def satisfactory(content, model, fits, fails=()):
     """A model that fits some configurations and not others, named by their numbers."""
     if absent := missing(content, model):
-        return unjudged(f"{absent} config/paper.yaml has it.")
+        return unjudged(absent)
     cases = [
         case
         for case in compared(content)
-        if case.name in HEIGHTS and case.responses[model].comparison["curve_probability"].notnull().any()
+        if case.name in OF_THE_PAPER and case.responses[model].comparison["curve_probability"].notnull().any()
     ]
     if not cases:
         return unjudged(_NO_TEST)

@@ -1,66 +1,16 @@
-"""Statements on contact stiffness, wave speed and damping."""
+"""Statements on contact stiffness and damping."""
 
-import numpy as np
 from scipy.stats import pearsonr, spearmanr
 
 from blockshake.geometry.reference_block import reference_body
-from blockshake.report.document.units import printed
 from blockshake.report.document.wording import given, number
 from blockshake.report.study.statements.calibration import judged_by_tests
 from blockshake.report.study.statements.statement import judged, unjudged
 from blockshake.study.calibration.settings import RESTITUTION as CALIBRATED
-from blockshake.study.stiffness.wave_speed import speed_deviation
 
 RESTITUTION = 0.5
-_MATCHED = 1e-3  # relative difference of wave speeds that counts as none
 _ONE_NUMBER = 1e-3  # relative spread of a quantity that counts as one number in all samples
 _LEVEL = 0.05  # chance at or below which a correlation is shown
-
-
-def wave_speeds(content):
-    """Eqs. (7) and (8)."""
-    told, largest = [], 0.0
-    for calibrated in content.calibrated:
-        material = _material(content, calibrated)
-        shear = material.youngs_modulus / (2.0 + 2.0 * material.poisson_ratio)
-        for direction, modulus in (("normal", material.youngs_modulus), ("shear", shear)):
-            formula = np.sqrt(modulus / material.density)
-            target = float(calibrated.waves["target_wave_speed"].sel(direction=direction))
-            deviation = speed_deviation(calibrated.waves, direction)
-            largest = max(largest, abs(target / formula - 1.0), abs(deviation))
-            told.append(
-                f"{direction} {number(formula, 4)} m/s by the equation, tower within {1e6 * deviation:.0f} ppm"
-            )
-        told.append(
-            f"nominal materials; Poisson's ratio {given(material.poisson_ratio)}, which the paper does not state"
-        )
-    return judged(largest < _MATCHED, f"{'; '.join(told)}.")
-
-
-def delayed(content):
-    """Higher blocks follow later."""
-    told, rises = [], True
-    for calibrated in content.calibrated:
-        arrival = calibrated.waves["arrival"]
-        rises = rises and bool((arrival.diff("block") > 0.0).all())
-        for direction in calibrated.waves["direction"].values:
-            times = ", ".join(number(1e3 * one) for one in arrival.sel(direction=direction).values)
-            told.append(f"{direction} {times} ms")
-    return judged(rises, f"Arrivals at the blocks of the tower from the lowest up: {'; '.join(told)}.")
-
-
-def histograms(content):
-    """Stiffness of the samples, Fig. 10."""
-    factor, unit = printed("N/m3")
-    told = []
-    for calibrated in content.calibrated:
-        table = calibrated.stiffness
-        for symbol, column in (("k_n", "normal"), ("k_s", "shear")):
-            values = factor * table[f"ls_dem.{column}_stiffness"]
-            told.append(f"{symbol} {number(values.min())} to {number(values.max())} {unit}")
-    return unjudged(
-        f"The paper prints histograms of a stiffness of a node, without a table. Per area here: {'; '.join(told)}."
-    )
 
 
 def follow_moduli(content):
