@@ -138,7 +138,7 @@ def test_a_model_without_words_of_its_own_has_its_figures(fake, monkeypatch):
 
 def test_pages_that_the_report_names_are_there(text):
     pages = set(re.findall(r"docs/[\w/.-]+\.md", text))
-    assert pages >= {"docs/method.md", "docs/peers.md", "docs/uncertainty.md"}
+    assert pages >= {"docs/method.md", "docs/peers.md", "docs/the-paper.md", "docs/uncertainty.md"}
     assert [page for page in pages if not (HOME / page).is_file()] == []
 
 

@@ -215,6 +215,25 @@ def test_the_best_model_has_the_lowest_score_of_every_test(real):
             name = f"configuration-{place}"
             real.cases[name] = replace(case, name=name, differences=found)
         assert models.best_model(real).verdict == verdict
+    assert "0 bear the statement out, 0 contradict it, 8 are not told apart" in models.best_model(real).words
+
+
+def test_one_configuration_the_other_way_round_is_enough_against_the_best_model(real):
+    case = real.cases[FIRST]
+    for model in ("nscd-elastic", "nscd-viscoelastic"):
+        real.study["models"][model] = {"time_step": 1e-3}
+    for place, lower, count in ((1, 1e-3, 6), (2, 1e-3, 5), (3, np.nan, 6), (4, -2e-3, 6)):
+        found = case.differences.copy(deep=True)
+        found["counted"][:] = count
+        found["score_difference_interval"].loc[{"bound": "lower"}] = lower
+        found["score_difference_interval"].loc[{"bound": "upper"}] = lower + 1e-3
+        real.cases[f"configuration-{place}"] = replace(case, name=f"configuration-{place}", differences=found)
+    found = models.best_model(real)
+    assert found.verdict == NOT_MET
+    assert "2 bear the statement out, 2 contradict it, 0 are not told apart" in found.words
+    assert "4 are of fewer than 6 samples" in found.words
+    del real.cases[FOURTH]
+    assert models.best_model(real).verdict == UNJUDGED  # two of four
 
 
 @pytest.mark.parametrize(("beside", "verdict", "share"), [(2.0, MET, "none of 2"), (0.5, NOT_MET, "all 2")])
