@@ -27,11 +27,6 @@ include: "workflow/rules/diagnosis.smk"
 include: "workflow/rules/report.smk"
 
 
-if config.get("convergence"):
-
-    include: "workflow/rules/convergence.smk"
-
-
 rule all:
     default_target: True
     input:

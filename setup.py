@@ -6,7 +6,6 @@ from pathlib import Path
 from setuptools import setup
 from setuptools.command.build_py import build_py
 
-# the project's own studies are there to be told of, as in the departures of a report: their measured tests do not ship
 SHIPPED = (
     "Snakefile",
     "config/structures",
@@ -14,11 +13,9 @@ SHIPPED = (
     "config/templates",
     "config/diagnosis.yaml",
     "config/study.yaml",
-    "config/paper.yaml",
     "config/virtual-campaign.yaml",
     "workflow",
     "profiles/default",
-    "data/peers",
     "data/track-record",
 )
 

@@ -35,7 +35,7 @@ def main():
     """Compare, print and write."""
     parser = argparse.ArgumentParser(prog="compare_lmgc90", description=__doc__.partition("\n")[0])
     parser.add_argument("--output", type=Path, default=Path("results/compare_lmgc90.json"))
-    parser.add_argument("--record", type=Path, help="netCDF for the report's annex, histories included")
+    parser.add_argument("--record", type=Path, help="netCDF of all of it, histories included")
     parser.add_argument("--only", choices=CASES, action="append", help="compare this case; may be repeated")
     parser.add_argument("--repeats", type=int, default=REPEATS)
     options = parser.parse_args()

@@ -6,18 +6,22 @@ alone. The findings on the paper are those of the default study, and stay where 
 
 import re
 import sys
-import tempfile
 import textwrap
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from arrival_definitions import HEADER as ARRIVAL_HEADER
+from arrival_definitions import arrival_rows, arrival_words, stiffness_by_definition, top_peaks
+from convergence import HEADER as CONVERGENCE_HEADER
+from convergence import convergence_rows
 from hollow_faces import HEADER as HOLLOW_HEADER
 from hollow_faces import hollow_rows
 from key_tables import HEADER as KEYS_HEADER
 from key_tables import key_rows
 from paper_run import HEADER as PAPER_HEADER
 from paper_run import paper_rows
+from recorded_lmgc90 import SPEED_HEADER, speed_rows
 from schedule import deep_diagnosis, hours, measured, planned, shares, timed_study
 from shear_damping import HEADER as SHEAR_HEADER
 from shear_damping import shear_damping_rows, shear_damping_words
@@ -28,17 +32,12 @@ from blockshake.geometry.structure import load_structure
 from blockshake.report.document.wording import model_label, number
 from blockshake.report.study.calibrations.all_tests import answers_table, tests_table
 from blockshake.report.study.content import load_content
-from blockshake.report.study.convergence_section import numbers_table
-from blockshake.report.study.definition_tables import definition_table, definition_words
 from blockshake.report.study.sensitivity.summary import markers_by_height
 from blockshake.report.study.sensitivity.words import sentence
-from blockshake.report.study.statements.section import DEPARTURES_HEADER, HEADER, count_words, departures
+from blockshake.report.study.statements.section import HEADER, count_words
 from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.simulate import simulate
-from blockshake.store import load_made
 from blockshake.study.config import load_config
-from blockshake.study.convergence.convergence import study_convergence
-from blockshake.study.convergence.settings import Convergence
 from blockshake.study.sampling.distributions import LINKED, TABLE_2
 from blockshake.study.sampling.sample_parameters import sample_parameters
 from blockshake.study.stiffness.wave_speed import calibrate_stiffness, stiffness_parameters
@@ -66,14 +65,6 @@ _SHOWN = 8  # rules that take most of the time
 LITERAL = DOCS.parent / "config" / "literal.yaml"
 _FINE_IMPACTS = {"nscd.impact_parts": 20}  # as in config/study.yaml
 _GRID = "ls_dem.level_set", "ls_dem.grid_spacing"  # mean nothing without each other
-
-
-def convergence():
-    """Table of LS-DEM's numerical parameters."""
-    with tempfile.TemporaryDirectory() as store:
-        found = study_convergence(Convergence(structure="configuration-1"), store, "", lambda line: None)
-    table = numbers_table(found)
-    return markdown(table.header, table.rows)
 
 
 def slenderness():
@@ -144,11 +135,6 @@ def _findings(path):
     return "\n".join(lines)
 
 
-def departure_table():
-    """Departures from the paper, from the program's own constants."""
-    return markdown(DEPARTURES_HEADER, departures())
-
-
 def published_settings():
     """Peak, end and energy audit of configuration 1 by the settings of `LITERAL`, one at a time and together."""
     structure, motion = load_structure("configuration-1"), load_motion("basso-tirreno", 2.0)
@@ -173,14 +159,10 @@ def published_settings():
 
 
 def arrival_definitions():
-    """Stiffness of the default study by the definition of a wave's arrival; None where it has not been run."""
-    path = STUDY.with_name("stiffness-definitions.nc")
-    if not path.is_file():
-        return None
-    found = load_made(path)
-    table = definition_table(found)
-    words = textwrap.wrap(definition_words(found), 100, break_on_hyphens=False)
-    return "\n".join([*words, "", markdown(table.header, table.rows)])
+    """Stiffness by the definition of a wave's arrival and by damping, with the peaks of a stack."""
+    found = stiffness_by_definition(load_structure("configuration-1"))
+    peaks = top_peaks(found)
+    return f"{arrival_words(found, peaks)}\n\n{markdown(ARRIVAL_HEADER, arrival_rows(found, peaks))}"
 
 
 def cost_of_samples():
@@ -306,12 +288,11 @@ def _words(parameters):
 
 
 MAKERS = {
-    "convergence": convergence,
+    "convergence": lambda: markdown(CONVERGENCE_HEADER, convergence_rows()),
     "slenderness": slenderness,
     "single-changes": single_changes,
     "statements": statements,
     "paper-statements": paper_statements,
-    "departures": departure_table,
     "published-settings": published_settings,
     "shear-damping": shear_damping,
     "joint-calibration": joint_calibration,
@@ -322,6 +303,7 @@ MAKERS = {
     "cost-of-samples": cost_of_samples,
     "times-on-a-cluster": times_on_a_cluster,
     "paper-run": paper_run,
+    "lmgc90-speed": lambda: markdown(SPEED_HEADER, speed_rows()),
     "faults": faults,
     "structure-keys": keys_of("structure"),
     "study-keys": keys_of("study"),

@@ -1,9 +1,10 @@
 """Impact and sway of configuration 1 with hollow faces, by LS-DEM, beside NSCD and Housner's edges."""
 
+from shaken_stack import SHAKING, shaken_stack
+
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import MODELS
-from blockshake.study.convergence.runs import housner_ratio, rocking_block, shaken_stack
-from blockshake.study.convergence.settings import Convergence
+from blockshake.study.comparison.kicked_block import housner_ratio, rocking_block
 
 HOLLOWS = (0.0, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3)  # m
 SPACINGS = (0.2, 0.1, 0.05)  # m
@@ -17,7 +18,6 @@ HEADER = (
 
 def hollow_rows():
     """One row for each depth, then one for NSCD and one for Housner's edges, which have no hollow."""
-    shaking = Convergence(structure="configuration-1")
     lsdem, nscd = MODELS["ls-dem"], MODELS["nscd-rigid"]
     rows = []
     for hollow in HOLLOWS:
@@ -28,14 +28,7 @@ def hollow_rows():
             ]
             for spacing in SPACINGS
         ]
-        swayed = shaken_stack(
-            structure,
-            lsdem.schema(),
-            lsdem.time_step,
-            shaking.acceleration,
-            shaking.frequency,
-            shaking.duration,
-        )
+        swayed = shaken_stack(structure, lsdem.schema(), lsdem.time_step, **SHAKING)
         rows.append(
             (
                 f"{1e3 * hollow:g}",

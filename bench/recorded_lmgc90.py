@@ -1,8 +1,9 @@
-"""Record of LMGC90 for the report's annex, kept in a file because a study does not have the program."""
+"""Record of LMGC90 beside blockshake, kept in a file because few have the program."""
 
 import datetime
 import json
 import platform
+from pathlib import Path
 
 import numpy as np
 import peers
@@ -14,7 +15,11 @@ from blockshake.geometry.structure import load_structure
 from blockshake.solvers.nscd.driver import simulate_nscd
 from blockshake.solvers.nscd.parameters import NscdParameters
 
+RECORD = Path(__file__).parents[1] / "data" / "peers" / "lmgc90.nc"
 PROGRAMS = ("LMGC90", "blockshake")
+SPEED_HEADER = (
+    "case", "LMGC90 [us]", "blockshake [us]", "times faster", "residual, LMGC90", "residual, blockshake",
+)  # fmt: skip
 EVERY = 5  # steps of 1 ms between points
 # structure, acceleration [m/s2], duration [s]: those of tests/validation
 HISTORIES = {
@@ -85,6 +90,18 @@ def recorded_comparison(result):
         },
     )  # fmt: skip
     return recorded
+
+
+def speed_rows():
+    """Rows of the page's table of speed, from `RECORD`: CPU time of a step and residual, by case."""
+    record, rows = xr.load_dataset(RECORD), []
+    for name in record["case"].values:
+        one = record.sel(case=name)
+        theirs, ours = (one.sel(program=program) for program in PROGRAMS)
+        times = (f"{1e6 * float(program['step_time']):,.0f}" for program in (theirs, ours))
+        residuals = (f"{float(program['residual']):.0e}" for program in (theirs, ours))
+        rows.append((name, *times, f"{float(one['times_faster']):.1f}", *residuals))
+    return rows
 
 
 def _both(name, acceleration, duration):

@@ -10,7 +10,7 @@ from blockshake.measurement.sensors.markers import NOISE, block_markers, driven_
 from blockshake.report.document.wording import number, percent, share_words
 from blockshake.simulation.simulate import simulate
 from blockshake.study.comparison.comparison import TOLD_APART_BY
-from blockshake.study.convergence.convergence import NUDGE
+from blockshake.study.comparison.twins import NUDGE
 from blockshake.study.ensembles.ensemble import relative_to_slab
 
 CONFIGURATIONS = ("configuration-1", "configuration-2", "configuration-3", "configuration-4")

@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 from blockshake.report.study.statements.section import HEADER, count_words
-from blockshake.report.study.statements.specimens import heights, tallest
 from blockshake.report.study.statements.statement import Verdict
 from blockshake.report.study.statements.table import STATEMENTS
 
@@ -38,11 +37,6 @@ def test_keys_of_a_file_are_those_of_its_schema_and_each_has_a_meaning(kind, fig
     assert all(row[-1] for row in figures.key_rows(kind))
 
 
-def test_departures_from_the_paper_are_those_of_today(figures):
-    page = ROOT / "docs" / "the-paper.md"
-    assert figures.blocks(page)["departures"] == figures.departure_table()
-
-
 def test_findings_on_the_paper_are_on_the_statements_of_today(figures):
     page = figures.blocks(ROOT / "docs" / "the-paper.md")["statements"]
     rows = [line.strip("| ").split(" | ") for line in page.splitlines() if line.startswith("| ")]
@@ -51,12 +45,6 @@ def test_findings_on_the_paper_are_on_the_statements_of_today(figures):
     assert [(row[0], row[1]) for row in rows] == stated
     assert {row[2] for row in rows} == set(Verdict)
     assert count_words({"all": rows}) in " ".join(page.split())
-    found = {row[1]: (row[2], row[3]) for row in rows}
-    for judge in (heights, tallest):  # they hang on no study
-        (claim,) = [one.claim for all_of in STATEMENTS.values() for one in all_of if one.judge is judge]
-        assert found[claim] == judge(None)
-    speed = f"normal {(3.45e10 / 2400.0) ** 0.5:.0f} m/s"  # Eq. (7) at the means of Table 2
-    assert sum(speed in words for _, words in found.values()) == 1
 
 
 def test_findings_stay_where_no_study_was_run(figures, monkeypatch, tmp_path, capsys):

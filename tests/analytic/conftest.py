@@ -1,8 +1,13 @@
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from blockshake.solvers.nscd.driver import simulate_nscd
 from blockshake.solvers.nscd.parameters import NscdParameters
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "bench"))  # programs that write figures of docs
 
 
 @pytest.fixture(scope="session")

@@ -11,7 +11,7 @@ from work import BOTH, WORKS
 pytestmark = pytest.mark.faults
 # models that the scripts of rules run, but for those whose jobs name one
 _MODELS = {
-    "study_convergence": ("ls-dem",), "climb_ladder": ("ls-dem",), "compare_definitions": ("ls-dem",),
+    "climb_ladder": ("ls-dem",),
     "climb_samples": ("nscd-rigid",), "calibrate_friction": ("nscd-rigid",), "predict_twins": ("ls-dem", "nscd-rigid"),
 }  # fmt: skip
 EDITS = {

@@ -25,8 +25,6 @@ STUDY = {
         "correlation": "c.csv", "linked": {},
     },
     "ladder": {"motions": ["m.csv"], "first": 0.5, "increment": 0.25, "highest": 4.0, "largest_drift": 0.4},
-    "convergence": {"structure": "structure.yaml", "duration": 1.0, "time_steps": [5e-5, 1e-4],
-                    "node_spacings": [0.2, 0.4], "perimeter_insets": [0.003, 0.006], "grid_spacings": [0.02]},
     "diagnosis": {"campaigns": [], "effort": "quick"},
 }  # fmt: skip
 CORRELATION = (

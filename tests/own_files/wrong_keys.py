@@ -104,9 +104,6 @@ STUDY = {
     "friction_calibration": {"model": "nscd-rigid", "cases": ["wall"], "variables": [TURNED], "lowest": 0.3,
                              "highest": 0.8, "step": 0.1, "finest": 0.05, "size": 10, "replicates": 2},
     "calibration": {"cases": {"ls-dem": ["wall"]}, "size": 19, "ranges": {TURNED: _RANGE}},
-    "convergence": {"structure": "flat.yaml", "acceleration": 2.5, "frequency": 1.5, "duration": 1.0,
-                    "time_steps": [5e-5, 1e-4], "node_spacings": [0.2, 0.4], "perimeter_insets": [0.005, 0.01],
-                    "grid_spacings": [0.02]},
     "diagnosis": {"campaigns": ["campaign"], "effort": "quick"},
 }  # fmt: skip
 
@@ -119,7 +116,6 @@ def _table(names, *columns):
     )
 
 
-_FLAT = {**STRUCTURE, "shapes": {**STRUCTURE["shapes"], "block": {"box": [0.6, 1.2, 1.0], "chamfer": 0.01}}}
 _FACES = ["slab-face.x", "high-face.x"]
 _NOISE = 1e-4 * np.random.default_rng(1).standard_normal((2, len(_TIME)))
 CORRELATION = "name,{0},{1}\n{0},1,0.5\n{1},0.5,1\n"
@@ -133,7 +129,6 @@ BESIDE = {
     "unsampled.csv": CORRELATION.format("friction.granite.steel", "materials.granite.density"),
     "impossible.csv": "name,{0},{1}\n{0},1,2\n{1},2,1\n".format(TURNED, "materials.granite.density"),
     "text.csv": "name,a\nb,c\n",
-    "flat.yaml": yaml.safe_dump(_FLAT),
     "lone.yaml": yaml.safe_dump({**STRUCTURE, **{key: [] for key in (
         "joints", "stoppers", "external_forces", "markers", "accelerometers", "displacement_transducers"
     )}}),
@@ -260,15 +255,6 @@ ROWS = {
         (f"calibration.ranges.{TURNED}.lowest", 2.0, "`highest` above `lowest`"),
         (f"calibration.ranges.{TURNED}.highest", 0.1, "`highest` above `lowest`"),
         (f"calibration.ranges.{TURNED}.scale", "cubic", "'linear' or 'log'"),
-        ("convergence.structure", "nothing.yaml", "readable file"),
-        ("convergence.acceleration", 0.0, _LOWER),
-        ("convergence.frequency", 0.0, _LOWER),
-        ("convergence.duration", 0.0, _LOWER),
-        ("convergence.time_steps", [1e-4, 0.1], "less than or equal to 0.01"),
-        ("convergence.node_spacings", [0.1], "at least 2 items"),
-        ("convergence.perimeter_insets", [0.01, 0.2], "less than or equal to 0.1"),
-        ("convergence.grid_spacings", [1e-5], "expected fewer lattice points"),
-        ("convergence.structure", "wall.yaml", "expected the exact distance with hollow faces"),
         ("diagnosis.campaigns", ["nowhere"], "readable file"),
         ("diagnosis.campaigns", ["campaign", "./campaign"], "every name once"),
         ("diagnosis.effort", "most", "'quick', 'standard' or 'deep'"),

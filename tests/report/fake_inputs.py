@@ -1,4 +1,4 @@
-"""Made-up inputs of a study: motions, wave tests, stiffness by definition."""
+"""Made-up inputs of a study: motions, wave tests, a joint calibration."""
 
 import numpy as np
 import xarray as xr
@@ -60,37 +60,6 @@ def waves():
         },
         coords={"direction": ["normal", "shear"], "time": time, "block": ["block-1", "block-2"]},
         attrs={"definition": "half of the step", "step_velocity": 1e-3},
-    )
-
-
-def definitions():
-    """Stiffness by definition as `compare_definitions` makes it; one definition names no instant."""
-    pair, triple = ("restitution", "definition"), ("direction", "restitution", "definition")
-    stiffness = 1.8e10 * np.array([[[0.5, np.nan], [1.0, 3.0]], [[0.5, 1.0], [0.5, 1.0]]])
-    return xr.Dataset(
-        {
-            "stiffness": (triple, stiffness),
-            "wave_speed": (triple, 3.8e3 / np.sqrt(stiffness / 1.8e10)),
-            "top_peak": (pair, [[0.2013, np.nan], [0.1507, 0.3021]]),
-            "top_peak_same_damping": (pair, [[0.1808, np.nan], [0.1507, 0.3021]]),
-            "target_wave_speed": ("direction", [3791.4, 2447.4]),
-            "free_speed": ("factor", [278.1, 276.1]),
-            "blocked_speed": ("factor", [2447.4, 7739.4]),
-        },
-        coords={
-            "direction": ["normal", "shear"],
-            "restitution": [0.1, 0.5],
-            "definition": ["50 %", "first peak"],
-            "factor": [1.0, 10.0],
-        },
-        attrs={
-            "structure": "configuration-1",
-            "motion": "basso-tirreno",
-            "motion_scale": 2.0,
-            "duration": 6.0,
-            "definition": "50 %",
-            "study_restitution": 0.5,
-        },
     )
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import xarray as xr
-from fake_inputs import calibrated, definitions, motion, waves
+from fake_inputs import calibrated, motion, waves
 
 from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
@@ -14,7 +14,6 @@ from blockshake.measurement.sensors.marker_noise import noisy_reading
 from blockshake.study.comparison.comparison import compare_models
 from blockshake.study.comparison.differences import FEWEST
 from blockshake.study.comparison.twins import TWINS
-from blockshake.study.convergence.table import COLUMNS, EXACT, OBSERVABLES, write_convergence
 from blockshake.study.ensembles.case_input import measured_input
 from blockshake.study.ensembles.coverage import coverage
 from blockshake.study.ensembles.ensemble import gather_ensemble, sample_figures
@@ -110,7 +109,6 @@ class FakeStudy:
                 "cases": {"ls-dem": ["configuration-1"], "nscd-rigid": ["configuration-1"]},
                 "size": 24,
             },
-            "convergence": {"structure": "configuration-1"},
         }
         write_json(self.results / "calibration.json", calibrated(self.study))
         write_json(self.results / "friction" / "configuration-1.json", friction())
@@ -118,8 +116,6 @@ class FakeStudy:
         for place, name in enumerate(("basso-tirreno", "alkion")):
             write_dataset(self.results / "motions" / f"{name}.nc", motion(name, place))
         self._write_design()
-        write_convergence(self.results / "convergence.csv", convergence_table())
-        write_dataset(self.results / "stiffness-definitions.nc", definitions())
         for case in self.study["cases"]:
             self._write_case(case)
 
@@ -282,25 +278,3 @@ def end(run, status, reason, time):
     after = run["time"].to_numpy() > time
     run["marker_displacement"][after] = np.nan
     run.attrs |= {"status": status, "reason": reason, "end_time": float(time)}
-
-
-def convergence_table():
-    """A convergence study whose differences grow with the square of the setting, the sink's excepted."""
-    rows = []
-    settings = {
-        "time_step": (1e-5, 1e-4),
-        "node_spacing": (0.05, 0.2),
-        "perimeter_inset": (0.003, 0.006),
-        "grid_spacing": (EXACT, 0.02),
-    }
-    for parameter, values in settings.items():
-        for setting in values:
-            for name, unit in OBSERVABLES.items():
-                difference = (
-                    0.0
-                    if name == "sink"
-                    else 0.1 * ((setting / values[-1]) ** 2 - (values[0] / values[-1]) ** 2)
-                )
-                usual = setting == {"node_spacing": 0.2}.get(parameter, values[0])
-                rows.append((parameter, setting, usual, name, unit, 0.25 + difference, difference, 1e-5))
-    return pd.DataFrame(rows, columns=COLUMNS)

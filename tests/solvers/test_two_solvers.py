@@ -33,7 +33,7 @@ NORMAL, SHEAR = (
 
 
 def motion(duration):
-    """One cycle of 1.5 Hz and 2.5 m/s2, and rest: the motion of the convergence study."""
+    """One cycle of 1.5 Hz and 2.5 m/s2, and rest: the motion of LS-DEM's convergence in docs/method.md."""
     omega, time = 3.0 * np.pi, np.arange(round(1000 * duration) + 101) / 1000.0
     swing = np.cos(omega * np.minimum(time, 1.0 / 1.5)) - 1.0
     return ground_motion("one cycle", time, {"x": 2.5 / omega**2 * swing}, "displacement", {"source": "test"})

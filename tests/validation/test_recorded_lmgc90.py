@@ -1,17 +1,17 @@
-"""The record that the report's annex draws beside our code of today; needs no peer."""
+"""The record of LMGC90 that ships, beside our code of today; needs no peer."""
 
 import numpy as np
 import pytest
+import xarray as xr
 from motions import harmonic
-from recorded_lmgc90 import HISTORIES, over_slab
+from recorded_lmgc90 import HISTORIES, RECORD, over_slab
 
 from blockshake.geometry.structure import load_structure
-from blockshake.study.peer_record import load_peer_record
 
 
 @pytest.fixture(scope="module")
 def record():
-    return load_peer_record()
+    return xr.load_dataset(RECORD)
 
 
 @pytest.mark.parametrize("name", sorted(HISTORIES))

@@ -45,7 +45,6 @@ class Checkout:
         config["cases"] = config["cases"][:1]
         config["cases"][0]["duration"] = 0.05
         del config["models"]["nscd-viscoelastic"], config["cases"][0]["samples"], config["calibration"]
-        config["convergence"]["duration"] = 0.05
         config["fragility"]["size"], config["ladder"]["highest"] = 3, 1.0
         config["name"] = "small"
         self.write_config(config | changes)

@@ -43,17 +43,6 @@ def test_printed_configuration_plans_the_same_study(finished):
         finished.write_config(before)
 
 
-def test_convergence_study_leaves_its_table_and_says_what_each_run_cost(finished):
-    assert (
-        (finished.folder / "results" / "small" / "convergence.csv")
-        .read_text()
-        .startswith("parameter,setting")
-    )
-    said = (finished.folder / "logs" / "small" / "study_convergence.log").read_text()
-    runs = re.findall(r": [\d.]+ CPU s$", said, flags=re.MULTILINE)
-    assert len(runs) == 7  # two of the nine settings are the default, which is run once
-
-
 def test_second_run_does_nothing(finished):
     assert finished.jobs() == {}
 
@@ -102,7 +91,7 @@ def test_report_of_one_case_needs_its_results_alone(finished):
     assert (finished.folder / "reports" / "small-configuration-1.pdf").read_bytes().startswith(b"%PDF")
     planned = finished.jobs("--forceall", "reports/small-configuration-1.html")
     assert planned["make_case_report"] == 1
-    assert not {"study_convergence", "make_report"} & set(planned)
+    assert "make_report" not in planned
 
 
 def test_single_sample_is_a_batch_of_one(finished):
@@ -214,11 +203,6 @@ def test_study_without_measured_tests_compares_with_none(tmp_path):
     assert "make_envelope" in planned
     assert not {"compare_with_measurement", "calibrate_friction"} & set(planned)
     assert "climb_ladder" in checkout.jobs("ladder")
-
-
-def test_study_without_convergence_plans_none(tmp_path):
-    assert "study_convergence" in Checkout(tmp_path / "with").jobs()
-    assert "study_convergence" not in Checkout(tmp_path / "without", convergence=None).jobs()
 
 
 @pytest.mark.parametrize("study", ["study", "quick", "paper"])

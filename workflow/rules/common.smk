@@ -196,9 +196,6 @@ def files_of_report(cases):
         "stiffness": results("stiffness/{case}.csv", case=stiff),
         "waves": results("waves/{case}.nc", case=stiff),
         "bases": results("inputs/{case}.nc", case=measured),
-        "definitions": (
-            results("stiffness-definitions.nc") if next(iter(CASES)) in stiff else []
-        ),
         "envelopes": by_model("envelopes", cases),
         "samples": by_model("samples", cases),
         "shown": by_model("shown", cases),

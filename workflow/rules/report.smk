@@ -8,12 +8,7 @@ rule make_report:
         shipped=[
             definition("structures", f"configuration-{place}")
             for place in (1, 2, 3, 4)
-        ]
-        + [beside(HOME / "config" / f"{name}.yaml") for name in ("study", "paper")],
-        peer=beside(HOME / "data" / "peers" / "lmgc90.nc"),
-        convergence=(
-            f"results/{STUDY}/convergence.csv" if config.get("convergence") else []
-        ),
+        ],
     output:
         html=report("reports/{study}.html", category="Study"),
         pdf=report("reports/{study}.pdf", category="Study"),

@@ -20,24 +20,3 @@ rule calibrate_stiffness:
         source=source_of("calibrate_stiffness"),
     script:
         "../scripts/calibrate_stiffness.py"
-
-
-rule compare_definitions:
-    """Contact stiffness by the definition of a wave's arrival and by damping, and the peak of a stack with each."""
-    input:
-        structure=definition("structures", config["cases"][0]["structure"]),
-        motion=definition("motions", config["cases"][0]["motion"]),
-        kernels=kernels("ls-dem"),
-    output:
-        "results/{study}/stiffness-definitions.nc",
-    log:
-        "logs/{study}/compare_definitions.log",
-    conda:
-        "../envs/blockshake.yaml"
-    params:
-        case=lookup(dpath="cases/0", within=config),
-        time_step=time_step_of("ls-dem"),
-        store="results/store",
-        source=source_of("compare_definitions", "ls-dem"),
-    script:
-        "../scripts/compare_definitions.py"

@@ -14,7 +14,6 @@ _USUAL = 7.0
 _FIXED = {
     "all": 0.0,
     "calibrate_stiffness": 9.0,
-    "compare_definitions": 18.0,
     "compare_models": 14.0,
     "compile_kernels": 53.0,
     "decide": 13.0,
@@ -22,7 +21,6 @@ _FIXED = {
     "make_report": 20.0,
     "measure_gain": 14.0,
     "measure_sensitivity": 9.0,
-    "study_convergence": 20.0,
 }
 _PLANNED = 6.0  # CPU s
 _ROW = re.compile(r"^(\w+) +(\d+)$", re.MULTILINE)

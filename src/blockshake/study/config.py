@@ -13,7 +13,6 @@ from blockshake.simulation.models import MODELS, ModelName
 from blockshake.study.calibration.settings import CalibrationSettings
 from blockshake.study.comparison.differences import FEWEST
 from blockshake.study.config_checks import check_named
-from blockshake.study.convergence.settings import Convergence
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED
 from blockshake.study.ensembles.rungs import Rungs
 from blockshake.study.fragility.settings import FragilitySettings
@@ -22,7 +21,7 @@ from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, 
 from blockshake.study.sampling.latin_hypercube import LARGEST_SIZE, SMALLEST_SIZE
 from blockshake.validation import Count, Positive, Strict, Whole, validated
 
-_OF_THE_PAPER = tuple(f"configuration-{place}" for place in (1, 2, 3, 4))
+OF_THE_PAPER = tuple(f"configuration-{place}" for place in (1, 2, 3, 4))
 
 
 def _links(ensemble):
@@ -179,7 +178,6 @@ class StudyConfig(Strict):
     calibration: CalibrationSettings | None = Field(
         None, description="none: friction, restitution and contact stiffness are taken as they are"
     )
-    convergence: Convergence | None = Field(None, description="none: no study of the numerical parameters")
     diagnosis: Diagnosis = Field(Diagnosis(), description="none: no campaign is diagnosed")
 
     @model_validator(mode="after")
@@ -229,7 +227,7 @@ def shows_stiffness(study):
 
 def is_of_the_paper(structure):
     """Whether a structure is one of Zhou et al. (2023), by its shipped name."""
-    return structure in _OF_THE_PAPER
+    return structure in OF_THE_PAPER
 
 
 def load_config(path):

@@ -18,10 +18,8 @@ from blockshake.measurement.sensors.markers import block_markers, driven_marker
 from blockshake.paths import check_plain
 from blockshake.simulation.models import model_of, part_parameters
 from blockshake.simulation.simulate import check_run
-from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.study.calibration.comparison import has_use, parameter_of
 from blockshake.study.calibration.settings import OTHERS, STIFFNESS
-from blockshake.study.convergence.runs import kicked
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED, check_record
 from blockshake.study.sampling.distributions import LINKED, TABLE_2, known_as, parameter_unit
 from blockshake.study.sampling.latin_hypercube import complete_correlation
@@ -80,7 +78,6 @@ def check_named(config, where):
     check_friction_search(config, structures, where)
     check_fragility(config, where)
     check_calibration(config, structures, where)
-    check_convergence(config.convergence, where)
     for folder in config.diagnosis.campaigns:
         with faults_of(where, "diagnosis.campaigns"):
             load_campaign(folder)
@@ -128,8 +125,6 @@ def check_names(config, where):
     if config.ensemble.correlation is not None:
         paths.append(("ensemble.correlation", config.ensemble.correlation))
     naming = [("ladder.motions", motion) for motion in config.ladder.motions]
-    if config.convergence is not None:
-        naming.append(("convergence.structure", config.convergence.structure))
     for index, case in enumerate(config.cases):
         naming += [(f"cases.{index}.structure", case.structure), (f"cases.{index}.motion", case.motion)]
         if case.measured:
@@ -355,19 +350,3 @@ def check_friction_search(config, structures, where):
             raise InputError(where, f"{key}.variables", f"expected a friction that {name} has")
     if search.lowest + search.step > search.highest + 1e-9:
         raise InputError(where, f"{key}.step", "expected at least two candidates between lowest and highest")
-
-
-def check_convergence(settings, where):
-    """A structure with a block on a driven body, and settings with which LS-DEM can read its shapes."""
-    if settings is None:
-        return
-    with faults_of(where, "convergence.structure"):
-        structure = load_structure(settings.structure)
-        kicked(structure, 1.0)
-    for name, values in settings.numerical.items():
-        for value in values:
-            numerical = LsDemParameters(
-                **{name: value}, level_set="grid" if name == "grid_spacing" else "exact"
-            )
-            with faults_of(where, f"convergence.{name}s"):
-                model_of("ls-dem").refuse(structure, numerical)

@@ -10,7 +10,7 @@ from fake_study import COLLAPSE_REASON, CPU_TIME, MODELS
 from page import CLAIMS, Page, texts
 
 from blockshake.errors import InputError
-from blockshake.files import load_json
+from blockshake.files import HOME, load_json
 from blockshake.report.document.blocks import Table
 from blockshake.report.document.html import write_html
 from blockshake.report.document.pdf import write_pdf
@@ -61,7 +61,6 @@ def test_style_and_drawings_refer_to_nothing_outside(report, page):
         "Models against each other",
         "Causes of the thickness of the envelopes", "Completion, energy and computation", "Timings", "Origin",
         "Limits of this study", "The paper, statement by statement",
-        "Annex: numerical parameters of LS-DEM", "Annex: NSCD rigid beside LMGC90",
     ],
 )  # fmt: skip
 def test_sections_and_contents(text, title):
@@ -137,6 +136,12 @@ def test_a_model_without_words_of_its_own_has_its_figures(fake, monkeypatch):
     assert [f"{label}: figures" in " ".join(titles) for label in ("LS-DEM", "NSCD rigid")] == [True, True]
 
 
+def test_pages_that_the_report_names_are_there(text):
+    pages = set(re.findall(r"docs/[\w/.-]+\.md", text))
+    assert pages >= {"docs/method.md", "docs/peers.md", "docs/the-paper.md", "docs/uncertainty.md"}
+    assert [page for page in pages if not (HOME / page).is_file()] == []
+
+
 def test_origin_holds_configuration_digests_and_seed(text):
     assert "0123456789ab (blockshake 0.0.7)" in text
     assert "seed: 77" in text
@@ -191,7 +196,6 @@ def test_own_structures_by_rigid_models_need_no_contact_stiffness(copied, monkey
         monkeypatch.setattr(module, "is_of_the_paper", lambda structure: False)
     for name in ("stiffness", "waves"):
         shutil.rmtree(copied.results / name)
-    (copied.results / "stiffness-definitions.nc").unlink()
     study = {**copied.study, "models": {"nscd-rigid": MODELS["nscd-rigid"]}}
     found = load_content(study, copied.results, copied.logs)
     assert not {"stiffness", "statements"} & {section.key for section in compose(found).sections}
@@ -200,8 +204,8 @@ def test_own_structures_by_rigid_models_need_no_contact_stiffness(copied, monkey
 
 def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
     fake = copied
-    others = [*fake.results.rglob("configuration-1*"), fake.results / "convergence.csv"]
-    for path in [*others, fake.results / "motions" / "alkion.nc", fake.results / "stiffness-definitions.nc"]:
+    others = fake.results.rglob("configuration-1*")
+    for path in [*others, fake.results / "motions" / "alkion.nc"]:
         path.unlink()
     html, pdf = tmp_path / "case.html", tmp_path / "case.pdf"
     make_case_report(fake.study, "configuration-4", fake.results, fake.logs, html, pdf)
@@ -213,7 +217,7 @@ def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
     assert "1 case, 4 models" in said
     assert "reports/fake-configuration-4.html" in said
     assert {"summary", "structures", "responses", "models", "limits", "origin"} <= set(parsed.ids)
-    assert not {"statements", "convergence", "peer"} & set(parsed.ids)
+    assert not {"statements"} & set(parsed.ids)
     before = said[: said.index("Configuration used")]
     assert "configuration-1" not in before
 

@@ -5,22 +5,17 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
-from fake_study import convergence_table
 from matplotlib.collections import FillBetweenPolyCollection
 
 from blockshake.geometry.structure import load_structure
 from blockshake.report.document.drawing import svg_of
 from blockshake.report.study.content import load_content
-from blockshake.report.study.figures.convergence import plot_convergence
 from blockshake.report.study.figures.displacement import plot_displacements
 from blockshake.report.study.figures.interactive import interactive_displacements
 from blockshake.report.study.figures.motion import plot_spectra
-from blockshake.report.study.figures.peer import plot_peer
 from blockshake.report.study.figures.samples import bin_count
 from blockshake.report.study.figures.structure import plot_structure
 from blockshake.simulation.models import MODELS
-from blockshake.study.convergence.findings import value_scales
-from blockshake.study.peer_record import load_peer_record
 
 
 @pytest.fixture(scope="module")
@@ -104,20 +99,6 @@ def test_spectrum_of_a_recorded_motion_has_no_target():
     assert len(axes.lines) == 1
 
 
-def test_convergence_is_drawn_with_its_floor_but_equal_values_are_not():
-    table = convergence_table()
-    figure = plot_convergence(table)
-    first = figure.axes[0]
-    drawn = {line.get_label(): line for line in first.lines if not line.get_label().startswith("_")}
-    assert len(drawn["sink"].get_xdata()) == 0
-    ((setting,), (size,)) = drawn["impact ratio"].get_data()
-    assert setting == pytest.approx(100.0, rel=1e-12)  # microseconds
-    scale = value_scales(table)["impact_ratio"]
-    assert size == pytest.approx(0.1 * (1.0 - 1e-2) / scale, rel=1e-12)
-    floors = [line.get_ydata()[0] for line in first.lines if line.get_label().startswith("_")]
-    assert floors == pytest.approx([1e-5 / scale] * 3, rel=1e-12)
-
-
 def test_svg_says_no_date_loads_nothing_and_leaves_the_style_alone():
     before = dict(matplotlib.rcParams)
     svg = svg_of(plot_structure, load_structure("configuration-1"))
@@ -130,18 +111,3 @@ def test_svg_says_no_date_loads_nothing_and_leaves_the_style_alone():
 
 def test_histograms_have_about_the_root_of_the_samples_as_bins():
     assert [bin_count(size) for size in (10, 50)] == [5, 9]
-
-
-def test_lmgc90_is_drawn_from_the_record_to_each_history_s_end():
-    record = load_peer_record()
-    figure = plot_peer(record)
-    upper, lower = figure.axes[: len(record["history"])], figure.axes[len(record["history"]) :]
-    for axes, below, name in zip(upper, lower, record["history"].values, strict=True):
-        curves = record["displacement"].sel(history=name).dropna("time")
-        ours, theirs = (line.get_ydata() for line in axes.lines)
-        np.testing.assert_array_equal(ours, 1e3 * curves.sel(program="blockshake"))
-        np.testing.assert_array_equal(theirs, 1e3 * curves.sel(program="LMGC90"))
-        assert axes.lines[1].is_dashed()
-        exact = curves.sel(program="LMGC90").astype(float) - curves.sel(program="blockshake").astype(float)
-        np.testing.assert_array_equal(below.lines[0].get_ydata(), 1e3 * exact)
-        assert below.get_xlim()[1] == float(curves["time"][-1])

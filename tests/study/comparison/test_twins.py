@@ -4,11 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from blockshake.dynamics.motion import ground_motion
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.simulate import simulate
-from blockshake.study.comparison.twins import TWINS, simulate_twins
-from blockshake.study.convergence.convergence import NUDGE
-from blockshake.study.convergence.runs import housner_ratio, sine
+from blockshake.study.comparison.kicked_block import housner_ratio
+from blockshake.study.comparison.twins import NUDGE, TWINS, simulate_twins
 
 CASE = {"structure": "configuration-1", "duration": 0.2}
 SETTINGS = {"time_step": 1e-3, "parameters": {"nscd.impact_parts": 20}}
@@ -18,7 +18,8 @@ FRICTION = "friction.concrete.concrete"
 
 @pytest.fixture(scope="module")
 def motion():
-    return sine(2.5, 5.0)
+    time = np.linspace(0.0, 0.2, 401)
+    return ground_motion("sine", time, {"x": 2.5 * np.sin(10.0 * np.pi * time)}, "acceleration")
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,6 @@ class Printed(NamedTuple):
 
 
 MICROMETRES = Printed(1e6, f"{MICRO}m")
-MICROSECONDS = Printed(1e6, f"{MICRO}s")
 _PRINTED = {
     "1": Printed(1.0, "1"),
     "m": Printed(1e3, "mm"),

@@ -30,6 +30,12 @@ def checks(content):
     for model in content.study["models"]:
         words = [Text(_COMPUTATION[model])] if model in _COMPUTATION else []
         blocks += [*words, computation_table(content, model)]
+    blocks.append(
+        Text(
+            "LS-DEM with other time steps, nodes and grids in two short runs: docs/method.md. Rigid NSCD beside "
+            "LMGC90, the program of Zhou et al. (2023): docs/peers.md."
+        )
+    )
     return Section("Completion, energy and computation", "checks", tuple(blocks))
 
 
@@ -162,13 +168,7 @@ def limits(content):
         items.append(
             f"The models of {', '.join(commanded)} are driven by the commanded motion, not by that of the slab."
         )
-    if content.convergence is None:
-        items.append("The convergence with time step and discretisation is not shown.")
-    else:
-        items.append(
-            "The convergence of the cases with time step and discretisation is not shown; the annex has that of two "
-            "short runs by LS-DEM."
-        )
+    items.append("The convergence of the cases with time step and discretisation is not shown.")
     if any(case.is_shipped for case in cases):
         items.append(
             "Several sizes of the structures are inferred, not stated in the source (see Structures)."

@@ -13,11 +13,9 @@ from blockshake.measurement.sensors import markers
 from blockshake.report.document.origin import software_versions
 from blockshake.store import load_made
 from blockshake.study.config import is_of_the_paper, shows_stiffness
-from blockshake.study.convergence.table import load_convergence
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.measured import measured_curves
 from blockshake.study.ensembles.timing import read_timings
-from blockshake.study.peer_record import PEER_RECORD, load_peer_record
 from blockshake.study.sampling.distributions import load_distributions
 from blockshake.study.sampling.latin_hypercube import load_design
 from blockshake.study.sampling.sample_parameters import has_parameter
@@ -124,18 +122,12 @@ class Content:
     distributions : dict of str to Lognormal
     calibrated : tuple of Calibrated
         Every case in one of them; empty where the study tells of no contact stiffness.
-    definitions : xarray.Dataset or None
-        Of the study's first case; none where that is not reported, or where the study tells of no contact stiffness.
     friction : dict of str to dict
         Friction calibrations by case; empty where the study asks for none.
     calibration : dict or None
         From `calibrate`, where the study asks for one; a case alone has none.
     fragility : dict of str to xarray.Dataset
         From `fragility`, by case; empty where the study asks for none.
-    convergence : pandas.DataFrame or None
-        From `study_convergence`, where the study has one; a case alone has none.
-    peer : xarray.Dataset or None
-        From `load_peer_record`; a case alone has none.
     timings : tuple of Timing
     digests : dict of str to str
         Of input files and of tables that all samples come from, by path.
@@ -151,12 +143,9 @@ class Content:
     design_summary: dict
     distributions: dict
     calibrated: tuple
-    definitions: xr.Dataset | None
     friction: dict
     calibration: dict | None
     fragility: dict
-    convergence: pd.DataFrame | None
-    peer: xr.Dataset | None
     timings: tuple
     digests: dict
     versions: dict
@@ -206,7 +195,6 @@ def load_content(study, results, logs, only=None):
         named_file(f"{kind}s", case[kind]) for kind in ("structure", "motion") for case in cases.values()
     ]
     tests = [case.test_file for case in loaded.values() if case.test_file]
-    peers = [] if only else [PEER_RECORD]
     return Content(
         study=study,
         only=only,
@@ -216,9 +204,6 @@ def load_content(study, results, logs, only=None):
         design_summary=load_json(results / "design.json"),
         distributions=load_distributions(study["ensemble"].get("distributions"), study["name"]),
         calibrated=_calibrated(results, cases) if stiffness else (),
-        definitions=(
-            load_made(results / "stiffness-definitions.nc") if stiffness and next(iter(every)) in cases else None
-        ),
         friction={
             name: load_json(results / "friction" / f"{name}.json")
             for name in (study.get("friction_calibration") or {}).get("cases", ())
@@ -230,17 +215,13 @@ def load_content(study, results, logs, only=None):
             for name in (study.get("fragility") or {}).get("cases", ())
             if name in cases
         },
-        convergence=(
-            load_convergence(results / "convergence.csv") if study.get("convergence") and not only else None
-        ),
-        peer=None if only else load_peer_record(),
         timings=read_timings(
             logs,
             {(model, case.name): one.samples for case in loaded.values() for model, one in case.responses.items()},
         ),
         digests={
             "configuration of the study": content_digest(study),
-            **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, *stiffness, *peers]},
+            **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, *stiffness]},
         },
         versions=software_versions(_PACKAGES),
     )  # fmt: skip

@@ -15,7 +15,6 @@ from blockshake.report.document.wording import (
     percent,
 )
 from blockshake.report.study.conclusions import conclusions
-from blockshake.report.study.definition_tables import definition_blocks
 from blockshake.report.study.figures.motion import plot_motions, plot_spectra
 from blockshake.report.study.figures.samples import plot_correlation, plot_samples
 from blockshake.report.study.figures.stiffness import plot_stiffness, plot_waves
@@ -251,8 +250,7 @@ def stiffness(content):
             waves_table(calibrated.waves, of),
             _stiffness_of_samples(calibrated.stiffness, of),
         ]
-    if content.definitions is not None:
-        blocks += definition_blocks(content.definitions)
+    blocks.append(Text("The stiffness by other definitions of arrival and dampings: docs/uncertainty.md."))
     return Section("Contact stiffness", "stiffness", tuple(blocks))
 
 

@@ -8,11 +8,9 @@ from blockshake.report.study.calibrations.all_tests import calibration
 from blockshake.report.study.calibrations.friction import friction
 from blockshake.report.study.closing_sections import checks, limits, origin, timings
 from blockshake.report.study.content import load_content
-from blockshake.report.study.convergence_section import convergence
 from blockshake.report.study.fragility_section import fragility
 from blockshake.report.study.models.section import models
 from blockshake.report.study.opening_sections import motions, samples, stiffness, structures, summary
-from blockshake.report.study.peer_section import peer
 from blockshake.report.study.result_sections import responses
 from blockshake.report.study.sensitivity.section import sensitivities
 from blockshake.report.study.statements.section import findings, statements
@@ -34,11 +32,9 @@ _SECTIONS = (
     timings,
     limits,
     origin,
-    convergence,
-    peer,
 )
 # these judge the study as a whole
-_NOT_OF_A_CASE = (calibration, statements, convergence, peer)
+_NOT_OF_A_CASE = (calibration, statements)
 
 
 def make_report(study, results, logs, html, pdf, paper):

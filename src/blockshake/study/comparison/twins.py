@@ -5,12 +5,12 @@ import xarray as xr
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import model_of, split_parameters
 from blockshake.store import load_made
-from blockshake.study.convergence.convergence import NUDGE
-from blockshake.study.convergence.runs import housner_ratio, rocking_block
+from blockshake.study.comparison.kicked_block import housner_ratio, rocking_block
 from blockshake.study.described import describe
 from blockshake.study.ensembles.batch import simulate_samples
 
 TWINS = ("nudged", "half-step")
+NUDGE = 1e-6  # share by which the ground motion of a twin is larger
 
 
 def simulate_twins(case, motions, model, settings, output_rate, row, linked, store, source, progress):

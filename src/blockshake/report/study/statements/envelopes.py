@@ -16,14 +16,14 @@ from blockshake.report.document.wording import (
 )
 from blockshake.report.study.sensitivity.summary import markers_by_height, thickness_by_case
 from blockshake.report.study.statements.order import Limited, all_of, ordered
-from blockshake.report.study.statements.specimens import HEIGHTS
 from blockshake.report.study.statements.statement import judged, missing, scale_words, unjudged
+from blockshake.study.config import OF_THE_PAPER
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.ensembles.intervals import SURE_FROM
 from blockshake.study.sensitivity.findings import influences, is_known
 
-_FIRST, _SECOND, _THIRD, _FOURTH = (f"configuration-{place}" for place in (1, 2, 3, 4))
+_FIRST, _SECOND, _THIRD, _FOURTH = OF_THE_PAPER
 _MATTER = {"friction": "friction", "density": "density", "youngs_modulus": "stiffness"}
 _BRACKET = 0.05 * 9.81  # m/s2; shaking beyond it is strong
 _DRAWS = 400  # of the bootstrap
@@ -56,7 +56,7 @@ def than_first(content, model):
     """Thickness at the top of configurations 2 to 4 against configuration 1."""
     if absent := missing(content, model):
         return unjudged(absent)
-    return _tops(content, model, [(_FIRST, other) for other in HEIGHTS if other != _FIRST])
+    return _tops(content, model, [(_FIRST, other) for other in OF_THE_PAPER if other != _FIRST])
 
 
 def fourth_than_third(content, model):
@@ -79,8 +79,8 @@ def walls_than_stacks(content, model):
 
 def with_structure(content, models):
     """Thickness at the top with the number of blocks, model by model."""
-    blocks = {name: int((~load_structure(name).driven).sum()) for name in HEIGHTS}
-    pairs = [pair for pair in combinations(HEIGHTS, 2) if blocks[pair[0]] < blocks[pair[1]]]
+    blocks = {name: int((~load_structure(name).driven).sum()) for name in OF_THE_PAPER}
+    pairs = [pair for pair in combinations(OF_THE_PAPER, 2) if blocks[pair[0]] < blocks[pair[1]]]
     return all_of(
         {
             model_label(model): unjudged(absent)
@@ -156,7 +156,7 @@ def residuals(content):
             f"The table shakes by more than {given(_BRACKET / 9.81)} g, the bracket of Bolt (1969), in the last "
             f"{given(RESIDUAL_WINDOW)} s of the runs, whose mean is the residual: {', '.join(shaken)}."
         )
-    pairs = [(other, _FOURTH) for other in HEIGHTS if other != _FOURTH]
+    pairs = [(other, _FOURTH) for other in OF_THE_PAPER if other != _FOURTH]
     return all_of(
         {
             model_label(model): ordered(

@@ -4,8 +4,6 @@ import numpy as np
 
 from blockshake.report.document.rows import face_markers
 from blockshake.report.document.wording import model_label, number, percent, share_words
-from blockshake.report.study.models.words import order_words
-from blockshake.report.study.statements.specimens import HEIGHTS
 from blockshake.report.study.statements.statement import (
     Verdict,
     against_tests,
@@ -14,12 +12,13 @@ from blockshake.report.study.statements.statement import (
     missing,
     unjudged,
 )
-from blockshake.study.comparison.ranking import CLAIMS, MET, OPEN, judge
+from blockshake.study.config import OF_THE_PAPER
 from blockshake.study.ensembles.coverage import UNLIKELY, is_likely
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.ensembles.intervals import SURE_FROM
 
 _RIGID, _ELASTIC, _VISCOELASTIC = "nscd-rigid", "nscd-elastic", "nscd-viscoelastic"
+_NEARER, _FARTHER, _UNDECIDED, _UNKNOWN = "nearer", "farther", "not told apart", "too few samples"
 _NO_TEST = "This study has no measured test."
 _NO_FIT = f"A chance of {percent(UNLIKELY)} % or less, or the lowest that the samples tell, counts as no fit."
 
@@ -49,28 +48,44 @@ def resemblance(content):
 
 
 def best_model(content):
-    """Viscoelastic blocks nearest to the tests."""
-    models = (_RIGID, _ELASTIC, _VISCOELASTIC)
-    if absent := missing(content, *models):
-        return unjudged(f"{absent} config/paper.yaml has them.")
-    cases = compared(content)
+    """Viscoelastic blocks nearest to the tests of all configurations."""
+    if absent := missing(content, _RIGID, _ELASTIC, _VISCOELASTIC):
+        return unjudged(absent)
+    cases = {case.name: case for case in compared(content)}
     if not cases:
         return unjudged(_NO_TEST)
-    found = judge(CLAIMS[0], {case.name: case.differences for case in cases})
-    words = f"By continuous ranked probability scores, {order_words(found)}."
-    if found.by_scores == OPEN:
+    sides = [_side(cases.get(name), other) for name in OF_THE_PAPER for other in (_RIGID, _ELASTIC)]
+    nearer, farther, undecided, unknown = map(sides.count, (_NEARER, _FARTHER, _UNDECIDED, _UNKNOWN))
+    words = (
+        f"By continuous ranked probability scores, of {len(sides)} comparisons of two models {nearer} bear the "
+        f"statement out, {farther} contradict it, {undecided} are not told apart by the intervals of their scores, and "
+        f"{unknown} are of fewer than {SURE_FROM} samples or of cases that were not run."
+    )
+    if not farther and nearer < len(sides):
         return unjudged(words)
-    return against_tests(cases, found.by_scores == MET, words)
+    return against_tests(cases.values(), not farther, words)
+
+
+def _side(case, other):
+    """Side of viscoelastic blocks from other ones, seen from the test of a case, by the interval of the difference of
+    their scores, which holds a zero where they are not told apart."""
+    if case is None or (case.differences["counted"].sel(model=[_VISCOELASTIC, other]) < SURE_FROM).any():
+        return _UNKNOWN
+    interval = case.differences["score_difference_interval"].sel(model=_VISCOELASTIC, other=other)
+    lower, upper = (float(interval.sel(bound=one)) for one in ("lower", "upper"))
+    if not np.isfinite(lower):
+        return _UNKNOWN
+    return _NEARER if lower > 0.0 else _FARTHER if upper < 0.0 else _UNDECIDED
 
 
 def satisfactory(content, model, fits, fails=()):
     """A model that fits some configurations and not others, named by their numbers."""
     if absent := missing(content, model):
-        return unjudged(f"{absent} config/paper.yaml has it.")
+        return unjudged(absent)
     cases = [
         case
         for case in compared(content)
-        if case.name in HEIGHTS and case.responses[model].comparison["curve_probability"].notnull().any()
+        if case.name in OF_THE_PAPER and case.responses[model].comparison["curve_probability"].notnull().any()
     ]
     if not cases:
         return unjudged(_NO_TEST)

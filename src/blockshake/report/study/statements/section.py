@@ -4,18 +4,15 @@ from dataclasses import replace
 
 from blockshake.report.document.blocks import Heading, Section, Table, Text
 from blockshake.report.document.wording import given, model_label
-from blockshake.report.study.statements.departures import DEPARTURES
 from blockshake.report.study.statements.statement import Verdict
 from blockshake.report.study.statements.table import STATEMENTS
 
 HEADER = ("Place", "Statement of the paper", "Verdict", "Finding", "Command")
-DEPARTURES_HEADER = ("Topic", "The paper", "Here", "Reasons")
-
-_WIDTHS, _DEPARTURES_WIDTHS = (6, 9, 5, 17, 9), (4, 10, 18, 10)
+_WIDTHS = (6, 9, 5, 17, 9)
 
 
 def judge_statements(content):
-    """Findings of a study on all statements: rows of text under `HEADER`, by heading; none without the structures of
+    """Findings of a study on the statements: rows of text under `HEADER`, by heading; none without the structures of
     the paper, which the statements are about."""
     content = _of_the_paper(content)
     if not content.cases:
@@ -45,11 +42,6 @@ def _row(content, statement):
     made = statement.target.format(study=content.study["name"], case="CASE")
     command = made if " " in made else f"snakemake -c2 {made}"
     return statement.place, statement.claim, str(verdict), words, command
-
-
-def departures():
-    """Departures from the paper: rows of text under `DEPARTURES_HEADER`; they hang on no study."""
-    return tuple((one.topic, one.printed, one.here(), one.page) for one in DEPARTURES)
 
 
 def count_words(rows_by_heading):
@@ -86,9 +78,10 @@ def statements(content):
             "or does the same. Not met: it finds or does something else. Cannot be judged: the study lacks the model, "
             "the case or the real measurement that the statement hangs on. A synthetic test judges no statement about "
             "the real specimens; the synthetic tests that ship are runs of LS-DEM with an effect hidden in them, "
-            "none of contact dynamics. The numbers of a finding are computed from this study; where no result bears "
-            "on a statement, the finding says why. The last column has the command, in which CASE is a case of the "
-            "study. The command takes --configfile FILE at its end for another study than the default one."
+            "none of contact dynamics. The numbers of a finding are computed from this study. The last column has the "
+            "command, in which CASE is a case of the study. The command takes --configfile FILE at its end for another "
+            "study than the default one. Statements that no study decides, and departures from the paper: "
+            "docs/the-paper.md."
         ),
         Text(count_words(rows_by_heading)),
     ]
@@ -98,15 +91,4 @@ def statements(content):
             Heading(heading, f"paper-{key}"),
             Table(f"{heading}: findings of this study.", HEADER, rows, "lllll", _WIDTHS),
         ]
-    blocks += [
-        Heading("Departures from the paper", "paper-departures"),
-        Table(
-            "Choices that differ from the paper, or that it leaves open, by the defaults of this program and of its "
-            "own studies; settings of this study stand in the findings.",
-            DEPARTURES_HEADER,
-            departures(),
-            "llll",
-            _DEPARTURES_WIDTHS,
-        ),
-    ]
     return Section("The paper, statement by statement", "paper", tuple(blocks))

@@ -68,12 +68,6 @@ def against_tests(cases, holds, words):
     )
 
 
-def not_judged(content, reason):
-    """`Finding` of a statement that no result of a study bears on."""
-    del content
-    return unjudged(reason)
-
-
 def missing(content, *models):
     """Words on the models that the study lacks; empty where it has all of them."""
     lacking = [model_label(model) for model in models if model not in content.study["models"]]

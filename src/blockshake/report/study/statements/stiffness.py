@@ -1,101 +1,16 @@
-"""Statements on contact stiffness, wave speed and damping."""
+"""Statements on contact stiffness and damping."""
 
-import numpy as np
 from scipy.stats import pearsonr, spearmanr
 
 from blockshake.geometry.reference_block import reference_body
-from blockshake.report.document.units import printed
-from blockshake.report.document.wording import given, millimetres, number, percent
+from blockshake.report.document.wording import given, number
 from blockshake.report.study.statements.calibration import judged_by_tests
 from blockshake.report.study.statements.statement import judged, unjudged
 from blockshake.study.calibration.settings import RESTITUTION as CALIBRATED
-from blockshake.study.stiffness.definition_range import definition_range
-from blockshake.study.stiffness.similar_velocity import TOLERANCES, read_at_similar_velocity
-from blockshake.study.stiffness.wave_speed import speed_deviation
 
 RESTITUTION = 0.5
-_MATCHED = 1e-3  # relative difference of wave speeds that counts as none
 _ONE_NUMBER = 1e-3  # relative spread of a quantity that counts as one number in all samples
 _LEVEL = 0.05  # chance at or below which a correlation is shown
-
-
-def wave_speeds(content):
-    """Eqs. (7) and (8)."""
-    told, largest = [], 0.0
-    for calibrated in content.calibrated:
-        material = _material(content, calibrated)
-        shear = material.youngs_modulus / (2.0 + 2.0 * material.poisson_ratio)
-        for direction, modulus in (("normal", material.youngs_modulus), ("shear", shear)):
-            formula = np.sqrt(modulus / material.density)
-            target = float(calibrated.waves["target_wave_speed"].sel(direction=direction))
-            deviation = speed_deviation(calibrated.waves, direction)
-            largest = max(largest, abs(target / formula - 1.0), abs(deviation))
-            told.append(
-                f"{direction} {number(formula, 4)} m/s by the equation, tower within {1e6 * deviation:.0f} ppm"
-            )
-        told.append(
-            f"nominal materials; Poisson's ratio {given(material.poisson_ratio)}, which the paper does not state"
-        )
-    return judged(largest < _MATCHED, f"{'; '.join(told)}.")
-
-
-def delayed(content):
-    """Higher blocks follow later."""
-    told, rises = [], True
-    for calibrated in content.calibrated:
-        arrival = calibrated.waves["arrival"]
-        rises = rises and bool((arrival.diff("block") > 0.0).all())
-        for direction in calibrated.waves["direction"].values:
-            times = ", ".join(number(1e3 * one) for one in arrival.sel(direction=direction).values)
-            told.append(f"{direction} {times} ms")
-    return judged(rises, f"Arrivals at the blocks of the tower from the lowest up: {'; '.join(told)}.")
-
-
-def similar_velocity(content):
-    """The instant at which the waves are read, Fig. 9."""
-    readings = [read_at_similar_velocity(one.waves) for one in content.calibrated]
-    told = []
-    for direction in ("normal", "shear"):
-        at = [one.sel(direction=direction)["stiffness_ratio"] for one in readings]
-        ratios = np.concatenate([one.values[np.isfinite(one.values)] for one in at])
-        never = sorted(
-            {float(one["within"][place]) for one in at for place in np.flatnonzero(np.isnan(one.values))}
-        )
-        words = f"{direction} {min(ratios):.2f} to {max(ratios):.2f}" if len(ratios) else f"{direction} none"
-        if never:
-            words += f" (never within {' or '.join(percent(one) for one in never)} % while the test lasts)"
-        told.append(words)
-    return judged(
-        False,
-        "The study reads the lag when half of the step arrives. Read once the velocities of all blocks are within "
-        f"{percent(TOLERANCES[0])} to {percent(TOLERANCES[-1])} % of each other, the stiffness is so many times that "
-        f"of the study: {'; '.join(told)}.",
-    )
-
-
-def definitions(content):
-    """Other readings of the arrival."""
-    found = definition_range(content.definitions)
-    own, levels = found.at_own_damping, found.over_levels
-    return unjudged(
-        "The paper names no difference of the velocities that counts as similar. By definition of arrival k_n is "
-        f"{own.lowest:.2f} to {own.highest:.2f} times that of the study, and {levels.lowest:.2f} to "
-        f"{levels.highest:.2f} times over levels of velocity and dampings."
-    )
-
-
-def histograms(content):
-    """Stiffness of the samples, Fig. 10."""
-    factor, unit = printed("N/m3")
-    told = []
-    for calibrated in content.calibrated:
-        table = calibrated.stiffness
-        for symbol, column in (("k_n", "normal"), ("k_s", "shear")):
-            values = factor * table[f"ls_dem.{column}_stiffness"]
-            told.append(f"{symbol} {number(values.min())} to {number(values.max())} {unit}")
-    return unjudged(
-        f"The paper prints histograms of a stiffness of a node, without a table. Per area here: {'; '.join(told)}."
-    )
 
 
 def follow_moduli(content):
@@ -145,18 +60,9 @@ def heavier_blocks(content):
 
 
 def restitution(content):
-    """Restitution of the normal dashpot, and the trace of it in a stack."""
+    """Restitution of the normal dashpot."""
     used = {case.structure.file.restitution for case in content.cases.values()}
-    table = content.definitions
-    own = table.sel(definition=table.attrs["definition"])
-    told = ", ".join(
-        f"{millimetres(own['top_peak'].sel(restitution=one))} mm at {given(one)}"
-        for one in table["restitution"].values
-    )
-    words = (
-        f"C_res is {', '.join(map(given, sorted(used)))} here. Peak of the top block in a nominal run of "
-        f"{table.attrs['structure']} with the stiffness that goes with C_res: {told}."
-    )
+    words = f"C_res is {', '.join(map(given, sorted(used)))} here."
     if used != {RESTITUTION}:
         return judged(False, words)
     if content.calibration is None or CALIBRATED not in content.calibration["parameters"]:

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 import yaml
+from arrival_definitions import DEFINITIONS, stiffness_by_definition, travel_time
 from scipy.linalg import expm
 
 from blockshake.files import shipped
 from blockshake.geometry.structure import load_structure
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
-from blockshake.study.stiffness.definitions import DEFINITIONS, compare_definitions, travel_time
+from blockshake.study.stiffness.wave_speed import calibrate_stiffness
 from blockshake.study.stiffness.wave_step import STEP_VELOCITY, send_step
 
 AREA = 0.76 * 2.36  # m2, flats of two chamfered faces
@@ -83,18 +84,18 @@ def test_travel_times_in_ls_dem_are_those_of_the_exact_chain(tmp_path, restituti
 
 
 @pytest.fixture(scope="module")
-def compared(tmp_path_factory):
-    case = {"structure": "configuration-1", "motion": "basso-tirreno", "scale": 1.0, "baseline": "auto"}
-    return compare_definitions({**case, "duration": 0.2}, 5e-5, tmp_path_factory.mktemp("store"), "source")
+def compared():
+    return stiffness_by_definition(load_structure("configuration-1"))
 
 
-def test_stiffness_by_every_definition_gives_the_speed_it_was_asked_for(compared):
-    # read at 10 us of travel times of 1.3 ms and more; first peaks of nearly flat curves to a thousandth
-    np.testing.assert_allclose(
-        compared["speed_ratio"].where(np.isfinite(compared["stiffness"]), 1.0), 1.0, atol=2e-3
-    )
-    by_half = compared["stiffness"].sel(definition="50 %")
-    assert float(by_half.sel(direction="normal", restitution=0.5)) == pytest.approx(1.813e10, rel=2e-3)
+def test_stiffness_by_the_definition_of_a_study_is_the_calibrated_one(compared):
+    by_half = compared["stiffness"].sel(definition="50 %", restitution=0.5)
+    calibrated = calibrate_stiffness("configuration-1")
+    for direction in ("normal", "shear"):
+        # read at 10 us of travel times of 1.3 ms and more
+        assert float(by_half.sel(direction=direction)) == pytest.approx(
+            calibrated[f"{direction}_stiffness"], rel=2e-3
+        )
 
 
 def test_dashpots_act_along_the_normal_only(compared):
@@ -111,11 +112,3 @@ def test_with_free_rotations_shear_stiffness_hardly_matters(compared):
     assert np.ptp(free) < 0.1 * free[0]
     blocked = compared["blocked_speed"].values
     np.testing.assert_allclose(blocked / blocked[0], np.sqrt(compared["factor"]), rtol=0.05)
-
-
-def test_table_has_a_peak_for_every_stiffness(compared):
-    defined = np.isfinite(compared["stiffness"]).all("direction")
-    for name in ("top_peak", "top_peak_same_damping"):
-        np.testing.assert_array_equal(np.isfinite(compared[name]), defined)
-    for name, variable in compared.data_vars.items():
-        assert variable.attrs["units"], name

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 import xarray as xr
-
-from blockshake.study.stiffness.similar_velocity import TOLERANCES, read_at_similar_velocity
+from similar_velocity import TOLERANCES, read_at_similar_velocity
 
 STEP, ARRIVALS, HEIGHT = 1e-3, np.array([1e-3, 1.5e-3, 2.0e-3]), 4.0  # m/s, s, m
 

@@ -1,1 +1,0 @@
-"""LS-DEM with its numerical parameters varied one at a time."""
