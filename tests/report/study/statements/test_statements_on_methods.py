@@ -269,7 +269,7 @@ def test_low_tests_and_the_strongest_are_those_of_the_campaign(content, tmp_path
     del content.cases["configuration-4"]
     found = specimens.low_tests(content)
     assert found.verdict == UNJUDGED
-    assert "configuration-1 1. `blockshake modes` reads" in found.words
+    assert "configuration-1 1. No study reads" in found.words
     found = specimens.strongest_tests(content)
     assert found.verdict == NOT_MET
     assert "strong (sealed)" in found.words

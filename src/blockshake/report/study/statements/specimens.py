@@ -209,9 +209,7 @@ def low_tests(content):
     words = ", ".join(f"{name} {len(tests)}" for name, tests in found.items())
     words = f"Sinusoidal tests in the campaigns: {words}."
     if all(found.values()):
-        return unjudged(
-            f"{words} `blockshake modes` reads frequencies and damping from them, and no study does."
-        )
+        return unjudged(f"{words} No study reads frequencies or damping from them.")
     return against_tests(cases, False, words)
 
 

@@ -180,7 +180,7 @@ STATEMENTS = {
         ),
         Statement(
             _CASE_STUDY, "Sinusoidal tests of low intensity tell the dynamic properties and the damage.",
-            specimens.low_tests, "blockshake modes CAMPAIGN --output modes.json",
+            specimens.low_tests, "blockshake check CAMPAIGN",
         ),
         Statement(
             f"{_CASE_STUDY}, Figs. 6 and 7",
