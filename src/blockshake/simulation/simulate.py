@@ -15,10 +15,8 @@ from blockshake.errors import InputError
 from blockshake.geometry.overlap import penetration_depth
 from blockshake.geometry.rotations import rotate_into
 from blockshake.geometry.structure import START_TOLERANCE, Structure, load_structure
-from blockshake.measurement.sensors.accelerometers import FINE_RATE, SKIP, accelerometer_readings
+from blockshake.measurement.sensors.accelerometers import FINE_RATE
 from blockshake.measurement.sensors.markers import RATE
-from blockshake.measurement.sensors.transducers import transducer_displacement
-from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.limits import check_limits, has_fine_record
 from blockshake.simulation.models import model_of, split_parameters
 from blockshake.simulation.outcome.falling import still_falling
@@ -27,7 +25,6 @@ from blockshake.simulation.run_dataset import (
     add_transducers,
     effective_parameters,
     plain_attribute,
-    run_dataset,
 )
 from blockshake.simulation.run_parts import RunParts, reduced
 from blockshake.simulation.write_run import write_run
@@ -84,20 +81,13 @@ def simulate(
     """
     of = _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers)
     trajectory = of.solve(checkpoint=checkpoint)
-    times = trajectory.time
-    run = run_dataset(of.structure, trajectory.at(np.searchsorted(times, of.coarse)))
-    if of.fine.size:
-        fine = trajectory.at(np.searchsorted(times, of.fine))
-        states = fine.orientation, fine.velocity, fine.angular_velocity
-        file = of.structure.file
-        if file.accelerometers:
-            readings = accelerometer_readings(of.structure, fine.time, *states)
-            add_accelerometers(run, of.structure, *readings[:2])
-        if file.displacement_transducers:
-            read = fine.at(slice(None, None, SKIP))
-            lengthened = transducer_displacement(of.structure, read.position, read.orientation)
-            add_transducers(run, of.structure, read.time, lengthened)
-    run.attrs = of.attributes(trajectory, energy_residual(trajectory.energy))
+    parts = RunParts(of.structure, of.coarse, of.fine, trajectory)
+    _, run = parts.histories()
+    if of.fine.size and parts.channels:
+        add_accelerometers(run, of.structure, parts.reading_times(), np.column_stack([*parts.readings()]))
+    if of.fine.size and parts.transducers:
+        add_transducers(run, of.structure, parts.reading_times(), np.concatenate([*parts.lengthenings()]))
+    run.attrs = of.attributes(trajectory, parts.energy_residual())
     return run
 
 
@@ -127,7 +117,7 @@ def simulate_to_file(
     checkpoint = Path(f"{path}.checkpoint")
     kept = KeptRows(f"{checkpoint}.rows", lambda rows: reduced(of.structure, rows, of.coarse, of.fine))
     trajectory = of.solve(checkpoint=checkpoint, kept=kept)
-    parts = RunParts(of.structure, of.coarse, of.fine, kept, trajectory)
+    parts = RunParts(of.structure, of.coarse, of.fine, trajectory, kept)
     write_run(path, parts, of.attributes(trajectory, parts.energy_residual()))
     checkpoint.unlink(missing_ok=True)
     kept.remove()
