@@ -10,9 +10,10 @@ import blockshake
 from blockshake.dynamics.baseline import check_window
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.motion import PITCH, GroundMotion
+from blockshake.dynamics.provenance import plain_attributes
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.errors import InputError
-from blockshake.geometry.overlap import penetration_depth
+from blockshake.geometry.overlap import depths_of_pairs
 from blockshake.geometry.rotations import rotate_into
 from blockshake.geometry.structure import START_TOLERANCE, Structure, load_structure
 from blockshake.measurement.sensors.accelerometers import FINE_RATE
@@ -24,7 +25,6 @@ from blockshake.simulation.run_dataset import (
     add_accelerometers,
     add_transducers,
     effective_parameters,
-    plain_attribute,
 )
 from blockshake.simulation.run_parts import RunParts, reduced
 from blockshake.simulation.write_run import write_run
@@ -180,7 +180,7 @@ class _SetUp(NamedTuple):
             "structure_file": file.model_dump_json(),
             "motion_scale": 1.0,
             "motion_synthetic": 0,
-            **{f"motion_{name}": plain_attribute(value) for name, value in motion.attributes.items()},
+            **{f"motion_{name}": value for name, value in plain_attributes(motion.attributes).items()},
             "parameters": json.dumps(
                 effective_parameters(self.structure, self.model, self.numerical), sort_keys=True
             ),
@@ -227,15 +227,11 @@ def _check_start(structure, motion):
     turned = np.array([0.0, pitch, 0.0])
     for driven in np.flatnonzero(structure.driven):
         rotate_into(structure.orientation[driven], turned, orientation[driven])
-        for body in np.flatnonzero(~structure.driven):
-            depth = penetration_depth(
-                structure.solid(driven), structure.position[driven], orientation[driven],
-                structure.solid(body), structure.position[body], orientation[body],
-            )  # fmt: skip
-            if depth > START_TOLERANCE:
-                name = structure.body_names[body]
-                raise InputError(
-                    motion.name,
-                    "pitch_y",
-                    f"its first value pushes the slab {1e3 * depth:.2g} mm into {name}",
-                )
+    pairs = np.argwhere(structure.driven[:, None] & ~structure.driven)
+    shapes = [body.shape for body in structure.file.bodies]
+    depths = depths_of_pairs(pairs, shapes, structure.solids, structure.centroid, orientation)
+    for pair in np.flatnonzero(depths > START_TOLERANCE)[:1]:
+        name = structure.body_names[pairs[pair, 1]]
+        raise InputError(
+            motion.name, "pitch_y", f"its first value pushes the slab {1e3 * depths[pair]:.2g} mm into {name}"
+        )

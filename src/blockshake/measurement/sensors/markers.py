@@ -35,28 +35,6 @@ def point_position(structure, points, position, orientation):
     return position[..., bodies, :] + np.einsum("...mij,mj->...mi", turn, structure.arms(points))
 
 
-def marker_displacement(structure, position, orientation, start=None):
-    """Displacement of every marker since the first time.
-
-    Parameters
-    ----------
-    structure : Structure
-    position : float64 array, shape (n_times, n_bodies, 3)
-        Of the mass centres, inertial frame [m].
-    orientation : float64 array, shape (n_times, n_bodies, 4)
-        Unit quaternions (w, x, y, z), body to world.
-    start : tuple of float64 arrays, shapes (1, n_bodies, 3) and (1, n_bodies, 4), optional
-        Position and orientation at the first time; by default the first of those given.
-
-    Returns
-    -------
-    float64 array, shape (n_times, n_markers, 3)
-        Inertial frame [m], zero at the first time; NaN where the body's pose is.
-    """
-    start = (position[:1], orientation[:1]) if start is None else start
-    return marker_position(structure, position, orientation) - marker_position(structure, *start)
-
-
 def directions_read(displacement):
     """Directions that each marker of a test measures, bool (n_markers, 3).
 
