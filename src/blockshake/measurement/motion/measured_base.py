@@ -6,16 +6,16 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
 from blockshake.dynamics.motion import CHANNELS, PITCH, ground_motion
-from blockshake.measurement.campaigns.command_clock import since
 from blockshake.measurement.motion.base_motion import (
     SAME_TIME,
     BaseReadings,
+    base_accelerometer,
+    base_coordinates,
     first_variances,
     likeliest_density,
     smooth_readings,
     together,
 )
-from blockshake.measurement.motion.base_readings import base_accelerometer, base_coordinates
 from blockshake.measurement.motion.kalman import ACCELERATION, DISPLACEMENT, OFFSET, VELOCITY, walk_into
 from blockshake.measurement.motion.outliers import without_outliers
 
@@ -166,11 +166,6 @@ def base_as_motion(base, displacement, name, attributes):
     values = CubicSpline(time, displacement)(rows)
     columns = dict(zip(CHANNELS, (values - values[0]).T, strict=True))
     return ground_motion(name, rows, columns, "displacement", attributes)
-
-
-def on_its_clock(test, base):
-    """The test with time 0 where the base's motion starts as an input; earlier readings are left out."""
-    return since(test, base.attrs["start"])
 
 
 def _accelerometer_lag(read, time_acc, level, density):
