@@ -1,16 +1,11 @@
 """Where a motion comes from, in words and as attributes of a file."""
 
 
-def plain_attributes(attributes):
-    """Attributes as netCDF can hold them: truth values as 0 and 1, all else that is no number as text."""
-    return {
-        name: int(value)
-        if isinstance(value, bool)
-        else value
-        if isinstance(value, (str, float, int))
-        else str(value)
-        for name, value in attributes.items()
-    }
+def plain_attribute(value):
+    """Attribute as netCDF can hold it: truth values as 0 and 1, all else that is no number as text."""
+    if isinstance(value, bool):
+        return int(value)
+    return value if isinstance(value, (str, float, int)) else str(value)
 
 
 def provenance(attributes):

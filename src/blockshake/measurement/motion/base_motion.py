@@ -125,14 +125,12 @@ def base_coordinates(test, structure, sensors):
     return np.column_stack([moved, pitch]), noise
 
 
-def base_accelerometer(test, structure, axis):
-    """`ChannelReadings` of the first accelerometer on a driven body along an axis; None where there is none."""
-    channels = [str(name) for name in test["channel"].values] if "accelerometer" in test else []
+def base_accelerometer(test, structure):
+    """`ChannelReadings` of the first accelerometer on a driven body along x; None where there is none."""
     driven = {body.name for body in structure.file.bodies if body.driven}
     for sensor in structure.file.accelerometers:
-        if sensor.body in driven and f"{sensor.name}-{axis}" in channels:
-            readings = test["accelerometer"].transpose("time_acc", "channel").to_numpy()
-            return ChannelReadings(
-                test["time_acc"].to_numpy(), readings[:, channels.index(f"{sensor.name}-{axis}")]
-            )
+        channel = f"{sensor.name}-x"
+        if sensor.body in driven and "accelerometer" in test and channel in test["channel"].values:
+            readings = test["accelerometer"].sel(channel=channel).to_numpy()
+            return ChannelReadings(test["time_acc"].to_numpy(), readings)
     return None

@@ -70,7 +70,7 @@ def measure_base(test, structure, sensors, command):
     ]
     densities = [likeliest_density(part) if part.marker_noise > 0.0 else 0.0 for part in parts]
     lag = 0.0
-    channel = base_accelerometer(test, structure, "x")
+    channel = base_accelerometer(test, structure)
     if channel is not None:
         pitch = (
             smooth_readings(parts[PITCH], densities[PITCH]).mean
