@@ -35,6 +35,27 @@ def point_position(structure, points, position, orientation):
     return position[..., bodies, :] + np.einsum("...mij,mj->...mi", turn, structure.arms(points))
 
 
+def noisy_reading(displacement, marker_noise, generator):
+    """Displacement as read by markers with noise, relative to the first reading.
+
+    Parameters
+    ----------
+    displacement : float64 array, shape (n_times, ...)
+        True, since the first time [m]; NaN stays.
+    marker_noise : float
+        Standard deviation of the position read, independent in time, marker and axis [m].
+    generator : numpy.random.Generator
+        Source of the noise; advanced.
+
+    Returns
+    -------
+    float64 array, same shape
+        Zero at the first time: the first reading's own error is in all the others.
+    """
+    position = displacement + generator.normal(0.0, marker_noise, size=np.shape(displacement))
+    return position - position[:1]
+
+
 def directions_read(displacement):
     """Directions that each marker of a test measures, bool (n_markers, 3).
 
