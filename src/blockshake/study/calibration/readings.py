@@ -223,11 +223,11 @@ def log_spectrum(test, structure, duration):
     read = whole_channels(test, structure)
     if read is None:
         return empty
-    inside = read.time <= duration
+    count = int(np.searchsorted(read.time, duration, side="right"))
     rate = (len(read.time) - 1) / (read.time[-1] - read.time[0])
-    if inside.sum() < 2.0 * _SEGMENT * rate:
+    if count < 2.0 * _SEGMENT * rate:
         return empty
-    _, power = welch(read.values[inside], rate, nperseg=round(_SEGMENT * rate), axis=0)
+    _, power = welch(read.values[:count], rate, nperseg=round(_SEGMENT * rate), axis=0)
     power = np.log(np.maximum(power[1:], np.finfo(float).tiny))[: round(CUTOFF * _SEGMENT)]
     lines = np.arange(1, len(power) + 1)
     return xr.DataArray(power, {"line": lines, "channel": read.names}, attrs={"units": "1"})
