@@ -96,7 +96,7 @@ def leaning_run(make_structure):
         time, position, orientation, np.gradient(position, time, axis=0), turning, energy,
         np.array([[0, 1], [1, 2]]), force, Status.COMPLETED, "", 1.0, {},
     )  # fmt: skip
-    run = run_dataset(structure, trajectory)
+    run = run_dataset(structure, trajectory, (position[:1], orientation[:1]))
     run.attrs = {
         "structure_file": structure.file.model_dump_json(), "structure": "test", "motion": "push", "motion_scale": 0.5,
         "motion_synthetic": 1, "model": "ls-dem", "status": "completed", "reason": "", "energy_residual": 0.043,

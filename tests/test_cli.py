@@ -234,7 +234,6 @@ def test_a_picture_or_export_that_cannot_be_made_leaves_nothing(
         ["calibrate-stiffness", "--structure", "nothing"],
         ["import-campaign", "nothing.yaml"],
         ["generate-campaign", "nothing.yaml", "--structure", "configuration-1", "--truth", "new/truth"],
-        ["modes", "nothing"],
         ["diagnose", "nothing"],
     ],
     ids=lambda arguments: arguments[0],

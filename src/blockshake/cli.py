@@ -169,17 +169,6 @@ def _parser():
     command.add_argument("--cores", type=int, metavar="N", help="default: all")
     command.set_defaults(run=_diagnose)
 
-    command = commands.add_parser(
-        "modes", help="natural frequencies and damping from low-amplitude tests, measured or simulated"
-    )
-    command.add_argument("sources", nargs="+", metavar="TEST.nc|CAMPAIGN_DIR")
-    command.add_argument("--structure", metavar="NAME|FILE", help="of test files; a run file holds its own")
-    command.add_argument(
-        "--axis", default="x", metavar="x|y|z", help="along which the base moves (default x)"
-    )
-    command.add_argument("--output", metavar="MODES.json")
-    command.set_defaults(run=_modes)
-
     command = commands.add_parser("check", help="say what is wrong with structure, motion or study files")
     command.add_argument("files", nargs="+", metavar="FILE")
     command.add_argument("--picture", metavar="PICTURE", help="of one structure: .png, .pdf or .svg")
@@ -379,22 +368,6 @@ def _diagnose(options):
     named = f" ({verdict.decision}): {', '.join(verdict.causes)}" if verdict.causes else ""
     print(f"{verdict.word}{named}; {options.output}/report.html")
     return 0
-
-
-def _modes(options):
-    if options.output:
-        check_output(options.output)
-    from blockshake.measurement.modes.modal_summary import HEADER, summarise_modes, summary_rows
-
-    found = [
-        test
-        for source in options.sources
-        for test in summarise_modes(source, options.structure, options.axis)
-    ]
-    _print_table([HEADER, *summary_rows(found)])
-    if options.output:
-        write_json(options.output, {"tests": found})
-        print(options.output)
 
 
 def _check(options):

@@ -10,9 +10,16 @@ from scipy.spatial.transform import Rotation
 
 from blockshake.files import load_yaml, shipped
 from blockshake.geometry.structure import build_structure
-from blockshake.measurement.sensors.accelerometers import FINE_RATE, SKIP, accelerometer_readings
+from blockshake.measurement.sensors.accelerometers import (
+    FINE_RATE,
+    SKIP,
+    accelerometer_channels,
+    reading_times,
+    readings_of,
+    specific_forces,
+)
 from blockshake.measurement.sensors.instruments import Instruments, observe
-from blockshake.measurement.sensors.transducers import transducer_displacement, transducer_names
+from blockshake.measurement.sensors.transducers import transducer_lengths, transducer_names
 
 DURATION = 10.0  # s
 HALF_WIDTH = 0.4  # m
@@ -58,18 +65,19 @@ def make_run(structure, rocking, seed, pitch=0.0, survey=3e-4):
     velocity = np.gradient(fine_position, fine, axis=0)
     turns = _quaternions_to_rotation(fine_orientation)
     spin = np.stack([np.gradient(turn, fine, axis=0) for turn in turns], axis=1)
-    time_acc, readings, channels = accelerometer_readings(structure, fine, fine_orientation, velocity, spin)
+    time_acc = reading_times(fine)
+    readings = readings_of(specific_forces(structure, fine_orientation, velocity, spin), time_acc)
     run = xr.Dataset(
         {
             "position": (("time", "body", "axis"), position),
             "orientation": (("time", "body", "quaternion"), orientation),
             "accelerometer": (("time_acc", "channel"), readings, {"units": "m s-2"}),
         },
-        {"time": markers, "time_acc": time_acc, "channel": channels},
+        {"time": markers, "time_acc": time_acc, "channel": accelerometer_channels(structure)},
     )
     if structure.file.displacement_transducers:
-        moved = transducer_displacement(structure, fine_position[::SKIP], fine_orientation[::SKIP])
-        run["transducer_displacement"] = (("time_acc", "transducer"), moved, {"units": "m"})
+        lengths = transducer_lengths(structure, fine_position[::SKIP], fine_orientation[::SKIP])
+        run["transducer_displacement"] = (("time_acc", "transducer"), lengths - lengths[0], {"units": "m"})
         run["transducer"] = transducer_names(structure)
     return run
 

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.slow  # a limit of CPU time, which kernels that are com
 
 COMMANDS = (
     ("export", "r.nc", "--output", "o.csv"), ("export", "r.nc", "--output", "o.vtkhdf"),
-    ("export", "r.nc", "--output", "o.glb"), ("modes", "r.nc"), ("plot", "r.nc", "--output", "o.png"),
+    ("export", "r.nc", "--output", "o.glb"), ("plot", "r.nc", "--output", "o.png"),
 )  # fmt: skip
 PARTS = {
     "state": (np.arange(12.0).reshape(4, 3), np.ones(4, bool)),

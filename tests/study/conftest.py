@@ -3,7 +3,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from blockshake.measurement.sensors.marker_noise import noisy_reading
+from blockshake.measurement.sensors.markers import noisy_reading
 from blockshake.study.ensembles.ensemble import gather_ensemble
 
 TIME = np.arange(401) / 200.0

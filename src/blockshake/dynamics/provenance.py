@@ -1,4 +1,11 @@
-"""Where a motion comes from, in words."""
+"""Where a motion comes from, in words and as attributes of a file."""
+
+
+def plain_attribute(value):
+    """Attribute as netCDF can hold it: truth values as 0 and 1, all else that is no number as text."""
+    if isinstance(value, bool):
+        return int(value)
+    return value if isinstance(value, (str, float, int)) else str(value)
 
 
 def provenance(attributes):

@@ -8,6 +8,7 @@ import numpy as np
 
 from blockshake.dynamics.motion import PITCH
 from blockshake.geometry.rotations import rotation_rows, turned
+from blockshake.geometry.structure_file import signed_axis
 from blockshake.jit import borrowing_kernel
 
 ENERGY_TERMS = (
@@ -166,14 +167,10 @@ def assemble_bodies(structure):
 
 def _assemble_stoppers(structure):
     file = structure.file
-    unit = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
-    sign = {"+": 1.0, "-": -1.0}
     return Stoppers(
         body=structure.carriers(file.stoppers),
         point=structure.arms(file.stoppers),
-        axis=np.array(
-            [np.multiply(sign[stop.axis[0]], unit[stop.axis[1]]) for stop in file.stoppers]
-        ).reshape(-1, 3),
+        axis=np.array([signed_axis(stop.axis) for stop in file.stoppers]).reshape(-1, 3),
         gap=np.array([stop.gap for stop in file.stoppers], dtype=float),
         stiffness=np.array([stop.stiffness for stop in file.stoppers], dtype=float),
     )

@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 
 from blockshake.errors import InputError
+from blockshake.geometry.meshes.crossings import shown
 
 
 def check_offset(body, solid, source):
@@ -35,7 +36,7 @@ def check_offset(body, solid, source):
     low, high = solid.vertices.min(axis=0), solid.vertices.max(axis=0)
     if not ((low < offset) & (offset < high)).all():
         raise InputError(
-            source, key, f"expected a mass centre within the shape's box, {_shown(low)} to {_shown(high)} m"
+            source, key, f"expected a mass centre within the shape's box, {shown(low)} to {shown(high)} m"
         )
     inertia = solid.properties.inertia / solid.properties.volume
     moment = 0.5 * np.trace(inertia) * np.eye(3) - inertia
@@ -44,12 +45,8 @@ def check_offset(body, solid, source):
         raise InputError(
             source,
             key,
-            f"expected a mass centre within the shape's radii of gyration, {_shown(reach)} m along x, y, z",
+            f"expected a mass centre within the shape's radii of gyration, {shown(reach)} m along x, y, z",
         )
-
-
-def _shown(vector):
-    return "[" + ", ".join(f"{value:.3g}" for value in vector) + "]"
 
 
 def offset_solid(solid, offset):

@@ -41,49 +41,23 @@ def near_pairs(solids, position, orientation, clearance):
     return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
 
 
-def penetration_depth(solid_a, position_a, orientation_a, solid_b, position_b, orientation_b):
-    """Depth of overlap of two convex solids along the axis of least overlap.
+def penetration_depths(solid_a, positions_a, orientations_a, solid_b, positions_b, orientations_b):
+    """Depths of overlap of pairs of the same two convex solids, each along the pair's axis of least overlap.
 
     Parameters
     ----------
     solid_a, solid_b : Solid
         Shapes about their mass centres.
-    position_a, position_b : float64 arrays, shape (3,)
+    positions_a, positions_b : float64 arrays, shape (n_pairs, 3)
         Mass centres, world frame [m].
-    orientation_a, orientation_b : float64 arrays, shape (4,)
+    orientations_a, orientations_b : float64 arrays, shape (n_pairs, 4)
         Unit quaternions (w, x, y, z), body to world.
 
     Returns
     -------
-    float
-        Depth [m]; negative is a lower bound of the clearance. Zero for a pair with a
-        shape that is not convex, whose overlap this test cannot tell.
-    """
-    radius_a = np.linalg.norm(solid_a.vertices, axis=1).max()
-    radius_b = np.linalg.norm(solid_b.vertices, axis=1).max()
-    distance = np.linalg.norm(position_b - position_a)
-    if distance > radius_a + radius_b:
-        return radius_a + radius_b - distance
-    depths = penetration_depths(
-        solid_a, position_a[None], orientation_a[None], solid_b, position_b[None], orientation_b[None]
-    )
-    return float(depths[0])
-
-
-def penetration_depths(solid_a, positions_a, orientations_a, solid_b, positions_b, orientations_b):
-    """`penetration_depth` of many pairs of the same two shapes, near each other.
-
-    Parameters
-    ----------
-    solid_a, solid_b : Solid
-    positions_a, positions_b : float64 arrays, shape (n_pairs, 3)
-        [m]
-    orientations_a, orientations_b : float64 arrays, shape (n_pairs, 4)
-
-    Returns
-    -------
     float64 array, shape (n_pairs,)
-        [m]
+        [m]; negative is a lower bound of the clearance. Zero for a pair with a shape that is not convex, whose overlap
+        this test cannot tell.
     """
     depths = np.zeros(len(positions_a))
     if solid_a.polyhedron is None or solid_b.polyhedron is None:
@@ -111,7 +85,7 @@ def penetration_depths(solid_a, positions_a, orientations_a, solid_b, positions_
 
 
 def depths_of_pairs(pairs, shapes, solids, position, orientation):
-    """`penetration_depth` of pairs of bodies, those of the same two shapes at once.
+    """`penetration_depths` of pairs of bodies, those of the same two shapes at once.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Readings: campaigns in files, sensors, checks, the motion of the blocks, modes."""
+"""Readings: campaigns in files, sensors, checks, the motion of the blocks."""

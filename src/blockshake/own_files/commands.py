@@ -172,7 +172,8 @@ def _import_campaign(options):
 def _map_of_options(options, given, columns):
     """`ImportMap` of a call without a map."""
     from blockshake.files import parse_yaml
-    from blockshake.measurement.imports.import_map import checked_map
+    from blockshake.measurement.imports.import_map import ImportMap
+    from blockshake.validation import validated
 
     for name in ("structure", "motion", "displacement_unit"):
         if name not in given:
@@ -202,7 +203,7 @@ def _map_of_options(options, given, columns):
         },
         **({"rest": numbers["rest"]} if "rest" in numbers else {}),
     }
-    return checked_map(mapping, "options")
+    return validated(ImportMap, mapping, "options")
 
 
 def _new(options):

@@ -6,16 +6,20 @@ import xarray as xr
 from blockshake.dynamics.system import ENERGY_TERMS
 from blockshake.geometry.schema import AXES, QUATERNION
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
-from blockshake.measurement.sensors.markers import marker_displacement
+from blockshake.measurement.sensors.markers import marker_position
 from blockshake.measurement.sensors.transducers import transducer_names
 from blockshake.simulation.models import model_of
 
 
-def run_dataset(structure, rows, start=None):
+def run_dataset(structure, rows, start):
     """Rows of a run as the run file's Dataset, without accelerometers and attributes.
 
-    ``start``: position and orientation at the run's first time, as of `marker_displacement`.
+    ``start``: positions (1, n_bodies, 3) [m] and orientations (1, n_bodies, 4) at the run's first time, from which the
+    markers' displacements count.
     """
+    displacement = marker_position(structure, rows.position, rows.orientation) - marker_position(
+        structure, *start
+    )
     names = structure.body_names
     lower, upper = ([names[body] for body in rows.joints[:, side]] for side in (0, 1))
     markers = np.array([marker.name for marker in structure.file.markers], dtype=str)
@@ -36,8 +40,7 @@ def run_dataset(structure, rows, start=None):
                 "time body axis", rows.angular_velocity, "rad s-1", "angular velocity, inertial frame"
             ),
             "marker_displacement": variable(
-                "time marker axis", marker_displacement(structure, rows.position, rows.orientation, start), "m",
-                "displacement of the marker since the start, inertial frame",
+                "time marker axis", displacement, "m", "displacement of the marker since the start, inertial frame",
             ),
             "energy": variable("time term", rows.energy, "J", "energy audit of the free bodies"),
             "joint_force": variable(
@@ -104,10 +107,3 @@ def effective_parameters(structure, model, numerical):
         acted |= {f"joints.{'.'.join(joint.bodies)}.{key}": value for key, value in own.items()}
     prefix = model_of(model).prefix
     return acted | {f"{prefix}.{key}": value for key, value in numerical.model_dump().items()}
-
-
-def plain_attribute(value):
-    """Attribute as netCDF can hold it."""
-    if isinstance(value, bool):
-        return int(value)
-    return value if isinstance(value, (str, float, int)) else str(value)

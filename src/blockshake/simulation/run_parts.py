@@ -59,17 +59,19 @@ def _rows_at(times, wanted):
 class RunParts:
     """The parts of a run in their order: those kept on disk, and the rows that the solver ended with.
 
-    ``structure``, ``coarse`` and ``fine`` as of `reduced`, ``kept`` a `KeptRows` and ``trajectory`` the last rows.
+    ``structure``, ``coarse`` and ``fine`` as of `reduced`, ``trajectory`` the last rows, and ``kept`` a `KeptRows`;
+    None where the last rows are all.
     """
 
-    def __init__(self, structure, coarse, fine, kept, trajectory):
+    def __init__(self, structure, coarse, fine, trajectory, kept=None):
         self.structure, self._coarse, self._fine, self._kept = structure, coarse, fine, kept
         self.channels, self.transducers = accelerometer_channels(structure), transducer_names(structure)
         self._joints = trajectory.joints
         self._last = reduced(structure, trajectory, coarse, fine)
 
     def _read(self, *names):
-        yield from self._kept.read(*names)
+        if self._kept is not None:
+            yield from self._kept.read(*names)
         yield self._last
 
     def energy_residual(self):
@@ -104,10 +106,7 @@ class RunParts:
     def readings(self):
         """Yield the readings of every channel, float64 (n_readings,) [m/s2]: the low-pass wants a whole record."""
         for channel in range(len(self.channels)):
-            readings = np.full(len(self.reading_times()), np.nan)
-            smooth = readings_of(self._forces(channel)[:, None])[:, 0]
-            readings[: len(smooth)] = smooth
-            yield readings
+            yield readings_of(self._forces(channel)[:, None], self.reading_times())[:, 0]
 
     def lengthenings(self):
         """Yield the readings of all transducers since the start, which follow each other in time [m]."""

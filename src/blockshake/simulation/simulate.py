@@ -10,15 +10,14 @@ import blockshake
 from blockshake.dynamics.baseline import check_window
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.motion import PITCH, GroundMotion
+from blockshake.dynamics.provenance import plain_attribute
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.errors import InputError
-from blockshake.geometry.overlap import penetration_depth
+from blockshake.geometry.overlap import depths_of_pairs
 from blockshake.geometry.rotations import rotate_into
 from blockshake.geometry.structure import START_TOLERANCE, Structure, load_structure
-from blockshake.measurement.sensors.accelerometers import FINE_RATE, SKIP, accelerometer_readings
+from blockshake.measurement.sensors.accelerometers import FINE_RATE
 from blockshake.measurement.sensors.markers import RATE
-from blockshake.measurement.sensors.transducers import transducer_displacement
-from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.limits import check_limits, has_fine_record
 from blockshake.simulation.models import model_of, split_parameters
 from blockshake.simulation.outcome.falling import still_falling
@@ -26,8 +25,6 @@ from blockshake.simulation.run_dataset import (
     add_accelerometers,
     add_transducers,
     effective_parameters,
-    plain_attribute,
-    run_dataset,
 )
 from blockshake.simulation.run_parts import RunParts, reduced
 from blockshake.simulation.write_run import write_run
@@ -84,20 +81,13 @@ def simulate(
     """
     of = _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers)
     trajectory = of.solve(checkpoint=checkpoint)
-    times = trajectory.time
-    run = run_dataset(of.structure, trajectory.at(np.searchsorted(times, of.coarse)))
-    if of.fine.size:
-        fine = trajectory.at(np.searchsorted(times, of.fine))
-        states = fine.orientation, fine.velocity, fine.angular_velocity
-        file = of.structure.file
-        if file.accelerometers:
-            readings = accelerometer_readings(of.structure, fine.time, *states)
-            add_accelerometers(run, of.structure, *readings[:2])
-        if file.displacement_transducers:
-            read = fine.at(slice(None, None, SKIP))
-            lengthened = transducer_displacement(of.structure, read.position, read.orientation)
-            add_transducers(run, of.structure, read.time, lengthened)
-    run.attrs = of.attributes(trajectory, energy_residual(trajectory.energy))
+    parts = RunParts(of.structure, of.coarse, of.fine, trajectory)
+    _, run = parts.histories()
+    if of.fine.size and parts.channels:
+        add_accelerometers(run, of.structure, parts.reading_times(), np.column_stack([*parts.readings()]))
+    if of.fine.size and parts.transducers:
+        add_transducers(run, of.structure, parts.reading_times(), np.concatenate([*parts.lengthenings()]))
+    run.attrs = of.attributes(trajectory, parts.energy_residual())
     return run
 
 
@@ -127,7 +117,7 @@ def simulate_to_file(
     checkpoint = Path(f"{path}.checkpoint")
     kept = KeptRows(f"{checkpoint}.rows", lambda rows: reduced(of.structure, rows, of.coarse, of.fine))
     trajectory = of.solve(checkpoint=checkpoint, kept=kept)
-    parts = RunParts(of.structure, of.coarse, of.fine, kept, trajectory)
+    parts = RunParts(of.structure, of.coarse, of.fine, trajectory, kept)
     write_run(path, parts, of.attributes(trajectory, parts.energy_residual()))
     checkpoint.unlink(missing_ok=True)
     kept.remove()
@@ -237,15 +227,11 @@ def _check_start(structure, motion):
     turned = np.array([0.0, pitch, 0.0])
     for driven in np.flatnonzero(structure.driven):
         rotate_into(structure.orientation[driven], turned, orientation[driven])
-        for body in np.flatnonzero(~structure.driven):
-            depth = penetration_depth(
-                structure.solid(driven), structure.position[driven], orientation[driven],
-                structure.solid(body), structure.position[body], orientation[body],
-            )  # fmt: skip
-            if depth > START_TOLERANCE:
-                name = structure.body_names[body]
-                raise InputError(
-                    motion.name,
-                    "pitch_y",
-                    f"its first value pushes the slab {1e3 * depth:.2g} mm into {name}",
-                )
+    pairs = np.argwhere(structure.driven[:, None] & ~structure.driven)
+    shapes = [body.shape for body in structure.file.bodies]
+    depths = depths_of_pairs(pairs, shapes, structure.solids, structure.centroid, orientation)
+    for pair in np.flatnonzero(depths > START_TOLERANCE)[:1]:
+        name = structure.body_names[pairs[pair, 1]]
+        raise InputError(
+            motion.name, "pitch_y", f"its first value pushes the slab {1e3 * depths[pair]:.2g} mm into {name}"
+        )

@@ -9,12 +9,11 @@ from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Sensors
-from blockshake.measurement.campaigns.command_clock import from_command, from_first_reading
+from blockshake.measurement.campaigns.command_clock import from_command, from_first_reading, since
 from blockshake.measurement.motion.measured_base import (
     base_as_motion,
     draw_base,
     measure_base,
-    on_its_clock,
 )
 from blockshake.measurement.sensors.instruments import Instruments
 
@@ -82,7 +81,7 @@ def test_the_input_is_the_table_s_motion_whatever_the_clock_and_the_rate(rate, z
     assert np.sqrt(np.mean(error[:, 3] ** 2)) < pitch_error
     rate_error = drawn.evaluate(time, 1)[:, 0] - TRUE.evaluate(time + late, 1)[:, 0]
     assert np.sqrt(np.mean(rate_error**2)) < 1e-3
-    clock = on_its_clock(test, base)["time"].to_numpy()
+    clock = since(test, base.attrs["start"])["time"].to_numpy()
     assert 0.0 <= clock[0] < 1.0 / rate
 
 

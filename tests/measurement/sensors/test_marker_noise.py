@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.measurement.sensors.marker_noise import noisy_reading
+from blockshake.measurement.sensors.markers import noisy_reading
 
 NOISE = 1e-4  # m
 

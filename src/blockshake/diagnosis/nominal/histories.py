@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.forces.quiet_start import counted_from_rest
-from blockshake.measurement.motion.compared_curves import histories_at
+from blockshake.measurement.motion.compared_curves import at_times
 from blockshake.measurement.motion.fall import find_fall, until_fall
 from blockshake.measurement.motion.joint_histories import joint_histories
 from blockshake.measurement.motion.outliers import without_outliers
@@ -96,7 +96,12 @@ def as_cells(histories, of=""):
 
 def at_readings(cells, time):
     """Cells of simulated tests, in seconds since their start, at times of a measured one that they span."""
-    return histories_at(cells.to_dataset(name="cells"), time)["cells"].transpose(..., "time", "cell")
+    both = [["time", "cell"]]
+    clocks = {"time": cells["time"].to_numpy(), "asked": time}
+    read = xr.apply_ufunc(
+        at_times, cells, kwargs=clocks, input_core_dims=both, output_core_dims=both, exclude_dims={"time"}
+    )
+    return read.assign_coords(time=time)
 
 
 def common_times(measured, *simulated):

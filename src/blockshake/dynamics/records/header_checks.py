@@ -33,11 +33,11 @@ class HeaderChecks:
         """Names of the entries that were held against the values, in words."""
         return ", ".join(dict.fromkeys(["number of values", *self._made]))
 
-    def step(self, key, text, size=1.0):
-        """Another statement of the time step, in a unit of ``size`` seconds."""
-        stated = self._stated(key, text, size)
+    def step(self, key, text):
+        """Another statement of the time step [s]."""
+        stated = self._stated(key, text)
         if stated is not None:
-            slack = _half_digit(text) * size + _ROUNDING * self.time_step
+            slack = _half_digit(text) + _ROUNDING * self.time_step
             self._hold(key, "time step", abs(stated - self.time_step) <= slack, stated, self.time_step, "s")
 
     def length(self, key, text, slack=0.0):
@@ -48,7 +48,7 @@ class HeaderChecks:
             slack = max(slack, _half_digit(text)) + _ROUNDING * length + self.time_step
             self._hold(key, "length", abs(stated - length) <= slack, stated, length, "s")
 
-    def peak(self, key, text, size=1.0):
+    def peak(self, key, text, size):
         """Largest magnitude, in a unit of ``size`` m/s2: of the values, or of their distance from their mean.
 
         A negative entry is a peak below zero; some formats give no sign.

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from blockshake.dynamics.baseline import AUTO, settle
+from blockshake.dynamics.baseline import settle
 from blockshake.dynamics.motion import CHANNELS, check_finite, ground_motion
 from blockshake.dynamics.records.times import check_times
 from blockshake.errors import InputError
@@ -36,7 +36,7 @@ _OF_VALUES = re.compile(r"acc|vel|disp|\bin\b|^\S+$", re.IGNORECASE)  # in a lin
 _ROUNDING = 1e-3  # of a stated time step, such as 1/150 s
 
 
-def load_motion_table(source, layout, time, columns, unit, time_unit="s", baseline=AUTO, time_step=None):
+def load_motion_table(source, layout, time, columns, unit, time_unit, baseline, time_step):
     """`GroundMotion` from columns of a text file or a workbook.
 
     Parameters
@@ -54,7 +54,7 @@ def load_motion_table(source, layout, time, columns, unit, time_unit="s", baseli
     time_unit : str
     baseline : str or float
         As of `settle`: a table is corrected with a corner frequency alone.
-    time_step : float, optional
+    time_step : float or None
         Of values without times [s].
 
     Raises

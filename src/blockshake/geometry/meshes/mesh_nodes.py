@@ -5,11 +5,8 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from blockshake.geometry.meshes.patch_perimeter import boundaries, edge_pairs, perimeter_points
+from blockshake.geometry.meshes.patch_perimeter import SHARP, boundaries, edge_pairs, perimeter_points
 
-SHARP = np.radians(
-    30.0
-)  # default angle between the normals of two triangles that meet at an edge of the body
 # The surface is cut into triangles this much smaller than the spacing; each goes to its nearest node.
 _FINENESS = 6
 # Seeds at least this many spacings apart come out, spread, at about one a spacing squared.
@@ -17,7 +14,7 @@ _APART = 0.8
 _ROUNDS = 20  # of moving nodes to the centroids of their areas (Lloyd 1982)
 
 
-def mesh_nodes(vertices, faces, spacing, inset, sharp=SHARP):
+def mesh_nodes(vertices, faces, spacing, inset):
     """Nodes and the area each stands for.
 
     Parameters
@@ -32,9 +29,6 @@ def mesh_nodes(vertices, faces, spacing, inset, sharp=SHARP):
         Distance from sharp convex edges of the nodes that stand along them, on both sides, over the breadth of the
         face, which is twice its area over its perimeter [1]. A body sinks by at most that distance onto an
         edge before a node touches, and by 1.15 times that much onto the corner of a cube.
-    sharp : float
-        Two triangles that meet at a larger angle between their normals belong to different faces [rad]. Below it the
-        surface counts as curved. A rough scan wants a larger angle, else every facet of it has edges of its own.
 
     Returns
     -------
@@ -47,6 +41,7 @@ def mesh_nodes(vertices, faces, spacing, inset, sharp=SHARP):
 
     Notes
     -----
+    Triangles that meet at an angle above `SHARP` belong to different faces; below it the surface counts as curved.
     Seeds a little less than a spacing apart are taken in the order of the triangles, then moved
     to the centroids of the parts of the face that are nearest to them (Lloyd 1982, IEEE
     Transactions on Information Theory 28(2)); those along edges stay. No random number is drawn.
@@ -58,7 +53,7 @@ def mesh_nodes(vertices, faces, spacing, inset, sharp=SHARP):
     doubled = np.linalg.norm(cross, axis=1)
     normals = cross / np.where(doubled > 0.0, doubled, 1.0)[:, None]
     pairs = edge_pairs(faces, len(vertices))
-    smooth = (normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1) >= np.cos(sharp)
+    smooth = (normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1) >= np.cos(SHARP)
     links = coo_matrix((np.ones(smooth.sum()), tuple(pairs[smooth].T)), shape=(len(faces), len(faces)))
     n_patches, patch = connected_components(links, directed=False)
     sides = boundaries(vertices, faces, normals, patch)
@@ -68,7 +63,7 @@ def mesh_nodes(vertices, faces, spacing, inset, sharp=SHARP):
         if len(own) == 0:
             continue
         edge = perimeter_points(
-            vertices, normals, sides.get(label, []), 0.5 * doubled[own].sum(), spacing, inset, sharp
+            vertices, normals, sides.get(label, []), 0.5 * doubled[own].sum(), spacing, inset
         )
         nodes, weights = _patch_nodes(corners[own], normals[own], spacing, edge)
         points.append(nodes)

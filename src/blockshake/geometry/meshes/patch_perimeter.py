@@ -5,6 +5,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.spatial import cKDTree
 
+SHARP = np.radians(30.0)  # angle between the normals of two triangles that meet at an edge of the body
+
 
 def edge_pairs(faces, n_vertices):
     """The two triangles that share each edge of a closed surface: int64 array, shape (n_edges, 2)."""
@@ -42,7 +44,7 @@ def boundaries(vertices, faces, normals, patch):
     return sides
 
 
-def perimeter_points(vertices, normals, sides, area, spacing, inset, sharp):
+def perimeter_points(vertices, normals, sides, area, spacing, inset):
     """Evenly spaced points along the convex edges of one smooth part of a surface.
 
     Parameters
@@ -52,7 +54,7 @@ def perimeter_points(vertices, normals, sides, area, spacing, inset, sharp):
         The part's edges, from `boundaries`.
     area : float
         Of the part [m2].
-    spacing, inset, sharp : float
+    spacing, inset : float
         As in `mesh_nodes`.
 
     Returns
@@ -65,7 +67,7 @@ def perimeter_points(vertices, normals, sides, area, spacing, inset, sharp):
     if sides:
         inset *= 2.0 * area / _length(vertices, sides)
     for loop in _loops(sides):
-        for chain in _chains(loop, vertices, normals, sharp):
+        for chain in _chains(loop, vertices, normals):
             if chain[1][0][3]:
                 points.append(_along(chain, vertices, normals, spacing, inset))
     points = np.vstack(points)
@@ -106,12 +108,12 @@ def _turn(before, after, vertices, normals):
     return np.arctan2(across, d @ e)
 
 
-def _chains(loop, vertices, normals, sharp):
+def _chains(loop, vertices, normals):
     """Pieces of a loop between corners as (edge before, edges, edge after); None twice for one without corners."""
     breaks = [
         place
         for place, side in enumerate(loop)
-        if abs(_turn(loop[place - 1], side, vertices, normals)) > sharp or loop[place - 1][3] != side[3]
+        if abs(_turn(loop[place - 1], side, vertices, normals)) > SHARP or loop[place - 1][3] != side[3]
     ]
     if not breaks:
         return [(None, loop, None)]

@@ -15,9 +15,9 @@ from blockshake.measurement.campaigns.command_clock import from_command
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 from blockshake.measurement.campaigns.recorded_test import read_test
 from blockshake.measurement.campaigns.recorder_clock import on_one_clock
-from blockshake.measurement.sensors import accelerometers, markers, transducers
+from blockshake.measurement.sensors.stated_noise import Sensors
 from blockshake.paths import check_plain, file_below
-from blockshake.validation import Finite, NotNegative, Strict, validated
+from blockshake.validation import Finite, Strict, validated
 
 
 def _not_zero(value):
@@ -26,28 +26,7 @@ def _not_zero(value):
     return value
 
 
-_LEAST_NOISE = {"marker_noise": 1e-6, "accelerometer_noise": 1e-4, "transducer_noise": 1e-6}  # m, m/s2, m
 Scale = Annotated[Finite, AfterValidator(_not_zero)]
-
-
-class Sensors(Strict):
-    """Standard deviations of the readings."""
-
-    marker_noise: NotNegative = Field(markers.NOISE, description="of a marker's reading [m]")
-    accelerometer_noise: NotNegative = Field(
-        accelerometers.NOISE, description="of a channel's reading [m/s2]"
-    )
-    transducer_noise: NotNegative = Field(
-        transducers.NOISE,
-        description="of a displacement transducer's reading [m]",
-        exclude_if=lambda noise: noise == transducers.NOISE,  # sensors without it keep their digest
-    )
-
-    def not_noiseless(self):
-        """The same with at least the noise of the best instruments: a stated 0 says that there is none to speak of."""
-        return self.model_copy(
-            update={name: max(getattr(self, name), least) for name, least in _LEAST_NOISE.items()}
-        )
 
 
 class MeasuredTest(Strict):

@@ -18,13 +18,12 @@ def check_initial_places(test, structure, path):
     Raises
     ------
     InputError
-        Places off by more than 0.1 m, or in another order of the axes; an unknown or doubled body; an offset
-        beyond 1 m; a rotation beyond 0.5 rad.
+        Places off by more than 0.1 m, or in another order of the axes; an offset beyond 1 m; a rotation beyond
+        0.5 rad.
     """
     _check_marker_places(test, structure, path)
     for name, (limit, unit) in _LIMITS.items():
         if name in test:
-            _check_bodies(test, structure, path)
             size = np.abs(test[name].transpose("body", "axis").to_numpy())
             size = np.where(np.isfinite(size), size, 0.0).max(axis=1, initial=0.0)
             if size.max(initial=0.0) > limit:
@@ -32,17 +31,6 @@ def check_initial_places(test, structure, path):
                 raise InputError(
                     path, f"{name}.{body}", f"expected at most {limit:g} {unit}, not {size.max():.3g}"
                 )
-
-
-def _check_bodies(test, structure, path):
-    read = [str(name) for name in test["body"].values]
-    for name in read:
-        if name not in structure.body_names:
-            raise InputError(
-                path, name, f"expected bodies of the structure: {', '.join(structure.body_names)}"
-            )
-        if read.count(name) > 1:
-            raise InputError(path, name, "expected every body once")
 
 
 def _check_marker_places(test, structure, path):

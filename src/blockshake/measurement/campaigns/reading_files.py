@@ -56,17 +56,6 @@ def read_netcdf(path):
     )
 
 
-def netcdf_attributes(path):
-    """Attributes of a netCDF file by name.
-
-    Raises
-    ------
-    InputError
-        No netCDF.
-    """
-    return _dataset(path).attrs
-
-
 def _dataset(path):
     try:
         content = path.read_bytes()

@@ -25,9 +25,13 @@ _FIRST = (
 _START_LIMIT = 0.01  # m; far beyond noise, far less than a marker's distance from the origin
 _START_NOISE = 5.0  # times the channel's own noise
 _OVERLAP = 0.5  # of the shorter record, that both clocks must share
-_ON_THE_RECORDER = {
-    "accelerometer": ("channel", "accelerometer channel", accelerometer_channels),
-    "transducer_displacement": ("transducer", "displacement transducer", transducer_names),
+_ON_THE_RECORDER = {"accelerometer": "channel", "transducer_displacement": "transducer"}
+# by dimension: what its names are names of, in singular and plural, and those of a structure
+_NAMES = {
+    "marker": ("marker", "markers", lambda structure: [marker.name for marker in structure.file.markers]),
+    "channel": ("accelerometer channel", "accelerometer channels", accelerometer_channels),
+    "transducer": ("displacement transducer", "displacement transducers", transducer_names),
+    "body": ("body", "bodies", lambda structure: structure.body_names),
 }
 
 
@@ -61,7 +65,7 @@ def read_test(path, structure):
     table = path.suffix.lower() == ".csv"
     test = read_tables(path, transducer_names(structure)) if table else read_netcdf(path)
     test = without_faulty(checked_test(test, structure, path), structure)
-    _check_markers(test, structure, path)  # of the driven body a reading has to remain
+    _check_driven(test, structure, path)  # whose readings may have been faulty
     return from_first_reading(test)
 
 
@@ -72,8 +76,9 @@ def checked_test(test, structure, path):
             _check_times(test[name].to_numpy(), path, name)
     if tuple(test["axis"].values) != AXES:
         test = _ordered_axes(test, path)
-    _check_markers(test, structure, path)
-    _check_channels(test, structure, path)
+    _check_names(test, structure, path)
+    _check_driven(test, structure, path)
+    _check_clocks(test, path)
     _check_readings(test, path)
     _check_start(test, path)
     check_initial_places(test, structure, path)
@@ -112,40 +117,37 @@ def _ordered_axes(test, path):
     return test.reindex(axis=list(AXES))
 
 
-def _check_markers(test, structure, path):
-    bodies = {marker.name: marker.body for marker in structure.file.markers}
-    read = [str(name) for name in test["marker"].values]
-    for name in read:
-        if name not in bodies:
-            raise InputError(path, name, f"expected markers of the structure: {', '.join(bodies)}")
-        if read.count(name) > 1:
-            raise InputError(path, name, "expected every marker once")
-    driven = {body.name for body in structure.file.bodies if body.driven}
-    wanted = [name for name, body in bodies.items() if body in driven]
-    own = [name for name in read if name in wanted]
-    if not own:
-        raise InputError(
-            path, "marker", f"expected a marker of the driven body, which is the input: {' or '.join(wanted)}"
-        )
-    if not test["marker_displacement"].sel(marker=own, axis="x").notnull().any():
-        raise InputError(
-            path, f"{own[0]}.x", "expected readings of the driven body along x, the direction of shaking"
-        )
-
-
-def _check_channels(test, structure, path):
-    """Channels and transducers are the structure's, once each, and on a clock that runs beside the markers'."""
-    for variable, (dimension, words, known_in) in _ON_THE_RECORDER.items():
-        if variable not in test:
-            continue
-        known, read = known_in(structure), [str(name) for name in test[dimension].values]
+def _check_names(test, structure, path):
+    """Markers, channels, transducers and bodies are the structure's, once each."""
+    for dimension, (singular, plural, names_of) in _NAMES.items():
+        known = names_of(structure)
+        read = [str(name) for name in test[dimension].values] if dimension in test.coords else []
         for name in read:
             if name not in known:
                 raise InputError(
-                    path, name, f"expected {words}s of the structure: {', '.join(known) or 'none'}"
+                    path, name, f"expected {plural} of the structure: {', '.join(known) or 'none'}"
                 )
             if read.count(name) > 1:
-                raise InputError(path, name, f"expected every {words} once")
+                raise InputError(path, name, f"expected every {singular} once")
+
+
+def _check_driven(test, structure, path):
+    """A marker of the driven body reads it along x."""
+    driven = {body.name for body in structure.file.bodies if body.driven}
+    wanted = [marker.name for marker in structure.file.markers if marker.body in driven]
+    read = [name for name in map(str, test["marker"].values) if name in wanted]
+    if not read:
+        raise InputError(
+            path, "marker", f"expected a marker of the driven body, which is the input: {' or '.join(wanted)}"
+        )
+    if not test["marker_displacement"].sel(marker=read, axis="x").notnull().any():
+        raise InputError(
+            path, f"{read[0]}.x", "expected readings of the driven body along x, the direction of shaking"
+        )
+
+
+def _check_clocks(test, path):
+    """The recorder's clock runs beside the markers'."""
     if "time_acc" not in test.coords:
         return
     clocks = [(time[0], time[-1]) for time in (test["time"].to_numpy(), test["time_acc"].to_numpy())]
@@ -175,7 +177,7 @@ def _check_readings(test, path):
         raise InputError(
             path, str(displacement["marker"].values[np.argmax(silent)]), "expected readings; all are missing"
         )
-    for variable, (dimension, _, _) in _ON_THE_RECORDER.items():
+    for variable, dimension in _ON_THE_RECORDER.items():
         if variable in test and (silent := test[variable].isnull().all("time_acc").to_numpy()).any():
             raise InputError(
                 path, str(test[dimension].values[np.argmax(silent)]), "expected readings; all are missing"

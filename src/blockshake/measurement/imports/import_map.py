@@ -77,7 +77,7 @@ def load_map(path):
     InputError
         Not YAML, an unknown or missing key, a path that leads out of the folder.
     """
-    found = checked_map(load_yaml(path), path)
+    found = validated(ImportMap, load_yaml(path), path)
     folder = Path(path).parent
 
     def below(name, key, kind=None):
@@ -97,8 +97,3 @@ def load_map(path):
         tests.append(one.model_copy(update=changes))
     structure = below(found.structure, "structure", "structures")
     return found.model_copy(update={"tests": tuple(tests), "structure": structure})
-
-
-def checked_map(mapping, where):
-    """`ImportMap` from a mapping; ``where`` is named in errors."""
-    return validated(ImportMap, mapping, where)

@@ -1,50 +1,22 @@
-"""The base's motion from what was measured of it: differentiated as in the paper, or smoothed, with its uncertainty."""
+"""The base's motion as its sensors read it, each coordinate smoothed over both systems, with its uncertainty.
 
-from dataclasses import dataclass
+The base starts at rest and its acceleration is driven by white jerk, whose density is that of the largest likelihood.
+The first reading's own error is in all displacements: the error is a constant and no part of the velocity.
+"""
+
 from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from blockshake.errors import InputError
-from blockshake.measurement.motion.kalman import (
-    ACCELERATION,
-    DISPLACEMENT,
-    N_STATES,
-    OFFSET,
-    VELOCITY,
-    smooth,
-)
+from blockshake.measurement.motion.body_poses import TRANSLATION, body_poses, driven_body
+from blockshake.measurement.motion.kalman import N_STATES, smooth
 
 _OFFSET_SPREAD = 1.0  # m/s2, of an accelerometer's constant offset before anything is read
 _ACCELERATION_SPREAD = 1e-2  # m/s2, of a table at rest
-_DENSITIES = (-4.0, 8.0)  # decimal logarithms of the jerk's density that are searched [m2/s5]
-_SAME_TIME = 1e-7  # s
-
-
-@dataclass(frozen=True)
-class BaseMotion:
-    """Motion of the base along one axis.
-
-    Attributes
-    ----------
-    time : float64 array, shape (n_times,)
-        Of the marker [s].
-    displacement, velocity, acceleration : float64 arrays, shape (n_times,)
-        [m, m/s, m/s2]
-    displacement_error, velocity_error : float64 arrays, shape (n_times,)
-        Standard deviations [m, m/s]; NaN for differentiation, which has none.
-    accelerometer_offset : float
-        Estimated [m/s2]; NaN without an accelerometer.
-    """
-
-    time: np.ndarray
-    displacement: np.ndarray
-    velocity: np.ndarray
-    acceleration: np.ndarray
-    displacement_error: np.ndarray
-    velocity_error: np.ndarray
-    accelerometer_offset: float
+# decimal logarithms of the jerk's density that are tried first; the lowest is a rest [m2/s5]
+_DENSITIES = np.arange(-14.0, 8.1, 2.0)
+SAME_TIME = 1e-7  # s
 
 
 class BaseReadings(NamedTuple):
@@ -87,84 +59,78 @@ def smooth_readings(readings, density):
     return Smoothed(mean, covariance, likelihood)
 
 
-def likeliest_density(readings, decades=_DENSITIES):
-    """Density of the white jerk at which `BaseReadings` are likeliest, between two powers of ten [m2/s5]."""
-    best = minimize_scalar(
-        lambda exponent: -smooth_readings(readings, 10.0**exponent).likelihood,
-        bounds=decades, method="bounded", options={"xatol": 0.05},
-    )  # fmt: skip
-    return 10.0**best.x
+def likeliest_density(readings):
+    """Density of the white jerk at which `BaseReadings` are likeliest [m2/s5].
 
-
-def smoothed_base(time, marker, marker_noise, time_acc=None, accelerometer=None, accelerometer_noise=None):
-    """Motion smoothed over all readings of a marker and, where there is one, an accelerometer.
-
-    Parameters
-    ----------
-    time, marker : float64 arrays, shape (n_times,)
-        Displacement since the first reading; NaN is a gap [s, m].
-    marker_noise : float
-        Standard deviation of a marker's position [m].
-    time_acc, accelerometer : float64 arrays, shape (n_readings,), optional
-        Acceleration along the same axis, with a constant offset; NaN is a gap [s, m/s2].
-    accelerometer_noise : float, optional
-        Standard deviation of a reading [m/s2].
-
-    Returns
-    -------
-    BaseMotion
-        At the marker's times, gaps filled.
-
-    Raises
-    ------
-    InputError
-        Times that do not increase, fewer than four marker readings, or noise that is not positive.
-
-    Notes
-    -----
-    The base starts at rest and its acceleration is driven by white jerk, whose density is the one of the largest
-    likelihood. The first reading's own error is in all displacements: it is a constant and no part of the velocity.
+    Searched about the best of a coarse row: a weak pitch has a second, lower summit at rest.
     """
-    time, marker = np.asarray(time, dtype=float), np.asarray(marker, dtype=float)
-    _check(time, marker, marker_noise)
-    if accelerometer is None:
-        time_acc, accelerometer, accelerometer_noise = np.empty(0), np.empty(0), 1.0
-    elif not (accelerometer_noise and accelerometer_noise > 0.0):
-        raise InputError("base motion", "accelerometer_noise", "expected a positive number")
-    readings = together(
-        time, marker, marker_noise, np.asarray(time_acc), np.asarray(accelerometer), accelerometer_noise
-    )
-    every = readings.time
-    mean, covariance, _ = smooth_readings(readings, likeliest_density(readings))
-    there = np.searchsorted(every, time - _SAME_TIME)
-    errors = np.sqrt(np.maximum(np.diagonal(covariance[there], axis1=1, axis2=2), 0.0))
-    return BaseMotion(
-        time=time,
-        displacement=mean[there, DISPLACEMENT],
-        velocity=mean[there, VELOCITY],
-        acceleration=mean[there, ACCELERATION],
-        displacement_error=errors[:, DISPLACEMENT],
-        velocity_error=errors[:, VELOCITY],
-        accelerometer_offset=float(mean[-1, OFFSET]) if len(time_acc) else np.nan,
-    )
 
+    def unlikely(exponent):
+        return -smooth_readings(readings, 10.0**exponent).likelihood
 
-def _check(time, marker, marker_noise):
-    if len(time) != len(marker) or np.isfinite(marker).sum() < 4:
-        raise InputError("base motion", "marker", "expected at least four readings of the base's marker")
-    if not (np.diff(time) > 0.0).all():
-        raise InputError("base motion", "time", "expected times that increase")
-    if not marker_noise > 0.0:
-        raise InputError("base motion", "marker_noise", f"expected a positive number, not {marker_noise}")
+    best = _DENSITIES[int(np.argmin([unlikely(exponent) for exponent in _DENSITIES]))]
+    bounds = best - 2.0, best + 2.0
+    return 10.0 ** minimize_scalar(unlikely, bounds=bounds, method="bounded", options={"xatol": 0.05}).x
 
 
 def together(time, marker, marker_noise, time_acc, accelerometer, accelerometer_noise):
     """`BaseReadings` of both systems, each with its own times; empty arrays where there is no accelerometer."""
     every = np.unique(np.concatenate([time, time_acc]))
-    every = every[np.concatenate([[True], np.diff(every) > _SAME_TIME])]
+    every = every[np.concatenate([[True], np.diff(every) > SAME_TIME])]
     read = []
     for own, values in ((time, marker), (time_acc, accelerometer)):
         row = np.full(len(every), np.nan)
-        row[np.searchsorted(every, own - _SAME_TIME)] = values
+        row[np.searchsorted(every, own - SAME_TIME)] = values
         read.append(row)
     return BaseReadings(every, read[0], marker_noise, read[1], accelerometer_noise)
+
+
+class ChannelReadings(NamedTuple):
+    """Readings of one accelerometer channel, float64 (n_readings,), NaN for a gap [s, m/s2]."""
+
+    time: np.ndarray
+    values: np.ndarray
+
+
+def base_coordinates(test, structure, sensors):
+    """Displacement of the driven body's mass centre and its pitch, since the first reading.
+
+    Parameters
+    ----------
+    test : xarray.Dataset
+        As in a campaign's test file.
+    structure : Structure
+    sensors : Sensors
+
+    Returns
+    -------
+    values : float64 array, shape (n_times, 4)
+        x, y, z [m] and pitch [rad]; NaN is a gap, or a direction that is not measured; a pitch that the markers do
+        not tell is 0.
+    noise : float64 array, shape (4,)
+        Standard deviations [m, rad]; 0 of what is not told.
+    """
+    poses = body_poses(test, structure, sensors.marker_noise, asked=structure.driven)
+    body = driven_body(structure, poses)
+    turn = poses.rotation[:, body]
+    first = int(np.flatnonzero(np.isfinite(poses.position[:, body, 0]))[0])
+    against = turn @ turn[first].T
+    pitch = 0.5 * (against[:, 0, 2] - against[:, 2, 0])
+    moved = poses.position[:, body] - poses.position[first, body]
+    noise = np.sqrt(np.diag(poses.covariance[body])[[0, 1, 2, 4]])
+    if poses.known[body] == TRANSLATION:
+        pitch, noise[3] = np.zeros(len(pitch)), 0.0
+    untold = ~poses.told[body]
+    moved[:, untold], noise[:3][untold] = np.nan, 0.0
+    return np.column_stack([moved, pitch]), noise
+
+
+def base_accelerometer(test, structure):
+    """`ChannelReadings` of the first accelerometer on a driven body along x; None where there is none."""
+    driven = {body.name for body in structure.file.bodies if body.driven}
+    for sensor in structure.file.accelerometers:
+        channel = f"{sensor.name}-x"
+        if sensor.body in driven and "accelerometer" in test and channel in test["channel"].values:
+            readings = test["accelerometer"].sel(channel=channel).to_numpy()
+            return ChannelReadings(test["time_acc"].to_numpy(), readings)
+    return None

@@ -124,12 +124,12 @@ def _projector(jacobian):
 
 
 def rigid_jacobian(points):
-    """Change of the markers by a displacement and a small turn, both in the body frame, (3 n_markers, 6)."""
-    change = np.zeros((len(points), 3, 6))
+    """Change of points (..., n_points, 3) by a displacement and a small turn, in their frame, (..., 3 n_points, 6)."""
+    change = np.zeros((*points.shape, 6))
     change[..., :3] = np.eye(3)
     for axis in range(3):
         change[..., 3 + axis] = np.cross(np.eye(3)[axis], points)
-    return change.reshape(-1, 6)
+    return change.reshape(*points.shape[:-2], -1, 6)
 
 
 def outlying(residual):

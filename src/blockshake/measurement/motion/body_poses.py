@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.measurement.motion.rigid_pose import fit_poses
+from blockshake.measurement.motion.rigid_pose import COLLINEAR, fit_poses, spread
 from blockshake.measurement.sensors.markers import directions_read, marker_position
 
 _TABLE_ROLL = 1e-4  # rad, standard deviation of a driven body's rotation about x before anything is read
@@ -110,15 +110,13 @@ def driven_body(structure, poses):
 def _best_fit(points, readings, measured, start, driven, noise):
     """The fullest pose that the markers allow: what is known, told directions, and position, rotation, covariance."""
     whole = measured.all(axis=1)
-    spread = (
-        np.linalg.svd(points[whole] - points[whole].mean(axis=0), compute_uv=False) if whole.any() else ()
-    )
     arms = points @ start.T
-    if whole.sum() > 2 and spread[1] > 1e-3 * spread[0]:
-        found = fit_poses(points[whole], readings[:, whole], noise)
-        fitted = np.isfinite(found.position[:, 0])
-        mean = found.covariance[fitted].mean(axis=0) if fitted.any() else np.full((6, 6), np.nan)
-        return POSE, True, (found.position, found.rotation, mean)
+    size = spread(points[whole]) if whole.sum() > 2 else np.zeros(3)
+    if size[1] > COLLINEAR * size[0]:
+        position, rotation, covariance = fit_poses(points[whole], readings[:, whole], noise)
+        fitted = np.isfinite(position[:, 0])
+        mean = covariance[fitted].mean(axis=0) if fitted.any() else np.full((6, 6), np.nan)
+        return POSE, True, (position, rotation, mean)
     for axes, turned in (((0, 2), _turn_in_plane), ((0,), _turn_of_upright)):
         own = measured[:, axes].all(axis=1)
         planar = arms[own][:, [0, 2]]

@@ -42,36 +42,12 @@ def curves_along_x(measured, members):
     return read, read.expand_dims(sample=members.sizes["sample"]).copy(data=values).assign_coords(other)
 
 
-def histories_at(histories, asked, clock="time"):
-    """All variables along a clock of a dataset at other times of it, each as by `at_times`.
-
-    Parameters
-    ----------
-    histories : xarray.Dataset
-        At uniform times.
-    asked : float64 array, shape (n_asked,)
-        Within those [s].
-    clock : str
-        Name of the dimension.
-    """
-    time = histories[clock].to_numpy()
-    changed = {}
-    for name, values in histories.data_vars.items():
-        if clock in values.dims:
-            dims = [clock, *(dim for dim in values.dims if dim != clock)]
-            moved = values.transpose(*dims).to_numpy()
-            read = at_times(moved.reshape(1, len(time), -1), time, asked)
-            changed[name] = (dims, read.reshape(len(asked), *moved.shape[1:]), values.attrs)
-    kept = histories.drop_dims(clock)
-    return kept.assign(changed).assign_coords({clock: (clock, asked, histories[clock].attrs)})
-
-
 def at_times(curves, time, asked):
     """Curves at other times, each by the cubic through the four values around it.
 
     Parameters
     ----------
-    curves : float64 array, shape (n_curves, n_times, n_markers)
+    curves : float64 array, shape (..., n_times, n_markers)
         NaN, as after the end of a run, spreads to what it is needed for.
     time : float64 array, shape (n_times,)
         Uniform; at least four [s].
@@ -81,15 +57,15 @@ def at_times(curves, time, asked):
     place = (asked - time[0]) / (time[1] - time[0])
     nearest = np.rint(place).astype(int)
     if np.abs(place - nearest).max() * (time[1] - time[0]) < _SAME_TIME:
-        return curves[:, nearest]
+        return curves[..., nearest, :]
     first = np.clip(np.floor(place).astype(int) - 1, 0, len(time) - 4)
-    found = np.zeros((len(curves), len(asked), curves.shape[2]))
+    found = np.zeros((*curves.shape[:-2], len(asked), curves.shape[-1]))
     for node in range(4):
         weight = np.ones(len(asked))
         for other in range(4):
             if other != node:
                 weight *= (place - first - other) / (node - other)
-        found += weight[:, None] * curves[:, first + node]
+        found += weight[:, None] * curves[..., first + node, :]
     return found
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.motion.body_frame import rigid_jacobian
 from blockshake.measurement.motion.body_poses import POSE, body_poses, driven_body
 from blockshake.measurement.motion.joint_coordinates import find_joints, joint_coordinates
 
@@ -86,7 +87,5 @@ def _noise(structure, poses, driven):
 
 def _at_point(covariance, arm):
     """Covariance of the displacement of a body's point and of its rotation, (6, 6)."""
-    x, y, z = arm
-    change = np.eye(6)
-    change[:3, 3:] = -np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    change = np.vstack([rigid_jacobian(arm[None]), np.eye(6)[3:]])
     return change @ covariance @ change.T

@@ -6,24 +6,21 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
 from blockshake.dynamics.motion import CHANNELS, PITCH, ground_motion
-from blockshake.measurement.campaigns.command_clock import since
 from blockshake.measurement.motion.base_motion import (
+    SAME_TIME,
     BaseReadings,
+    base_accelerometer,
+    base_coordinates,
     first_variances,
     likeliest_density,
     smooth_readings,
     together,
 )
-from blockshake.measurement.motion.base_readings import base_accelerometer, base_coordinates
 from blockshake.measurement.motion.kalman import ACCELERATION, DISPLACEMENT, OFFSET, VELOCITY, walk_into
 from blockshake.measurement.motion.outliers import without_outliers
 
-_DENSITIES = np.arange(
-    -14.0, 8.1, 2.0
-)  # decimal logarithms of the jerk's, tried first; the lowest is a rest [m2/s5]
 _LARGEST_LAG = 0.05  # s, between the clocks of the two systems
 _LAG_STEP = 0.005  # s, of the lags that are tried first
-_SAME_TIME = 1e-7  # s
 _LONG_NAMES = {
     "marker": "displacement of the slab's mass centre since the first reading, or its pitch, as the markers read it",
     "reading": "acceleration as the accelerometer reads it, gravity's part taken out",
@@ -59,7 +56,7 @@ def measure_base(test, structure, sensors, command):
 
     Notes
     -----
-    Each coordinate is smoothed by itself as in `smoothed_base`; the accelerometer is that along x, moved onto the
+    Each coordinate is smoothed by itself, as by `smooth_readings`; the accelerometer is that along x, moved onto the
     markers' clock by the lag of the largest likelihood. A pitch that the markers do not tell is none. An axis that no
     marker measures has no reading and no error (NaN), and moves as commanded where the table follows the command, else
     not at all. The accelerometer's arm above the mass centre, and the correlation between coordinates, are left out.
@@ -71,9 +68,9 @@ def measure_base(test, structure, sensors, command):
     parts = [
         together(time, column, sigma, none, none, 1.0) for column, sigma in zip(values.T, noise, strict=True)
     ]
-    densities = [_density(part) if part.marker_noise > 0.0 else 0.0 for part in parts]
+    densities = [likeliest_density(part) if part.marker_noise > 0.0 else 0.0 for part in parts]
     lag = 0.0
-    channel = base_accelerometer(test, structure, "x")
+    channel = base_accelerometer(test, structure)
     if channel is not None:
         pitch = (
             smooth_readings(parts[PITCH], densities[PITCH]).mean
@@ -85,7 +82,7 @@ def measure_base(test, structure, sensors, command):
         level = channel.values + weight, sensors.accelerometer_noise
         lag = _accelerometer_lag(read, channel.time, level, densities[0])
         parts[0] = together(*read, channel.time + lag, *level)
-        densities[0] = _density(parts[0])
+        densities[0] = likeliest_density(parts[0])
     base = _gathered(time, parts, densities)
     unread = [CHANNELS[axis] for axis in np.flatnonzero(np.isnan(values[:, :3]).all(axis=0))]
     base.attrs = {
@@ -157,7 +154,7 @@ def draw_base(base, generator):
             reading=np.where(np.isfinite(readings.reading), level, np.nan),
         )
         error = (states - smooth_readings(seen, density).mean)[:, DISPLACEMENT]
-        at = np.searchsorted(readings.time, base["time"].to_numpy()[there] - _SAME_TIME)
+        at = np.searchsorted(readings.time, base["time"].to_numpy()[there] - SAME_TIME)
         drawn[:, index] = own["displacement"].to_numpy()[there] + error[at]
     return drawn
 
@@ -165,22 +162,10 @@ def draw_base(base, generator):
 def base_as_motion(base, displacement, name, attributes):
     """`GroundMotion` from the base's ``displacement`` (n_times, 4) at the markers' times; time 0 is the start."""
     time = base["time"].to_numpy()[base["of_markers"].to_numpy() == 1] - base.attrs["start"]
-    rows = np.concatenate([[0.0], time[time > _SAME_TIME]])
+    rows = np.concatenate([[0.0], time[time > SAME_TIME]])
     values = CubicSpline(time, displacement)(rows)
     columns = dict(zip(CHANNELS, (values - values[0]).T, strict=True))
     return ground_motion(name, rows, columns, "displacement", attributes)
-
-
-def on_its_clock(test, base):
-    """The test with time 0 where the base's motion starts as an input; earlier readings are left out."""
-    return since(test, base.attrs["start"])
-
-
-def _density(readings):
-    """Likeliest density, searched about the best of a coarse row: a weak pitch has a second, lower summit at rest."""
-    tried = [smooth_readings(readings, 10.0**exponent).likelihood for exponent in _DENSITIES]
-    best = _DENSITIES[int(np.argmax(tried))]
-    return likeliest_density(readings, (best - 2.0, best + 2.0))
 
 
 def _accelerometer_lag(read, time_acc, level, density):
@@ -202,7 +187,7 @@ def _gathered(marker_time, parts, densities):
     shape = len(time), len(parts)
     columns = {name: np.full(shape, np.nan) for name in _LONG_NAMES}
     for index, (part, density) in enumerate(zip(parts, densities, strict=True)):
-        at = np.searchsorted(time, part.time - _SAME_TIME)
+        at = np.searchsorted(time, part.time - SAME_TIME)
         columns["marker"][at, index], columns["reading"][at, index] = part.marker, part.reading
         if density == 0.0:
             for name in ("displacement", "velocity", "displacement_error", "velocity_error"):
@@ -213,7 +198,7 @@ def _gathered(marker_time, parts, densities):
             columns[name][at, index] = mean[:, state]
             columns[f"{name}_error"][at, index] = np.sqrt(np.maximum(covariance[:, state, state], 0.0))
     of_markers = np.zeros(len(time), dtype=np.int8)
-    of_markers[np.searchsorted(time, marker_time - _SAME_TIME)] = 1
+    of_markers[np.searchsorted(time, marker_time - SAME_TIME)] = 1
     return xr.Dataset(
         {name: (("time", "channel"), values, {"long_name": _LONG_NAMES[name]}) for name, values in columns.items()}
         | {

@@ -19,14 +19,17 @@ def accelerometer_channels(structure):
     return [f"{sensor.name}-{axis}" for sensor in structure.file.accelerometers for axis in sensor.axes]
 
 
-def accelerometer_readings(structure, time, orientation, velocity, angular_velocity):
-    """Readings of every channel, from the motion of the bodies at `FINE_RATE`.
+def reading_times(time):
+    """Times of the readings from those of the states at `FINE_RATE` [s]."""
+    return time[0] + np.arange((len(time) - 1) // SKIP + 1) / RATE
+
+
+def specific_forces(structure, orientation, velocity, angular_velocity):
+    """Mean specific force of every channel between each two states at `FINE_RATE`, until the last whole one.
 
     Parameters
     ----------
     structure : Structure
-    time : float64 array, shape (n_fine,)
-        Uniform at `FINE_RATE`, 2048 Hz [s].
     orientation : float64 array, shape (n_fine, n_bodies, 4)
         Unit quaternions (w, x, y, z), body to world, continuous in sign; NaN after an abort.
     velocity, angular_velocity : float64 arrays, shape (n_fine, n_bodies, 3)
@@ -34,57 +37,14 @@ def accelerometer_readings(structure, time, orientation, velocity, angular_veloc
 
     Returns
     -------
-    time_acc : float64 array, shape (n_readings,)
-        ``time[0] + k / 512`` up to the last state [s].
-    readings : float64 array, shape (n_readings, n_channels)
-        Specific force [m/s2]: a block at rest reads +9.81 along an upward axis, a falling one 0.
-        NaN after the last whole state.
-    channels : list of str, length n_channels
-        ``NAME-axis``.
-
-    Raises
-    ------
-    ValueError
-        The times are not uniform at `FINE_RATE`.
+    float64 array, shape (n_intervals, n_channels)
+        In the axes of the bodies in the middle of the interval [m/s2].
 
     Notes
     -----
     The velocity of the sensor's point, differenced over a fine interval, is the mean acceleration in it exactly,
     whatever impacts it holds: an impact enters with its whole change of velocity. That mean belongs to the middle of
-    the interval and is turned into the body's axes by the orientation there; four neighbours give the value at the
-    state between them (third order), the low-pass (a 4th-order Butterworth at 50 Hz, forwards and backwards, so without
-    lag) runs at 2048 Hz, and every fourth value is a reading. Beyond the ends the record continues as its point
-    reflection for a quarter second; a record cut by an abort ends where the states do.
-    """
-    if len(time) > 1 and not np.allclose(np.diff(time), 1.0 / FINE_RATE, rtol=1e-6, atol=0.0):
-        raise ValueError(f"accelerometers need states at a uniform {FINE_RATE:g} Hz")
-    channels = accelerometer_channels(structure)
-    time_acc = reading_times(time)
-    readings = np.full((len(time_acc), len(channels)), np.nan)
-    if channels:
-        force = specific_forces(structure, orientation, velocity, angular_velocity)
-        smooth = readings_of(force)
-        readings[: len(smooth)] = smooth
-    return time_acc, readings, channels
-
-
-def reading_times(time):
-    """Times of the readings from those of the states, as of `accelerometer_readings` [s]."""
-    return time[0] + np.arange((len(time) - 1) // SKIP + 1) / RATE
-
-
-def specific_forces(structure, orientation, velocity, angular_velocity):
-    """Mean specific force of every channel between each two states, until the last whole one.
-
-    Parameters
-    ----------
-    structure, orientation, velocity, angular_velocity
-        As of `accelerometer_readings`.
-
-    Returns
-    -------
-    float64 array, shape (n_intervals, n_channels)
-        In the axes of the bodies in the middle of the interval [m/s2].
+    the interval and is turned into the body's axes by the orientation there.
     """
     sensors = structure.file.accelerometers
     if not sensors:
@@ -103,9 +63,34 @@ def specific_forces(structure, orientation, velocity, angular_velocity):
     )
 
 
-def readings_of(forces):
-    """Readings of the states around `specific_forces` of a whole run, (n_readings, n_channels) [m/s2]."""
-    return low_pass(_at_states(forces))[::SKIP] if len(forces) else forces
+def readings_of(forces, times):
+    """Readings of channels at `reading_times` from their `specific_forces` of a whole run.
+
+    Parameters
+    ----------
+    forces : float64 array, shape (n_intervals, n_channels)
+        [m/s2]
+    times : float64 array, shape (n_readings,)
+        [s]
+
+    Returns
+    -------
+    float64 array, shape (n_readings, n_channels)
+        Specific force [m/s2]: a block at rest reads +9.81 along an upward axis, a falling one 0. NaN after the last
+        whole state.
+
+    Notes
+    -----
+    Four neighbours give the value at the state between them (third order), the low-pass (a 4th-order Butterworth at 50
+    Hz, forwards and backwards, so without lag) runs at 2048 Hz, and every fourth value is a reading. Beyond the ends
+    the record continues as its point reflection for a quarter second; a record cut by an abort ends where the states
+    do.
+    """
+    readings = np.full((len(times), forces.shape[1]), np.nan)
+    if len(forces):
+        smooth = low_pass(_at_states(forces))[::SKIP]
+        readings[: len(smooth)] = smooth
+    return readings
 
 
 def low_pass(values):

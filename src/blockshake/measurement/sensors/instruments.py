@@ -8,30 +8,18 @@ from scipy.signal import lfilter
 
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.geometry.schema import AXES
-from blockshake.measurement.sensors import accelerometers, markers, transducers
+from blockshake.geometry.schema import AXES, Vector
 from blockshake.measurement.sensors.markers import marker_position
-from blockshake.validation import Finite, NotNegative, ProperFraction, Strict
+from blockshake.measurement.sensors.stated_noise import Sensors
+from blockshake.validation import Finite, NotNegative, ProperFraction
 
-Vector = tuple[Finite, Finite, Finite]
 _BURST = 10  # readings that a dropout loses in the mean
 _OUTLIER = 10.0  # standard deviations of the noise
 
 
-class Instruments(Strict):
+class Instruments(Sensors):
     """Sensors of a test; the defaults have noise and no other fault."""
 
-    marker_noise: NotNegative = Field(
-        markers.NOISE, description="standard deviation of a marker's position [m]"
-    )
-    accelerometer_noise: NotNegative = Field(
-        accelerometers.NOISE, description="standard deviation of a reading [m/s2]"
-    )
-    transducer_noise: NotNegative = Field(
-        transducers.NOISE,
-        description="standard deviation of a displacement transducer's reading [m]",
-        exclude_if=lambda noise: noise == transducers.NOISE,  # settings without it keep their digest
-    )
     noise_memory: ProperFraction = Field(
         0.0, description="correlation of the noise of one reading with the next [1]"
     )

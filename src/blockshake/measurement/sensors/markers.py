@@ -35,26 +35,25 @@ def point_position(structure, points, position, orientation):
     return position[..., bodies, :] + np.einsum("...mij,mj->...mi", turn, structure.arms(points))
 
 
-def marker_displacement(structure, position, orientation, start=None):
-    """Displacement of every marker since the first time.
+def noisy_reading(displacement, marker_noise, generator):
+    """Displacement as read by markers with noise, relative to the first reading.
 
     Parameters
     ----------
-    structure : Structure
-    position : float64 array, shape (n_times, n_bodies, 3)
-        Of the mass centres, inertial frame [m].
-    orientation : float64 array, shape (n_times, n_bodies, 4)
-        Unit quaternions (w, x, y, z), body to world.
-    start : tuple of float64 arrays, shapes (1, n_bodies, 3) and (1, n_bodies, 4), optional
-        Position and orientation at the first time; by default the first of those given.
+    displacement : float64 array, shape (n_times, ...)
+        True, since the first time [m]; NaN stays.
+    marker_noise : float
+        Standard deviation of the position read, independent in time, marker and axis [m].
+    generator : numpy.random.Generator
+        Source of the noise; advanced.
 
     Returns
     -------
-    float64 array, shape (n_times, n_markers, 3)
-        Inertial frame [m], zero at the first time; NaN where the body's pose is.
+    float64 array, same shape
+        Zero at the first time: the first reading's own error is in all the others.
     """
-    start = (position[:1], orientation[:1]) if start is None else start
-    return marker_position(structure, position, orientation) - marker_position(structure, *start)
+    position = displacement + generator.normal(0.0, marker_noise, size=np.shape(displacement))
+    return position - position[:1]
 
 
 def directions_read(displacement):

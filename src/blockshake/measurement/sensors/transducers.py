@@ -33,8 +33,8 @@ def transducer_names(structure):
     return [item.name for item in structure.file.displacement_transducers]
 
 
-def transducer_displacement(structure, position, orientation):
-    """Reading of every displacement transducer since the first time.
+def transducer_lengths(structure, position, orientation):
+    """Length of every displacement transducer; a reading is its change since the start.
 
     Parameters
     ----------
@@ -47,15 +47,8 @@ def transducer_displacement(structure, position, orientation):
     Returns
     -------
     float64 array, shape (n_times, n_transducers)
-        [m], positive where the transducer has become longer, zero at the first time; NaN where a pose is, and where a
-        rod has lost its face.
+        From a datum that is the same at all times [m]; NaN where a pose is, and where a rod has lost its face.
     """
-    lengths = transducer_lengths(structure, position, orientation)
-    return lengths - lengths[:1]
-
-
-def transducer_lengths(structure, position, orientation):
-    """Lengths of the same [m], from a datum that is the same at all times."""
     items = structure.file.displacement_transducers
     ends = point_position(structure, items, position, orientation)
     anchors = point_position(structure, [item.anchor for item in items], position, orientation)

@@ -8,15 +8,14 @@ import pandas as pd
 import xarray as xr
 
 from blockshake.dynamics.system import FINISHED
-from blockshake.errors import InputError
 from blockshake.files import content_digest, shipped_names
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
-from blockshake.measurement.modes.channel_histories import accelerometer_histories
 from blockshake.measurement.motion.compared_curves import curves_along_x
 from blockshake.measurement.sensors.accelerometers import CUTOFF
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.measurement.sensors.markers import driven_marker
+from blockshake.measurement.sensors.whole_channels import whole_channels
 from blockshake.simulation.simulate import simulate
 from blockshake.simulation.structure_digest import structure_digest
 from blockshake.store import keep_dataset, kept, load_made
@@ -221,21 +220,17 @@ def log_spectrum(test, structure, duration):
     empty = xr.DataArray(
         np.empty((0, 0)), {"line": np.empty(0, dtype=int), "channel": np.empty(0, dtype=str)}
     )
-    try:
-        read = accelerometer_histories(test, structure)
-    except InputError:  # no channel without long gaps
+    read = whole_channels(test, structure)
+    if read is None:
         return empty
-    if read is None or read.driven.all():
-        return empty
-    inside = read.time <= duration
+    count = int(np.searchsorted(read.time, duration, side="right"))
     rate = (len(read.time) - 1) / (read.time[-1] - read.time[0])
-    if inside.sum() < 2.0 * _SEGMENT * rate:
+    if count < 2.0 * _SEGMENT * rate:
         return empty
-    _, power = welch(read.values[inside][:, ~read.driven], rate, nperseg=round(_SEGMENT * rate), axis=0)
+    _, power = welch(read.values[:count], rate, nperseg=round(_SEGMENT * rate), axis=0)
     power = np.log(np.maximum(power[1:], np.finfo(float).tiny))[: round(CUTOFF * _SEGMENT)]
-    names = ["-".join(name) for name, driven in zip(read.names, read.driven, strict=True) if not driven]
     lines = np.arange(1, len(power) + 1)
-    return xr.DataArray(power, {"line": lines, "channel": names}, attrs={"units": "1"})
+    return xr.DataArray(power, {"line": lines, "channel": read.names}, attrs={"units": "1"})
 
 
 def _at_places(values, samples):

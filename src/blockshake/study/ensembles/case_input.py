@@ -10,8 +10,9 @@ from blockshake.errors import InputError
 from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.campaigns.command_clock import since
 from blockshake.measurement.campaigns.commanded_motion import follow
-from blockshake.measurement.motion.measured_base import base_as_motion, draw_base, measure_base, on_its_clock
+from blockshake.measurement.motion.measured_base import base_as_motion, draw_base, measure_base
 from blockshake.measurement.sensors.markers import driven_marker, unread_directions
 from blockshake.store import load_made
 
@@ -101,7 +102,7 @@ def measured_on_clock(named, base):
     test = test.sel(marker=[name for name in test["marker"].values if name not in unread])
     slab_marker = driven_marker(load_structure(campaign.structure), test["marker"].values)
     test = test.assign_attrs(slab_marker=slab_marker)
-    return on_its_clock(test, _loaded(base)), campaign.sensors.marker_noise
+    return since(test, _loaded(base).attrs["start"]), campaign.sensors.marker_noise
 
 
 def driving_motions(case, base, seed):

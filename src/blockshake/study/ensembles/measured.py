@@ -7,7 +7,7 @@ import xarray as xr
 
 from blockshake.errors import InputError
 from blockshake.measurement.motion.compared_curves import curves_along_x
-from blockshake.measurement.sensors.marker_noise import noisy_reading
+from blockshake.measurement.sensors.markers import noisy_reading
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW, in_frames, peak_and_residual
 from blockshake.study.ensembles.envelope import counted_samples
 

@@ -1,1 +1,0 @@
-"""Frequencies and damping of a stack from noise and sine tests."""
