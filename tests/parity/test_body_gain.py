@@ -10,7 +10,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "forces"))
 from known_blocks import readings, shaken, sliding, stack
 
 from blockshake.measurement.campaigns.campaign import Sensors
-from blockshake.parity.body_gain import body_gains
+from blockshake.parity.kinds.body_gain import body_gains
 from blockshake.parity.correction import corrected
 from blockshake.parity.finding import Level
 

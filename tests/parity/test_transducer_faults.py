@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from blockshake.parity.finding import Level
-from blockshake.parity.transducer_equations import HeldReading
+from blockshake.parity.transducer_readings import HeldReading
 from blockshake.parity.transducer_faults import check_transducer, hypotheses
 
 TESTS = ("t1", "t2", "t3")

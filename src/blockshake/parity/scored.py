@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from blockshake.parity.finding import Finding, chance_within
+from blockshake.parity.finding import chance_within
 
-_FEWEST = 4  # segments that carry the information
+FEWEST_SEGMENTS = 4  # segments that carry the information
 
 
 @dataclass(frozen=True)
@@ -28,12 +28,13 @@ class Scored:
         """One component alone."""
         return Scored(self.estimate[[index]], self.covariance[[index]][:, [index]], self.freedom)
 
-    def finding(self, quantity, where, tests, tolerance, level, length=1.0):
+    def finding(self, kind, where, tests, tolerance, level, length=1.0):
         """List of the `Finding`, empty where a sound sensor may have as much.
 
         Parameters
         ----------
-        quantity, where, tests
+        kind : Kind
+        where, tests
             As in `Finding`.
         tolerance : float
             What a sound sensor may have.
@@ -43,7 +44,7 @@ class Scored:
         """
         p = level.hypotheses * chance_within(self.estimate, self.covariance, tolerance, self.freedom)
         rate, square = self.estimate / length, self.covariance / length**2
-        return [Finding.of(quantity, where, p, tests, rate, square)] if p < level.chance else []
+        return [kind.finding(where, p, tests, rate, square)] if p < level.chance else []
 
 
 def scored(estimate, normal, scores):
@@ -57,7 +58,7 @@ def scored(estimate, normal, scores):
     """
     scores = np.array(scores)
     power = (scores**2).sum(axis=1)
-    if len(scores) < _FEWEST or not power.sum():
+    if len(scores) < FEWEST_SEGMENTS or not power.sum():
         return None
     effective = power.sum() ** 2 / (power**2).sum()
     freedom = max(0.5 * (len(scores) + effective) - len(estimate), 1.0)

@@ -1,30 +1,18 @@
 """Faults of a displacement transducer: wrong sign, gain, an end elsewhere, an end that slips, one after the other."""
 
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.parity.finding import Finding
-from blockshake.parity.linear_faults import Fault, clearest, data_alone, freed, judge, posterior
+from blockshake.parity.finding import chance_of_misfit
+from blockshake.parity.kinds import gain, place, slip
+from blockshake.parity.kinds.polarity import POLARITY
+from blockshake.parity.linear_faults import Equations, Unknowns, clearest, data_alone
 
-GAIN, PLACE, REFERENCE, SLIP = "gain", "place", "reference place", "slip"
-_COLUMNS = {GAIN: np.arange(1), PLACE: np.arange(1, 4), REFERENCE: np.arange(4, 7)}
-_FIRST_SLIP = 7  # column of the first test's slip
-# What a sound transducer may have; its standard deviation is half of it.
-_TOLERANCE = {
-    GAIN: 1e-2,  # of a calibration, as that of an accelerometer
-    PLACE: 5e-3,  # m, along any direction; hooks and brackets are placed with a tape
-    REFERENCE: 5e-3,
-    SLIP: 5e-4,  # m, of a hook or a bracket that beds in
-}
-# Faults that are looked for only where they would leave as much as the noise of a mean: noise in a column makes its
-# coefficient too small, of a gain by less than the square of this, a tenth of its tolerance.
-_VISIBLE = {GAIN: 0.03, PLACE: 0.05, REFERENCE: 0.05}  # 1, m, m; those of markers in the registry
+_COLUMNS = gain.OF_TRANSDUCER, place.OF_END, place.OF_REFERENCE_END
 _SEGMENT = 5  # means over which coloured noise averages out, half a second
 _EDGE = 3  # means before and after a slip
-_REVERSED = 0.5  # of the misfit that the other sign may leave at most
 _MOST_FAULTS = 4
 _NOTHING = 1e-9  # m and m/s, as of readings without any noise
 
@@ -58,6 +46,9 @@ def check_transducer(name, held, level):
     wrong places d of both ends, a slip s from some time on, and a lag l of the rate r. Constants and lags are taken
     out; the other unknowns are tied to zero by half their tolerance, but for those that have been named. The time of a
     slip is the likeliest one, and its chance counts once for each time that was tried.
+
+    A gain or a place is looked for only where a visible one would leave as much as the noise of a mean: noise in a
+    column makes its coefficient too small, of a gain by less than the square of this, a tenth of its tolerance.
     """
     tests, findings = tuple(held), []
     if not held:
@@ -66,44 +57,39 @@ def check_transducer(name, held, level):
         np.concatenate([_without_lag(one.left, one) for one in whole])
         for whole in (held.values(), [one.reversed() for one in held.values()])
     )
-    p = level.hypotheses * _chance_of_sign(readings, turned)
-    if p < level.chance:
-        findings.append(Finding.of("polarity", (name,), p, tests))
+    after = (turned**2).sum()
+    chance = chance_of_misfit((readings**2).sum(), after, max(after / len(turned), _NOTHING**2))
+    if level.hypotheses * chance < level.chance:
+        findings.append(POLARITY.finding((name,), level.hypotheses * chance, tests))
         held = {test: one.reversed() for test, one in held.items()}
-    named, slips = {}, {}
+    unknowns, named, slips = Unknowns((*_COLUMNS, slip.OF_END), 1, len(tests)), {}, {}
     while True:
-        spread = freed(_spread(len(tests)), map(_columns, named))
-        equations = _Equations.of(list(held.values()), spread, slips)
-        judged = judge(equations, spread, equations.open_to(named), level, equations.freedom)
-        best = clearest(judged, level, (name,))
+        spread = unknowns.freed(named)
+        made = _equations(list(held.values()), unknowns, spread, slips)
+        told = {fault: rest for fault, rest in made.faults.items() if fault not in named}
+        best = clearest(made.equations, spread, told, level, (name,))
         if best is None or len(named) == _MOST_FAULTS:
             break
         named[best[0]] = best[1:]
-        if best[0].quantity == SLIP:
-            slips[best[0].test] = equations.slips[best[0].test]
-    mean, covariance = posterior(equations, spread)
+        if best[0].column is slip.OF_END:
+            slips[best[0].test] = made.slips[best[0].test]
+    mean, covariance = made.equations.posterior(spread)
     for fault, (p, rivals) in named.items():
-        estimate, square = equations.estimate(fault, mean, covariance, spread)
-        at = tests
-        if fault.quantity == SLIP:
-            at, row = (tests[fault.test],), slips[fault.test]
-            before, after = held[at[0]].time[row - 1 : row + 1]
+        estimate, square, where = (
+            *_estimate(unknowns.of(fault), made.faults[fault][0], mean, covariance, spread),
+            tests,
+        )
+        if fault.column is slip.OF_END:
+            where, row = (tests[fault.test],), slips[fault.test]
+            before, after = held[where[0]].time[row - 1 : row + 1]
             estimate = np.array([estimate[0], 0.5 * (before + after)])
             square = np.diag([square[0, 0], (after - before) ** 2 / 12.0])
-        findings.append(Finding.of(fault.quantity, (name,), p, at, estimate, square, rivals))
-    gain, error = np.nan, np.nan
-    if equations.informed(GAIN).any():
-        alone = data_alone(mean[:1], covariance[:1, :1], spread[:1])
-        gain, error = float(alone[0][0]), float(np.sqrt(alone[1][0, 0]))
-    return TransducerCheck(gain, error, tuple(findings))
-
-
-def _chance_of_sign(left, turned):
-    """Chance of misfits as these where the sign is right."""
-    own, other = (left**2).sum(), (turned**2).sum()
-    if other > _REVERSED * own:
-        return 1.0
-    return float(np.exp(-(own - other) / (2.0 * max(other / len(left), _NOTHING**2))))
+        findings.append(fault.column.kind.finding((name,), p, where, estimate, square, rivals))
+    (of_gain,) = unknowns.faults(gain.OF_TRANSDUCER)
+    if of_gain not in made.faults:
+        return TransducerCheck(np.nan, np.nan, tuple(findings))
+    size, error = data_alone(mean[:1], covariance[:1, :1], spread[:1])
+    return TransducerCheck(float(size[0]), float(np.sqrt(error[0, 0])), tuple(findings))
 
 
 def _without_lag(values, held):
@@ -112,98 +98,58 @@ def _without_lag(values, held):
     return values - np.multiply.outer(late, late @ values)
 
 
-def _columns(fault):
-    """Unknowns of a fault."""
-    return np.array([_FIRST_SLIP + fault.test]) if fault.quantity == SLIP else _COLUMNS[fault.quantity]
+class _Made(NamedTuple):
+    """`Equations` of gain, places and slips; by fault the unknowns that are told and its trials; rows of the slips."""
+
+    equations: Equations
+    faults: dict
+    slips: list
 
 
-def _spread(n_tests):
-    """Standard deviation of each unknown before anything is read."""
-    kinds = [GAIN, *3 * [PLACE], *3 * [REFERENCE], *n_tests * [SLIP]]
-    return np.array([_TOLERANCE[kind] for kind in kinds]) / 2.0
+def _equations(held, unknowns, spread, fixed):
+    """`_Made` from `HeldReading` by test; ``fixed``: row of the slip that was named, by test."""
+    steps = [_without_lag(_steps(len(one.left)), one) for one in held]
+    left, ends = (
+        [_without_lag(one.left, one) for one in held],
+        np.cumsum([0, *(len(one.left) for one in held)]),
+    )
+    left, columns = np.concatenate(left), np.zeros((ends[-1], len(spread)))
+    rows, of_slips = [slice(*of_test) for of_test in pairwise(ends)], unknowns.numbers[slip.OF_END][:, 0, 0]
+    for one, own in zip(held, rows, strict=True):
+        for column in _COLUMNS:
+            columns[own, unknowns.numbers[column][0, 0]] = _without_lag(column.signature(one), one)
+    for test, row in fixed.items():
+        columns[rows[test], of_slips[test]] = steps[test][:, row - _EDGE]
+    information = columns.T @ columns + _variance(columns, left) * np.diag(1.0 / spread**2)
+    rest, slips = left - columns @ np.linalg.solve(information, columns.T @ left), []
+    for test, (own, step) in enumerate(zip(rows, steps, strict=True)):
+        gained = (step.T @ rest[own]) ** 2 / np.maximum((step**2).sum(axis=0), 1e-12)
+        slips.append(fixed.get(test, _EDGE + int(gained.argmax())))
+        columns[own, of_slips[test]] = step[:, slips[test] - _EDGE]
+    rest, sums = _left_over(columns, left), []
+    for own in rows:
+        whole = len(rest[own]) // _SEGMENT * _SEGMENT
+        sums.append(rest[own][:whole].reshape(-1, _SEGMENT).sum(axis=1))
+    variance, sums = _variance(columns, left), np.concatenate(sums)
+    slow = max((sums**2).sum() / (variance * len(left)), 1.0)
+    normal, freedom = columns.T @ columns, max(len(sums) - columns.shape[1], 4.0)
+    equations = Equations(normal, columns.T @ left, variance * slow, freedom)
+    seen, faults = max(np.sqrt(variance), *(one.noise for one in held)), {}
+    for column in _COLUMNS:
+        (fault,) = unknowns.faults(column)
+        size = np.sqrt((columns[:, unknowns.of(fault)] ** 2).mean(axis=0))
+        if (informed := unknowns.of(fault)[column.visible * size > seen]).size:
+            faults[fault] = informed, 1
+    for fault in unknowns.faults(slip.OF_END):
+        faults[fault] = unknowns.of(fault), steps[fault.test].shape[1]
+    return _Made(equations, faults, slips)
 
 
-@dataclass(frozen=True)
-class _Equations:
-    """Normal equations of gain, six places and one slip a test; and the row of each test's likeliest slip.
-
-    ``variance`` is that of a mean [m2], with the factor by which coloured noise averages out more slowly; ``seen`` is
-    what a fault has to leave in the means to be looked for [m].
-    """
-
-    columns: np.ndarray
-    left: np.ndarray
-    variance: float
-    seen: float
-    freedom: float
-    slips: tuple
-
-    @classmethod
-    def of(cls, held, spread, fixed):
-        """Equations of `HeldReading` by test; ``fixed``: row of the slip that was named, by test."""
-        blocks = [np.zeros((len(one.left), len(spread))) for one in held]
-        for test, (block, one) in enumerate(zip(blocks, held, strict=True)):
-            block[:, 0], block[:, 1:_FIRST_SLIP] = one.expected, one.places
-            if test in fixed:
-                block[:, _FIRST_SLIP + test] = _steps(len(one.left))[:, fixed[test] - _EDGE]
-        blocks = [_without_lag(block, one) for block, one in zip(blocks, held, strict=True)]
-        left = np.concatenate([_without_lag(one.left, one) for one in held])
-        columns, ends = np.concatenate(blocks), np.cumsum([0, *map(len, blocks)])
-        information = columns.T @ columns + _variance(columns, left) * np.diag(1.0 / spread**2)
-        rest, slips = left - columns @ np.linalg.solve(information, columns.T @ left), []
-        for test, one in enumerate(held):
-            rows, steps = slice(*ends[test : test + 2]), _without_lag(_steps(len(one.left)), one)
-            gained = (steps.T @ rest[rows]) ** 2 / np.maximum((steps**2).sum(axis=0), 1e-12)
-            slips.append(fixed.get(test, _EDGE + int(gained.argmax())))
-            columns[rows, _FIRST_SLIP + test] = steps[:, slips[test] - _EDGE]
-        variance, segments = _variance(columns, left), _segments(columns, left, ends)
-        slow = max((segments**2).sum() / (variance * len(left)), 1.0)
-        seen = max(np.sqrt(variance), *(one.noise for one in held))
-        return cls(
-            columns, left, variance * slow, seen, max(len(segments) - columns.shape[1], 4.0), tuple(slips)
-        )
-
-    @property
-    def normal(self):
-        """Products of the columns."""
-        return self.columns.T @ self.columns
-
-    @property
-    def right(self):
-        """Products of the columns with what is left."""
-        return self.columns.T @ self.left
-
-    def informed(self, quantity):
-        """Columns of a kind in which its visible fault would leave as much as the noise."""
-        size = np.sqrt((self.columns[:, _COLUMNS[quantity]] ** 2).mean(axis=0))
-        return _VISIBLE[quantity] * size > self.seen
-
-    def read(self, fault):
-        """Unknowns of a fault that the readings tell something about."""
-        return _columns(fault) if fault.quantity == SLIP else _columns(fault)[self.informed(fault.quantity)]
-
-    def open_to(self, named):
-        """Faults that are not named and leave something, as `judge` takes them."""
-        faults = [Fault(kind, 0) for kind in _COLUMNS] + [
-            Fault(SLIP, 0, test) for test in range(len(self.slips))
-        ]
-        return {
-            fault: (self.read(fault), _TOLERANCE[fault.quantity], self._trials(fault))
-            for fault in faults
-            if fault not in named and len(self.read(fault))
-        }
-
-    def _trials(self, fault):
-        """Times at which a slip was tried; 1 for other faults."""
-        return (self.columns[:, _FIRST_SLIP + fault.test] != 0.0).sum() if fault.quantity == SLIP else 1
-
-    def estimate(self, fault, mean, covariance, spread):
-        """Estimate and covariance of a fault with all that is named; along what is not seen 0, as good as unknown."""
-        columns, read = _columns(fault), self.read(fault)
-        estimate, square = np.zeros(len(columns)), np.diag(spread[columns] ** 2)
-        at = read - columns[0]
-        estimate[at], square[np.ix_(at, at)] = mean[read], covariance[np.ix_(read, read)]
-        return estimate, square
+def _estimate(own, told, mean, covariance, spread):
+    """Estimate and covariance of a fault with all that is named; along what is not told 0, as good as unknown."""
+    estimate, square, at = np.zeros(len(own)), np.diag(spread[own] ** 2), told - own[0]
+    estimate[at], square[np.ix_(at, at)] = mean[told], covariance[np.ix_(told, told)]
+    return estimate, square
 
 
 def _steps(count):
@@ -221,12 +167,3 @@ def _variance(columns, left):
     """Of a mean, where all faults are free [m2]."""
     rest = _left_over(columns, left)
     return max((rest**2).sum() / max(len(left) - columns.shape[1], 1), _NOTHING**2)
-
-
-def _segments(columns, left, ends):
-    """Sums of what is left over half-second segments [m], of all tests."""
-    rest, sums = _left_over(columns, left), []
-    for first, last in pairwise(ends):
-        whole = (last - first) // _SEGMENT * _SEGMENT
-        sums.append(rest[first : first + whole].reshape(-1, _SEGMENT).sum(axis=1))
-    return np.concatenate(sums)

@@ -1,9 +1,10 @@
-"""Lag and skew of the optical clock against the recorder's, from accelerometers against markers."""
+"""The optical clock is behind the recorder's, or slow: its reading at t is of t - lag - skew (t - middle)."""
 
 from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.parity.kinds.kind import Kind
 from blockshake.parity.scored import Scored, scored
 
 _LAG_TOLERANCE = 5e-4  # s; half a millisecond of trigger jitter is no fault
@@ -13,6 +14,25 @@ _COARSE_STRIDE = 5  # readings, a quarter of the band's shortest period
 _FARTHEST_LAG = 0.1  # s, that is searched
 _STEPS = 4  # of Newton's method
 _STEP = 1e-3  # s, of the difference that gives the readings' rate
+
+
+def _correct_lag(test, findings, structure):
+    """Move the recorder's times onto the optical clock, which stays."""
+    if "time_acc" in test.coords:
+        for finding in findings:
+            test.coords["time_acc"] = test["time_acc"] + finding.estimate[0]
+
+
+def _correct_skew(test, findings, structure):
+    if "time_acc" in test.coords:
+        middle = 0.5 * float(test["time"][0] + test["time"][-1])
+        for finding in findings:
+            since = test["time_acc"] - middle
+            test.coords["time_acc"] = test["time_acc"] + finding.estimate[0] * since
+
+
+LAG = Kind("lag", "clock-lag", "marker read at t shows t - lag", _correct_lag, units=("s", "s"))
+SKEW = Kind("skew", "clock-lag", "lag = skew (t - middle)", _correct_skew, size=None)
 
 
 class ClockLag(NamedTuple):
@@ -59,10 +79,10 @@ def clock_findings(clock, level):
     if common is None:
         return []
     where = ("optical clock",)
-    findings = common.part(0).finding("lag", where, lags, _LAG_TOLERANCE, level)
+    findings = common.part(0).finding(LAG, where, lags, _LAG_TOLERANCE, level)
     for name, lag in [] if findings else lags.items():
-        findings += lag.finding("lag", where, (name,), _LAG_TOLERANCE, level)
-    return findings + common.part(1).finding("skew", where, lags, _SKEW_TOLERANCE, level)
+        findings += lag.finding(LAG, where, (name,), _LAG_TOLERANCE, level)
+    return findings + common.part(1).finding(SKEW, where, lags, _SKEW_TOLERANCE, level)
 
 
 def _coarse_lag(pairs):
@@ -96,8 +116,8 @@ def _lag_equations(pairs, lag):
         left = expected - read * (read @ expected) / (read @ read)
         weight = 1.0 / np.var(left - design @ np.linalg.lstsq(design, left, rcond=None)[0])
         segment = np.floor((time - pair.time[0]) / _SEGMENT)
-        for one in np.unique(segment):
-            rows = segment == one
-            normals[one] = normals.get(one, 0.0) + weight * design[rows].T @ design[rows]
-            scores[one] = scores.get(one, 0.0) + weight * design[rows].T @ left[rows]
+        for number in np.unique(segment):
+            rows = segment == number
+            normals[number] = normals.get(number, 0.0) + weight * design[rows].T @ design[rows]
+            scores[number] = scores.get(number, 0.0) + weight * design[rows].T @ left[rows]
     return np.array(list(normals.values())), np.array(list(scores.values()))

@@ -1,11 +1,11 @@
-"""Drift of the optical system's whole frame, seen as a creep of the driven body."""
+"""The whole frame of the optical system creeps: the driven bodies seem to, where nothing moves them."""
 
 import numpy as np
 
 from blockshake.measurement.sensors.markers import directions_read, marker_bodies
-from blockshake.parity.finding import Finding, chance_within
-from blockshake.parity.marker_equations import record_scale
-from blockshake.parity.scored import by_segment
+from blockshake.parity.finding import chance_within
+from blockshake.parity.kinds.drift import DRIFT, FRAME
+from blockshake.parity.scored import FEWEST_SEGMENTS, by_segment
 
 _SEGMENT = 1.0  # s
 _FEWEST = 100  # readings
@@ -18,7 +18,8 @@ def frame_drift(structure, tests, marker_noise, level):
 
     Across the shaking direction a table does not go anywhere; along it the displacement of the table's control, where
     there is one, is taken off first, and where there is none x is not judged. Neither is a direction that is not
-    measured. A step is no drift: both halves of the record must creep alike.
+    measured. A step is no drift: both halves of the record must creep alike. A record of less than four seconds says
+    too little of its own scatter.
     """
     driven = {body.name for body in structure.file.bodies if body.driven}
     findings = []
@@ -45,9 +46,7 @@ def frame_drift(structure, tests, marker_noise, level):
         vector, square = np.zeros(3), np.diag(np.full(3, np.inf))
         vector[axes], square[np.ix_(axes, axes)] = estimate, covariance
         length = np.ptp(time)
-        findings.append(
-            Finding.of("drift", ("optical frame",), p, (name,), vector / length, square / length**2)
-        )
+        findings.append(DRIFT.finding(FRAME, p, (name,), vector / length, square / length**2))
     return findings
 
 
@@ -59,7 +58,7 @@ def _slopes(time, values, nuisance):
     known = np.isfinite(values).all(axis=1)
     if known.sum() < _FEWEST:
         return None
-    scale = record_scale(time)[known]
+    scale = (time[known] - time[0]) / (time[-1] - time[0]) - 0.5
     # the coefficient of its size is half the difference of the slopes
     design = np.column_stack([scale, np.abs(scale)])
     basis = np.linalg.qr(np.column_stack([column[known] for column in nuisance]))[0]
@@ -68,9 +67,11 @@ def _slopes(time, values, nuisance):
     slopes = inverse @ design.T @ left
     left = left - design @ slopes
     scores = by_segment(design[:, :, None] * left[:, None], time[known] - time[0], _SEGMENT)
+    if len(scores) < FEWEST_SEGMENTS:
+        return None
     scores = np.einsum("ij,sjk->sik", inverse, scores)
-    freedom = max(len(scores) - 3, 1)
+    freedom = len(scores) - 3
     share = len(scores) / freedom
     covariance = share * np.einsum("si,sj->ij", scores[:, 0], scores[:, 0])
     gap_error = 2.0 * np.sqrt(share * (scores[:, 1] ** 2).sum(axis=0))
-    return slopes[0], covariance, max(freedom, 4), 2.0 * slopes[1], gap_error
+    return slopes[0], covariance, freedom, 2.0 * slopes[1], gap_error
