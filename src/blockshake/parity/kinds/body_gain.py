@@ -14,7 +14,7 @@ from blockshake.measurement.motion.body_poses import PLANAR, POSE, body_poses
 from blockshake.measurement.motion.joint_coordinates import find_joints, joint_coordinates
 from blockshake.parity.finding import chance_within
 from blockshake.parity.kinds.gain import GAIN
-from blockshake.parity.scored import Scored, by_segment, scored
+from blockshake.parity.regression import Size, regression
 
 _EVERY = 0.05  # s, between readings that are compared
 _SEGMENT = 0.5  # s: residuals of one segment count as one
@@ -90,33 +90,29 @@ def _slips(structure, test, sensors):
 
 
 def _gain(pairs, body, seen):
-    """Gain of a body by all its joints and tests, `Scored`; None where it does not explain every joint."""
+    """Gain of a body by all its joints and tests, `Size`; None where it does not explain every joint."""
     joints = []
     for joint, pair in enumerate(pairs):
         if body in pair and seen:
             sign, known = 1.0 if body == pair[1] else -1.0, []
             for slip, moved, _, since in seen:
-                rows = np.column_stack([slip[:, joint], sign * moved[:, body], since])
-                known.append(rows[np.isfinite(rows).all(axis=1)])
+                rows = np.column_stack([sign * moved[:, body], slip[:, joint], since])
+                rows = rows[np.isfinite(rows).all(axis=1)]
+                known.append((rows[:, :1], rows[:, 1], rows[:, 2]))
             joints.append((known, np.hypot(*seen[0].noise[pair])))
     if len(joints) < _FEWEST_JOINTS:
         return None
-    slip, moved, _ = np.concatenate([rows for known, _ in joints for rows in known]).T
-    if not moved @ moved > 0.0:
-        return None
-    ratio = (slip @ moved) / (moved @ moved)  # reading over truth, less 1, over the reading
-    scores = []
-    for known, noise in joints:
-        slips = np.concatenate(known)
-        size = (slips[:, 0] ** 2).mean()
-        if not size > (_SEEN * noise) ** 2 or ((slips @ [1.0, -ratio, 0.0]) ** 2).mean() > _LEFT * size:
-            return None
-        for rows in known:
-            scores += by_segment(rows[:, [1]] * (rows @ [1.0, -ratio, 0.0])[:, None], rows[:, 2], _SEGMENT)
-    share = scored(np.array([ratio]), np.array([[moved @ moved]]), scores)
+    share = regression([part for known, _ in joints for part in known], _SEGMENT)
     if share is None:
         return None
-    return Scored(share.estimate / (1.0 - ratio), share.covariance / (1.0 - ratio) ** 4, share.freedom)
+    ratio = share.estimate[0]  # reading over truth, less 1, over the reading
+    for known, noise in joints:
+        slip = np.concatenate([slip for _, slip, _ in known])
+        left = np.concatenate([slip - ratio * moved[:, 0] for moved, slip, _ in known])
+        size = (slip**2).mean()
+        if not size > (_SEEN * noise) ** 2 or (left**2).mean() > _LEFT * size:
+            return None
+    return Size(share.estimate / (1.0 - ratio), share.covariance / (1.0 - ratio) ** 4, share.freedom)
 
 
 def _gain_across(structure, tests, body, sensors, along):

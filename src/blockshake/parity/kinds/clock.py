@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.parity.kinds.kind import Kind
-from blockshake.parity.scored import Scored, scored
+from blockshake.parity.regression import Size, regression
 
 _LAG_TOLERANCE = 5e-4  # s; half a millisecond of trigger jitter is no fault
 _SKEW_TOLERANCE = 5e-5  # two quartz clocks
@@ -39,7 +39,7 @@ class ClockLag(NamedTuple):
     """Lag of each test [s]; lag at the middle of a record and skew of all tests together [s, 1], or None."""
 
     by_test: dict
-    common: Scored | None
+    common: Size | None
 
 
 def clock_lag(pairs_by_test):
@@ -47,30 +47,20 @@ def clock_lag(pairs_by_test):
 
     Tests that tell nothing are missing.
     """
-    lags, blocks = {}, []
+    lags, parts = {}, []
     for name, pairs in pairs_by_test.items():
         informed = [pair for pair in pairs if pair.informed and not pair.unseen]
-        if not informed:
-            continue
-        lag = _coarse_lag(informed)
-        for _ in range(_STEPS):
-            normals, scores = _lag_equations(informed, lag)
-            if not len(normals):
+        lag, part = _coarse_lag(informed) if informed else 0.0, None
+        for _ in range(_STEPS if informed else 0):
+            part = _lag_equations(informed, lag)
+            if part is None:
                 break
-            lag += scores[:, 0].sum() / normals[:, 0, 0].sum()
-        if not len(normals):
-            continue
-        alone = scored(np.array([lag]), normals[:, :1, :1].sum(axis=0), scores[:, :1])
+            lag = (part[0][:, 0] @ part[1]) / (part[0][:, 0] @ part[0][:, 0])
+        alone = regression([(part[0][:, :1], *part[1:])], _SEGMENT) if part else None
         if alone is not None:
             lags[name] = alone
-            blocks.append((np.array([lag, 0.0]), normals, scores))
-    if not blocks:
-        return ClockLag({}, None)
-    normal = sum(normals.sum(axis=0) for _, normals, _ in blocks)
-    right = sum(normals.sum(axis=0) @ start + scores.sum(axis=0) for start, normals, scores in blocks)
-    estimate = np.linalg.solve(normal, right)
-    left = [scores - normals @ (estimate - start) for start, normals, scores in blocks]
-    return ClockLag(lags, scored(estimate, normal, np.concatenate(left)))
+            parts.append(part)
+    return ClockLag(lags, regression(parts, _SEGMENT) if parts else None)
 
 
 def clock_findings(clock, level):
@@ -101,23 +91,21 @@ def _coarse_lag(pairs):
 
 
 def _lag_equations(pairs, lag):
-    """Normal matrices and scores of (change of lag, skew) in each segment, all channels together."""
-    normals, scores = {}, {}
+    """Columns of lag and skew, values and times of all channels, linear about a lag and weighted; None of too little."""
+    columns, values, times = [], [], []
     for pair in pairs:
         late = (pair.read(pair.time - lag - _STEP) - pair.read(pair.time - lag + _STEP)) / (2.0 * _STEP)
         read = np.where(np.isfinite(late), pair.read(pair.time - lag), np.nan)
         known = pair.enough(read)
         if known is None:
             continue
-        expected, read, time = pair.expected[known], read[known], pair.time[known]
+        expected, read, since = pair.expected[known], read[known], pair.time[known] - pair.time[0]
         late = late[known] * (read @ expected) / (read @ read)
-        design = np.column_stack([late, late * (time - 0.5 * (pair.time[0] + pair.time[-1]))])
+        design = np.column_stack([late, late * (since - 0.5 * np.ptp(pair.time))])
         design = design - np.outer(read, read @ design) / (read @ read)
         left = expected - read * (read @ expected) / (read @ read)
-        weight = 1.0 / np.var(left - design @ np.linalg.lstsq(design, left, rcond=None)[0])
-        segment = np.floor((time - pair.time[0]) / _SEGMENT)
-        for number in np.unique(segment):
-            rows = segment == number
-            normals[number] = normals.get(number, 0.0) + weight * design[rows].T @ design[rows]
-            scores[number] = scores.get(number, 0.0) + weight * design[rows].T @ left[rows]
-    return np.array(list(normals.values())), np.array(list(scores.values()))
+        error = np.std(left - design @ np.linalg.lstsq(design, left, rcond=None)[0])
+        columns.append(design / error)
+        values.append(left / error + lag * design[:, 0] / error)
+        times.append(since)
+    return tuple(map(np.concatenate, (columns, values, times))) if columns else None

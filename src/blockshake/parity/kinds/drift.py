@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.parity.kinds.kind import Column, Kind, readings_of
-from blockshake.parity.scored import by_segment, scored
+from blockshake.parity.regression import regression
 
 FRAME = ("optical frame",)
 _SEGMENT = 1.0  # s
@@ -45,7 +45,7 @@ def drift_findings(pairs_by_test, lags, noise, level):
 
 
 def _drift(pair, lag):
-    """Change of a channel's zero over the record, `Scored` [m/s2], or None."""
+    """Change of a channel's zero over the record, `Size` [m/s2], or None."""
     read = pair.read_slow(pair.time - lag)
     known = None if pair.unseen else pair.enough(read, pair.expected_slow)
     if known is None:
@@ -57,7 +57,4 @@ def _drift(pair, lag):
         values - basis @ (basis.T @ values)
         for values in (since / np.ptp(pair.time) - 0.5, read[known] - expected)
     )
-    normal = column @ column
-    slope = column @ left / normal
-    scores = by_segment((column * (left - slope * column))[:, None], since, _SEGMENT)
-    return scored(np.array([slope]), np.array([[normal]]), scores)
+    return regression([(column[:, None], left, since)], _SEGMENT)

@@ -5,7 +5,7 @@ import numpy as np
 from blockshake.measurement.sensors.markers import directions_read, marker_bodies
 from blockshake.parity.finding import chance_within
 from blockshake.parity.kinds.drift import DRIFT, FRAME
-from blockshake.parity.scored import FEWEST_SEGMENTS, by_segment
+from blockshake.parity.regression import regression
 
 _SEGMENT = 1.0  # s
 _FEWEST = 100  # readings
@@ -35,43 +35,34 @@ def frame_drift(structure, tests, marker_noise, level):
             nuisance.append(test["table_displacement"].to_numpy())
             along[:, 0] -= nuisance[1]
         axes = [axis for axis in range(2 - len(nuisance), 3) if read[:, axis].any()]
-        slopes = _slopes(time, along[:, axes], nuisance) if axes else None
-        if slopes is None:
+        slopes = [_slope(time, along[:, axis], nuisance) for axis in axes]
+        if not axes or None in slopes:
             continue
-        estimate, covariance, freedom, gap, gap_error = slopes
-        p = level.hypotheses * chance_within(estimate, covariance, marker_noise, freedom)
-        allowed = _HALVES_DIFFER_BY_ERRORS * gap_error + _HALVES_DIFFER_BY_SHARE * np.abs(estimate)
+        estimate, gap = np.transpose([slope.estimate for slope in slopes])
+        variance, gap_variance = np.transpose([np.diagonal(slope.covariance) for slope in slopes])
+        freedom = min(slope.freedom for slope in slopes)
+        p = level.hypotheses * chance_within(estimate, np.diag(variance), marker_noise, freedom)
+        allowed = _HALVES_DIFFER_BY_ERRORS * np.sqrt(gap_variance) + _HALVES_DIFFER_BY_SHARE * np.abs(
+            estimate
+        )
         if p >= level.chance or (np.abs(gap) > allowed).any():
             continue
-        vector, square = np.zeros(3), np.diag(np.full(3, np.inf))
-        vector[axes], square[np.ix_(axes, axes)] = estimate, covariance
+        vector, square = np.zeros(3), np.full(3, np.inf)
+        vector[axes], square[axes] = estimate, variance
         length = np.ptp(time)
-        findings.append(DRIFT.finding(FRAME, p, (name,), vector / length, square / length**2))
+        findings.append(DRIFT.finding(FRAME, p, (name,), vector / length, np.diag(square) / length**2))
     return findings
 
 
-def _slopes(time, values, nuisance):
-    """Change over the record of each column, its covariance and freedom, the halves' difference and its error [m].
-
-    None where too little was read.
-    """
-    known = np.isfinite(values).all(axis=1)
+def _slope(time, values, nuisance):
+    """Change over the record, and how much more the second half changes by, `Size` [m]; None where too little was read."""
+    known = np.isfinite(values)
     if known.sum() < _FEWEST:
         return None
-    scale = (time[known] - time[0]) / (time[-1] - time[0]) - 0.5
+    since = time[known] - time[0]
+    scale = since / (time[-1] - time[0]) - 0.5
     # the coefficient of its size is half the difference of the slopes
-    design = np.column_stack([scale, np.abs(scale)])
+    columns = np.column_stack([scale, 0.5 * np.abs(scale)])
     basis = np.linalg.qr(np.column_stack([column[known] for column in nuisance]))[0]
-    design, left = (part - basis @ (basis.T @ part) for part in (design, values[known]))
-    inverse = np.linalg.inv(design.T @ design)
-    slopes = inverse @ design.T @ left
-    left = left - design @ slopes
-    scores = by_segment(design[:, :, None] * left[:, None], time[known] - time[0], _SEGMENT)
-    if len(scores) < FEWEST_SEGMENTS:
-        return None
-    scores = np.einsum("ij,sjk->sik", inverse, scores)
-    freedom = len(scores) - 3
-    share = len(scores) / freedom
-    covariance = share * np.einsum("si,sj->ij", scores[:, 0], scores[:, 0])
-    gap_error = 2.0 * np.sqrt(share * (scores[:, 1] ** 2).sum(axis=0))
-    return slopes[0], covariance, freedom, 2.0 * slopes[1], gap_error
+    columns, left = (part - basis @ (basis.T @ part) for part in (columns, values[known]))
+    return regression([(columns, left, since)], _SEGMENT)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.parity.kinds.kind import Column, Kind, readings_of
-from blockshake.parity.scored import Scored, by_segment, scored
+from blockshake.parity.regression import Size, regression
 
 _REST = 0.1  # s, whose mean is an accelerometer's reading at rest
 _TOLERANCE = 1e-2  # of an accelerometer's calibration
@@ -29,15 +29,8 @@ OF_MARKER = Column(GAIN, 1, 2e-3, lambda seen: seen.moved[..., None])
 OF_TRANSDUCER = Column(GAIN, 1, 1e-2, lambda held: held.expected[:, None], visible=0.03)
 
 
-def gain_findings(gains, tests, level):
-    """`Finding` of each channel whose gain (`Scored` by name) is beyond its tolerance, list."""
-    return [
-        one for name, gain in gains.items() for one in gain.finding(GAIN, (name,), tests, _TOLERANCE, level)
-    ]
-
-
 def channel_gains(pairs_by_test, lags):
-    """Gain of every channel, reading over truth less 1, over all tests: dict of str to Scored.
+    """Gain of every channel, reading over truth less 1, over all tests: dict of str to Size.
 
     Parameters
     ----------
@@ -54,35 +47,34 @@ def channel_gains(pairs_by_test, lags):
     for name in dict.fromkeys(pair.name for pairs in pairs_by_test.values() for pair in pairs):
         parts = []
         for test, pairs in pairs_by_test.items():
-            pair = next((pair for pair in pairs if pair.name == name), None)
-            if pair is None or pair.unseen or not pair.informed:
-                continue
-            others = [one for one in pairs if one.sensor == pair.sensor and one is not pair]
-            columns = np.column_stack([one.read(pair.time - lags[test]) for one in (pair, *others)])
-            known = pair.enough(columns.sum(axis=1))
-            if known is not None:
-                parts.append(
-                    (pair.time[known] - pair.time[0], *_equation(columns[known], pair.expected[known]))
-                )
-        if not parts:
-            continue
-        normal, right = (sum(part[key] for part in parts) for key in (1, 2))
-        slope = right / normal
-        scores = [
-            one
-            for since, _, _, column, left in parts
-            for one in by_segment((column * (left - slope * column))[:, None], since, _SEGMENT)
-        ]
-        inverse = scored(np.array([slope]), np.array([[normal]]), scores)
-        if inverse is not None and slope != 0.0:
-            gains[name] = Scored(1.0 / slope - np.ones(1), inverse.covariance / slope**4, inverse.freedom)
+            for pair in pairs:
+                if pair.name != name or pair.unseen or not pair.informed:
+                    continue
+                axes = [pair, *(one for one in pairs if one.sensor == pair.sensor and one is not pair)]
+                columns = np.column_stack([one.read(pair.time - lags[test]) for one in axes])
+                known = pair.enough(columns.sum(axis=1))
+                if known is not None:
+                    parts.append((columns[known], pair.expected[known], pair.time[known] - pair.time[0]))
+        slope = _slope(parts) if parts else None
+        if slope is not None and slope.estimate[0] != 0.0:
+            size = slope.estimate[0]
+            gains[name] = Size(1.0 / slope.estimate - 1.0, slope.covariance / size**4, slope.freedom)
     return gains
 
 
-def _equation(columns, expected):
-    """Normal equation of a channel's slope, and channel and expectation without the sensor's other axes."""
-    first, others = columns[:, 0], columns[:, 1:]
-    noise = np.var(expected - first * (first @ expected) / (first @ first))
-    tied = others.T @ others + noise / _CROSS_SPREAD**2 * np.eye(others.shape[1])
-    column, left = (one - others @ np.linalg.solve(tied, others.T @ one) for one in (first, expected))
-    return column @ first, column @ expected, column, left
+def _slope(parts):
+    """Expectation over the reading, `Size` or None."""
+    expected = np.concatenate([values for _, values, _ in parts])
+    read = np.concatenate([columns[:, 0] for columns, _, _ in parts])
+    noise = np.var(expected - read * (read @ expected) / (read @ read))
+    ridge = np.full(parts[0][0].shape[1], noise / _CROSS_SPREAD**2)
+    ridge[0] = 0.0
+    slope = regression(parts, _SEGMENT, ridge)
+    return None if slope is None else slope.part(0)
+
+
+def gain_findings(gains, tests, level):
+    """Gains of channels, as of `channel_gains`, beyond their tolerance: list of Finding."""
+    return [
+        one for name, gain in gains.items() for one in gain.finding(GAIN, (name,), tests, _TOLERANCE, level)
+    ]
