@@ -66,11 +66,23 @@ class Unknowns:
 
 
 class Equations(NamedTuple):
-    """Normal equations: ``normal`` (n, n), ``right`` (n,), variance of a reading, degrees of freedom behind it."""
+    """Normal equations of the unknowns.
+
+    Attributes
+    ----------
+    normal, right : float64 arrays, shapes (n, n), (n,)
+    variance : float
+        Of a reading; NaN where too little was read.
+    faults : dict of Fault to (numbers, trials)
+        Unknowns of a fault that the readings tell of, and among how many forms the best one was chosen.
+    freedom : float
+        Degrees of freedom behind the variance.
+    """
 
     normal: np.ndarray
     right: np.ndarray
     variance: float
+    faults: dict
     freedom: float = np.inf
 
     def posterior(self, spread):
@@ -88,40 +100,83 @@ def data_alone(mean, covariance, spread):
     return alone @ (information @ mean), alone
 
 
-def clearest(equations, spread, faults, level, names, allowed=(0,)):
-    """Fault that gains most of those beyond chance, its p, and the rivals that gain nearly as much; None without.
-
-    A fault gains what it takes from the sum of weighted squares, less twice its unknowns.
+def name_faults(equations_of, unknowns, level, names, most, sound=0):
+    """Name the clearest fault, make the equations anew with this one free, and so on, until no fault is clear.
 
     Parameters
     ----------
-    equations : Equations
-    spread : float64 array, shape (n,)
-        Of the unknowns.
-    faults : dict of Fault to (numbers, trials)
-        Its unknowns, and among how many forms the best one was chosen.
+    equations_of : callable of (named, spread)
+        `Equations` with some faults as good as unknown.
+    unknowns : Unknowns
     level : Level
     names : sequence of str
         Of the sensors.
-    allowed : collection of int
-        Sensors of which a fault may be named.
+    most : int
+        Faults.
+    sound : int
+        Sensors that have to be left without a fault.
+
+    Returns
+    -------
+    named : dict of Fault to (p, rivals)
+        Chance times all hypotheses, and the faults that gain nearly as much.
+    equations : Equations
+        The last ones.
+    spread : float64 array
+        Of their unknowns.
+
+    Notes
+    -----
+    A fault is clear where the estimate by the readings alone is beyond its tolerance. It gains what it takes from the
+    sum of weighted squares, less twice its unknowns; the clearest one gains most.
     """
-    mean, covariance = equations.posterior(spread)
-    gained, clear = {}, {}
-    for fault, (own, trials) in faults.items():
-        estimate, alone = data_alone(mean[own], covariance[np.ix_(own, own)], spread[own])
-        tied = alone + np.diag(spread[own] ** 2)
-        gained[fault] = estimate @ np.linalg.solve(tied, estimate) - 2.0 * len(own)
-        p = chance_within(estimate, alone, fault.column.tolerance, equations.freedom)
-        p *= level.hypotheses * trials
-        if p < level.chance and fault.sensor in allowed:
-            clear[fault] = p
-    if not clear:
-        return None
-    best = max(clear, key=gained.get)
-    rivals = tuple(
-        (fault.column.kind.effect, (names[fault.sensor],), fault.column.kind.quantity)
-        for fault, one in gained.items()
-        if fault[:2] != best[:2] and gained[best] - one < _OVER_RIVALS
-    )
-    return best, clear[best], rivals
+    named = {}
+    while True:
+        spread = unknowns.freed(named)
+        equations = equations_of(named, spread)
+        if len(named) == most or not np.isfinite(equations.variance):
+            return named, equations, spread
+        suspects = {fault.sensor for fault in named}
+        full = len(suspects) >= len(names) - sound
+        mean, covariance = equations.posterior(spread)
+        gained, clear = {}, {}
+        for fault, (own, trials) in equations.faults.items():
+            if fault in named:
+                continue
+            estimate, alone = data_alone(mean[own], covariance[np.ix_(own, own)], spread[own])
+            tied = alone + np.diag(spread[own] ** 2)
+            gained[fault] = estimate @ np.linalg.solve(tied, estimate) - 2.0 * len(own)
+            p = chance_within(estimate, alone, fault.column.tolerance, equations.freedom)
+            p *= level.hypotheses * trials
+            if p < level.chance and (fault.sensor in suspects or not full):
+                clear[fault] = p
+        if not clear:
+            return named, equations, spread
+        best = max(clear, key=gained.get)
+        rivals = tuple(
+            (fault.column.kind.effect, (names[fault.sensor],), fault.column.kind.quantity)
+            for fault, gain in gained.items()
+            if fault[:2] != best[:2] and gained[best] - gain < _OVER_RIVALS
+        )
+        named[best] = clear[best], rivals
+
+
+def coloured_variance(parts, freedom, segment):
+    """Variance of a reading, times the factor by which its noise averages out more slowly than white noise would.
+
+    Parameters
+    ----------
+    parts : sequence of float64 array, shape (n_readings, n)
+        What is left of the readings, of each test.
+    freedom : float
+        Number of independent readings.
+    segment : int
+        Readings over which coloured noise averages out.
+    """
+    squares = slow = fast = 0.0
+    for left in parts:
+        whole = left[: len(left) // segment * segment]
+        squares += (left**2).sum()
+        slow += (whole.reshape(-1, segment, left.shape[1]).sum(axis=1) ** 2).sum()
+        fast += (whole**2).sum()
+    return squares / freedom * max(slow / fast, 1.0) if freedom and fast else np.nan

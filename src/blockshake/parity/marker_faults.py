@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from blockshake.measurement.motion.body_frame import outlying
 from blockshake.parity.kinds import drift, gain, place
 from blockshake.parity.kinds.kind import Column
-from blockshake.parity.linear_faults import Equations, Unknowns, clearest
+from blockshake.parity.linear_faults import Equations, Unknowns, coloured_variance, name_faults
 
 _SOUND_MARKERS = 2  # of a body, that must be left without a fault, or nothing says which is at fault
 _MOST_FAULTS = 8  # faults on one body
@@ -70,33 +70,24 @@ def check_body(body, marker_noise, level):
     gain g of the displacement u and place e: a gain follows the displacement, a wrong place follows the rotation and is
     nothing before it. The equations are made anew about the faults that were named.
     """
-    creep, named = drift.of_marker(marker_noise), {}
+    creep = drift.of_marker(marker_noise)
     columns = creep, gain.OF_MARKER, place.OF_MARKER
     unknowns = Unknowns((_CONSTANT, *columns), len(body.markers), len(body.tests))
-    sizes = np.zeros(len(unknowns.spread))
-    while True:
-        spread = unknowns.freed(named)
-        equations, noise, misfit = _linearised(body, unknowns, sizes)
-        if not np.isfinite(equations.variance):
-            return MarkerCheck((), noise, misfit)
+    faults = {fault: (unknowns.of(fault), 1) for column in columns for fault in unknowns.faults(column)}
+    sizes, made = np.zeros(len(unknowns.spread)), {}
+
+    def equations_of(named, spread):
+        equations, *made["noise"] = _linearised(body, unknowns, sizes, faults)
         for _ in range(_LINEARISATIONS if named else 0):
             own = np.concatenate([unknowns.of(fault) for fault in named])
             sizes[own] += equations.posterior(spread)[0][own]
-            equations, noise, misfit = _linearised(body, unknowns, sizes)
-        suspects = {fault.sensor for fault in named}
-        full = len(suspects) >= len(body.markers) - _SOUND_MARKERS
-        faults = {
-            fault: (unknowns.of(fault), 1)
-            for column in columns
-            for fault in unknowns.faults(column)
-            if fault not in named
-        }
-        allowed = suspects if full else range(len(body.markers))
-        best = clearest(equations, spread, faults, level, body.markers, allowed)
-        if best is None or len(named) == _MOST_FAULTS:
-            break
-        named[best[0]] = best[1:]
-    covariance, findings = equations.posterior(spread)[1], []
+            equations, *made["noise"] = _linearised(body, unknowns, sizes, faults)
+        return equations
+
+    named, equations, spread = name_faults(
+        equations_of, unknowns, level, body.markers, _MOST_FAULTS, _SOUND_MARKERS
+    )
+    covariance, findings = equations.posterior(spread)[1] if named else None, []
     for fault, (p, rivals) in named.items():
         own, by_test = unknowns.of(fault), fault.column is creep
         tests = (body.tests[fault.test],) if by_test else body.tests
@@ -104,10 +95,10 @@ def check_body(body, marker_noise, level):
         square = covariance[np.ix_(own, own)] / length**2
         kind, where = fault.column.kind, (body.markers[fault.sensor],)
         findings.append(kind.finding(where, p, tests, sizes[own] / length, square, rivals))
-    return MarkerCheck(tuple(findings), noise, misfit)
+    return MarkerCheck(tuple(findings), *made["noise"])
 
 
-def _linearised(body, unknowns, sizes):
+def _linearised(body, unknowns, sizes, faults):
     """`Equations` about faults of these sizes, and the noise and misfit of every marker [m]."""
     normal, right, kept = np.zeros((len(sizes), len(sizes))), np.zeros(len(sizes)), []
     for test in range(len(body.tests)):
@@ -118,8 +109,19 @@ def _linearised(body, unknowns, sizes):
         kept.append((own, design, residual, projector))
     ridge = 1e-9 * np.diag(np.diagonal(normal)) + 1e-12 * np.eye(len(sizes))
     free = np.linalg.lstsq(normal + ridge, right, rcond=None)[0]
-    variance, noise = _noise(kept, free, len(body.markers))
-    return Equations(normal, right, variance), noise, _noise(kept, None, len(body.markers))[1]
+    left = [residual - design @ free[own] for own, design, residual, _ in kept]
+    before = [residual - residual.mean(axis=0) for _, _, residual, _ in kept if len(residual)]
+    # a reading's own share of what the rigid fit leaves
+    shares = sum(np.diagonal(projector, axis1=1, axis2=2).sum(axis=0) for *_, projector in kept)
+    variance = coloured_variance(left, shares.sum(), _SEGMENT)
+    shares = np.maximum(shares.reshape(-1, 3).sum(axis=1), 1e-9)
+    noise, misfit = (
+        np.sqrt(sum((one.reshape(-1, *body.points.shape) ** 2).sum(axis=(0, 2)) for one in parts) / shares)
+        if np.isfinite(variance)
+        else np.full(len(shares), np.nan)
+        for parts in (left, before)
+    )
+    return Equations(normal, right, variance, faults), noise, misfit
 
 
 def _one_test(body, unknowns, sizes, test):
@@ -165,25 +167,3 @@ def _steadied(points, rotation, start_rotation):
     about = vectors @ weak
     steady = uniform_filter1d(about, _SMOOTHING, axis=0, mode="nearest")
     return start_rotation @ Rotation.from_rotvec(vectors + (steady - about) @ weak.T).as_matrix()
-
-
-def _noise(kept, parameters, n_markers):
-    """Variance for slow signatures [m2], and each marker's standard deviation, scaled to that of a reading [m].
-
-    The variance has the factor by which coloured noise averages out more slowly than white noise; NaN of too little.
-    """
-    slow = fast = freedom = 0.0
-    squares, shares = np.zeros(n_markers), np.zeros(n_markers)
-    for own, design, residual, projector in kept:
-        left = residual - (design @ parameters[own] if parameters is not None else residual.mean(axis=0))
-        diagonal = np.diagonal(projector, axis1=1, axis2=2).reshape(len(residual), n_markers, 3)
-        squares += (left.reshape(-1, n_markers, 3) ** 2).sum(axis=(0, 2))
-        shares += diagonal.sum(axis=(0, 2))
-        whole = len(left) // _SEGMENT * _SEGMENT
-        slow += (left[:whole].reshape(-1, _SEGMENT, left.shape[1]).sum(axis=1) ** 2).sum()
-        fast += (left[:whole] ** 2).sum()
-        freedom += diagonal.sum()
-    if not freedom or not fast:
-        return np.nan, np.full(n_markers, np.nan)
-    variance = squares.sum() / freedom * max(slow / fast, 1.0)
-    return variance, np.sqrt(squares / np.maximum(shares, 1e-9))

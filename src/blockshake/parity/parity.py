@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from blockshake.files import load_made_json
@@ -25,10 +26,10 @@ from blockshake.parity.transducer_readings import held_readings
 
 LEVEL = 0.01  # chance of any finding on a campaign of sound sensors
 _TABLES = {
-    "markers": ("marker", {"noise": "m", "misfit": "m"}),
-    "clock": ("test", {"lag": "s", "lag_error": "s"}),
-    "channels": ("channel", {"gain": "1", "gain_error": "1"}),
-    "transducers": ("transducer", {"gain": "1", "gain_error": "1"}),
+    "markers": ("marker", ["noise", "misfit"]),
+    "clock": ("test", ["lag", "lag_error"]),
+    "channels": ("channel", ["gain", "gain_error"]),
+    "transducers": ("transducer", ["gain", "gain_error"]),
 }
 
 
@@ -67,7 +68,7 @@ class Parity:
 
     def as_json(self):
         """As JSON-like values, NaN as null; of transducers only where there are any."""
-        tables = {name: _rows(getattr(self, name), dim) for name, (dim, _) in _TABLES.items()}
+        tables = {name: _rows(getattr(self, name)) for name in _TABLES}
         return {
             "findings": [finding.as_json() for finding in self.findings],
             **{name: rows for name, rows in tables.items() if rows or name != "transducers"},
@@ -108,22 +109,17 @@ def load_parity(path):
     return load_made_json(path, Parity.from_json)
 
 
-def _rows(table, dim):
+def _rows(table):
     """Values of every row of a table by its name, NaN as null."""
-    columns = {name: column.to_numpy() for name, column in table.data_vars.items()}
-    return {
-        str(name): {key: float(own[row]) if np.isfinite(own[row]) else None for key, own in columns.items()}
-        for row, name in enumerate(table[dim].values)
-    }
+    frame = table.to_dataframe()
+    return frame.astype(object).where(frame.notna(), None).to_dict("index")
 
 
 def _table(name, rows):
     """Table of such rows; null is NaN."""
-    dim, units = _TABLES[name]
-    columns = {key: np.array([row[key] for row in rows.values()], dtype=float) for key in units}
-    return xr.Dataset(
-        {key: (dim, columns[key], {"units": unit}) for key, unit in units.items()}, {dim: list(rows)}
-    )
+    dim, columns = _TABLES[name]
+    frame = pd.DataFrame.from_dict(rows, orient="index", columns=columns, dtype=float)
+    return xr.Dataset.from_dataframe(frame.rename_axis(dim))
 
 
 def campaign_parity(readings, sensors, without=()):
@@ -206,18 +202,15 @@ def check_parity(tests, structure, sensors, level=LEVEL):
         for name, held in held_readings(structure, tests, poses, lags).items()
     }
     findings += [finding for check in transducers.values() for finding in check.findings]
-    markers = {
-        str(name): {"noise": np.nan, "misfit": np.nan} for name in next(iter(tests.values()))["marker"].values
-    }
+    markers = {str(name): (np.nan, np.nan) for name in next(iter(tests.values()))["marker"].values}
     for name, check in checks.items():
-        for marker, *sizes in zip(bodies[name].markers, check.noise, check.misfit, strict=True):
-            markers[marker] = dict(zip(("noise", "misfit"), sizes, strict=True))
+        markers |= zip(bodies[name].markers, zip(check.noise, check.misfit, strict=True), strict=True)
     return Parity(
         findings=tuple(findings),
         markers=_table("markers", markers),
-        clock=_table("clock", _sizes(clock.by_test, "lag")),
-        channels=_table("channels", _sizes(gains, "gain")),
-        transducers=_table("transducers", {name: check._asdict() for name, check in transducers.items()}),
+        clock=_table("clock", _sizes(clock.by_test)),
+        channels=_table("channels", _sizes(gains)),
+        transducers=_table("transducers", {name: check[:2] for name, check in transducers.items()}),
         looked_at=share.hypotheses,
         falls={},
         gaps=gaps,
@@ -235,9 +228,6 @@ def _looked_at(bodies, tests):
     return of_markers + 2 + 2 * len(tests) + of_channels + of_transducers
 
 
-def _sizes(scores, name):
-    """Estimate and standard error of each score."""
-    return {
-        key: {name: one.estimate[0], f"{name}_error": np.sqrt(one.covariance[0, 0])}
-        for key, one in scores.items()
-    }
+def _sizes(sizes):
+    """Estimate and standard error of each `Size`."""
+    return {name: (one.estimate[0], np.sqrt(one.covariance[0, 0])) for name, one in sizes.items()}

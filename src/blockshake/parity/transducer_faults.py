@@ -1,6 +1,5 @@
 """Faults of a displacement transducer: wrong sign, gain, an end elsewhere, an end that slips, one after the other."""
 
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -8,7 +7,13 @@ import numpy as np
 from blockshake.parity.finding import chance_of_misfit
 from blockshake.parity.kinds import gain, place, slip
 from blockshake.parity.kinds.polarity import POLARITY
-from blockshake.parity.linear_faults import Equations, Unknowns, clearest, data_alone
+from blockshake.parity.linear_faults import (
+    Equations,
+    Unknowns,
+    coloured_variance,
+    data_alone,
+    name_faults,
+)
 
 _COLUMNS = gain.OF_TRANSDUCER, place.OF_END, place.OF_REFERENCE_END
 _SEGMENT = 5  # means over which coloured noise averages out, half a second
@@ -62,31 +67,31 @@ def check_transducer(name, held, level):
     if level.hypotheses * chance < level.chance:
         findings.append(POLARITY.finding((name,), level.hypotheses * chance, tests))
         held = {test: one.reversed() for test, one in held.items()}
-    unknowns, named, slips = Unknowns((*_COLUMNS, slip.OF_END), 1, len(tests)), {}, {}
-    while True:
-        spread = unknowns.freed(named)
-        made = _equations(list(held.values()), unknowns, spread, slips)
-        told = {fault: rest for fault, rest in made.faults.items() if fault not in named}
-        best = clearest(made.equations, spread, told, level, (name,))
-        if best is None or len(named) == _MOST_FAULTS:
-            break
-        named[best[0]] = best[1:]
-        if best[0].column is slip.OF_END:
-            slips[best[0].test] = made.slips[best[0].test]
-    mean, covariance = made.equations.posterior(spread)
+    unknowns, rows = Unknowns((*_COLUMNS, slip.OF_END), 1, len(tests)), {}
+
+    def equations_of(named, spread):
+        fixed = {fault.test: rows[fault.test] for fault in named if fault.column is slip.OF_END}
+        equations, likeliest = _equations(list(held.values()), unknowns, spread, fixed)
+        rows.update(likeliest)
+        return equations
+
+    named, equations, spread = name_faults(equations_of, unknowns, level, (name,), _MOST_FAULTS)
+    mean, covariance = equations.posterior(spread)
     for fault, (p, rivals) in named.items():
-        estimate, square, where = (
-            *_estimate(unknowns.of(fault), made.faults[fault][0], mean, covariance, spread),
-            tests,
-        )
+        own, where = unknowns.of(fault), tests
+        # along what is not told 0, as good as unknown
+        estimate, square = np.zeros(len(own)), np.diag(spread[own] ** 2)
+        told, _ = equations.faults[fault]
+        at = told - own[0]
+        estimate[at], square[np.ix_(at, at)] = mean[told], covariance[np.ix_(told, told)]
         if fault.column is slip.OF_END:
-            where, row = (tests[fault.test],), slips[fault.test]
-            before, after = held[where[0]].time[row - 1 : row + 1]
+            where = (tests[fault.test],)
+            before, after = held[where[0]].time[rows[fault.test] - 1 : rows[fault.test] + 1]
             estimate = np.array([estimate[0], 0.5 * (before + after)])
             square = np.diag([square[0, 0], (after - before) ** 2 / 12.0])
         findings.append(fault.column.kind.finding((name,), p, where, estimate, square, rivals))
     (of_gain,) = unknowns.faults(gain.OF_TRANSDUCER)
-    if of_gain not in made.faults:
+    if of_gain not in equations.faults:
         return TransducerCheck(np.nan, np.nan, tuple(findings))
     size, error = data_alone(mean[:1], covariance[:1, :1], spread[:1])
     return TransducerCheck(float(size[0]), float(np.sqrt(error[0, 0])), tuple(findings))
@@ -98,58 +103,39 @@ def _without_lag(values, held):
     return values - np.multiply.outer(late, late @ values)
 
 
-class _Made(NamedTuple):
-    """`Equations` of gain, places and slips; by fault the unknowns that are told and its trials; rows of the slips."""
-
-    equations: Equations
-    faults: dict
-    slips: list
-
-
 def _equations(held, unknowns, spread, fixed):
-    """`_Made` from `HeldReading` by test; ``fixed``: row of the slip that was named, by test."""
+    """`Equations` from `HeldReading` by test, and the row of each test's likeliest slip; ``fixed``: of named ones."""
+    left = [_without_lag(one.left, one) for one in held]
     steps = [_without_lag(_steps(len(one.left)), one) for one in held]
-    left, ends = (
-        [_without_lag(one.left, one) for one in held],
-        np.cumsum([0, *(len(one.left) for one in held)]),
-    )
-    left, columns = np.concatenate(left), np.zeros((ends[-1], len(spread)))
-    rows, of_slips = [slice(*of_test) for of_test in pairwise(ends)], unknowns.numbers[slip.OF_END][:, 0, 0]
-    for one, own in zip(held, rows, strict=True):
+    of_slips, rows = unknowns.numbers[slip.OF_END][:, 0, 0], dict(fixed)
+    blocks = [np.zeros((len(one.left), len(spread))) for one in held]
+    for test, (block, one) in enumerate(zip(blocks, held, strict=True)):
         for column in _COLUMNS:
-            columns[own, unknowns.numbers[column][0, 0]] = _without_lag(column.signature(one), one)
-    for test, row in fixed.items():
-        columns[rows[test], of_slips[test]] = steps[test][:, row - _EDGE]
-    information = columns.T @ columns + _variance(columns, left) * np.diag(1.0 / spread**2)
-    rest, slips = left - columns @ np.linalg.solve(information, columns.T @ left), []
-    for test, (own, step) in enumerate(zip(rows, steps, strict=True)):
-        gained = (step.T @ rest[own]) ** 2 / np.maximum((step**2).sum(axis=0), 1e-12)
-        slips.append(fixed.get(test, _EDGE + int(gained.argmax())))
-        columns[own, of_slips[test]] = step[:, slips[test] - _EDGE]
-    rest, sums = _left_over(columns, left), []
-    for own in rows:
-        whole = len(rest[own]) // _SEGMENT * _SEGMENT
-        sums.append(rest[own][:whole].reshape(-1, _SEGMENT).sum(axis=1))
-    variance, sums = _variance(columns, left), np.concatenate(sums)
-    slow = max((sums**2).sum() / (variance * len(left)), 1.0)
-    normal, freedom = columns.T @ columns, max(len(sums) - columns.shape[1], 4.0)
-    equations = Equations(normal, columns.T @ left, variance * slow, freedom)
-    seen, faults = max(np.sqrt(variance), *(one.noise for one in held)), {}
+            block[:, unknowns.numbers[column][0, 0]] = _without_lag(column.signature(one), one)
+        if test in fixed:
+            block[:, of_slips[test]] = steps[test][:, fixed[test] - _EDGE]
+    _, white, _ = _left_over(blocks, left)
+    columns = np.concatenate(blocks)
+    information = columns.T @ columns + white * np.diag(1.0 / spread**2)
+    sizes = np.linalg.solve(information, columns.T @ np.concatenate(left))
+    for test, (block, step) in enumerate(zip(blocks, steps, strict=True)):
+        gained = (step.T @ (left[test] - block @ sizes)) ** 2 / np.maximum((step**2).sum(axis=0), 1e-12)
+        rows.setdefault(test, _EDGE + int(gained.argmax()))
+        block[:, of_slips[test]] = step[:, rows[test] - _EDGE]
+    rest, white, freedom = _left_over(blocks, left)
+    variance = np.fmax(coloured_variance(rest, freedom, _SEGMENT), _NOTHING**2)
+    columns, faults = np.concatenate(blocks), {}
+    visible = max(np.sqrt(white), *(one.noise for one in held))
     for column in _COLUMNS:
         (fault,) = unknowns.faults(column)
         size = np.sqrt((columns[:, unknowns.of(fault)] ** 2).mean(axis=0))
-        if (informed := unknowns.of(fault)[column.visible * size > seen]).size:
-            faults[fault] = informed, 1
+        if (told := unknowns.of(fault)[column.visible * size > visible]).size:
+            faults[fault] = told, 1
     for fault in unknowns.faults(slip.OF_END):
         faults[fault] = unknowns.of(fault), steps[fault.test].shape[1]
-    return _Made(equations, faults, slips)
-
-
-def _estimate(own, told, mean, covariance, spread):
-    """Estimate and covariance of a fault with all that is named; along what is not told 0, as good as unknown."""
-    estimate, square, at = np.zeros(len(own)), np.diag(spread[own] ** 2), told - own[0]
-    estimate[at], square[np.ix_(at, at)] = mean[told], covariance[np.ix_(told, told)]
-    return estimate, square
+    segments = sum(len(one) // _SEGMENT for one in left)
+    right, freedom = columns.T @ np.concatenate(left), max(segments - columns.shape[1], 4.0)
+    return Equations(columns.T @ columns, right, variance, faults, freedom), rows
 
 
 def _steps(count):
@@ -159,11 +145,10 @@ def _steps(count):
     return steps - steps.mean(axis=0)
 
 
-def _left_over(columns, left):
-    return left - columns @ np.linalg.lstsq(columns, left, rcond=None)[0]
-
-
-def _variance(columns, left):
-    """Of a mean, where all faults are free [m2]."""
-    rest = _left_over(columns, left)
-    return max((rest**2).sum() / max(len(left) - columns.shape[1], 1), _NOTHING**2)
+def _left_over(blocks, left):
+    """Rest of each test's means (n_means, 1) where all faults are free [m], its variance, and its freedom."""
+    columns, means = np.concatenate(blocks), np.concatenate(left)
+    rest = means - columns @ np.linalg.lstsq(columns, means, rcond=None)[0]
+    freedom = max(len(rest) - columns.shape[1], 1)
+    parts = np.split(rest[:, None], np.cumsum([len(one) for one in left])[:-1])
+    return parts, max((rest**2).sum() / freedom, _NOTHING**2), freedom

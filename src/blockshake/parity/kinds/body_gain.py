@@ -5,8 +5,6 @@ joints do: the body seems to slip on the one below by the gain's share of its di
 on it by as much the other way, also while both are closed. No friction slips so.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
@@ -25,15 +23,6 @@ _FEWEST_JOINTS = 2  # a slip of one joint alone may be one
 _FLAT = 1e-4  # m2: markers that are nearly level, or nearly upright, show no turn by one axis
 _SHARP = 0.01  # standard error of a gain along z that is taken over
 _REST = 10  # readings, whose mean counts as rest
-
-
-class _Slips(NamedTuple):
-    """Slips of the joints, displacements of the bodies along x and their noise [m], and times since the start [s]."""
-
-    slip: np.ndarray
-    moved: np.ndarray
-    noise: np.ndarray
-    since: np.ndarray
 
 
 def body_gains(structure, tests, sensors, level):
@@ -73,7 +62,10 @@ def body_gains(structure, tests, sensors, level):
 
 
 def _slips(structure, test, sensors):
-    """`_Slips` of one test; None where a pose is not read."""
+    """Slips of the joints, displacements of the bodies along x and their noise [m], times since the start [s], or None.
+
+    None where a pose is not read.
+    """
     displacement = test["marker_displacement"]
     rest = displacement.isel(time=slice(0, _REST)).mean("time").fillna(0.0)
     every = max(1, round(_EVERY / float(np.median(np.diff(test["time"])))))
@@ -86,7 +78,7 @@ def _slips(structure, test, sensors):
     slip = joint_coordinates(structure, position, rotation)["slip"].to_numpy()[1:, :, 0]
     moved = poses.position[..., 0] - structure.position[:, 0]
     time = counted["time"].to_numpy()
-    return _Slips(slip, moved, np.sqrt(poses.covariance[:, 0, 0]), time - time[0])
+    return slip, moved, np.sqrt(poses.covariance[:, 0, 0]), time - time[0]
 
 
 def _gain(pairs, body, seen):
@@ -99,7 +91,7 @@ def _gain(pairs, body, seen):
                 rows = np.column_stack([sign * moved[:, body], slip[:, joint], since])
                 rows = rows[np.isfinite(rows).all(axis=1)]
                 known.append((rows[:, :1], rows[:, 1], rows[:, 2]))
-            joints.append((known, np.hypot(*seen[0].noise[pair])))
+            joints.append((known, np.hypot(*seen[0][2][pair])))
     if len(joints) < _FEWEST_JOINTS:
         return None
     share = regression([part for known, _ in joints for part in known], _SEGMENT)

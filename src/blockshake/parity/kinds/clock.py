@@ -91,7 +91,7 @@ def _coarse_lag(pairs):
 
 
 def _lag_equations(pairs, lag):
-    """Columns of lag and skew, values and times of all channels, linear about a lag and weighted; None of too little."""
+    """Columns of lag and skew, values and times of all channels, linear about a lag; None of too little."""
     columns, values, times = [], [], []
     for pair in pairs:
         late = (pair.read(pair.time - lag - _STEP) - pair.read(pair.time - lag + _STEP)) / (2.0 * _STEP)

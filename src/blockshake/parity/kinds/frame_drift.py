@@ -55,7 +55,7 @@ def frame_drift(structure, tests, marker_noise, level):
 
 
 def _slope(time, values, nuisance):
-    """Change over the record, and how much more the second half changes by, `Size` [m]; None where too little was read."""
+    """Change over the record, and what the halves change by otherwise, `Size` [m]; None where too little is read."""
     known = np.isfinite(values)
     if known.sum() < _FEWEST:
         return None
