@@ -53,3 +53,10 @@ def test_fewer_than_four_segments_tell_no_error(length, told):
     assert (size is not None) == told
     if told:
         assert abs(size.estimate[0] - 0.1) < 4.0 * np.sqrt(size.covariance[0, 0])
+
+
+def test_what_a_short_record_cannot_show_is_said(creeping):
+    structure, tests = creeping
+    lines = check_parity(_shortened(tests, 0.0, 1.0), structure, Sensors()).gaps
+    assert lines["t1"] == ["a record of 1 s is too short to show a drift of the optical frame"]
+    assert check_parity(_shortened(tests, 0.0, 3.5), structure, Sensors()).gaps["t1"] == []

@@ -43,24 +43,26 @@ class BodyMarkers:
     @classmethod
     def of(cls, structure, body, tests, names):
         """Of a body, those of its markers that have one of the names; ``tests``: readings by name."""
-        markers = [one for one in structure.file.markers if one.body == body and one.name in names]
-        own, index = [marker.name for marker in markers], structure.body_names.index(body)
-        displacements = [test["marker_displacement"].sel(marker=own) for test in tests.values()]
+        markers = [
+            marker for marker in structure.file.markers if marker.body == body and marker.name in names
+        ]
+        carried, index = [marker.name for marker in markers], structure.body_names.index(body)
+        displacements = [test["marker_displacement"].sel(marker=carried) for test in tests.values()]
         return cls(
-            tuple(own),
+            tuple(carried),
             np.array([marker.position for marker in markers], dtype=float).reshape(-1, 3),
             structure.position[index],
             rotation_matrices(structure.orientation[index]),
             tuple(tests),
             [
-                (one["time"].to_numpy(), one.transpose("time", "marker", "axis").to_numpy())
-                for one in displacements
+                (moved["time"].to_numpy(), moved.transpose("time", "marker", "axis").to_numpy())
+                for moved in displacements
             ],
         )
 
-    def frame(self, displacement, place=0.0):
-        """`BodyFrame` of displacements of the markers, these as far off their points as ``place`` (body frame) [m]."""
-        points = self.points + place
+    def frame(self, displacement, offset=0.0):
+        """`BodyFrame` of displacements of the markers, these as far off their points as ``offset`` (body frame) [m]."""
+        points = self.points + offset
         readings = self.position + points @ self.rotation.T + displacement
         return see_from_body(points, readings, self.position, self.rotation)
 
@@ -116,7 +118,7 @@ def measured_pose(body, test):
     return MeasuredPose(body.points, even, flat[:, :3], flat[:, 3:].reshape(-1, 3, 3), read)
 
 
-def sight(points, place, direction):
+def sight(points, point, direction):
     """Noise and visibility of a point's motion along a direction of its body, as the markers give it.
 
     Returns
@@ -127,6 +129,6 @@ def sight(points, place, direction):
         Its motion along the direction in a unit turn that the markers do not show [m].
     """
     jacobian = rigid_jacobian(points - points.mean(axis=0))
-    row = direction @ rigid_jacobian((np.array(place, dtype=float) - points.mean(axis=0))[None])
+    row = direction @ rigid_jacobian((np.array(point, dtype=float) - points.mean(axis=0))[None])
     inverse = np.linalg.pinv(jacobian, rcond=ON_LINE)
     return np.linalg.norm(row @ inverse), np.linalg.norm(row - row @ inverse @ jacobian)

@@ -41,7 +41,9 @@ def corrected(test, name, structure, findings):
     """
     test = test.transpose("time", "marker", "axis", ...).copy(deep=True)
     for kind in KINDS.values():
-        own = [one for one in findings if one.quantity == kind.quantity and name in one.tests]
-        if own and kind.correct:
-            kind.correct(test, own, structure)
+        mine = [
+            finding for finding in findings if finding.quantity == kind.quantity and name in finding.tests
+        ]
+        if mine and kind.correct:
+            kind.correct(test, mine, structure)
     return test

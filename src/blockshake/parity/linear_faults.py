@@ -50,7 +50,9 @@ class Unknowns:
 
     def of_test(self, test):
         """Numbers of all unknowns that a test tells of, sensor by sensor, column by column."""
-        return np.concatenate([own[test if len(own) > 1 else 0].ravel() for own in self.numbers.values()])
+        return np.concatenate(
+            [numbers[test if len(numbers) > 1 else 0].ravel() for numbers in self.numbers.values()]
+        )
 
     def freed(self, faults):
         """Spread with some faults as good as unknown."""
@@ -140,12 +142,12 @@ def name_faults(equations_of, unknowns, level, names, most, sound=0):
         full = len(suspects) >= len(names) - sound
         mean, covariance = equations.posterior(spread)
         gained, clear = {}, {}
-        for fault, (own, trials) in equations.faults.items():
+        for fault, (numbers, trials) in equations.faults.items():
             if fault in named:
                 continue
-            estimate, alone = data_alone(mean[own], covariance[np.ix_(own, own)], spread[own])
-            tied = alone + np.diag(spread[own] ** 2)
-            gained[fault] = estimate @ np.linalg.solve(tied, estimate) - 2.0 * len(own)
+            estimate, alone = data_alone(mean[numbers], covariance[np.ix_(numbers, numbers)], spread[numbers])
+            tied = alone + np.diag(spread[numbers] ** 2)
+            gained[fault] = estimate @ np.linalg.solve(tied, estimate) - 2.0 * len(numbers)
             p = chance_within(estimate, alone, fault.column.tolerance, equations.freedom)
             p *= level.hypotheses * trials
             if p < level.chance and (fault.sensor in suspects or not full):
@@ -174,9 +176,9 @@ def coloured_variance(parts, freedom, segment):
         Readings over which coloured noise averages out.
     """
     squares = slow = fast = 0.0
-    for left in parts:
-        whole = left[: len(left) // segment * segment]
-        squares += (left**2).sum()
-        slow += (whole.reshape(-1, segment, left.shape[1]).sum(axis=1) ** 2).sum()
+    for rest in parts:
+        whole = rest[: len(rest) // segment * segment]
+        squares += (rest**2).sum()
+        slow += (whole.reshape(-1, segment, rest.shape[1]).sum(axis=1) ** 2).sum()
         fast += (whole**2).sum()
     return squares / freedom * max(slow / fast, 1.0) if freedom and fast else np.nan

@@ -7,7 +7,7 @@ from scipy.ndimage import uniform_filter1d
 from scipy.spatial.transform import Rotation
 
 from blockshake.measurement.motion.body_frame import outlying
-from blockshake.parity.kinds import drift, gain, place
+from blockshake.parity.kinds import drift, gain, wrong_place
 from blockshake.parity.kinds.kind import Column
 from blockshake.parity.linear_faults import Equations, Unknowns, coloured_variance, name_faults
 
@@ -71,7 +71,7 @@ def check_body(body, marker_noise, level):
     nothing before it. The equations are made anew about the faults that were named.
     """
     creep = drift.of_marker(marker_noise)
-    columns = creep, gain.OF_MARKER, place.OF_MARKER
+    columns = creep, gain.OF_MARKER, wrong_place.OF_MARKER
     unknowns = Unknowns((_CONSTANT, *columns), len(body.markers), len(body.tests))
     faults = {fault: (unknowns.of(fault), 1) for column in columns for fault in unknowns.faults(column)}
     sizes, made = np.zeros(len(unknowns.spread)), {}
@@ -79,8 +79,8 @@ def check_body(body, marker_noise, level):
     def equations_of(named, spread):
         equations, *made["noise"] = _linearised(body, unknowns, sizes, faults)
         for _ in range(_LINEARISATIONS if named else 0):
-            own = np.concatenate([unknowns.of(fault) for fault in named])
-            sizes[own] += equations.posterior(spread)[0][own]
+            numbers = np.concatenate([unknowns.of(fault) for fault in named])
+            sizes[numbers] += equations.posterior(spread)[0][numbers]
             equations, *made["noise"] = _linearised(body, unknowns, sizes, faults)
         return equations
 
@@ -89,12 +89,12 @@ def check_body(body, marker_noise, level):
     )
     covariance, findings = equations.posterior(spread)[1] if named else None, []
     for fault, (p, rivals) in named.items():
-        own, by_test = unknowns.of(fault), fault.column is creep
+        numbers, by_test = unknowns.of(fault), fault.column is creep
         tests = (body.tests[fault.test],) if by_test else body.tests
         length = np.ptp(body.readings[fault.test][0]) if by_test else 1.0
-        square = covariance[np.ix_(own, own)] / length**2
+        square = covariance[np.ix_(numbers, numbers)] / length**2
         kind, where = fault.column.kind, (body.markers[fault.sensor],)
-        findings.append(kind.finding(where, p, tests, sizes[own] / length, square, rivals))
+        findings.append(kind.finding(where, p, tests, sizes[numbers] / length, square, rivals))
     return MarkerCheck(tuple(findings), *made["noise"])
 
 
@@ -103,23 +103,26 @@ def _linearised(body, unknowns, sizes, faults):
     normal, right, kept = np.zeros((len(sizes), len(sizes))), np.zeros(len(sizes)), []
     for test in range(len(body.tests)):
         design, residual, projector = _one_test(body, unknowns, sizes, test)
-        own, flat = unknowns.of_test(test), design.reshape(-1, design.shape[2])
-        normal[np.ix_(own, own)] += flat.T @ flat
-        right[own] += flat.T @ residual.ravel()
-        kept.append((own, design, residual, projector))
+        numbers, flat = unknowns.of_test(test), design.reshape(-1, design.shape[2])
+        normal[np.ix_(numbers, numbers)] += flat.T @ flat
+        right[numbers] += flat.T @ residual.ravel()
+        kept.append((numbers, design, residual, projector))
     ridge = 1e-9 * np.diag(np.diagonal(normal)) + 1e-12 * np.eye(len(sizes))
     free = np.linalg.lstsq(normal + ridge, right, rcond=None)[0]
-    left = [residual - design @ free[own] for own, design, residual, _ in kept]
+    rest = [residual - design @ free[numbers] for numbers, design, residual, _ in kept]
     before = [residual - residual.mean(axis=0) for _, _, residual, _ in kept if len(residual)]
     # a reading's own share of what the rigid fit leaves
     shares = sum(np.diagonal(projector, axis1=1, axis2=2).sum(axis=0) for *_, projector in kept)
-    variance = coloured_variance(left, shares.sum(), _SEGMENT)
+    variance = coloured_variance(rest, shares.sum(), _SEGMENT)
     shares = np.maximum(shares.reshape(-1, 3).sum(axis=1), 1e-9)
     noise, misfit = (
-        np.sqrt(sum((one.reshape(-1, *body.points.shape) ** 2).sum(axis=(0, 2)) for one in parts) / shares)
+        np.sqrt(
+            sum((residual.reshape(-1, *body.points.shape) ** 2).sum(axis=(0, 2)) for residual in parts)
+            / shares
+        )
         if np.isfinite(variance)
         else np.full(len(shares), np.nan)
-        for parts in (left, before)
+        for parts in (rest, before)
     )
     return Equations(normal, right, variance, faults), noise, misfit
 

@@ -19,7 +19,7 @@ from blockshake.parity.kinds.body_gain import body_gains
 from blockshake.parity.kinds.clock import clock_findings, clock_lag
 from blockshake.parity.kinds.drift import drift_findings
 from blockshake.parity.kinds.exchange import channel_exchanges, marker_exchanges
-from blockshake.parity.kinds.frame_drift import frame_drift
+from blockshake.parity.kinds.frame_drift import frame_drift, short_lines
 from blockshake.parity.kinds.gain import channel_gains, gain_findings
 from blockshake.parity.kinds.saturation import saturation
 from blockshake.parity.transducer_readings import held_readings
@@ -54,7 +54,7 @@ class Parity:
     falls : dict of str to Fall
         By test: the block that fell first; the test is judged until then.
     gaps : dict of str to list of str
-        By test: lines on the readings that were taken as gaps.
+        By test: lines on the readings that were taken as gaps, and on a record that is too short.
     """
 
     findings: tuple
@@ -157,25 +157,22 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     compared with the markers as corrected.
     """
     sensors = sensors.not_noiseless()
-    noise, gaps = sensors.marker_noise, {name: faulty_lines(test) for name, test in tests.items()}
+    noise = sensors.marker_noise
+    gaps = {name: faulty_lines(test) + short_lines(test) for name, test in tests.items()}
     findings = saturation(tests, level)
     tests = {name: without_outliers(test, structure) for name, test in tests.items()}
     share = Level(level, _looked_at(bodies_with_markers(structure, tests), tests))
 
-    def take_out(found):
-        findings.extend(found)
-        return (
-            {name: corrected(test, name, structure, found) for name, test in tests.items()}
-            if found
-            else tests
-        )
+    def without(faults):
+        findings.extend(faults)
+        return {name: corrected(test, name, structure, faults) for name, test in tests.items()}
 
-    tests = take_out(body_gains(structure, tests, sensors, share))
-    tests = take_out(marker_exchanges(structure, tests, noise, share))
+    tests = without(body_gains(structure, tests, sensors, share))
+    tests = without(marker_exchanges(structure, tests, noise, share))
     bodies = bodies_with_markers(structure, tests)
     checks = {name: marker_faults.check_body(body, noise, share) for name, body in bodies.items()}
     creep = frame_drift(structure, tests, noise, share)
-    tests = take_out([finding for check in checks.values() for finding in check.findings])
+    tests = without([finding for check in checks.values() for finding in check.findings])
     findings += creep
     bodies = bodies_with_markers(structure, tests)
     poses = {
@@ -191,7 +188,9 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     lags = {name: clock.by_test[name].estimate[0] if name in clock.by_test else 0.0 for name in tests}
     gains, exchanges = channel_gains(pairs, lags), channel_exchanges(pairs, lags, share)
     exchanged = {name for finding in exchanges for name in finding.where}
-    sound = {name: [pair for pair in own if pair.name not in exchanged] for name, own in pairs.items()}
+    sound = {
+        name: [pair for pair in of_test if pair.name not in exchanged] for name, of_test in pairs.items()
+    }
     findings += clock_findings(clock, share) + exchanges
     findings += gain_findings(
         {name: gain for name, gain in gains.items() if name not in exchanged}, pairs, share
@@ -230,4 +229,4 @@ def _looked_at(bodies, tests):
 
 def _sizes(sizes):
     """Estimate and standard error of each `Size`."""
-    return {name: (one.estimate[0], np.sqrt(one.covariance[0, 0])) for name, one in sizes.items()}
+    return {name: (size.estimate[0], np.sqrt(size.covariance[0, 0])) for name, size in sizes.items()}

@@ -71,8 +71,8 @@ def regression(parts, segment, ridge=0.0):
     estimate = inverse @ sum(columns.T @ values for columns, values, _ in parts)
     scores = []
     for columns, values, since in parts:
-        score, number = columns * (values - columns @ estimate)[:, None], np.floor(since / segment)
-        scores += [score[number == own].sum(axis=0) for own in np.unique(number)]
+        score, numbers = columns * (values - columns @ estimate)[:, None], np.floor(since / segment)
+        scores += [score[numbers == number].sum(axis=0) for number in np.unique(numbers)]
     scores, size = np.array(scores), len(estimate)
     power = (scores**2).sum(axis=1)
     if len(scores) < max(_FEWEST_SEGMENTS, size + 1) or not power.sum():

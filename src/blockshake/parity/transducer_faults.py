@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.parity.finding import chance_of_misfit
-from blockshake.parity.kinds import gain, place, slip
+from blockshake.parity.kinds import gain, slip, wrong_place
 from blockshake.parity.kinds.polarity import POLARITY
 from blockshake.parity.linear_faults import (
     Equations,
@@ -15,7 +15,7 @@ from blockshake.parity.linear_faults import (
     name_faults,
 )
 
-_COLUMNS = gain.OF_TRANSDUCER, place.OF_END, place.OF_REFERENCE_END
+_COLUMNS = gain.OF_TRANSDUCER, wrong_place.OF_END, wrong_place.OF_REFERENCE_END
 _SEGMENT = 5  # means over which coloured noise averages out, half a second
 _EDGE = 3  # means before and after a slip
 _MOST_FAULTS = 4
@@ -59,14 +59,14 @@ def check_transducer(name, held, level):
     if not held:
         return TransducerCheck(np.nan, np.nan, ())
     readings, turned = (
-        np.concatenate([_without_lag(one.left, one) for one in whole])
-        for whole in (held.values(), [one.reversed() for one in held.values()])
+        np.concatenate([_without_lag(means.left, means) for means in whole])
+        for whole in (held.values(), [means.reversed() for means in held.values()])
     )
     after = (turned**2).sum()
     chance = chance_of_misfit((readings**2).sum(), after, max(after / len(turned), _NOTHING**2))
     if level.hypotheses * chance < level.chance:
         findings.append(POLARITY.finding((name,), level.hypotheses * chance, tests))
-        held = {test: one.reversed() for test, one in held.items()}
+        held = {test: means.reversed() for test, means in held.items()}
     unknowns, rows = Unknowns((*_COLUMNS, slip.OF_END), 1, len(tests)), {}
 
     def equations_of(named, spread):
@@ -78,12 +78,12 @@ def check_transducer(name, held, level):
     named, equations, spread = name_faults(equations_of, unknowns, level, (name,), _MOST_FAULTS)
     mean, covariance = equations.posterior(spread)
     for fault, (p, rivals) in named.items():
-        own, where = unknowns.of(fault), tests
+        numbers, where = unknowns.of(fault), tests
         # along what is not told 0, as good as unknown
-        estimate, square = np.zeros(len(own)), np.diag(spread[own] ** 2)
-        told, _ = equations.faults[fault]
-        at = told - own[0]
-        estimate[at], square[np.ix_(at, at)] = mean[told], covariance[np.ix_(told, told)]
+        estimate, square = np.zeros(len(numbers)), np.diag(spread[numbers] ** 2)
+        informed, _ = equations.faults[fault]
+        at = informed - numbers[0]
+        estimate[at], square[np.ix_(at, at)] = mean[informed], covariance[np.ix_(informed, informed)]
         if fault.column is slip.OF_END:
             where = (tests[fault.test],)
             before, after = held[where[0]].time[rows[fault.test] - 1 : rows[fault.test] + 1]
@@ -105,36 +105,36 @@ def _without_lag(values, held):
 
 def _equations(held, unknowns, spread, fixed):
     """`Equations` from `HeldReading` by test, and the row of each test's likeliest slip; ``fixed``: of named ones."""
-    left = [_without_lag(one.left, one) for one in held]
-    steps = [_without_lag(_steps(len(one.left)), one) for one in held]
+    misfits = [_without_lag(means.left, means) for means in held]
+    steps = [_without_lag(_steps(len(means.left)), means) for means in held]
     of_slips, rows = unknowns.numbers[slip.OF_END][:, 0, 0], dict(fixed)
-    blocks = [np.zeros((len(one.left), len(spread))) for one in held]
-    for test, (block, one) in enumerate(zip(blocks, held, strict=True)):
+    blocks = [np.zeros((len(means.left), len(spread))) for means in held]
+    for test, (block, means) in enumerate(zip(blocks, held, strict=True)):
         for column in _COLUMNS:
-            block[:, unknowns.numbers[column][0, 0]] = _without_lag(column.signature(one), one)
+            block[:, unknowns.numbers[column][0, 0]] = _without_lag(column.signature(means), means)
         if test in fixed:
             block[:, of_slips[test]] = steps[test][:, fixed[test] - _EDGE]
-    _, white, _ = _left_over(blocks, left)
+    _, white, _ = _left_over(blocks, misfits)
     columns = np.concatenate(blocks)
     information = columns.T @ columns + white * np.diag(1.0 / spread**2)
-    sizes = np.linalg.solve(information, columns.T @ np.concatenate(left))
+    sizes = np.linalg.solve(information, columns.T @ np.concatenate(misfits))
     for test, (block, step) in enumerate(zip(blocks, steps, strict=True)):
-        gained = (step.T @ (left[test] - block @ sizes)) ** 2 / np.maximum((step**2).sum(axis=0), 1e-12)
+        gained = (step.T @ (misfits[test] - block @ sizes)) ** 2 / np.maximum((step**2).sum(axis=0), 1e-12)
         rows.setdefault(test, _EDGE + int(gained.argmax()))
         block[:, of_slips[test]] = step[:, rows[test] - _EDGE]
-    rest, white, freedom = _left_over(blocks, left)
+    rest, white, freedom = _left_over(blocks, misfits)
     variance = np.fmax(coloured_variance(rest, freedom, _SEGMENT), _NOTHING**2)
     columns, faults = np.concatenate(blocks), {}
-    visible = max(np.sqrt(white), *(one.noise for one in held))
+    visible = max(np.sqrt(white), *(means.noise for means in held))
     for column in _COLUMNS:
         (fault,) = unknowns.faults(column)
         size = np.sqrt((columns[:, unknowns.of(fault)] ** 2).mean(axis=0))
-        if (told := unknowns.of(fault)[column.visible * size > visible]).size:
-            faults[fault] = told, 1
+        if (informed := unknowns.of(fault)[column.visible * size > visible]).size:
+            faults[fault] = informed, 1
     for fault in unknowns.faults(slip.OF_END):
         faults[fault] = unknowns.of(fault), steps[fault.test].shape[1]
-    segments = sum(len(one) // _SEGMENT for one in left)
-    right, freedom = columns.T @ np.concatenate(left), max(segments - columns.shape[1], 4.0)
+    segments = sum(len(means) // _SEGMENT for means in misfits)
+    right, freedom = columns.T @ np.concatenate(misfits), max(segments - columns.shape[1], 4.0)
     return Equations(columns.T @ columns, right, variance, faults, freedom), rows
 
 
@@ -145,10 +145,10 @@ def _steps(count):
     return steps - steps.mean(axis=0)
 
 
-def _left_over(blocks, left):
+def _left_over(blocks, misfits):
     """Rest of each test's means (n_means, 1) where all faults are free [m], its variance, and its freedom."""
-    columns, means = np.concatenate(blocks), np.concatenate(left)
+    columns, means = np.concatenate(blocks), np.concatenate(misfits)
     rest = means - columns @ np.linalg.lstsq(columns, means, rcond=None)[0]
     freedom = max(len(rest) - columns.shape[1], 1)
-    parts = np.split(rest[:, None], np.cumsum([len(one) for one in left])[:-1])
+    parts = np.split(rest[:, None], np.cumsum([len(means) for means in misfits])[:-1])
     return parts, max((rest**2).sum() / freedom, _NOTHING**2), freedom

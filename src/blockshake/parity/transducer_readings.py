@@ -77,7 +77,7 @@ def held_readings(structure, tests, poses, lags):
         for item in structure.file.displacement_transducers:
             if "transducer_displacement" not in test or item.name not in test["transducer"].values:
                 continue
-            own = held.setdefault(item.name, {})
+            by_test = held.setdefault(item.name, {})
             ends = [(point, poses[name].get(point.body)) for point in (item, item.anchor)]
             if any(pose is None or not len(pose.time) for _, pose in ends):
                 continue
@@ -89,15 +89,15 @@ def held_readings(structure, tests, poses, lags):
             reading = between_readings(test["time_acc"].to_numpy(), read)
             means = _held(ends[0][1].time, expected, places, reading, lags[name])
             if means is not None:
-                own[name] = means
+                by_test[name] = means
     return held
 
 
-def _seen(pose, place, direction):
+def _seen(pose, point, direction):
     """Times (n_times,) at which the markers that were read see a place of their body move along a direction of it."""
     seen = np.zeros(len(pose.read), dtype=bool)
     for kept in np.unique(pose.read[pose.read.sum(axis=1) >= FEWEST_MARKERS], axis=0):
-        magnified, unseen = sight(pose.points[kept], place, direction)
+        magnified, unseen = sight(pose.points[kept], point, direction)
         if magnified <= LARGEST_MAGNIFICATION and unseen <= LARGEST_UNSEEN_ARM:
             seen |= (pose.read == kept).all(axis=1)
     return seen

@@ -45,7 +45,9 @@ def body_gains(structure, tests, sensors, level):
     """
     if not structure.touching.any():
         return []
-    seen = [one for one in (_slips(structure, test, sensors) for test in tests.values()) if one is not None]
+    seen = [
+        slips for slips in (_slips(structure, test, sensors) for test in tests.values()) if slips is not None
+    ]
     findings = []
     for body, name in enumerate(structure.body_names):
         gain = _gain(find_joints(structure)[0], body, seen)
@@ -100,23 +102,23 @@ def _gain(pairs, body, seen):
     ratio = share.estimate[0]  # reading over truth, less 1, over the reading
     for known, noise in joints:
         slip = np.concatenate([slip for _, slip, _ in known])
-        left = np.concatenate([slip - ratio * moved[:, 0] for moved, slip, _ in known])
+        rest = np.concatenate([slip - ratio * moved[:, 0] for moved, slip, _ in known])
         size = (slip**2).mean()
-        if not size > (_SEEN * noise) ** 2 or (left**2).mean() > _LEFT * size:
+        if not size > (_SEEN * noise) ** 2 or (rest**2).mean() > _LEFT * size:
             return None
     return Size(share.estimate / (1.0 - ratio), share.covariance / (1.0 - ratio) ** 4, share.freedom)
 
 
 def _gain_across(structure, tests, body, sensors, along):
     """Gain along z and its variance, by the turn about y that readings along x and along z show."""
-    own = [marker for marker in structure.file.markers if marker.body == structure.body_names[body]]
-    arms = (structure.arms(own) @ rotation_matrices(structure.orientation[body]).T)[:, [0, 2]]
+    carried = [marker for marker in structure.file.markers if marker.body == structure.body_names[body]]
+    arms = (structure.arms(carried) @ rotation_matrices(structure.orientation[body]).T)[:, [0, 2]]
     x, z = (arms - arms.mean(axis=0)).T
     if min((x**2).sum(), (z**2).sum()) < _FLAT:
         return 0.0, 0.0
     by_x, by_z = [], []
     for test in tests:
-        moved = test["marker_displacement"].sel(marker=[marker.name for marker in own], axis=["x", "z"])
+        moved = test["marker_displacement"].sel(marker=[marker.name for marker in carried], axis=["x", "z"])
         moved = moved.transpose("time", "marker", "axis").to_numpy()
         known = np.isfinite(moved).all(axis=(1, 2))
         by_x.append(moved[known, :, 0] @ z / (z**2).sum())

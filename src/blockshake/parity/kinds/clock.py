@@ -103,9 +103,9 @@ def _lag_equations(pairs, lag):
         late = late[known] * (read @ expected) / (read @ read)
         design = np.column_stack([late, late * (since - 0.5 * np.ptp(pair.time))])
         design = design - np.outer(read, read @ design) / (read @ read)
-        left = expected - read * (read @ expected) / (read @ read)
-        error = np.std(left - design @ np.linalg.lstsq(design, left, rcond=None)[0])
+        rest = expected - read * (read @ expected) / (read @ read)
+        error = np.std(rest - design @ np.linalg.lstsq(design, rest, rcond=None)[0])
         columns.append(design / error)
-        values.append(left / error + lag * design[:, 0] / error)
+        values.append(rest / error + lag * design[:, 0] / error)
         times.append(since)
     return tuple(map(np.concatenate, (columns, values, times))) if columns else None

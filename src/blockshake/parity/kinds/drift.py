@@ -12,13 +12,13 @@ _MOVES = 1e-3  # m/s2, of what a channel should read at low frequencies: less te
 
 def _correct(test, findings, structure):
     for finding in findings:
-        variable, own = (
+        variable, selection = (
             ("marker_displacement", {}) if finding.where == FRAME else readings_of(test, *finding.where)
         )
-        readings = test[variable].loc[own]
+        readings = test[variable].loc[selection]
         clock = test["time" if variable == "marker_displacement" else "time_acc"].to_numpy()
         since = (clock - clock[0]).reshape(-1, *(readings.ndim - 1) * [1])
-        test[variable].loc[own] = readings - since * finding.estimate
+        test[variable].loc[selection] = readings - since * finding.estimate
 
 
 DRIFT = Kind("drift", "sensor-drift", "reading = truth + d t", _correct, units=("m/s", "m/s3"))
@@ -53,8 +53,8 @@ def _drift(pair, lag):
     since, expected = pair.time[known] - pair.time[0], pair.expected_slow[known]
     others = [np.ones(len(since)), expected] if np.std(expected) > _MOVES else [np.ones(len(since))]
     basis = np.linalg.qr(np.column_stack(others))[0]
-    column, left = (
+    column, rest = (
         values - basis @ (basis.T @ values)
         for values in (since / np.ptp(pair.time) - 0.5, read[known] - expected)
     )
-    return regression([(column[:, None], left, since)], _SEGMENT)
+    return regression([(column[:, None], rest, since)], _SEGMENT)

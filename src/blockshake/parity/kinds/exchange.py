@@ -50,8 +50,8 @@ def marker_exchanges(structure, tests, marker_noise, level):
         kind, where, changed, touched, before, after, variance = best
         p = trials * chance_of_misfit(before, after, max(variance, marker_noise**2) * _VARIANCE_OF_COLOUR)
         single, exchanged = (
-            sum((check_body(own[name], marker_noise, level).noise ** 2).sum() for name in touched)
-            for own in (bodies, touched)
+            sum((check_body(group[name], marker_noise, level).noise ** 2).sum() for name in touched)
+            for group in (bodies, touched)
         )
         if p >= level.chance or exchanged >= _AS_GOOD * single:
             break

@@ -14,14 +14,14 @@ _SEGMENT = 0.5  # s; longer than the kernels, so that segments are independent
 def _correct(test, findings, structure):
     for finding in findings:
         for sensor in finding.where:
-            variable, own = readings_of(test, sensor)
-            if sensor not in test[next(iter(own))].values:
+            variable, selection = readings_of(test, sensor)
+            if sensor not in test[next(iter(selection))].values:
                 continue
-            values, rest = test[variable].loc[own].to_numpy(), 0.0
+            values, rest = test[variable].loc[selection].to_numpy(), 0.0
             if variable == "accelerometer":
                 time = test["time_acc"].to_numpy()
                 rest = np.nanmean(values[time <= time[0] + _REST])
-            test[variable].loc[own] = rest + (values - rest) / (1.0 + finding.estimate)
+            test[variable].loc[selection] = rest + (values - rest) / (1.0 + finding.estimate)
 
 
 GAIN = Kind("gain", "sensor-gain", "reading = (1 + g) truth", _correct)
@@ -50,8 +50,11 @@ def channel_gains(pairs_by_test, lags):
             for pair in pairs:
                 if pair.name != name or pair.unseen or not pair.informed:
                     continue
-                axes = [pair, *(one for one in pairs if one.sensor == pair.sensor and one is not pair)]
-                columns = np.column_stack([one.read(pair.time - lags[test]) for one in axes])
+                axes = [
+                    pair,
+                    *(other for other in pairs if other.sensor == pair.sensor and other is not pair),
+                ]
+                columns = np.column_stack([axis.read(pair.time - lags[test]) for axis in axes])
                 known = pair.enough(columns.sum(axis=1))
                 if known is not None:
                     parts.append((columns[known], pair.expected[known], pair.time[known] - pair.time[0]))
@@ -76,5 +79,7 @@ def _slope(parts):
 def gain_findings(gains, tests, level):
     """Gains of channels, as of `channel_gains`, beyond their tolerance: list of Finding."""
     return [
-        one for name, gain in gains.items() for one in gain.finding(GAIN, (name,), tests, _TOLERANCE, level)
+        finding
+        for name, gain in gains.items()
+        for finding in gain.finding(GAIN, (name,), tests, _TOLERANCE, level)
     ]

@@ -5,10 +5,10 @@ from blockshake.parity.kinds.kind import Kind, readings_of
 
 def _correct(test, findings, structure):
     for finding in findings:
-        variable, own = readings_of(test, finding.where[0])
+        variable, selection = readings_of(test, finding.where[0])
         if variable == "marker_displacement":
-            own = own | {"axis": finding.where[1]}
-        test[variable].loc[own] = -test[variable].loc[own]
+            selection = selection | {"axis": finding.where[1]}
+        test[variable].loc[selection] = -test[variable].loc[selection]
 
 
 POLARITY = Kind("polarity", "channel-swap", "reading = -truth", _correct)

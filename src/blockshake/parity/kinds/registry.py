@@ -1,6 +1,6 @@
 """The registry of kinds of sensor faults, in the order in which they are taken out of readings."""
 
-from blockshake.parity.kinds import axes, clock, drift, gain, place, polarity, saturation, slip, swap
+from blockshake.parity.kinds import axes, clock, drift, gain, polarity, saturation, slip, swap, wrong_place
 
 _KINDS = (
     swap.SWAP,
@@ -9,8 +9,8 @@ _KINDS = (
     slip.SLIP,
     drift.DRIFT,
     gain.GAIN,
-    place.PLACE,
-    place.REFERENCE_PLACE,
+    wrong_place.PLACE,
+    wrong_place.REFERENCE_PLACE,
     clock.LAG,
     clock.SKEW,
     saturation.RANGE,

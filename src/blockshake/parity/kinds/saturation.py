@@ -1,8 +1,8 @@
-"""A sensor stops at the end of its range: |reading| <= r. Such readings are gaps before any check."""
+"""A sensor stops at the end of its range: reading = truth between -r and r. Such readings are gaps before any check."""
 
 from blockshake.parity.kinds.kind import Kind
 
-RANGE = Kind("range", "sensor-saturation", "|reading| <= r", units=("m", "m/s2"))
+RANGE = Kind("range", "sensor-saturation", "reading = truth between -r and r", units=("m", "m/s2"))
 
 
 def saturation(tests, level):

@@ -5,9 +5,9 @@ from blockshake.parity.kinds.kind import Column, Kind, readings_of
 
 def _correct(test, findings, structure):
     for finding in findings:
-        variable, own = readings_of(test, *finding.where)
+        variable, selection = readings_of(test, *finding.where)
         size, time = finding.estimate
-        test[variable].loc[own] -= size * (test["time_acc"].to_numpy() > time)
+        test[variable].loc[selection] -= size * (test["time_acc"].to_numpy() > time)
 
 
 SLIP = Kind("slip", "sensor-drift", "reading = truth + s H(t - t0)", _correct, units=("m", "m"))
