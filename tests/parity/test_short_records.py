@@ -60,3 +60,12 @@ def test_what_a_short_record_cannot_show_is_said(creeping):
     lines = check_parity(_shortened(tests, 0.0, 1.0), structure, Sensors()).gaps
     assert lines["t1"] == ["a record of 1 s is too short to show a drift of the optical frame"]
     assert check_parity(_shortened(tests, 0.0, 3.5), structure, Sensors()).gaps["t1"] == []
+
+
+def test_a_body_that_is_never_read_in_a_test_is_not_checked_there(clean_tests, three):
+    """Two of four markers are lost: what is left of them is no pose."""
+    lost = clean_tests["t2"].copy(deep=True)
+    lost["marker_displacement"].loc[{"marker": ["block-3-face", "block-3-upper"]}] = np.nan
+    parity = check_parity(clean_tests | {"t2": lost}, three, Sensors())
+    assert parity.findings == ()
+    assert np.isfinite(parity.markers["noise"]).all()

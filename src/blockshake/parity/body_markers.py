@@ -86,7 +86,7 @@ class MeasuredPose(NamedTuple):
     points : float64 array, shape (n_markers, 3)
         Of its markers, body frame [m].
     time : float64 array, shape (n_times,)
-        Even [s]; none where too little was read.
+        Even [s].
     position, rotation : float64 arrays, shapes (n_times, 3), (n_times, 3, 3)
         NaN where gaps are too long.
     read : bool array, shape (n_times, n_markers)
@@ -100,21 +100,23 @@ class MeasuredPose(NamedTuple):
 
 
 def measured_pose(body, test):
-    """`MeasuredPose` of `BodyMarkers` in the test of this number, outliers left out."""
+    """`MeasuredPose` of `BodyMarkers` in the test of this number, outliers left out; None where too little was read."""
     time, displacement = body.readings[test]
     first = body.frame(displacement)
     displacement = np.where(outlying(first.residual)[..., None], np.nan, displacement)
     # steps where a marker comes or goes would look like acceleration
-    mean = np.nan_to_num(np.nanmean(first.residual, axis=0))
+    mean = np.ma.masked_invalid(first.residual).mean(axis=0).filled(0.0)
     displacement -= np.einsum("tij,mj->tmi", np.nan_to_num(first.rotation), mean)
     pose = body.frame(displacement)
     known = body.upright(pose.rotation)
-    even = np.linspace(time[0], time[-1], len(time) if known.sum() > 1 else 0)
+    if known.sum() < 2:
+        return None
+    even = np.linspace(time[0], time[-1], len(time))
     flat = np.concatenate([pose.position, pose.rotation.reshape(-1, 9)], axis=1)
     gap = binary_opening(~known, np.ones(_LARGEST_GAP + 1))
     flat = np.stack([np.interp(even, time[known], values[known]) for values in flat.T], axis=1)
     flat[np.interp(even, time, gap) > 0.0] = np.nan
-    read = np.isfinite(displacement).all(axis=2)[: len(even)]
+    read = np.isfinite(displacement).all(axis=2)
     return MeasuredPose(body.points, even, flat[:, :3], flat[:, 3:].reshape(-1, 3, 3), read)
 
 

@@ -89,7 +89,7 @@ def channel_pairs(structure, test, poses, accelerometer_noise):
     pairs = []
     for sensor in structure.file.accelerometers:
         pose = poses.get(sensor.body)
-        for axis in sensor.axes if pose is not None and len(pose.time) else ():
+        for axis in sensor.axes if pose is not None else ():
             name, along = f"{sensor.name}-{axis}", np.eye(3)["xyz".index(axis)]
             magnified, unseen = sight(pose.points, sensor.position, along)
             if name not in test["channel"].values or magnified > LARGEST_MAGNIFICATION:

@@ -151,7 +151,7 @@ def _one_test(body, unknowns, sizes, test):
         of_each = np.broadcast_to(of_each, (len(used), *of_each.shape[1:]))
         signatures.append(of_each.reshape(len(used), 3 * len(points), column.components * len(points)))
     projector = pose.projector[used]
-    residual = np.nan_to_num(pose.residual[used]).reshape(len(used), -1)
+    residual = np.nan_to_num(pose.residual[used]).reshape(len(used), 3 * len(points))
     design = projector @ np.concatenate(signatures, axis=-1)
     return design, np.einsum("tij,tj->ti", projector, residual), projector
 

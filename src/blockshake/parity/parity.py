@@ -176,7 +176,7 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     findings += creep
     bodies = bodies_with_markers(structure, tests)
     poses = {
-        name: {key: measured_pose(body, index) for key, body in bodies.items()}
+        name: {key: pose for key, body in bodies.items() if (pose := measured_pose(body, index)) is not None}
         for index, name in enumerate(tests)
     }
     pairs = {

@@ -79,7 +79,7 @@ def held_readings(structure, tests, poses, lags):
                 continue
             by_test = held.setdefault(item.name, {})
             ends = [(point, poses[name].get(point.body)) for point in (item, item.anchor)]
-            if any(pose is None or not len(pose.time) for _, pose in ends):
+            if any(pose is None for _, pose in ends):
                 continue
             expected, places = _expectation(structure, item, ends)
             first = places[np.isfinite(places).all(axis=1).argmax()]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.measurement.sensors.markers import directions_read, marker_bodies
+from blockshake.measurement.sensors.markers import slab_displacement
 from blockshake.parity.finding import chance_within
 from blockshake.parity.kinds.drift import DRIFT, FRAME
 from blockshake.parity.regression import regression
@@ -21,26 +21,20 @@ def frame_drift(structure, tests, marker_noise, level):
     there is one, is taken off first, and where there is none x is not judged. Neither is a direction that is not
     measured. A step is no drift: both halves of the record must creep alike.
     """
-    driven = {body.name for body in structure.file.bodies if body.driven}
     findings = []
     for name, test in tests.items():
-        on_table = [body in driven for body in marker_bodies(structure, test["marker"].values)]
-        time = test["time"].to_numpy()
-        values = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()[:, on_table]
-        read = directions_read(values)
-        centred = values - np.nanmedian(np.where(read, values, 0.0), axis=0)
-        along = np.where(read, centred, 0.0).sum(axis=1) / np.maximum(read.sum(axis=0), 1)
-        nuisance = [np.ones(len(time))]
+        time, along, nuisance = test["time"].to_numpy(), slab_displacement(test, structure), []
         if "table_displacement" in test:
-            nuisance.append(test["table_displacement"].to_numpy())
-            along[:, 0] -= nuisance[1]
-        axes = [axis for axis in range(2 - len(nuisance), 3) if read[:, axis].any()]
-        slopes = [_slope(time, along[:, axis], nuisance) for axis in axes]
-        if not axes or None in slopes:
+            nuisance = [test["table_displacement"].to_numpy()]
+            along[:, 0] -= nuisance[0]
+        slopes = {axis: _slope(time, along[:, axis], nuisance) for axis in range(1 - len(nuisance), 3)}
+        slopes = {axis: slope for axis, slope in slopes.items() if slope is not None}
+        if not slopes:
             continue
-        estimate, gap = np.transpose([slope.estimate for slope in slopes])
-        variance, gap_variance = np.transpose([np.diagonal(slope.covariance) for slope in slopes])
-        freedom = min(slope.freedom for slope in slopes)
+        axes, sizes = list(slopes), slopes.values()
+        estimate, gap = np.transpose([slope.estimate for slope in sizes])
+        variance, gap_variance = np.transpose([np.diagonal(slope.covariance) for slope in sizes])
+        freedom = min(slope.freedom for slope in sizes)
         p = level.hypotheses * chance_within(estimate, np.diag(variance), marker_noise, freedom)
         allowed = _HALVES_DIFFER_BY_ERRORS * np.sqrt(gap_variance) + _HALVES_DIFFER_BY_SHARE * np.abs(
             estimate
@@ -71,6 +65,6 @@ def _slope(time, values, nuisance):
     scale = since / (time[-1] - time[0]) - 0.5
     # the coefficient of its size is half the difference of the slopes
     columns = np.column_stack([scale, 0.5 * np.abs(scale)])
-    basis = np.linalg.qr(np.column_stack([column[known] for column in nuisance]))[0]
+    basis = np.linalg.qr(np.column_stack([np.ones(len(since)), *(column[known] for column in nuisance)]))[0]
     columns, rest = (part - basis @ (basis.T @ part) for part in (columns, values[known]))
     return regression([(columns, rest, since)], _SEGMENT)

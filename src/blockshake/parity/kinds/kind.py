@@ -1,4 +1,4 @@
-"""What every kind of sensor fault states of itself, and where the readings of a sensor stand in a test."""
+"""The row of a kind of sensor fault in the registry, and where the readings of a sensor stand in a test."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -52,9 +52,9 @@ class Column(NamedTuple):
     components : int
         1, or 3 of a vector.
     tolerance : float
-        What a sound sensor may have; its standard deviation is half of it.
+        Size that a sound sensor may have; its standard deviation is half of it.
     signature : callable
-        What a unit of the fault leaves in the readings, by component.
+        Makes the readings that a unit of the fault leaves, by component.
     by_test : bool
         Whether the fault is another one in each test.
     visible : float
