@@ -48,9 +48,9 @@ def body_gains(structure, tests, sensors, level):
     seen = [
         slips for slips in (_slips(structure, test, sensors) for test in tests.values()) if slips is not None
     ]
-    findings = []
+    pairs, findings = find_joints(structure)[0], []
     for body, name in enumerate(structure.body_names):
-        gain = _gain(find_joints(structure)[0], body, seen)
+        gain = _gain(pairs, body, seen)
         if gain is None:
             continue
         (along,), ((variance,),) = gain.estimate, gain.covariance
@@ -64,7 +64,7 @@ def body_gains(structure, tests, sensors, level):
 
 
 def _slips(structure, test, sensors):
-    """Slips of the joints, displacements of the bodies along x and their noise [m], times since the start [s], or None.
+    """Slips of the joints, displacements of the bodies along x, their noise [m], and times since the start [s].
 
     None where a pose is not read.
     """
