@@ -10,9 +10,9 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "forces"))
 from known_blocks import readings, shaken, sliding, stack
 
 from blockshake.measurement.campaigns.campaign import Sensors
-from blockshake.parity.body_gain import body_gains
 from blockshake.parity.correction import corrected
 from blockshake.parity.finding import Level
+from blockshake.parity.kinds.body_gain import body_gains
 
 SENSORS = Sensors(marker_noise=1e-4, accelerometer_noise=0.02)
 LEVEL = Level(0.01, 100)

@@ -134,7 +134,8 @@ def test_a_frame_that_drifts(three):
     tests = make_tests(three, 7, mounting=1e-3, marker_drift=(0.0, 1e-4, 0.0))
     parity = _check(tests, three)
     finding = _only(parity, "sensor-drift", ("optical frame",), "drift")
-    # the error comes from ten segments of 1 s less three: Student's t with 7 degrees of freedom, one in a thousand
+    # the error comes from ten segments of 1 s less slope and bend: Student's t with some 7 degrees of freedom, one in
+    # a thousand
     assert abs(finding.estimate[1] - 1e-4) < 5.41 * finding.standard_error[1]
     assert len(parity.findings) == len(tests)
 

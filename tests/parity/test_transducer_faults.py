@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from blockshake.parity.finding import Level
-from blockshake.parity.transducer_equations import HeldReading
 from blockshake.parity.transducer_faults import check_transducer, hypotheses
+from blockshake.parity.transducer_readings import HeldReading
 
 TESTS = ("t1", "t2", "t3")
 NOISE = 4e-5  # m, of a mean over a tenth of a second

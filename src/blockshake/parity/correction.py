@@ -1,17 +1,9 @@
 """Readings without the faults that were found."""
 
-import numpy as np
-import xarray as xr
-
-from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.campaigns.campaign import load_test
 from blockshake.measurement.campaigns.command_clock import simulation_start, since
-from blockshake.measurement.motion.body_frame import see_from_body
 from blockshake.measurement.motion.fall import find_fall, until_fall
-from blockshake.parity.finding import EFFECTS
-from blockshake.parity.marker_swaps import ORDERS
-
-_REST = 0.1  # s, whose mean is an accelerometer's reading at rest
+from blockshake.parity.kinds.registry import KINDS
 
 
 def load_corrected_test(campaign, name, structure, findings):
@@ -31,7 +23,7 @@ def judged_readings(test, name, structure, findings):
 
 
 def corrected(test, name, structure, findings):
-    """Take the findings out of one test's readings.
+    """Take the findings out of one test's readings, kind by kind in the order of the registry.
 
     Parameters
     ----------
@@ -40,127 +32,18 @@ def corrected(test, name, structure, findings):
     name : str
         Of the test: findings of other tests do not touch it.
     structure : Structure
-    findings : iterable of Finding
+    findings : sequence of Finding
 
     Returns
     -------
     xarray.Dataset
         The test without these faults. The optical clock stays: the accelerometers' times are moved onto it.
-
-    Notes
-    -----
-    A marker at a wrong place is moved to where it is said to be, which needs its body's rotation: where fewer than
-    three markers are read, its reading becomes a gap. An end of a displacement transducer at a wrong place stays: its
-    reading is right, of other points than the structure says.
     """
     test = test.transpose("time", "marker", "axis", ...).copy(deep=True)
-    own = [finding for finding in findings if name in finding.tests]
-    for quantity in EFFECTS:
-        for finding in own:
-            if finding.quantity == quantity and quantity in _TAKE:
-                _TAKE[quantity](test, finding)
-    places = {finding.where[0]: finding.estimate for finding in own if finding.quantity == "place"}
-    _take_places(test, structure, places)
+    for kind in KINDS.values():
+        mine = [
+            finding for finding in findings if finding.quantity == kind.quantity and name in finding.tests
+        ]
+        if mine and kind.correct:
+            kind.correct(test, mine, structure)
     return test
-
-
-def _column(test, where):
-    """Variable and selection of a marker, channel or displacement transducer."""
-    if "transducer" in test.coords and where in test["transducer"].values:
-        return "transducer_displacement", {"transducer": where}
-    if "channel" in test.coords and where in test["channel"].values:
-        return "accelerometer", {"channel": where}
-    return "marker_displacement", {"marker": where}
-
-
-def _take_swap(test, finding):
-    (variable, one), (_, other) = (_column(test, where) for where in finding.where)
-    first = test[variable].loc[one].to_numpy().copy()
-    test[variable].loc[one] = test[variable].loc[other].to_numpy()
-    test[variable].loc[other] = first
-
-
-def _take_axes(test, finding):
-    place = {"marker": finding.where[0]}
-    values = test["marker_displacement"].loc[place].to_numpy()
-    test["marker_displacement"].loc[place] = values[:, ORDERS[finding.where[1]]].copy()
-
-
-def _take_polarity(test, finding):
-    variable, place = _column(test, finding.where[0])
-    if variable == "marker_displacement":
-        place = place | {"axis": finding.where[1]}
-    test[variable].loc[place] = -test[variable].loc[place]
-
-
-def _take_slip(test, finding):
-    variable, place = _column(test, finding.where[0])
-    size, time = finding.estimate
-    test[variable].loc[place] -= size * (test["time_acc"].to_numpy() > time)
-
-
-def _take_drift(test, finding):
-    variable, place = _column(test, finding.where[0])
-    time = test["time" if variable == "marker_displacement" else "time_acc"].to_numpy()
-    change = np.squeeze((time - time[0])[:, None] * finding.estimate)
-    if finding.where == ("optical frame",):
-        test[variable] -= xr.DataArray(change, dims=("time", "axis"))
-    else:
-        test[variable].loc[place] -= change
-
-
-def _take_gain(test, finding):
-    variable, place = _column(test, finding.where[0])
-    if len(finding.estimate) == 3:
-        factor = xr.DataArray(1.0 + finding.estimate, dims="axis")
-        own = {"marker": test["marker"].isin(finding.where)}
-        test["marker_displacement"].loc[own] = test["marker_displacement"].loc[own] / factor
-        return
-    values = test[variable].loc[place]
-    rest = 0.0
-    if variable == "accelerometer":
-        time = test["time_acc"]
-        rest = float(values.where(time <= time[0] + _REST).mean())
-    test[variable].loc[place] = rest + (values - rest) / (1.0 + finding.estimate[0])
-
-
-def _take_lag(test, finding):
-    if "time_acc" in test.coords:
-        test.coords["time_acc"] = test["time_acc"] + finding.estimate[0]
-
-
-def _take_skew(test, finding):
-    if "time_acc" in test.coords:
-        middle = 0.5 * float(test["time"][0] + test["time"][-1])
-        test.coords["time_acc"] = test["time_acc"] + finding.estimate[0] * (test["time_acc"] - middle)
-
-
-_TAKE = {
-    "swap": _take_swap,
-    "axes": _take_axes,
-    "polarity": _take_polarity,
-    "slip": _take_slip,
-    "drift": _take_drift,
-    "gain": _take_gain,
-    "lag": _take_lag,
-    "skew": _take_skew,
-}
-
-
-def _take_places(test, structure, offsets):
-    """Move markers to where the structure has them."""
-    read = [str(marker) for marker in test["marker"].values]
-    for index, body in enumerate(structure.body_names):
-        own = [m for m in structure.file.markers if m.body == body and m.name in read]
-        if not any(marker.name in offsets for marker in own):
-            continue
-        names = [marker.name for marker in own]
-        start = rotation_matrices(structure.orientation[index])
-        points = np.array([marker.position for marker in own], dtype=float)
-        points += np.array([offsets.get(name, np.zeros(3)) for name in names])
-        values = test["marker_displacement"].sel(marker=names).to_numpy()
-        places = structure.position[index] + points @ start.T
-        rotation = see_from_body(points, places + values, structure.position[index], start).rotation
-        for name in names:
-            if name in offsets:
-                test["marker_displacement"].loc[{"marker": name}] -= (rotation - start) @ offsets[name]

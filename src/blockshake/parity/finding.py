@@ -7,21 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2, f
 
-# Kinds of faults, each by the quantity that is estimated, and the effects of the registry that they count as; in the
-# order in which they are taken out of readings.
-EFFECTS = {
-    "swap": "channel-swap",
-    "axes": "channel-swap",
-    "polarity": "channel-swap",
-    "slip": "sensor-drift",
-    "drift": "sensor-drift",
-    "gain": "sensor-gain",
-    "place": "marker-offset",
-    "reference place": "marker-offset",
-    "lag": "clock-lag",
-    "skew": "clock-lag",
-    "range": "sensor-saturation",
-}
+LEFT_AT_MOST = 0.5  # of the misfit that taking an exchange back may leave
 
 
 class Level(NamedTuple):
@@ -38,18 +24,14 @@ class Finding:
     Attributes
     ----------
     effect : str
-        Of the registry, as of `EFFECTS`.
+        That the fault counts as.
     where : tuple of str
         Markers, channels or displacement transducers; ``("optical clock",)`` and ``("optical frame",)`` for faults of
-        all markers.
+        all markers; of an exchange of axes and of a polarity the marker and its axes.
     quantity : str
-        Estimated quantity: ``gain`` (reading over truth, less 1) [1], ``place`` (where the marker is less where it is
-        said to be, body frame) [m], ``drift`` [m/s or m/s3], ``lag`` [s], ``skew`` [1], ``range`` (largest reading);
-        of a displacement transducer ``place`` of its end at the body, ``reference place`` of the other end, and
-        ``slip`` (step of the reading [m] and its time [s]); and without an estimate ``swap``, ``axes`` and
-        ``polarity``.
+        Kind of the fault, of `blockshake.parity.kinds.registry.KINDS`.
     estimate, covariance : float64 arrays, shapes (n,), (n, n)
-        n is 3 for a vector in the inertial or body frame.
+        In the units of the kind; n is 3 for a vector in the inertial or body frame, 0 without an estimate.
     p : float
         Chance of such a reading with a sensor within its tolerance, times the number of hypotheses looked at.
     tests : tuple of str
@@ -66,15 +48,6 @@ class Finding:
     p: float
     tests: tuple
     rivals: tuple = ()
-
-    @classmethod
-    def of(cls, quantity, where, p, tests, estimate=(), covariance=None, rivals=()):
-        """The finding of a kind; without an estimate where nothing is to be estimated. p is 1 at most."""
-        estimate = np.asarray(estimate, dtype=float)
-        covariance = np.zeros((len(estimate),) * 2) if covariance is None else covariance
-        return cls(
-            EFFECTS[quantity], where, quantity, estimate, covariance, min(p, 1.0), tuple(tests), rivals
-        )
 
     @property
     def standard_error(self):
@@ -128,9 +101,28 @@ def chance_within(estimate, covariance, tolerance, freedom=np.inf):
     def outside(multiplier):
         return np.linalg.norm(nearest(multiplier)) - tolerance
 
-    if tolerance == 0.0:
-        distance = (along**2 / variance).sum()
-    else:
-        largest = (np.linalg.norm(estimate) / tolerance) / variance.min()
-        distance = ((along - nearest(brentq(outside, 0.0, largest))) ** 2 / variance).sum()
+    largest = (np.linalg.norm(estimate) / tolerance) / variance.min()
+    distance = ((along - nearest(brentq(outside, 0.0, largest))) ** 2 / variance).sum()
     return float(chi2.sf(distance, size) if np.isinf(freedom) else f.sf(distance / size, size, freedom))
+
+
+def chance_of_misfit(before, after, variance):
+    """Largest chance of a misfit as it is where nothing is exchanged, and of another one with an exchange taken back.
+
+    Parameters
+    ----------
+    before, after : float
+        Sums of squares as read, and with the exchange taken back.
+    variance : float
+        Of an independent value, times the number of values that depend on each other.
+
+    Returns
+    -------
+    float
+        1 where taking back leaves more than half of the misfit.
+
+    Notes
+    -----
+    A wrong hypothesis beats the true one by a ratio L of likelihoods with a chance of at most 1 / L.
+    """
+    return 1.0 if after > LEFT_AT_MOST * before else float(np.exp(-(before - after) / (2.0 * variance)))

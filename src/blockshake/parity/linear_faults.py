@@ -1,43 +1,97 @@
 """Faults as unknowns of linear equations, each tied to zero by what a sound sensor may have, named one by one."""
 
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.parity.finding import EFFECTS, chance_within
+from blockshake.parity.finding import chance_within
 
 _VAGUE = 1e3  # times a tolerance: as good as unknown
 _OVER_RIVALS = 9.0  # less in the sum of weighted squares than the best: not told apart
 
 
 class Fault(NamedTuple):
-    """Hypothesis of a fault: its quantity as of `EFFECTS`, its sensor, and its test where it is one test's alone."""
+    """Hypothesis of a fault: its `Column`, its sensor, and its test where it is one test's alone."""
 
-    quantity: str
+    column: object
     sensor: int
     test: int = 0
 
 
-class Judged(NamedTuple):
-    """Gain in the sum of squares less twice the unknowns, and the chance of a sound sensor times all hypotheses."""
-
-    gained: float
-    p: float
-
-
-def posterior(equations, spread):
-    """Mean and covariance of the unknowns, shapes (n,), (n, n).
+class Unknowns:
+    """Sizes of all faults of all sensors of one sort in all tests, as one vector.
 
     Parameters
     ----------
-    equations : object
-        Attributes ``normal`` (n, n), ``right`` (n,) and ``variance`` of a reading.
-    spread : float64 array, shape (n,)
-        Standard deviation of each unknown before anything is read.
+    columns : sequence of Column
+    n_sensors, n_tests : int
+
+    Attributes
+    ----------
+    numbers : dict of Column to int array, shape (n_tests or 1, n_sensors, components)
+        Of the unknowns in the vector.
+    spread : float64 array
+        Standard deviation of each before anything is read.
     """
-    information = equations.normal / equations.variance + np.diag(1.0 / spread**2)
-    covariance = np.linalg.inv(information)
-    return covariance @ (equations.right / equations.variance), covariance
+
+    def __init__(self, columns, n_sensors, n_tests):
+        self.numbers, tolerances = {}, [np.empty(0)]
+        for column in columns:
+            shape = n_tests if column.by_test else 1, n_sensors, column.components
+            first = sum(map(len, tolerances))
+            self.numbers[column] = first + np.arange(np.prod(shape)).reshape(shape)
+            tolerances.append(np.full(np.prod(shape), column.tolerance))
+        self.spread = np.concatenate(tolerances) / 2.0
+
+    def of(self, fault):
+        """Numbers of a fault's unknowns."""
+        return self.numbers[fault.column][fault.test, fault.sensor]
+
+    def of_test(self, test):
+        """Numbers of all unknowns that a test tells of, sensor by sensor, column by column."""
+        return np.concatenate(
+            [numbers[test if len(numbers) > 1 else 0].ravel() for numbers in self.numbers.values()]
+        )
+
+    def freed(self, faults):
+        """Spread with some faults as good as unknown."""
+        spread = self.spread.copy()
+        for fault in faults:
+            spread[self.of(fault)] *= _VAGUE
+        return spread
+
+    def faults(self, column):
+        """All `Fault` of a column."""
+        n_tests, n_sensors, _ = self.numbers[column].shape
+        return [Fault(column, sensor, test) for sensor, test in product(range(n_sensors), range(n_tests))]
+
+
+class Equations(NamedTuple):
+    """Normal equations of the unknowns.
+
+    Attributes
+    ----------
+    normal, right : float64 arrays, shapes (n, n), (n,)
+    variance : float
+        Of a reading; NaN where too little was read.
+    faults : dict of Fault to (numbers, trials)
+        Unknowns of a fault that the readings tell of, and among how many forms the best one was chosen.
+    freedom : float
+        Degrees of freedom behind the variance.
+    """
+
+    normal: np.ndarray
+    right: np.ndarray
+    variance: float
+    faults: dict
+    freedom: float = np.inf
+
+    def posterior(self, spread):
+        """Mean and covariance of the unknowns, shapes (n,), (n, n), with their spread before anything is read."""
+        information = self.normal / self.variance + np.diag(1.0 / spread**2)
+        covariance = np.linalg.inv(information)
+        return covariance @ (self.right / self.variance), covariance
 
 
 def data_alone(mean, covariance, spread):
@@ -48,58 +102,83 @@ def data_alone(mean, covariance, spread):
     return alone @ (information @ mean), alone
 
 
-def freed(spread, columns):
-    """Spread of the unknowns with some of them as good as unknown."""
-    spread = spread.copy()
-    for own in columns:
-        spread[own] *= _VAGUE
-    return spread
-
-
-def judge(equations, spread, faults, level, freedom=np.inf):
-    """`Judged` by fault.
+def name_faults(equations_of, unknowns, level, names, most, sound=0):
+    """Name the clearest fault, make the equations anew with this one free, and so on, until no fault is clear.
 
     Parameters
     ----------
-    equations, spread
-        As in `posterior`.
-    faults : dict of Fault to (columns, tolerance, trials)
-        Its unknowns, what a sound sensor may have of them, and among how many forms the best one was chosen.
-    level : Level
-    freedom : float
-        Degrees of freedom behind the variance.
-    """
-    mean, covariance = posterior(equations, spread)
-    judged = {}
-    for fault, (columns, tolerance, trials) in faults.items():
-        estimate, alone = data_alone(mean[columns], covariance[np.ix_(columns, columns)], spread[columns])
-        tied = alone + np.diag(spread[columns] ** 2)
-        gained = estimate @ np.linalg.solve(tied, estimate) - 2.0 * len(columns)
-        judged[fault] = Judged(
-            gained, level.hypotheses * trials * chance_within(estimate, alone, tolerance, freedom)
-        )
-    return judged
-
-
-def clearest(judged, level, names, allowed=lambda fault: True):
-    """Fault that gains most of those beyond chance, its p, and the rivals that gain nearly as much; None without.
-
-    Parameters
-    ----------
-    judged : dict of Fault to Judged
+    equations_of : callable of (named, spread)
+        `Equations` with some faults as good as unknown.
+    unknowns : Unknowns
     level : Level
     names : sequence of str
         Of the sensors.
-    allowed : callable
-        Whether a fault may be named.
+    most : int
+        Faults.
+    sound : int
+        Sensors that have to be left without a fault.
+
+    Returns
+    -------
+    named : dict of Fault to (p, rivals)
+        Chance times all hypotheses, and the faults that gain nearly as much.
+    equations : Equations
+        The last ones.
+    spread : float64 array
+        Of their unknowns.
+
+    Notes
+    -----
+    A fault is clear where the estimate by the readings alone is beyond its tolerance. It gains what it takes from the
+    sum of weighted squares, less twice its unknowns; the clearest one gains most.
     """
-    clear = [fault for fault, one in judged.items() if one.p < level.chance and allowed(fault)]
-    if not clear:
-        return None
-    best = max(clear, key=lambda fault: judged[fault].gained)
-    rivals = tuple(
-        (EFFECTS[fault.quantity], (names[fault.sensor],), fault.quantity)
-        for fault, one in judged.items()
-        if fault[:2] != best[:2] and judged[best].gained - one.gained < _OVER_RIVALS
-    )
-    return best, judged[best].p, rivals
+    named = {}
+    while True:
+        spread = unknowns.freed(named)
+        equations = equations_of(named, spread)
+        if len(named) == most or not np.isfinite(equations.variance):
+            return named, equations, spread
+        suspects = {fault.sensor for fault in named}
+        full = len(suspects) >= len(names) - sound
+        mean, covariance = equations.posterior(spread)
+        gained, clear = {}, {}
+        for fault, (numbers, trials) in equations.faults.items():
+            if fault in named:
+                continue
+            estimate, alone = data_alone(mean[numbers], covariance[np.ix_(numbers, numbers)], spread[numbers])
+            tied = alone + np.diag(spread[numbers] ** 2)
+            gained[fault] = estimate @ np.linalg.solve(tied, estimate) - 2.0 * len(numbers)
+            p = chance_within(estimate, alone, fault.column.tolerance, equations.freedom)
+            p *= level.hypotheses * trials
+            if p < level.chance and (fault.sensor in suspects or not full):
+                clear[fault] = p
+        if not clear:
+            return named, equations, spread
+        best = max(clear, key=gained.get)
+        rivals = tuple(
+            (fault.column.kind.effect, (names[fault.sensor],), fault.column.kind.quantity)
+            for fault, gain in gained.items()
+            if fault[:2] != best[:2] and gained[best] - gain < _OVER_RIVALS
+        )
+        named[best] = clear[best], rivals
+
+
+def coloured_variance(parts, freedom, segment):
+    """Variance of a reading, times the factor by which its noise averages out more slowly than white noise would.
+
+    Parameters
+    ----------
+    parts : sequence of float64 array, shape (n_readings, n)
+        What is left of the readings, of each test.
+    freedom : float
+        Number of independent readings.
+    segment : int
+        Readings over which coloured noise averages out.
+    """
+    squares = slow = fast = 0.0
+    for rest in parts:
+        whole = rest[: len(rest) // segment * segment]
+        squares += (rest**2).sum()
+        slow += (whole.reshape(-1, segment, rest.shape[1]).sum(axis=1) ** 2).sum()
+        fast += (whole**2).sum()
+    return squares / freedom * max(slow / fast, 1.0) if freedom and fast else np.nan

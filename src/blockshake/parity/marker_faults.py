@@ -1,87 +1,51 @@
-"""Faults of the markers of one body: wrong place, gain or drift, found one after the other."""
+"""Faults of the markers of one body, named one after the other by the residual that each leaves in the rigid fit."""
 
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
+from scipy.spatial.transform import Rotation
 
-from blockshake.parity.finding import Finding
-from blockshake.parity.linear_faults import Fault, clearest, freed, judge, posterior
-from blockshake.parity.marker_equations import (
-    DRIFT,
-    GAIN,
-    PLACE,
-    MarkerEquations,
-    MarkerFaults,
-    marker_equations,
-)
+from blockshake.measurement.motion.body_frame import outlying
+from blockshake.parity.kinds import drift, gain, wrong_place
+from blockshake.parity.kinds.kind import Column
+from blockshake.parity.linear_faults import Equations, Unknowns, coloured_variance, name_faults
 
-# What a sound marker may have beside a drift; its standard deviation is half of it. Places are in m, along any
-# direction: markers are mounted within 1 mm along each axis.
-_TOLERANCE = {GAIN: 2e-3, PLACE: 2e-3}
-_CONSTANT_SPREAD = 5e-3  # m, of the first reading's own error: as good as unknown
 _SOUND_MARKERS = 2  # of a body, that must be left without a fault, or nothing says which is at fault
 _MOST_FAULTS = 8  # faults on one body
 _LINEARISATIONS = 4
+_WEAK_LEVER = 0.1  # lever of the markers about an axis, over the largest: the turn about it is mostly noise
+_SMOOTHING = 101  # readings, half a second, over which such a turn is averaged
+_SEGMENT = 40  # readings over which coloured noise averages out, 0.2 s at 200 Hz
+# m, of the first reading's own error: as good as unknown, and no fault
+_CONSTANT = Column(None, 3, 1e-2, lambda seen: np.eye(3)[None, None], by_test=True)
 
 
-@dataclass(frozen=True)
-class BodyMarkers:
-    """Markers of one body in the tests that are read together.
+class MarkerCheck(NamedTuple):
+    """Findings of one body; standard deviation of each marker's reading [m], after they are taken out and before."""
 
-    Attributes
-    ----------
-    name : str
-    markers : tuple of str
-    points : float64 array, shape (n_markers, 3)
-        Body frame [m].
-    position, rotation : float64 arrays, shapes (3,), (3, 3)
-        Pose at rest.
-    tests : tuple of str
-    readings : list of (time, displacement)
-        Of each test, as in `marker_equations`.
+    findings: tuple
+    noise: np.ndarray
+    misfit: np.ndarray
+
+
+class _Seen(NamedTuple):
+    """Body in one test: what the signatures of faults are made of.
+
+    ``scale`` (n_times,) runs from -1/2 to 1/2 over the record; ``back`` (n_times, 3, 3) turns into the body's frame;
+    ``moved`` (n_times, n_markers, 3) are the markers' displacements in the body's frame [m]; ``turned`` (n_times, 3, 3)
+    is the start's orientation, seen from the body.
     """
 
-    name: str
-    markers: tuple
-    points: np.ndarray
-    position: np.ndarray
-    rotation: np.ndarray
-    tests: tuple
-    readings: list
-
-    @property
-    def hypotheses(self):
-        """All faults that are looked at."""
-        markers = range(len(self.markers))
-        single = [Fault(quantity, marker) for quantity in (GAIN, PLACE) for marker in markers]
-        return single + [Fault(DRIFT, marker, test) for marker in markers for test in range(len(self.tests))]
-
-    @property
-    def sound(self):
-        """`MarkerFaults` of sound markers."""
-        return MarkerFaults.none(len(self.tests), len(self.markers))
-
-    def columns(self, fault):
-        """Unknowns of a fault, after the constants of all tests."""
-        constants = 3 * len(self.markers) * len(self.tests)
-        return constants + self.sound.columns(fault.quantity, fault.sensor, fault.test)
-
-    def spread(self, drift_tolerance):
-        """Standard deviation of each unknown of sound markers, as in `MarkerEquations`."""
-        n_tests, n_markers = len(self.tests), len(self.markers)
-        return np.repeat(
-            [_CONSTANT_SPREAD, drift_tolerance / 2.0, _TOLERANCE[GAIN] / 2.0, _TOLERANCE[PLACE] / 2.0],
-            [3 * n_markers * n_tests, 3 * n_markers * n_tests, n_markers, 3 * n_markers],
-        )
+    scale: np.ndarray
+    back: np.ndarray
+    moved: np.ndarray
+    turned: np.ndarray
 
 
-@dataclass(frozen=True)
-class MarkerCheck:
-    """Outcome for one body: faults, findings, and the equations after the faults were taken out."""
-
-    faults: MarkerFaults
-    findings: tuple
-    equations: MarkerEquations
+def hypotheses(body):
+    """Number of faults that are looked at: a gain and a place of every marker, and a drift in each test."""
+    return len(body.markers) * (2 + len(body.tests))
 
 
 def check_body(body, marker_noise, level):
@@ -90,6 +54,7 @@ def check_body(body, marker_noise, level):
     Parameters
     ----------
     body : BodyMarkers
+        Without outliers.
     marker_noise : float
         Stated standard deviation [m]: the drift over a record that is tolerated.
     level : Level
@@ -97,53 +62,111 @@ def check_body(body, marker_noise, level):
     Returns
     -------
     MarkerCheck
+
+    Notes
+    -----
+    In the body's frame with rotation R(t) and start R0, what remains of a reading is P applied to the sum over the
+    markers of ``c + R' s d + R' u g + (1 - R' R0) e`` with constant c, drift d over the record (s from -1/2 to 1/2),
+    gain g of the displacement u and place e: a gain follows the displacement, a wrong place follows the rotation and is
+    nothing before it. The equations are made anew about the faults that were named.
     """
-    tolerance = _TOLERANCE | {DRIFT: marker_noise}
-    faults, named = body.sound, {}
-    while True:
-        spread = freed(body.spread(marker_noise), map(body.columns, named))
-        faults, equations = _linearised(body, faults, spread, named)
-        if not np.isfinite(equations.variance):
-            return MarkerCheck(faults, (), equations)
-        open_to = {
-            fault: (body.columns(fault), tolerance[fault.quantity], 1)
-            for fault in body.hypotheses
-            if fault not in named
-        }
-        suspects = {fault.sensor for fault in named}
-        full = len(suspects) >= len(body.markers) - _SOUND_MARKERS
-        best = clearest(
-            judge(equations, spread, open_to, level), level, body.markers,
-            lambda fault, full=full, suspects=suspects: not full or fault.sensor in suspects,
-        )  # fmt: skip
-        if best is None or len(named) == _MOST_FAULTS:
-            covariance = posterior(equations, spread)[1]
-            findings = [_finding(body, faults, covariance, fault, *said) for fault, said in named.items()]
-            return MarkerCheck(faults, tuple(findings), equations)
-        named[best[0]] = best[1:]
+    creep = drift.of_marker(marker_noise)
+    columns = creep, gain.OF_MARKER, wrong_place.OF_MARKER
+    unknowns = Unknowns((_CONSTANT, *columns), len(body.markers), len(body.tests))
+    faults = {fault: (unknowns.of(fault), 1) for column in columns for fault in unknowns.faults(column)}
+    sizes, made = np.zeros(len(unknowns.spread)), {}
+
+    def equations_of(named, spread):
+        equations, *made["noise"] = _linearised(body, unknowns, sizes, faults)
+        for _ in range(_LINEARISATIONS if named else 0):
+            numbers = np.concatenate([unknowns.of(fault) for fault in named])
+            sizes[numbers] += equations.posterior(spread)[0][numbers]
+            equations, *made["noise"] = _linearised(body, unknowns, sizes, faults)
+        return equations
+
+    named, equations, spread = name_faults(
+        equations_of, unknowns, level, body.markers, _MOST_FAULTS, _SOUND_MARKERS
+    )
+    covariance, findings = equations.posterior(spread)[1] if named else None, []
+    for fault, (p, rivals) in named.items():
+        numbers, by_test = unknowns.of(fault), fault.column is creep
+        tests = (body.tests[fault.test],) if by_test else body.tests
+        length = np.ptp(body.readings[fault.test][0]) if by_test else 1.0
+        square = covariance[np.ix_(numbers, numbers)] / length**2
+        kind, where = fault.column.kind, (body.markers[fault.sensor],)
+        findings.append(kind.finding(where, p, tests, sizes[numbers] / length, square, rivals))
+    return MarkerCheck(tuple(findings), *made["noise"])
 
 
-def _linearised(body, faults, spread, named):
-    """Faults with the named ones at their best, and the equations about them."""
-    equations = marker_equations(body.points, body.position, body.rotation, body.readings, faults)
-    for _ in range(_LINEARISATIONS if named else 0):
-        mean, values = posterior(equations, spread)[0], faults.values.copy()
-        for fault in named:
-            columns = body.columns(fault)
-            values[columns - len(mean)] += mean[columns]
-        faults = replace(faults, values=values)
-        equations = marker_equations(body.points, body.position, body.rotation, body.readings, faults)
-    return faults, equations
+def _linearised(body, unknowns, sizes, faults):
+    """`Equations` about faults of these sizes, and the noise and misfit of every marker [m]."""
+    normal, right, kept = np.zeros((len(sizes), len(sizes))), np.zeros(len(sizes)), []
+    for test in range(len(body.tests)):
+        design, residual, projector = _one_test(body, unknowns, sizes, test)
+        numbers, flat = unknowns.of_test(test), design.reshape(-1, design.shape[2])
+        normal[np.ix_(numbers, numbers)] += flat.T @ flat
+        right[numbers] += flat.T @ residual.ravel()
+        kept.append((numbers, design, residual, projector))
+    ridge = 1e-9 * np.diag(np.diagonal(normal)) + 1e-12 * np.eye(len(sizes))
+    free = np.linalg.lstsq(normal + ridge, right, rcond=None)[0]
+    rest = [residual - design @ free[numbers] for numbers, design, residual, _ in kept]
+    before = [residual - residual.mean(axis=0) for _, _, residual, _ in kept if len(residual)]
+    # a reading's own share of what the rigid fit leaves
+    shares = sum(np.diagonal(projector, axis1=1, axis2=2).sum(axis=0) for *_, projector in kept)
+    variance = coloured_variance(rest, shares.sum(), _SEGMENT)
+    shares = np.maximum(shares.reshape(-1, 3).sum(axis=1), 1e-9)
+    noise, misfit = (
+        np.sqrt(
+            sum((residual.reshape(-1, *body.points.shape) ** 2).sum(axis=(0, 2)) for residual in parts)
+            / shares
+        )
+        if np.isfinite(variance)
+        else np.full(len(shares), np.nan)
+        for parts in (rest, before)
+    )
+    return Equations(normal, right, variance, faults), noise, misfit
 
 
-def _finding(body, faults, covariance, fault, p, rivals):
-    """The finding with the estimate and covariance that hold with all that is named."""
-    quantity, marker, test = fault
-    covariance = covariance[np.ix_(body.columns(fault), body.columns(fault))]
-    if quantity == DRIFT:
-        length = np.ptp(body.readings[test][0])
-        estimate, covariance = faults.drift[test, marker] / length, covariance / length**2
-    else:
-        estimate = np.atleast_1d(faults.gain[marker] if quantity == GAIN else faults.place[marker])
-    tests = (body.tests[test],) if quantity == DRIFT else body.tests
-    return Finding.of(quantity, (body.markers[marker],), p, tests, estimate, covariance, rivals)
+def _one_test(body, unknowns, sizes, test):
+    """Columns, residual and projector of one test, of the times at which the body stands."""
+    time, displacement = body.readings[test]
+    scale = (time - time[0]) / (time[-1] - time[0]) - 0.5
+    creep, gains, places = (sizes[numbers] for _, numbers in list(unknowns.numbers.items())[1:])
+    displacement = (displacement - scale[:, None, None] * creep[test]) / (1.0 + gains[0])
+    pose = body.frame(displacement, places[0])
+    used = np.flatnonzero(
+        pose.projector.any(axis=(1, 2))
+        & ~outlying(pose.residual).any(axis=1)  # beside one that is a gap
+        & body.upright(pose.rotation)
+    )
+    points = body.points + places[0]
+    rotation = _steadied(points, pose.rotation[used], body.rotation)
+    moved = pose.position[used, None] + np.einsum("tij,mj->tmi", rotation, points)
+    moved = moved - (body.position + points @ body.rotation.T)
+    back = rotation.transpose(0, 2, 1)
+    seen = _Seen(scale[used], back, moved @ rotation, back @ body.rotation)
+    same, signatures = np.eye(len(points)), []
+    for column in unknowns.numbers:
+        of_each = column.signature(seen)[:, :, :, None] * same[:, None, :, None]
+        of_each = np.broadcast_to(of_each, (len(used), *of_each.shape[1:]))
+        signatures.append(of_each.reshape(len(used), 3 * len(points), column.components * len(points)))
+    projector = pose.projector[used]
+    residual = np.nan_to_num(pose.residual[used]).reshape(len(used), 3 * len(points))
+    design = projector @ np.concatenate(signatures, axis=-1)
+    return design, np.einsum("tij,tj->ti", projector, residual), projector
+
+
+def _steadied(points, rotation, start_rotation):
+    """Rotations whose turn about an axis through nearly all markers is averaged over time.
+
+    Its noise would enter the signatures and make every estimate that rests on it too small.
+    """
+    arms = points - points.mean(axis=0)
+    lever, axes = np.linalg.eigh((arms**2).sum() * np.eye(3) - arms.T @ arms)
+    weak = axes[:, lever < _WEAK_LEVER**2 * lever.max()]
+    if not weak.size or not len(rotation):
+        return rotation
+    vectors = Rotation.from_matrix(np.einsum("ji,tjk->tik", start_rotation, rotation)).as_rotvec()
+    about = vectors @ weak
+    steady = uniform_filter1d(about, _SMOOTHING, axis=0, mode="nearest")
+    return start_rotation @ Rotation.from_rotvec(vectors + (steady - about) @ weak.T).as_matrix()

@@ -3,32 +3,33 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from blockshake.files import load_made_json
-from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines
 from blockshake.measurement.motion.fall import Fall
-from blockshake.measurement.sensors.markers import whole_markers
-from blockshake.parity.acceleration_parity import channel_pairs, measured_pose
-from blockshake.parity.body_gain import body_gains
-from blockshake.parity.channel_faults import channel_findings, channel_gains
-from blockshake.parity.clock import clock_findings, clock_lag
+from blockshake.measurement.motion.outliers import without_outliers
+from blockshake.parity import marker_faults, transducer_faults
+from blockshake.parity.body_markers import bodies_with_markers, measured_pose
+from blockshake.parity.channel_pairs import channel_pairs
 from blockshake.parity.correction import corrected
 from blockshake.parity.finding import Finding, Level
-from blockshake.parity.frame_drift import frame_drift
-from blockshake.parity.marker_faults import BodyMarkers, check_body
-from blockshake.parity.marker_swaps import marker_swaps
-from blockshake.parity.transducer_equations import held_readings
-from blockshake.parity.transducer_faults import check_transducer, hypotheses
+from blockshake.parity.kinds.body_gain import body_gains
+from blockshake.parity.kinds.clock import clock_findings, clock_lag
+from blockshake.parity.kinds.drift import drift_findings
+from blockshake.parity.kinds.exchange import channel_exchanges, marker_exchanges
+from blockshake.parity.kinds.frame_drift import frame_drift, short_lines
+from blockshake.parity.kinds.gain import channel_gains, gain_findings
+from blockshake.parity.kinds.saturation import saturation
+from blockshake.parity.transducer_readings import held_readings
 
 LEVEL = 0.01  # chance of any finding on a campaign of sound sensors
-_FEWEST_MARKERS = 3
 _TABLES = {
-    "markers": ("marker", {"noise": "m", "misfit": "m"}),
-    "clock": ("test", {"lag": "s", "lag_error": "s"}),
-    "channels": ("channel", {"gain": "1", "gain_error": "1"}),
-    "transducers": ("transducer", {"gain": "1", "gain_error": "1"}),
+    "markers": ("marker", ["noise", "misfit"]),
+    "clock": ("test", ["lag", "lag_error"]),
+    "channels": ("channel", ["gain", "gain_error"]),
+    "transducers": ("transducer", ["gain", "gain_error"]),
 }
 
 
@@ -53,7 +54,7 @@ class Parity:
     falls : dict of str to Fall
         By test: the block that fell first; the test is judged until then.
     gaps : dict of str to list of str
-        By test: lines on the readings that were taken as gaps.
+        By test: lines on the readings that were taken as gaps, and on a record that is too short.
     """
 
     findings: tuple
@@ -67,7 +68,7 @@ class Parity:
 
     def as_json(self):
         """As JSON-like values, NaN as null; of transducers only where there are any."""
-        tables = {name: _rows(getattr(self, name), dim) for name, (dim, _) in _TABLES.items()}
+        tables = {name: _rows(getattr(self, name)) for name in _TABLES}
         return {
             "findings": [finding.as_json() for finding in self.findings],
             **{name: rows for name, rows in tables.items() if rows or name != "transducers"},
@@ -108,22 +109,17 @@ def load_parity(path):
     return load_made_json(path, Parity.from_json)
 
 
-def _rows(table, dim):
+def _rows(table):
     """Values of every row of a table by its name, NaN as null."""
-    columns = {name: column.to_numpy() for name, column in table.data_vars.items()}
-    return {
-        str(name): {key: float(own[row]) if np.isfinite(own[row]) else None for key, own in columns.items()}
-        for row, name in enumerate(table[dim].values)
-    }
+    frame = table.to_dataframe()
+    return frame.astype(object).where(frame.notna(), None).to_dict("index")
 
 
 def _table(name, rows):
     """Table of such rows; null is NaN."""
-    dim, units = _TABLES[name]
-    columns = {key: np.array([row[key] for row in rows.values()], dtype=float) for key in units}
-    return xr.Dataset(
-        {key: (dim, columns[key], {"units": unit}) for key, unit in units.items()}, {dim: list(rows)}
-    )
+    dim, columns = _TABLES[name]
+    frame = pd.DataFrame.from_dict(rows, orient="index", columns=columns, dtype=float)
+    return xr.Dataset.from_dataframe(frame.rename_axis(dim))
 
 
 def campaign_parity(readings, sensors, without=()):
@@ -161,99 +157,63 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     compared with the markers as corrected.
     """
     sensors = sensors.not_noiseless()
-    gaps = {name: faulty_lines(test) for name, test in tests.items()}
-    share = Level(level, _looked_at(_bodies(structure, tests), tests))
-    findings = body_gains(structure, tests, sensors, share)
-    tests = _without(findings, tests, structure)
-    swaps = marker_swaps(_bodies(structure, tests), sensors.marker_noise, share)
-    tests = _without(swaps, tests, structure)
-    bodies = _bodies(structure, tests)
-    findings = _saturation(tests, level) + findings + swaps
-    checks = {name: check_body(body, sensors.marker_noise, share) for name, body in bodies.items()}
-    findings += [finding for check in checks.values() for finding in check.findings]
-    findings += frame_drift(structure, tests, sensors.marker_noise, share)
-    shown = {
-        name: {key: measured_pose(body, checks[key].faults, index) for key, body in bodies.items()}
+    noise = sensors.marker_noise
+    gaps = {name: faulty_lines(test) + short_lines(test) for name, test in tests.items()}
+    findings = saturation(tests, level)
+    tests = {name: without_outliers(test, structure) for name, test in tests.items()}
+    share = Level(level, _looked_at(bodies_with_markers(structure, tests), tests))
+
+    def without(faults):
+        findings.extend(faults)
+        return {name: corrected(test, name, structure, faults) for name, test in tests.items()}
+
+    tests = without(body_gains(structure, tests, sensors, share))
+    tests = without(marker_exchanges(structure, tests, noise, share))
+    bodies = bodies_with_markers(structure, tests)
+    checks = {name: marker_faults.check_body(body, noise, share) for name, body in bodies.items()}
+    creep = frame_drift(structure, tests, noise, share)
+    tests = without([finding for check in checks.values() for finding in check.findings])
+    findings += creep
+    bodies = bodies_with_markers(structure, tests)
+    poses = {
+        name: {key: pose for key, body in bodies.items() if (pose := measured_pose(body, index)) is not None}
         for index, name in enumerate(tests)
     }
     pairs = {
-        name: channel_pairs(structure, test, shown[name], sensors.accelerometer_noise)
+        name: channel_pairs(structure, test, poses[name], sensors.accelerometer_noise)
         for name, test in tests.items()
         if "accelerometer" in test
     }
     clock = clock_lag(pairs)
     lags = {name: clock.by_test[name].estimate[0] if name in clock.by_test else 0.0 for name in tests}
-    gains = channel_gains(pairs, lags)
-    findings += clock_findings(clock, share)
-    findings += channel_findings(pairs, lags, gains, sensors.accelerometer_noise, share)
-    held = {}
-    for name, test in tests.items():
-        for transducer in test["transducer"].values if "transducer_displacement" in test else ():
-            held.setdefault(str(transducer), {})
-        for transducer, reading in held_readings(structure, test, shown[name], lags[name]).items():
-            held[transducer][name] = reading
-    transducers = {name: check_transducer(name, one, share) for name, one in held.items()}
+    gains, exchanges = channel_gains(pairs, lags), channel_exchanges(pairs, lags, share)
+    exchanged = {name for finding in exchanges for name in finding.where}
+    sound = {
+        name: [pair for pair in of_test if pair.name not in exchanged] for name, of_test in pairs.items()
+    }
+    findings += clock_findings(clock, share) + exchanges
+    findings += gain_findings(
+        {name: gain for name, gain in gains.items() if name not in exchanged}, pairs, share
+    )
+    findings += drift_findings(sound, lags, sensors.accelerometer_noise, share)
+    transducers = {
+        name: transducer_faults.check_transducer(name, held, share)
+        for name, held in held_readings(structure, tests, poses, lags).items()
+    }
     findings += [finding for check in transducers.values() for finding in check.findings]
-    names = [str(name) for name in next(iter(tests.values()))["marker"].values]
-    markers = {name: {"noise": np.nan, "misfit": np.nan} for name in names}
-    for body, check in checks.items():
-        for marker, noise, misfit in zip(
-            bodies[body].markers, check.equations.noise, check.equations.misfit, strict=True
-        ):
-            markers[marker] = {"noise": noise, "misfit": misfit}
+    markers = {str(name): (np.nan, np.nan) for name in next(iter(tests.values()))["marker"].values}
+    for name, check in checks.items():
+        markers |= zip(bodies[name].markers, zip(check.noise, check.misfit, strict=True), strict=True)
     return Parity(
         findings=tuple(findings),
         markers=_table("markers", markers),
-        clock=_table("clock", _sizes(clock.by_test, "lag")),
-        channels=_table("channels", _sizes(gains, "gain")),
-        transducers=_table("transducers", {name: check._asdict() for name, check in transducers.items()}),
+        clock=_table("clock", _sizes(clock.by_test)),
+        channels=_table("channels", _sizes(gains)),
+        transducers=_table("transducers", {name: check[:2] for name, check in transducers.items()}),
         looked_at=share.hypotheses,
         falls={},
         gaps=gaps,
     )
-
-
-def _saturation(tests, level):
-    """Findings of readings that stop at the end of a sensor's range, which were made gaps; a column has two ends."""
-    looked_at = 2 * sum(
-        3 * test.sizes["marker"] + test.sizes.get("channel", 0) + test.sizes.get("transducer", 0)
-        for test in tests.values()
-    )
-    return [
-        Finding.of("range", (fault.sensor,), fault.p * looked_at, (name,), [abs(fault.value)])
-        for name, test in tests.items()
-        for fault in test.attrs.get("faulty", ())
-        if fault.kind == "clipped" and fault.p * looked_at < level
-    ]
-
-
-def _bodies(structure, tests):
-    """`BodyMarkers` of every body that has three markers, with all directions measured, in all tests."""
-    bodies = {}
-    shared = set.intersection(*(set(whole_markers(test)) for test in tests.values()))
-    for index, body in enumerate(structure.body_names):
-        markers = [one for one in structure.file.markers if one.body == body and one.name in shared]
-        if len(markers) < _FEWEST_MARKERS:
-            continue
-        names = [marker.name for marker in markers]
-        readings = [
-            (
-                test["time"].to_numpy(),
-                test["marker_displacement"].sel(marker=names).transpose("time", "marker", "axis").to_numpy(),
-            )
-            for test in tests.values()
-        ]
-        points = np.array([marker.position for marker in markers], dtype=float)
-        start = structure.position[index], rotation_matrices(structure.orientation[index])
-        bodies[body] = BodyMarkers(body, tuple(names), points, *start, tuple(tests), readings)
-    return bodies
-
-
-def _without(findings, tests, structure):
-    """Tests without the faults that were found."""
-    if not findings:
-        return tests
-    return {name: corrected(test, name, structure, findings) for name, test in tests.items()}
 
 
 def _looked_at(bodies, tests):
@@ -261,14 +221,12 @@ def _looked_at(bodies, tests):
     channels, transducers = (
         max(test.sizes.get(name, 0) for test in tests.values()) for name in ("channel", "transducer")
     )
-    of_markers = sum(len(body.hypotheses) for body in bodies.values())
-    of_channels = channels * (1 + channels + len(tests)) + transducers * hypotheses(len(tests))
-    return of_markers + 2 + 2 * len(tests) + of_channels
+    of_markers = sum(marker_faults.hypotheses(body) for body in bodies.values())
+    of_channels = channels * (1 + channels + len(tests))
+    of_transducers = transducers * transducer_faults.hypotheses(len(tests))
+    return of_markers + 2 + 2 * len(tests) + of_channels + of_transducers
 
 
-def _sizes(scores, name):
-    """Estimate and standard error of each score."""
-    return {
-        key: {name: one.estimate[0], f"{name}_error": np.sqrt(one.covariance[0, 0])}
-        for key, one in scores.items()
-    }
+def _sizes(sizes):
+    """Estimate and standard error of each `Size`."""
+    return {name: (size.estimate[0], np.sqrt(size.covariance[0, 0])) for name, size in sizes.items()}

@@ -53,6 +53,20 @@ def test_a_sensor_fault_alone_is_named_with_its_marker():
 
 
 @pytest.mark.parametrize(
+    ("effect", "quantity", "size"),
+    [("sensor-gain", "gain", 0.1), ("marker-offset", "place", 0.02), ("clock-lag", "skew", None)],
+)
+def test_the_size_of_a_vector_is_the_component_that_the_effect_has(effect, quantity, size):
+    """A gain counts along x, the direction of shaking; a place by its height; a skew [1] is no lag [s]."""
+    vector = (0.1, 0.0, 0.02) if size else (1e-3,)
+    parameters = _verdict(
+        made_up_decision(), [_finding(effect, quantity=quantity, estimate=vector)]
+    ).parameters
+    sizes = [one.estimate for one in parameters.get(effect, {}).values()]
+    assert sizes == ([size] if size else [])
+
+
+@pytest.mark.parametrize(
     ("where", "kind"), [("block-1-acc-x", "channel"), ("wire-1", "transducer"), ("block-1-face", "marker")]
 )
 def test_a_faulty_sensor_is_located_by_its_kind(where, kind):

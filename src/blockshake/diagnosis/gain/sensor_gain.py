@@ -7,10 +7,10 @@ import xarray as xr
 
 from blockshake.diagnosis.gain.campaign_gain import CampaignGain
 from blockshake.diagnosis.verdict.verdict import Contrast, Gain, MeasuredGain
-from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
-from blockshake.measurement.motion.body_frame import outlying, see_from_body
+from blockshake.measurement.motion.body_frame import outlying
+from blockshake.parity.body_markers import BodyMarkers
 from blockshake.parity.correction import corrected
 from blockshake.parity.parity import check_parity
 
@@ -121,18 +121,11 @@ def _distance_less_mean(test, opened, finding, structure):
 
 def _residual(test, marker, structure):
     """Marker in its body's frame less where it should be, the rigid motion of all taken out, (n_times, 3)."""
-    body = next(item.body for item in structure.file.markers if item.name == marker)
-    read = [str(name) for name in test["marker"].values]
-    own = [item for item in structure.file.markers if item.body == body and item.name in read]
-    index = structure.body_names.index(body)
-    points, start = structure.arms(own), rotation_matrices(structure.orientation[index])
-    moved = test["marker_displacement"].transpose("time", "marker", "axis")
-    readings = (
-        structure.position[index] + points @ start.T + moved.sel(marker=[one.name for one in own]).to_numpy()
-    )
-    left = see_from_body(points, readings, structure.position[index], start).residual
+    name = next(item.body for item in structure.file.markers if item.name == marker)
+    body = BodyMarkers.of(structure, name, {"": test}, test["marker"].values)
+    left = body.frame(body.readings[0][1]).residual
     left[outlying(left)] = np.nan
-    return left[:, [one.name for one in own].index(marker)]
+    return left[:, body.markers.index(marker)]
 
 
 def _rms(values):

@@ -6,6 +6,7 @@ import numpy as np
 
 from blockshake.diagnosis.answer.decision import Estimate
 from blockshake.effects.registry import EFFECTS
+from blockshake.parity.kinds.registry import KINDS
 
 _SIGMAS = 1.645  # of a Gaussian, within which nine tenths lie
 _FORM = 0.05  # share of a fault's size by which it may vary with the reading, as that of a real sensor does
@@ -41,12 +42,11 @@ def _location(sensor, kinds):
 
 
 def _estimates(finding):
-    effect = EFFECTS.get(finding.effect)
-    if effect is None or not len(finding.estimate):
+    effect, component = EFFECTS.get(finding.effect), KINDS[finding.quantity].size
+    if effect is None or component is None or not len(finding.estimate):
         return {}
     size = effect.parameters[0]
-    # a wrong place is a vector in the body's frame, of which the registry's effect has the height
-    component = 2 if len(finding.estimate) == 3 else 0
+    component = component if len(finding.estimate) == 3 else 0
     estimate = float(finding.estimate[component])
     error = float(np.hypot(finding.standard_error[component], _FORM * estimate))
     return {

@@ -3,16 +3,11 @@
 import numpy as np
 
 from blockshake.effects.registry import title_of
+from blockshake.parity.kinds.registry import KINDS
 from blockshake.parity.parity import LEVEL
 from blockshake.report.diagnosis.wording import chance_words, size_words
 from blockshake.report.document.blocks import Section, Table, Text
 from blockshake.report.document.wording import number
-
-# of an estimate by its quantity, for a marker or a displacement transducer, and for an accelerometer channel
-_UNITS = {
-    "place": ("m", "m"), "reference place": ("m", "m"), "slip": ("m", "m"), "drift": ("m/s", "m/s3"),
-    "lag": ("s", "s"), "range": ("m", "m/s2"),
-}  # fmt: skip
 
 
 def sensors_section(found):
@@ -49,8 +44,7 @@ def _sensors(parity):
 
 def _estimate(finding, channels):
     """Estimate of a finding with its standard error, in the unit of its quantity; by axis where it is a vector."""
-    of_marker, of_channel = _UNITS.get(finding.quantity, ("1", "1"))
-    unit = of_channel if set(finding.where) <= set(channels) else of_marker
+    unit = KINDS[finding.quantity].units[set(finding.where) <= set(channels)]
     axes = ("x ", "y ", "z ") if len(finding.estimate) == 3 else ("",)
     return ", ".join(
         f"{axis}{size_words(value, unit)} ({size_words(error, unit, 2)})"

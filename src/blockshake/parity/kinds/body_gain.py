@@ -10,8 +10,9 @@ import numpy as np
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.body_poses import PLANAR, POSE, body_poses
 from blockshake.measurement.motion.joint_coordinates import find_joints, joint_coordinates
-from blockshake.measurement.motion.outliers import without_outliers
-from blockshake.parity.finding import Finding, chance_within
+from blockshake.parity.finding import chance_within
+from blockshake.parity.kinds.gain import GAIN
+from blockshake.parity.regression import Size, regression
 
 _EVERY = 0.05  # s, between readings that are compared
 _SEGMENT = 0.5  # s: residuals of one segment count as one
@@ -31,7 +32,7 @@ def body_gains(structure, tests, sensors, level):
     ----------
     structure : Structure
     tests : dict of str to xarray.Dataset
-        By name.
+        By name, without outliers.
     sensors : Sensors
     level : Level
 
@@ -44,60 +45,80 @@ def body_gains(structure, tests, sensors, level):
     """
     if not structure.touching.any():
         return []
-    seen = [joints for joints in (_joints_of(structure, test, sensors) for test in tests.values()) if joints]
-    findings = []
+    seen = [
+        slips for slips in (_slips(structure, test, sensors) for test in tests.values()) if slips is not None
+    ]
+    pairs, findings = find_joints(structure)[0], []
     for body, name in enumerate(structure.body_names):
-        gain = _gain([_of_body(joints, body) for joints in seen])
+        gain = _gain(pairs, body, seen)
         if gain is None:
             continue
-        along, variance = gain
+        (along,), ((variance,),) = gain.estimate, gain.covariance
         across, across_variance = _gain_across(structure, tests.values(), body, sensors, along)
-        p = level.hypotheses * chance_within(np.array([along]), np.array([[variance]]), _TOLERANCE)
+        p = level.hypotheses * chance_within(gain.estimate, gain.covariance, _TOLERANCE, gain.freedom)
         if p < level.chance:
             markers = tuple(marker.name for marker in structure.file.markers if marker.body == name)
             covariance = np.diag([variance, _TOLERANCE**2, across_variance])
-            findings.append(Finding.of("gain", markers, p, tests, [along, 0.0, across], covariance))
+            findings.append(GAIN.finding(markers, p, tests, [along, 0.0, across], covariance))
     return sorted(findings, key=lambda finding: finding.p)[:1]
 
 
-def _joints_of(structure, test, sensors):
-    """Slips of the joints and displacements of the bodies in one test; None where a pose is not read."""
+def _slips(structure, test, sensors):
+    """Slips of the joints, displacements of the bodies along x, their noise [m], and times since the start [s].
+
+    None where a pose is not read.
+    """
     displacement = test["marker_displacement"]
     rest = displacement.isel(time=slice(0, _REST)).mean("time").fillna(0.0)
-    counted = without_outliers(test.assign(marker_displacement=displacement - rest), structure)
     every = max(1, round(_EVERY / float(np.median(np.diff(test["time"])))))
-    poses = body_poses(counted.isel(time=slice(None, None, every)), structure, sensors.marker_noise)
+    counted = test.assign(marker_displacement=displacement - rest).isel(time=slice(None, None, every))
+    poses = body_poses(counted, structure, sensors.marker_noise)
     if any(known not in (POSE, PLANAR) for known in poses.known):
         return None
     position = np.concatenate([structure.position[None], poses.position])
     rotation = np.concatenate([rotation_matrices(structure.orientation)[None], poses.rotation])
     slip = joint_coordinates(structure, position, rotation)["slip"].to_numpy()[1:, :, 0]
     moved = poses.position[..., 0] - structure.position[:, 0]
-    segment = (np.arange(len(moved)) * _EVERY // _SEGMENT).astype(int)
-    return find_joints(structure)[0], slip, moved, np.sqrt(poses.covariance[:, 0, 0]), segment
+    time = counted["time"].to_numpy()
+    return slip, moved, np.sqrt(poses.covariance[:, 0, 0]), time - time[0]
 
 
-def _of_body(joints, body):
-    """Of every joint at a body: slips, the displacement that would explain them, numbers of segments, and the noise."""
-    pairs, slip, moved, noise, segment = joints
-    return [
-        (slip[:, joint], (1.0 if body == pair[1] else -1.0) * moved[:, body], segment, np.hypot(*noise[pair]))
-        for joint, pair in enumerate(pairs)
-        if body in pair
-    ]
+def _gain(pairs, body, seen):
+    """Gain of a body by all its joints and tests, `Size`; None where it does not explain every joint."""
+    joints = []
+    for joint, pair in enumerate(pairs):
+        if body in pair and seen:
+            sign, known = 1.0 if body == pair[1] else -1.0, []
+            for slip, moved, _, since in seen:
+                rows = np.column_stack([sign * moved[:, body], slip[:, joint], since])
+                rows = rows[np.isfinite(rows).all(axis=1)]
+                known.append((rows[:, :1], rows[:, 1], rows[:, 2]))
+            joints.append((known, np.hypot(*seen[0][2][pair])))
+    if len(joints) < _FEWEST_JOINTS:
+        return None
+    share = regression([part for known, _ in joints for part in known], _SEGMENT)
+    if share is None:
+        return None
+    ratio = share.estimate[0]  # reading over truth, less 1, over the reading
+    for known, noise in joints:
+        slip = np.concatenate([slip for _, slip, _ in known])
+        rest = np.concatenate([slip - ratio * moved[:, 0] for moved, slip, _ in known])
+        size = (slip**2).mean()
+        if not size > (_SEEN * noise) ** 2 or (rest**2).mean() > _LEFT * size:
+            return None
+    return Size(share.estimate / (1.0 - ratio), share.covariance / (1.0 - ratio) ** 4, share.freedom)
 
 
 def _gain_across(structure, tests, body, sensors, along):
     """Gain along z and its variance, by the turn about y that readings along x and along z show."""
-    own = [marker for marker in structure.file.markers if marker.body == structure.body_names[body]]
-    arms = (structure.arms(own) @ rotation_matrices(structure.orientation[body]).T)[:, [0, 2]]
-    arms = arms - arms.mean(axis=0)
-    x, z = arms.T
+    carried = [marker for marker in structure.file.markers if marker.body == structure.body_names[body]]
+    arms = (structure.arms(carried) @ rotation_matrices(structure.orientation[body]).T)[:, [0, 2]]
+    x, z = (arms - arms.mean(axis=0)).T
     if min((x**2).sum(), (z**2).sum()) < _FLAT:
         return 0.0, 0.0
     by_x, by_z = [], []
     for test in tests:
-        moved = test["marker_displacement"].sel(marker=[marker.name for marker in own], axis=["x", "z"])
+        moved = test["marker_displacement"].sel(marker=[marker.name for marker in carried], axis=["x", "z"])
         moved = moved.transpose("time", "marker", "axis").to_numpy()
         known = np.isfinite(moved).all(axis=(1, 2))
         by_x.append(moved[known, :, 0] @ z / (z**2).sum())
@@ -108,33 +129,3 @@ def _gain_across(structure, tests, body, sensors, along):
     if not error < _SHARP:
         return 0.0, 0.0
     return float((1.0 + along) * (by_x @ by_z) / turned - 1.0), error**2
-
-
-def _gain(tests):
-    """Gain and its variance by all joints and tests; None where it does not explain every joint."""
-    joints = [_pooled(own) for own in zip(*tests, strict=True)]
-    if len(joints) < _FEWEST_JOINTS:
-        return None
-    slip, moved = (np.concatenate([joint[key] for joint in joints]) for key in (0, 1))
-    if not (moved**2).sum() > 0.0:
-        return None
-    ratio = (slip @ moved) / (moved @ moved)  # reading over truth, less 1, over the reading
-    for slip, along, _, noise in joints:
-        size = (slip**2).mean()
-        if not size > (_SEEN * noise) ** 2 or ((slip - ratio * along) ** 2).mean() > _LEFT * size:
-            return None
-    scores = np.concatenate(
-        [np.bincount(segment, along * (slip - ratio * along)) for slip, along, segment, _ in joints]
-    )
-    variance = (scores**2).sum() / (moved @ moved) ** 2
-    return ratio / (1.0 - ratio), variance / (1.0 - ratio) ** 4
-
-
-def _pooled(tests):
-    """Readings of one joint in all tests: slip, displacement, number of the segment; and the noise."""
-    parts, first = [], 0
-    for slip, moved, segment, _ in tests:
-        known = np.isfinite(slip) & np.isfinite(moved)
-        parts.append((slip[known], moved[known], first + segment[known]))
-        first += int(segment[-1]) + 1
-    return *map(np.concatenate, zip(*parts, strict=True)), tests[0][3]

@@ -1,10 +1,11 @@
-"""Lag and skew of the optical clock against the recorder's, from accelerometers against markers."""
+"""The optical clock is behind the recorder's, or slow: its reading at t is of t - lag - skew (t - middle)."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.parity.scored import Scored, scored
+from blockshake.parity.kinds.kind import Kind
+from blockshake.parity.regression import Size, regression
 
 _LAG_TOLERANCE = 5e-4  # s; half a millisecond of trigger jitter is no fault
 _SKEW_TOLERANCE = 5e-5  # two quartz clocks
@@ -15,11 +16,30 @@ _STEPS = 4  # of Newton's method
 _STEP = 1e-3  # s, of the difference that gives the readings' rate
 
 
+def _correct_lag(test, findings, structure):
+    """Move the recorder's times onto the optical clock, which stays."""
+    if "time_acc" in test.coords:
+        for finding in findings:
+            test.coords["time_acc"] = test["time_acc"] + finding.estimate[0]
+
+
+def _correct_skew(test, findings, structure):
+    if "time_acc" in test.coords:
+        middle = 0.5 * float(test["time"][0] + test["time"][-1])
+        for finding in findings:
+            since = test["time_acc"] - middle
+            test.coords["time_acc"] = test["time_acc"] + finding.estimate[0] * since
+
+
+LAG = Kind("lag", "clock-lag", "marker read at t shows t - lag", _correct_lag, units=("s", "s"))
+SKEW = Kind("skew", "clock-lag", "lag = skew (t - middle)", _correct_skew, size=None)
+
+
 class ClockLag(NamedTuple):
     """Lag of each test [s]; lag at the middle of a record and skew of all tests together [s, 1], or None."""
 
     by_test: dict
-    common: Scored | None
+    common: Size | None
 
 
 def clock_lag(pairs_by_test):
@@ -27,30 +47,20 @@ def clock_lag(pairs_by_test):
 
     Tests that tell nothing are missing.
     """
-    lags, blocks = {}, []
+    lags, parts = {}, []
     for name, pairs in pairs_by_test.items():
         informed = [pair for pair in pairs if pair.informed and not pair.unseen]
-        if not informed:
-            continue
-        lag = _coarse_lag(informed)
-        for _ in range(_STEPS):
-            normals, scores = _lag_equations(informed, lag)
-            if not len(normals):
+        lag, part = _coarse_lag(informed) if informed else 0.0, None
+        for _ in range(_STEPS if informed else 0):
+            part = _lag_equations(informed, lag)
+            if part is None:
                 break
-            lag += scores[:, 0].sum() / normals[:, 0, 0].sum()
-        if not len(normals):
-            continue
-        alone = scored(np.array([lag]), normals[:, :1, :1].sum(axis=0), scores[:, :1])
+            lag = (part[0][:, 0] @ part[1]) / (part[0][:, 0] @ part[0][:, 0])
+        alone = regression([(part[0][:, :1], *part[1:])], _SEGMENT) if part else None
         if alone is not None:
             lags[name] = alone
-            blocks.append((np.array([lag, 0.0]), normals, scores))
-    if not blocks:
-        return ClockLag({}, None)
-    normal = sum(normals.sum(axis=0) for _, normals, _ in blocks)
-    right = sum(normals.sum(axis=0) @ start + scores.sum(axis=0) for start, normals, scores in blocks)
-    estimate = np.linalg.solve(normal, right)
-    left = [scores - normals @ (estimate - start) for start, normals, scores in blocks]
-    return ClockLag(lags, scored(estimate, normal, np.concatenate(left)))
+            parts.append(part)
+    return ClockLag(lags, regression(parts, _SEGMENT) if parts else None)
 
 
 def clock_findings(clock, level):
@@ -59,10 +69,10 @@ def clock_findings(clock, level):
     if common is None:
         return []
     where = ("optical clock",)
-    findings = common.part(0).finding("lag", where, lags, _LAG_TOLERANCE, level)
+    findings = common.part(0).finding(LAG, where, lags, _LAG_TOLERANCE, level)
     for name, lag in [] if findings else lags.items():
-        findings += lag.finding("lag", where, (name,), _LAG_TOLERANCE, level)
-    return findings + common.part(1).finding("skew", where, lags, _SKEW_TOLERANCE, level)
+        findings += lag.finding(LAG, where, (name,), _LAG_TOLERANCE, level)
+    return findings + common.part(1).finding(SKEW, where, lags, _SKEW_TOLERANCE, level)
 
 
 def _coarse_lag(pairs):
@@ -81,23 +91,21 @@ def _coarse_lag(pairs):
 
 
 def _lag_equations(pairs, lag):
-    """Normal matrices and scores of (change of lag, skew) in each segment, all channels together."""
-    normals, scores = {}, {}
+    """Columns of lag and skew, values and times of all channels, linear about a lag; None of too little."""
+    columns, values, times = [], [], []
     for pair in pairs:
         late = (pair.read(pair.time - lag - _STEP) - pair.read(pair.time - lag + _STEP)) / (2.0 * _STEP)
         read = np.where(np.isfinite(late), pair.read(pair.time - lag), np.nan)
         known = pair.enough(read)
         if known is None:
             continue
-        expected, read, time = pair.expected[known], read[known], pair.time[known]
+        expected, read, since = pair.expected[known], read[known], pair.time[known] - pair.time[0]
         late = late[known] * (read @ expected) / (read @ read)
-        design = np.column_stack([late, late * (time - 0.5 * (pair.time[0] + pair.time[-1]))])
+        design = np.column_stack([late, late * (since - 0.5 * np.ptp(pair.time))])
         design = design - np.outer(read, read @ design) / (read @ read)
-        left = expected - read * (read @ expected) / (read @ read)
-        weight = 1.0 / np.var(left - design @ np.linalg.lstsq(design, left, rcond=None)[0])
-        segment = np.floor((time - pair.time[0]) / _SEGMENT)
-        for one in np.unique(segment):
-            rows = segment == one
-            normals[one] = normals.get(one, 0.0) + weight * design[rows].T @ design[rows]
-            scores[one] = scores.get(one, 0.0) + weight * design[rows].T @ left[rows]
-    return np.array(list(normals.values())), np.array(list(scores.values()))
+        rest = expected - read * (read @ expected) / (read @ read)
+        error = np.std(rest - design @ np.linalg.lstsq(design, rest, rcond=None)[0])
+        columns.append(design / error)
+        values.append(rest / error + lag * design[:, 0] / error)
+        times.append(since)
+    return tuple(map(np.concatenate, (columns, values, times))) if columns else None

@@ -1,0 +1,136 @@
+"""Markers of one body in the tests that are read together, and the pose that they give."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.ndimage import binary_opening
+
+from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.motion.body_frame import ON_LINE, outlying, rigid_jacobian, see_from_body
+from blockshake.measurement.sensors.markers import whole_markers
+
+FEWEST_MARKERS = 3  # of a body, whose residual shows anything
+LARGEST_ROTATION = 0.3  # rad; a body that lies on its side is no longer checked
+LARGEST_MAGNIFICATION = 3.0  # noise of the sensor's point over a marker's, above which nothing is compared
+LARGEST_UNSEEN_ARM = 0.1  # m per rad
+_LARGEST_GAP = 2  # readings that interpolation bridges
+
+
+@dataclass(frozen=True)
+class BodyMarkers:
+    """Markers of one body.
+
+    Attributes
+    ----------
+    markers : tuple of str
+    points : float64 array, shape (n_markers, 3)
+        Body frame [m].
+    position, rotation : float64 arrays, shapes (3,), (3, 3)
+        Pose at rest, of the structure.
+    tests : tuple of str
+    readings : list of (time, displacement)
+        Times [s] and readings (n_times, n_markers, 3) of each test, inertial frame [m].
+    """
+
+    markers: tuple
+    points: np.ndarray
+    position: np.ndarray
+    rotation: np.ndarray
+    tests: tuple
+    readings: list
+
+    @classmethod
+    def of(cls, structure, body, tests, names):
+        """Of a body, those of its markers that have one of the names; ``tests``: readings by name."""
+        markers = [
+            marker for marker in structure.file.markers if marker.body == body and marker.name in names
+        ]
+        carried, index = [marker.name for marker in markers], structure.body_names.index(body)
+        displacements = [test["marker_displacement"].sel(marker=carried) for test in tests.values()]
+        return cls(
+            tuple(carried),
+            np.array([marker.position for marker in markers], dtype=float).reshape(-1, 3),
+            structure.position[index],
+            rotation_matrices(structure.orientation[index]),
+            tuple(tests),
+            [
+                (moved["time"].to_numpy(), moved.transpose("time", "marker", "axis").to_numpy())
+                for moved in displacements
+            ],
+        )
+
+    def frame(self, displacement, offset=0.0):
+        """`BodyFrame` of displacements of the markers, these as far off their points as ``offset`` (body frame) [m]."""
+        points = self.points + offset
+        readings = self.position + points @ self.rotation.T + displacement
+        return see_from_body(points, readings, self.position, self.rotation)
+
+    def upright(self, rotation):
+        """Times at which the body is known not to have turned far, bool (n_times,)."""
+        return np.einsum("tij,ij->t", rotation, self.rotation) > 1.0 + 2.0 * np.cos(LARGEST_ROTATION)
+
+
+def bodies_with_markers(structure, tests):
+    """`BodyMarkers` of every body that has three markers, with all directions measured, in all tests, by its name."""
+    shared = set.intersection(*(set(whole_markers(test)) for test in tests.values()))
+    bodies = {name: BodyMarkers.of(structure, name, tests, shared) for name in structure.body_names}
+    return {name: body for name, body in bodies.items() if len(body.markers) >= FEWEST_MARKERS}
+
+
+class MeasuredPose(NamedTuple):
+    """Pose of a body in one test.
+
+    Attributes
+    ----------
+    points : float64 array, shape (n_markers, 3)
+        Of its markers, body frame [m].
+    time : float64 array, shape (n_times,)
+        Even [s].
+    position, rotation : float64 arrays, shapes (n_times, 3), (n_times, 3, 3)
+        NaN where gaps are too long.
+    read : bool array, shape (n_times, n_markers)
+    """
+
+    points: np.ndarray
+    time: np.ndarray
+    position: np.ndarray
+    rotation: np.ndarray
+    read: np.ndarray
+
+
+def measured_pose(body, test):
+    """`MeasuredPose` of `BodyMarkers` in the test of this number, outliers left out; None where too little was read."""
+    time, displacement = body.readings[test]
+    first = body.frame(displacement)
+    displacement = np.where(outlying(first.residual)[..., None], np.nan, displacement)
+    # steps where a marker comes or goes would look like acceleration
+    mean = np.ma.masked_invalid(first.residual).mean(axis=0).filled(0.0)
+    displacement -= np.einsum("tij,mj->tmi", np.nan_to_num(first.rotation), mean)
+    pose = body.frame(displacement)
+    known = body.upright(pose.rotation)
+    if known.sum() < 2:
+        return None
+    even = np.linspace(time[0], time[-1], len(time))
+    flat = np.concatenate([pose.position, pose.rotation.reshape(-1, 9)], axis=1)
+    gap = binary_opening(~known, np.ones(_LARGEST_GAP + 1))
+    flat = np.stack([np.interp(even, time[known], values[known]) for values in flat.T], axis=1)
+    flat[np.interp(even, time, gap) > 0.0] = np.nan
+    read = np.isfinite(displacement).all(axis=2)
+    return MeasuredPose(body.points, even, flat[:, :3], flat[:, 3:].reshape(-1, 3, 3), read)
+
+
+def sight(points, point, direction):
+    """Noise and visibility of a point's motion along a direction of its body, as the markers give it.
+
+    Returns
+    -------
+    magnified : float
+        Its noise over that of a marker [1].
+    unseen : float
+        Its motion along the direction in a unit turn that the markers do not show [m].
+    """
+    jacobian = rigid_jacobian(points - points.mean(axis=0))
+    row = direction @ rigid_jacobian((np.array(point, dtype=float) - points.mean(axis=0))[None])
+    inverse = np.linalg.pinv(jacobian, rcond=ON_LINE)
+    return np.linalg.norm(row @ inverse), np.linalg.norm(row - row @ inverse @ jacobian)
