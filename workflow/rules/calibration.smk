@@ -10,11 +10,7 @@ rule compare_open_tests:
         "results/{study}/open-tests/{model}/{case}.nc",
     log:
         "logs/{study}/compare_open_tests/{model}/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
     resources:
-        mem_mb=2000,
         runtime=720,
     params:
         case=lambda wildcards: {
@@ -44,8 +40,6 @@ rule calibrate_jointly:
         "results/{study}/calibration.json",
     log:
         "logs/{study}/calibrate_jointly.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         study={key: config[key] for key in ("calibration", "ensemble", "cases")},
         source=source_of("calibrate_jointly"),

@@ -12,8 +12,6 @@ rule make_virtual_campaign:
         truth="results/virtual-truth/{structure}/truth.json",
     log:
         "logs/make_virtual_campaign/{structure}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         source=source_of("make_virtual_campaign", *SOLVERS),
     script:

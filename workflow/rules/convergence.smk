@@ -7,10 +7,6 @@ rule study_convergence:
         "results/{study}/convergence.csv",
     log:
         "logs/{study}/study_convergence.log",
-    conda:
-        "../envs/blockshake.yaml"
-    resources:
-        mem_mb=2000,
     params:
         convergence=lookup(dpath="convergence", within=config),
         store="results/store",

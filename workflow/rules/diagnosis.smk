@@ -38,8 +38,6 @@ checkpoint decide:
         frozen="results/diagnosis/{campaign}/frozen.json",
     log:
         "logs/diagnosis/{campaign}/decide.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         without=WITHOUT,
@@ -56,11 +54,7 @@ rule simulate_nominal:
         "results/ensembles/{ensemble}/{solver}.nc",
     log:
         "logs/simulate_nominal/{ensemble}-{solver}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
     resources:
-        mem_mb=2000,
         runtime=480,
     params:
         shared=ENSEMBLE_SOURCE,
@@ -80,8 +74,6 @@ rule describe_misfit:
         "results/diagnosis/{campaign}/misfit.nc",
     log:
         "logs/diagnosis/{campaign}/describe_misfit.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
@@ -106,11 +98,7 @@ rule extend_model:
         "results/diagnosis/{campaign}/extended/{solver}.nc",
     log:
         "logs/diagnosis/{campaign}/extend_model/{solver}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
     resources:
-        mem_mb=2000,
         runtime=480,
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
@@ -138,8 +126,6 @@ rule measure_gain:
         summary="results/diagnosis/{campaign}/gain.json",
     log:
         "logs/diagnosis/{campaign}/measure_gain.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
@@ -158,8 +144,6 @@ rule conclude:
         "results/diagnosis/{campaign}/verdict.json",
     log:
         "logs/diagnosis/{campaign}/conclude.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
@@ -190,8 +174,6 @@ rule make_diagnosis_report:
         pdf=report("reports/diagnosis-{campaign}.pdf", category="Diagnosis"),
     log:
         "logs/diagnosis/{campaign}/make_diagnosis_report.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         results=lambda wildcards, input: str(Path(input.results[0]).parent),

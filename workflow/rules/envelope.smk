@@ -10,8 +10,6 @@ rule make_envelope:
         samples="results/{study}/samples/{model}/{case}.nc",
     log:
         "logs/{study}/make_envelope/{model}/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
         largest_drift=lookup(dpath="ladder/largest_drift", within=config),
@@ -28,8 +26,6 @@ rule show_samples:
         "results/{study}/shown/{model}/{case}.nc",
     log:
         "logs/{study}/show_samples/{model}/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         source=source_of("show_samples"),
     script:
@@ -46,8 +42,6 @@ rule compare_with_measurement:
         "results/{study}/comparisons/{model}/{case}.nc",
     log:
         "logs/{study}/compare_with_measurement/{model}/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
         source=source_of("compare_with_measurement"),
@@ -67,8 +61,6 @@ rule measure_sensitivity:
         "results/{study}/sensitivities/{model}/{case}.nc",
     log:
         "logs/{study}/measure_sensitivity/{model}/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
         linked=lookup(dpath="ensemble/linked", within=config),
@@ -93,8 +85,6 @@ rule compare_models:
         "results/{study}/differences/{case}.nc",
     log:
         "logs/{study}/compare_models/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         models=MODELS,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],

@@ -14,11 +14,7 @@ rule climb_samples:
         "results/{study}/climbs/{case}/{batch}.nc",
     log:
         "logs/{study}/climb_samples/{case}/{batch}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
     resources:
-        mem_mb=2000,
         runtime=240,
     params:
         case=lambda wildcards: {
@@ -48,8 +44,6 @@ rule fit_fragility:
         "results/{study}/fragility/{case}.nc",
     log:
         "logs/{study}/fit_fragility/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         source=source_of("fit_fragility"),
     script:

@@ -12,11 +12,7 @@ rule calibrate_friction:
         "results/{study}/friction/{case}.json",
     log:
         "logs/{study}/calibrate_friction/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
     resources:
-        mem_mb=2000,
         runtime=2880,
     params:
         case=case_definition,

@@ -20,8 +20,6 @@ rule make_report:
         paper="results/{study}/the-paper.json",
     log:
         "logs/{study}/make_report.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         study=CHECKED.model_dump(mode="json"),
         results="results/{study}",
@@ -40,8 +38,6 @@ rule make_case_report:
         pdf=report("reports/{study}-{case}.pdf", category="Study"),
     log:
         "logs/{study}/make_case_report/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         study=CHECKED.model_dump(mode="json"),
         case="{case}",

@@ -4,8 +4,6 @@ rule compile_kernels:
         "results/kernels/{model}-{digest}.json",
     log:
         "logs/compile_kernels/{model}-{digest}.log",
-    conda:
-        "../envs/blockshake.yaml"
     script:
         "../scripts/compile_kernels.py"
 
@@ -29,11 +27,7 @@ rule simulate_batch:
         "results/{study}/runs/{model}/{case}/{batch}.nc",
     log:
         "logs/{study}/simulate_batch/{model}/{case}/{batch}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
     resources:
-        mem_mb=2000,
         runtime=240,
     params:
         case=case_definition,
@@ -62,11 +56,7 @@ rule run_twins:
         "results/{study}/twins/{model}/{case}.nc",
     log:
         "logs/{study}/run_twins/{model}/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
     resources:
-        mem_mb=2000,
         runtime=240,
     params:
         case=case_definition,
@@ -92,8 +82,6 @@ rule climb_ladder:
         "results/{study}/ladder.json",
     log:
         "logs/{study}/climb_ladder.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         cases=[case for case in CASES.values()],
         motions={motion: BASELINES[motion] for motion in LADDER_MOTIONS},

@@ -11,8 +11,6 @@ rule calibrate_stiffness:
         waves="results/{study}/waves/{case}.nc",
     log:
         "logs/{study}/calibrate_stiffness/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
         linked=lookup(dpath="ensemble/linked", within=config),
@@ -32,8 +30,6 @@ rule compare_definitions:
         "results/{study}/stiffness-definitions.nc",
     log:
         "logs/{study}/compare_definitions.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         case=lookup(dpath="cases/0", within=config),
         time_step=time_step_of("ls-dem"),
