@@ -12,6 +12,7 @@ if "cases" not in config:
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/case.smk"
 include: "workflow/rules/motion.smk"
 include: "workflow/rules/sampling.smk"
 include: "workflow/rules/stiffness.smk"

@@ -35,7 +35,7 @@ from blockshake.report.study.sensitivity.words import sentence
 from blockshake.report.study.statements.section import DEPARTURES_HEADER, HEADER, count_words, departures
 from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.simulate import simulate
-from blockshake.store import load_made
+from blockshake.store import Store, load_made
 from blockshake.study.config import load_config
 from blockshake.study.convergence.convergence import study_convergence
 from blockshake.study.convergence.settings import Convergence
@@ -70,8 +70,8 @@ _GRID = "ls_dem.level_set", "ls_dem.grid_spacing"  # mean nothing without each o
 
 def convergence():
     """Table of LS-DEM's numerical parameters."""
-    with tempfile.TemporaryDirectory() as store:
-        found = study_convergence(Convergence(structure="configuration-1"), store, "", lambda line: None)
+    with tempfile.TemporaryDirectory() as folder:
+        found = study_convergence(Convergence(structure="configuration-1"), Store(folder, ""))
     table = numbers_table(found)
     return markdown(table.header, table.rows)
 

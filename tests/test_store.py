@@ -6,7 +6,7 @@ import xarray as xr
 
 from blockshake.errors import InputError
 from blockshake.files import write_dataset
-from blockshake.store import keep_dataset, kept, kept_value, load_made
+from blockshake.store import Store, keep_dataset, kept, load_made
 
 DATASET = xr.Dataset(
     {"v": ("time", np.linspace(0.0, 1.0, 500) ** 3, {"units": "m"}), "who": ("k", ["a", "bc"])}
@@ -60,26 +60,26 @@ def test_damage_is_seen(damage, tmp_path):
 def test_a_value_is_made_once_and_a_damaged_one_anew(tmp_path):
     made = []
 
-    def make():
+    def make(_):
         made.append({"peak": 0.1 + 0.2, "none": float("nan"), "text": "é"})
         return made[-1]
 
-    first = kept_value(tmp_path / "store", "key", make)
+    first = Store(tmp_path / "store", "source").value(("key",), make)
     assert first["peak"] == 0.1 + 0.2
     assert np.isnan(first["none"])
-    assert kept_value(tmp_path / "store", "key", make)["text"] == "é"
+    assert Store(tmp_path / "store", "source").value(("key",), make)["text"] == "é"
     assert len(made) == 1
     (path,) = (tmp_path / "store").iterdir()
     for count, damage in enumerate((_cut, _emptied, _flipped), start=2):
         damage(path)
-        assert kept_value(tmp_path / "store", "key", make)["peak"] == 0.1 + 0.2
+        assert Store(tmp_path / "store", "source").value(("key",), make)["peak"] == 0.1 + 0.2
         assert len(made) == count
         assert kept(path)
 
 
 def test_what_fails_leaves_nothing(tmp_path):
     with pytest.raises(TypeError):
-        kept_value(tmp_path / "store", "key", lambda: {"a": object()})
+        Store(tmp_path / "store", "source").value(("key",), lambda _: {"a": object()})
     assert list((tmp_path / "store").iterdir()) == []
 
 
@@ -93,3 +93,21 @@ def test_a_damaged_file_of_an_earlier_job_is_one_line(damage, tmp_path):
     ) as error:
         load_made(tmp_path / "a.nc")
     assert "\n" not in str(error.value)
+
+
+def test_a_run_is_made_once_by_each_source_and_the_line_says_how_it_ended(tmp_path):
+    lines, made = [], []
+
+    def make(checkpoint):
+        made.append(checkpoint)
+        return DATASET.assign_attrs(status="falling", reason="a block")
+
+    path = Store(tmp_path, "source", lines.append).dataset("run 1", (1.0, np.arange(3.0)), make)
+    assert Store(tmp_path, "source", lines.append).dataset("run 1", (1.0, np.arange(3.0)), make) == path
+    assert lines == ["run 1, simulated: falling a block", "run 1, kept: falling a block"]
+    assert made == [path.with_suffix(".checkpoint")]
+    xr.testing.assert_equal(xr.load_dataset(path), DATASET)
+    others = [("other", (1.0, np.arange(3.0))), ("source", (1.0, np.arange(1.0, 4.0))), ("source", (2.0,))]
+    for source, given in others:
+        assert Store(tmp_path, source, lines.append).dataset("run 1", given, make) != path
+    assert len(made) == 4

@@ -4,7 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from blockshake import store
 from blockshake.files import content_digest, write_json
+from blockshake.store import Store
 from blockshake.study.config import Ladder
 from blockshake.study.convergence import convergence
 from blockshake.study.convergence.settings import Convergence
@@ -39,27 +41,29 @@ class CutShortError(Exception):
 
 def _climb(path, store):
     climbed = [CASE], {"alkion": "auto"}, 1e-4, RUNGS
-    write_json(path, ladder.climb_ladders(*climbed, store, "source", lambda line: None))
+    write_json(path, ladder.climb_ladders(*climbed, Store(store, "source")))
 
 
 def test_a_structure_of_two_cases_is_climbed_once_for_the_longer_one(tmp_path, monkeypatch):
     climbed = []
-    monkeypatch.setattr(ladder, "climb", lambda structure, motion, *run: climbed.append(run[3]) or [])
+    monkeypatch.setattr(
+        ladder, "climb", lambda structure, runs, *_: climbed.append(runs.case["duration"]) or []
+    )
     cases = [CASE, CASE | {"duration": 0.1}]
-    ladder.climb_ladders(cases, {"alkion": "auto"}, 1e-4, RUNGS, tmp_path, "source", lambda line: None)
+    ladder.climb_ladders(cases, {"alkion": "auto"}, 1e-4, RUNGS, Store(tmp_path, "source"))
     assert climbed == [0.1]
 
 
 def _converge(path, store):
-    write_convergence(path, convergence.study_convergence(SHORT, store, "source", lambda line: None))
+    write_convergence(path, convergence.study_convergence(SHORT, Store(store, "source")))
 
 
 def _calibrate(path, store):
-    write_design(path, wave_speed.calibrate_design("configuration-2", DESIGN, {}, store, "source"))
+    write_design(path, wave_speed.calibrate_design("configuration-2", DESIGN, {}, Store(store, "source")))
 
 
 def _compare(path, store):
-    compared = definitions.compare_definitions({**CASE, "duration": 0.02}, 1e-4, store, "source")
+    compared = definitions.compare_definitions({**CASE, "duration": 0.02}, 1e-4, Store(store, "source"))
     path.write_bytes(b"".join(np.ascontiguousarray(one).tobytes() for one in compared.data_vars.values()))
 
 
@@ -108,7 +112,7 @@ def test_a_killed_rule_makes_each_unit_once(rule, tmp_path, monkeypatch):
     make_file(tmp_path / "again", tmp_path / "store")
     assert len(made) == units
     # other sources are other units
-    monkeypatch.setattr(module, "content_digest", lambda source, *given: content_digest("edited", *given))
+    monkeypatch.setattr(store, "content_digest", lambda source, *given: content_digest("edited", *given))
     limit = units
     with pytest.raises(CutShortError):
         make_file(tmp_path / "edited", tmp_path / "store")

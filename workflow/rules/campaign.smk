@@ -1,3 +1,10 @@
+def campaign_kernels(wildcards):
+    """Mark that the kernels of the virtual campaign's model are compiled."""
+    from blockshake.virtual.settings import load_settings
+
+    return kernels(load_settings(HOME / "config" / "virtual-campaign.yaml").model)
+
+
 rule make_virtual_campaign:
     """A campaign like the one that ships in data/: synthetic tests with an effect drawn by seed, and their truth.
 

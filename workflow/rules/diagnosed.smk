@@ -39,12 +39,10 @@ else:
     CAMPAIGNS = by_name(
         config.get("campaigns", config["diagnosis"]["campaigns"]), WITHOUT
     )
+# models that the null hypothesis of a diagnosis holds
+NULL_MODELS = [name for name, model in SOLVERS.items() if model.perturbation]
 # how often the procedure was right
 TRACK_RECORD = beside(HOME / "data" / "track-record" / "hidden-effects.json")
-ENSEMBLE_SOURCE = source_of("simulate_nominal")  # of what both solvers share
-
-
-config["diagnosed"], config["diagnosis_effort"] = list(CAMPAIGNS.values()), EFFORT
 
 
 def solver_source(wildcards):
@@ -68,11 +66,11 @@ def plan(campaign):
 
 def ensemble_files(campaign, solvers=NULL_MODELS):
     """Nominal ensembles of a campaign's open tests, test by test; none at an effort that simulates nothing."""
-    names = [
-        plan(campaign).ensemble(test, ENSEMBLE_SOURCE) for test in plan(campaign).tests
-    ]
     return expand(
-        "results/ensembles/{ensemble}/{solver}.nc", ensemble=names, solver=solvers
+        "results/diagnosis/{campaign}/ensembles/{number}-{solver}.nc",
+        campaign=campaign,
+        number=range(len(plan(campaign).tests)),
+        solver=solvers,
     )
 
 
@@ -83,7 +81,7 @@ def misfit_files(wildcards):
 
 
 def effort():
-    """Amounts of simulation. The plan is no source of a rule: its numbers are in names of files and in parameters."""
+    """Amounts of simulation. The plan is no source of a rule: its numbers are in parameters."""
     from blockshake.diagnosis.nominal.efforts import EFFORTS
 
     return EFFORTS[EFFORT]
@@ -96,15 +94,7 @@ def test_files(campaign, role):
         tests = [test for test in given.tests.values() if test.role == "sealed"]
     else:
         tests = [given.tests[name] for name in plan(campaign).open]
-    files = [given.folder / "campaign.yaml", Path(given.structure)]
-    for test in tests:
-        path = given.folder / test.file
-        files += [
-            path,
-            path.with_name(f"{path.stem}-acc.csv"),
-            given.folder / test.motion,
-        ]
-    return [str(path) for path in files if path.is_file()]
+    return files_of_tests(given, tests)
 
 
 def sealed_motions(campaign):

@@ -1,14 +1,14 @@
 """What the simulation of measured tests gets wrong, the cause, the extended model and its gain.
 
-Ensembles are named by their content: equal structures, motions and sensors have equal ones, whatever campaign they
-are of, so that a second campaign simulates nothing but its own extension.
+Equal structures, motions and sensors have equal ensembles, whatever campaign they are of: their runs are kept in the
+store, so that a second campaign simulates nothing but its own extension.
 """
 
 
 wildcard_constraints:
     campaign="|".join(map(re.escape, CAMPAIGNS)) or "none",
     solver="|".join(NULL_MODELS),
-    ensemble="[0-9a-f]{12}",
+    number=r"\d+",
 
 
 rule diagnose:
@@ -49,15 +49,19 @@ checkpoint decide:
 rule simulate_nominal:
     """Simulated tests of one structure under one motion by nominal models, and twins."""
     input:
+        tests=lambda wildcards: test_files(wildcards.campaign, "open"),
         kernels=lambda wildcards: kernels(wildcards.solver),
     output:
-        "results/ensembles/{ensemble}/{solver}.nc",
+        "results/diagnosis/{campaign}/ensembles/{number}-{solver}.nc",
     log:
-        "logs/simulate_nominal/{ensemble}-{solver}.log",
+        "logs/diagnosis/{campaign}/simulate_nominal/{number}-{solver}.log",
     resources:
         runtime=480,
     params:
-        shared=ENSEMBLE_SOURCE,
+        folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
+        effort=EFFORT,
+        draws=lambda wildcards: effort().draws,
+        twins=lambda wildcards: effort().twins,
         source=solver_source,
         store="results/store/diagnosis",
     script:

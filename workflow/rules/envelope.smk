@@ -1,10 +1,22 @@
+def files_of_models(wildcards):
+    """Batch files of a case by every model, and their twins, each under a name of its own for the rule's input."""
+    twins = "results/{study}/twins/{model}/{case}.nc"
+    named = {f"batches {model}": batch_files(wildcards, model) for model in MODELS}
+    named |= {
+        f"twins {model}": twins.format(
+            study=wildcards.study, model=model, case=wildcards.case
+        )
+        for model in MODELS
+        if CHECKED.has_twins(model, wildcards.case)
+    }
+    return named
+
+
 rule make_envelope:
     """Bounds and quantiles over the samples, and what each sample came to."""
     input:
         batches=batch_files,
-        structure=lambda wildcards: definition(
-            "structures", CASES[wildcards.case]["structure"]
-        ),
+        structure=structure_file,
     output:
         envelope="results/{study}/envelopes/{model}/{case}.nc",
         samples="results/{study}/samples/{model}/{case}.nc",
@@ -53,9 +65,7 @@ rule measure_sensitivity:
     """Which random variable makes the samples differ, block by block, with intervals and the level of chance."""
     input:
         batches=batch_files,
-        structure=lambda wildcards: definition(
-            "structures", CASES[wildcards.case]["structure"]
-        ),
+        structure=structure_file,
         design="results/{study}/design.csv",
     output:
         "results/{study}/sensitivities/{model}/{case}.nc",

@@ -1,12 +1,12 @@
+FRAGILITY = config.get("fragility") or {}
+
+
 rule climb_samples:
     """Some samples of a case, each at rising intensities until its potential collapse; finished runs are in the store."""
     input:
-        structure=lambda wildcards: definition(
-            "structures", CASES[wildcards.case]["structure"]
-        ),
-        motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
+        unpack(case_files),
         design="results/{study}/design.csv",
-        stiffness=lambda wildcards: stiffness_of(
+        stiffness=lambda wildcards: stiffness_file(
             FRAGILITY["model"], wildcards.study, wildcards.case
         ),
         kernels=lambda wildcards: kernels(FRAGILITY["model"]),
@@ -17,14 +17,8 @@ rule climb_samples:
     resources:
         runtime=240,
     params:
-        case=lambda wildcards: {
-            key: CASES[wildcards.case][key]
-            for key in ("structure", "motion", "baseline", "duration")
-        },
-        model=lambda wildcards: FRAGILITY["model"],
-        settings=lambda wildcards: config["models"][FRAGILITY["model"]],
+        runs=lambda wildcards: runs_of(FRAGILITY["model"], case_keys(wildcards.case)),
         ladder=lookup(dpath="ladder", within=config),
-        linked=lookup(dpath="ensemble/linked", within=config),
         store="results/store",
         source=lambda wildcards: source_of("climb_samples", FRAGILITY["model"]),
     script:

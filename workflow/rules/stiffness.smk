@@ -1,10 +1,13 @@
+LS_DEM_STEP = (
+    config["models"].get("ls-dem", {}).get("time_step", SOLVERS["ls-dem"].time_step)
+)
+
+
 rule calibrate_stiffness:
     """Contact stiffness of every sample of a case from the wave speed in a tower of four of its blocks."""
     input:
         design="results/{study}/design.csv",
-        structure=lambda wildcards: definition(
-            "structures", CASES[wildcards.case]["structure"]
-        ),
+        structure=structure_file,
         kernels=kernels("ls-dem"),
     output:
         stiffness="results/{study}/stiffness/{case}.csv",
@@ -32,7 +35,7 @@ rule compare_definitions:
         "logs/{study}/compare_definitions.log",
     params:
         case=lookup(dpath="cases/0", within=config),
-        time_step=time_step_of("ls-dem"),
+        time_step=LS_DEM_STEP,
         store="results/store",
         source=source_of("compare_definitions", "ls-dem"),
     script:

@@ -41,7 +41,12 @@ _OPTIONS = {
 
 
 def check_named(config, where):
-    """Refuse a `StudyConfig` that names what is not there, or of which a job could not be done.
+    """Refuse a `StudyConfig` that names what is not there, or of which a job could not be done; its analyses apart.
+
+    Returns
+    -------
+    dict of str to Structure
+        By the name of their file.
 
     Raises
     ------
@@ -77,15 +82,12 @@ def check_named(config, where):
     for index, case in enumerate(config.cases):
         motion = scaled(motions[case.motion], case.scale, case.motion)
         check_simulations(config, index, structures[case.structure], motion, where)
-    check_friction_search(config, structures, where)
-    check_fragility(config, where)
-    check_calibration(config, structures, where)
-    check_convergence(config.convergence, where)
     for folder in config.diagnosis.campaigns:
         with faults_of(where, "diagnosis.campaigns"):
             load_campaign(folder)
     folders = [Path(folder).resolve().name for folder in config.diagnosis.campaigns]
     _each_once(folders, where, "diagnosis.campaigns")
+    return structures
 
 
 def _read_motions(config, where):
@@ -282,11 +284,8 @@ def check_measured(case, structure, where, key):
         )
 
 
-def check_fragility(config, where):
+def check_fragility(asked, config, structures, where):
     """Cases and a model of the study, and no more samples than there are."""
-    asked = config.fragility
-    if asked is None:
-        return
     for name in asked.cases:
         _one_of(name, [case.name for case in config.cases], where, "fragility.cases")
     _each_once(asked.cases, where, "fragility.cases")
@@ -306,11 +305,8 @@ def check_measured_cases(names, config, where, key):
     _each_once(names, where, key)
 
 
-def check_calibration(config, structures, where):
+def check_calibration(asked, config, structures, where):
     """Models and measured cases of the study, and values of parameters that models and structures have a use for."""
-    asked = config.calibration
-    if asked is None:
-        return
     ranges = asked.ranges_of(config.ensemble.distributions)
     for name in asked.ranges:
         known = [
@@ -337,11 +333,8 @@ def check_calibration(config, structures, where):
             check_ends(structure, ends, parameters, where, "calibration.ranges")
 
 
-def check_friction_search(config, structures, where):
+def check_friction_search(search, config, structures, where):
     """A model, measured cases and frictions of the study, and at least two candidates."""
-    search = config.friction_calibration
-    if search is None:
-        return
     key = "friction_calibration"
     check_measured_cases(search.cases, config, where, f"{key}.cases")
     _one_of(search.model, config.models, where, f"{key}.model")
@@ -357,10 +350,8 @@ def check_friction_search(config, structures, where):
         raise InputError(where, f"{key}.step", "expected at least two candidates between lowest and highest")
 
 
-def check_convergence(settings, where):
+def check_convergence(settings, config, structures, where):
     """A structure with a block on a driven body, and settings with which LS-DEM can read its shapes."""
-    if settings is None:
-        return
     with faults_of(where, "convergence.structure"):
         structure = load_structure(settings.structure)
         kicked(structure, 1.0)

@@ -6,6 +6,7 @@ import pytest
 from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
+from blockshake.store import Store
 from blockshake.study.convergence.convergence import study_convergence
 from blockshake.study.convergence.runs import rocking_block, shaken_stack
 from blockshake.study.convergence.settings import Convergence
@@ -37,7 +38,7 @@ def said():
 
 @pytest.fixture(scope="module")
 def table(said, tmp_path_factory):
-    return study_convergence(TINY, tmp_path_factory.mktemp("store"), "source", said.append)
+    return study_convergence(TINY, Store(tmp_path_factory.mktemp("store"), "source", said.append))
 
 
 def test_table_has_a_row_for_every_setting_and_observable(table, said):

@@ -8,6 +8,7 @@ from scipy.linalg import expm
 from blockshake.files import shipped
 from blockshake.geometry.structure import load_structure
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
+from blockshake.store import Store
 from blockshake.study.stiffness.definitions import DEFINITIONS, compare_definitions, travel_time
 from blockshake.study.stiffness.wave_step import STEP_VELOCITY, send_step
 
@@ -85,7 +86,9 @@ def test_travel_times_in_ls_dem_are_those_of_the_exact_chain(tmp_path, restituti
 @pytest.fixture(scope="module")
 def compared(tmp_path_factory):
     case = {"structure": "configuration-1", "motion": "basso-tirreno", "scale": 1.0, "baseline": "auto"}
-    return compare_definitions({**case, "duration": 0.2}, 5e-5, tmp_path_factory.mktemp("store"), "source")
+    return compare_definitions(
+        {**case, "duration": 0.2}, 5e-5, Store(tmp_path_factory.mktemp("store"), "source")
+    )
 
 
 def test_stiffness_by_every_definition_gives_the_speed_it_was_asked_for(compared):

@@ -3,7 +3,6 @@
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 from blockshake.diagnosis.nominal.efforts import EFFORTS, ENSEMBLES_OF_SEALED_TEST, Effort
 from blockshake.diagnosis.nominal.nominal_model import MODELS
@@ -54,10 +53,6 @@ class Plan:
         of_sealed = ENSEMBLES_OF_SEALED_TEST * self.effort.members + self.effort.twins
         sealed = len(sealed_tests(self.campaign)) if self.tests else 0
         return len(MODELS) * (len(self.tests) * self.effort.draws + sealed * of_sealed)
-
-    def ensemble(self, test, source):
-        """Name of the ensemble of a test: equal content and sources that both solvers share, equal name."""
-        return content_digest(self.tests[test].digest(), self.effort.draws, self.effort.twins, source)
 
 
 def plan_diagnosis(folder, effort):
@@ -127,32 +122,6 @@ def result_name(folder, without=()):
     path = Path(folder).resolve()
     name = path.name if _CHECKOUT in path.parents else f"{path.name}-{content_digest(str(path))[:6]}"
     return "-without-".join([re.sub(r"[^A-Za-z0-9._-]", "-", name), *without])
-
-
-class PlannedEnsemble(NamedTuple):
-    """The plan of a campaign, and the name of the test that an ensemble is of."""
-
-    plan: Plan
-    test: str
-
-
-def plan_of_ensemble(ensemble, folders, effort, source):
-    """`PlannedEnsemble`: plan and test of the first of several campaigns that has an ensemble.
-
-    Parameters
-    ----------
-    ensemble : str
-        Name, as of `Plan.ensemble`.
-    folders : sequence of str
-        Of campaigns.
-    effort, source : str
-    """
-    for folder in folders:
-        plan = plan_diagnosis(folder, effort)
-        for test in plan.tests:
-            if plan.ensemble(test, source) == ensemble:
-                return PlannedEnsemble(plan, test)
-    raise InputError("ensemble", ensemble, f"expected the ensemble of a test of {', '.join(folders)}")
 
 
 def considered(without=()):

@@ -38,7 +38,7 @@ _SECTIONS = (
     peer,
 )
 # these judge the study as a whole
-_NOT_OF_A_CASE = (calibration, statements, convergence, peer)
+_NOT_OF_A_CASE = (statements, peer)
 
 
 def make_report(study, results, logs, html, pdf, paper):

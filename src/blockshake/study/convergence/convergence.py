@@ -4,13 +4,11 @@ import time
 
 import pandas as pd
 
-from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import model_of
 from blockshake.simulation.structure_digest import structure_digest
 from blockshake.solvers.ls_dem.own_stiffness import own_stiffness
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
-from blockshake.store import kept_value
 from blockshake.study.convergence.runs import rocking_block, shaken_stack
 from blockshake.study.convergence.table import COLUMNS, EXACT, OBSERVABLES
 
@@ -19,19 +17,15 @@ _MODEL = "ls-dem"
 _TIME_STEP = model_of(_MODEL).time_step  # s; the others are varied from it
 
 
-def study_convergence(settings, store, source, progress):
+def study_convergence(settings, store):
     """Run the two cases with each numerical parameter varied about its default, the others kept at theirs.
 
     Parameters
     ----------
     settings : Convergence
         Of the configuration.
-    store : str or path
-        Folder of finished pairs of runs: one that is there is not simulated again.
-    source : str
-        Digest of the sources that compute.
-    progress : callable
-        Called with a line of text after each pair of runs that is made: its CPU time, which stays out of the table.
+    store : Store
+        Of pairs of runs; it says the CPU time of each that is made, which stays out of the table.
 
     Returns
     -------
@@ -53,15 +47,16 @@ def study_convergence(settings, store, source, progress):
     def observe(said, numerical=usual, time_step=_TIME_STEP, strength=1.0):
         shaken = strength * settings.acceleration, settings.frequency, settings.duration
 
-        def run():
+        def run(_):
             started = time.process_time()
             read = rocking_block(structure, _MODEL, numerical, time_step, strength)
             read |= shaken_stack(structure, numerical, time_step, *shaken)
-            progress(f"{said}: {time.process_time() - started:.2f} CPU s")
+            store.say(f"{said}: {time.process_time() - started:.2f} CPU s")
             return read
 
-        given = identity, numerical.model_dump(), time_step, strength, shaken
-        return kept_value(store, content_digest(source, "convergence", *given), run)
+        return store.value(
+            ("convergence", identity, numerical.model_dump(), time_step, strength, shaken), run
+        )
 
     def vary(name, **others):
         return {

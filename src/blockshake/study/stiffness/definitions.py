@@ -5,14 +5,12 @@ import xarray as xr
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.system import Status
-from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.markers import block_markers, driven_marker
 from blockshake.simulation.simulate import simulate
 from blockshake.simulation.structure_digest import structure_digest
 from blockshake.solvers.ls_dem.own_stiffness import own_stiffness
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
-from blockshake.store import kept_value
 from blockshake.study.described import describe
 from blockshake.study.stiffness.tower import tower_of
 from blockshake.study.stiffness.wave_speed import target_wave_speeds
@@ -86,7 +84,7 @@ def _vertex(times, values, place):
     return float(times[place] + 0.5 * (before - after) / (before - 2.0 * at + after) * (times[1] - times[0]))
 
 
-def compare_definitions(case, time_step, store, source):
+def compare_definitions(case, time_step, store):
     """Stiffness by definition and damping, and the top block's peak with each.
 
     Parameters
@@ -96,10 +94,8 @@ def compare_definitions(case, time_step, store, source):
         then shaken, and ``duration`` [s], of which at most 6 s are simulated, from the record's start on.
     time_step : float
         Of that run [s].
-    store : str or path
-        Folder of finished tests and runs: one that is there is not simulated again.
-    source : str
-        Digest of the sources that compute.
+    store : Store
+        Of tests and runs.
 
     Returns
     -------
@@ -121,23 +117,20 @@ def compare_definitions(case, time_step, store, source):
     motion = load_motion(case["motion"], case["scale"], case["baseline"])
     duration = motion.attributes.get("record_start", 0.0) + min(case["duration"], _LONGEST)
 
-    def keep(make, *given):
-        return kept_value(store, content_digest(source, *given), make)
-
-    rows = {restitution: _stiffness(structure, restitution, keep) for restitution in RESTITUTIONS}
+    rows = {restitution: _stiffness(structure, restitution, store) for restitution in RESTITUTIONS}
     study = rows[_NOMINAL[1]].sel(definition=_NOMINAL[0])["stiffness"]
     for restitution, row in rows.items():
-        row["wave_speed"] = _speeds_at(structure, restitution, study, keep)
+        row["wave_speed"] = _speeds_at(structure, restitution, study, store)
         for name, used in (("top_peak", restitution), ("top_peak_same_damping", _NOMINAL[1])):
             peaks = [
                 _top_peak(
-                    structure, motion, time_step, duration, used, row["stiffness"].sel(definition=one), keep
+                    structure, motion, time_step, duration, used, row["stiffness"].sel(definition=one), store
                 )
                 for one in DEFINITIONS
             ]
             row[name] = ("definition", peaks)
     result = xr.concat(rows.values(), dim=xr.Variable("restitution", list(rows)))
-    result = result.merge(_free_rotations(structure, study, keep))
+    result = result.merge(_free_rotations(structure, study, store))
     return _described(result, case, duration)
 
 
@@ -148,28 +141,28 @@ def _parameters(stiffness):
     )
 
 
-def _read(keep, tower, parameters, direction, *choices):
+def _read(store, tower, parameters, direction, *choices):
     """Wave speed by every definition, from one test [m/s]; ``choices`` as of `send_step`."""
 
-    def read():
+    def read(_):
         test = send_step(tower, parameters, direction, *choices)
         return [test.height / travel_time(test.time, test.velocity, one) for one in DEFINITIONS]
 
     given = "step", structure_digest(tower), parameters.model_dump(), direction, *choices
-    return np.array(keep(read, *given))
+    return np.array(store.value(given, read))
 
 
-def _stiffness(structure, restitution, keep):
+def _stiffness(structure, restitution, store):
     tower = tower_of(structure.with_parameters({"restitution": restitution}))
     targets = target_wave_speeds(tower)
     stiffness, ratio = (np.full((len(AXES), len(DEFINITIONS)), np.nan) for _ in range(2))
     for row, direction in enumerate(AXES):
         start = LsDemParameters(**own_stiffness(structure))
-        found = _read(keep, tower, start, direction)
+        found = _read(store, tower, start, direction)
         stiffness[row] = getattr(start, f"{direction}_stiffness") * (targets[direction] / found) ** 2
         for column in np.flatnonzero(np.isfinite(stiffness[row])):
             confirmed = start.model_copy(update={f"{direction}_stiffness": float(stiffness[row, column])})
-            ratio[row, column] = _read(keep, tower, confirmed, direction)[column] / targets[direction]
+            ratio[row, column] = _read(store, tower, confirmed, direction)[column] / targets[direction]
     pair = ("direction", "definition")
     return xr.Dataset(
         {
@@ -181,20 +174,20 @@ def _stiffness(structure, restitution, keep):
     )
 
 
-def _speeds_at(structure, restitution, stiffness, keep):
+def _speeds_at(structure, restitution, stiffness, store):
     tower = tower_of(structure.with_parameters({"restitution": restitution}))
-    speeds = [_read(keep, tower, _parameters(stiffness), direction) for direction in AXES]
+    speeds = [_read(store, tower, _parameters(stiffness), direction) for direction in AXES]
     return ("direction", "definition"), np.array(speeds)
 
 
-def _top_peak(structure, motion, time_step, duration, restitution, stiffness, keep):
+def _top_peak(structure, motion, time_step, duration, restitution, stiffness, store):
     """Largest displacement of the highest block relative to the slab along x in one nominal run [m]."""
     if not np.isfinite(stiffness).all():
         return np.nan
     parameters = {"restitution": restitution}
     parameters |= {f"ls_dem.{one}_stiffness": float(stiffness.sel(direction=one)) for one in AXES}
 
-    def shake():
+    def shake(_):
         run = simulate(structure, motion, "ls-dem", parameters, time_step, duration, accelerometers=False)
         if run.attrs["status"] != Status.COMPLETED:
             return np.nan
@@ -203,11 +196,11 @@ def _top_peak(structure, motion, time_step, duration, restitution, stiffness, ke
         along, marker = run["marker_displacement"].sel(axis="x"), markers[max(markers, key=height.get)]
         return float(np.abs(along.sel(marker=marker) - along.sel(marker=driven_marker(structure))).max())
 
-    shaken = structure_digest(structure), *(part.tobytes() for part in motion.table)
-    return keep(shake, "peak", *shaken, parameters, time_step, duration)
+    shaken = structure_digest(structure), *motion.table
+    return store.value(("peak", *shaken, parameters, time_step, duration), shake)
 
 
-def _free_rotations(structure, stiffness, keep):
+def _free_rotations(structure, stiffness, store):
     """Speed of a horizontal step where blocks may turn, beside that where they may not."""
     tower = tower_of(structure)
     speeds = {True: [], False: []}
@@ -216,7 +209,7 @@ def _free_rotations(structure, stiffness, keep):
         parameters = parameters.model_copy(update={"shear_stiffness": factor * parameters.shear_stiffness})
         for blocked, found in speeds.items():
             passages = 3.0 if blocked else _FREE_PASSAGES * np.sqrt(factor)
-            speeds_read = _read(keep, tower, parameters, "shear", passages, blocked)
+            speeds_read = _read(store, tower, parameters, "shear", passages, blocked)
             found.append(speeds_read[DEFINITIONS.index(_NOMINAL[0])])
     return xr.Dataset(
         {"blocked_speed": ("factor", speeds[True]), "free_speed": ("factor", speeds[False])},
