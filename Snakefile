@@ -22,15 +22,10 @@ include: "workflow/rules/envelope.smk"
 include: "workflow/rules/friction.smk"
 include: "workflow/rules/calibration.smk"
 include: "workflow/rules/fragility.smk"
-include: "workflow/rules/campaign.smk"
+include: "workflow/rules/convergence.smk"
 include: "workflow/rules/diagnosed.smk"
 include: "workflow/rules/diagnosis.smk"
 include: "workflow/rules/report.smk"
-
-
-if config.get("convergence"):
-
-    include: "workflow/rules/convergence.smk"
 
 
 rule all:

@@ -1,7 +1,9 @@
 rule study_convergence:
     """Two short runs of LS-DEM with time step, nodes, inset and grid varied one at a time."""
     input:
-        structure=definition("structures", config["convergence"]["structure"]),
+        structure=lambda wildcards: definition(
+            "structures", config["convergence"]["structure"]
+        ),
         kernels=kernels("ls-dem"),
     output:
         "results/{study}/convergence.csv",

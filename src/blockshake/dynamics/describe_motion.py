@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.dynamics.intensity import motion_figures
+from blockshake.dynamics.provenance import plain_attributes
 from blockshake.dynamics.response_spectrum import DAMPING, response_spectrum
 from blockshake.dynamics.synthetic_motion import target_acceleration
 from blockshake.dynamics.synthetic_schema import load_synthetic
@@ -56,7 +57,7 @@ def describe_motion(motion, definition):
         "Conventions": "CF-1.11",
         "title": f"ground motion {motion.name}",
         "name": motion.name,
-        **{name: _plain(value) for name, value in motion.attributes.items()},
+        **plain_attributes(motion.attributes),
         **motion_figures(motion),
     }
     return described
@@ -72,10 +73,3 @@ def _add_target(described, parameters):
     )
     described["target_period"] = ("ordinate", periods, {"units": "s"})
     described["published"] = ("ordinate", np.array([int(ordinate.published) for ordinate in ordinates]))
-
-
-def _plain(value):
-    """Attribute as netCDF can hold it: truth values as 0 and 1, all else that is no number as text."""
-    if isinstance(value, bool):
-        return int(value)
-    return value if isinstance(value, (str, float, int)) else str(value)

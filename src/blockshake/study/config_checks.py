@@ -30,7 +30,7 @@ from blockshake.study.stiffness.tower import tower_of
 
 _NAME = re.compile(r"\w[\w.-]{0,99}")  # of a structure, a motion or a case: it names results
 _RULE = re.compile(r"^(?:rule|checkpoint) (\w+):", re.MULTILINE)
-_SHARED = re.compile(r"diagnosis(-.*)?|hidden-effects|kernels|libraries|store|virtual-(campaign|truth)")
+_SHARED = re.compile(r"diagnosis(-.*)?|hidden-effects|kernels|store")
 # where the configuration says what `simulate` calls by its option
 _OPTIONS = {
     "--set": "models.{model}.parameters",
