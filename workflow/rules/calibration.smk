@@ -1,18 +1,11 @@
 CALIBRATION = config.get("calibration") or {}
 
 
-def open_files(case):
-    """The tests of a case's campaign that are not sealed, and what describes them."""
-    campaign = load_campaign(CASES[case]["measured"]["campaign"])
-    opened = [test for test in campaign.tests.values() if test.role != "sealed"]
-    return files_of_tests(campaign, opened)
-
-
 rule compare_open_tests:
     """The open tests of a case's campaign against the samples of the calibration by a model; finished runs are kept."""
     input:
         structure=structure_file,
-        campaign=lambda wildcards: open_files(wildcards.case),
+        campaign=lambda wildcards: campaign_files(wildcards.case, every=True),
         kernels=lambda wildcards: kernels(wildcards.model),
     output:
         "results/{study}/open-tests/{model}/{case}.nc",

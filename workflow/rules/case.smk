@@ -1,10 +1,12 @@
 """What the rules of a case share: its files, and the entries of its configuration that runs depend on."""
 
 
-def campaign_files(case):
-    """The test that a case is compared with and what describes it; never another, which may be sealed."""
-    campaign = load_campaign(CASES[case]["measured"]["campaign"])
-    return files_of_tests(campaign, [campaign.tests[CASES[case]["measured"]["test"]]])
+def campaign_files(case, every=False):
+    """The test that a case is compared with, or every one that is not sealed, and what describes it."""
+    measured = CASES[case]["measured"]
+    campaign = load_campaign(measured["campaign"])
+    tests = campaign.open.values() if every else [campaign.open[measured["test"]]]
+    return files_of_tests(campaign, tests)
 
 
 def files_of_tests(campaign, tests):

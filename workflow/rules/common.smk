@@ -1,5 +1,6 @@
 """Shared by the rules: the checked configuration, ids for paths, digests of sources."""
 
+import contextlib
 import os
 import sys
 from pathlib import Path
@@ -40,10 +41,14 @@ from blockshake.working_folder import (
 GIVEN = ("campaign", "campaigns", "effort", "without")
 
 
-def refuse(error):
+@contextlib.contextmanager
+def refusing():
     """End with one line on bad input and exit 2."""
-    print(f"blockshake: {error}", file=sys.stderr, flush=True)
-    os._exit(BAD_INPUT)
+    try:
+        yield
+    except InputError as error:
+        print(f"blockshake: {error}", file=sys.stderr, flush=True)
+        os._exit(BAD_INPUT)
 
 
 def hold_folder():
@@ -51,10 +56,8 @@ def hold_folder():
 
     It ends itself with the command that started it, such as `blockshake diagnose`.
     """
-    try:
+    with refusing():
         hold(Path.cwd())
-    except InputError as error:
-        refuse(error)
     end_with_command()
     start_jobs()
 
@@ -63,23 +66,19 @@ def study_config():
     """The configuration checked, with the defaults of its schema; what it names is checked once, not in every job."""
     study = {key: value for key, value in config.items() if key not in GIVEN}
     where = " + ".join(map(str, workflow.configfiles))
-    try:
+    with refusing():
         if workflow.exec_mode == workflow.exec_mode.DEFAULT:
             return check_config(study, where)
         return validated(StudyConfig, study, where)
-    except InputError as error:
-        refuse(error)
 
 
 def configuration():
     """The configuration as the program reads YAML, which is not how Snakemake does: octal numbers, keys twice."""
     given, read = workflow.config_settings, {}
     own = [path for path in workflow.configfiles if path not in given.configfiles]
-    try:
+    with refusing():
         for path in (*own, *given.configfiles):
             update_config(read, load_yaml(path))
-    except InputError as error:
-        refuse(error)
     update_config(read, with_numbers(dict(given.config)))
     return read
 

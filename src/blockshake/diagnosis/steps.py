@@ -157,7 +157,7 @@ def measure_gain(folder, effort, files):
     from blockshake.diagnosis.gain.row_gain import row_gain
     from blockshake.diagnosis.gain.sensor_gain import sensors_gain
     from blockshake.diagnosis.nominal.measured import measured_histories
-    from blockshake.diagnosis.nominal.plan import plan_diagnosis, sealed_tests
+    from blockshake.diagnosis.nominal.plan import plan_diagnosis
     from blockshake.diagnosis.verdict.frozen import check_frozen
     from blockshake.measurement.campaigns.campaign import load_campaign
     from blockshake.parity.parity import load_parity
@@ -166,7 +166,7 @@ def measure_gain(folder, effort, files):
     campaign, decision = load_campaign(folder), load_decision(files.decision)
     findings = load_parity(files.parity).findings
     if not decision.parts:
-        return sensors_gain(campaign, decision.tests, sealed_tests(campaign), findings)
+        return sensors_gain(campaign, decision.tests, list(campaign.sealed), findings)
     sealed = see_sealed(campaign)
     rows = row_gain(decision, see_campaign(campaign).tests, sealed.tests)
     if not files.extended:
@@ -175,7 +175,7 @@ def measure_gain(folder, effort, files):
     responses = campaign_gain(
         plan,
         measured_histories(campaign, plan.tests, findings),
-        measured_histories(campaign, sealed_tests(campaign), sealed.parity.findings),
+        measured_histories(campaign, list(campaign.sealed), sealed.parity.findings),
         _by_test(plan, files.ensembles),
         [load_made(path) for path in files.extended],
     )

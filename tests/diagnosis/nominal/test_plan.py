@@ -6,7 +6,6 @@ from blockshake.diagnosis.nominal.plan import (
     considered,
     open_tests,
     plan_diagnosis,
-    sealed_tests,
     simulated_tests,
 )
 from blockshake.errors import InputError
@@ -19,7 +18,7 @@ CAMPAIGN = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-2"
 def test_strongest_of_each_motion_then_by_falling_scale():
     campaign = load_campaign(CAMPAIGN)
     names = open_tests(campaign)
-    assert not set(names) & set(sealed_tests(campaign))
+    assert not set(names) & set(campaign.sealed)
     assert simulated_tests(campaign, names, 2) == ["alkion-275", "basso-tirreno-200"]
     assert simulated_tests(campaign, names, 3) == ["alkion-200", "alkion-275", "basso-tirreno-200"]
     assert simulated_tests(campaign, names, 99) == names

@@ -39,7 +39,7 @@ class Plan:
     @property
     def sealed(self):
         """Sealed tests as they are simulated, by name; empty where nothing is simulated."""
-        names = sealed_tests(self.campaign) if self.tests else []
+        names = self.campaign.sealed if self.tests else ()
         return {name: planned_sealed(self.campaign, name, self.tests) for name in names}
 
     @property
@@ -51,7 +51,7 @@ class Plan:
     def runs_of_cause(self):
         """Simulated tests at most, once a cause was found: of the open tests with it, and of the sealed ones."""
         of_sealed = ENSEMBLES_OF_SEALED_TEST * self.effort.members + self.effort.twins
-        sealed = len(sealed_tests(self.campaign)) if self.tests else 0
+        sealed = len(self.campaign.sealed) if self.tests else 0
         return len(MODELS) * (len(self.tests) * self.effort.draws + sealed * of_sealed)
 
 
@@ -88,14 +88,13 @@ def open_tests(campaign):
     InputError
         All tests are sealed.
     """
-    names = [test.name for test in campaign.tests.values() if test.role != "sealed"]
-    if not names:
+    if not campaign.open:
         raise InputError(
             campaign.folder / "campaign.yaml",
             "tests",
             "expected a test with the role fit or select, found none",
         )
-    return list(read_open_tests(campaign, names).tests)
+    return list(read_open_tests(campaign, list(campaign.open)).tests)
 
 
 def simulated_tests(campaign, names, most):
@@ -110,11 +109,6 @@ def simulated_tests(campaign, names, most):
     order = dict.fromkeys(test.name for test in [*strongest.values(), *falling])
     chosen = list(order)[:most]
     return [name for name in names if name in chosen]
-
-
-def sealed_tests(campaign):
-    """Names of the sealed tests."""
-    return [test.name for test in campaign.tests.values() if test.role == "sealed"]
 
 
 def result_name(folder, without=()):
