@@ -6,11 +6,17 @@ import xarray as xr
 
 from blockshake.errors import InputError
 from blockshake.files import write_dataset
-from blockshake.store import Store, keep_dataset, kept, load_made
+from blockshake.store import Store, kept, load_made
 
 DATASET = xr.Dataset(
     {"v": ("time", np.linspace(0.0, 1.0, 500) ** 3, {"units": "m"}), "who": ("k", ["a", "bc"])}
 )
+
+
+def _put(folder, name="a"):
+    """A unit of some name; its path."""
+    run = DATASET.assign_attrs(status="completed")
+    return Store(folder, "source").dataset("a run", (name,), lambda _: run)
 
 
 def _cut(path):
@@ -32,8 +38,7 @@ def _foreign(path):
 
 
 def _of_another_name(path):
-    keep_dataset(path.with_name("other.nc"), DATASET)
-    path.write_bytes(path.with_name("other.nc").read_bytes())
+    path.write_bytes(_put(path.parent, "other").read_bytes())
 
 
 def _a_folder(path):
@@ -42,19 +47,18 @@ def _a_folder(path):
 
 
 def test_a_kept_dataset_is_an_ordinary_file(tmp_path):
-    path = tmp_path / "store" / "a.nc"
-    assert not kept(path)
-    keep_dataset(path, DATASET)
+    path = _put(tmp_path / "store")
     assert kept(path)
-    xr.testing.assert_identical(xr.load_dataset(path), DATASET)
+    assert not kept(path.with_name("other.nc"))
+    xr.testing.assert_equal(xr.load_dataset(path), DATASET)
     assert list(path.parent.iterdir()) == [path]
 
 
 @pytest.mark.parametrize("damage", [_cut, _emptied, _flipped, _foreign, _of_another_name, _a_folder])
 def test_damage_is_seen(damage, tmp_path):
-    keep_dataset(tmp_path / "a.nc", DATASET)
-    damage(tmp_path / "a.nc")
-    assert not kept(tmp_path / "a.nc")
+    path = _put(tmp_path)
+    damage(path)
+    assert not kept(path)
 
 
 def test_a_value_is_made_once_and_a_damaged_one_anew(tmp_path):

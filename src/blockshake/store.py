@@ -67,7 +67,8 @@ class Store(NamedTuple):
         """
         path, how = self._path(given, ".nc"), "kept"
         if not kept(path):
-            keep_dataset(path, make(path.with_suffix(".checkpoint")), decimals)
+            made = make(path.with_suffix(".checkpoint"))
+            _keep(path, lambda temporary: write_dataset(temporary, made, decimals))
             how = "simulated"
         with delayed_interrupts(), xr.open_dataset(path) as unit:
             ended = f"{unit.attrs['status']} {unit.attrs.get('reason', '')}".rstrip()
@@ -91,14 +92,6 @@ def kept(path):
     return content[-_SEAL:] == _seal(path, content[:-_SEAL])
 
 
-def keep_dataset(path, dataset, decimals=None):
-    """Put an xarray Dataset into a store, whole or not at all; ``decimals`` as of `write_dataset`.
-
-    The seal stands behind the file's own end, where readers of netCDF do not look.
-    """
-    _keep(path, lambda temporary: write_dataset(temporary, dataset, decimals))
-
-
 def load_made(path, without=(), chosen=None):
     """Dataset of a netCDF file that an earlier job made, some of its variables left out.
 
@@ -120,6 +113,7 @@ def load_made(path, without=(), chosen=None):
 
 
 def _keep(path, write):
+    """Write a unit, and its seal behind the file's own end, where readers of netCDF do not look."""
     with replacing(path) as temporary:
         write(temporary)
         seal = _seal(path, temporary.read_bytes())

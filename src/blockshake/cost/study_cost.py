@@ -3,8 +3,7 @@
 import sys
 
 from blockshake.cost.diagnosis_cost import diagnosis_cost
-from blockshake.cost.jobs import planned_jobs
-from blockshake.cost.part import Part
+from blockshake.cost.jobs import Part, planned_jobs
 from blockshake.cost.trial import run_seconds
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import HOME

@@ -105,7 +105,8 @@ class RunParts:
         """Yield the readings of every channel, float64 (n_readings,) [m/s2]: the low-pass wants a whole record."""
         for channel in range(len(self.channels)):
             readings = np.full(len(self.reading_times()), np.nan)
-            smooth = readings_of(self._forces(channel)[:, None])[:, 0]
+            forces = np.concatenate([np.empty(0), *self._forces(channel)])
+            smooth = readings_of(forces[:, None])[:, 0]
             readings[: len(smooth)] = smooth
             yield readings
 
@@ -121,15 +122,7 @@ class RunParts:
         yield np.full((len(self.reading_times()) - done, len(self.transducers)), np.nan)
 
     def _forces(self, channel):
-        """Specific forces of a channel between all fine times that the run reached, float64 (n_intervals,) [m/s2]."""
-        forces, done = np.empty(len(self._fine)), 0
-        for part in self._forces_by_part(channel):
-            forces[done : done + len(part)] = part
-            done += len(part)
-        return forces[:done]
-
-    def _forces_by_part(self, channel):
-        """Yield those of each part, and between two parts those across their ends."""
+        """Yield the specific forces of a channel in each part [m/s2], and between two parts those across their ends."""
         name, before = f"force-{channel}", None
         for part in self._read("ends", name):
             ends = part["ends"]
