@@ -68,7 +68,7 @@ class Analysis(NamedTuple):
 
     def files(self, study, only=None):
         """Files that the report of a study, or of one of its cases, reads, by case and model; None without one."""
-        if self.settings and not study[self.settings]:
+        if self.settings and not study.get(self.settings):
             return {}
         if self.cases is None:
             return {} if only else {(None, None): self.file}
