@@ -12,6 +12,7 @@ if "cases" not in config:
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/case.smk"
 include: "workflow/rules/motion.smk"
 include: "workflow/rules/sampling.smk"
 include: "workflow/rules/stiffness.smk"
@@ -21,7 +22,6 @@ include: "workflow/rules/envelope.smk"
 include: "workflow/rules/friction.smk"
 include: "workflow/rules/calibration.smk"
 include: "workflow/rules/fragility.smk"
-include: "workflow/rules/campaign.smk"
 include: "workflow/rules/diagnosed.smk"
 include: "workflow/rules/diagnosis.smk"
 include: "workflow/rules/report.smk"

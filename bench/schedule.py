@@ -117,8 +117,7 @@ def timed_study(jobs, config, done, times):
             job.seconds = job.samples * each * _steps(config, done, config.fragility.model, case)
         elif job.rule == "compare_open_tests":
             model, case = job.key
-            tests = load_campaign(config.case(case).measured.campaign).tests.values()
-            runs = config.calibration.size * sum(test.role != "sealed" for test in tests)
+            runs = config.calibration.size * len(load_campaign(config.case(case).measured.campaign).open)
             # the records are as long as the windows of the study that was done
             steps = done.models[model].time_step / config.models[model].time_step
             job.seconds = runs * times["simulate_batch", job.key] * steps

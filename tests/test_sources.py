@@ -92,7 +92,6 @@ def test_an_ensemble_of_one_solver_does_not_watch_the_driver_of_the_other(model,
     listed = script_sources("simulate_nominal", model)
     assert set(own) <= set(listed)
     assert not {one for one in unwatched if one.endswith("driver.py")} & set(listed)
-    # the rules name the solver, and the ensembles' names none
     rules = [(PACKAGE.parents[1] / "workflow" / "rules" / f"{name}.smk").read_text() for name in RULES]
     assert 'source_of("simulate_nominal", wildcards.solver)' in rules[0]
     assert rules[1].count("source=solver_source") == 2

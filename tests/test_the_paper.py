@@ -18,7 +18,8 @@ from blockshake.solvers.ls_dem.interfaces import damping_ratio
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.nscd.parameters import NscdParameters
 from blockshake.solvers.nscd_deformable.parameters import DeformableParameters
-from blockshake.study.config import OF_THE_PAPER, load_config
+from blockshake.study.analyses import OF_THE_PAPER
+from blockshake.study.config import load_config
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 from blockshake.study.friction.settings import FrictionSearch
 from blockshake.study.sampling.distributions import LINKED, TABLE_2

@@ -68,7 +68,7 @@ VIRTUAL = {
     "duration": 1.0, "motions": ["push.csv"], "baseline": "auto",
     "intensities": {"first": 0.5, "increment": 0.25, "highest": 1.0, "largest_drift": 0.4},
     "sine": {"frequency": 5.0, "acceleration": 0.1, "duration": 1.0},
-    "table": {"gain": 1.0, "high": 0.0, "corner": 2.0, "pitch": 0.0}, "restored": True, "misplacement": 0.0,
+    "table": {"gain": 1.0, "high": 0.0, "corner": 2.0, "pitch": 0.0}, "misplacement": 0.0,
     "survey_noise": 0.0,
     "instruments": {
         "marker_noise": 1e-4, "accelerometer_noise": 0.02, "transducer_noise": 1e-4, "noise_memory": 0.0,
@@ -396,7 +396,6 @@ ROWS = {
         ("table.high", "big", "valid number"),
         ("table.corner", 0.0, _LOWER),
         ("table.pitch", "big", "valid number"),
-        ("restored", "perhaps", "valid boolean"),
         ("misplacement", -1.0, _AT_LEAST),
         ("survey_noise", -1.0, _AT_LEAST),
         ("instruments.marker_noise", -1.0, _AT_LEAST),

@@ -8,7 +8,7 @@ from blockshake.files import PACKAGE
 from blockshake.simulation.models import MODELS
 
 SCRIPTS = PACKAGE.parents[1] / "workflow" / "scripts"
-# their numbers are in names of files and in parameters of rules, see `effort` in workflow/rules/diagnosed.smk
+# their numbers are in parameters of rules, see `effort` in workflow/rules/diagnosed.smk
 PLANS = {f"diagnosis/nominal/{name}.py" for name in ("efforts", "plan")}
 BESIDE = {"caches.py", "log.py", "sources.py"}  # what these compute is in no result
 STEPS = "diagnosis/steps.py"  # a rule runs one function of it

@@ -1,10 +1,10 @@
+FRICTION_SEARCH = config.get("friction_calibration") or {}
+
+
 rule calibrate_friction:
     """The mean friction whose ensembles fit a measured test best: one job a case, its samples in the store."""
     input:
-        structure=lambda wildcards: definition(
-            "structures", CASES[wildcards.case]["structure"]
-        ),
-        motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
+        unpack(case_files),
         base="results/{study}/inputs/{case}.nc",
         campaign=lambda wildcards: campaign_files(wildcards.case),
         kernels=lambda wildcards: kernels(FRICTION_SEARCH["model"]),
@@ -12,11 +12,7 @@ rule calibrate_friction:
         "results/{study}/friction/{case}.json",
     log:
         "logs/{study}/calibrate_friction/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
     resources:
-        mem_mb=2000,
         runtime=2880,
     params:
         case=case_definition,

@@ -4,8 +4,7 @@ import time
 
 import numpy as np
 
-from blockshake.cost.jobs import planned_jobs
-from blockshake.cost.part import Part
+from blockshake.cost.jobs import Part, planned_jobs
 from blockshake.diagnosis.nominal.histories import read_histories
 from blockshake.diagnosis.nominal.nominal_model import MODELS, draw_nominal
 from blockshake.diagnosis.nominal.plan import plan_diagnosis

@@ -1,11 +1,10 @@
-"""Jobs of the workflow: their number, and the CPU time of each beside its simulations."""
+"""Parts of a cost; jobs of the workflow: their number, and the CPU time of each beside its simulations."""
 
 import os
 import re
 import subprocess
 from typing import NamedTuple
 
-from blockshake.cost.part import Part
 from blockshake.errors import InputError
 
 # CPU seconds of jobs beside their simulations: 5 s of the start, and what Snakemake's benchmarks of the default study
@@ -24,6 +23,22 @@ _FIXED = {
 }
 _PLANNED = 6.0  # CPU s
 _ROW = re.compile(r"^(\w+) +(\d+)$", re.MULTILINE)
+
+
+class Part(NamedTuple):
+    """Runs or jobs of one kind.
+
+    Attributes
+    ----------
+    name : str
+    count : int
+    seconds : float
+        CPU time of all of them [s].
+    """
+
+    name: str
+    count: int
+    seconds: float
 
 
 class Jobs(NamedTuple):

@@ -3,8 +3,7 @@
 import sys
 
 from blockshake.cost.diagnosis_cost import diagnosis_cost
-from blockshake.cost.jobs import planned_jobs
-from blockshake.cost.part import Part
+from blockshake.cost.jobs import Part, planned_jobs
 from blockshake.cost.trial import run_seconds
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import HOME
@@ -84,9 +83,5 @@ def _runs(config, model, case):
 def _open_records(case):
     """Lengths of the open tests of a case's campaign [s]."""
     campaign = load_campaign(case.measured.campaign)
-    times = [
-        load_test(campaign, name)["time"].to_numpy()
-        for name, test in campaign.tests.items()
-        if test.role != "sealed"
-    ]
+    times = [load_test(campaign, name)["time"].to_numpy() for name in campaign.open]
     return [float(time[-1] - record_start(time)) for time in times]

@@ -9,7 +9,8 @@ from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.measurement.sensors.markers import RATE
-from blockshake.simulation.models import MODELS, ModelName
+from blockshake.simulation.models import ModelName
+from blockshake.study.analyses import ANALYSES
 from blockshake.study.calibration.settings import CalibrationSettings
 from blockshake.study.comparison.differences import FEWEST
 from blockshake.study.config_checks import check_named
@@ -20,8 +21,6 @@ from blockshake.study.friction.settings import FrictionSearch
 from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, known_as, load_distributions
 from blockshake.study.sampling.latin_hypercube import LARGEST_SIZE, SMALLEST_SIZE
 from blockshake.validation import Count, Positive, Strict, Whole, validated
-
-OF_THE_PAPER = tuple(f"configuration-{place}" for place in (1, 2, 3, 4))
 
 
 def _links(ensemble):
@@ -218,18 +217,6 @@ class StudyConfig(Strict):
         return self.samples(model, case) >= FEWEST
 
 
-def shows_stiffness(study):
-    """Whether a study, as a mapping, tells of contact stiffness: a model has any, or a structure is the paper's."""
-    return any(MODELS[model].calibrated for model in study["models"]) or any(
-        is_of_the_paper(case["structure"]) for case in study["cases"]
-    )
-
-
-def is_of_the_paper(structure):
-    """Whether a structure is one of Zhou et al. (2023), by its shipped name."""
-    return structure in OF_THE_PAPER
-
-
 def load_config(path):
     """Configuration from a YAML file, checked with all that it names.
 
@@ -244,5 +231,9 @@ def load_config(path):
 def check_config(mapping, where):
     """Configuration from a mapping, checked with all that it names; ``where`` is its file."""
     config = validated(StudyConfig, mapping, where)
-    check_named(config, where)
+    structures = check_named(config, where)
+    for analysis in ANALYSES:
+        asked = getattr(config, analysis.settings) if analysis.settings else None
+        if asked is not None:
+            analysis.check(asked, config, structures, where)
     return config

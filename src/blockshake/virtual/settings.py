@@ -70,9 +70,6 @@ class VirtualCampaign(Strict):
     intensities: Intensities = Intensities()
     sine: Sine | None = None
     table: Table = Table()
-    restored: bool = Field(
-        True, description="the stack is put back before a test; otherwise it starts as the last left it"
-    )
     misplacement: NotNegative = Field(
         3e-4, description="standard deviation of where a block is put, along x and y [m]"
     )

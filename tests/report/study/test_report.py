@@ -23,7 +23,7 @@ from blockshake.report.study.content import load_content
 from blockshake.report.study.report import compose, make_case_report, make_report
 from blockshake.report.study.result_sections import responses
 from blockshake.report.study.statements.section import findings
-from blockshake.study import config
+from blockshake.study import analyses
 
 
 def test_tags_close_and_ids_are_unique(page):
@@ -192,7 +192,7 @@ def test_complete_study_says_that_all_completed(fake):
 
 
 def test_own_structures_by_rigid_models_need_no_contact_stiffness(copied, monkeypatch):
-    for module in (config, content):
+    for module in (analyses, content):
         monkeypatch.setattr(module, "is_of_the_paper", lambda structure: False)
     for name in ("stiffness", "waves"):
         shutil.rmtree(copied.results / name)

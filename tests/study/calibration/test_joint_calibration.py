@@ -10,6 +10,7 @@ from blockshake.files import write_dataset
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.simulation.simulate import simulate
+from blockshake.store import Store
 from blockshake.study.calibration import comparison
 from blockshake.study.calibration.calibration import ALL, calibrate, models_of
 from blockshake.study.calibration.comparison import compare_open_tests
@@ -82,7 +83,8 @@ def _answers(folder, models, size, duration, tmp_path):
     case = {"name": "one-block", "structure": str(folder / "one-block.yaml"), "duration": duration}
     study = _study({model: ("one-block",) for model in models}, size) | {"cases": [case]}
     compared = [
-        compare_open_tests(case, str(folder), model, study, tmp_path / "store", print) for model in models
+        compare_open_tests(case, str(folder), model, study, Store(tmp_path / "store", "source"))
+        for model in models
     ]
     return compared, calibrate(compared, study)
 

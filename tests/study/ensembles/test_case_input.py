@@ -12,7 +12,8 @@ from blockshake.files import write_dataset
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.simulation.simulate import simulate
-from blockshake.study.ensembles.batch import simulate_samples
+from blockshake.store import Store
+from blockshake.study.ensembles.batch import CaseRuns, simulate_samples
 from blockshake.study.ensembles.case_input import driving_motions, measured_input, measured_on_clock
 from blockshake.study.ensembles.ensemble import join_batches
 from blockshake.study.friction.calibration import mean_score
@@ -70,10 +71,11 @@ def score(case, tmp_path):
         write_dataset(tmp_path / "t1.nc", observe(run, structure, Instruments(), 4))
         base = measured_input({**case, "input": driven_by}, named)
         values = 0.5 * np.exp(0.05 * np.linspace(-1.6, 1.6, SIZE))
+        runs = CaseRuns({**case, "input": driven_by}, "nscd-rigid", {"time_step": 1e-3}, {}, 200.0)
+        motions = driving_motions(runs.case, base, 1)
         finished = simulate_samples(
-            case, driving_motions({**case, "input": driven_by}, base, 1), "nscd-rigid", {"time_step": 1e-3}, 200.0,
-            pd.DataFrame({FRICTION: values}), {}, tmp_path / "store", "test", lambda line: None,
-        )  # fmt: skip
+            runs, motions, pd.DataFrame({FRICTION: values}), Store(tmp_path / "store", "test")
+        )
         measured, noise = measured_on_clock(named, base)
         return mean_score(join_batches(finished), measured, noise, 1)
 

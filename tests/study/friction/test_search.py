@@ -5,6 +5,8 @@ import pytest
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.simulation.simulate import simulate
+from blockshake.store import Store
+from blockshake.study.ensembles.batch import CaseRuns
 from blockshake.study.friction.search import calibrate_friction
 from blockshake.study.sampling.distributions import Lognormal
 
@@ -45,16 +47,13 @@ def search(tmp_path, one_block, read_with_noise):
             duration=duration,
         )
         return calibrate_friction(
-            case,
+            CaseRuns(case, "nscd-rigid", {"time_step": 1e-3}, {}, 200.0),
             None,
-            {"model": "nscd-rigid", "time_step": 1e-3, "output_rate": 200.0},
-            {"distributions": DISTRIBUTIONS, "seed": 1, "linked": {}},
+            {"distributions": DISTRIBUTIONS, "seed": 1},
             SEARCH | changes,
             read_with_noise(true, NOISE, 5),
             NOISE,
-            tmp_path / "store",
-            "test",
-            print,
+            Store(tmp_path / "store", "test"),
         )
 
     return run

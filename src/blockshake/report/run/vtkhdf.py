@@ -9,6 +9,7 @@ import numpy as np
 from blockshake.files import check_output, replacing
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.report.run.local_origin import local_origin
+from blockshake.simulation.run_histories import JOINT_HISTORIES
 
 _VERSION = np.array([2, 2], dtype=np.int64)  # of the file format
 _KINDS = (
@@ -76,8 +77,8 @@ def _blocks(run, histories, structure, origin):
 
 
 def _joints(run, histories, origin):
-    names = ("normal_force", "shear_force", "friction_ratio", "uplift", "slip")
-    values = {"force": run["joint_force"].to_numpy()} | {name: histories[name].to_numpy() for name in names}
+    values = {"force": run["joint_force"].to_numpy()}
+    values |= {name: histories[name].to_numpy() for name in JOINT_HISTORIES}
     cells = [np.array([joint]) for joint in range(histories.sizes["joint"])]
     return histories["joint_position"].to_numpy() - origin, "Vertices", cells, values, {}
 

@@ -12,7 +12,7 @@ from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.sensors import markers
 from blockshake.report.document.origin import software_versions
 from blockshake.store import load_made
-from blockshake.study.config import is_of_the_paper, shows_stiffness
+from blockshake.study.analyses import ANALYSES, is_of_the_paper
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.measured import measured_curves
 from blockshake.study.ensembles.timing import read_timings
@@ -184,13 +184,14 @@ def load_content(study, results, logs, only=None):
     results = Path(results)
     every = {case["name"]: case for case in study["cases"]}
     cases = {only: every[only]} if only else every
-    loaded = {name: _case(study, results, name, settings) for name, settings in cases.items()}
+    read = {one.name: one.results(study, results, only) for one in ANALYSES}
+    loaded = {name: _case(study, read, name, settings) for name, settings in cases.items()}
     motions = {}
     climbed = [] if only else study["ladder"]["motions"]
     for named in [*(case["motion"] for case in cases.values()), *climbed]:
         motions[Path(named).stem] = load_made(results / "motions" / f"{Path(named).stem}.nc")
     design = results / "design.csv"
-    stiffness = [results / "stiffness" / f"{name}.csv" for name in cases if shows_stiffness(study)]
+    stiffness = [results / "stiffness" / f"{name}.csv" for name, _ in read["stiffness"]]
     inputs = [
         named_file(f"{kind}s", case[kind]) for kind in ("structure", "motion") for case in cases.values()
     ]
@@ -203,17 +204,10 @@ def load_content(study, results, logs, only=None):
         design=load_design(design),
         design_summary=load_json(results / "design.json"),
         distributions=load_distributions(study["ensemble"].get("distributions"), study["name"]),
-        calibrated=_calibrated(results, cases) if stiffness else (),
-        friction={
-            name: load_json(results / "friction" / f"{name}.json")
-            for name in (study.get("friction_calibration") or {}).get("cases", ())
-            if name in cases
-        },
-        calibration=load_json(results / "calibration.json") if study.get("calibration") and not only else None,
-        fragility={
-            name: load_made(results / "fragility" / f"{name}.nc")
-            for name in (study.get("fragility") or {}).get("cases", ())
-            if name in cases
+        calibrated=_calibrated(read["stiffness"], read["waves"]),
+        calibration=next(iter(read["calibration"].values()), None),
+        **{
+            name: {case: made for (case, _), made in read[name].items()} for name in ("friction", "fragility")
         },
         timings=read_timings(
             logs,
@@ -227,19 +221,13 @@ def load_content(study, results, logs, only=None):
     )  # fmt: skip
 
 
-def _case(study, results, name, settings):
+def _case(study, read, name, settings):
     named = settings.get("measured")
-
-    def found(kind, model):
-        return load_made(results / kind / model / f"{name}.nc")
-
     responses = {
         model: Response(
-            found("envelopes", model),
-            found("samples", model),
-            found("shown", model),
-            found("comparisons", model) if named else None,
-            found("sensitivities", model),
+            *(read[kind][name, model] for kind in ("envelopes", "samples", "shown")),
+            comparison=read["comparisons"].get((name, model)),
+            sensitivity=read["sensitivities"][name, model],
         )
         for model in study["models"]
     }
@@ -247,7 +235,7 @@ def _case(study, results, name, settings):
     marker_noise = markers.NOISE
     if named:
         campaign = load_campaign(named["campaign"])
-        base = load_made(results / "inputs" / f"{name}.nc")
+        base = read["inputs"][name, None]
         test, marker_noise = measured_on_clock(named, base)
     return ReportedCase(
         name=name,
@@ -261,16 +249,15 @@ def _case(study, results, name, settings):
         synthetic=bool(test.attrs.get("synthetic", 0)) if named else False,
         marker_noise=marker_noise,
         responses=responses,
-        differences=load_made(results / "differences" / f"{name}.nc"),
+        differences=read["differences"][name, None],
     )
 
 
-def _calibrated(results, names):
+def _calibrated(stiffness_of, waves_of):
     """Stiffness of the cases, those of equal tables and waves together."""
     groups = []
-    for name in names:
-        stiffness = load_design(results / "stiffness" / f"{name}.csv")
-        waves = load_made(results / "waves" / f"{name}.nc")
+    for (name, _), stiffness in stiffness_of.items():
+        waves = waves_of[name, None]
         alike = [one for one in groups if one[1].equals(stiffness) and one[2].equals(waves)]
         if alike:
             alike[0][0].append(name)

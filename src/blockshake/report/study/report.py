@@ -34,7 +34,7 @@ _SECTIONS = (
     origin,
 )
 # these judge the study as a whole
-_NOT_OF_A_CASE = (calibration, statements)
+_NOT_OF_A_CASE = (statements,)
 
 
 def make_report(study, results, logs, html, pdf, paper):

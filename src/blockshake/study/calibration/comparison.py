@@ -35,7 +35,7 @@ _CURVES, _SPECTRA = "displacement", "acceleration"
 _FEWEST = 0.9  # of the samples, that have a reading: with fewer some values would have none near them
 
 
-def compare_open_tests(case, campaign, model, given, store, progress):
+def compare_open_tests(case, campaign, model, given, store):
     """Distances of the samples' readings of all open tests of a case from the measured ones and from each other.
 
     Parameters
@@ -47,10 +47,7 @@ def compare_open_tests(case, campaign, model, given, store, progress):
     model : str
     given : dict
         Entries ``calibration``, ``ensemble``, ``models`` and ``output_rate`` of the configuration.
-    store : str or path
-        Of finished samples, from which a job that was cut goes on.
-    progress : callable
-        Called with a line of text after each sample.
+    store : Store
 
     Returns
     -------
@@ -71,15 +68,14 @@ def compare_open_tests(case, campaign, model, given, store, progress):
     rows = _as_parameters(drawn, used, structure, case["structure"], store)
     run_settings = {**given["models"][model], "output_rate": given["output_rate"]}
     steps = _time_steps(drawn, used, run_settings["time_step"])
-    source = source_digest(*script_sources("compare_open_tests", model))
     tests = {}
     for name, listed in load_campaign(campaign).tests.items():
         if listed.role != "sealed":
             test = open_test(case, campaign, name)
-            progress(
+            store.say(
                 f"{name}: {test.case['motion']} at {test.case['scale']:g}, {test.case['duration']:.4g} s"
             )
-            run = run_settings, rows, steps, ensemble, store, source, progress
+            run = run_settings, rows, steps, ensemble, store
             tests[name] = _compared(test, simulate_readings(test, model, *run))
     shares = [ranges[one].share(drawn[one].to_numpy()) for one in used]
     found = xr.concat(tests.values(), dim=xr.Variable("test", list(tests)))
@@ -161,8 +157,8 @@ def _as_parameters(drawn, used, structure, named, store):
     """
     rows = drawn.drop(columns=[one for one in OF_CONTACT_SPRINGS if one not in used or one != RESTITUTION])
     if STIFFNESS in used:
-        source = source_digest(*script_sources("calibrate_stiffness"))
-        wave = calibrate_design(named, pd.DataFrame(index=[0]), {}, store, source).iloc[0]
+        waves = store._replace(source=source_digest(*script_sources("calibrate_stiffness")))
+        wave = calibrate_design(named, pd.DataFrame(index=[0]), {}, waves).iloc[0]
         rows = rows.assign(**{name: value * drawn[STIFFNESS] for name, value in wave.items()})
     if HOLLOW in used:
         hollow, edge = parameter_of(structure, HOLLOW)

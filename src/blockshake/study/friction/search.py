@@ -5,7 +5,7 @@ import pandas as pd
 
 from blockshake.simulation.models import model_of
 from blockshake.sources import script_sources, source_digest
-from blockshake.study.ensembles.batch import simulate_samples
+from blockshake.study.ensembles.batch import CaseRuns, simulate_samples
 from blockshake.study.ensembles.case_input import driving_motions, measured_on_clock
 from blockshake.study.ensembles.coverage import coverage, is_likely
 from blockshake.study.ensembles.ensemble import join_batches
@@ -15,7 +15,7 @@ from blockshake.study.sampling.distributions import load_distributions
 from blockshake.study.stiffness.wave_speed import calibrate_design
 
 
-def calibrate_case(case, named, base, given, store, progress):
+def calibrate_case(case, named, base, given, store):
     """Friction calibration of one case of a configuration.
 
     Parameters
@@ -28,9 +28,8 @@ def calibrate_case(case, named, base, given, store, progress):
         File from `measured_input`.
     given : dict
         Entries ``search``, ``models``, ``ensemble`` and ``output_rate`` of the configuration.
-    store : str or path
-        Of finished samples, shared with the study's batches.
-    progress : callable
+    store : Store
+        Its folder is shared with the study's batches.
 
     Returns
     -------
@@ -40,41 +39,33 @@ def calibrate_case(case, named, base, given, store, progress):
     search, ensemble = given["search"], given["ensemble"]
     model = search["model"]
     measured, noise = measured_on_clock(named, base)
-    settings = {"model": model, **given["models"][model], "output_rate": given["output_rate"]}
+    runs = CaseRuns(case, model, given["models"][model], ensemble["linked"], given["output_rate"])
     drawn_from = {
         "distributions": load_distributions(ensemble["distributions"], "ensemble"),
         "seed": ensemble["seed"],
-        "linked": ensemble["linked"],
     }
-    source = source_digest(*script_sources("simulate_batch", model))
-    found, beside = calibrate_friction(
-        case, base, settings, drawn_from, search, measured, noise, store, source, progress
-    )
+    store = store._replace(source=source_digest(*script_sources("simulate_batch", model)))
+    found, beside = calibrate_friction(runs, base, drawn_from, search, measured, noise, store)
     return friction_summary(found, beside, search, measured)
 
 
-def calibrate_friction(
-    case, base, run_settings, ensemble, search, measured, marker_noise, store, source, say
-):
+def calibrate_friction(runs, base, ensemble, search, measured, marker_noise, store):
     """Search the mean coefficient of friction of a case.
 
     Parameters
     ----------
-    case, base : as for `driving_motions`
-    run_settings : dict
-        ``model``, its ``time_step`` [s] and ``parameters``, ``output_rate`` [Hz].
+    runs : CaseRuns
+    base : as for `driving_motions`
     ensemble : dict
-        ``distributions``, ``seed``, ``linked``.
+        ``distributions``, ``seed``.
     search : dict
         ``variables``, ``lowest``, ``highest``, ``step``, ``finest`` [1]; ``size`` of an ensemble, ``replicates``.
     measured : xarray.Dataset
         The measured test, on the clock of the input.
     marker_noise : float
         [m]
-    store, source : as for `simulate_samples`
-        Finished samples are kept, so that a search that was cut goes on.
-    say : callable
-        Called with a line of text as it goes.
+    store : Store
+        Of samples, so that a search that was cut goes on; it says a line for every mean.
 
     Returns
     -------
@@ -84,40 +75,37 @@ def calibrate_friction(
         and ``chance`` of whole curves, medians over the markers [1]; ``residual``, the largest over the markers of
         the samples' median residual relative to the slab [m].
     """
-    distributions, linked = ensemble["distributions"], ensemble["linked"]
+    distributions = ensemble["distributions"]
     drawn = replicated_designs(
         search["replicates"], search["size"], ensemble["seed"], distributions=distributions
     )
     designs = [one.values for one in drawn]
-    if model_of(run_settings["model"]).calibrated:
-        given = linked, store, source_digest(*script_sources("calibrate_stiffness"))
+    if model_of(runs.model).calibrated:
+        waves = store._replace(source=source_digest(*script_sources("calibrate_stiffness")))
         designs = [
-            pd.concat([design, calibrate_design(case["structure"], design, *given)], axis=1)
+            pd.concat([design, calibrate_design(runs.case["structure"], design, runs.linked, waves)], axis=1)
             for design in designs
         ]
     seeds = [replicate_seed(ensemble["seed"], place) for place in range(1, len(designs) + 1)]
-    motions = [driving_motions(case, base, seed) for seed in seeds]
+    motions = [driving_motions(runs.case, base, seed) for seed in seeds]
     beside = {}
 
     def evaluate(mean):
         scores, covered = [], []
         for index, design in enumerate(designs):
             rows = with_mean(design, distributions, search["variables"], mean)
-            finished = simulate_samples(
-                case, motions[index], run_settings["model"], run_settings, run_settings["output_rate"],
-                rows, linked, store, source, lambda line: None,
-            )  # fmt: skip
-            members = join_batches(finished)
+            quiet = store._replace(say=lambda line: None)
+            members = join_batches(simulate_samples(runs, motions[index], rows, quiet))
             scores.append(mean_score(members, measured, marker_noise, seed=index))
             covered.append(_beside(members, measured, marker_noise))
         beside[mean] = pd.DataFrame(covered).median()
-        say(
+        store.say(
             f"mean friction {mean:g}: score {1e3 * sum(scores) / len(scores):.3f} mm of {len(scores)} ensembles"
         )
         return scores
 
     found = search_mean(evaluate, search["lowest"], search["highest"], search["step"], search["finest"])
-    say(found.answer)
+    store.say(found.answer)
     return found, pd.DataFrame(beside).T.rename_axis("mean").sort_index()
 
 

@@ -17,7 +17,7 @@ from blockshake.report.document.wording import (
 from blockshake.report.study.sensitivity.summary import markers_by_height, thickness_by_case
 from blockshake.report.study.statements.order import Limited, all_of, ordered
 from blockshake.report.study.statements.statement import judged, missing, scale_words, unjudged
-from blockshake.study.config import OF_THE_PAPER
+from blockshake.study.analyses import OF_THE_PAPER
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.ensembles.intervals import SURE_FROM

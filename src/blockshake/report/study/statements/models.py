@@ -12,7 +12,7 @@ from blockshake.report.study.statements.statement import (
     missing,
     unjudged,
 )
-from blockshake.study.config import OF_THE_PAPER
+from blockshake.study.analyses import OF_THE_PAPER
 from blockshake.study.ensembles.coverage import UNLIKELY, is_likely
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.ensembles.intervals import SURE_FROM
