@@ -12,7 +12,7 @@ pytestmark = pytest.mark.faults
 # models that the scripts of rules run, but for those whose jobs name one
 _MODELS = {
     "study_convergence": ("ls-dem",), "climb_ladder": ("ls-dem",), "compare_definitions": ("ls-dem",),
-    "climb_samples": ("nscd-rigid",), "calibrate_friction": ("nscd-rigid",), "predict_twins": ("ls-dem", "nscd-rigid"),
+    "climb_samples": ("nscd-rigid",), "predict_twins": ("ls-dem", "nscd-rigid"),
 }  # fmt: skip
 EDITS = {
     "study": (

@@ -204,10 +204,6 @@ def files_of_report(cases):
         "shown": by_model("shown", cases),
         "comparisons": by_model("comparisons", measured),
         "differences": results("differences/{case}.nc", case=cases),
-        "friction": results(
-            "friction/{case}.json",
-            case=[case for case in FRICTION_SEARCH.get("cases", []) if case in cases],
-        ),
         "calibration": (
             results("calibration.json") if CALIBRATION and cases == list(CASES) else []
         ),
@@ -302,7 +298,6 @@ STUDY = config["name"]
 MODELS = list(config["models"])
 CASES = {case["name"]: case for case in config["cases"]}
 MEASURED = [name for name, case in CASES.items() if case["measured"]]
-FRICTION_SEARCH = config.get("friction_calibration") or {}
 CALIBRATION = config.get("calibration") or {}
 FRAGILITY = config.get("fragility") or {}
 BASELINES = {motion: baseline for _, motion, baseline in CHECKED.named_motions()}

@@ -77,7 +77,6 @@ def check_named(config, where):
     for index, case in enumerate(config.cases):
         motion = scaled(motions[case.motion], case.scale, case.motion)
         check_simulations(config, index, structures[case.structure], motion, where)
-    check_friction_search(config, structures, where)
     check_fragility(config, where)
     check_calibration(config, structures, where)
     check_convergence(config.convergence, where)
@@ -311,12 +310,17 @@ def check_calibration(config, structures, where):
     asked = config.calibration
     if asked is None:
         return
-    ranges = asked.ranges_of(config.ensemble.distributions)
+    frictions = [name for name in config.ensemble.distributions if name.startswith("friction.")]
+    known = [*frictions, *OTHERS]
     for name in asked.ranges:
-        known = [
-            *(name for name in config.ensemble.distributions if name.startswith("friction.")), *OTHERS
-        ]  # fmt: skip
         _one_of(name, known, where, f"calibration.ranges.{name}")
+    for name in asked.parameters or ():
+        _one_of(name, known, where, "calibration.parameters")
+    _each_once(asked.parameters or (), where, "calibration.parameters")
+    ranges = asked.ranges_of(config.ensemble.distributions)
+    for name, source in asked.linked.items():
+        _one_of(name, frictions, where, "calibration.linked")
+        _one_of(source, ranges, where, f"calibration.linked.{name}")
     for model, names in asked.cases.items():
         key = f"calibration.cases.{model}"
         _one_of(model, config.models, where, key)
@@ -335,26 +339,6 @@ def check_calibration(config, structures, where):
                 return {name: factor * values[one] for one, (name, factor) in placed.items()}
 
             check_ends(structure, ends, parameters, where, "calibration.ranges")
-
-
-def check_friction_search(config, structures, where):
-    """A model, measured cases and frictions of the study, and at least two candidates."""
-    search = config.friction_calibration
-    if search is None:
-        return
-    key = "friction_calibration"
-    check_measured_cases(search.cases, config, where, f"{key}.cases")
-    _one_of(search.model, config.models, where, f"{key}.model")
-    for name in search.variables:
-        known = [name for name in config.ensemble.distributions if name.startswith("friction.")]
-        _one_of(name, known, where, f"{key}.variables")
-    _each_once(search.variables, where, f"{key}.variables")
-    for name in search.cases:
-        structure = structures[config.case(name).structure]
-        if not any(has_parameter(structure, variable) for variable in search.variables):
-            raise InputError(where, f"{key}.variables", f"expected a friction that {name} has")
-    if search.lowest + search.step > search.highest + 1e-9:
-        raise InputError(where, f"{key}.step", "expected at least two candidates between lowest and highest")
 
 
 def check_convergence(settings, where):

@@ -126,8 +126,6 @@ class Content:
         Every case in one of them; empty where the study tells of no contact stiffness.
     definitions : xarray.Dataset or None
         Of the study's first case; none where that is not reported, or where the study tells of no contact stiffness.
-    friction : dict of str to dict
-        Friction calibrations by case; empty where the study asks for none.
     calibration : dict or None
         From `calibrate`, where the study asks for one; a case alone has none.
     fragility : dict of str to xarray.Dataset
@@ -152,7 +150,6 @@ class Content:
     distributions: dict
     calibrated: tuple
     definitions: xr.Dataset | None
-    friction: dict
     calibration: dict | None
     fragility: dict
     convergence: pd.DataFrame | None
@@ -219,11 +216,6 @@ def load_content(study, results, logs, only=None):
         definitions=(
             load_made(results / "stiffness-definitions.nc") if stiffness and next(iter(every)) in cases else None
         ),
-        friction={
-            name: load_json(results / "friction" / f"{name}.json")
-            for name in (study.get("friction_calibration") or {}).get("cases", ())
-            if name in cases
-        },
         calibration=load_json(results / "calibration.json") if study.get("calibration") and not only else None,
         fragility={
             name: load_made(results / "fragility" / f"{name}.nc")

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from blockshake.statistics.resampling import rank_chance
 from blockshake.study.described import describe
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.distance import distances
@@ -87,7 +88,7 @@ def coverage(measured, ensemble, marker_noise, seed=0):
     measured curve wherever the band is thinner than the noise. There coverage says nothing at all, of any curve, and
     the distance decides.
     """
-    read, members, curves, readings = compared_curves(measured, ensemble, marker_noise, seed, fewest=0)
+    read, members, curves, readings = compared_curves(measured, ensemble, marker_noise, seed)
     markers = list(read["marker"].values)
     enough = len(curves) >= _FEWEST_MEMBERS
     by_curve = np.full((len(curves) + 1, len(markers)), np.nan)
@@ -118,11 +119,7 @@ def coverage(measured, ensemble, marker_noise, seed=0):
             "member_coverage": by_member,
             "distance": ("marker", away),
             "member_distance": member_distance,
-            "curve_probability": (member_distance >= xr.DataArray(away, dims="marker"))
-            .sum("sample")
-            .pipe(
-                lambda beyond: (1.0 + beyond) / (1.0 + len(member_coverage)) if enough else np.nan * beyond
-            ),
+            "curve_probability": ("marker", rank_chance(away, members_away) if enough else away * np.nan),
             "band_width": ("marker", width),
             "measured_peak": ("marker", _measured_peak(measured, members.attrs["slab_marker"], markers)),
         },

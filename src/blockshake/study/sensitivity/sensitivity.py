@@ -10,6 +10,8 @@ from blockshake.errors import InputError
 from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import model_of
+from blockshake.statistics.intervals import CONFIDENCE
+from blockshake.statistics.resampling import DRAWS, bootstrap_interval, chance_level
 from blockshake.study.ensembles.ensemble import ALONG_X, POSES, join_batches
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.sampling.latin_hypercube import load_design
@@ -17,15 +19,11 @@ from blockshake.study.sampling.sample_parameters import sample_parameters
 from blockshake.study.sensitivity.histories import completed_histories, principal_components, window_bounds
 from blockshake.study.sensitivity.measures import (
     FEWEST_SAMPLES,
-    bootstrap_interval,
-    chance_level,
     first_order_share,
     partial_rank_correlation,
 )
 
 QUANTITIES = {"history": "m", "peak": "m", "residual": "m", "rotation": "rad"}
-CONFIDENCE = 0.95
-_DRAWS = 400  # bootstrap and permutations: the tail of 2.5 % then rests on ten draws
 _MEASURES = {
     "first_order": first_order_share,
     "rank_correlation": lambda *pair: partial_rank_correlation(*pair)[0],
@@ -144,7 +142,7 @@ def _over_time(counted, markers, slab, inputs, generator):
         outputs = np.concatenate(padded, axis=1)
         shares = first_order_share(inputs[used], outputs).reshape(*shape, -1)
         spread = np.sqrt(outputs.var(axis=0).sum(axis=1)).reshape(shape)
-        level = chance_level(first_order_share, inputs[used], outputs, CONFIDENCE, _DRAWS, generator)
+        level = chance_level(first_order_share, inputs[used], outputs, generator)
     return xr.Dataset(
         {
             "window_first_order": (("window", "marker", "parameter"), shares),
@@ -171,8 +169,8 @@ def _measured(inputs, outputs, is_history, generator):
         if enough and not (is_history and name == "rank_correlation"):
             estimate = measure(inputs, outputs)
         if np.isfinite(estimate).any():
-            interval = bootstrap_interval(measure, inputs, outputs, estimate, CONFIDENCE, _DRAWS, generator)
-            level = chance_level(measure, inputs, outputs, CONFIDENCE, _DRAWS, generator)
+            interval = bootstrap_interval(measure, [inputs, outputs], generator)
+            level = chance_level(measure, inputs, outputs, generator)
         result[name] = (by_pair, estimate)
         result[f"{name}_interval"] = (("bound", *by_pair), np.clip(interval, -1.0, 1.0))
         result[f"{name}_chance"] = ((), level)
@@ -233,6 +231,6 @@ def _described(result, ensemble, counted, seed):
         "title": "sensitivity of an ensemble of simulated runs to its random variables",
         "counted": counted.sizes["sample"],
         "sensitivity_seed": f"{seed:x}",
-        "draws": _DRAWS,
+        "draws": DRAWS,
     }
     return result

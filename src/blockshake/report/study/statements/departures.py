@@ -17,7 +17,6 @@ from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.nscd.parameters import NscdParameters
 from blockshake.solvers.nscd_deformable.parameters import DeformableParameters
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
-from blockshake.study.friction.settings import FrictionSearch
 from blockshake.study.sampling.distributions import LINKED, TABLE_2
 from blockshake.study.stiffness.wave_step import STEP_VELOCITY
 
@@ -192,20 +191,10 @@ def _linked():
 def _search():
     told = []
     for name in ("study", "paper"):
-        own = load_yaml(HOME / "config" / f"{name}.yaml")["friction_calibration"]
-        told.append(
-            f"{own['size']} samples in {own['replicates']} designs of {', '.join(own['cases'])} by "
-            f"{model_label(own['model'])} in config/{name}.yaml"
-        )
-    return f"Even steps between the same ends: {'; '.join(told)}."
-
-
-def _friction():
-    own = FrictionSearch(cases=("configuration-1",), variables=("friction.concrete.concrete",))
-    return (
-        "The mean has the lowest continuous ranked probability score, with error bars from replicated designs; ends of "
-        f"its range are located to {given(own.finest)}. Both coefficients of concrete move together."
-    )
+        own = load_yaml(HOME / "config" / f"{name}.yaml")["calibration"]
+        models = " and ".join(map(model_label, own["cases"]))
+        told.append(f"{own['size']} samples of every open test by {models} in config/{name}.yaml")
+    return f"One hypercube, even between its ends: {'; '.join(told)}."
 
 
 def _fewer():
@@ -294,8 +283,9 @@ DEPARTURES = (
               "docs/configuration.md"),
     Departure("Statistics", "The mean friction is drawn at random from 0.3 to 0.8, with 50 samples by both models.",
               _search, "docs/calibration.md"),
-    Departure("Statistics", "The mean friction whose envelope contains the test.", _friction,
-              "docs/calibration.md"),
+    Departure("Statistics", "The mean friction whose envelope contains the test.",
+              _words("The friction has the lowest continuous ranked probability score of the samples near it, and a "
+                     "range that holds the truth in 95 % of campaigns."), "docs/calibration.md"),
     Departure("Statistics", "Envelopes are held against the tests by eye.",
               _words("Coverage stands beside that of each sample by the others, with a distance and its chance."),
               "docs/sampling.md"),

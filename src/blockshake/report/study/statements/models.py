@@ -14,10 +14,10 @@ from blockshake.report.study.statements.statement import (
     missing,
     unjudged,
 )
+from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.comparison.ranking import CLAIMS, MET, OPEN, judge
 from blockshake.study.ensembles.coverage import UNLIKELY, is_likely
 from blockshake.study.ensembles.envelope import counted_samples
-from blockshake.study.ensembles.intervals import SURE_FROM
 
 _RIGID, _ELASTIC, _VISCOELASTIC = "nscd-rigid", "nscd-elastic", "nscd-viscoelastic"
 _NO_TEST = "This study has no measured test."

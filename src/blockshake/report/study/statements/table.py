@@ -24,7 +24,7 @@ _OF_MODEL = "results/{{study}}/comparisons/{}/{{case}}.nc"
 _STIFFNESS = "results/{study}/stiffness/{case}.csv"
 _WAVES = "results/{study}/waves/{case}.nc"
 _DESIGN = "results/{study}/design.json"
-_FRICTION = "results/{study}/friction/{case}.json"
+_OPEN_TESTS = "results/{study}/calibration.json"
 _INPUT = "results/{study}/inputs/{case}.nc"
 _PARAMETERS = "blockshake parameters"
 _CHECK = "blockshake check configuration-4"
@@ -218,10 +218,10 @@ STATEMENTS = {
         ),
         Statement(
             _CALIBRATION, "The mean friction of concrete on concrete is searched from 0.3 to 0.8.",
-            calibration.friction_range, _FRICTION,
+            calibration.friction_range, _OPEN_TESTS,
         ),
         Statement(
-            f"{_CALIBRATION}, Table 2", "A mean of 0.75 is the best.", calibration.optimum, _FRICTION,
+            f"{_CALIBRATION}, Table 2", "A mean of 0.75 is the best.", calibration.optimum, _OPEN_TESTS,
         ),
     ),
     "Contact stiffness and damping": (
