@@ -89,40 +89,10 @@ def test_impacts_of_equal_blocks_are_said_once(content):
     assert words.endswith("a rigid block on two edges 0.731 (Housner 1963).")
 
 
-def ranking(section):
-    (items,) = [
-        block.items for block in section.blocks if block.kind == "items" and "state that" in block.items[0]
-    ]
-    return items
-
-
-def test_the_ranking_is_open_and_says_why_where_tests_are_synthetic(content):
-    best, poor = ranking(models(content))
-    assert "viscoelastic model describes all four configurations best: cannot be judged" in best
-    assert "elastic model is poor for configurations 3 and 4" in poor
-    assert "two others: cannot be judged" in poor
-    assert all("The measured curves are synthetic" in words for words in (best, poor))
-
-
-def test_the_ranking_is_computed_where_tests_are_real(content):
-    limits = np.full((2, 4, 4), np.nan)
-    names = list(MODELS)
-    for better, worse in (("nscd-elastic", "nscd-viscoelastic"), ("nscd-elastic", "nscd-rigid")):
-        limits[:, names.index(better), names.index(worse)] = 1e-3, 2e-3
-        limits[:, names.index(worse), names.index(better)] = -2e-3, -1e-3
-    for case in content.cases.values():
-        case.differences.attrs["synthetic"] = 0
-        case.differences["score_difference_interval"][:] = limits
-        case.differences["counted"][:] = 6
-    best, poor = ranking(models(content))
-    assert "best: not met. Of 8 comparisons of two models 0 bear the statement out, 2 contradict it" in best
-    assert "two others: not met." in poor
-
-
-def test_a_study_without_tests_has_no_ranking_and_one_of_one_model_no_section(fake, content):
+def test_a_study_without_tests_has_no_scores_and_one_of_one_model_no_section(fake, content):
     untested = {**fake.study, "cases": [{**case, "measured": None} for case in fake.study["cases"]]}
-    section = models(load_content(untested, fake.results, fake.logs))
-    assert "ranking" not in [block.key for block in section.blocks if block.kind == "heading"]
+    blocks = models(load_content(untested, fake.results, fake.logs)).blocks
+    assert [block.kind for block in blocks].count("table") == 2
     alone = {**fake.study, "models": {"ls-dem": fake.study["models"]["ls-dem"]}}
     assert models(load_content(alone, fake.results, fake.logs)) is None
 

@@ -73,7 +73,7 @@ def compare_open_tests(case, campaign, model, given, store, progress):
     used = [one for one in ranges if has_use(model, structure, one)]
     rows = _as_parameters(drawn, used, structure, case["structure"], store)
     run_settings = {**given["models"][model], "output_rate": given["output_rate"]}
-    steps = _time_steps(rows.index, drawn[STIFFNESS] if STIFFNESS in used else 1.0, run_settings["time_step"])
+    steps = _time_steps(drawn, used, run_settings["time_step"])
     source = source_digest(*script_sources("compare_open_tests", model))
     tests = {}
     for name, listed in load_campaign(campaign).tests.items():
@@ -180,9 +180,10 @@ def _as_parameters(drawn, used, structure, named, store):
     return rows
 
 
-def _time_steps(samples, factor, usual):
+def _time_steps(drawn, used, usual):
     """Time steps of the samples [s]: the usual one, cut into parts where contact springs are stiffer than usual.
 
     The largest stable step goes with the period of the springs.
     """
-    return pd.Series(usual / np.ceil(np.sqrt(np.maximum(factor, 1.0))), index=samples)
+    factor = drawn[STIFFNESS] if STIFFNESS in used else pd.Series(1.0, drawn.index)
+    return usual / np.ceil(np.sqrt(factor.clip(lower=1.0)))

@@ -1,7 +1,5 @@
 """Coverage: how much of a measured curve lies within an ensemble's bounds, never without its reference."""
 
-from typing import NamedTuple
-
 import numpy as np
 import xarray as xr
 
@@ -30,13 +28,6 @@ _DESCRIBED = {
     "measured_peak": ("largest absolute measured displacement along x relative to the slab", "m"),
     "quantile": ("probability of a smaller value", "1"),
 }
-
-
-class Band(NamedTuple):
-    """Edges of a band, float64 arrays, shape (n_times, ...)."""
-
-    lower: np.ndarray
-    upper: np.ndarray
 
 
 def coverage_of_case(named, base, batches):
@@ -95,7 +86,7 @@ def coverage(measured, ensemble, marker_noise, seed=0):
     inside, width, (*member_coverage, _) = by_curve[-1], by_curve[-1], by_curve
     *members_away, away = by_curve
     if enough:
-        lower, upper = band(curves)
+        lower, upper = np.fmin.reduce(curves, axis=0), np.fmax.reduce(curves, axis=0)
         inside, member_coverage = (
             share_inside(read.to_numpy(), lower, upper),
             members_inside(curves, readings),
@@ -152,27 +143,6 @@ def relative_width(comparison, peak):
     ``peak``: of the displacement relative to the slab over the simulated window [m].
     """
     return comparison["band_width"] / peak
-
-
-def band(curves):
-    """Smallest and largest value at each time.
-
-    Parameters
-    ----------
-    curves : float64 array, shape (n_curves, n_times, ...)
-        NaN is no value.
-
-    Returns
-    -------
-    Band
-        NaN where no curve has a value.
-
-    Examples
-    --------
-    >>> band(np.array([[0.0, 2.0], [1.0, np.nan]]))
-    Band(lower=array([0., 2.]), upper=array([1., 2.]))
-    """
-    return Band(np.fmin.reduce(curves, axis=0), np.fmax.reduce(curves, axis=0))
 
 
 def share_inside(curve, lower, upper):

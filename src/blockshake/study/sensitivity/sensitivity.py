@@ -12,6 +12,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import model_of
 from blockshake.statistics.intervals import CONFIDENCE
 from blockshake.statistics.resampling import DRAWS, bootstrap_interval, chance_level
+from blockshake.study.described import describe
 from blockshake.study.ensembles.ensemble import ALONG_X, POSES, join_batches
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.sampling.latin_hypercube import load_design
@@ -27,6 +28,25 @@ QUANTITIES = {"history": "m", "peak": "m", "residual": "m", "rotation": "rad"}
 _MEASURES = {
     "first_order": first_order_share,
     "rank_correlation": lambda *pair: partial_rank_correlation(*pair)[0],
+}
+_DESCRIBED = {
+    "first_order": ("first-order Sobol index, correlation ratio over classes of ranks", "1"),
+    "rank_correlation": ("partial rank correlation", "1"),
+    "window_first_order": ("first-order Sobol index of the displacement within a second", "1"),
+    "window_first_order_chance": (
+        "what the largest of all seconds, markers and variables reaches without any effect", "1",
+    ),
+    "window_spread": ("standard deviation over the samples within a second", "m"),
+    "window": ("middle of the second", "s"),
+    "explained": ("adjusted R^2 of a regression of ranks on all variables", "1"),
+    "used": ("samples used", "1"),
+    "control": ("1 where model or structure has no use for the variable", "1"),
+}  # fmt: skip
+_NAMED = {  # without a unit
+    "spread": "standard deviation over the samples, in quantity_unit",
+    "marker": "marker, relative to the slab's marker",
+    "parameter": "dotted name of the random variable",
+    "bound": "edge of the interval",
 }
 
 
@@ -178,54 +198,22 @@ def _measured(inputs, outputs, is_history, generator):
 
 
 def _described(result, ensemble, counted, seed):
-    what = {
-        "first_order": "first-order Sobol index, correlation ratio over classes of ranks",
-        "rank_correlation": "partial rank correlation",
-    }
-    for name, long_name in what.items():
-        result[name].attrs = {
-            "long_name": long_name, "units": "1",
-            "ancillary_variables": f"{name}_interval {name}_chance",
-        }  # fmt: skip
-        result[f"{name}_interval"].attrs = {
-            "long_name": f"bootstrap interval of the {long_name}",
-            "units": "1",
-            "confidence": CONFIDENCE,
-        }
-        result[f"{name}_chance"].attrs = {
-            "long_name": f"what the largest absolute {long_name} reaches without any effect",
-            "units": "1",
-            "confidence": CONFIDENCE,
-        }
-    result["window_first_order"].attrs = {
-        "long_name": "first-order Sobol index of the displacement within a second",
-        "units": "1",
-        "ancillary_variables": "window_first_order_chance",
-    }
-    result["window_first_order_chance"].attrs = {
-        "long_name": "what the largest of all seconds, markers and variables reaches without any effect",
-        "units": "1",
-        "confidence": CONFIDENCE,
-    }
-    result["window_spread"].attrs = {
-        "long_name": "standard deviation over the samples within a second",
-        "units": "m",
-    }
-    result["window"].attrs = {"long_name": "middle of the second", "units": "s"}
-    result["explained"].attrs = {
-        "long_name": "adjusted R^2 of a regression of ranks on all variables",
-        "units": "1",
-    }
-    result["spread"].attrs = {"long_name": "standard deviation over the samples, in quantity_unit"}
-    result["used"].attrs = {"long_name": "samples used", "units": "1"}
-    result["control"].attrs = {
-        "long_name": "1 where model or structure has no use for the variable",
-        "units": "1",
-    }
-    result["marker"].attrs = {"long_name": "marker, relative to the slab's marker"}
-    result["parameter"].attrs = {"long_name": "dotted name of the random variable"}
-    result["bound"].attrs = {"long_name": "edge of the interval"}
     result = result.assign_coords(quantity_unit=("quantity", list(QUANTITIES.values())))
+    describe(result, _DESCRIBED)
+    for name in _MEASURES:
+        of = result[name].attrs
+        result[f"{name}_interval"].attrs = {
+            "long_name": f"bootstrap interval of the {of['long_name']}", "units": "1", "confidence": CONFIDENCE,
+        }  # fmt: skip
+        result[f"{name}_chance"].attrs = {
+            "long_name": f"what the largest absolute {of['long_name']} reaches without any effect", "units": "1",
+            "confidence": CONFIDENCE,
+        }  # fmt: skip
+        of["ancillary_variables"] = f"{name}_interval {name}_chance"
+    result["window_first_order"].attrs["ancillary_variables"] = "window_first_order_chance"
+    result["window_first_order_chance"].attrs["confidence"] = CONFIDENCE
+    for name, long_name in _NAMED.items():
+        result[name].attrs = {"long_name": long_name}
     result.attrs = {
         **ensemble.attrs,
         "title": "sensitivity of an ensemble of simulated runs to its random variables",

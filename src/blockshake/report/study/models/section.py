@@ -1,11 +1,10 @@
-"""Section that holds the models against each other, and the paper's ranking of its behaviours against them."""
+"""Section that holds the models against each other."""
 
-from blockshake.report.document.blocks import Figure, Heading, Items, Section, Text
+from blockshake.report.document.blocks import Figure, Items, Section, Text
 from blockshake.report.document.drawing import svg_of
 from blockshake.report.study.models.figure import plot_differences
 from blockshake.report.study.models.tables import numerics_table, pairs_table, scores_table
-from blockshake.report.study.models.words import case_words, impact_words, ranking_words
-from blockshake.study.comparison.ranking import CLAIMS, judge
+from blockshake.report.study.models.words import case_words, impact_words
 
 
 def models(content):
@@ -34,7 +33,5 @@ def models(content):
     ]
     scores = scores_table(content)
     if scores is not None:
-        compared = {case.name: case.differences for case in cases if case.measured is not None}
-        judged = tuple(ranking_words(judge(claim, compared)) for claim in CLAIMS)
-        blocks += [Heading("The ranking of the paper", "ranking"), Items(judged), scores]
+        blocks.append(scores)
     return Section("Models against each other", "models", tuple(blocks))

@@ -1,4 +1,4 @@
-"""The models against each other in computed words, and the paper's ranking of its behaviours."""
+"""The models against each other in computed words."""
 
 from itertools import combinations
 
@@ -9,12 +9,10 @@ from blockshake.report.document.wording import (
     given,
     model_label,
     number,
-    sentence_case,
     share_words,
 )
 from blockshake.report.study.models.tables import in_millimetres, larger_floor
 from blockshake.simulation.models import MODELS
-from blockshake.study.comparison.ranking import FEWEST_JUDGED, MET, NOT_MET
 
 
 def case_words(case):
@@ -105,27 +103,3 @@ def impact_words(cases):
         f"Part of the angular velocity that the first impact of one block alone keeps, {', '.join(names)}: {words}."
         for words, names in told.items()
     ]
-
-
-def order_words(judgement):
-    """How many orders of two models that a claim of the paper makes the scores bear out, and how many not."""
-    return (
-        f"of {len(judgement.claim.orders)} comparisons of two models {judgement.borne_out} bear the statement out, "
-        f"{judgement.contradicted} contradict it, {judgement.untold} are not told apart by the intervals of their "
-        f"scores, and {judgement.unknown} are of fewer than {FEWEST_JUDGED} samples or of cases that were not run"
-    )
-
-
-def ranking_words(judgement):
-    """A claim of the paper and the answer to it, in sentences."""
-    said = f"Zhou et al. (2023) state that {judgement.claim.words}: {judgement.answer}."
-    if judgement.synthetic:
-        by_scores = {MET: "would be met", NOT_MET: "would not be met"}.get(
-            judgement.by_scores, "could not be judged either"
-        )
-        return (
-            f"{said} The measured curves are synthetic, made by a model of this program: a score tells which model is "
-            "nearest to that one, not which describes real blocks. By the scores alone the statement "
-            f"{by_scores}: {order_words(judgement)}."
-        )
-    return f"{said} {sentence_case(order_words(judgement))}"

@@ -12,10 +12,11 @@ from blockshake.report.document.wording import (
     parameter_label,
     share_words,
 )
-from blockshake.report.study.sensitivity.summary import markers_by_height, thickness_by_case
+from blockshake.report.study.sensitivity.summary import markers_by_height
 from blockshake.report.study.statements.order import Limited, all_of, ordered
 from blockshake.report.study.statements.specimens import HEIGHTS
 from blockshake.report.study.statements.statement import judged, missing, scale_words, unjudged
+from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 from blockshake.study.sensitivity.findings import influences, is_known
 
@@ -28,21 +29,20 @@ def upward(content, model):
     """Thickness from block to block."""
     if absent := missing(content, model):
         return unjudged(absent)
-    known = {
-        name: one
-        for name, one in thickness_by_case(content, model).items()
-        if one.known and len(one.spread) > 1
-    }
-    if not known:
+    spreads = {}
+    for name, case in content.cases.items():
+        chosen = {"quantity": "history", "marker": list(markers_by_height(case).values())}
+        spread = case.responses[model].sensitivity["spread"].sel(chosen).to_numpy()
+        if np.isfinite(spread).all() and len(spread) > 1:
+            spreads[name] = spread
+    if not spreads:
         return unjudged("Too few samples completed.")
-    grows = [name for name, one in known.items() if one.grows_upward]
-    told = "; ".join(
-        f"{name} {', '.join(millimetres(spread) for spread in one.spread)} mm" for name, one in known.items()
-    )
+    grows = [name for name, spread in spreads.items() if (np.diff(spread) > 0.0).all()]
+    told = "; ".join(f"{name} {', '.join(map(millimetres, spread))} mm" for name, spread in spreads.items())
     return judged(
-        len(grows) == len(known),
+        len(grows) == len(spreads),
         f"Standard deviation from the lowest block up{scale_words(content)}: {told}. It grows from each block to the "
-        f"next in {share_words(len(grows), len(known))} cases. There are no limits: "
+        f"next in {share_words(len(grows), len(spreads))} cases. There are no limits: "
         "the blocks of a structure move together in each sample.",
     )
 
@@ -99,7 +99,7 @@ def _at_top(content, model, name):
         top = list(markers_by_height(case).values())[-1]
         at = case.differences.sel(model=model, marker=top)
         limits = at[f"{name}_interval"].transpose("bound").to_numpy()
-        if np.isfinite(limits).all():
+        if int(at["counted"]) >= SURE_FROM and np.isfinite(limits).all():
             found[case.name] = Limited(float(at[name]), *map(float, limits))
     return found
 

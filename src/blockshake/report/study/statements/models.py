@@ -4,7 +4,6 @@ import numpy as np
 
 from blockshake.report.document.rows import face_markers
 from blockshake.report.document.wording import model_label, number, percent, share_words
-from blockshake.report.study.models.words import order_words
 from blockshake.report.study.statements.specimens import HEIGHTS
 from blockshake.report.study.statements.statement import (
     Verdict,
@@ -15,11 +14,10 @@ from blockshake.report.study.statements.statement import (
     unjudged,
 )
 from blockshake.statistics.intervals import SURE_FROM
-from blockshake.study.comparison.ranking import CLAIMS, MET, OPEN, judge
+from blockshake.study.comparison.ranking import ELASTIC, RIGID, VISCOELASTIC, rank_viscoelastic
 from blockshake.study.ensembles.coverage import UNLIKELY, is_likely
 from blockshake.study.ensembles.envelope import counted_samples
 
-_RIGID, _ELASTIC, _VISCOELASTIC = "nscd-rigid", "nscd-elastic", "nscd-viscoelastic"
 _NO_TEST = "This study has no measured test."
 _NO_FIT = f"A chance of {percent(UNLIKELY)} % or less, or the lowest that the samples tell, counts as no fit."
 
@@ -50,17 +48,20 @@ def resemblance(content):
 
 def best_model(content):
     """Viscoelastic blocks nearest to the tests."""
-    models = (_RIGID, _ELASTIC, _VISCOELASTIC)
-    if absent := missing(content, *models):
+    if absent := missing(content, RIGID, ELASTIC, VISCOELASTIC):
         return unjudged(f"{absent} config/paper.yaml has them.")
     cases = compared(content)
     if not cases:
         return unjudged(_NO_TEST)
-    found = judge(CLAIMS[0], {case.name: case.differences for case in cases})
-    words = f"By continuous ranked probability scores, {order_words(found)}."
-    if found.by_scores == OPEN:
+    found = rank_viscoelastic({case.name: case.differences for case in cases})
+    words = (
+        f"By continuous ranked probability scores, of {sum(found)} comparisons of two models {found.borne_out} bear "
+        f"the statement out, {found.contradicted} contradict it, {found.untold} are not told apart by the intervals "
+        f"of their scores, and {found.unknown} are of fewer than {SURE_FROM} samples or of cases that were not run."
+    )
+    if not found.contradicted and found.borne_out < sum(found):
         return unjudged(words)
-    return against_tests(cases, found.by_scores == MET, words)
+    return against_tests(cases, not found.contradicted, words)
 
 
 def satisfactory(content, model, fits, fails=()):
@@ -92,8 +93,8 @@ def satisfactory(content, model, fits, fails=()):
 
 def alike(content):
     """LS-DEM beside rigid and viscoelastic blocks in contact dynamics."""
-    others = [model for model in (_RIGID, _VISCOELASTIC) if model in content.study["models"]]
-    if absent := missing(content, "ls-dem", *([] if others else [_RIGID])):
+    others = [model for model in (RIGID, VISCOELASTIC) if model in content.study["models"]]
+    if absent := missing(content, "ls-dem", *([] if others else [RIGID])):
         return unjudged(absent)
     told, few, apart, beyond = [], [], 0, 0
     for case in content.cases.values():
