@@ -1,6 +1,7 @@
 import json
 import re
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -230,6 +231,18 @@ def test_missing_results_are_named(copied, tmp_path):
     with pytest.raises(InputError, match=r"envelopes/ls-dem/configuration-1\.nc"):
         make_report(fake.study, fake.results, fake.logs, *made)
     assert not (tmp_path / "a.html").exists()
+
+
+def test_one_friction_alone_is_said_to_be_the_search_of_the_paper(fake):
+    content = load_content(fake.study, fake.results, fake.logs)
+    whole = calibration(content).blocks[0].text
+    assert "over a range: friction, concrete on concrete; restitution C_res; " in whole
+    assert "Zhou" not in whole
+    name = "friction.concrete.concrete"
+    one = {**content.calibration, "parameters": {name: content.calibration["parameters"][name]}}
+    assert (
+        "is the search of Zhou et al. (2023)" in calibration(replace(content, calibration=one)).blocks[0].text
+    )
 
 
 def test_the_calibration_says_what_all_tests_tell_and_what_they_do_not(document):

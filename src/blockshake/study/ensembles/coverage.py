@@ -13,6 +13,7 @@ from blockshake.study.ensembles.measured import compared_curves
 
 REFERENCE_QUANTILES = (0.05, 0.5, 0.95)
 _FEWEST_MEMBERS = 3
+_NOISE_SEED = 0  # of the readings of the members
 UNLIKELY = 0.05  # chance of a whole curve at or below which an ensemble does not fit
 _DESCRIBED = {
     "coverage": ("fraction of the time that the measured curve is within the bounds", "1"),
@@ -39,7 +40,7 @@ def coverage_of_case(named, base, batches):
     return coverage(measured, join_batches(batches, POSES, ALONG_X), marker_noise)
 
 
-def coverage(measured, ensemble, marker_noise, seed=0):
+def coverage(measured, ensemble, marker_noise):
     """Fraction of the time that a measured curve lies within the bounds, and the same of the members.
 
     Parameters
@@ -51,8 +52,6 @@ def coverage(measured, ensemble, marker_noise, seed=0):
         From `gather_ensemble`; only completed and collapsed samples count.
     marker_noise : float
         Standard deviation of a measured marker's position [m].
-    seed : int
-        Of the noise given to the members.
 
     Returns
     -------
@@ -79,7 +78,7 @@ def coverage(measured, ensemble, marker_noise, seed=0):
     measured curve wherever the band is thinner than the noise. There coverage says nothing at all, of any curve, and
     the distance decides.
     """
-    read, members, curves, readings = compared_curves(measured, ensemble, marker_noise, seed)
+    read, members, curves, readings = compared_curves(measured, ensemble, marker_noise, _NOISE_SEED)
     markers = list(read["marker"].values)
     enough = len(curves) >= _FEWEST_MEMBERS
     by_curve = np.full((len(curves) + 1, len(markers)), np.nan)
@@ -123,7 +122,7 @@ def coverage(measured, ensemble, marker_noise, seed=0):
         "synthetic": int(measured.attrs.get("synthetic", 0)),
         "counted": members.sizes["sample"],
         "marker_noise": float(marker_noise),
-        "noise_seed": int(seed),
+        "noise_seed": _NOISE_SEED,
     }
     return result
 
