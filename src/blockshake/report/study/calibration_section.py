@@ -60,7 +60,7 @@ def calibration(content):
 
 
 def _drawn(parameters):
-    """What is drawn, in sentences; one friction of concrete alone is the paper's search."""
+    """Parameters that are drawn, in sentences; one friction of concrete alone is the search of the paper."""
     named = "; ".join(map(parameter_label, parameters)) or "none"
     words = f"Calibrated, with values drawn evenly over a range: {named}. Other variables are drawn as in the study."
     if list(parameters) == ["friction.concrete.concrete"]:
