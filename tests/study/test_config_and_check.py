@@ -175,7 +175,7 @@ def test_all_wrong_keys_are_named_at_once_with_the_nearest_known_one():
     mapping = copy.deepcopy(NEEDED)
     mapping["modles"] = mapping.pop("models")
     mapping["cases"][0]["duraton"] = mapping["cases"][0].pop("duration")
-    mapping["calibration"] = {"cases": {}, "lnked": {}, "zzz": 1}
+    mapping["calibration"] = {"cases": {"nscd-rigid": ["configuration-2"]}, "lnked": {}, "zzz": 1}
     with pytest.raises(InputError) as error:
         check_config(mapping, "mine.yaml")
     assert str(error.value).removeprefix("mine.yaml: ").split("; ") == [

@@ -312,15 +312,15 @@ def check_calibration(config, structures, where):
         return
     frictions = [name for name in config.ensemble.distributions if name.startswith("friction.")]
     known = [*frictions, *OTHERS]
-    for name in asked.ranges:
-        _one_of(name, known, where, f"calibration.ranges.{name}")
     for name in asked.parameters or ():
         _one_of(name, known, where, "calibration.parameters")
+    for name in asked.ranges:
+        _one_of(name, asked.parameters or known, where, f"calibration.ranges.{name}")
     _each_once(asked.parameters or (), where, "calibration.parameters")
     ranges = asked.ranges_of(config.ensemble.distributions)
     for name, source in asked.linked.items():
         _one_of(name, frictions, where, "calibration.linked")
-        _one_of(source, ranges, where, f"calibration.linked.{name}")
+        _one_of(source, [one for one in frictions if one in ranges], where, f"calibration.linked.{name}")
     for model, names in asked.cases.items():
         key = f"calibration.cases.{model}"
         _one_of(model, config.models, where, key)
