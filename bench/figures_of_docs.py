@@ -30,7 +30,7 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import load_json, load_yaml, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.report.document.wording import model_label, number
-from blockshake.report.study.calibrations.all_tests import answers_table, tests_table
+from blockshake.report.study.calibration_section import answers_table, tests_table
 from blockshake.report.study.content import load_content
 from blockshake.report.study.sensitivity.summary import markers_by_height
 from blockshake.report.study.sensitivity.words import sentence

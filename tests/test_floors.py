@@ -11,7 +11,7 @@ FLOORS = [
     ["caches", "errors", "interrupts"],
     ["files", "paths", "quantities", "working_folder"],
     ["validation", "log", "sources", "store"],
-    ["tables"],
+    ["tables", "statistics"],
     ["jit"],
     ["geometry"],
     ["dynamics"],

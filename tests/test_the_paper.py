@@ -19,9 +19,9 @@ from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.nscd.parameters import NscdParameters
 from blockshake.solvers.nscd_deformable.parameters import DeformableParameters
 from blockshake.study.analyses import OF_THE_PAPER
+from blockshake.study.calibration.answers import LEVEL
 from blockshake.study.config import load_config
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
-from blockshake.study.friction.settings import FrictionSearch
 from blockshake.study.sampling.distributions import LINKED, TABLE_2
 from blockshake.study.stiffness.wave_step import STEP_VELOCITY
 
@@ -197,8 +197,7 @@ def of_studies(studies):
     rise = load_yaml(HOME / "config" / "virtual-campaign.yaml")["intensities"]["increment"]
     medians = {name: one.stratum_medians(study.ensemble.size) for name, one in TABLE_2.items()}
     short = [1.0 - one.std() / one.mean() / TABLE_2[name].cov for name, one in medians.items()]
-    searches = [one.friction_calibration for one in studies]
-    assert {one.model for one in searches} == {"nscd-rigid"}
+    assert [list(one.calibration.cases) for one in studies] == [["ls-dem", "nscd-rigid"], ["nscd-rigid"]]
     (window,) = {case.duration for case in study.cases}
     *walls, last = (case.samples for case in study.cases)
     (fewer,) = {count for samples in walls for count in samples.values()}
@@ -213,9 +212,9 @@ def of_studies(studies):
         ],
         "Slab, and steel on steel and on the slab, are not in Table 2.": [len(LINKED)],
         "The mean friction is drawn at random from 0.3 to 0.8, with 50 samples by both models.": [
-            number for one in searches for number in (one.size, one.replicates)
+            one.calibration.size for one in studies
         ],
-        "The mean friction whose envelope contains the test.": [FrictionSearch.model_fields["finest"].default],
+        "The mean friction whose envelope contains the test.": [1e2 * LEVEL],
         "50 samples over whole records.": [window, fewer, fewest],
     }  # fmt: skip
 

@@ -10,10 +10,7 @@ from work import BOTH, WORKS
 
 pytestmark = pytest.mark.faults
 # models that the scripts of rules run, but for those whose jobs name one
-_MODELS = {
-    "climb_ladder": ("ls-dem",),
-    "climb_samples": ("nscd-rigid",), "calibrate_friction": ("nscd-rigid",), "predict_twins": ("ls-dem", "nscd-rigid"),
-}  # fmt: skip
+_MODELS = {"climb_ladder": ("ls-dem",), "climb_samples": ("nscd-rigid",)}
 EDITS = {
     "study": (
         "solvers/ls_dem/driver.py", "solvers/nscd/driver.py", "study/ensembles/envelope.py",

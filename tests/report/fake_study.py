@@ -11,8 +11,8 @@ from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.motion.joint_coordinates import find_joints
 from blockshake.measurement.sensors.markers import noisy_reading
+from blockshake.statistics.scores import FEWEST
 from blockshake.study.comparison.comparison import compare_models
-from blockshake.study.comparison.differences import FEWEST
 from blockshake.study.comparison.twins import TWINS
 from blockshake.study.ensembles.case_input import measured_input
 from blockshake.study.ensembles.coverage import coverage
@@ -104,14 +104,12 @@ class FakeStudy:
                 "largest_drift": 0.4,
             },
             "fragility": {"model": "nscd-rigid", "cases": ["configuration-1"], "size": 5},
-            "friction_calibration": {"cases": ["configuration-1"]},
             "calibration": {
                 "cases": {"ls-dem": ["configuration-1"], "nscd-rigid": ["configuration-1"]},
                 "size": 24,
             },
         }
         write_json(self.results / "calibration.json", calibrated(self.study))
-        write_json(self.results / "friction" / "configuration-1.json", friction())
         write_dataset(self.results / "fragility" / "configuration-1.nc", climbed_and_fitted())
         for place, name in enumerate(("basso-tirreno", "alkion")):
             write_dataset(self.results / "motions" / f"{name}.nc", motion(name, place))
@@ -244,33 +242,6 @@ class FakeStudy:
                 ),
             },
         )
-
-
-def friction():
-    """A friction calibration that refuses the lowest mean only."""
-    return {
-        "answer": "not informed above 0.4",
-        "best": 0.6,
-        "lower": 0.3,
-        "upper": None,
-        "synthetic": 1,
-        "model": "nscd-rigid",
-        "variables": ["friction.concrete.concrete"],
-        "lowest": 0.3,
-        "highest": 0.8,
-        "size": 10,
-        "replicates": 3,
-        "means": {
-            "mean": [0.3, 0.4, 0.6, 0.8],
-            "score": [9.5e-3, 3.1e-3, 3.0e-3, 3.2e-3],
-            "excess": [6.5e-3, 1e-4, 0.0, 2e-4],
-            "error": [1e-3, 2e-4, 0.0, 2e-4],
-            "accepted": [False, True, True, True],
-            "coverage": [0.4, 0.8, 0.83, 0.8],
-            "reference": [0.8, 0.8, 0.84, 0.8],
-            "residual": [3e-2, 2e-4, 1e-4, 1e-4],
-        },
-    }
 
 
 def end(run, status, reason, time):

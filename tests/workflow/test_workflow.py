@@ -201,7 +201,7 @@ def test_study_without_measured_tests_compares_with_none(tmp_path):
     checkout.write_config(config)
     planned = checkout.jobs()
     assert "make_envelope" in planned
-    assert not {"compare_with_measurement", "calibrate_friction"} & set(planned)
+    assert not {"compare_with_measurement", "compare_open_tests"} & set(planned)
     assert "climb_ladder" in checkout.jobs("ladder")
 
 

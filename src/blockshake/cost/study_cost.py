@@ -33,8 +33,8 @@ def study_cost(path):
 
     Notes
     -----
-    Twins count as one run and one of twice the steps; the search of the mean friction and the fragility with as
-    many runs as they may need; a diagnosis without the runs of a cause, which it has only where it finds one.
+    Twins count as one run and one of twice the steps; the fragility with as many runs as it may need; a diagnosis
+    without the runs of a cause, which it has only where it finds one.
     """
     config = load_config(path)
     parts = []
@@ -65,9 +65,6 @@ def _runs(config, model, case):
     found = {f"samples of {case.name}, {model}": (samples, samples)}
     if config.has_twins(model, case.name):
         found[f"twins of {case.name}, {model}"] = _TWINS, _TWINS
-    search = config.friction_calibration
-    if search is not None and search.model == model and case.name in search.cases:
-        found[f"mean friction of {case.name}"] = search.runs, search.runs
     asked = config.calibration
     if asked is not None and case.name in asked.cases.get(model, ()):
         # a test is simulated for its record where that is shorter than the case

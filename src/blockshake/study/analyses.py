@@ -10,7 +10,6 @@ from blockshake.store import load_made
 from blockshake.study.config_checks import (
     check_calibration,
     check_fragility,
-    check_friction_search,
 )
 from blockshake.study.sampling.latin_hypercube import load_design
 
@@ -96,14 +95,6 @@ ANALYSES = (
     Analysis("comparisons", "comparisons/{model}/{case}.nc", cases=_measured_cases),
     Analysis("sensitivities", "sensitivities/{model}/{case}.nc"),
     Analysis("differences", "differences/{case}.nc"),
-    Analysis(
-        "friction",
-        "friction/{case}.json",
-        load_json,
-        _cases_of("friction_calibration"),
-        "friction_calibration",
-        check_friction_search,
-    ),
     Analysis(
         "fragility", "fragility/{case}.nc", load_made, _cases_of("fragility"), "fragility", check_fragility
     ),

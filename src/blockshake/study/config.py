@@ -10,14 +10,13 @@ from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import ModelName
+from blockshake.statistics.scores import FEWEST
 from blockshake.study.analyses import ANALYSES
 from blockshake.study.calibration.settings import CalibrationSettings
-from blockshake.study.comparison.differences import FEWEST
 from blockshake.study.config_checks import check_named
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED
 from blockshake.study.ensembles.rungs import Rungs
 from blockshake.study.fragility.settings import FragilitySettings
-from blockshake.study.friction.settings import FrictionSearch
 from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, known_as, load_distributions
 from blockshake.study.sampling.latin_hypercube import LARGEST_SIZE, SMALLEST_SIZE
 from blockshake.validation import Count, Positive, Strict, Whole, validated
@@ -173,7 +172,6 @@ class StudyConfig(Strict):
     ensemble: Ensemble
     ladder: Ladder = Ladder()
     fragility: FragilitySettings | None = Field(None, description="none: no sample climbs the ladder")
-    friction_calibration: FrictionSearch | None = None
     calibration: CalibrationSettings | None = Field(
         None, description="none: friction, restitution and contact stiffness are taken as they are"
     )
@@ -189,14 +187,17 @@ class StudyConfig(Strict):
 
         linked = {target: own(source) for target, source in self.ensemble.linked.items()}
         changes = {"ensemble": self.ensemble.model_copy(update={"linked": linked})}
-        if (search := self.friction_calibration) is not None:
-            variables = tuple(map(own, search.variables))
-            changes["friction_calibration"] = search.model_copy(update={"variables": variables})
         if (asked := self.calibration) is not None:
             ranges = {own(name): span for name, span in asked.ranges.items()}
             if len(ranges) < len(asked.ranges):
                 raise InputError("", "study.calibration.ranges", "expected every pair once")
-            changes["calibration"] = asked.model_copy(update={"ranges": ranges})
+            named = {
+                "ranges": ranges,
+                "linked": {own(name): own(source) for name, source in asked.linked.items()},
+            }
+            if asked.parameters is not None:
+                named["parameters"] = tuple(map(own, asked.parameters))
+            changes["calibration"] = asked.model_copy(update=named)
         return self.model_copy(update=changes)
 
     def case(self, name):

@@ -304,12 +304,17 @@ def check_measured_cases(names, config, where, key):
 
 def check_calibration(asked, config, structures, where):
     """Models and measured cases of the study, and values of parameters that models and structures have a use for."""
-    ranges = asked.ranges_of(config.ensemble.distributions)
+    frictions = [name for name in config.ensemble.distributions if name.startswith("friction.")]
+    known = [*frictions, *OTHERS]
+    for name in asked.parameters or ():
+        _one_of(name, known, where, "calibration.parameters")
     for name in asked.ranges:
-        known = [
-            *(name for name in config.ensemble.distributions if name.startswith("friction.")), *OTHERS
-        ]  # fmt: skip
-        _one_of(name, known, where, f"calibration.ranges.{name}")
+        _one_of(name, asked.parameters or known, where, f"calibration.ranges.{name}")
+    _each_once(asked.parameters or (), where, "calibration.parameters")
+    ranges = asked.ranges_of(config.ensemble.distributions)
+    for name, source in asked.linked.items():
+        _one_of(name, frictions, where, "calibration.linked")
+        _one_of(source, [one for one in frictions if one in ranges], where, f"calibration.linked.{name}")
     for model, names in asked.cases.items():
         key = f"calibration.cases.{model}"
         _one_of(model, config.models, where, key)
@@ -328,20 +333,3 @@ def check_calibration(asked, config, structures, where):
                 return {name: factor * values[one] for one, (name, factor) in placed.items()}
 
             check_ends(structure, ends, parameters, where, "calibration.ranges")
-
-
-def check_friction_search(search, config, structures, where):
-    """A model, measured cases and frictions of the study, and at least two candidates."""
-    key = "friction_calibration"
-    check_measured_cases(search.cases, config, where, f"{key}.cases")
-    _one_of(search.model, config.models, where, f"{key}.model")
-    for name in search.variables:
-        known = [name for name in config.ensemble.distributions if name.startswith("friction.")]
-        _one_of(name, known, where, f"{key}.variables")
-    _each_once(search.variables, where, f"{key}.variables")
-    for name in search.cases:
-        structure = structures[config.case(name).structure]
-        if not any(has_parameter(structure, variable) for variable in search.variables):
-            raise InputError(where, f"{key}.variables", f"expected a friction that {name} has")
-    if search.lowest + search.step > search.highest + 1e-9:
-        raise InputError(where, f"{key}.step", "expected at least two candidates between lowest and highest")

@@ -1,6 +1,7 @@
 import json
 import re
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,8 +17,7 @@ from blockshake.report.document.html import write_html
 from blockshake.report.document.pdf import write_pdf
 from blockshake.report.document.wording import number
 from blockshake.report.study import closing_sections, content
-from blockshake.report.study.calibrations.all_tests import calibration
-from blockshake.report.study.calibrations.friction import friction
+from blockshake.report.study.calibration_section import calibration
 from blockshake.report.study.closing_sections import checks
 from blockshake.report.study.content import load_content
 from blockshake.report.study.report import compose, make_case_report, make_report
@@ -237,20 +237,16 @@ def test_missing_results_are_named(copied, tmp_path):
     assert not (tmp_path / "a.html").exists()
 
 
-def test_the_friction_calibration_says_what_the_test_does_not_tell(document):
-    section = next(section for section in document.sections if section.key == "friction")
-    table = next(block for block in section.blocks if block.kind == "table")
-    row = dict(zip(table.header, table.rows[0], strict=True))
-    assert row["Mean friction is"] == "not informed above 0.4"
-    assert row["Lowest score at"] == "0.6"
-    assert row["Score [mm]"] == "3"
-    assert row["Coverage"] == "0.830"
-    assert row["Test"] == "synthetic"
-
-
-def test_a_study_without_a_friction_calibration_has_no_such_section(fake):
-    study = {name: value for name, value in fake.study.items() if name != "friction_calibration"}
-    assert friction(load_content(study, fake.results, fake.logs)) is None
+def test_one_friction_alone_is_said_to_be_the_search_of_the_paper(fake):
+    content = load_content(fake.study, fake.results, fake.logs)
+    whole = calibration(content).blocks[0].text
+    assert "over a range: friction, concrete on concrete; restitution C_res; " in whole
+    assert "Zhou" not in whole
+    name = "friction.concrete.concrete"
+    one = {**content.calibration, "parameters": {name: content.calibration["parameters"][name]}}
+    assert (
+        "is the search of Zhou et al. (2023)" in calibration(replace(content, calibration=one)).blocks[0].text
+    )
 
 
 def test_the_calibration_says_what_all_tests_tell_and_what_they_do_not(document):

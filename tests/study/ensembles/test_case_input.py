@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from fair_score import crps
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
@@ -16,7 +17,7 @@ from blockshake.store import Store
 from blockshake.study.ensembles.batch import CaseRuns, simulate_samples
 from blockshake.study.ensembles.case_input import driving_motions, measured_input, measured_on_clock
 from blockshake.study.ensembles.ensemble import join_batches
-from blockshake.study.friction.calibration import mean_score
+from blockshake.study.ensembles.measured import compared_curves
 from blockshake.virtual.table import Table, followed
 
 FRICTION = "friction.stone.stone"
@@ -77,7 +78,8 @@ def score(case, tmp_path):
             runs, motions, pd.DataFrame({FRICTION: values}), Store(tmp_path / "store", "test")
         )
         measured, noise = measured_on_clock(named, base)
-        return mean_score(join_batches(finished), measured, noise, 1)
+        compared = compared_curves(measured, join_batches(finished), noise, 1)
+        return np.nanmean(crps(compared.readings, compared.measured.to_numpy()))
 
     return scored
 

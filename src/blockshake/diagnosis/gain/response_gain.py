@@ -8,14 +8,8 @@ import xarray as xr
 
 from blockshake.diagnosis.nominal.ensemble import EXTENDED, NOMINAL, RECALIBRATED
 from blockshake.diagnosis.verdict.verdict import Contrast, Gain, MeasuredGain
-from blockshake.study.comparison.differences import (
-    ensemble_score,
-    limits_of,
-    mean_differences,
-    mean_width,
-    member_scores,
-    resampled_weights,
-)
+from blockshake.statistics.resampling import limits_of, resampled_weights
+from blockshake.statistics.scores import ensemble_score, mean_differences, mean_width, member_scores
 
 _CONFIDENCE = 0.9
 _FLOOR_QUANTILE = 0.95  # share of the extended members' own scores that a rival must exceed

@@ -1,6 +1,6 @@
 """Conclusions of a study in computed sentences, for whoever must decide: by case, and what is not known."""
 
-from itertools import combinations
+from itertools import chain, combinations
 
 import numpy as np
 
@@ -16,9 +16,10 @@ from blockshake.report.document.wording import (
     quantile_percent,
 )
 from blockshake.report.study.fragility_section import words as fragility_words
+from blockshake.statistics.intervals import CONFIDENCE, SURE_FROM, samples_needed
+from blockshake.study.calibration.calibration import ALL
 from blockshake.study.ensembles.coverage import is_likely
 from blockshake.study.ensembles.envelope import counted_samples
-from blockshake.study.ensembles.intervals import CONFIDENCE, SURE_FROM, samples_needed
 from blockshake.study.ensembles.outcomes import count_outcomes
 from blockshake.study.sensitivity.findings import influences, is_known
 
@@ -267,16 +268,17 @@ def _unknown(content):
             "Single histories after the time at which twins, alike to one part in a million of the motion or run at "
             f"half the time step, are told apart: {'; '.join(chaotic)}. Bounds and quantiles remain."
         )
-    assumed = [case.name for case in cases if case.name not in content.friction]
+    calibrated = chain.from_iterable((content.study.get("calibration") or {"cases": {}})["cases"].values())
+    assumed = sorted({case.name for case in cases} - set(calibrated))
     if assumed:
         told.append(f"The mean friction, which is assumed and not calibrated: {', '.join(assumed)}.")
-    sought = [
-        case.name
-        for case in cases
-        if content.friction.get(case.name, {"answer": ""})["answer"].startswith("unknown")
+    untold = [
+        parameter_label(name)
+        for name, one in (content.calibration or {"parameters": {}})["parameters"].items()
+        if name.startswith("friction.") and not one["answers"][ALL]["told"]
     ]
-    if sought:
-        told.append(f"The mean friction, which was searched and not found: {', '.join(sought)}.")
+    if untold:
+        told.append(f"Frictions of which the open tests tell nothing: {'; '.join(untold)}.")
     return told
 
 

@@ -122,8 +122,6 @@ class Content:
     distributions : dict of str to Lognormal
     calibrated : tuple of Calibrated
         Every case in one of them; empty where the study tells of no contact stiffness.
-    friction : dict of str to dict
-        Friction calibrations by case; empty where the study asks for none.
     calibration : dict or None
         From `calibrate`, where the study asks for one; a case alone has none.
     fragility : dict of str to xarray.Dataset
@@ -143,7 +141,6 @@ class Content:
     design_summary: dict
     distributions: dict
     calibrated: tuple
-    friction: dict
     calibration: dict | None
     fragility: dict
     timings: tuple
@@ -206,9 +203,7 @@ def load_content(study, results, logs, only=None):
         distributions=load_distributions(study["ensemble"].get("distributions"), study["name"]),
         calibrated=_calibrated(read["stiffness"], read["waves"]),
         calibration=next(iter(read["calibration"].values()), None),
-        **{
-            name: {case: made for (case, _), made in read[name].items()} for name in ("friction", "fragility")
-        },
+        fragility={case: made for (case, _), made in read["fragility"].items()},
         timings=read_timings(
             logs,
             {(model, case.name): one.samples for case in loaded.values() for model, one in case.responses.items()},

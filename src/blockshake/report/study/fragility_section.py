@@ -16,7 +16,7 @@ from blockshake.report.document.wording import (
     quantile_percent,
 )
 from blockshake.report.study.figures.fragility import plot_fragility
-from blockshake.study.ensembles.intervals import CONFIDENCE
+from blockshake.statistics.intervals import CONFIDENCE
 from blockshake.study.ensembles.outcomes import count_outcomes
 from blockshake.study.fragility.fragility import SAFE
 

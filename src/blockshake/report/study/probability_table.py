@@ -5,7 +5,7 @@ import numpy as np
 from blockshake.report.document.blocks import Table
 from blockshake.report.document.rows import face_markers
 from blockshake.report.document.wording import MISSING, model_label, number, percent
-from blockshake.study.ensembles.intervals import CONFIDENCE, samples_needed
+from blockshake.statistics.intervals import CONFIDENCE, samples_needed
 from blockshake.study.ensembles.outcomes import shortfall
 
 _SHOWN = (0.5, 0.95)

@@ -4,8 +4,7 @@ from blockshake.files import write_json
 from blockshake.report.document.blocks import Document, numbered
 from blockshake.report.document.html import write_html
 from blockshake.report.document.pdf import write_pdf
-from blockshake.report.study.calibrations.all_tests import calibration
-from blockshake.report.study.calibrations.friction import friction
+from blockshake.report.study.calibration_section import calibration
 from blockshake.report.study.closing_sections import checks, limits, origin, timings
 from blockshake.report.study.content import load_content
 from blockshake.report.study.fragility_section import fragility
@@ -25,7 +24,6 @@ _SECTIONS = (
     fragility,
     models,
     sensitivities,
-    friction,
     calibration,
     statements,
     checks,

@@ -14,7 +14,7 @@ from blockshake.report.document.wording import (
     quantile_range,
 )
 from blockshake.study.ensembles.coverage import relative_width
-from blockshake.study.ensembles.outcomes import energy_residuals, numerical_figure, unfinished
+from blockshake.study.ensembles.outcomes import numerical_figure, unfinished
 from blockshake.study.ensembles.timing import total_timing
 
 _QUANTILES = " / ".join(f"{100 * one:.0f}" for one in SHOWN_QUANTILES) + " %"
@@ -112,8 +112,11 @@ def energy_table(content):
     rows = []
     for case in content.cases.values():
         for model, response in case.responses.items():
-            found = energy_residuals(response.samples)
-            rows.append((case.name, model_label(model), number(found.median), number(found.largest)))
+            found = (
+                number(numerical_figure(response.samples, "energy_residual", one))
+                for one in (np.median, np.max)
+            )
+            rows.append((case.name, model_label(model), *found))
     return Table(
         "Energy residual over the samples [1].",
         ("Case", "Model", "Median", "Largest"), tuple(rows), "llrr",

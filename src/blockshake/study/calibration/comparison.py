@@ -20,12 +20,11 @@ from blockshake.study.calibration.readings import (
 from blockshake.study.calibration.scores import Distances, chance_of_test, distances
 from blockshake.study.calibration.settings import (
     HOLLOW,
-    OF_CONTACT_SPRINGS,
+    OTHERS,
     RESTITUTION,
     STIFFNESS,
     CalibrationSettings,
 )
-from blockshake.study.friction.replicates import replicate_seed
 from blockshake.study.sampling.distributions import load_distributions
 from blockshake.study.sampling.latin_hypercube import draw_samples
 from blockshake.study.sampling.sample_parameters import has_parameter
@@ -59,7 +58,11 @@ def compare_open_tests(case, campaign, model, given, store):
         reason. ``reading``: the displacement, and the spectrum of the acceleration. Attributes ``case``, ``model``.
     """
     settings = CalibrationSettings(**given["calibration"])
-    ensemble = {**given["ensemble"], "seed": replicate_seed(given["ensemble"]["seed"], 0)}
+    ensemble = {
+        **given["ensemble"],
+        "seed": _seed_beside(given["ensemble"]["seed"]),
+        "linked": given["ensemble"]["linked"] | settings.linked,
+    }
     variables = load_distributions(ensemble["distributions"], "ensemble")
     ranges = settings.ranges_of(variables)
     drawn = draw_samples(settings.size, ensemble["seed"], variables | ranges).values
@@ -88,6 +91,11 @@ def compare_open_tests(case, campaign, model, given, store):
     return found
 
 
+def _seed_beside(seed):
+    """Seed of the calibration's design, whose samples are others than those of the study."""
+    return int(np.random.SeedSequence([seed, 0]).generate_state(1)[0])
+
+
 def _compared(test, files):
     """Distances of one test by reading, NaN where it or all samples have none."""
     read = {}
@@ -113,7 +121,7 @@ def has_use(model, structure, parameter):
     """Whether a model has a use for a parameter of the calibration in a structure."""
     if parameter == HOLLOW and hollow_shape(structure)[0] is None:
         return False
-    if parameter in OF_CONTACT_SPRINGS:
+    if parameter in OTHERS:
         return bool(model_of(model).calibrated)
     return has_parameter(structure, parameter)
 
@@ -155,7 +163,9 @@ def _as_parameters(drawn, used, structure, named, store):
 
     Parameters of contact springs are left out where the model has none: rigid contact needs no wave test.
     """
-    rows = drawn.drop(columns=[one for one in OF_CONTACT_SPRINGS if one not in used or one != RESTITUTION])
+    rows = drawn.drop(
+        columns=[one for one in OTHERS if one in drawn and (one not in used or one != RESTITUTION)]
+    )
     if STIFFNESS in used:
         waves = store._replace(source=source_digest(*script_sources("calibrate_stiffness")))
         wave = calibrate_design(named, pd.DataFrame(index=[0]), {}, waves).iloc[0]
@@ -171,5 +181,5 @@ def _time_steps(drawn, used, usual):
 
     The largest stable step goes with the period of the springs.
     """
-    factor = drawn[STIFFNESS] if STIFFNESS in used else 0.0 * drawn[STIFFNESS]
+    factor = drawn[STIFFNESS] if STIFFNESS in used else pd.Series(1.0, drawn.index)
     return usual / np.ceil(np.sqrt(factor.clip(lower=1.0)))

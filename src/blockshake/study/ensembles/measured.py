@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from blockshake.errors import InputError
 from blockshake.measurement.motion.compared_curves import curves_along_x
 from blockshake.measurement.sensors.markers import noisy_reading
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW, in_frames, peak_and_residual
@@ -32,7 +31,7 @@ class ComparedCurves(NamedTuple):
     readings: np.ndarray
 
 
-def compared_curves(measured, ensemble, marker_noise, seed, fewest):
+def compared_curves(measured, ensemble, marker_noise, seed):
     """`ComparedCurves` of a measured test and of an ensemble, the ensemble's read with noise too.
 
     Parameters
@@ -46,19 +45,13 @@ def compared_curves(measured, ensemble, marker_noise, seed, fewest):
         Standard deviation of a measured marker's position [m].
     seed : int
         Of the noise that the members are read with.
-    fewest : int
-        Members that the comparison needs.
 
     Raises
     ------
     InputError
-        Fewer members, no marker or no time in common.
+        No marker or no time in common.
     """
     members = counted_samples(ensemble)
-    if members.sizes["sample"] < fewest:
-        raise InputError(
-            "comparison", "samples", f"expected at least {fewest} completed or collapsed samples"
-        )
     read, curves = curves_along_x(measured, members)
     curves, generator = curves.to_numpy(), np.random.default_rng(seed)
     readings = [noisy_reading(curve, marker_noise, generator) for curve in curves]

@@ -1,7 +1,5 @@
 """Section of the report on sensitivities, where the answer is known."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -10,7 +8,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.report.document.rows import bodies_by_height, face_markers
 from blockshake.report.study.content import load_content
 from blockshake.report.study.sensitivity.figure import plot_sensitivity, plot_sensitivity_over_time
-from blockshake.report.study.sensitivity.summary import paper_discussion, summary_table
+from blockshake.report.study.sensitivity.summary import summary_table
 from blockshake.report.study.sensitivity.words import sentence
 from blockshake.study.sensitivity.sensitivity import QUANTITIES
 
@@ -128,36 +126,3 @@ def test_summary_has_the_lowest_and_the_highest_block_of_every_case_and_model(fa
     assert {row[4:] for row in table.rows if row[:2] == ("configuration-4", "NSCD rigid")} == {
         ("none", "none")
     }
-
-
-def with_scales(content, *scales):
-    """The content with its cases shaken at other scales."""
-    cases = {
-        name: dataclasses.replace(case, settings=case.settings | {"scale": scale})
-        for (name, case), scale in zip(content.cases.items(), scales, strict=True)
-    }
-    return dataclasses.replace(content, cases=cases)
-
-
-def test_the_shaking_of_the_cases_is_compared_not_asserted(fake):
-    content = load_content(fake.study, fake.results, fake.logs)
-    alike, _ = paper_discussion(content)
-    assert "All cases are shaken alike (basso-tirreno, scale 2)" in alike.text
-    other, _ = paper_discussion(with_scales(content, 2.0, 1.5))
-    assert "shaken differently" in other.text
-    assert "configuration-4 by basso-tirreno at scale 1.5" in other.text
-
-
-def test_the_statement_of_the_paper_is_judged_by_the_spreads(fake):
-    content = load_content(fake.study, fake.results, fake.logs)
-    _, told = paper_discussion(content)
-    ls_dem, nscd, *_ = told.items
-    # blocks of the made-up runs sway in proportion to their height, and configuration 4 is the higher one
-    assert "in all 2 cases" in ls_dem
-    assert ls_dem.endswith("thicker at the top in all 1, as the paper states.")
-    assert nscd.endswith("Too few completed samples: configuration-4.")
-    spread = content.cases["configuration-4"].responses["ls-dem"].sensitivity["spread"]
-    spread.loc[{"quantity": "history", "marker": "top-face"}] = 1e-6
-    _, told = paper_discussion(content)
-    assert "in 1 of 2 cases" in told.items[0]
-    assert told.items[0].endswith("in none of 1, against the statement of the paper.")

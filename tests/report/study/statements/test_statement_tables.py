@@ -37,7 +37,7 @@ def test_the_section_has_the_findings(content):
 
 
 def test_a_study_of_one_model_and_no_test_judges_what_it_can(content):
-    content = replace(content, friction={})
+    content = replace(content, calibration=None)
     content.study["models"].pop("nscd-rigid")
     for name, case in content.cases.items():
         del case.responses["nscd-rigid"]

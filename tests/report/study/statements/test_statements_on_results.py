@@ -1,3 +1,4 @@
+import copy
 from dataclasses import replace
 
 import numpy as np
@@ -53,39 +54,42 @@ def test_variability_is_that_of_the_median_peak(content, monkeypatch):
         assert "not judged: configuration-4, NSCD rigid 5." in found.words
 
 
-def search(content, **changes):
-    """The content with a friction search of one real test that is changed."""
-    found = {**content.friction[FIRST], "synthetic": 0, **changes}
-    return replace(content, friction={FIRST: found})
+def search(content, synthetic=0, answer=None, **changes):
+    """The content with another calibration of the friction of concrete, on real tests."""
+    found = copy.deepcopy(content.calibration)
+    one = found["parameters"]["friction.concrete.concrete"] = {
+        **found["parameters"]["friction.concrete.concrete"], **changes
+    }  # fmt: skip
+    one["answers"]["all"] |= answer or {}
+    for test in found["tests"]:
+        test["synthetic"] = synthetic
+    return replace(content, calibration=found)
 
 
 def test_range_of_the_friction_search(content):
     found = calibration.friction_range(content)
     assert found.verdict == MET
-    assert "by NSCD rigid" in found.words
+    assert "all open tests by LS-DEM and NSCD rigid" in found.words
+    assert calibration.friction_range(search(content, lowest=0.3, highest=0.8)).verdict == MET
     assert calibration.friction_range(search(content, lowest=0.4)).verdict == NOT_MET
-    assert calibration.friction_range(replace(content, friction={})).verdict == UNJUDGED
+    assert calibration.friction_range(search(content, highest=0.7)).verdict == NOT_MET
+    assert calibration.friction_range(replace(content, calibration=None)).verdict == UNJUDGED
 
 
 def test_optimum_of_the_friction_search(content):
     found = calibration.optimum(content)
     assert found.verdict == UNJUDGED
     assert "synthetic" in found.words
-    assert "0.75 is not refused" in found.words
-    means = content.friction[FIRST]["means"]
-    refused = {**means, "accepted": [False, True, False, False]}
-    between = {"answer": "between 0.3 and 0.6", "lower": 0.3, "upper": 0.6, "means": refused}
-    assert calibration.optimum(search(content, **between)).verdict == NOT_MET
-    assert calibration.optimum(search(content)).verdict == UNJUDGED  # open upward
-    bounded = {"answer": "between 0.4 and 0.9", "lower": 0.4, "upper": 0.9}
-    assert calibration.optimum(search(content, **bounded)).verdict == MET
-    low = {**refused, "mean": [0.3, 0.4, 0.5, 0.6]}
-    found = calibration.optimum(search(content, **{**between, "means": low}))
-    assert found.verdict == UNJUDGED
-    assert "0.75 lies outside the means" in found.words
-    unknown = {"answer": "unknown: no mean fits the measured curves", "means": refused}
-    assert calibration.optimum(search(content, **unknown)).verdict == UNJUDGED
-    assert calibration.optimum(replace(content, friction={})).verdict == UNJUDGED
+    bounded = {"told": True, "lower": 0.4, "upper": 0.9, "assumed_is_refused": False}
+    assert calibration.optimum(search(content, answer=bounded)).verdict == MET
+    assert calibration.optimum(search(content, answer=bounded, synthetic=1)).verdict == UNJUDGED
+    assert calibration.optimum(search(content, answer={**bounded, "upper": None})).verdict == UNJUDGED
+    refused = {**bounded, "upper": 0.6, "assumed_is_refused": True}
+    assert calibration.optimum(search(content, answer=refused)).verdict == NOT_MET
+    assert "a mean of 0.6" in calibration.optimum(search(content, assumed=0.6)).words
+    found = search(content)
+    del found.calibration["parameters"]["friction.concrete.concrete"]
+    assert calibration.optimum(found).verdict == UNJUDGED
 
 
 def calibrated(content, table):

@@ -7,9 +7,9 @@ import numpy as np
 from blockshake.report.document.blocks import Table
 from blockshake.report.document.rows import face_markers
 from blockshake.report.document.wording import MISSING, given, millimetres, model_label, number
+from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.comparison.comparison import TOLD_APART_BY
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
-from blockshake.study.ensembles.intervals import SURE_FROM
 
 
 def block_tables(case):

@@ -9,7 +9,7 @@ from blockshake.report.study.sensitivity.figure import (
     plot_sensitivity,
     plot_sensitivity_over_time,
 )
-from blockshake.report.study.sensitivity.summary import markers_by_height, paper_discussion, summary_table
+from blockshake.report.study.sensitivity.summary import markers_by_height, summary_table
 from blockshake.report.study.sensitivity.words import sentence
 
 
@@ -28,7 +28,6 @@ def sensitivities(content):
             "shown to matter. Variables that act together, the motion of the slab where each sample draws it within "
             "the error of its readings, and sensitivity of the motion to small differences explain the rest."
         ),
-        *paper_discussion(content),
         summary_table(content),
     ]
     for case in content.cases.values():

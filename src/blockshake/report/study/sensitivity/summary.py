@@ -1,12 +1,11 @@
-"""Sensitivities over all cases and models: the strongest variables, and the two statements of the paper."""
+"""Sensitivities over all cases and models: the strongest variables."""
 
-from blockshake.report.document.blocks import Items, Table, Text
+from blockshake.report.document.blocks import Table
 from blockshake.report.document.rows import bodies_by_height, face_markers
-from blockshake.report.document.wording import MISSING, given, model_label, number, share_words
+from blockshake.report.document.wording import MISSING, model_label, number
 from blockshake.report.study.sensitivity.figure import SHOWN
 from blockshake.report.study.sensitivity.words import influence_words
 from blockshake.study.sensitivity.findings import differs, influences, is_known
-from blockshake.study.sensitivity.thickness import growth_with_structure, thickness
 
 
 def markers_by_height(case):
@@ -57,78 +56,6 @@ def _strongest(result, noise):
     return cells
 
 
-def thickness_by_case(content, model):
-    """`Thickness` of every case by a model, by the case's name."""
-    return {
-        case.name: thickness(
-            case.responses[model].sensitivity, markers_by_height(case).values(), (~case.structure.driven).sum(),
-            shaking(case),
-        )
-        for case in content.cases.values()
-    }  # fmt: skip
-
-
-def paper_discussion(content):
-    """The two statements of the paper on thickness: it grows upward, and with the complexity of the structure."""
-    cases = content.cases.values()
-    told = []
-    for model in content.study["models"]:
-        told.append(f"{model_label(model)}: {_growth_words(thickness_by_case(content, model))}")
-    return [
-        Text(
-            "Zhou et al. (2023) state that envelopes thicken upward and with the complexity of the structure, here "
-            "taken as its number of free bodies. Thickness: standard deviation of the completed samples over "
-            f"samples and time. {_shaking_words(cases)}"
-        ),
-        Items(tuple(told)),
-    ]
-
-
 def shaking(case):
     """Whatever tells the shaking of two cases apart: motion, scale, window."""
     return case.motion, case.settings["scale"], case.settings["duration"]
-
-
-def _shaking_words(cases):
-    shaken = {case.name: shaking(case) for case in cases}
-    if len(set(shaken.values())) == 1:
-        motion, scale, _ = next(iter(shaken.values()))
-        return (
-            f"All cases are shaken alike ({motion}, scale {given(scale)}), so that a difference between them is one "
-            "of the structures."
-        )
-    words = ", ".join(
-        f"{name} by {motion} at scale {given(scale)} for {given(duration)} s"
-        for name, (motion, scale, duration) in shaken.items()
-    )
-    return (
-        f"The cases are shaken differently ({words}), so that a difference between them has other causes too."
-    )
-
-
-def _growth_words(found):
-    """Spreads of the cases by one model, and whether they bear both statements out."""
-    known = {name: one for name, one in found.items() if one.known}
-    few = ", ".join(name for name in found if name not in known)
-    few = f" Too few completed samples: {few}." if few else ""
-    if not known:
-        return few.strip()
-    spreads = ", ".join(
-        f"{name} {number(1e3 * one.spread[0], 2)} mm at the foot and {number(1e3 * one.spread[-1], 2)} mm at the top"
-        for name, one in known.items()
-    )
-    upward, growth = sum(one.grows_upward for one in known.values()), growth_with_structure(known.values())
-    words = f"{spreads}. The thickness grows from each block to the next in {share_words(upward, len(known))} cases."
-    if growth.pairs:
-        side = (
-            "as the paper states"
-            if growth.thicker == growth.pairs
-            else "against the statement of the paper"
-            if 2 * growth.thicker < growth.pairs
-            else "which bears the statement of the paper out in part"
-        )
-        words += (
-            f" Of the pairs of cases with different numbers of free bodies, the one of more is thicker at the top "
-            f"in {share_words(growth.thicker, growth.pairs)}, {side}."
-        )
-    return words + few

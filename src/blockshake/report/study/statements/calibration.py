@@ -4,16 +4,16 @@ import numpy as np
 
 from blockshake.report.document.rows import face_markers
 from blockshake.report.document.wording import given, model_label, number, parameter_label, percent
-from blockshake.report.study.calibrations.all_tests import answer_words
+from blockshake.report.study.calibration_section import answer_words
 from blockshake.report.study.statements.statement import judged, unjudged
-from blockshake.study.calibration.calibration import ALL
+from blockshake.study.calibration.calibration import ALL, models_of
 from blockshake.study.sampling.distributions import TABLE_2
 
 SIZE = 50
 LOWEST, HIGHEST = 0.3, 0.8  # range of the mean friction
 OPTIMUM = 0.75  # mean friction of Table 2
-_NO_SEARCH = "This study searches no mean friction."
-_SIDES = {0.0: "is refused", 1.0: "is not refused"}
+_CONCRETE = "friction.concrete.concrete"
+_NO_SEARCH = "This study calibrates no friction of concrete on concrete."
 _LOW_VARIABILITY = 0.1  # half of an interval over its median
 
 
@@ -98,58 +98,29 @@ def judged_by_tests(found, parameter, words):
 
 
 def friction_range(content):
-    """Range in which the mean friction is searched."""
-    if not content.friction:
+    """Range in which the friction of concrete on concrete is searched."""
+    if (one := _searched(content)) is None:
         return unjudged(_NO_SEARCH)
-    ranges = {(found["lowest"], found["highest"]) for found in content.friction.values()}
-    words = "; ".join(
-        f"{case}: {', '.join(map(given, found['means']['mean']))}" for case, found in content.friction.items()
-    )
-    sizes = {found["size"] for found in content.friction.values()}
-    models = sorted({model_label(found["model"]) for found in content.friction.values()})
+    found = content.calibration
+    models = " and ".join(map(model_label, models_of(found)))
     return judged(
-        ranges == {(LOWEST, HIGHEST)},
-        f"Means that were run, {words}; samples of each: {', '.join(map(given, sorted(sizes)))}; by "
-        f"{' and '.join(models)}.",
+        one["lowest"] <= LOWEST and one["highest"] >= HIGHEST,
+        f"{found['size']} samples are drawn evenly from {given(one['lowest'])} to {given(one['highest'])}; those near "
+        f"a value stand for the ensemble of that mean. Each runs all open tests by {models}.",
     )
 
 
 def optimum(content):
-    """Mean friction that fits best."""
-    if not content.friction:
+    """Friction of concrete on concrete that fits best."""
+    if (one := _searched(content)) is None:
         return unjudged(_NO_SEARCH)
-    told, told_apart, refused, synthetic = [], True, False, []
-    for case, found in content.friction.items():
-        means, accepted = found["means"]["mean"], np.asarray(found["means"]["accepted"], dtype=float)
-        within = min(means) <= OPTIMUM <= max(means)
-        side = float(np.interp(OPTIMUM, means, accepted)) if within else None
-        known = not found["answer"].startswith("unknown")
-        refused = refused or (known and side == 0.0)
-        bounded = found["lower"] is not None and found["upper"] is not None
-        told_apart = told_apart and known and bounded and side == 1.0
-        synthetic += [case] if found["synthetic"] else []
-        words = f"{case}: the mean is {found['answer']}; lowest score at {given(found['best'])}"
-        if not within:
-            words += f"; {given(OPTIMUM)} lies outside the means that were run"
-        elif known:
-            words += (
-                f"; {given(OPTIMUM)} {_SIDES.get(side, 'lies between a refused mean and one that is not')}"
-            )
-        if within and np.abs(np.asarray(means) - OPTIMUM).min() > 1e-9:
-            words += f"; {given(OPTIMUM)} itself was not run"
-        told.append(words)
-    words = f"{'; '.join(told)}."
-    if content.calibration is not None:
-        words += " By all open tests: " + " ".join(
-            answer_words(name, one)
-            for name, one in content.calibration["parameters"].items()
-            if name.startswith("friction.")
-        )
-    if synthetic:
-        return unjudged(
-            f"The tests of {', '.join(synthetic)} are synthetic and tell nothing of the specimens. {words}"
-        )
-    if refused:
-        return judged(False, words)
-    words = f"{words} A mean counts as the best where it is not refused and the range has both ends."
-    return judged(True, words) if told_apart else unjudged(f"The tests do not tell the mean. {words}")
+    if one["assumed"] != OPTIMUM:
+        return unjudged(f"The study takes a mean of {given(one['assumed'])}.")
+    return judged_by_tests(
+        content.calibration, _CONCRETE, "A mean counts as the best where its range has two ends."
+    )
+
+
+def _searched(content):
+    """The calibrated friction of concrete on concrete, None where this study calibrates none."""
+    return content.calibration and content.calibration["parameters"].get(_CONCRETE)

@@ -3,9 +3,7 @@
 from itertools import combinations
 
 import numpy as np
-from scipy.stats import bootstrap
 
-from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.report.document.wording import (
     given,
@@ -14,40 +12,37 @@ from blockshake.report.document.wording import (
     parameter_label,
     share_words,
 )
-from blockshake.report.study.sensitivity.summary import markers_by_height, thickness_by_case
+from blockshake.report.study.sensitivity.summary import markers_by_height
 from blockshake.report.study.statements.order import Limited, all_of, ordered
 from blockshake.report.study.statements.statement import judged, missing, scale_words, unjudged
+from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.analyses import OF_THE_PAPER
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
-from blockshake.study.ensembles.envelope import counted_samples
-from blockshake.study.ensembles.intervals import SURE_FROM
 from blockshake.study.sensitivity.findings import influences, is_known
 
 _FIRST, _SECOND, _THIRD, _FOURTH = OF_THE_PAPER
 _MATTER = {"friction": "friction", "density": "density", "youngs_modulus": "stiffness"}
 _BRACKET = 0.05 * 9.81  # m/s2; shaking beyond it is strong
-_DRAWS = 400  # of the bootstrap
 
 
 def upward(content, model):
     """Thickness from block to block."""
     if absent := missing(content, model):
         return unjudged(absent)
-    known = {
-        name: one
-        for name, one in thickness_by_case(content, model).items()
-        if one.known and len(one.spread) > 1
-    }
-    if not known:
+    spreads = {}
+    for name, case in content.cases.items():
+        chosen = {"quantity": "history", "marker": list(markers_by_height(case).values())}
+        spread = case.responses[model].sensitivity["spread"].sel(chosen).to_numpy()
+        if np.isfinite(spread).all() and len(spread) > 1:
+            spreads[name] = spread
+    if not spreads:
         return unjudged("Too few samples completed.")
-    grows = [name for name, one in known.items() if one.grows_upward]
-    told = "; ".join(
-        f"{name} {', '.join(millimetres(spread) for spread in one.spread)} mm" for name, one in known.items()
-    )
+    grows = [name for name, spread in spreads.items() if (np.diff(spread) > 0.0).all()]
+    told = "; ".join(f"{name} {', '.join(map(millimetres, spread))} mm" for name, spread in spreads.items())
     return judged(
-        len(grows) == len(known),
+        len(grows) == len(spreads),
         f"Standard deviation from the lowest block up{scale_words(content)}: {told}. It grows from each block to the "
-        f"next in {share_words(len(grows), len(known))} cases. There are no limits: "
+        f"next in {share_words(len(grows), len(spreads))} cases. There are no limits: "
         "the blocks of a structure move together in each sample.",
     )
 
@@ -93,13 +88,20 @@ def with_structure(content, models):
 
 def _tops(content, model, pairs):
     """Finding that of each pair of cases the second has the thicker envelope at its top."""
-    found = {}
-    for name, case in content.cases.items():
-        if int(case.differences["counted"].sel(model=model)) >= SURE_FROM:
-            top = list(markers_by_height(case).values())[-1]
-            at = case.differences.sel(model=model, marker=top)
-            found[name] = Limited(float(at["width"]), *map(float, at["width_interval"].transpose("bound")))
+    found = _at_top(content, model, "width")
     return ordered(content, found, pairs, "Mean difference of two samples at the top in mm", millimetres)
+
+
+def _at_top(content, model, name):
+    """A figure of a model's samples at the top with its limits, by case whose samples bear any [m]."""
+    found = {}
+    for case in content.cases.values():
+        top = list(markers_by_height(case).values())[-1]
+        at = case.differences.sel(model=model, marker=top)
+        limits = at[f"{name}_interval"].transpose("bound").to_numpy()
+        if int(at["counted"]) >= SURE_FROM and np.isfinite(limits).all():
+            found[case.name] = Limited(float(at[name]), *map(float, limits))
+    return found
 
 
 def parameters_matter(content):
@@ -160,7 +162,7 @@ def residuals(content):
     return all_of(
         {
             model_label(model): ordered(
-                content, _scatter(content, model), pairs,
+                content, _at_top(content, model, "residual_range"), pairs,
                 "From the 5 to the 95 % quantile of the residual at the top in mm", millimetres,
             )
             for model in content.study["models"]
@@ -174,22 +176,3 @@ def _still_shaken(content, case):
     end = case.settings["duration"]
     last = motion.sel(time=slice(end - RESIDUAL_WINDOW, end))
     return bool((abs(case.settings["scale"] * last) > _BRACKET).any())
-
-
-def _scatter(content, model):
-    """Range of the residual at the top by case, with bootstrap limits [m]."""
-    found = {}
-    for name, case in content.cases.items():
-        samples = counted_samples(case.responses[model].samples)
-        top = list(markers_by_height(case).values())[-1]
-        values = samples["residual"].sel(frame="slab", marker=top).dropna("sample").values
-        if len(values) >= SURE_FROM:
-            rng = np.random.default_rng(int(content_digest("scatter", name, model), 16))
-            drawn = bootstrap((values,), _range, method="percentile", n_resamples=_DRAWS, rng=rng)
-            found[name] = Limited(float(_range(values)), *map(float, drawn.confidence_interval))
-    return found
-
-
-def _range(values, axis=-1):
-    lower, upper = np.quantile(values, (0.05, 0.95), axis=axis)
-    return upper - lower

@@ -12,10 +12,10 @@ from blockshake.report.study.statements.statement import (
     missing,
     unjudged,
 )
+from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.analyses import OF_THE_PAPER
 from blockshake.study.ensembles.coverage import UNLIKELY, is_likely
 from blockshake.study.ensembles.envelope import counted_samples
-from blockshake.study.ensembles.intervals import SURE_FROM
 
 _RIGID, _ELASTIC, _VISCOELASTIC = "nscd-rigid", "nscd-elastic", "nscd-viscoelastic"
 _NEARER, _FARTHER, _UNDECIDED, _UNKNOWN = "nearer", "farther", "not told apart", "too few samples"

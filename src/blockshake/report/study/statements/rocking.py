@@ -3,9 +3,9 @@
 from blockshake.report.document.wording import model_label, percent
 from blockshake.report.study.statements.order import Limited, all_of, ordered
 from blockshake.report.study.statements.statement import missing, unjudged
+from blockshake.statistics.intervals import SURE_FROM, quantile_interval, sample_quantiles
 from blockshake.study.analyses import OF_THE_PAPER
 from blockshake.study.ensembles.envelope import counted_samples
-from blockshake.study.ensembles.intervals import SURE_FROM, quantile_interval, sample_quantiles
 
 _FIRST, _SECOND, _THIRD, _FOURTH = OF_THE_PAPER
 

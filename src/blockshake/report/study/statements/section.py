@@ -32,7 +32,6 @@ def _of_the_paper(content):
         content,
         cases=cases,
         calibrated=tuple(one for one in calibrated if one.cases),
-        friction={name: one for name, one in content.friction.items() if name in cases},
         calibration=content.calibration if len(cases) == len(content.cases) else None,
     )
 

@@ -1,16 +1,13 @@
 """Statements on contact stiffness and damping."""
 
-from scipy.stats import pearsonr, spearmanr
-
 from blockshake.geometry.reference_block import reference_body
 from blockshake.report.document.wording import given, number
 from blockshake.report.study.statements.calibration import judged_by_tests
 from blockshake.report.study.statements.statement import judged, unjudged
 from blockshake.study.calibration.settings import RESTITUTION as CALIBRATED
+from blockshake.study.stiffness.over_modulus import ONE_NUMBER, grows_with_density, over_modulus
 
 RESTITUTION = 0.5
-_ONE_NUMBER = 1e-3  # relative spread of a quantity that counts as one number in all samples
-_LEVEL = 0.05  # chance at or below which a correlation is shown
 
 
 def follow_moduli(content):
@@ -22,17 +19,15 @@ def follow_moduli(content):
             return unjudged("Young's modulus is no random variable of this study.")
         shear = moduli / (2.0 + 2.0 * _material(content, calibrated).poisson_ratio)
         for words, column, modulus in (("k_n / E", "normal", moduli), ("k_s / G", "shear", shear)):
-            stiffness = table[f"ls_dem.{column}_stiffness"].to_numpy()
-            ratio = stiffness / modulus
-            spread = ratio.max() / ratio.min() - 1.0
-            one_number.append(spread < _ONE_NUMBER)
+            found = over_modulus(table[f"ls_dem.{column}_stiffness"].to_numpy(), modulus)
+            one_number.append(found.is_one_number)
             told.append(
-                f"{words} {number(ratio.mean(), 4)} per m, smallest and largest of {len(ratio)} samples "
-                f"{number(100.0 * spread, 2)} % apart, correlation {pearsonr(stiffness, modulus).statistic:.4f}"
+                f"{words} {number(found.mean, 4)} per m, smallest and largest of {len(modulus)} samples "
+                f"{number(100.0 * found.spread, 2)} % apart, correlation {found.correlation:.4f}"
             )
     return judged(
         not any(one_number),
-        f"{'; '.join(told)}. A spread below {number(100.0 * _ONE_NUMBER, 1)} % counts as one number.",
+        f"{'; '.join(told)}. A spread below {number(100.0 * ONE_NUMBER, 1)} % counts as one number.",
     )
 
 
@@ -44,10 +39,9 @@ def heavier_blocks(content):
         density = _sampled(content, calibrated, "density")
         if moduli is None or density is None:
             return unjudged("Young's modulus and density are not both random variables of this study.")
-        ratio = calibrated.stiffness["ls_dem.normal_stiffness"].to_numpy() / moduli
-        spread = ratio.max() / ratio.min() - 1.0
-        found = spearmanr(ratio, density) if spread >= _ONE_NUMBER else None
-        rises.append(found is not None and found.statistic > 0.0 and found.pvalue <= _LEVEL)
+        stiffness = calibrated.stiffness["ls_dem.normal_stiffness"].to_numpy()
+        spread = over_modulus(stiffness, moduli).spread
+        rises.append(grows_with_density(stiffness, moduli, density))
         told.append(
             f"k_n / E differs by {number(100.0 * spread, 2)} % at most over densities from {number(density.min(), 4)} "
             f"to {number(density.max(), 4)} kg/m3"

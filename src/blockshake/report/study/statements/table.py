@@ -25,7 +25,7 @@ _COMPARISON = "results/{study}/comparisons/ls-dem/{case}.nc"
 _OF_MODEL = "results/{{study}}/comparisons/{}/{{case}}.nc"
 _STIFFNESS = "results/{study}/stiffness/{case}.csv"
 _DESIGN = "results/{study}/design.json"
-_FRICTION = "results/{study}/friction/{case}.json"
+_OPEN_TESTS = "results/{study}/calibration.json"
 _DISPLACEMENT_FIGURES = "LS-DEM Results, Figs. 11 to 14"
 _LMGC90 = "LMGC90 Results, Figs. 11 to 14"
 _CALIBRATION = "Model Calibration"
@@ -80,10 +80,10 @@ STATEMENTS = {
         ),
         Statement(
             _CALIBRATION, "The mean friction of concrete on concrete is searched from 0.3 to 0.8.",
-            calibration.friction_range, _FRICTION,
+            calibration.friction_range, _OPEN_TESTS,
         ),
         Statement(
-            f"{_CALIBRATION}, Table 2", "A mean of 0.75 is the best.", calibration.optimum, _FRICTION,
+            f"{_CALIBRATION}, Table 2", "A mean of 0.75 is the best.", calibration.optimum, _OPEN_TESTS,
         ),
     ),
     "Contact stiffness and damping": (

@@ -1,4 +1,4 @@
-"""Section on the joint calibration of friction, restitution and contact stiffness."""
+"""Section on the calibration of friction, restitution and contact stiffness by all open tests."""
 
 from blockshake.report.document.blocks import Figure, Items, Section, Table, Text
 from blockshake.report.document.drawing import svg_of
@@ -25,10 +25,10 @@ def calibration(content):
     if found is None:
         return None
     text = (
-        f"All open tests of the cases, each simulated with {found['size']} samples of the measured motion. Friction, "
-        "restitution, contact stiffness and the hollow of the faces are drawn evenly over wide ranges, the other "
-        "variables as in the study. The samples near a value are scored by the continuous ranked probability score of "
-        "two readings: the markers' displacement relative to the slab, and the spectrum of the blocks' accelerations. "
+        f"All open tests of the cases, each simulated with {found['size']} samples of the measured motion. "
+        f"{_drawn(found['parameters'])} The samples near a value are scored by the continuous ranked probability score "
+        "of two readings: the markers' displacement relative to the slab, and the spectrum of the blocks' "
+        "accelerations. "
         "A parameter is told where the scores of its values differ by more than those of shuffled samples, at "
         f"{100 * LEVEL:.0f} % over all parameters and models together. The range holds every value whose score exceeds "
         "the lowest by no more than the score of the true value does where samples stand for the tests, in "
@@ -57,6 +57,17 @@ def calibration(content):
         tests_table(found),
     ]
     return Section("Calibration by all open tests", "calibration", tuple(blocks))
+
+
+def _drawn(parameters):
+    """Parameters that are drawn, in sentences; one friction of concrete alone is the search of the paper."""
+    named = "; ".join(map(parameter_label, parameters)) or "none"
+    words = f"Calibrated, with values drawn evenly over a range: {named}. Other variables are drawn as in the study."
+    if list(parameters) == ["friction.concrete.concrete"]:
+        words += (
+            " This is the search of Zhou et al. (2023) for the mean friction whose envelope holds the tests."
+        )
+    return words
 
 
 def answer_words(name, one):

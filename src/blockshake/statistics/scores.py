@@ -3,14 +3,9 @@
 All are means of the differences between two curves, so that the pairs are compared once for all of them.
 """
 
-from math import comb
-
 import numpy as np
 
-from blockshake.study.ensembles.intervals import CONFIDENCE, sample_quantiles
-
 FEWEST = 3  # samples; of fewer an ensemble has no width that could be told from chance
-_DRAWS = 400
 
 
 def mean_differences(curves, others):
@@ -55,36 +50,11 @@ def ensemble_distance(differences, own, other):
     -----
     Szekely and Rizzo (2013), J. Stat. Plan. Inference 143, at every time by itself, mean over the times: the integral
     over the squared difference of both distribution functions. Ensembles of few members are apart by chance already,
-    see `chance_distance`.
+    see `blockshake.statistics.resampling.chance_distance`.
     """
     between = differences[np.ix_(own, other)].mean()
     within = differences[np.ix_(own, own)].mean() + differences[np.ix_(other, other)].mean()
     return float(between - 0.5 * within)
-
-
-def chance_distance(differences, own, other, generator):
-    """Distance that 95 of 100 random divisions of all members into ensembles of these sizes stay below.
-
-    Arguments as of `ensemble_distance`. NaN where the members are so few that a twentieth of their divisions or more
-    are as far apart as the farthest. A sample that both models ran makes the ensembles more alike than the division
-    takes them to be, so that a distance beyond this level is rarer by chance than stated.
-    """
-    # the same two groups come twice where they are of one size
-    alike = (1 + (len(own) == len(other))) / comb(len(own) + len(other), len(own))
-    if alike >= 1.0 - CONFIDENCE:
-        return np.nan
-    pooled, size = np.concatenate([own, other]), len(own)
-    drawn = []
-    for _ in range(_DRAWS):
-        mixed = generator.permutation(pooled)
-        drawn.append(ensemble_distance(differences, mixed[:size], mixed[size:]))
-    return float(np.quantile(drawn, CONFIDENCE))
-
-
-def resampled_weights(size, generator):
-    """How often each member is drawn in a bootstrap, float64 (n_draws, size); once each in the first row."""
-    drawn = generator.multinomial(size, np.full(size, 1.0 / size), size=_DRAWS).astype(float)
-    return np.concatenate([np.ones((1, size)), drawn])
 
 
 def mean_width(differences, weights):
@@ -94,28 +64,42 @@ def mean_width(differences, weights):
     ----------
     differences : float64 array, shape (n, n, ...)
         Zero for a member and itself.
-    weights : float64 array, shape (n_draws, n)
-        From `resampled_weights`. A member drawn twice is not held against itself.
+    weights : float64 array, shape (*draws, n)
+        From `resampled_weights`, or any others. A member drawn twice is not held against itself.
 
     Returns
     -------
-    float64 array, shape (n_draws, ...)
+    float64 array, shape (*draws, ...)
         NaN where a draw has one member only.
     """
-    total = np.einsum("di,ij...,dj->d...", weights, differences, weights)
-    pairs = weights.sum(axis=1) ** 2 - (weights**2).sum(axis=1)
+    inner = (1,) * (differences.ndim - 2)
+    total = (np.tensordot(weights, differences, 1) * weights.reshape(*weights.shape, *inner)).sum(
+        axis=weights.ndim - 1
+    )
+    pairs = weights.sum(axis=-1) ** 2 - (weights**2).sum(axis=-1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return total / pairs.reshape(-1, *[1] * (total.ndim - 1))
+        return total / pairs.reshape(*pairs.shape, *inner)
 
 
 def ensemble_score(away, differences, weights):
-    """Continuous ranked probability score of an ensemble against curves, fair to few members: float64 (n_draws, ...).
+    """Continuous ranked probability score of an ensemble against curves, float64 (*draws, ...).
 
-    ``away`` (n, ...): mean differences of the members from each curve; the others as of `mean_width`. The score of
-    `blockshake.study.ensembles.scores.crps`, mean over the times.
+    Parameters
+    ----------
+    away : float64 array, shape (n, ...)
+        Mean differences of the members from each curve.
+    differences, weights
+        As of `mean_width`.
+
+    Notes
+    -----
+    ``sum_i w_i |X_i - y| - sum_(i != j) w_i w_j |X_i - X_j| / (2 (1 - sum_i w_i^2))`` with weights of sum 1, mean over
+    the times: with equal weights the estimate that is fair to small ensembles (Ferro 2014, Q. J. R. Meteorol. Soc.
+    140), for which no ensemble that is too narrow or too wide has an advantage.
     """
-    total = weights.sum(axis=1).reshape(-1, *[1] * (away.ndim - 1))
-    return weights @ away / total - 0.5 * mean_width(differences, weights)
+    total = weights.sum(axis=-1).reshape(*weights.shape[:-1], *(1,) * (away.ndim - 1))
+    with np.errstate(invalid="ignore"):
+        return np.tensordot(weights, away, 1) / total - 0.5 * mean_width(differences, weights)
 
 
 def member_scores(differences):
@@ -126,21 +110,3 @@ def member_scores(differences):
     count, away = len(differences), differences.sum(axis=1)
     pairs = 0.5 * away.sum(axis=0)
     return away / (count - 1) - (pairs - away) / ((count - 1) * (count - 2))
-
-
-def limits_of(drawn, confidence=CONFIDENCE):
-    """Bootstrap interval of values along the first axis: float64 array, shape (2, ...)."""
-    tail = 0.5 - 0.5 * confidence
-    return sample_quantiles(drawn, (tail, 1.0 - tail))
-
-
-def parting_time(time, curve, other, limit):
-    """First time at which two curves differ by more than a limit at any marker [s]; infinite if they never do.
-
-    ``curve``, ``other`` (n_times, n_markers) [m]; a run that ended before the other differs from then on.
-    """
-    with np.errstate(invalid="ignore"):
-        beyond = np.abs(curve - other) > limit
-    beyond |= np.isfinite(curve) != np.isfinite(other)
-    parted = beyond.any(axis=1)
-    return float(time[np.argmax(parted)]) if parted.any() else np.inf

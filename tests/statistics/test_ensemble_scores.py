@@ -2,19 +2,16 @@
 
 import numpy as np
 import pytest
+from fair_score import crps
 
-from blockshake.study.comparison.differences import (
-    chance_distance,
+from blockshake.statistics.resampling import chance_distance, limits_of, rank_chance, resampled_weights
+from blockshake.statistics.scores import (
     ensemble_distance,
     ensemble_score,
-    limits_of,
     mean_differences,
     mean_width,
     member_scores,
-    parting_time,
-    resampled_weights,
 )
-from blockshake.study.ensembles.scores import crps
 
 TIMES = 5
 SEED = 3
@@ -127,14 +124,9 @@ def test_limits_hold_nineteen_of_twenty_draws():
     assert limits_of(np.arange(401.0)) == pytest.approx([10.0, 390.0], rel=1e-12)
 
 
-def test_curves_part_where_one_is_beyond_the_limit_or_has_ended():
-    time = np.arange(4.0)
-    own = np.zeros((4, 2))
-    other = np.array([[0.0, 0.0], [0.1, 0.0], [0.1, 0.5], [0.1, 0.0]])
-    assert parting_time(time, own, other, 0.2) == 2.0
-    assert parting_time(time, own, other, 0.6) == np.inf
-    other[1:] = np.nan
-    assert parting_time(time, own, other, 0.6) == 1.0
+def test_chance_is_the_rank_among_the_others():
+    others = np.arange(4.0)[:, None] * np.ones(3)
+    np.testing.assert_array_equal(rank_chance(np.array([9.0, 2.0, np.nan]), others), [0.2, 0.6, np.nan])
 
 
 def test_members_are_scored_by_the_others():

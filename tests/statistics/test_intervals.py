@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from blockshake.study.ensembles.intervals import (
+from blockshake.statistics.intervals import (
     SURE_FROM,
     quantile_interval,
     quantile_ranks,
