@@ -3,7 +3,7 @@
 import dataclasses
 
 import pytest
-from watched import SCRIPTS, modules_of
+from watched import EDITS, SCRIPTS, modules_of
 
 from blockshake.diagnosis.nominal.efforts import EFFORTS
 from blockshake.files import PACKAGE
@@ -22,6 +22,12 @@ def test_a_rule_watches_the_modules_that_its_script_imports(script):
 @pytest.mark.parametrize("model", MODELS)
 def test_kernels_follow_the_modules_of_their_driver(model):
     assert set(kernel_sources(model)) == modules_of(None, model)
+
+
+@pytest.mark.parametrize("module", [module for modules in EDITS.values() for module in modules])
+def test_the_modules_that_faults_edit_are_there(module):
+    """Tests of faults are long and seldom run."""
+    assert (PACKAGE / module).is_file()
 
 
 @pytest.mark.parametrize("name", [field.name for field in dataclasses.fields(EFFORTS["quick"])])

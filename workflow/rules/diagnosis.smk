@@ -150,7 +150,7 @@ rule conclude:
         "logs/diagnosis/{campaign}/conclude.log",
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
-        effort=EFFORT,
+        runs=lambda wildcards: plan(wildcards.campaign).runs,
         source=source_of("conclude"),
     script:
         "../scripts/conclude.py"

@@ -182,12 +182,14 @@ def measure_gain(folder, effort, files):
     return with_rows(responses, *rows)
 
 
-def conclude(folder, effort, files):
+def conclude(folder, runs, files):
     """Put sensors, decision and gain together to the verdict.
 
     Parameters
     ----------
-    folder, effort : str
+    folder : str
+    runs : int
+        Simulated tests in all nominal ensembles, as of `Plan`.
     files : object
         Attributes ``parity``, ``decision`` and ``gain`` (the summary, or empty): files of the earlier steps.
 
@@ -196,7 +198,6 @@ def conclude(folder, effort, files):
     Verdict
     """
     from blockshake.diagnosis.answer.decision import load_decision
-    from blockshake.diagnosis.nominal.plan import plan_diagnosis
     from blockshake.diagnosis.verdict.conclusion import conclude, no_gain
     from blockshake.diagnosis.verdict.verdict import load_gain
     from blockshake.measurement.campaigns.campaign import load_campaign
@@ -212,4 +213,4 @@ def conclude(folder, effort, files):
     if not files.gain:
         caveats += no_gain(campaign, [*decision.parts, *parity.findings])
     verdict = conclude(decision, parity.findings, parity.recorder_sensors, caveats, measured)
-    return verdict.model_copy(update={"runs": plan_diagnosis(folder, effort).runs + verdict.runs})
+    return verdict.model_copy(update={"runs": runs + verdict.runs})
