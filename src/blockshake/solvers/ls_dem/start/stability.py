@@ -35,7 +35,7 @@ def stable_time_step(stiffness, damping, bodies, solved):
     start = np.cos(
         np.arange(1, 6 * len(solved) + 1)
     )  # any vector that no mode is orthogonal to, always the same
-    value, vector = eigsh(stiffness, k=1, M=mass, which="LM", v0=start, tol=1e-3)
+    value, vector = eigsh(stiffness, k=1, M=mass, which="LM", v0=start, tol=1e-3, rng=0)
     frequency, mode = np.sqrt(value[0]), vector[:, 0]
     ratio = mode @ (damping @ mode) / (2.0 * frequency * (mode @ (mass @ mode)))
     return float(2.0 * (np.sqrt(1.0 + 4.0 * ratio**2) - 2.0 * ratio) / frequency)
