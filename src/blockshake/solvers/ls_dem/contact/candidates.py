@@ -12,17 +12,12 @@ from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
 from blockshake.solvers.ls_dem.contact.packets import (
     CLOSED,
     FAR_AWAY,
-    HELD,
     LANES,
     LOCATED,
     PACKET,
     PHI,
-    POINT_X,
-    POINT_Y,
-    POINT_Z,
-    STRETCH_X,
-    STRETCH_Y,
-    STRETCH_Z,
+    POINT,
+    put_triple,
 )
 from blockshake.solvers.ls_dem.contact.relative_pose import relative_pose_into
 from blockshake.solvers.ls_dem.joints import add_joints, find_joint
@@ -239,11 +234,10 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
             packet, lane = place // LANES, place % LANES
             if rank < n_nodes:
                 node[place] = found[count[side] + rank]
-                packets[packet, lane + POINT_X] = surfaces.points[node[place], 0] - e[0]
-                packets[packet, lane + POINT_Y] = surfaces.points[node[place], 1] - e[1]
-                packets[packet, lane + POINT_Z] = surfaces.points[node[place], 2] - e[2]
+                p = surfaces.points[node[place]]
+                put_triple(packets, packet, POINT, lane, p[0] - e[0], p[1] - e[1], p[2] - e[2])
             else:
-                packets[packet, lane + POINT_X] = FAR_AWAY
+                packets[packet, POINT + lane] = FAR_AWAY
         relative_pose_into(
             poses.position_before, poses.rotation_before, surfaces.offset, pair, shift[side // 2], of, R, d
         )
@@ -369,7 +363,6 @@ def _carry_over_into(old, earlier, new):
                 while place < end and old.node[place] != -1 and old.node[place] < new.node[here]:
                     place += 1
                 if place < end and new.node[here] != -1 and old.node[place] == new.node[here]:
-                    for row in (CLOSED, STRETCH_X, STRETCH_Y, STRETCH_Z, HELD):
-                        new.packets[here // LANES, here % LANES + row] = old.packets[
-                            place // LANES, place % LANES + row
-                        ]
+                    source, target = old.packets[place // LANES], new.packets[here // LANES]
+                    for row in range(CLOSED, PACKET, LANES):
+                        target[row + here % LANES] = source[row + place % LANES]

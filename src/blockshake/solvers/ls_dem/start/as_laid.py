@@ -12,7 +12,7 @@ from blockshake.solvers.ls_dem.contact.candidates import (
     locate_pair_into,
     nearest_node,
 )
-from blockshake.solvers.ls_dem.contact.packets import LANES, NORMAL_X
+from blockshake.solvers.ls_dem.contact.packets import LANES, NORMAL
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.joints import no_joints
 from blockshake.solvers.ls_dem.start.equilibrium import (
@@ -133,7 +133,7 @@ def _part_into(candidates, surfaces, poses):
                 break
             of_first = candidates.first[2 * pair] + row < candidates.first[2 * pair + 1]
             for i in range(3):
-                n = candidates.located[row, NORMAL_X + i * LANES + lane]
+                n = candidates.located[row, NORMAL + i * LANES + lane]
                 if of_first:
                     candidates.shift[pair, i] += rest[pair] * n
                 else:

@@ -14,7 +14,7 @@ from blockshake.solvers.ls_dem.contact.candidates import (
     nearest_node,
 )
 from blockshake.solvers.ls_dem.contact.contact_forces import clear_loads, contact_forces_into, no_loads
-from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES, NORMAL_X, PHI, PLACE_X
+from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES, NORMAL, PHI, PLACE
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
 from blockshake.solvers.ls_dem.start.stability import stable_time_step
@@ -213,8 +213,8 @@ def joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
                     n, arm = np.zeros(3), np.zeros(3)
                     for i in range(3):
                         for j in range(3):
-                            n[i] += R[i, j] * found[NORMAL_X + j * LANES + lane]
-                            arm[i] += R[i, j] * (node[PLACE_X + j * LANES + lane] - surfaces.offset[other, j])
+                            n[i] += R[i, j] * found[NORMAL + j * LANES + lane]
+                            arm[i] += R[i, j] * (node[PLACE + j * LANES + lane] - surfaces.offset[other, j])
                     if phi >= 0.0 and abs(n[0] * down[0] + n[1] * down[1] + n[2] * down[2]) < 0.5:
                         continue
                     touching[pair] = True

@@ -7,7 +7,7 @@ from scipy.sparse.csgraph import connected_components
 
 from blockshake.geometry.structure import START_TOLERANCE
 from blockshake.solvers.ls_dem.contact.candidates import empty_candidates
-from blockshake.solvers.ls_dem.contact.packets import HELD, STRETCH_X
+from blockshake.solvers.ls_dem.contact.packets import HELD, STRETCH
 from blockshake.solvers.ls_dem.joints import no_joints
 from blockshake.solvers.ls_dem.start.as_laid import joints_as_laid
 from blockshake.solvers.ls_dem.start.equilibrium import approach_equilibrium
@@ -58,7 +58,7 @@ def settled_start(structure, bodies, surfaces, interfaces, skin, time_step, stat
     for pair, (a, b) in enumerate(candidates.pairs):
         if not (settled[a] or settled[b]):
             first, last = candidates.first[2 * pair], candidates.first[2 * pair + 2]
-            candidates.packets[first:last, STRETCH_X:HELD] = 0.0
+            candidates.packets[first:last, STRETCH:HELD] = 0.0
     return candidates, joints, np.array([steps, stable_step, overlap])
 
 
