@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.dynamics.system import ENERGY_TERMS
+from blockshake.dynamics.system import ENERGY_TERMS, Rows
 from blockshake.jit import kernel
+from blockshake.solvers.status import NEXT_RECORD
 
 _SPARE_JOINTS = 16
 _LEAST_STEPS = 3  # of a record that is not of all times: a step in which it is filled, and one before
@@ -50,6 +51,26 @@ def last_step(times, record, time_step):
     """Number of steps that surely fit into a record; without end for one that reaches the last time."""
     until = int(record.first[0]) + len(record.energy)
     return int(times[until] / time_step) - 1 if until < len(times) else sys.maxsize
+
+
+def recorded_rows(times, progress, record, pairs, joint_force, bodies=slice(None)):
+    """`Rows` of a record, from the progress of its run.
+
+    ``pairs`` (n_joints, 2) and ``joint_force`` (n_rows, n_joints, 3): of the joints, force NaN afterwards at times that
+    the run did not reach. ``bodies``: rows of the record's bodies in the order of the file.
+    """
+    first = int(record.first[0])
+    joint_force[progress.clock[NEXT_RECORD] - first :] = np.nan
+    return Rows(
+        time=times[first : first + len(record.energy)],
+        position=record.position[:, bodies],
+        orientation=record.orientation[:, bodies],
+        velocity=record.velocity[:, bodies],
+        angular_velocity=record.angular_velocity[:, bodies],
+        energy=record.energy,
+        joints=pairs,
+        joint_force=joint_force,
+    )
 
 
 @kernel

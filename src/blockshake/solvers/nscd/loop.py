@@ -6,6 +6,7 @@ from blockshake.dynamics.collapse import find_collapsed
 from blockshake.dynamics.system import place_driven_into
 from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.external_forces import external_wrenches_into
+from blockshake.solvers.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
 from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit, stopper_energy
 from blockshake.solvers.nscd.contact.contacts import contact_margin, delassus_into, detect_contacts
 from blockshake.solvers.nscd.contact.friction import friction_into
@@ -13,7 +14,6 @@ from blockshake.solvers.nscd.contact.law_shift import bodies_meet, law_shift_int
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed, place_into
 from blockshake.solvers.nscd.contact.stoppers import place_stoppers_into
 from blockshake.solvers.nscd.contact.warm_start import warm_start_into
-from blockshake.solvers.nscd.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
 from blockshake.solvers.nscd.joints import press_anew, slip_into, with_pressed
 from blockshake.solvers.nscd.progress import LAST_STEP
 from blockshake.solvers.nscd.recording import record_driven_into, record_forces_into, record_into

@@ -7,11 +7,11 @@ from blockshake.dynamics.system import State
 from blockshake.geometry.rotations import rotate_into
 from blockshake.geometry.structure import START_TOLERANCE
 from blockshake.jit import kernel
+from blockshake.solvers.ground import ground_at_start
 from blockshake.solvers.nscd.contact.contacts import delassus_into, detect_contacts
 from blockshake.solvers.nscd.contact.friction import friction_into
 from blockshake.solvers.nscd.contact.law_shift import law_shift_into
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed, place_into
-from blockshake.solvers.nscd.ground import ground_at_start
 from blockshake.solvers.nscd.joints import no_joints
 from blockshake.solvers.nscd.solve.solver import solve_contacts_into
 from blockshake.solvers.nscd.step import empty_step, predict_into

@@ -6,11 +6,11 @@ from blockshake.dynamics.collapse import find_collapsed
 from blockshake.dynamics.system import place_driven_into
 from blockshake.jit import kernel
 from blockshake.solvers.external_forces import external_wrenches_into
+from blockshake.solvers.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
 from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit, stopper_energy
 from blockshake.solvers.nscd.contact.contacts import contact_margin
 from blockshake.solvers.nscd.contact.law_shift import bodies_meet
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed, place_into
-from blockshake.solvers.nscd.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
 from blockshake.solvers.nscd.joints import press_anew, slip_into, with_pressed
 from blockshake.solvers.nscd.loop import find_diverged, least_impulse, record_until_into
 from blockshake.solvers.nscd.progress import LAST_STEP

@@ -25,14 +25,12 @@ _SEATED = 1e-5  # m; nodes of a hollow joint that are open by so much more than 
 _SOFT = 1e-9  # of the stiffest entry; it lets a body that nothing holds move far, and is told by that
 
 
-def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near, joints):
+def approach_equilibrium(assembly, state, near, joints):
     """Poses at which stacks rest under gravity on the springs between them, near the given poses.
 
     Parameters
     ----------
-    bodies, surfaces, interfaces : Bodies, Surfaces, Interfaces
-    skin : float
-        Reach of the lists [m].
+    assembly : Assembly
     state : State
         Given poses; not changed.
     near : float
@@ -60,12 +58,13 @@ def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near, joints
     pulling it close; of hollow faces only the nodes at the rim. Where joints open or slide it may not converge, and
     relaxation has more to do. Bodies without inverse inertia do not turn.
     """
+    bodies, surfaces, interfaces = assembly.bodies, assembly.surfaces, assembly.interfaces
     n_bodies = len(bodies.mass)
     position, orientation = state.position.copy(), state.orientation.copy()
     rotation = np.ascontiguousarray(rotation_matrices(orientation))
     poses = Poses(position, rotation, position.copy(), rotation.copy())
     candidates, joints = find_candidates(
-        surfaces, bodies.driven, poses, orientation, skin, empty_candidates(n_bodies), joints
+        surfaces, bodies.driven, poses, orientation, assembly.skin, empty_candidates(n_bodies), joints
     )
     loads = no_loads(n_bodies, joints)
     radius = surfaces.radius
