@@ -2,12 +2,10 @@
 
 from typing import NamedTuple
 
-from blockshake.solvers.nscd.parameters import NscdParameters
+from blockshake.solvers.nscd.parameters import NscdParameters, StepParameters
 from blockshake.solvers.nscd.scene import Scene, assemble_scene
 from blockshake.solvers.nscd_deformable.elastic_bodies import Elastic, pack_elastic
 from blockshake.solvers.nscd_deformable.elastic_step import Response, step_response
-
-_SHARED = ("theta", "tolerance", "max_iterations", "impact_parts")
 
 
 class Model(NamedTuple):
@@ -26,7 +24,7 @@ class Model(NamedTuple):
 
 def assemble_model(structure, bodies, stoppers, motion, parameters, time_step, order, viscous):
     """Model of a structure under a motion; arguments as of `assemble_scene` and `simulate_deformable`."""
-    rigid = NscdParameters(**{name: getattr(parameters, name) for name in _SHARED})
+    rigid = NscdParameters(**parameters.model_dump(include=set(StepParameters.model_fields)))
     elastic = pack_elastic(structure, order, parameters, viscous)
     whole, part = (
         step_response(elastic, time_step / parts, parameters.elastic_theta)
