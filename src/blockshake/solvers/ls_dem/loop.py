@@ -31,7 +31,11 @@ from blockshake.solvers.ls_dem.contact.contact_forces import (
     no_loads,
 )
 from blockshake.solvers.ls_dem.contact.relative_pose import keep_poses
-from blockshake.solvers.ls_dem.external_loads import external_loads_into, external_power
+from blockshake.solvers.ls_dem.outside_loads import (
+    external_loads_into,
+    external_power,
+    stopper_forces_into,
+)
 from blockshake.solvers.ls_dem.progress import (
     DASHPOT_HEAT,
     FRICTION_HEAT,
@@ -39,7 +43,6 @@ from blockshake.solvers.ls_dem.progress import (
     MOST_FRICTION_HEAT,
     SEARCHES,
 )
-from blockshake.solvers.ls_dem.stoppers import stopper_forces_into
 from blockshake.solvers.record import with_room
 from blockshake.solvers.status import COLLAPSED, COMPLETED, DIVERGED, NEXT_RECORD, PAUSED, SPEED_LIMIT, STEP
 
