@@ -20,9 +20,9 @@ from blockshake.solvers.nscd.recording import record_driven_into, record_forces_
 from blockshake.solvers.nscd.solve.gauss_seidel import contact_velocities_into
 from blockshake.solvers.nscd.solve.solver import solve_contacts_into
 from blockshake.solvers.nscd.step import empty_step, move_into, predict_into
-from blockshake.solvers.nscd.vectors import dot
 from blockshake.solvers.record import with_room
 from blockshake.solvers.status import COLLAPSED, COMPLETED, DIVERGED, NEXT_RECORD, PAUSED, SPEED_LIMIT, STEP
+from blockshake.solvers.vectors import dot
 
 _ROUNDING = 1e-9  # of a step, when a record time meets the end of a step
 

@@ -22,6 +22,7 @@ from blockshake.solvers.ls_dem.contact.packets import (
 from blockshake.solvers.ls_dem.contact.relative_pose import relative_pose_into
 from blockshake.solvers.ls_dem.joints import add_joints, find_joint
 from blockshake.solvers.ls_dem.surfaces import level_set
+from blockshake.solvers.near_boxes import find_pairs
 
 _FRESH = -2  # no key begins so
 
@@ -93,13 +94,9 @@ def lists_expired(candidates, surfaces, driven, position, orientation, skin):
 
 
 @kernel
-def find_pairs(surfaces, driven, position, orientation, skin):
-    """Pairs of bodies whose bounding boxes come within ``skin``: int64 (n_pairs, 2), sorted.
-
-    Sweep over the sorted lower ends along the axis on which the bodies are spread most, so that the
-    cost grows with the bodies and the neighbours of each.
-    """
-    n_bodies = driven.size
+def _boxes(surfaces, position, orientation):
+    """Lower and upper corners of the bodies' bounding boxes, (n_bodies, 3) each [m]."""
+    n_bodies = position.shape[0]
     low, high = np.empty((n_bodies, 3)), np.empty((n_bodies, 3))
     R = np.empty((3, 3))
     for body in range(n_bodies):
@@ -110,37 +107,8 @@ def find_pairs(surfaces, driven, position, orientation, skin):
             centre = position[body, axis]
             for along in range(3):
                 centre += R[axis, along] * (middle[along] - surfaces.offset[body, along])
-            low[body, axis] = centre - reach - 0.5 * skin
-            high[body, axis] = centre + reach + 0.5 * skin
-    widest, spread = 0, -1.0
-    for axis in range(3):
-        if np.ptp(position[:, axis]) > spread:
-            widest, spread = axis, np.ptp(position[:, axis])
-    order = np.argsort(low[:, widest], kind="mergesort")
-    codes = []
-    for rank in range(n_bodies):
-        a = order[rank]
-        for later in range(rank + 1, n_bodies):
-            b = order[later]
-            if low[b, widest] > high[a, widest]:
-                break
-            if driven[a] and driven[b]:
-                continue
-            if (
-                low[a, 0] <= high[b, 0]
-                and low[b, 0] <= high[a, 0]
-                and low[a, 1] <= high[b, 1]
-                and low[b, 1] <= high[a, 1]
-                and low[a, 2] <= high[b, 2]
-                and low[b, 2] <= high[a, 2]
-            ):
-                codes.append(min(a, b) * n_bodies + max(a, b))
-    sorted_codes = np.sort(np.array(codes, dtype=np.int64)) if len(codes) > 0 else np.empty(0, np.int64)
-    pairs = np.empty((sorted_codes.size, 2), np.int64)
-    for pair in range(sorted_codes.size):
-        pairs[pair, 0] = sorted_codes[pair] // n_bodies
-        pairs[pair, 1] = sorted_codes[pair] % n_bodies
-    return pairs
+            low[body, axis], high[body, axis] = centre - reach, centre + reach
+    return low, high
 
 
 @kernel
@@ -205,7 +173,8 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
         With the pairs that have come near for the first time.
     """
     position, rotation = poses.position, poses.rotation
-    pairs = find_pairs(surfaces, driven, position, orientation, skin)
+    low, high = _boxes(surfaces, position, orientation)
+    pairs = find_pairs(low, high, driven, skin)
     earlier = _earlier_pairs(old.pairs, pairs)
     joint, joints = _joints_of(pairs, earlier, old.joint, joints)
     shift = joints.shift[joint]

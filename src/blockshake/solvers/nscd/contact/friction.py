@@ -11,7 +11,7 @@ from blockshake.dynamics.friction import (
     friction_coefficient,
 )
 from blockshake.jit import borrowing_kernel
-from blockshake.solvers.nscd.vectors import dot
+from blockshake.solvers.vectors import dot
 
 
 class Friction(NamedTuple):

@@ -11,9 +11,9 @@ from blockshake.solvers.nscd.solve.gauss_seidel import (
     contact_velocities_into,
     relative_velocity,
 )
-from blockshake.solvers.nscd.vectors import cross, dot, matrix_product, put_into, transposed_product
 from blockshake.solvers.nscd_deformable.contact_points import anchored
 from blockshake.solvers.nscd_deformable.elastic_step import compliance_of
+from blockshake.solvers.vectors import cross, dot, matrix_product, put_into, transposed_product
 
 
 class Problem(NamedTuple):
