@@ -8,7 +8,7 @@ from blockshake.errors import InputError
 from blockshake.geometry.level_set import box_distance, hollow_box_distance
 from blockshake.geometry.level_set_grid import box_grid, grid_table, mesh_grid
 from blockshake.geometry.meshes.mesh_nodes import mesh_nodes
-from blockshake.geometry.surface_nodes import box_nodes, chamfer_nodes
+from blockshake.geometry.surface_nodes import box_nodes
 from blockshake.geometry.trilinear import grid_distance
 from blockshake.jit import inline_kernel, kernel
 
@@ -131,21 +131,15 @@ def _nodes(structure, name, parameters):
     breadth = min(shape.box or np.ptp(solid.vertices, axis=0)) - 2.0 * shape.chamfer
     spacing = parameters.node_spacing * max(1.0, breadth / _BROAD)
     count = solid.properties.area / spacing**2
-    if parameters.edge_spacing:
-        count += 4.0 * np.ptp(solid.vertices, axis=0).sum() / parameters.edge_spacing
     if count > _MOST_NODES:
         raise InputError(
             structure.source,
             f"shapes.{name}",
-            f"expected at most {_MOST_NODES:.0e} nodes, not {count:.1g}: a wider ls_dem.node_spacing or edge_spacing",
+            f"expected at most {_MOST_NODES:.0e} nodes, not {count:.1g}: a wider ls_dem.node_spacing",
         )
     if shape.box is None:
         return mesh_nodes(solid.vertices, solid.triangles, spacing, parameters.perimeter_inset)
-    points, areas = box_nodes(shape.box, shape.chamfer, shape.hollow, spacing, parameters.perimeter_inset)
-    if parameters.edge_spacing == 0.0:
-        return points, areas
-    more_points, more_areas = chamfer_nodes(shape.box, shape.chamfer, parameters.edge_spacing)
-    return np.vstack([points, more_points]), np.concatenate([areas, more_areas])
+    return box_nodes(shape.box, shape.chamfer, shape.hollow, spacing, parameters.perimeter_inset)
 
 
 def _planes(structure, name, parameters):
