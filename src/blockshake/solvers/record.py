@@ -13,7 +13,7 @@ _SPARE_JOINTS = 16
 _LEAST_STEPS = 3  # of a record that is not of all times: a step in which it is filled, and one before
 
 
-class Record(NamedTuple):
+class RunRecord(NamedTuple):
     """Rows of `Rows` that are at hand, ``joint_force`` for all joints; NaN at times that the run did not reach.
 
     ``first`` int64 (1,): number of the first of these rows among the times asked for.
@@ -30,7 +30,7 @@ class Record(NamedTuple):
 
 def empty_record(first, n_rows, n_bodies, room=0):
     """Record of some rows before the first of them, with room for so many joints."""
-    return Record(
+    return RunRecord(
         position=np.full((n_rows, n_bodies, 3), np.nan),
         orientation=np.full((n_rows, n_bodies, 4), np.nan),
         velocity=np.full((n_rows, n_bodies, 3), np.nan),
@@ -81,7 +81,7 @@ def with_room(record, n_joints):
         return record
     force = np.zeros((n_times, n_joints + n_joints // 4 + _SPARE_JOINTS, 3))
     force[:, :room] = record.joint_force
-    return Record(
+    return RunRecord(
         record.position,
         record.orientation,
         record.velocity,

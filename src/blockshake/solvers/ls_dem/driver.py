@@ -9,12 +9,12 @@ from blockshake.dynamics.system import Trajectory, assemble_bodies, place_driven
 from blockshake.solvers.checkpoint import Checkpoint, run_key
 from blockshake.solvers.ls_dem.assembly import assemble
 from blockshake.solvers.ls_dem.contact.candidates import Candidates
-from blockshake.solvers.ls_dem.joints import Joints
+from blockshake.solvers.ls_dem.joints import NearPairs
 from blockshake.solvers.ls_dem.loop import integrate
-from blockshake.solvers.ls_dem.progress import SEARCHES, Progress, start_progress
+from blockshake.solvers.ls_dem.progress import SEARCHES, LeapfrogProgress, start_progress
 from blockshake.solvers.ls_dem.start.settled_start import settled_start
 from blockshake.solvers.pieces import run_in_pieces
-from blockshake.solvers.record import Record, recorded_rows
+from blockshake.solvers.record import RunRecord, recorded_rows
 from blockshake.solvers.status import COLLAPSED, DIVERGED, SPEED_LIMIT, STATUS, STEP
 
 
@@ -78,7 +78,7 @@ def simulate_ls_dem(
 
     go_on = functools.partial(integrate, assembly, record_times)
     key = run_key(structure, assembly.table, parameters, record_times, time_step, rotations_blocked)
-    saving = Checkpoint(checkpoint, key, (Progress, Candidates, Joints, Record))
+    saving = Checkpoint(checkpoint, key, (LeapfrogProgress, Candidates, NearPairs, RunRecord))
     code, body, parts = run_in_pieces(start, go_on, rows, record_times, time_step, saving, kept)
     progress = parts[0]
     steps = min(int(progress.clock[STEP]), n_steps)

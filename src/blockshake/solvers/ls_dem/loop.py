@@ -61,18 +61,18 @@ def integrate(assembly, times, pause, progress, candidates, joints, record):
         When to record, increasing from 0 [s].
     pause : int
         Step before which to pause.
-    progress : Progress
+    progress : LeapfrogProgress
         Changed in place.
-    candidates, joints : Candidates, Joints
+    candidates, joints : Candidates, NearPairs
         Near nodes with the shear springs of the step before.
-    record : Record
+    record : RunRecord
         Filled from the next record on.
 
     Returns
     -------
     code, culprit : int
         Of `blockshake.solvers.status`; body that collapsed or -1.
-    candidates, joints, record : Candidates, Joints, Record
+    candidates, joints, record : Candidates, NearPairs, RunRecord
         To go on with.
 
     Notes

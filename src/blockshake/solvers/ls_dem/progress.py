@@ -14,7 +14,7 @@ SEARCHES = 2
 FRICTION_HEAT, MOST_FRICTION_HEAT, DASHPOT_HEAT, INPUT_WORK = 0, 1, 2, 3
 
 
-class Progress(NamedTuple):
+class LeapfrogProgress(NamedTuple):
     """State of a run between two steps, changed in place by kernels.
 
     ``state``: at the last step. ``poses``: its positions are those of ``state``. ``half_velocity``,
@@ -43,7 +43,7 @@ def start_progress(bodies, state, started):
     spin_frame = np.einsum("bji,bj->bi", rotation, state.angular_velocity)
     momentum = np.einsum("bij,bjk,bk->bi", rotation, bodies.inertia, spin_frame)
     momentum[bodies.driven] = 0.0
-    return Progress(
+    return LeapfrogProgress(
         state=state,
         poses=Poses(state.position, rotation, state.position.copy(), rotation.copy()),
         half_velocity=state.velocity.copy(),

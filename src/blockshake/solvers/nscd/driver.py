@@ -14,7 +14,7 @@ from blockshake.solvers.nscd.progress import Progress, start_progress
 from blockshake.solvers.nscd.scene import assemble_scene, order_of_bodies, reordered
 from blockshake.solvers.nscd.start import settled_state
 from blockshake.solvers.pieces import run_in_pieces
-from blockshake.solvers.record import Record
+from blockshake.solvers.record import RunRecord
 
 
 def simulate_nscd(structure, motion, parameters, record_times, time_step=1e-3, checkpoint=None, kept=None):
@@ -72,7 +72,7 @@ def simulate_nscd(structure, motion, parameters, record_times, time_step=1e-3, c
 
     go_on = functools.partial(integrate, scene, times)
     key = run_key(structure, scene.table, parameters, times, time_step)
-    saving = Checkpoint(checkpoint, key, (Progress, Contacts, Joints, Record))
+    saving = Checkpoint(checkpoint, key, (Progress, Contacts, Joints, RunRecord))
     code, culprit, parts = run_in_pieces(start, go_on, rows, times, time_step, saving, kept)
     progress, _, joints, record = parts
     return trajectory_of(structure, order, times, time_step, code, culprit, progress, joints, record)

@@ -33,7 +33,7 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
 
     Parameters
     ----------
-    scene : Scene
+    scene : ContactScene
     times : float64 array, shape (n_times,)
         When to record, increasing from 0 [s].
     pause : int
@@ -43,14 +43,14 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
     contacts : Contacts
         Of the step before, to start the next one from.
     joints : Joints
-    record : Record
+    record : RunRecord
         Filled from the next record on.
 
     Returns
     -------
     code, culprit : int
         Of `blockshake.solvers.status`; body that collapsed or ran away, else -1.
-    contacts, joints, record : Contacts, Joints, Record
+    contacts, joints, record : Contacts, Joints, RunRecord
         To go on with.
 
     Notes
@@ -185,27 +185,12 @@ def least_impulse(bodies, gravity, v, dt):
 
     ``gravity``: its size [m/s2]. ``v`` (n_bodies, 6): velocities of the bodies.
     """
-    return 1e-3 * dt * gravity * _lightest(bodies) + 1e-12 * _momentum(bodies, v) + 1e-300
-
-
-@borrowing_kernel
-def _lightest(bodies):
-    """Least mass of a free body [kg]."""
-    lightest = np.inf
+    lightest, momentum = np.inf, 0.0
     for body in range(bodies.mass.size):
         if not bodies.driven[body]:
             lightest = min(lightest, bodies.mass[body])
-    return lightest
-
-
-@borrowing_kernel
-def _momentum(bodies, v):
-    """Sum of the sizes of the free bodies' momenta [N s]."""
-    total = 0.0
-    for body in range(bodies.mass.size):
-        if not bodies.driven[body]:
-            total += bodies.mass[body] * np.sqrt(dot(v[body, :3], v[body, :3]))
-    return total
+            momentum += bodies.mass[body] * np.sqrt(dot(v[body, :3], v[body, :3]))
+    return 1e-3 * dt * gravity * lightest + 1e-12 * momentum + 1e-300
 
 
 @borrowing_kernel

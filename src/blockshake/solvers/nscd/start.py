@@ -28,7 +28,7 @@ def settled_state(scene, touching, state):
 
     Parameters
     ----------
-    scene : Scene
+    scene : ContactScene
         The driven bodies have the pitch of the motion's start.
     touching : bool array, shape (n_bodies, n_bodies)
         As in `Structure`, in the solver's order.
@@ -57,7 +57,7 @@ def settle_stacks(scene, touching, soft, state, static_step, most_steps, at_rest
 
     Parameters
     ----------
-    scene, touching, state : Scene, bool array, shape (n_bodies, n_bodies), State
+    scene, touching, state : ContactScene, bool array, shape (n_bodies, n_bodies), State
         As of `settled_state`.
     soft : bool array, shape (n_bodies,)
         A stack is settled where one of its free bodies is.

@@ -18,7 +18,7 @@ from blockshake.solvers.nscd_deformable.model import assemble_model
 from blockshake.solvers.nscd_deformable.solve.newton import Factor, no_factor
 from blockshake.solvers.nscd_deformable.start import settled_state
 from blockshake.solvers.pieces import run_in_pieces
-from blockshake.solvers.record import Record
+from blockshake.solvers.record import RunRecord
 
 
 def simulate_deformable(
@@ -67,7 +67,7 @@ def simulate_deformable(
 
     go_on = functools.partial(integrate, model, times)
     key = run_key(structure, model.scene.table, parameters, times, time_step, viscous)
-    kinds = Progress, Deformation, Contacts, Joints, Factor, Record
+    kinds = Progress, Deformation, Contacts, Joints, Factor, RunRecord
     saving = Checkpoint(checkpoint, key, kinds)
     code, culprit, parts = run_in_pieces(start, go_on, rows, times, time_step, saving, kept)
     progress, deformation, _, joints, _, record = parts

@@ -19,7 +19,7 @@ from blockshake.solvers.nscd.step import empty_step, move_into, predict_into
 from blockshake.solvers.nscd_deformable.contact_points import find_contacts
 from blockshake.solvers.nscd_deformable.contact_step import solve_step
 from blockshake.solvers.nscd_deformable.elastic_step import elastic_energy, move_elastic_into, points_into
-from blockshake.solvers.nscd_deformable.solve.operator import working_velocities
+from blockshake.solvers.nscd_deformable.solve.operator import surface_velocities_into
 from blockshake.solvers.record import with_room
 from blockshake.solvers.status import COLLAPSED, COMPLETED, DIVERGED, NEXT_RECORD, PAUSED, STEP
 
@@ -32,7 +32,7 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
 
     Parameters
     ----------
-    model : Model
+    model : DeformableScene
     times : float64 array, shape (n_times,)
         When to record, increasing from 0 [s].
     pause : int
@@ -43,14 +43,14 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
         Of the step before, to start the next one from.
     joints : Joints
     factor : Factor
-    record : Record
+    record : RunRecord
         Filled from the next record on.
 
     Returns
     -------
     code, culprit : int
         Of `blockshake.solvers.status`; body that collapsed or ran away, else -1.
-    contacts, joints, factor, record : Contacts, Joints, Factor, Record
+    contacts, joints, factor, record : Contacts, Joints, Factor, RunRecord
         To go on with.
     """
     scene, elastic, bodies = model.scene, model.elastic, model.scene.bodies
@@ -97,7 +97,8 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
             lost = move_elastic_into(elastic, response, anchors, motion.forces, rate, deformation)
             mean += response.theta * deformation.rate
             points_into(elastic, mean, anchors, motion.points)
-            u_mean = working_velocities(anchors, step.rotations, contacts, step.v_mean, motion.points)
+            u_mean = np.empty((contacts.gap.size, 3))
+            surface_velocities_into(anchors, step.rotations, contacts, step.v_mean, motion.points, u_mean)
             kinetic, strain = elastic_energy(elastic, deformation)
             energy_before[:] = progress.energy
             squeezed = stopper_energy(bodies, scene.stoppers, scene.watch.base, state)

@@ -24,7 +24,7 @@ def settled_state(model, touching, state):
 
     Parameters
     ----------
-    model : Model
+    model : DeformableScene
         The driven bodies have the pitch of the motion's start.
     touching, state : bool array, State
         As of `settle_stacks`.

@@ -30,12 +30,12 @@ _FRESH = -2  # no key begins so
 class Candidates(NamedTuple):
     """Near nodes, by side of a pair of bodies.
 
-    ``pairs`` int64 (n_pairs, 2), lower index first; ``joint`` int64 (n_pairs,): their rows in `Joints`, and ``shift``
-    (n_pairs, 3) from there. Side ``2 p`` of pair ``p`` holds nodes of its first body against the level set of its
-    second, side ``2 p + 1`` the reverse. ``first`` int64 (2 n_pairs + 1,): first packet of each side. ``node`` int64
-    (n_packets * LANES,): index in `Surfaces`, -1 for filling. ``packets`` float64 (n_packets, PACKET): see `packets`.
-    ``located`` float64 (packets of the pair with most, LOCATED): workspace of the pair at hand. ``position`` and
-    ``orientation``: poses for which the list was made.
+    ``pairs`` int64 (n_pairs, 2), lower index first; ``joint`` int64 (n_pairs,): their rows in `NearPairs`, and
+    ``shift`` (n_pairs, 3) from there. Side ``2 p`` of pair ``p`` holds nodes of its first body against the level set of
+    its second, side ``2 p + 1`` the reverse. ``first`` int64 (2 n_pairs + 1,): first packet of each side. ``node``
+    int64 (n_packets * LANES,): index in `Surfaces`, -1 for filling. ``packets`` float64 (n_packets, PACKET): see
+    `packets`. ``located`` float64 (packets of the pair with most, LOCATED): workspace of the pair at hand. ``position``
+    and ``orientation``: poses for which the list was made.
     """
 
     pairs: np.ndarray
@@ -162,14 +162,14 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
         [m]
     old : Candidates
         Lists so far.
-    joints : Joints
+    joints : NearPairs
         Joints so far.
 
     Returns
     -------
     candidates : Candidates
         Sorted by pair, side and node.
-    joints : Joints
+    joints : NearPairs
         With the pairs that have come near for the first time.
     """
     position, rotation = poses.position, poses.rotation
@@ -210,18 +210,8 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
         relative_pose_into(
             poses.position_before, poses.rotation_before, surfaces.offset, pair, shift[side // 2], of, R, d
         )
-        locate_nodes_into(
-            packets,
-            located,
-            first[side],
-            first[side + 1],
-            first[side],
-            surfaces,
-            surfaces.shape[pair[1 - of]],
-            R,
-            d,
-            of,
-        )
+        begin, end, shape = first[side], first[side + 1], surfaces.shape[pair[1 - of]]
+        locate_nodes_into(packets, located, begin, end, begin, surfaces, shape, R, d, of)
     key = np.full((pairs.shape[0], N_KEY), _FRESH, np.int64)
     new = Candidates(
         pairs, joint, shift, first, node, packets, share, key, located, position.copy(), orientation.copy()

@@ -41,7 +41,7 @@ def joints_as_laid(structure, assembly, state, settled):
 
     Returns
     -------
-    joints : Joints
+    joints : NearPairs
     overlap : float
         Deepest that was taken up, zero where no joint has a shift [m].
 

@@ -17,7 +17,7 @@ from blockshake.solvers.ls_dem.contact.contact_forces import clear_loads, contac
 from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES, NORMAL, PHI, PLACE
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
-from blockshake.solvers.ls_dem.start.stability import stable_time_step
+from blockshake.solvers.ls_dem.start.stability import assembled, stable_time_step
 
 _MOST_ITERATIONS = 20
 _AT_REST = 1e-9  # out-of-balance force over weight; the thump it leaves is as small
@@ -36,7 +36,7 @@ def approach_equilibrium(assembly, state, near, joints):
     near : float
         Joints open by less than this are taken to close, and a stack with a body that moves farther
         has no equilibrium near [m].
-    joints : Joints
+    joints : NearPairs
         Shifts of the pairs; forces and slips are overwritten.
 
     Returns
@@ -80,7 +80,7 @@ def approach_equilibrium(assembly, state, near, joints):
             candidates, interfaces, surfaces, poses, reach, downwards(bodies)
         )
         if iteration == 0:
-            stable_step = _stable_step(candidates.pairs, stiffness, relaxation, bodies)
+            stable_step = stable_time_step(candidates.pairs, stiffness, relaxation, bodies)
             at_rest = np.maximum(at_rest, _rounding(candidates.pairs, stiffness, position))
             group = _groups(candidates.pairs[touching], bodies.driven)
         load = np.where(moves, np.concatenate([loads.force, loads.moment], axis=1) + pull, 0.0)
@@ -103,24 +103,6 @@ def approach_equilibrium(assembly, state, near, joints):
             left = lost & ~bodies.driven
         rotation[:] = rotation_matrices(orientation)
     return position, orientation, at_rest, left, stable_step
-
-
-def _stable_step(pairs, stiffness, relaxation, bodies):
-    """Largest stable time step with this stiffness of the pairs and dashpots of these relaxation times [s]."""
-    free = np.flatnonzero(~bodies.driven)
-    chosen = (6 * free[:, None] + np.arange(6)).ravel()
-    size = 6 * len(bodies.mass)
-    parts = [stiffness, stiffness * relaxation[:, None, None]]
-    K, C = (_assembled(pairs, part, size)[chosen][:, chosen] for part in parts)
-    return stable_time_step(K, C, bodies, free)
-
-
-def _assembled(pairs, stiffness, size):
-    """Sparse matrix of the pairs' 12 x 12 blocks."""
-    entries = (6 * pairs[:, :, None] + np.arange(6)).reshape(-1, 12)
-    row = np.repeat(entries, 12, axis=1).ravel()
-    column = np.tile(entries, (1, 12)).ravel()
-    return coo_array((stiffness.ravel(), (row, column)), shape=(size, size)).tocsr()
 
 
 def _rounding(pairs, stiffness, position):
@@ -151,7 +133,7 @@ def downwards(bodies):
 def displacements(pairs, stiffness, solved, load):
     """Displacements and rotations under these loads, zero where not solved for: (n_bodies, 2, 3) [m, rad]."""
     chosen = np.flatnonzero(solved)
-    matrix = _assembled(pairs, stiffness, solved.size)[chosen][:, chosen]
+    matrix = assembled(pairs, stiffness, solved.size)[chosen][:, chosen]
     soft = _SOFT * abs(matrix).max() + 1e-300
     move = np.zeros(solved.size)
     move[chosen] = splu((matrix + soft * eye_array(len(chosen))).tocsc()).solve(load.ravel()[chosen])

@@ -30,12 +30,12 @@ def settle(assembly, given, state, near, at_rest, left, candidates, joints):
         Out-of-balance force below which a body is at rest [N].
     left : bool array, shape (n_bodies,)
         Free bodies known to have no equilibrium; those found to have none are added.
-    candidates, joints : Candidates, Joints
+    candidates, joints : Candidates, NearPairs
         Before the first search.
 
     Returns
     -------
-    candidates, joints : Candidates, Joints
+    candidates, joints : Candidates, NearPairs
         Near nodes with the shear springs of the equilibrium, and the pairs they belong to.
     steps : int
         Pseudo steps made.

@@ -30,7 +30,7 @@ def settled_start(structure, assembly, state):
 
     Returns
     -------
-    candidates, joints : Candidates, Joints
+    candidates, joints : Candidates, NearPairs
     started : float64 array, shape (3,)
         Settling steps made, largest stable time step [s], and deepest overlap taken up [m].
 

@@ -191,7 +191,7 @@ def newton_step_into(problem, contacts, stiffness, fresh, operator, motion, laws
         Factor anew even where the kept factorisation belongs to these contacts.
     operator : Operator
         Of this step; extended where it is needed.
-    motion : Motion
+    motion : ContactMotion
         Of the impulses before, and after.
     laws : Laws
         Overwritten.

@@ -33,7 +33,7 @@ def solve_contacts_into(problem, contacts, floor, tolerance, max_iterations, mot
         Relative residual that ends the search [1].
     max_iterations : int
         Newton steps and sweeps allowed, together.
-    motion : Motion
+    motion : ContactMotion
         Overwritten with the velocities of the answer.
     factor : Factor
         Kept from an earlier step.
