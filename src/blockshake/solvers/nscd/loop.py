@@ -68,7 +68,7 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
         _start(scene, ground, step, placed, progress)
     n_steps = int(np.ceil(times[times.size - 1] / dt - _ROUNDING))
     if n_steps == 0:
-        record_into(bodies, state, state, energy, energy, 0.0, 0, record)
+        record_into(bodies, state, state, energy, energy, 0.0, clock[NEXT_RECORD], record)
         clock[NEXT_RECORD] = 1
     while clock[STEP] < n_steps:
         if clock[STEP] == pause:

@@ -20,7 +20,8 @@ LONG_STEP = 0.1  # s; what swings faster than 10 rad/s comes to rest by at least
 SETTLING_TOLERANCE = 1e-12  # of the contact problem of a long step, below that of a run: it leaves no thump
 _MOST_STEPS = 100
 _AT_REST = 1e-13  # m, of a step's motion: the rounding of a position
-_MOST_ITERATIONS = 200
+# typed numbers: for literal ones detection and solver would be compiled once more
+_MOST_ITERATIONS, _NO_STOPPERS = np.int64(200), np.int64(0)
 
 
 def settled_state(scene, touching, state):
@@ -112,7 +113,7 @@ def _static_step(scene, joints, state):
     memory = np.full(scene.layers.shape, -1, np.int64)
     contacts = detect_contacts(
         bodies, polyhedra, placed, step.rotations, START_TOLERANCE, scene.settings.shrink, scene.layers,
-        theta * dt * dt, memory, 0,
+        theta * dt * dt, memory, _NO_STOPPERS,
     )  # fmt: skip
     delassus_into(bodies, step.inverse_inertia, contacts)
     friction_into(scene.friction, joints, step.rotations, contacts)

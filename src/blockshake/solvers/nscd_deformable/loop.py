@@ -64,7 +64,7 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
         _start(model, ground, step, placed, deformation, progress)
     n_steps = int(np.ceil(times[times.size - 1] / dt - _ROUNDING))
     if n_steps == 0:
-        record_into(bodies, state, state, progress.energy, progress.energy, 0.0, 0, record)
+        record_into(bodies, state, state, progress.energy, progress.energy, 0.0, clock[NEXT_RECORD], record)
         clock[NEXT_RECORD] = 1
     while clock[STEP] < n_steps:
         if clock[STEP] == pause:
