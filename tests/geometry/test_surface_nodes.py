@@ -1,13 +1,12 @@
 import numpy as np
 import pytest
-import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from blockshake.geometry.level_set import box_distance
-from blockshake.geometry.polyhedron import box_vertices, convex_polyhedron, triangles
-from blockshake.geometry.surface_nodes import box_nodes, chamfer_nodes, line_nodes
+from blockshake.geometry.polyhedron import box_vertices
+from blockshake.geometry.surface_nodes import box_nodes, line_nodes
 
 SIZE, CHAMFER = np.array([0.8, 2.4, 1.6]), 0.02
 FLAT = 0.76  # m, the narrower width of a flat that ends at edges along y or z
@@ -72,26 +71,6 @@ def test_every_node_lies_on_the_surface_where_the_normal_is_the_flats():
         assert normal[axis] == np.sign(point[axis])
 
 
-@pytest.mark.parametrize("spacing", [0.03, 0.2])
-def test_flats_and_chamfers_together_have_the_area_of_the_body(spacing):
-    """Against the triangulated surface."""
-    solid = convex_polyhedron(box_vertices(SIZE, CHAMFER))
-    area = trimesh.Trimesh(solid.vertices, triangles(solid), process=False).area
-    points, areas = chamfer_nodes(SIZE, CHAMFER, spacing)
-    assert (areas > 0.0).all()
-    assert box_nodes(SIZE, CHAMFER, 0.0, 0.2, 0.005)[1].sum() + areas.sum() == pytest.approx(
-        area, rel=ROUNDING
-    )
-    phi = [box_distance(*point, *(SIZE / 2.0), CHAMFER)[0] for point in points]
-    np.testing.assert_allclose(phi, 0.0, atol=1e-15)
-
-
-def test_a_sharp_box_has_no_chamfer_nodes():
-    points, areas = chamfer_nodes(SIZE, 0.0, 0.2)
-    assert points.shape == (0, 3)
-    assert areas.shape == (0,)
-
-
 def _sunk(rotation, chamfer, nodes):
     """How deep a box is in a plane below when its first node touches [m]."""
     return rotation.apply(nodes)[:, 2].min() - rotation.apply(box_vertices(SIZE, chamfer))[:, 2].min()
@@ -99,15 +78,11 @@ def _sunk(rotation, chamfer, nodes):
 
 @pytest.mark.parametrize("inset", [0.005, 0.001])
 def test_how_deep_an_edge_sinks_into_a_plane_before_a_node_touches(inset):
-    """At the tilt a the flat's ridge is inset sin(a) below its nodes, the chamfer's w/2 sin(45 - a) below its own."""
+    """At the tilt a the flat's ridge is inset sin(a) below its nodes."""
     flat = box_nodes(SIZE, CHAMFER, 0.0, 0.2, inset / FLAT)[0]
-    nodes = np.vstack([flat, chamfer_nodes(SIZE, CHAMFER, 0.2)[0]])
     for tilt in np.radians(np.arange(1.0, 45.5, 1.0)):
         rotation = Rotation.from_rotvec([0.0, tilt, 0.0])
-        by_flat = inset * np.sin(tilt)
-        by_chamfer = np.sqrt(0.5) * CHAMFER * np.sin(np.pi / 4.0 - tilt)
-        assert _sunk(rotation, CHAMFER, flat) == pytest.approx(by_flat, abs=1e-12)
-        assert _sunk(rotation, CHAMFER, nodes) == pytest.approx(min(by_flat, by_chamfer), abs=1e-12)
+        assert _sunk(rotation, CHAMFER, flat) == pytest.approx(inset * np.sin(tilt), abs=1e-12)
 
 
 def test_how_deep_a_corner_sinks_into_a_plane_before_a_node_touches():
@@ -123,37 +98,3 @@ def test_how_deep_a_corner_sinks_into_a_plane_before_a_node_touches():
     assert _sunk(down, CHAMFER, flat) == pytest.approx(
         (CHAMFER + 4.0 * inset) / (2.0 * np.sqrt(3.0)), abs=1e-12
     )
-    nodes = np.vstack([flat, chamfer_nodes(SIZE, CHAMFER, 0.2)[0]])
-    assert _sunk(down, CHAMFER, nodes) == pytest.approx(0.0, abs=1e-12)
-    # and however a body falls, less than on its flats' nodes alone; the widest flats' are 10 mm inside
-    rotations = Rotation.random(1000, random_state=3)
-    assert max(_sunk(rotation, CHAMFER, nodes) for rotation in rotations) < 0.7 * inset * 1.56 / FLAT
-    assert max(_sunk(rotation, CHAMFER, flat) for rotation in rotations) > 2.0 * inset
-
-
-@pytest.mark.parametrize(("intervals", "sunk"), [(35, 0.0), (5, (0.78 / 5 - CHAMFER * np.sqrt(2.0)) / 2.0)])
-def test_crossed_edges_are_seen_once_half_the_gap_between_nodes_is_bridged(intervals, sunk):
-    """At the depth d in a 90-degree edge its width is that of the chamfer and 2 d; worst, between two nodes."""
-    size = np.full(3, 0.8)
-    spacing = (0.8 - CHAMFER) / intervals
-    edge = chamfer_nodes(size, CHAMFER, spacing)[0]
-    reach = np.sqrt(2.0) * 0.4 - CHAMFER / np.sqrt(2.0)  # from the centre to the chamfer
-    other = Rotation.from_rotvec([0.0, np.pi / 4.0, 0.0])
-
-    def touches(depth):
-        lift = np.array([0.0, 0.0, 2.0 * reach - depth])
-        upper = Rotation.from_rotvec([np.pi / 4.0, 0.0, 0.0]).apply(edge) + lift
-        # an odd number of intervals: the crossing is in the middle of one
-        places = other.inv().apply(upper)
-        return any(box_distance(*place, *(size / 2.0), CHAMFER)[0] < 0.0 for place in places)
-
-    assert touches(sunk + 1e-4)
-    if sunk > 0.0:
-        assert not touches(sunk - 1e-4)
-
-
-def test_chamfer_nodes_are_out_of_reach_of_face_contact():
-    """Half the leg away from an aligned block below, so that stacks' answers do not change."""
-    below = chamfer_nodes(SIZE, CHAMFER, 0.2)[0] + [0.0, 0.0, SIZE[2]]
-    phi = np.array([box_distance(*point, *(SIZE / 2.0), CHAMFER)[0] for point in below])
-    assert phi.min() == pytest.approx(CHAMFER / np.sqrt(2.0), abs=1e-12)

@@ -52,53 +52,6 @@ def box_nodes(size, chamfer, hollow, spacing, inset):
     return np.vstack(points), np.concatenate(areas)
 
 
-def chamfer_nodes(size, chamfer, spacing):
-    """Nodes along the middle of the twelve chamfers of a box: what touches when edges or corners meet.
-
-    Parameters
-    ----------
-    size : sequence of 3 floats
-        Full edge lengths along body x, y, z [m].
-    chamfer : float
-        Leg of the chamfer [m]; 0 gives no nodes.
-    spacing : float
-        Aimed distance of nodes along each edge [m]; at least two intervals an edge. Up to the
-        chamfer's width, ``chamfer * sqrt(2)``, two crossed edges are seen as they meet; above,
-        once they are half of the rest deep in each other.
-
-    Returns
-    -------
-    points : float64 array, shape (n_nodes, 3)
-        Body frame [m]. The outermost are the corners where three chamfers meet.
-    areas : float64 array, shape (n_nodes,)
-        Area that each node stands for [m2]; on every chamfer they sum to its area.
-
-    Notes
-    -----
-    A face in touch with a face leaves these nodes half the leg away from everything, so that they
-    change nothing in stacks that stand, slide or rock: tilted on an edge, the nodes of the flat are
-    the lower ones up to 34 degrees at the usual sizes. A sharp box needs none: its edges are as far
-    from the nodes of its flats as the inset says, which there may be small, 1 mm say (an inset
-    must exceed the penetration in face contact, or the side of an aligned neighbour is nearer).
-    """
-    size = np.asarray(size, dtype=float)
-    points, areas = [np.empty((0, 3))], [np.empty(0)]
-    for axis in range(3 if chamfer > 0.0 else 0):
-        across = [other for other in range(3) if other != axis]
-        along, weight = line_nodes(size[axis] - chamfer, spacing, 0.0)
-        # a strip of the width chamfer sqrt(2) whose ends taper from the middle by half the leg
-        area = np.sqrt(2.0) * chamfer * (size[axis] - 1.5 * chamfer)
-        for first in (-0.5, 0.5):
-            for second in (-0.5, 0.5):
-                line = np.empty((along.size, 3))
-                line[:, axis] = along
-                line[:, across[0]] = first * (size[across[0]] - chamfer)
-                line[:, across[1]] = second * (size[across[1]] - chamfer)
-                points.append(line)
-                areas.append(weight * area / weight.sum())
-    return np.vstack(points), np.concatenate(areas)
-
-
 def line_nodes(length, spacing, inset):
     """Evenly spaced nodes on a centred line, with weights exact for cubic functions.
 

@@ -4,7 +4,6 @@ import hashlib
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -20,28 +19,32 @@ class Checkpoint:
     ----------
     path : path or None
         None keeps nothing.
-    interval : float
-        Wall time between savings [s].
     key : str
         From `run_key`: a file of another run is not read.
-    layout : module
-        ``pack(*parts)`` of it gives tuples of arrays by name, and ``unpack`` of these the parts again.
+    kinds : tuple of type
+        Of the parts of the run, in their order: arrays, and named tuples of arrays or of other named tuples.
     """
 
     path: Path | str | None
-    interval: float
     key: str
-    layout: Any
+    kinds: tuple[type, ...]
 
     def save(self, parts):
         """Write the parts of a run, in place of an earlier file only when they are whole."""
         if self.path is not None:
-            save_parts(self.path, self.key, self.layout.pack(*parts))
+            arrays = _arrays(parts)
+            # an array that stands at two places is one array again when it is read
+            first = [next(n for n, other in enumerate(arrays) if other is array) for array in arrays]
+            save_parts(self.path, self.key, {"parts": (*arrays, first)})
 
     def load(self):
         """Parts of this very run, or None where there is no file of it that can be read."""
-        parts = load_parts(self.path, self.key) if self.path is not None else None
-        return None if parts is None else self.layout.unpack(parts)
+        kept = load_parts(self.path, self.key) if self.path is not None else None
+        if kept is None:
+            return None
+        *arrays, first = kept["parts"]
+        read = iter([arrays[number] for number in first])
+        return tuple(_rebuilt(kind, read) for kind in self.kinds)
 
     def remove(self):
         """Take the file away."""
@@ -53,6 +56,18 @@ class Checkpoint:
         if self.path is None or not Path(self.path).exists():
             return "nothing of it is saved"
         return f"the same command goes on from {self.path}"
+
+
+def _arrays(part):
+    """Arrays of nested tuples, in order."""
+    return [array for inner in part for array in _arrays(inner)] if isinstance(part, tuple) else [part]
+
+
+def _rebuilt(kind, arrays):
+    """Array or named tuple of a kind, from an iterator over its arrays."""
+    if not issubclass(kind, tuple):
+        return next(arrays)
+    return kind(*(_rebuilt(inner, arrays) for inner in kind.__annotations__.values()))
 
 
 def run_key(structure, ground, parameters, record_times, time_step, *choices):

@@ -4,9 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.geometry.rotations import rotation_matrix_into
+from blockshake.geometry.rotations import rotation_rows
 from blockshake.geometry.schema import AXES, CREEP
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.jit import kernel
+from blockshake.solvers.vectors import add_impulse_into, cross, rows_product
 
 
 class ExternalForces(NamedTuple):
@@ -68,14 +69,11 @@ def external_wrenches_into(bodies, forces, state, time, ahead, wrench):
     tanh(v / 0.01 m/s): dry friction, made smooth at rest.
     """
     wrench[:] = 0.0
-    home, arm, rate, turn = np.empty(3), np.empty(3), np.empty(3), np.empty((3, 3))
     for force in range(forces.body.size):
         body, point, axis = forces.body[force], forces.point[force], forces.axis[force]
-        rotation_matrix_into(bodies.home_orientation[body], turn)
-        _turned_into(turn, point, home)
-        rotation_matrix_into(state.orientation[body], turn)
-        _turned_into(turn, point, arm)
-        _cross_into(state.angular_velocity[body], arm, rate)
+        home = rows_product(rotation_rows(bodies.home_orientation[body]), point)
+        arm = rows_product(rotation_rows(state.orientation[body]), point)
+        rate = cross(state.angular_velocity[body], arm)
         moved, speed = 0.0, 0.0
         for i in range(3):
             moved += axis[i] * (state.position[body, i] + arm[i] - bodies.home[body, i] - home[i])
@@ -87,20 +85,4 @@ def external_wrenches_into(bodies, forces, state, time, ahead, wrench):
         size -= forces.drag[force] * np.tanh(speed / CREEP)
         if forces.start[force] <= time < forces.end[force]:
             size += forces.amplitude[force]
-        _cross_into(arm, axis, rate)
-        for i in range(3):
-            wrench[body, i] += size * axis[i]
-            wrench[body, 3 + i] += size * rate[i]
-
-
-@borrowing_kernel
-def _turned_into(turn, vector, out):
-    for i in range(3):
-        out[i] = turn[i, 0] * vector[0] + turn[i, 1] * vector[1] + turn[i, 2] * vector[2]
-
-
-@borrowing_kernel
-def _cross_into(a, b, out):
-    out[0] = a[1] * b[2] - a[2] * b[1]
-    out[1] = a[2] * b[0] - a[0] * b[2]
-    out[2] = a[0] * b[1] - a[1] * b[0]
+        add_impulse_into(size, axis, arm, wrench[body])

@@ -13,6 +13,7 @@ _log = logging.getLogger(__name__)
 _NEWS = 10.0  # s of wall time between lines of progress
 _FIRST_PIECE = 100  # steps; later pieces grow and shrink towards _PIECE
 _PIECE = 0.25  # s of wall time
+_SAVING = 60.0  # s of wall time between savings
 
 
 class Due:
@@ -42,9 +43,9 @@ def run_in_pieces(start, integrate, rows_of, times, time_step, checkpoint, kept=
         ``start()`` gives the parts of the run before its first step, but for the record: a tuple whose first entry is
         the solver's progress, with its ``clock``.
     integrate : callable
-        ``integrate(pause, *parts)`` goes on to step ``pause`` at most and gives ``code, culprit, parts``: a code of
-        `blockshake.solvers.status`, the body that ended the run or -1, and the parts as they are then. The last part is
-        the record.
+        ``integrate(pause, *parts)`` goes on to step ``pause`` at most and gives ``code, culprit, *parts``: a code of
+        `blockshake.solvers.status`, the body that ended the run or -1, and the last of the parts, where the others
+        have changed in place. The last part is the record.
     rows_of : callable
         ``rows_of(*parts)`` gives the record as `Rows`.
     times : float64 array, shape (n_times,)
@@ -91,12 +92,13 @@ def run_in_pieces(start, integrate, rows_of, times, time_step, checkpoint, kept=
                 kept.begin(checkpoint.key)
             parts = start()
             parts = (*parts, record_from(0, parts[0]))
-        news, saving = Due(_NEWS), Due(checkpoint.interval)
+        news, saving = Due(_NEWS), Due(_SAVING)
         code, steps, full = PAUSED, _FIRST_PIECE, last_step(times, parts[-1], time_step)
         while code == PAUSED:
             began, before = time.monotonic(), int(parts[0].clock[STEP])
             pause = min(before + steps, full)
-            code, culprit, parts = integrate(pause, *parts)
+            code, culprit, *changed = integrate(pause, *parts)
+            parts = (*parts[: len(parts) - len(changed)], *changed)
             steps = _next_piece(pause - before, time.monotonic() - began)
             progress, record = parts[0], parts[-1]
             if code == PAUSED and progress.clock[STEP] == full:

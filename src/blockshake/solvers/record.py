@@ -5,14 +5,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.dynamics.system import ENERGY_TERMS
+from blockshake.dynamics.system import ENERGY_TERMS, Rows
 from blockshake.jit import kernel
+from blockshake.solvers.status import NEXT_RECORD
 
 _SPARE_JOINTS = 16
 _LEAST_STEPS = 3  # of a record that is not of all times: a step in which it is filled, and one before
 
 
-class Record(NamedTuple):
+class RunRecord(NamedTuple):
     """Rows of `Rows` that are at hand, ``joint_force`` for all joints; NaN at times that the run did not reach.
 
     ``first`` int64 (1,): number of the first of these rows among the times asked for.
@@ -29,7 +30,7 @@ class Record(NamedTuple):
 
 def empty_record(first, n_rows, n_bodies, room=0):
     """Record of some rows before the first of them, with room for so many joints."""
-    return Record(
+    return RunRecord(
         position=np.full((n_rows, n_bodies, 3), np.nan),
         orientation=np.full((n_rows, n_bodies, 4), np.nan),
         velocity=np.full((n_rows, n_bodies, 3), np.nan),
@@ -52,6 +53,26 @@ def last_step(times, record, time_step):
     return int(times[until] / time_step) - 1 if until < len(times) else sys.maxsize
 
 
+def recorded_rows(times, progress, record, pairs, joint_force, bodies=slice(None)):
+    """`Rows` of a record, from the progress of its run.
+
+    ``pairs`` (n_joints, 2) and ``joint_force`` (n_rows, n_joints, 3): of the joints, force NaN afterwards at times that
+    the run did not reach. ``bodies``: rows of the record's bodies in the order of the file.
+    """
+    first = int(record.first[0])
+    joint_force[progress.clock[NEXT_RECORD] - first :] = np.nan
+    return Rows(
+        time=times[first : first + len(record.energy)],
+        position=record.position[:, bodies],
+        orientation=record.orientation[:, bodies],
+        velocity=record.velocity[:, bodies],
+        angular_velocity=record.angular_velocity[:, bodies],
+        energy=record.energy,
+        joints=pairs,
+        joint_force=joint_force,
+    )
+
+
 @kernel
 def with_room(record, n_joints):
     """The record, grown where it cannot hold so many joints; a new joint has carried nothing so far."""
@@ -60,7 +81,7 @@ def with_room(record, n_joints):
         return record
     force = np.zeros((n_times, n_joints + n_joints // 4 + _SPARE_JOINTS, 3))
     force[:, :room] = record.joint_force
-    return Record(
+    return RunRecord(
         record.position,
         record.orientation,
         record.velocity,

@@ -38,7 +38,7 @@ def test_a_rival_within_the_odds_is_in_the_set_and_forms_from_outside_are_said()
 
 def test_a_second_cause_needs_more_beside_a_large_first_one():
     assert needed_beside(False) == 0.0
-    assert needed_beside(False, 1000.0) - needed_beside(False, 0.0) == pytest.approx(50.0)
+    assert needed_beside(False, 1000.0) - needed_beside(False, 0.0) == pytest.approx(100.0)
     assert needed_beside(True, 0.0) > needed_beside(False, 0.0) > 0.0
     assert group_of(rivals(weak_joint=15.0), needed=10.0) is None
     assert causes(group_of(rivals(weak_joint=17.0), needed=10.0)) == ("weak-joint",)

@@ -41,6 +41,7 @@ def _cut_after(monkeypatch, n_savings):
             raise CutShortError
 
     original = Checkpoint.save
+    monkeypatch.setattr(pieces, "_SAVING", 0.0)
     monkeypatch.setattr(pieces, "_FIRST_PIECE", 500)
     monkeypatch.setattr(pieces, "_next_piece", lambda steps, spent: steps)
     monkeypatch.setattr(Checkpoint, "save", save)
@@ -66,12 +67,12 @@ def test_a_cut_run_goes_on_bit_by_bit(whole, motion, tmp_path, monkeypatch):
     with monkeypatch.context() as patch:
         _cut_after(patch, 5)
         with pytest.raises(CutShortError):
-            _run(motion, checkpoint=path, checkpoint_interval=0.0)
+            _run(motion, checkpoint=path)
     assert path.exists()
     with monkeypatch.context() as patch:
         _cut_after(patch, 3)
         with pytest.raises(CutShortError):
-            _run(motion, checkpoint=path, checkpoint_interval=0.0)
+            _run(motion, checkpoint=path)
     steps = []
     original = Checkpoint.load
     monkeypatch.setattr(Checkpoint, "load", lambda self: steps.append(original(self)) or steps[-1])
@@ -87,7 +88,7 @@ def test_the_checkpoint_of_another_run_is_not_taken(motion, tmp_path, monkeypatc
     with monkeypatch.context() as patch:
         _cut_after(patch, 2)
         with pytest.raises(CutShortError):
-            _run(motion, checkpoint=path, checkpoint_interval=0.0)
+            _run(motion, checkpoint=path)
     softer = LsDemParameters(normal_stiffness=2.0e10)
     _assert_same(_run(motion, softer, checkpoint=path), _run(motion, softer))
 

@@ -233,38 +233,6 @@ def test_the_skin_misses_nothing_on_a_lattice_either(make_structure, run_ls_dem)
     np.testing.assert_allclose(runs[0].position, runs[1].position, atol=1e-9)
 
 
-def test_edges_that_cross_meet_by_the_nodes_of_the_chamfers(make_structure, run_ls_dem):
-    """Two bars lying across each other on their edges: without nodes there, the flats' nodes meet only deeper."""
-    turned = [np.cos(np.pi / 8), np.sin(np.pi / 8), 0.0, 0.0]  # 45 degrees about x: an edge points down
-    other = [np.cos(np.pi / 8), 0.0, np.sin(np.pi / 8), 0.0]
-    bar = {
-        "bar": {"box": [1.0, 0.2, 0.2], "chamfer": 0.02},
-        "post": {"box": [0.2, 1.0, 0.2], "chamfer": 0.02},
-    }
-    reach = (0.2 - 0.02) / np.sqrt(2.0)
-    structure = make_structure(
-        [
-            {"name": "lower", "shape": "bar", "position": [0.0, 0.0, 0.0], "orientation": turned},
-            {
-                "name": "upper",
-                "shape": "post",
-                "position": [0.013, 0.009, 2.0 * reach + 0.001],
-                "orientation": other,
-                "velocity": [0.0, 0.0, -1.0],
-            },
-        ],
-        shapes=bar,
-        slab=False,
-        gravity=[0.0, 0.0, 0.0],
-    )
-    depth = {}
-    for spacing in (0.0, 0.02):
-        run = run_ls_dem(structure, 0.1, rate=2000, edge_spacing=spacing)
-        depth[spacing] = 2.0 * reach - (run.position[:, 1, 2] - run.position[:, 0, 2]).min()
-    assert depth[0.02] < 5e-3
-    assert depth[0.0] > 2.0 * depth[0.02]
-
-
 def test_a_lattice_too_coarse_to_see_a_shape_is_an_error():
     """From the thickness of the slab on no point lies inside of it, and blocks at rest fell through it."""
     structure = load_structure("configuration-1")

@@ -53,6 +53,7 @@ def _cut_after(monkeypatch, n_savings):
             raise CutShortError
 
     original = Checkpoint.save
+    monkeypatch.setattr(pieces, "_SAVING", 0.0)
     monkeypatch.setattr(pieces, "_FIRST_PIECE", 70)
     monkeypatch.setattr(pieces, "_next_piece", lambda steps, spent: steps)
     monkeypatch.setattr(Checkpoint, "save", save)
@@ -79,7 +80,7 @@ def test_a_cut_run_goes_on_bit_by_bit(structure, whole, motion, tmp_path, monkey
         with monkeypatch.context() as patch:
             _cut_after(patch, savings)
             with pytest.raises(CutShortError):
-                _run(structure, motion, checkpoint=path, checkpoint_interval=0.0)
+                _run(structure, motion, checkpoint=path)
     assert path.exists()
     steps = []
     original = Checkpoint.load
@@ -106,7 +107,7 @@ def test_the_checkpoint_of_another_run_is_not_taken(structure, motion, tmp_path,
     with monkeypatch.context() as patch:
         _cut_after(patch, 2)
         with pytest.raises(CutShortError):
-            _run(structure, motion, checkpoint=path, checkpoint_interval=0.0)
+            _run(structure, motion, checkpoint=path)
     other = NscdParameters(theta=0.6, shrink=0.02)
     _assert_same(_run(structure, motion, other, checkpoint=path), _run(structure, motion, other))
 

@@ -19,11 +19,9 @@ _NEEDED = 6.0  # nats over none that are no chance: of 50 sound sets of joints n
 _NEEDED_OF_FREE = 20.0  # any error of the joints' model speaks for a force without a form
 _NEEDED_IN_LOOPS = 40.0  # of lost friction: where joints make a loop, the normal force of none is known
 _NEEDED_OF_SLAB = {"turns": 8.0, "lifts": 20.0}  # outliers of one marker lift the slab
-_BESIDE_SLAB = 12.0  # nats more of a cause in the joints of a slab that has one of its own
-_BESIDE, _BESIDE_SHARE = (
-    5.0,
-    0.05,
-)  # nats more of a second cause in the joints, and share of the first one's gain
+_BESIDE_SLAB = 10.0  # nats more of a cause in the joints of a slab that has one of its own
+_BESIDE = 5.0  # nats more of a second cause in the joints
+_BESIDE_SHARE = 0.1  # of the first one's gain, beside that
 
 
 @dataclass(frozen=True)

@@ -1,20 +1,21 @@
 """LS-DEM from a structure and a motion to a trajectory."""
 
+import functools
+
 import numpy as np
 
-from blockshake.dynamics.collapse import collapse_limits
-from blockshake.dynamics.motion import PITCH, rest_table
-from blockshake.dynamics.system import Rows, Trajectory, assemble_bodies, place_driven_into
+from blockshake.dynamics.motion import PITCH
+from blockshake.dynamics.system import Trajectory, assemble_bodies, place_driven_into
 from blockshake.solvers.checkpoint import Checkpoint, run_key
-from blockshake.solvers.external_forces import assemble_external_forces
-from blockshake.solvers.ls_dem import checkpoint as layout
-from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
+from blockshake.solvers.ls_dem.assembly import assemble
+from blockshake.solvers.ls_dem.contact.candidates import Candidates
+from blockshake.solvers.ls_dem.joints import NearPairs
 from blockshake.solvers.ls_dem.loop import integrate
-from blockshake.solvers.ls_dem.progress import SEARCHES, start_progress
+from blockshake.solvers.ls_dem.progress import SEARCHES, LeapfrogProgress, start_progress
 from blockshake.solvers.ls_dem.start.settled_start import settled_start
-from blockshake.solvers.ls_dem.surfaces import assemble_surfaces
 from blockshake.solvers.pieces import run_in_pieces
-from blockshake.solvers.status import COLLAPSED, DIVERGED, NEXT_RECORD, SPEED_LIMIT, STATUS, STEP
+from blockshake.solvers.record import RunRecord, recorded_rows
+from blockshake.solvers.status import COLLAPSED, DIVERGED, SPEED_LIMIT, STATUS, STEP
 
 
 def simulate_ls_dem(
@@ -25,7 +26,6 @@ def simulate_ls_dem(
     time_step=1e-5,
     rotations_blocked=False,
     checkpoint=None,
-    checkpoint_interval=60.0,
     kept=None,
 ):
     """Run LS-DEM.
@@ -44,8 +44,6 @@ def simulate_ls_dem(
         No body turns: what the shear stiffness is calibrated with.
     checkpoint : path, optional
         File that a run which was cut short goes on from, see `run_in_pieces`.
-    checkpoint_interval : float
-        Wall time between savings [s].
     kept : KeptRows, optional
         Where rows of the record go as the run goes on; the trajectory then has the last ones alone.
 
@@ -64,38 +62,27 @@ def simulate_ls_dem(
     bodies, state, stoppers = assemble_bodies(structure)
     if rotations_blocked:
         bodies = bodies._replace(inverse_inertia=np.zeros_like(bodies.inverse_inertia))
-    forces = assemble_external_forces(structure)
-    surfaces = assemble_surfaces(structure, parameters)
-    interfaces = assemble_interfaces(structure, parameters)
-    ground = motion.table if motion is not None else rest_table()
     n_steps = int(np.ceil(record_times[-1] / time_step - 1e-9))
-    limits = collapse_limits(structure)
+    assembly = assemble(structure, bodies, stoppers, motion, parameters, time_step, n_steps)
 
     def start():
         # the stack settles on the slab as the motion starts, pitch included
         at_start = np.zeros(4)
-        at_start[PITCH] = ground.coefficients[0, PITCH, 0]
+        at_start[PITCH] = assembly.table.coefficients[0, PITCH, 0]
         place_driven_into(bodies, at_start, np.zeros(4), state)
-        candidates, joints, started = settled_start(
-            structure, bodies, surfaces, interfaces, parameters.skin, time_step, state
-        )
-        return start_progress(bodies, state), candidates, joints, started
+        candidates, joints, started = settled_start(structure, assembly, state)
+        return start_progress(bodies, state, started), candidates, joints
 
-    def go_on(pause, progress, candidates, joints, started, record):
-        code, culprit, candidates, joints, record = integrate(
-            bodies, surfaces, interfaces, stoppers, forces, ground, *limits, parameters.skin, time_step,
-            n_steps, pause, record_times, progress, candidates, joints, record,
-        )  # fmt: skip
-        return code, culprit, (progress, candidates, joints, started, record)
-
-    def rows(progress, _, joints, started, record):
+    def rows(progress, _, joints, record):
         return _rows_of(structure, record_times, progress, joints, record)
 
-    key = run_key(structure, ground, parameters, record_times, time_step, rotations_blocked)
-    saving = Checkpoint(checkpoint, checkpoint_interval, key, layout)
+    go_on = functools.partial(integrate, assembly, record_times)
+    key = run_key(structure, assembly.table, parameters, record_times, time_step, rotations_blocked)
+    saving = Checkpoint(checkpoint, key, (LeapfrogProgress, Candidates, NearPairs, RunRecord))
     code, body, parts = run_in_pieces(start, go_on, rows, record_times, time_step, saving, kept)
-    progress, _, _, started, _ = parts
-    end_time = min(min(int(progress.clock[STEP]), n_steps) * time_step, float(record_times[-1]))
+    progress = parts[0]
+    steps = min(int(progress.clock[STEP]), n_steps)
+    end_time = min(steps * time_step, float(record_times[-1]))
     status, reason = _status(code, structure, body, end_time)
     return Trajectory(
         **vars(rows(*parts)),
@@ -104,10 +91,10 @@ def simulate_ls_dem(
         end_time=end_time,
         numerics={
             "time_step": time_step,
-            "steps": min(int(progress.clock[STEP]), n_steps),
-            "settling_steps": int(started[0]),
-            "stable_time_step": float(started[1]),
-            "overlap_as_laid": float(started[2]),
+            "steps": steps,
+            "settling_steps": int(progress.started[0]),
+            "stable_time_step": float(progress.started[1]),
+            "overlap_as_laid": float(progress.started[2]),
             "list_searches": int(progress.clock[SEARCHES]),
         },
     )
@@ -123,28 +110,11 @@ def _status(code, structure, body, time):
 
 
 def _rows_of(structure, times, progress, joints, record):
-    """`Rows` of a run's record."""
-    first, n_rows = int(record.first[0]), len(record.energy)
-    pairs, force = _joints(structure, joints, record.joint_force, int(progress.clock[NEXT_RECORD]) - first)
-    return Rows(
-        time=times[first : first + n_rows],
-        position=record.position,
-        orientation=record.orientation,
-        velocity=record.velocity,
-        angular_velocity=record.angular_velocity,
-        energy=record.energy,
-        joints=pairs,
-        joint_force=force,
-    )
-
-
-def _joints(structure, joints, force, n_recorded):
-    """Pairs that touched, lower body first, ordered by index, with the force on the upper one."""
+    """`Rows` of a run's record: pairs that touched, lower body first, ordered by index."""
     rows = np.flatnonzero(joints.touched)
     rows = rows[np.lexsort(joints.pair[rows].T[::-1])]
-    pairs = joints.pair[rows]
-    height = structure.centroid[:, 2]
+    pairs, height = joints.pair[rows], structure.centroid[:, 2]
     swapped = height[pairs[:, 0]] > height[pairs[:, 1]]
-    force = force[:, rows] * np.where(swapped, -1.0, 1.0)[None, :, None]
-    force[n_recorded:] = np.nan
-    return np.where(swapped[:, None], pairs[:, ::-1], pairs), force
+    force = record.joint_force[:, rows] * np.where(swapped, -1.0, 1.0)[None, :, None]
+    pairs = np.where(swapped[:, None], pairs[:, ::-1], pairs)
+    return recorded_rows(times, progress, record, pairs, force)

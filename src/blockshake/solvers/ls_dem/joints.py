@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.jit import kernel
 
 
-class Joints(NamedTuple):
+class NearPairs(NamedTuple):
     """Joints in the order in which their bodies came near; they outlast the lists of near nodes.
 
     ``pair`` int64 (n_joints, 2): bodies, the lower index first. ``shift`` (n_joints, 3): where contact sees the first
@@ -27,7 +27,7 @@ class Joints(NamedTuple):
 @kernel
 def no_joints():
     """Joints before any body came near another."""
-    return Joints(
+    return NearPairs(
         np.empty((0, 2), np.int64), np.empty((0, 3)), np.empty((0, 3)), np.empty(0), np.empty(0),
         np.empty(0, np.bool_),
     )  # fmt: skip
@@ -46,7 +46,7 @@ def find_joint(joints, a, b):
 def add_joints(joints, pairs):
     """Joints with further pairs, which have no shift, force, slip or touch."""
     n, more = joints.slip.size, pairs.shape[0]
-    new = Joints(
+    new = NearPairs(
         np.empty((n + more, 2), np.int64), np.zeros((n + more, 3)), np.zeros((n + more, 3)), np.zeros(n + more),
         np.zeros(n + more), np.zeros(n + more, np.bool_),
     )  # fmt: skip

@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.dynamics.collapse import find_collapsed
 from blockshake.dynamics.free_motion import drift_into, spin_into
-from blockshake.dynamics.motion import PITCH, find_segment, ground_state_into
+from blockshake.dynamics.motion import PITCH
 from blockshake.dynamics.system import (
     CONTACT_LOSS,
     ELASTIC,
@@ -19,6 +19,7 @@ from blockshake.dynamics.system import (
 )
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
 from blockshake.jit import borrowing_kernel, kernel
+from blockshake.solvers.ground import ground_at_start, move_ground_into
 from blockshake.solvers.ls_dem.contact.candidates import find_candidates, lists_expired
 from blockshake.solvers.ls_dem.contact.contact_forces import (
     SPRING_ENERGY,
@@ -30,7 +31,11 @@ from blockshake.solvers.ls_dem.contact.contact_forces import (
     no_loads,
 )
 from blockshake.solvers.ls_dem.contact.relative_pose import keep_poses
-from blockshake.solvers.ls_dem.external_loads import external_loads_into, external_power
+from blockshake.solvers.ls_dem.outside_loads import (
+    external_loads_into,
+    external_power,
+    stopper_forces_into,
+)
 from blockshake.solvers.ls_dem.progress import (
     DASHPOT_HEAT,
     FRICTION_HEAT,
@@ -38,7 +43,6 @@ from blockshake.solvers.ls_dem.progress import (
     MOST_FRICTION_HEAT,
     SEARCHES,
 )
-from blockshake.solvers.ls_dem.stoppers import stopper_forces_into
 from blockshake.solvers.record import with_room
 from blockshake.solvers.status import COLLAPSED, COMPLETED, DIVERGED, NEXT_RECORD, PAUSED, SPEED_LIMIT, STEP
 
@@ -47,52 +51,28 @@ _LISTS_EXPIRED = -1
 
 
 @kernel
-def integrate(
-    bodies,
-    surfaces,
-    interfaces,
-    stoppers,
-    forces,
-    ground,
-    supported,
-    drop_limit,
-    skin,
-    dt,
-    n_steps,
-    pause,
-    times,
-    progress,
-    candidates,
-    joints,
-    record,
-):
+def integrate(assembly, times, pause, progress, candidates, joints, record):
     """Run LS-DEM from where ``progress`` stands to its last step, or to a pause.
 
     Parameters
     ----------
-    bodies, surfaces, interfaces, stoppers, forces : Bodies, Surfaces, Interfaces, Stoppers, ExternalForces
-    ground : MotionTable
-        Motion of the driven bodies.
-    supported : bool array, shape (n_bodies,)
-    drop_limit : float64 array, shape (n_bodies,)
-        Criterion of collapse, see `find_collapsed` [m].
-    skin, dt : float
-        Reach of the lists [m], time step [s].
-    n_steps, pause : int
-        Last step, and the step before which to pause.
+    assembly : Assembly
     times : float64 array, shape (n_times,)
         When to record, increasing from 0 [s].
-    progress : Progress
-    candidates, joints : Candidates, Joints
+    pause : int
+        Step before which to pause.
+    progress : LeapfrogProgress
+        Changed in place.
+    candidates, joints : Candidates, NearPairs
         Near nodes with the shear springs of the step before.
-    record : Record
+    record : RunRecord
         Filled from the next record on.
 
     Returns
     -------
     code, culprit : int
         Of `blockshake.solvers.status`; body that collapsed or -1.
-    candidates, joints, record : Candidates, Joints, Record
+    candidates, joints, record : Candidates, NearPairs, RunRecord
         To go on with.
 
     Notes
@@ -101,23 +81,21 @@ def integrate(
     order with damping too (see `node_force`). Heat, input work and elastic energy are summed so that their balance
     closes but for the error of the scheme.
     """
+    bodies = assembly.bodies
     n_bodies = bodies.mass.size
     loads, record = no_loads(n_bodies, joints), with_room(record, joints.slip.size)
-    now, velocity = np.zeros(4), np.zeros(4)
-    turn, external = np.zeros(3), np.zeros((n_bodies, 6))
-    start = ground.coefficients[0, :, 0].copy()
-    start[PITCH] = 0.0
+    ground, turn, external = ground_at_start(assembly.table), np.zeros(3), np.zeros((n_bodies, 6))
     searched = False
     while True:
         code, culprit = _advance(
-            bodies, surfaces, interfaces, stoppers, forces, ground, supported, drop_limit, skin, dt, n_steps, pause,
-            times, progress, candidates, record, searched, start, now, velocity, turn, external, loads,
-        )  # fmt: skip
+            assembly, times, pause, progress, candidates, record, searched, ground, turn, external, loads
+        )
         if code != _LISTS_EXPIRED:
             return code, culprit, candidates, joints, record
         candidates, joints = find_candidates(
-            surfaces, bodies.driven, progress.poses, progress.state.orientation, skin, candidates, joints
-        )
+            assembly.surfaces, bodies.driven, progress.poses, progress.state.orientation, assembly.skin, candidates,
+            joints,
+        )  # fmt: skip
         loads = no_loads(n_bodies, joints)
         progress.clock[SEARCHES] += 1
         record = with_room(record, joints.slip.size)
@@ -125,43 +103,16 @@ def integrate(
 
 
 @borrowing_kernel
-def _advance(
-    bodies,
-    surfaces,
-    interfaces,
-    stoppers,
-    forces,
-    ground,
-    supported,
-    drop_limit,
-    skin,
-    dt,
-    n_steps,
-    pause,
-    times,
-    progress,
-    candidates,
-    record,
-    searched,
-    start,
-    now,
-    velocity,
-    turn,
-    external,
-    loads,
-):
+def _advance(assembly, times, pause, progress, candidates, record, searched, ground, turn, external, loads):
     """Steps until the lists expire, or the run ends or pauses.
 
     Parameters
     ----------
-    bodies, ..., record
+    assembly, ..., record
         As in `integrate`.
     searched : bool
         Whether the lists were made for the poses of the next step.
-    start : float64 array, shape (4,)
-        Ground displacement before the first step, without pitch [m].
-    now, velocity : float64 arrays, shape (4,)
-        Workspace: ground displacement and pitch since then, and their rates.
+    ground : Ground
     turn, external : float64 arrays, shape (3,) and (n_bodies, 6)
         Workspace of the record; external forces and moments, zero where there are none [N, N m].
     loads : Loads
@@ -172,18 +123,16 @@ def _advance(
     code, culprit : int
         As in `integrate`, or `_LISTS_EXPIRED` before the forces of a step.
     """
+    bodies, surfaces, interfaces, stoppers, forces, _, supported, drop_limit, skin, dt, n_steps = assembly
     state, poses, clock, audit = progress.state, progress.poses, progress.clock, progress.audit
-    segment = 0
+    now = ground.displacement
     while clock[STEP] <= n_steps:
         step = clock[STEP]
         if step == pause:
             return PAUSED, -1
         t = step * dt
-        segment = find_segment(ground.breaks, t, segment)
-        ground_state_into(ground, segment, t, now, velocity)
-        for channel in range(now.size):
-            now[channel] -= start[channel]
-        place_driven_into(bodies, now, velocity, state)
+        move_ground_into(ground, t)
+        place_driven_into(bodies, now, ground.velocity, state)
         for body in range(bodies.mass.size):
             rotation_matrix_into(state.orientation[body], poses.rotation[body])
         if step == 0:

@@ -32,11 +32,6 @@ class LsDemParameters(Strict):
         le=LARGEST_INSET,
         description="distance of the outermost nodes from the perimeter of a flat, over its narrower width [1]; chosen",
     )
-    edge_spacing: NotNegative = Field(
-        0.0,
-        description="aimed distance of further nodes along the chamfers of boxes [m]; chosen: 0 for none, they "
-        "matter only where edges meet edges",
-    )
     level_set: Literal["exact", "grid"] = Field(
         "exact",
         description="how the distance to a box or a convex mesh is found [exact or grid], by its formula or sampled; "

@@ -14,14 +14,14 @@ SEARCHES = 2
 FRICTION_HEAT, MOST_FRICTION_HEAT, DASHPOT_HEAT, INPUT_WORK = 0, 1, 2, 3
 
 
-class Progress(NamedTuple):
+class LeapfrogProgress(NamedTuple):
     """State of a run between two steps, changed in place by kernels.
 
     ``state``: at the last step. ``poses``: its positions are those of ``state``. ``half_velocity``,
     ``half_momentum`` (n_bodies, 3): half a step before the next step, the latter of rotation, world
     frame [m/s, kg m2/s]. ``driven_force``, ``driven_moment`` (n_bodies, 3): on driven bodies at the last
     step [N, N m]. ``ground`` (4,): displacement and pitch at the last step [m, rad]. ``clock`` int64 (3,):
-    next step, next record, searches so far. ``audit`` (4,) [J].
+    next step, next record, searches so far. ``audit`` (4,) [J]. ``started`` (3,): from `settled_start`.
     """
 
     state: State
@@ -33,16 +33,17 @@ class Progress(NamedTuple):
     ground: np.ndarray
     clock: np.ndarray
     audit: np.ndarray
+    started: np.ndarray
 
 
-def start_progress(bodies, state):
+def start_progress(bodies, state, started):
     """Progress before the first step."""
     n_bodies = len(bodies.mass)
     rotation = np.ascontiguousarray(rotation_matrices(state.orientation))
     spin_frame = np.einsum("bji,bj->bi", rotation, state.angular_velocity)
     momentum = np.einsum("bij,bjk,bk->bi", rotation, bodies.inertia, spin_frame)
     momentum[bodies.driven] = 0.0
-    return Progress(
+    return LeapfrogProgress(
         state=state,
         poses=Poses(state.position, rotation, state.position.copy(), rotation.copy()),
         half_velocity=state.velocity.copy(),
@@ -52,4 +53,5 @@ def start_progress(bodies, state):
         ground=np.zeros(4),
         clock=np.zeros(3, dtype=np.int64),
         audit=np.zeros(4),
+        started=started,
     )

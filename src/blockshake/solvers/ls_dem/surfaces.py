@@ -8,12 +8,11 @@ from blockshake.errors import InputError
 from blockshake.geometry.level_set import box_distance, hollow_box_distance
 from blockshake.geometry.level_set_grid import box_grid, grid_table, mesh_grid
 from blockshake.geometry.meshes.mesh_nodes import mesh_nodes
-from blockshake.geometry.surface_nodes import box_nodes, chamfer_nodes
+from blockshake.geometry.surface_nodes import box_nodes
 from blockshake.geometry.trilinear import grid_distance
-from blockshake.jit import kernel
+from blockshake.jit import inline_kernel, kernel
 
-# Columns of ``Surfaces.lattice``
-FIRST, ORIGIN_X, ORIGIN_Y, ORIGIN_Z, COUNT_X, COUNT_Y, COUNT_Z, INVERSE_SPACING, N_LATTICE = range(9)
+INVERSE_SPACING = 7  # column of ``Surfaces.lattice``
 _COARSEST = 4.0 / 3.0  # cell of a lattice over volume per surface: two thirds of a plate's thickness
 _MOST_POINTS = 5e7  # of a lattice: 400 MB
 _MOST_NODES = 1e6  # of a shape: a step then takes a second
@@ -28,7 +27,7 @@ class Surfaces(NamedTuple):
     shape, whose origin is the centroid; ``radius`` (n_bodies,) about the mass centre [m]. ``half``, ``middle``
     (n_shapes, 3): half edges and middle of the bounding box; ``wide`` (n_shapes,): radius of the largest
     bodies that stand on a box without a look at its edges, see `_wide` [m]; ``chamfer``, ``hollow`` (n_shapes,) [m].
-    ``lattice`` (n_shapes, N_LATTICE): that of a sampled level set, its spacing zero where the distance of
+    ``lattice`` (n_shapes, 8): that of a sampled level set, its spacing zero where the distance of
     the box is exact, first value, origin [m], counts and cells per metre; ``values`` (n_values,)
     [m]. ``steepest`` (n_shapes,): most that the level set changes per distance [1]. ``first_plane`` int64
     (n_shapes + 1,), ``planes`` (n_planes, 4): outward normals and distances of the faces of a convex mesh [1, m].
@@ -132,21 +131,15 @@ def _nodes(structure, name, parameters):
     breadth = min(shape.box or np.ptp(solid.vertices, axis=0)) - 2.0 * shape.chamfer
     spacing = parameters.node_spacing * max(1.0, breadth / _BROAD)
     count = solid.properties.area / spacing**2
-    if parameters.edge_spacing:
-        count += 4.0 * np.ptp(solid.vertices, axis=0).sum() / parameters.edge_spacing
     if count > _MOST_NODES:
         raise InputError(
             structure.source,
             f"shapes.{name}",
-            f"expected at most {_MOST_NODES:.0e} nodes, not {count:.1g}: a wider ls_dem.node_spacing or edge_spacing",
+            f"expected at most {_MOST_NODES:.0e} nodes, not {count:.1g}: a wider ls_dem.node_spacing",
         )
     if shape.box is None:
         return mesh_nodes(solid.vertices, solid.triangles, spacing, parameters.perimeter_inset)
-    points, areas = box_nodes(shape.box, shape.chamfer, shape.hollow, spacing, parameters.perimeter_inset)
-    if parameters.edge_spacing == 0.0:
-        return points, areas
-    more_points, more_areas = chamfer_nodes(shape.box, shape.chamfer, parameters.edge_spacing)
-    return np.vstack([points, more_points]), np.concatenate([areas, more_areas])
+    return box_nodes(shape.box, shape.chamfer, shape.hollow, spacing, parameters.perimeter_inset)
 
 
 def _planes(structure, name, parameters):
@@ -212,19 +205,23 @@ def _check_grid(structure, name, parameters):
 @kernel
 def level_set(surfaces, shape, x, y, z):
     """Level-set value of a shape at one place in its frame [m]."""
-    lattice = surfaces.lattice[shape]
     if surfaces.first_plane[shape] < surfaces.first_plane[shape + 1]:
         farthest = -np.inf
         for plane in surfaces.planes[surfaces.first_plane[shape] : surfaces.first_plane[shape + 1]]:
             farthest = max(farthest, plane[0] * x + plane[1] * y + plane[2] * z - plane[3])
         return farthest
-    if lattice[INVERSE_SPACING] == 0.0:
+    if surfaces.lattice[shape, INVERSE_SPACING] == 0.0:
         half = surfaces.half[shape]
         chamfer, hollow = surfaces.chamfer[shape], surfaces.hollow[shape]
         if hollow > 0.0:
             return hollow_box_distance(x, y, z, half[0], half[1], half[2], chamfer, hollow)[0]
         return box_distance(x, y, z, half[0], half[1], half[2], chamfer)[0]
-    return grid_distance(
-        x, y, z, surfaces.values, lattice[FIRST], lattice[ORIGIN_X], lattice[ORIGIN_Y], lattice[ORIGIN_Z],
-        lattice[COUNT_X], lattice[COUNT_Y], lattice[COUNT_Z], lattice[INVERSE_SPACING],
-    )[0]  # fmt: skip
+    at_first, ox, oy, oz, n_x, n_y, n_z, inverse = lattice_of(surfaces.lattice, shape)
+    return grid_distance(x, y, z, surfaces.values, at_first, ox, oy, oz, n_x, n_y, n_z, inverse)[0]
+
+
+@inline_kernel
+def lattice_of(lattice, shape):
+    """First value, origin, counts and cells per metre of a shape's lattice, as eight numbers."""
+    row = lattice[shape]
+    return row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7]

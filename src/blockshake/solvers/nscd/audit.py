@@ -29,8 +29,8 @@ from blockshake.solvers.nscd.progress import (
     PARTED_STEPS,
     WORST_RESIDUAL,
 )
-from blockshake.solvers.nscd.vectors import dot, transposed_product, velocity_at
 from blockshake.solvers.stoppers import closure_into
+from blockshake.solvers.vectors import dot, transposed_product, velocity_at
 
 # Relative residual above which a step counts as badly solved; fixed by the project's contract.
 _BAD_RESIDUAL = 1e-4

@@ -1,30 +1,23 @@
 """Nonsmooth contact dynamics of rigid convex bodies: one call, one trajectory."""
 
+import functools
+
 import numpy as np
 
 from blockshake.dynamics.system import assemble_bodies
 from blockshake.solvers.checkpoint import Checkpoint, run_key
-from blockshake.solvers.nscd import checkpoint as layout
-from blockshake.solvers.nscd.contact.contacts import empty_contacts
-from blockshake.solvers.nscd.joints import no_joints
+from blockshake.solvers.nscd.contact.contacts import Contacts, empty_contacts
+from blockshake.solvers.nscd.joints import Joints, no_joints
 from blockshake.solvers.nscd.loop import integrate
 from blockshake.solvers.nscd.outcome import rows_of, trajectory_of
-from blockshake.solvers.nscd.progress import start_progress
+from blockshake.solvers.nscd.progress import Progress, start_progress
 from blockshake.solvers.nscd.scene import assemble_scene, order_of_bodies, reordered
 from blockshake.solvers.nscd.start import settled_state
 from blockshake.solvers.pieces import run_in_pieces
+from blockshake.solvers.record import RunRecord
 
 
-def simulate_nscd(
-    structure,
-    motion,
-    parameters,
-    record_times,
-    time_step=1e-3,
-    checkpoint=None,
-    checkpoint_interval=60.0,
-    kept=None,
-):
+def simulate_nscd(structure, motion, parameters, record_times, time_step=1e-3, checkpoint=None, kept=None):
     """Motion of rigid blocks with Signorini's condition and Coulomb's friction at their contacts.
 
     Parameters
@@ -39,8 +32,6 @@ def simulate_nscd(
         [s]
     checkpoint : path, optional
         File that a run which was cut short goes on from, see `run_in_pieces`.
-    checkpoint_interval : float
-        Wall time between savings [s].
     kept : KeptRows, optional
         Where rows of the record go as the run goes on; the trajectory then has the last ones alone.
 
@@ -76,15 +67,12 @@ def simulate_nscd(
         progress = start_progress(settled_state(scene, touching, reordered(given, order)))
         return progress, empty_contacts(0), no_joints(len(order))
 
-    def go_on(pause, progress, *parts):
-        code, culprit, *parts = integrate(scene, times, pause, progress, *parts)
-        return code, culprit, (progress, *parts)
-
     def rows(progress, _, joints, record):
         return rows_of(order, times, progress, joints, record)
 
+    go_on = functools.partial(integrate, scene, times)
     key = run_key(structure, scene.table, parameters, times, time_step)
-    saving = Checkpoint(checkpoint, checkpoint_interval, key, layout)
+    saving = Checkpoint(checkpoint, key, (Progress, Contacts, Joints, RunRecord))
     code, culprit, parts = run_in_pieces(start, go_on, rows, times, time_step, saving, kept)
     progress, _, joints, record = parts
     return trajectory_of(structure, order, times, time_step, code, culprit, progress, joints, record)

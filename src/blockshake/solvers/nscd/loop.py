@@ -6,6 +6,7 @@ from blockshake.dynamics.collapse import find_collapsed
 from blockshake.dynamics.system import place_driven_into
 from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.external_forces import external_wrenches_into
+from blockshake.solvers.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
 from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit, stopper_energy
 from blockshake.solvers.nscd.contact.contacts import contact_margin, delassus_into, detect_contacts
 from blockshake.solvers.nscd.contact.friction import friction_into
@@ -13,16 +14,15 @@ from blockshake.solvers.nscd.contact.law_shift import bodies_meet, law_shift_int
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed, place_into
 from blockshake.solvers.nscd.contact.stoppers import place_stoppers_into
 from blockshake.solvers.nscd.contact.warm_start import warm_start_into
-from blockshake.solvers.nscd.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
 from blockshake.solvers.nscd.joints import press_anew, slip_into, with_pressed
 from blockshake.solvers.nscd.progress import LAST_STEP
 from blockshake.solvers.nscd.recording import record_driven_into, record_forces_into, record_into
 from blockshake.solvers.nscd.solve.gauss_seidel import contact_velocities_into
 from blockshake.solvers.nscd.solve.solver import solve_contacts_into
 from blockshake.solvers.nscd.step import empty_step, move_into, predict_into
-from blockshake.solvers.nscd.vectors import dot
 from blockshake.solvers.record import with_room
 from blockshake.solvers.status import COLLAPSED, COMPLETED, DIVERGED, NEXT_RECORD, PAUSED, SPEED_LIMIT, STEP
+from blockshake.solvers.vectors import dot
 
 _ROUNDING = 1e-9  # of a step, when a record time meets the end of a step
 
@@ -33,7 +33,7 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
 
     Parameters
     ----------
-    scene : Scene
+    scene : ContactScene
     times : float64 array, shape (n_times,)
         When to record, increasing from 0 [s].
     pause : int
@@ -43,14 +43,14 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
     contacts : Contacts
         Of the step before, to start the next one from.
     joints : Joints
-    record : Record
+    record : RunRecord
         Filled from the next record on.
 
     Returns
     -------
     code, culprit : int
         Of `blockshake.solvers.status`; body that collapsed or ran away, else -1.
-    contacts, joints, record : Contacts, Joints, Record
+    contacts, joints, record : Contacts, Joints, RunRecord
         To go on with.
 
     Notes
@@ -68,7 +68,7 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
         _start(scene, ground, step, placed, progress)
     n_steps = int(np.ceil(times[times.size - 1] / dt - _ROUNDING))
     if n_steps == 0:
-        record_into(bodies, state, state, energy, energy, 0.0, 0, record)
+        record_into(bodies, state, state, energy, energy, 0.0, clock[NEXT_RECORD], record)
         clock[NEXT_RECORD] = 1
     while clock[STEP] < n_steps:
         if clock[STEP] == pause:
@@ -185,27 +185,12 @@ def least_impulse(bodies, gravity, v, dt):
 
     ``gravity``: its size [m/s2]. ``v`` (n_bodies, 6): velocities of the bodies.
     """
-    return 1e-3 * dt * gravity * _lightest(bodies) + 1e-12 * _momentum(bodies, v) + 1e-300
-
-
-@borrowing_kernel
-def _lightest(bodies):
-    """Least mass of a free body [kg]."""
-    lightest = np.inf
+    lightest, momentum = np.inf, 0.0
     for body in range(bodies.mass.size):
         if not bodies.driven[body]:
             lightest = min(lightest, bodies.mass[body])
-    return lightest
-
-
-@borrowing_kernel
-def _momentum(bodies, v):
-    """Sum of the sizes of the free bodies' momenta [N s]."""
-    total = 0.0
-    for body in range(bodies.mass.size):
-        if not bodies.driven[body]:
-            total += bodies.mass[body] * np.sqrt(dot(v[body, :3], v[body, :3]))
-    return total
+            momentum += bodies.mass[body] * np.sqrt(dot(v[body, :3], v[body, :3]))
+    return 1e-3 * dt * gravity * lightest + 1e-12 * momentum + 1e-300
 
 
 @borrowing_kernel

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.dynamics.system import Rows, Status, Trajectory
+from blockshake.dynamics.system import Status, Trajectory
 from blockshake.solvers.nscd.progress import (
     BAD_STEPS,
     CAPPED_STEPS,
@@ -14,7 +14,8 @@ from blockshake.solvers.nscd.progress import (
     PARTED_STEPS,
     WORST_RESIDUAL,
 )
-from blockshake.solvers.status import COLLAPSED, DIVERGED, NEXT_RECORD, SPEED_LIMIT, STATUS, STEP
+from blockshake.solvers.record import recorded_rows
+from blockshake.solvers.status import COLLAPSED, DIVERGED, SPEED_LIMIT, STATUS, STEP
 
 # Share of badly solved steps above which a run is not to be trusted; fixed by the project's contract.
 _MOST_BAD_STEPS = 0.01
@@ -39,22 +40,11 @@ def trajectory_of(structure, order, times, time_step, code, culprit, progress, j
 
 def rows_of(order, times, progress, joints, record):
     """`Rows` of a run's record, bodies in the order of the file; arguments as of `trajectory_of`."""
-    place, first, n_rows = np.argsort(order), int(record.first[0]), len(record.energy)
     # a run that ends in its first step has found its joints and made no room for them
-    joint_force = np.zeros((n_rows, len(joints.slip), 3))
+    joint_force = np.zeros((len(record.energy), len(joints.slip), 3))
     recorded = record.joint_force[:, : len(joints.slip)]
     joint_force[:, : recorded.shape[1]] = recorded
-    joint_force[progress.clock[NEXT_RECORD] - first :] = np.nan
-    return Rows(
-        time=times[first : first + n_rows],
-        position=record.position[:, place],
-        orientation=record.orientation[:, place],
-        velocity=record.velocity[:, place],
-        angular_velocity=record.angular_velocity[:, place],
-        energy=record.energy,
-        joints=order[joints.pair],
-        joint_force=joint_force,
-    )
+    return recorded_rows(times, progress, record, order[joints.pair], joint_force, np.argsort(order))
 
 
 def _status(code, name, end_time, clock):

@@ -1,4 +1,4 @@
-"""Numerical parameters of the nonsmooth contact dynamics solver."""
+"""Numerical parameters of nonsmooth contact dynamics, and those of them that all its models have."""
 
 from typing import Annotated
 
@@ -7,8 +7,8 @@ from pydantic import Field
 from blockshake.validation import Finite, Positive, ProperFraction, Strict
 
 
-class NscdParameters(Strict):
-    """Numerical parameters of nonsmooth contact dynamics; each is set as ``nscd.NAME``."""
+class StepParameters(Strict):
+    """Numerical parameters of a step, whether blocks deform or not."""
 
     theta: Annotated[Finite, Field(ge=0.5, le=1.0)] = Field(
         0.5, description="weight of the velocity at the end of a step [1]; 0.5 conserves energy, Jean (1999)"
@@ -24,6 +24,11 @@ class NscdParameters(Strict):
     impact_parts: Annotated[int, Field(ge=1, le=1000)] = Field(
         1, description="parts into which a step is cut in which bodies meet [1]; 1 takes it whole"
     )
+
+
+class NscdParameters(StepParameters):
+    """Numerical parameters of rigid nonsmooth contact dynamics; each is set as ``nscd.NAME``."""
+
     shrink: ProperFraction = Field(
         0.0,
         description="contact areas are scaled about their centroid by one minus this [1]; Zhou et al. (2023) "

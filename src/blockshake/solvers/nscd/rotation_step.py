@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.geometry.rotations import rotate_into, rotation_rows
 from blockshake.jit import borrowing_kernel
-from blockshake.solvers.nscd.vectors import columns_product, matrix_product, put_into, rows_product
+from blockshake.solvers.vectors import columns_product, matrix_product, put_into, rows_product
 
 _MAX_ITERATIONS = 50
 _ROUNDING = 1e-15

@@ -9,7 +9,7 @@ from blockshake.dynamics.joint_layers import joint_compliance
 from blockshake.dynamics.motion import MotionTable, rest_table
 from blockshake.dynamics.system import Bodies, Stoppers
 from blockshake.solvers.external_forces import ExternalForces, assemble_external_forces
-from blockshake.solvers.nscd.contact.friction import Friction, ordered_friction
+from blockshake.solvers.nscd.contact.friction import OrderedFriction, ordered_friction
 from blockshake.solvers.nscd.contact.polyhedra import Polyhedra, pack_polyhedra
 
 
@@ -33,7 +33,7 @@ class Watch(NamedTuple):
     base: int
 
 
-class Scene(NamedTuple):
+class ContactScene(NamedTuple):
     """Bodies and what acts on them.
 
     ``layers`` (n_bodies, n_bodies): compliance of the layers in the joints [m3/N]. ``table``: motion of the driven
@@ -41,7 +41,7 @@ class Scene(NamedTuple):
     """
 
     bodies: Bodies
-    friction: Friction
+    friction: OrderedFriction
     stoppers: Stoppers
     forces: ExternalForces
     layers: np.ndarray
@@ -87,7 +87,7 @@ def assemble_scene(structure, bodies, stoppers, motion, parameters, time_step, o
     driven, forces = np.flatnonzero(structure.driven), assemble_external_forces(structure)
     base = int(place[driven[0]]) if len(driven) else -1
     supported, drop_limit = collapse_limits(structure)
-    return Scene(
+    return ContactScene(
         bodies=reordered(bodies._replace(gravity=None), order)._replace(gravity=bodies.gravity),
         friction=ordered_friction(structure, order),
         stoppers=stoppers._replace(body=place[stoppers.body]),

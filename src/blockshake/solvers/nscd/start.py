@@ -7,11 +7,11 @@ from blockshake.dynamics.system import State
 from blockshake.geometry.rotations import rotate_into
 from blockshake.geometry.structure import START_TOLERANCE
 from blockshake.jit import kernel
+from blockshake.solvers.ground import ground_at_start
 from blockshake.solvers.nscd.contact.contacts import delassus_into, detect_contacts
 from blockshake.solvers.nscd.contact.friction import friction_into
 from blockshake.solvers.nscd.contact.law_shift import law_shift_into
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed, place_into
-from blockshake.solvers.nscd.ground import ground_at_start
 from blockshake.solvers.nscd.joints import no_joints
 from blockshake.solvers.nscd.solve.solver import solve_contacts_into
 from blockshake.solvers.nscd.step import empty_step, predict_into
@@ -20,7 +20,8 @@ LONG_STEP = 0.1  # s; what swings faster than 10 rad/s comes to rest by at least
 SETTLING_TOLERANCE = 1e-12  # of the contact problem of a long step, below that of a run: it leaves no thump
 _MOST_STEPS = 100
 _AT_REST = 1e-13  # m, of a step's motion: the rounding of a position
-_MOST_ITERATIONS = 200
+# typed numbers: for literal ones detection and solver would be compiled once more
+_MOST_ITERATIONS, _NO_STOPPERS = np.int64(200), np.int64(0)
 
 
 def settled_state(scene, touching, state):
@@ -28,7 +29,7 @@ def settled_state(scene, touching, state):
 
     Parameters
     ----------
-    scene : Scene
+    scene : ContactScene
         The driven bodies have the pitch of the motion's start.
     touching : bool array, shape (n_bodies, n_bodies)
         As in `Structure`, in the solver's order.
@@ -57,7 +58,7 @@ def settle_stacks(scene, touching, soft, state, static_step, most_steps, at_rest
 
     Parameters
     ----------
-    scene, touching, state : Scene, bool array, shape (n_bodies, n_bodies), State
+    scene, touching, state : ContactScene, bool array, shape (n_bodies, n_bodies), State
         As of `settled_state`.
     soft : bool array, shape (n_bodies,)
         A stack is settled where one of its free bodies is.
@@ -112,7 +113,7 @@ def _static_step(scene, joints, state):
     memory = np.full(scene.layers.shape, -1, np.int64)
     contacts = detect_contacts(
         bodies, polyhedra, placed, step.rotations, START_TOLERANCE, scene.settings.shrink, scene.layers,
-        theta * dt * dt, memory, 0,
+        theta * dt * dt, memory, _NO_STOPPERS,
     )  # fmt: skip
     delassus_into(bodies, step.inverse_inertia, contacts)
     friction_into(scene.friction, joints, step.rotations, contacts)

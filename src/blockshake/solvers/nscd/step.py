@@ -8,7 +8,7 @@ from blockshake.dynamics.system import State, place_driven_into
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
 from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.nscd.rotation_step import turn_into
-from blockshake.solvers.nscd.vectors import cross, put_into, tensor_in_world_into, transposed_product
+from blockshake.solvers.vectors import add_impulse_into, put_into, tensor_in_world_into, transposed_product
 
 
 class Step(NamedTuple):
@@ -125,14 +125,8 @@ def move_into(bodies, ground, dt, theta, contacts, step, state):
             step.impulse[body, i] = step.external[body, i]
     for contact in range(contacts.gap.size):
         world = transposed_product(contacts.basis[contact], contacts.impulse[contact])
-        for sign, body, arm in (
-            (-1.0, contacts.body_a[contact], contacts.arm_a[contact]),
-            (1.0, contacts.body_b[contact], contacts.arm_b[contact]),
-        ):
-            total, moment = step.impulse[body], cross(arm, world)
-            for axis in range(3):
-                total[axis] += sign * world[axis]
-                total[3 + axis] += sign * moment[axis]
+        add_impulse_into(-1.0, world, contacts.arm_a[contact], step.impulse[contacts.body_a[contact]])
+        add_impulse_into(1.0, world, contacts.arm_b[contact], step.impulse[contacts.body_b[contact]])
     place_driven_into(bodies, ground.displacement, ground.velocity, state)
     for body in range(bodies.mass.size):
         if bodies.driven[body]:

@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.jit import borrowing_kernel, kernel
-from blockshake.solvers.nscd.contact.contacts import empty_contacts
+from blockshake.solvers.near_boxes import find_pairs
+from blockshake.solvers.nscd.contact.contacts import add_contact_into, empty_contacts, first_rows
 from blockshake.solvers.nscd.contact.detection import detect_pair_into
-from blockshake.solvers.nscd.contact.polyhedra import find_pairs
-from blockshake.solvers.nscd.vectors import cross, dot, put_into, transposed_product
 from blockshake.solvers.nscd_deformable.elastic_bodies import anchor_into
+from blockshake.solvers.vectors import cross, difference, dot, put_into, transposed_product
 
 # Corners of a joint are looked for this many margins apart, to find points between an open and a closed corner.
 _WIDE = 10.0
@@ -34,10 +34,7 @@ class Anchors(NamedTuple):
 @borrowing_kernel
 def _parts(one, other, spacing):
     """Equal parts of at most ``spacing`` into which the longer of two opposite sides, given by their ends, is cut."""
-    longest = 0.0
-    for side in (one, other):
-        dx, dy, dz = side[0], side[1], side[2]
-        longest = max(longest, np.sqrt(dx * dx + dy * dy + dz * dz))
+    longest = np.sqrt(max(dot(one, one), dot(other, other)))
     return max(1, int(np.ceil(longest / spacing - 1e-6)))
 
 
@@ -57,9 +54,8 @@ def _joint_points_into(P, g, n_s, n_t, area, points, clearance, areas):
             share = (0.5 if i in (0, n_s) else 1.0) * (0.5 if j in (0, n_t) else 1.0) / (n_s * n_t)
             new = True
             for other in range(found):
-                dx, dy = points[other, 0] - points[found, 0], points[other, 1] - points[found, 1]
-                dz = points[other, 2] - points[found, 2]
-                if dx * dx + dy * dy + dz * dz < _SAME_POINT * _SAME_POINT:
+                away = difference(points[other], points[found])
+                if dot(away, away) < _SAME_POINT * _SAME_POINT:
                     areas[other] += share * area
                     new = False
                     break
@@ -102,11 +98,11 @@ def joint_points(corners, gaps, count, spacing):
         source = min(corner, count - 1) if count != 2 else (0, 1, 1, 0)[corner]
         put_into(corners[source], P[corner])
         g[corner] = gaps[source]
-    n_s = _parts(P[1] - P[0], P[2] - P[3], spacing)
-    n_t = _parts(P[3] - P[0], P[2] - P[1], spacing)
+    n_s = _parts(difference(P[1], P[0]), difference(P[2], P[3]), spacing)
+    n_t = _parts(difference(P[3], P[0]), difference(P[2], P[1]), spacing)
     area = _LEAST_AREA
     for corner in (1, 2):
-        x = cross(P[corner] - P[0], P[corner + 1] - P[0])
+        x = cross(difference(P[corner], P[0]), difference(P[corner + 1], P[0]))
         area += 0.5 * np.sqrt(dot(x, x))
     points, clearance = np.empty(((n_s + 1) * (n_t + 1), 3)), np.empty((n_s + 1) * (n_t + 1))
     areas = np.empty((n_s + 1) * (n_t + 1))
@@ -131,23 +127,9 @@ def _with_capacity(contacts, points, weights, capacity):
 
 @borrowing_kernel
 def _add_joint_into(
-    elastic,
-    center,
-    rotations,
-    a,
-    b,
-    normal,
-    joint,
-    clearance,
-    areas,
-    margin,
-    layer,
-    admittance,
-    contacts,
-    points,
-    weights,
-    count,
-):
+    elastic, placed, rotations, a, b, normal, joint, clearance, areas, margin, layer, admittance, contacts, points,
+    weights, count,
+):  # fmt: skip
     """Add the points of a joint within ``margin`` to the contacts and anchors, after ``count`` others; their number.
 
     ``layer``: compliance of the joint's layer [m3/N]; ``admittance`` as of `find_contacts`.
@@ -157,14 +139,10 @@ def _add_joint_into(
     for point in range(clearance.size):
         if clearance[point] > margin:
             continue
-        contacts.body_a[count], contacts.body_b[count] = a, b
-        contacts.gap[count] = clearance[point]
-        contacts.compliance[count] = layer / (admittance * areas[point])
-        put_into(normal, contacts.basis[count, 0])
-        for axis in range(3):
-            contacts.arm_a[count, axis] = joint[point, axis] - center[a, axis]
-            contacts.arm_b[count, axis] = joint[point, axis] - center[b, axis]
-        put_into(transposed_product(rotations[a], contacts.arm_a[count]), contacts.home[count])
+        compliance = layer / (admittance * areas[point])
+        add_contact_into(
+            contacts, count, a, b, placed, rotations, normal, joint[point], clearance[point], compliance
+        )
         place_b = transposed_product(rotations[b], contacts.arm_b[count])
         anchor_into(elastic, a, contacts.home[count], outward_a, points[count, 0], weights[count, 0])
         anchor_into(elastic, b, place_b, outward_b, points[count, 1], weights[count, 1])
@@ -203,7 +181,7 @@ def find_contacts(
         Geometry, undeformed gap and compliance filled in; the rows of the stoppers are still empty.
     anchors : Anchors
     """
-    pairs = find_pairs(placed, bodies.driven, margin)
+    pairs = find_pairs(placed.low, placed.high, bodies.driven, margin)
     contacts = empty_contacts(64)
     points, weights = np.empty((64, 2, 4), np.int64), np.empty((64, 2, 4))
     normal, corners, gaps, unused = np.empty(3), np.empty((5, 3)), np.empty(5), np.empty(5)
@@ -219,7 +197,7 @@ def find_contacts(
         joint, clearance, areas = joint_points(corners, gaps, found, spacing)
         contacts, points, weights = _with_capacity(contacts, points, weights, count + clearance.size)
         count = _add_joint_into(
-            elastic, placed.center, rotations, a, b, normal, joint, clearance, areas, margin,
+            elastic, placed, rotations, a, b, normal, joint, clearance, areas, margin,
             layers[a, b], admittance, contacts, points, weights, count,
         )  # fmt: skip
     contacts, points, weights = _with_capacity(contacts, points, weights, count + n_stoppers)
@@ -227,7 +205,7 @@ def find_contacts(
     weights[count : count + n_stoppers] = 0.0
     total = count + n_stoppers
     first, active = _active_points(elastic, points[:count], weights[:count])
-    return _first_rows(contacts, total), Anchors(points[:total].copy(), weights[:total].copy(), first, active)
+    return first_rows(contacts, total), Anchors(points[:total].copy(), weights[:total].copy(), first, active)
 
 
 @kernel
@@ -249,20 +227,6 @@ def _active_points(elastic, points, weights):
                 count += 1
         first[body + 1] = count
     return first, active[:count].copy()
-
-
-@kernel
-def _first_rows(contacts, total):
-    """Contacts with as many rows."""
-    kept = empty_contacts(total)
-    kept.body_a[:], kept.body_b[:], kept.gap[:] = (
-        contacts.body_a[:total], contacts.body_b[:total], contacts.gap[:total]
-    )  # fmt: skip
-    kept.arm_a[:], kept.arm_b[:], kept.home[:] = (
-        contacts.arm_a[:total], contacts.arm_b[:total], contacts.home[:total]
-    )  # fmt: skip
-    kept.basis[:], kept.compliance[:] = contacts.basis[:total], contacts.compliance[:total]
-    return kept
 
 
 @borrowing_kernel

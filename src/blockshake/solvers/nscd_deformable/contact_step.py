@@ -23,8 +23,8 @@ def solve_step(
 
     Parameters
     ----------
-    model : Model
-    response : Response
+    model : DeformableScene
+    response : ElasticResponse
         Over this step.
     theta, restitution : float
         Of the rigid motion; Newton's.
@@ -53,7 +53,7 @@ def solve_step(
 
     Returns
     -------
-    contacts, anchors, motion : Contacts, Anchors, Motion
+    contacts, anchors, motion : Contacts, Anchors, ContactMotion
     iterations : int
     residual : float
     factor : Factor

@@ -1,57 +1,34 @@
 """Nonsmooth contact dynamics of elastic and viscoelastic boxes: one call, one trajectory."""
 
 import dataclasses
+import functools
 
 import numpy as np
 
 from blockshake.dynamics.system import assemble_bodies
 from blockshake.solvers.checkpoint import Checkpoint, run_key
-from blockshake.solvers.nscd.contact.contacts import empty_contacts
-from blockshake.solvers.nscd.joints import no_joints
+from blockshake.solvers.nscd.contact.contacts import Contacts, empty_contacts
+from blockshake.solvers.nscd.joints import Joints, no_joints
 from blockshake.solvers.nscd.outcome import rows_of, trajectory_of
-from blockshake.solvers.nscd.progress import start_progress
+from blockshake.solvers.nscd.progress import Progress, start_progress
 from blockshake.solvers.nscd.scene import order_of_bodies, reordered
-from blockshake.solvers.nscd_deformable import checkpoint as layout
+from blockshake.solvers.nscd_deformable.elastic_bodies import Deformation
 from blockshake.solvers.nscd_deformable.loop import integrate
 from blockshake.solvers.nscd_deformable.model import assemble_model
-from blockshake.solvers.nscd_deformable.solve.newton import no_factor
+from blockshake.solvers.nscd_deformable.solve.newton import Factor, no_factor
 from blockshake.solvers.nscd_deformable.start import settled_state
 from blockshake.solvers.pieces import run_in_pieces
-
-
-def simulate_elastic(structure, motion, parameters, record_times, time_step=1e-3, checkpoint=None, kept=None):
-    """Motion of elastic boxes; as `simulate_deformable`, without viscosity."""
-    return simulate_deformable(
-        structure, motion, parameters, record_times, time_step, checkpoint, kept=kept, viscous=False
-    )
-
-
-def simulate_viscoelastic(
-    structure, motion, parameters, record_times, time_step=1e-3, checkpoint=None, kept=None
-):
-    """Motion of boxes of Kelvin and Voigt's material; as `simulate_deformable`, with viscosity."""
-    return simulate_deformable(
-        structure, motion, parameters, record_times, time_step, checkpoint, kept=kept, viscous=True
-    )
+from blockshake.solvers.record import RunRecord
 
 
 def simulate_deformable(
-    structure,
-    motion,
-    parameters,
-    record_times,
-    time_step=1e-3,
-    checkpoint=None,
-    checkpoint_interval=60.0,
-    kept=None,
-    *,
-    viscous,
+    structure, motion, parameters, record_times, time_step=1e-3, checkpoint=None, kept=None, *, viscous
 ):
     """Motion of deformable boxes with Signorini's condition and Coulomb's friction at the points of their joints.
 
     Parameters
     ----------
-    structure, motion, record_times, time_step, checkpoint, checkpoint_interval, kept
+    structure, motion, record_times, time_step, checkpoint, kept
         As of `simulate_nscd`; the driven bodies are rigid.
     parameters : DeformableParameters
     viscous : bool
@@ -85,17 +62,19 @@ def simulate_deformable(
         state, deformation = settled_state(model, touching, reordered(given, order))
         return start_progress(state), deformation, empty_contacts(0), no_joints(len(order)), no_factor()
 
-    def go_on(pause, progress, deformation, *parts):
-        code, culprit, *parts = integrate(model, times, pause, progress, deformation, *parts)
-        return code, culprit, (progress, deformation, *parts)
-
     def rows(progress, deformation, contacts, joints, factor, record):
         return rows_of(order, times, progress, joints, record)
 
+    go_on = functools.partial(integrate, model, times)
     key = run_key(structure, model.scene.table, parameters, times, time_step, viscous)
-    saving = Checkpoint(checkpoint, checkpoint_interval, key, layout)
+    kinds = Progress, Deformation, Contacts, Joints, Factor, RunRecord
+    saving = Checkpoint(checkpoint, key, kinds)
     code, culprit, parts = run_in_pieces(start, go_on, rows, times, time_step, saving, kept)
     progress, deformation, _, joints, _, record = parts
     trajectory = trajectory_of(structure, order, times, time_step, code, culprit, progress, joints, record)
     figures = {"energy_lost_to_scheme": float(deformation.lost[0]), "elastic_shapes": len(deformation.rate)}
     return dataclasses.replace(trajectory, numerics=trajectory.numerics | figures)
+
+
+simulate_elastic = functools.partial(simulate_deformable, viscous=False)
+simulate_viscoelastic = functools.partial(simulate_deformable, viscous=True)

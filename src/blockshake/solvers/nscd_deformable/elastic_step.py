@@ -8,7 +8,7 @@ from blockshake.jit import borrowing_kernel, inline_kernel, kernel
 from blockshake.solvers.nscd_deformable.elastic_bodies import shapes_of
 
 
-class Response(NamedTuple):
+class ElasticResponse(NamedTuple):
     """How the elastic coordinates answer impulses over a step of one length.
 
     ``dt`` [s]; ``theta`` [1]; ``admittance`` (n_shapes,): rate per modal impulse [1]. ``first_entry`` int64
@@ -46,7 +46,7 @@ def step_response(elastic, dt, theta):
             own = admittance[elastic.first_shape[body] : elastic.first_shape[body + 1]]
             answer = np.dot(shapes * own, np.ascontiguousarray(shapes.T))
             compliance[first_entry[body] : first_entry[body + 1]] = answer.ravel()
-    return Response(dt, theta, admittance, first_entry, compliance)
+    return ElasticResponse(dt, theta, admittance, first_entry, compliance)
 
 
 @inline_kernel
@@ -149,7 +149,7 @@ def move_elastic_into(elastic, response, anchors, forces, rate, deformation):
     Parameters
     ----------
     elastic : Elastic
-    response : Response
+    response : ElasticResponse
     anchors : Anchors
     forces : float64 array, shape (n_points, 3)
         Impulses on the points, body frames [N s]; rows of those that carry contact count.

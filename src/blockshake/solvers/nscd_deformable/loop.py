@@ -6,11 +6,11 @@ from blockshake.dynamics.collapse import find_collapsed
 from blockshake.dynamics.system import place_driven_into
 from blockshake.jit import kernel
 from blockshake.solvers.external_forces import external_wrenches_into
+from blockshake.solvers.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
 from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit, stopper_energy
 from blockshake.solvers.nscd.contact.contacts import contact_margin
 from blockshake.solvers.nscd.contact.law_shift import bodies_meet
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed, place_into
-from blockshake.solvers.nscd.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
 from blockshake.solvers.nscd.joints import press_anew, slip_into, with_pressed
 from blockshake.solvers.nscd.loop import find_diverged, least_impulse, record_until_into
 from blockshake.solvers.nscd.progress import LAST_STEP
@@ -19,7 +19,7 @@ from blockshake.solvers.nscd.step import empty_step, move_into, predict_into
 from blockshake.solvers.nscd_deformable.contact_points import find_contacts
 from blockshake.solvers.nscd_deformable.contact_step import solve_step
 from blockshake.solvers.nscd_deformable.elastic_step import elastic_energy, move_elastic_into, points_into
-from blockshake.solvers.nscd_deformable.solve.operator import working_velocities
+from blockshake.solvers.nscd_deformable.solve.operator import surface_velocities_into
 from blockshake.solvers.record import with_room
 from blockshake.solvers.status import COLLAPSED, COMPLETED, DIVERGED, NEXT_RECORD, PAUSED, STEP
 
@@ -32,7 +32,7 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
 
     Parameters
     ----------
-    model : Model
+    model : DeformableScene
     times : float64 array, shape (n_times,)
         When to record, increasing from 0 [s].
     pause : int
@@ -43,14 +43,14 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
         Of the step before, to start the next one from.
     joints : Joints
     factor : Factor
-    record : Record
+    record : RunRecord
         Filled from the next record on.
 
     Returns
     -------
     code, culprit : int
         Of `blockshake.solvers.status`; body that collapsed or ran away, else -1.
-    contacts, joints, factor, record : Contacts, Joints, Factor, Record
+    contacts, joints, factor, record : Contacts, Joints, Factor, RunRecord
         To go on with.
     """
     scene, elastic, bodies = model.scene, model.elastic, model.scene.bodies
@@ -64,7 +64,7 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
         _start(model, ground, step, placed, deformation, progress)
     n_steps = int(np.ceil(times[times.size - 1] / dt - _ROUNDING))
     if n_steps == 0:
-        record_into(bodies, state, state, progress.energy, progress.energy, 0.0, 0, record)
+        record_into(bodies, state, state, progress.energy, progress.energy, 0.0, clock[NEXT_RECORD], record)
         clock[NEXT_RECORD] = 1
     while clock[STEP] < n_steps:
         if clock[STEP] == pause:
@@ -97,7 +97,8 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
             lost = move_elastic_into(elastic, response, anchors, motion.forces, rate, deformation)
             mean += response.theta * deformation.rate
             points_into(elastic, mean, anchors, motion.points)
-            u_mean = working_velocities(anchors, step.rotations, contacts, step.v_mean, motion.points)
+            u_mean = np.empty((contacts.gap.size, 3))
+            surface_velocities_into(anchors, step.rotations, contacts, step.v_mean, motion.points, u_mean)
             kinetic, strain = elastic_energy(elastic, deformation)
             energy_before[:] = progress.energy
             squeezed = stopper_energy(bodies, scene.stoppers, scene.watch.base, state)

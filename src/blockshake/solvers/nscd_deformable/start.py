@@ -4,9 +4,9 @@ import numpy as np
 
 from blockshake.geometry.structure import START_TOLERANCE
 from blockshake.jit import kernel
+from blockshake.solvers.ground import ground_at_start
 from blockshake.solvers.nscd.contact.contacts import empty_contacts
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed
-from blockshake.solvers.nscd.ground import ground_at_start
 from blockshake.solvers.nscd.joints import no_joints
 from blockshake.solvers.nscd.start import LONG_STEP, SETTLING_TOLERANCE, move_from_rest_into, settle_stacks
 from blockshake.solvers.nscd.step import empty_step, predict_into
@@ -24,7 +24,7 @@ def settled_state(model, touching, state):
 
     Parameters
     ----------
-    model : Model
+    model : DeformableScene
         The driven bodies have the pitch of the motion's start.
     touching, state : bool array, State
         As of `settle_stacks`.

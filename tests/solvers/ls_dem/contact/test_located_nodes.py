@@ -13,11 +13,11 @@ from blockshake.solvers.ls_dem.contact.packets import (
     AREA,
     LANES,
     LOCATED,
-    NORMAL_X,
+    NORMAL,
     PACKET,
     PHI,
-    PLACE_X,
-    POINT_X,
+    PLACE,
+    POINT,
 )
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces, level_set
@@ -48,7 +48,7 @@ def test_packets_give_the_bits_of_single_places(surfaces):
     points[::7] = 1e6  # filling of a packet
     packets, located = np.zeros((N_PACKETS, PACKET)), np.zeros((N_PACKETS, LOCATED))
     rows, found = packets.reshape(N_PACKETS, -1, LANES), located.reshape(N_PACKETS, -1, LANES)
-    first = POINT_X // LANES
+    first = POINT // LANES
     rows[:, first : first + 3] = points.reshape(N_PACKETS, LANES, 3).transpose(0, 2, 1)
     rows[:, AREA // LANES] = 0.5
     shape = int(surfaces.shape[1])
@@ -58,10 +58,10 @@ def test_packets_give_the_bits_of_single_places(surfaces):
     expected = _level_sets(surfaces, shape, points)
     np.testing.assert_array_equal(found[:, PHI // LANES].ravel(), expected)
     assert area == 0.5 * (expected < 0.0).sum()
-    first = PLACE_X // LANES
+    first = PLACE // LANES
     np.testing.assert_array_equal(rows[:, first : first + 3].transpose(0, 2, 1).reshape(-1, 3), points)
     # the gradient of the distance is a unit vector, and central differences of it
-    first = NORMAL_X // LANES
+    first = NORMAL // LANES
     normal = found[:, first : first + 3].transpose(0, 2, 1).reshape(-1, 3)
     np.testing.assert_allclose(np.linalg.norm(normal, axis=1), 1.0, rtol=1e-12)
     near = np.abs(expected) < 0.015  # beyond the lattice there is a bound only

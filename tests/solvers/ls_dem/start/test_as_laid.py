@@ -12,7 +12,7 @@ from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_
 from blockshake.solvers.ls_dem.contact.contact_forces import clear_loads, contact_forces_into, no_loads
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
-from blockshake.solvers.ls_dem.joints import Joints
+from blockshake.solvers.ls_dem.joints import NearPairs
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces
 
@@ -258,7 +258,7 @@ def test_the_force_of_a_shifted_joint_has_no_moment_of_its_own(make_structure):
     poses = Poses(position, rotation, position.copy(), rotation.copy())
     surfaces = assemble_surfaces(structure, LsDemParameters())
     interfaces = assemble_interfaces(structure, LsDemParameters())
-    joints = Joints(
+    joints = NearPairs(
         np.array([[0, 1]]), np.array([[0.3, -0.2, 5.0]]) * MM, np.zeros((1, 3)), np.zeros(1), np.zeros(1),
         np.zeros(1, dtype=bool),
     )  # fmt: skip

@@ -3,9 +3,10 @@ import pytest
 import trimesh
 
 from blockshake.errors import InputError
+from blockshake.solvers.near_boxes import find_pairs
 from blockshake.solvers.nscd.contact.detection import detect_pair_into
 from blockshake.solvers.nscd.contact.overlap_polygon import choose_four_into, shrink_polygon_into
-from blockshake.solvers.nscd.contact.polyhedra import empty_placed, find_pairs, pack_polyhedra, place_into
+from blockshake.solvers.nscd.contact.polyhedra import empty_placed, pack_polyhedra, place_into
 
 ROUNDING = 1e-12
 
@@ -156,7 +157,7 @@ def test_broad_phase_finds_the_pairs_of_a_wall(scene):
     polyhedra = pack_polyhedra(structure, np.arange(9))
     placed = empty_placed(polyhedra)
     place_into(polyhedra, structure.position, structure.orientation, placed)
-    pairs = find_pairs(placed, structure.driven, 1e-3)
+    pairs = find_pairs(placed.low, placed.high, structure.driven, 1e-3)
     expected = [(0, i) for i in range(1, 5)] + [(i, i + 4) for i in range(1, 5)]
     assert [tuple(pair) for pair in pairs] == expected
 

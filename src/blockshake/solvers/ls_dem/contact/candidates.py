@@ -12,21 +12,17 @@ from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
 from blockshake.solvers.ls_dem.contact.packets import (
     CLOSED,
     FAR_AWAY,
-    HELD,
     LANES,
     LOCATED,
     PACKET,
     PHI,
-    POINT_X,
-    POINT_Y,
-    POINT_Z,
-    STRETCH_X,
-    STRETCH_Y,
-    STRETCH_Z,
+    POINT,
+    put_triple,
 )
 from blockshake.solvers.ls_dem.contact.relative_pose import relative_pose_into
 from blockshake.solvers.ls_dem.joints import add_joints, find_joint
 from blockshake.solvers.ls_dem.surfaces import level_set
+from blockshake.solvers.near_boxes import find_pairs
 
 _FRESH = -2  # no key begins so
 
@@ -34,12 +30,12 @@ _FRESH = -2  # no key begins so
 class Candidates(NamedTuple):
     """Near nodes, by side of a pair of bodies.
 
-    ``pairs`` int64 (n_pairs, 2), lower index first; ``joint`` int64 (n_pairs,): their rows in `Joints`, and ``shift``
-    (n_pairs, 3) from there. Side ``2 p`` of pair ``p`` holds nodes of its first body against the level set of its
-    second, side ``2 p + 1`` the reverse. ``first`` int64 (2 n_pairs + 1,): first packet of each side. ``node`` int64
-    (n_packets * LANES,): index in `Surfaces`, -1 for filling. ``packets`` float64 (n_packets, PACKET): see `packets`.
-    ``located`` float64 (packets of the pair with most, LOCATED): workspace of the pair at hand. ``position`` and
-    ``orientation``: poses for which the list was made.
+    ``pairs`` int64 (n_pairs, 2), lower index first; ``joint`` int64 (n_pairs,): their rows in `NearPairs`, and
+    ``shift`` (n_pairs, 3) from there. Side ``2 p`` of pair ``p`` holds nodes of its first body against the level set of
+    its second, side ``2 p + 1`` the reverse. ``first`` int64 (2 n_pairs + 1,): first packet of each side. ``node``
+    int64 (n_packets * LANES,): index in `Surfaces`, -1 for filling. ``packets`` float64 (n_packets, PACKET): see
+    `packets`. ``located`` float64 (packets of the pair with most, LOCATED): workspace of the pair at hand. ``position``
+    and ``orientation``: poses for which the list was made.
     """
 
     pairs: np.ndarray
@@ -98,13 +94,9 @@ def lists_expired(candidates, surfaces, driven, position, orientation, skin):
 
 
 @kernel
-def find_pairs(surfaces, driven, position, orientation, skin):
-    """Pairs of bodies whose bounding boxes come within ``skin``: int64 (n_pairs, 2), sorted.
-
-    Sweep over the sorted lower ends along the axis on which the bodies are spread most, so that the
-    cost grows with the bodies and the neighbours of each.
-    """
-    n_bodies = driven.size
+def _boxes(surfaces, position, orientation):
+    """Lower and upper corners of the bodies' bounding boxes, (n_bodies, 3) each [m]."""
+    n_bodies = position.shape[0]
     low, high = np.empty((n_bodies, 3)), np.empty((n_bodies, 3))
     R = np.empty((3, 3))
     for body in range(n_bodies):
@@ -115,37 +107,8 @@ def find_pairs(surfaces, driven, position, orientation, skin):
             centre = position[body, axis]
             for along in range(3):
                 centre += R[axis, along] * (middle[along] - surfaces.offset[body, along])
-            low[body, axis] = centre - reach - 0.5 * skin
-            high[body, axis] = centre + reach + 0.5 * skin
-    widest, spread = 0, -1.0
-    for axis in range(3):
-        if np.ptp(position[:, axis]) > spread:
-            widest, spread = axis, np.ptp(position[:, axis])
-    order = np.argsort(low[:, widest], kind="mergesort")
-    codes = []
-    for rank in range(n_bodies):
-        a = order[rank]
-        for later in range(rank + 1, n_bodies):
-            b = order[later]
-            if low[b, widest] > high[a, widest]:
-                break
-            if driven[a] and driven[b]:
-                continue
-            if (
-                low[a, 0] <= high[b, 0]
-                and low[b, 0] <= high[a, 0]
-                and low[a, 1] <= high[b, 1]
-                and low[b, 1] <= high[a, 1]
-                and low[a, 2] <= high[b, 2]
-                and low[b, 2] <= high[a, 2]
-            ):
-                codes.append(min(a, b) * n_bodies + max(a, b))
-    sorted_codes = np.sort(np.array(codes, dtype=np.int64)) if len(codes) > 0 else np.empty(0, np.int64)
-    pairs = np.empty((sorted_codes.size, 2), np.int64)
-    for pair in range(sorted_codes.size):
-        pairs[pair, 0] = sorted_codes[pair] // n_bodies
-        pairs[pair, 1] = sorted_codes[pair] % n_bodies
-    return pairs
+            low[body, axis], high[body, axis] = centre - reach, centre + reach
+    return low, high
 
 
 @kernel
@@ -199,18 +162,19 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
         [m]
     old : Candidates
         Lists so far.
-    joints : Joints
+    joints : NearPairs
         Joints so far.
 
     Returns
     -------
     candidates : Candidates
         Sorted by pair, side and node.
-    joints : Joints
+    joints : NearPairs
         With the pairs that have come near for the first time.
     """
     position, rotation = poses.position, poses.rotation
-    pairs = find_pairs(surfaces, driven, position, orientation, skin)
+    low, high = _boxes(surfaces, position, orientation)
+    pairs = find_pairs(low, high, driven, skin)
     earlier = _earlier_pairs(old.pairs, pairs)
     joint, joints = _joints_of(pairs, earlier, old.joint, joints)
     shift = joints.shift[joint]
@@ -239,26 +203,15 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
             packet, lane = place // LANES, place % LANES
             if rank < n_nodes:
                 node[place] = found[count[side] + rank]
-                packets[packet, lane + POINT_X] = surfaces.points[node[place], 0] - e[0]
-                packets[packet, lane + POINT_Y] = surfaces.points[node[place], 1] - e[1]
-                packets[packet, lane + POINT_Z] = surfaces.points[node[place], 2] - e[2]
+                p = surfaces.points[node[place]]
+                put_triple(packets, packet, POINT, lane, p[0] - e[0], p[1] - e[1], p[2] - e[2])
             else:
-                packets[packet, lane + POINT_X] = FAR_AWAY
+                packets[packet, POINT + lane] = FAR_AWAY
         relative_pose_into(
             poses.position_before, poses.rotation_before, surfaces.offset, pair, shift[side // 2], of, R, d
         )
-        locate_nodes_into(
-            packets,
-            located,
-            first[side],
-            first[side + 1],
-            first[side],
-            surfaces,
-            surfaces.shape[pair[1 - of]],
-            R,
-            d,
-            of,
-        )
+        begin, end, shape = first[side], first[side + 1], surfaces.shape[pair[1 - of]]
+        locate_nodes_into(packets, located, begin, end, begin, surfaces, shape, R, d, of)
     key = np.full((pairs.shape[0], N_KEY), _FRESH, np.int64)
     new = Candidates(
         pairs, joint, shift, first, node, packets, share, key, located, position.copy(), orientation.copy()
@@ -369,7 +322,6 @@ def _carry_over_into(old, earlier, new):
                 while place < end and old.node[place] != -1 and old.node[place] < new.node[here]:
                     place += 1
                 if place < end and new.node[here] != -1 and old.node[place] == new.node[here]:
-                    for row in (CLOSED, STRETCH_X, STRETCH_Y, STRETCH_Z, HELD):
-                        new.packets[here // LANES, here % LANES + row] = old.packets[
-                            place // LANES, place % LANES + row
-                        ]
+                    source, target = old.packets[place // LANES], new.packets[here // LANES]
+                    for row in range(CLOSED, PACKET, LANES):
+                        target[row + here % LANES] = source[row + place % LANES]

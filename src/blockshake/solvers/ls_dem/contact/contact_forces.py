@@ -11,7 +11,8 @@ from blockshake.solvers.ls_dem.contact.contact_law import Law
 from blockshake.solvers.ls_dem.contact.packets import LANES, N_SUMS, SUM_DAMPED, SUM_HELD, SUM_SLID
 from blockshake.solvers.ls_dem.contact.side_forces import side_forces_into
 from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
-from blockshake.solvers.ls_dem.joints import Joints
+from blockshake.solvers.ls_dem.joints import NearPairs
+from blockshake.solvers.vectors import cross, difference, matrix_product
 
 # Entries of ``Loads.energy`` [J]: what springs hold, what friction and dashpots turned into heat in the step, and the
 # work of external forces in it
@@ -21,38 +22,31 @@ _RATE_TIME = (
 )
 
 
-class Workspace(NamedTuple):
-    """Arrays that an evaluation overwrites, by pair or by side of a pair.
+class Loads(NamedTuple):
+    """Result of a force evaluation, overwritten by it.
 
-    ``R`` (2, 3, 3), ``d`` (2, 3): see `relative_pose_into`; ``lanes`` (N_SUMS * LANES,), ``sums`` (N_SUMS,): see
-    `side_forces_into`.
+    ``force``, ``moment`` (n_bodies, 3) on each body [N, N m], world frame, about its mass centre;
+    ``energy`` (N_ENERGIES,) [J]; ``joints``: forces and slips of the pairs. Workspace of one pair: ``R`` (2, 3, 3) and
+    ``d`` (2, 3), see `relative_pose_into`; ``lanes`` (N_SUMS * LANES,) and ``sums`` (N_SUMS,), see `side_forces_into`.
     """
 
+    force: np.ndarray
+    moment: np.ndarray
+    energy: np.ndarray
+    joints: NearPairs
     R: np.ndarray
     d: np.ndarray
     lanes: np.ndarray
     sums: np.ndarray
 
 
-class Loads(NamedTuple):
-    """Result of a force evaluation, overwritten by it.
-
-    ``force``, ``moment`` (n_bodies, 3) on each body [N, N m], world frame, about its mass centre;
-    ``energy`` (N_ENERGIES,) [J]; ``joints``: forces and slips of the pairs; ``workspace``: of the evaluation.
-    """
-
-    force: np.ndarray
-    moment: np.ndarray
-    energy: np.ndarray
-    joints: Joints
-    workspace: Workspace
-
-
 @kernel
 def no_loads(n_bodies, joints):
     """Loads before the first evaluation."""
-    workspace = Workspace(np.empty((2, 3, 3)), np.empty((2, 3)), np.empty(N_SUMS * LANES), np.empty(N_SUMS))
-    return Loads(np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)), np.zeros(N_ENERGIES), joints, workspace)
+    return Loads(
+        np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)), np.zeros(N_ENERGIES), joints, np.empty((2, 3, 3)),
+        np.empty((2, 3)), np.empty(N_SUMS * LANES), np.empty(N_SUMS),
+    )  # fmt: skip
 
 
 @borrowing_kernel
@@ -88,7 +82,7 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
     that a face on a face has it once. Of a body on a wide driven box the body's own nodes carry all. The area in touch
     is the mean of what the two sides find.
     """
-    R, d, lanes, sums = loads.workspace
+    R, d, lanes, sums = loads.R, loads.d, loads.lanes, loads.sums
     pairs, bounds = candidates.pairs, candidates.first
     packets, located = candidates.packets, candidates.located
     offset, rotation = surfaces.offset, poses.rotation
@@ -135,32 +129,25 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
 def _share_into(owner, other, side, rotation, offset, d, sums, force, moment, joint, joint_force):
     """Add the summed force of a side to both bodies and to the joint, whose second body owns side 1."""
     sign = 1.0 if side == 1 else -1.0
+    f, m = (sums[0], sums[1], sums[2]), (sums[3], sums[4], sums[5])
     # moments about both mass centres: the owner's is at d from the centroid of the other's shape, the other's at e
-    d0, d1, d2 = d[side, 0], d[side, 1], d[side, 2]
-    f0, f1, f2 = sums[0], sums[1], sums[2]
-    m0, m1, m2 = sums[3], sums[4], sums[5]
-    o0, o1, o2 = m0 - (d1 * f2 - d2 * f1), m1 - (d2 * f0 - d0 * f2), m2 - (d0 * f1 - d1 * f0)
-    c0, c1, c2 = offset[other, 0], offset[other, 1], offset[other, 2]
-    m0, m1, m2 = m0 - (c1 * f2 - c2 * f1), m1 - (c2 * f0 - c0 * f2), m2 - (c0 * f1 - c1 * f0)
+    of_owner = matrix_product(rotation[other], difference(m, cross(d[side], f)))
+    of_other = matrix_product(rotation[other], difference(m, cross(offset[other], f)))
+    f = matrix_product(rotation[other], f)
     for i in range(3):
-        e0, e1, e2 = rotation[other, i, 0], rotation[other, i, 1], rotation[other, i, 2]
-        f = e0 * f0 + e1 * f1 + e2 * f2
-        force[owner, i] += f
-        force[other, i] -= f
-        moment[owner, i] += e0 * o0 + e1 * o1 + e2 * o2
-        moment[other, i] -= e0 * m0 + e1 * m1 + e2 * m2
-        joint_force[joint, i] += sign * f
+        force[owner, i] += f[i]
+        force[other, i] -= f[i]
+        moment[owner, i] += of_owner[i]
+        moment[other, i] -= of_other[i]
+        joint_force[joint, i] += sign * f[i]
 
 
 @borrowing_kernel
 def _lever_into(shift, rotation, force, moment):
     """Moment of the force on a pair's second body about where it is, not about where contact sees it."""
-    t0 = rotation[0, 0] * shift[0] + rotation[0, 1] * shift[1] + rotation[0, 2] * shift[2]
-    t1 = rotation[1, 0] * shift[0] + rotation[1, 1] * shift[1] + rotation[1, 2] * shift[2]
-    t2 = rotation[2, 0] * shift[0] + rotation[2, 1] * shift[1] + rotation[2, 2] * shift[2]
-    moment[0] -= t1 * force[2] - t2 * force[1]
-    moment[1] -= t2 * force[0] - t0 * force[2]
-    moment[2] -= t0 * force[1] - t1 * force[0]
+    lever = cross(matrix_product(rotation, shift), force)
+    for i in range(3):
+        moment[i] -= lever[i]
 
 
 @inline_kernel

@@ -12,31 +12,16 @@ from blockshake.solvers.ls_dem.contact.packets import (
     HELD,
     INSIDE,
     LANES,
-    MOVED_X,
-    MOVED_Y,
-    MOVED_Z,
-    NORMAL_X,
-    NORMAL_Y,
-    NORMAL_Z,
+    MOVED,
+    NORMAL,
     PHI,
-    PLACE_X,
-    PLACE_Y,
-    PLACE_Z,
-    POINT_X,
-    POINT_Y,
-    POINT_Z,
+    PLACE,
+    POINT,
     SLOPE,
+    put_triple,
+    triple,
 )
-from blockshake.solvers.ls_dem.surfaces import (
-    COUNT_X,
-    COUNT_Y,
-    COUNT_Z,
-    FIRST,
-    INVERSE_SPACING,
-    ORIGIN_X,
-    ORIGIN_Y,
-    ORIGIN_Z,
-)
+from blockshake.solvers.ls_dem.surfaces import INVERSE_SPACING, lattice_of
 
 
 @borrowing_kernel
@@ -116,17 +101,13 @@ def _pose(R, d, side):
 def _follow(packets, packet, located, row, lane, pose):
     """Place of a node in the other's frame [m]; it is kept, with its change since the step before."""
     r00, r01, r02, r10, r11, r12, r20, r21, r22, d0, d1, d2 = pose
-    px, py = packets[packet, POINT_X + lane], packets[packet, POINT_Y + lane]
-    pz = packets[packet, POINT_Z + lane]
+    px, py, pz = triple(packets, packet, POINT, lane)
     x = r00 * px + r01 * py + r02 * pz + d0
     y = r10 * px + r11 * py + r12 * pz + d1
     z = r20 * px + r21 * py + r22 * pz + d2
-    located[row, MOVED_X + lane] = x - packets[packet, PLACE_X + lane]
-    located[row, MOVED_Y + lane] = y - packets[packet, PLACE_Y + lane]
-    located[row, MOVED_Z + lane] = z - packets[packet, PLACE_Z + lane]
-    packets[packet, PLACE_X + lane] = x
-    packets[packet, PLACE_Y + lane] = y
-    packets[packet, PLACE_Z + lane] = z
+    x_before, y_before, z_before = triple(packets, packet, PLACE, lane)
+    put_triple(located, row, MOVED, lane, x - x_before, y - y_before, z - z_before)
+    put_triple(packets, packet, PLACE, lane, x, y, z)
     return x, y, z
 
 
@@ -135,9 +116,7 @@ def _find(packets, packet, located, row, lane, phi, nx, ny, nz, slope):
     """Keep what was found at a node; whether it is inside or its spring is held."""
     located[row, PHI + lane] = phi
     located[row, SLOPE + lane] = slope
-    located[row, NORMAL_X + lane] = nx
-    located[row, NORMAL_Y + lane] = ny
-    located[row, NORMAL_Z + lane] = nz
+    put_triple(located, row, NORMAL, lane, nx, ny, nz)
     located[row, INSIDE + lane] = packets[packet, AREA + lane] if phi < 0.0 else 0.0
     return (phi < 0.0) | (packets[packet, HELD + lane] != 0.0)
 
@@ -184,18 +163,23 @@ def _locate_in_planes_into(packets, located, first, last, start, first_plane, pl
         for plane in range(first_plane[shape], first_plane[shape + 1]):
             px, py, pz, reach = planes[plane, 0], planes[plane, 1], planes[plane, 2], planes[plane, 3]
             for lane in range(LANES):
-                x, y = packets[packet, PLACE_X + lane], packets[packet, PLACE_Y + lane]
-                out = px * x + py * y + pz * packets[packet, PLACE_Z + lane] - reach
-                farther = out > located[row, PHI + lane]
-                located[row, NORMAL_X + lane] = px if farther else located[row, NORMAL_X + lane]
-                located[row, NORMAL_Y + lane] = py if farther else located[row, NORMAL_Y + lane]
-                located[row, NORMAL_Z + lane] = pz if farther else located[row, NORMAL_Z + lane]
-                located[row, PHI + lane] = out if farther else located[row, PHI + lane]
+                x, y, z = triple(packets, packet, PLACE, lane)
+                nx, ny, nz = triple(located, row, NORMAL, lane)
+                phi, out = located[row, PHI + lane], px * x + py * y + pz * z - reach
+                farther = out > phi
+                put_triple(
+                    located,
+                    row,
+                    NORMAL,
+                    lane,
+                    px if farther else nx,
+                    py if farther else ny,
+                    pz if farther else nz,
+                )
+                located[row, PHI + lane] = out if farther else phi
         for lane in range(LANES):
-            busy |= _find(
-                packets, packet, located, row, lane, located[row, PHI + lane], located[row, NORMAL_X + lane],
-                located[row, NORMAL_Y + lane], located[row, NORMAL_Z + lane], 1.0,
-            )  # fmt: skip
+            nx, ny, nz = triple(located, row, NORMAL, lane)
+            busy |= _find(packets, packet, located, row, lane, located[row, PHI + lane], nx, ny, nz, 1.0)
         located[row, BUSY] = busy
 
 
@@ -207,9 +191,7 @@ def _locate_in_lattice_into(packets, located, first, last, start, lattice, value
     into vector instructions: so the middle one only moves numbers, and the arithmetic before and after
     it runs on all lanes at once.
     """
-    at_first, inverse = lattice[shape, FIRST], lattice[shape, INVERSE_SPACING]
-    ox, oy, oz = lattice[shape, ORIGIN_X], lattice[shape, ORIGIN_Y], lattice[shape, ORIGIN_Z]
-    n_x, n_y, n_z = lattice[shape, COUNT_X], lattice[shape, COUNT_Y], lattice[shape, COUNT_Z]
+    at_first, ox, oy, oz, n_x, n_y, n_z, inverse = lattice_of(lattice, shape)
     pose = _pose(R, d, side)
     for packet in range(first, last):
         row = packet - start
@@ -217,9 +199,7 @@ def _locate_in_lattice_into(packets, located, first, last, start, lattice, value
             x, y, z = _follow(packets, packet, located, row, lane, pose)
             at, fx, fy, fz, beyond = locate(x, y, z, at_first, ox, oy, oz, n_x, n_y, n_z, inverse)
             located[row, PHI + lane] = beyond
-            located[row, NORMAL_X + lane] = fx
-            located[row, NORMAL_Y + lane] = fy
-            located[row, NORMAL_Z + lane] = fz
+            put_triple(located, row, NORMAL, lane, fx, fy, fz)
             located[row, CORNERS + lane] = at
         for lane in range(LANES):
             (
@@ -234,13 +214,13 @@ def _locate_in_lattice_into(packets, located, first, last, start, lattice, value
             ) = corner_values(values, located[row, CORNERS + lane], n_y, n_z)
         busy = False
         for lane in range(LANES):
+            fx, fy, fz = triple(located, row, NORMAL, lane)
             phi, nx, ny, nz, slope = interpolate(
                 located[row, CORNERS + lane], located[row, CORNERS + LANES + lane],
                 located[row, CORNERS + 2 * LANES + lane], located[row, CORNERS + 3 * LANES + lane],
                 located[row, CORNERS + 4 * LANES + lane], located[row, CORNERS + 5 * LANES + lane],
                 located[row, CORNERS + 6 * LANES + lane], located[row, CORNERS + 7 * LANES + lane],
-                located[row, NORMAL_X + lane], located[row, NORMAL_Y + lane], located[row, NORMAL_Z + lane],
-                located[row, PHI + lane], inverse,
+                fx, fy, fz, located[row, PHI + lane], inverse,
             )  # fmt: skip
             busy |= _find(packets, packet, located, row, lane, phi, nx, ny, nz, slope)
         located[row, BUSY] = busy

@@ -9,36 +9,58 @@ LANES = 8
 # Rows of ``Candidates.packets``, of shape (n_packets, PACKET): what a node keeps from step to step. Little of it, since
 # walls of many blocks have more packets than the processor's caches hold.
 (
-    POINT_X, POINT_Y, POINT_Z,  # place in the owner's frame, from its mass centre [m]
+    POINT, _, _,  # x, y, z of the place in the owner's frame, from its mass centre [m]
     AREA,  # [m2]
     DAMPING_WEIGHT,  # what the dashpot goes with: the area [m2], or its root [m] in the literal Eq. (3)
-    PLACE_X, PLACE_Y, PLACE_Z,  # in the other body's frame, from the centroid of its shape [m]
+    PLACE, _, _,  # in the other body's frame, from the centroid of its shape [m]
     CLOSED,  # change of the place along the normal in the last step [m]
-    STRETCH_X, STRETCH_Y, STRETCH_Z,  # of the shear spring, in the other body's frame [m]
+    STRETCH, _, _,  # of the shear spring, in the other body's frame [m]
     HELD,  # energy in the springs [J]; not zero where one is stretched
     PACKET,
 ) = range(0, 14 * LANES, LANES)  # fmt: skip
 # Rows of ``Candidates.located``, of shape (packets of the pair with most, LOCATED): what a step finds out about the
 # nodes of the pair at hand.
 (
-    MOVED_X, MOVED_Y, MOVED_Z,  # change of the place in the last step [m]
+    MOVED, _, _,  # change of the place in the last step [m]
     PHI,  # level-set value there [m]
-    NORMAL_X, NORMAL_Y, NORMAL_Z,  # outward normal there, in the other body's frame
+    NORMAL, _, _,  # outward normal there, in the other body's frame
     INSIDE,  # area of the node if it lies inside, else zero [m2]
     SLOPE,  # length of the level set's gradient there: 1, but near the edges of a sampled one
-    FORCE_X, FORCE_Y, FORCE_Z,  # of the last evaluation on the owner, other's frame [N]
-    MOMENT_X, MOMENT_Y, MOMENT_Z,  # about the same origin, other's frame [N m]
+    FORCE, _, _,  # of the last evaluation on the owner, other's frame [N]
+    MOMENT, _, _,  # about the same origin, other's frame [N m]
     SLID, DAMPED, SPRUNG,  # friction heat and dashpot heat of the step, and what the springs hold after it [J]
     BUSY,  # lane 0: not zero where a node lies inside or its spring is stretched
     LOCATED,
 ) = range(0, 20 * LANES, LANES)  # fmt: skip
-# Quantities that a side adds up are those from FORCE_X on: force, moment, then these.
-N_SUMS = (BUSY - FORCE_X) // LANES
+# Quantities that a side adds up are those from FORCE on: force, moment, then these.
+N_SUMS = (BUSY - FORCE) // LANES
 SUM_SLID, SUM_DAMPED, SUM_HELD = 6, 7, 8
 # Where a sampled level set puts the values at the eight corners of a cell meanwhile; the forces come after.
-CORNERS = FORCE_X
+CORNERS = FORCE
 # A packet is filled up with nodes that lie here [m] and so never touch.
 FAR_AWAY = 1e6
+
+
+@inline_kernel
+def triple(table, row, first, lane):
+    """The x, y and z of one node in packets or located nodes."""
+    return table[row, first + lane], table[row, first + LANES + lane], table[row, first + 2 * LANES + lane]
+
+
+@inline_kernel
+def put_triple(table, row, first, lane, x, y, z):
+    """Write the x, y and z of one node."""
+    table[row, first + lane] = x
+    table[row, first + LANES + lane] = y
+    table[row, first + 2 * LANES + lane] = z
+
+
+@inline_kernel
+def add_triple(table, row, first, lane, x, y, z):
+    """Add to the x, y and z of one node."""
+    table[row, first + lane] += x
+    table[row, first + LANES + lane] += y
+    table[row, first + 2 * LANES + lane] += z
 
 
 @inline_kernel

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.jit import borrowing_kernel
+from blockshake.solvers.vectors import difference, dot, transposed_product
 
 
 class Poses(NamedTuple):
@@ -35,9 +36,10 @@ def relative_pose_into(position, rotation, offset, pair, shift, side, R, d):
     """Pose of one body of a pair in the frame of the other's shape, whose origin is the shape's centroid.
 
     The owner of ``side`` 0 is the pair's first body. Its axes are ``R[side]`` (3, 3), its mass centre is ``d[side]``
-    (3,); ``offset`` as in `Surfaces`, ``shift`` (3,) as in `Joints`.
+    (3,); ``offset`` as in `Surfaces`, ``shift`` (3,) as in `NearPairs`.
     """
     owner, other = pair[side], pair[1 - side]
+    away = transposed_product(rotation[other], difference(position[owner], position[other]))
     for i in range(3):
         for j in range(3):
             R[side, i, j] = (
@@ -45,13 +47,5 @@ def relative_pose_into(position, rotation, offset, pair, shift, side, R, d):
                 + rotation[other, 1, i] * rotation[owner, 1, j]
                 + rotation[other, 2, i] * rotation[owner, 2, j]
             )
-        d[side, i] = (
-            rotation[other, 0, i] * (position[owner, 0] - position[other, 0])
-            + rotation[other, 1, i] * (position[owner, 1] - position[other, 1])
-            + rotation[other, 2, i] * (position[owner, 2] - position[other, 2])
-            + offset[other, i]
-        )
-        if side == 0:
-            d[0, i] += shift[i]
-        else:
-            d[1, i] -= R[1, i, 0] * shift[0] + R[1, i, 1] * shift[1] + R[1, i, 2] * shift[2]
+        d[side, i] = away[i] + offset[other, i]
+        d[side, i] += shift[i] if side == 0 else -dot(R[1, i], shift)

@@ -10,32 +10,23 @@ from blockshake.solvers.ls_dem.contact.packets import (
     CLOSED,
     DAMPED,
     DAMPING_WEIGHT,
-    FORCE_X,
-    FORCE_Y,
-    FORCE_Z,
+    FORCE,
     HELD,
     LANES,
-    MOMENT_X,
-    MOMENT_Y,
-    MOMENT_Z,
-    MOVED_X,
-    MOVED_Y,
-    MOVED_Z,
+    MOMENT,
+    MOVED,
     N_SUMS,
-    NORMAL_X,
-    NORMAL_Y,
-    NORMAL_Z,
+    NORMAL,
     PHI,
-    PLACE_X,
-    PLACE_Y,
-    PLACE_Z,
+    PLACE,
     SLID,
     SLOPE,
     SPRUNG,
-    STRETCH_X,
-    STRETCH_Y,
-    STRETCH_Z,
+    STRETCH,
+    add_triple,
+    put_triple,
     sum_lanes,
+    triple,
 )
 
 
@@ -67,32 +58,24 @@ def side_forces_into(packets, located, first, last, start, law, gamma_s, lanes, 
         row = packet - start
         if located[row, BUSY] == 0.0:
             for lane in range(LANES):
-                packets[packet, CLOSED + lane] = (
-                    located[row, MOVED_X + lane] * located[row, NORMAL_X + lane]
-                    + located[row, MOVED_Y + lane] * located[row, NORMAL_Y + lane]
-                    + located[row, MOVED_Z + lane] * located[row, NORMAL_Z + lane]
-                )
+                ux, uy, uz = triple(located, row, MOVED, lane)
+                nx, ny, nz = triple(located, row, NORMAL, lane)
+                packets[packet, CLOSED + lane] = ux * nx + uy * ny + uz * nz
             continue
         for lane in range(LANES):
+            nx, ny, nz = triple(located, row, NORMAL, lane)
+            ux, uy, uz = triple(located, row, MOVED, lane)
+            ox, oy, oz = triple(packets, packet, STRETCH, lane)
             fx, fy, fz, sx, sy, sz, closed, held, slid, damped = node_force(
-                located[row, PHI + lane], located[row, SLOPE + lane], located[row, NORMAL_X + lane],
-                located[row, NORMAL_Y + lane], located[row, NORMAL_Z + lane], located[row, MOVED_X + lane],
-                located[row, MOVED_Y + lane], located[row, MOVED_Z + lane], packets[packet, STRETCH_X + lane],
-                packets[packet, STRETCH_Y + lane], packets[packet, STRETCH_Z + lane], packets[packet, CLOSED + lane],
-                packets[packet, AREA + lane], packets[packet, DAMPING_WEIGHT + lane], law,
+                located[row, PHI + lane], located[row, SLOPE + lane], nx, ny, nz, ux, uy, uz, ox, oy, oz,
+                packets[packet, CLOSED + lane], packets[packet, AREA + lane], packets[packet, DAMPING_WEIGHT + lane],
+                law,
             )  # fmt: skip
-            x, y = packets[packet, PLACE_X + lane], packets[packet, PLACE_Y + lane]
-            z = packets[packet, PLACE_Z + lane]
-            packets[packet, STRETCH_X + lane] = sx
-            packets[packet, STRETCH_Y + lane] = sy
-            packets[packet, STRETCH_Z + lane] = sz
+            x, y, z = triple(packets, packet, PLACE, lane)
+            put_triple(packets, packet, STRETCH, lane, sx, sy, sz)
             packets[packet, CLOSED + lane] = closed
-            located[row, FORCE_X + lane] = fx
-            located[row, FORCE_Y + lane] = fy
-            located[row, FORCE_Z + lane] = fz
-            located[row, MOMENT_X + lane] = y * fz - z * fy
-            located[row, MOMENT_Y + lane] = z * fx - x * fz
-            located[row, MOMENT_Z + lane] = x * fy - y * fx
+            put_triple(located, row, FORCE, lane, fx, fy, fz)
+            put_triple(located, row, MOMENT, lane, y * fz - z * fy, z * fx - x * fz, x * fy - y * fx)
             packets[packet, HELD + lane] = held
             located[row, SPRUNG + lane] = held
             located[row, SLID + lane] = slid
@@ -100,7 +83,7 @@ def side_forces_into(packets, located, first, last, start, law, gamma_s, lanes, 
         if gamma_s > 0.0:
             _add_shear_dashpots_into(packets, packet, located, row, gamma_s * law.rate, law)
         for entry in range(N_SUMS * LANES):
-            lanes[entry] += located[row, FORCE_X + entry]
+            lanes[entry] += located[row, FORCE + entry]
     for quantity in range(N_SUMS):
         sums[quantity] = sum_lanes(lanes, quantity * LANES)
 
@@ -113,18 +96,15 @@ def _add_shear_dashpots_into(packets, packet, located, row, gamma_rate, law):
     ``gamma_rate``: of first order in the step. Spring and dashpot together stay below Coulomb's limit.
     """
     for lane in range(LANES):
-        x, y = packets[packet, PLACE_X + lane], packets[packet, PLACE_Y + lane]
-        z, phi = packets[packet, PLACE_Z + lane], located[row, PHI + lane]
-        nx, ny = located[row, NORMAL_X + lane], located[row, NORMAL_Y + lane]
-        nz, along = located[row, NORMAL_Z + lane], packets[packet, CLOSED + lane]
-        ux = located[row, MOVED_X + lane] - along * nx
-        uy = located[row, MOVED_Y + lane] - along * ny
-        uz = located[row, MOVED_Z + lane] - along * nz
+        x, y, z = triple(packets, packet, PLACE, lane)
+        nx, ny, nz = triple(located, row, NORMAL, lane)
+        mx, my, mz = triple(located, row, MOVED, lane)
+        phi, along = located[row, PHI + lane], packets[packet, CLOSED + lane]
+        ux, uy, uz = mx - along * nx, my - along * ny, mz - along * nz
         # a node sticks where this step made no friction heat
         sticks = phi < 0.0 and located[row, SLID + lane] == 0.0
         c = gamma_rate * packets[packet, DAMPING_WEIGHT + lane] if sticks else 0.0
-        gx, gy = located[row, FORCE_X + lane], located[row, FORCE_Y + lane]
-        gz = located[row, FORCE_Z + lane]
+        gx, gy, gz = triple(located, row, FORCE, lane)
         f_n = gx * nx + gy * ny + gz * nz
         gx, gy, gz = gx - f_n * nx, gy - f_n * ny, gz - f_n * nz
         # the share of it that Coulomb's limit leaves: |g - share c u| = mu f_n
@@ -135,10 +115,6 @@ def _add_shear_dashpots_into(packets, packet, located, row, gamma_rate, law):
         share = (root - along_u) / square if square > 0.0 else 0.0
         c *= min(max(share, 0.0), 1.0)
         fx, fy, fz = -c * ux, -c * uy, -c * uz
-        located[row, FORCE_X + lane] += fx
-        located[row, FORCE_Y + lane] += fy
-        located[row, FORCE_Z + lane] += fz
-        located[row, MOMENT_X + lane] += y * fz - z * fy
-        located[row, MOMENT_Y + lane] += z * fx - x * fz
-        located[row, MOMENT_Z + lane] += x * fy - y * fx
+        add_triple(located, row, FORCE, lane, fx, fy, fz)
+        add_triple(located, row, MOMENT, lane, y * fz - z * fy, z * fx - x * fz, x * fy - y * fx)
         located[row, DAMPED + lane] += c * (ux * ux + uy * uy + uz * uz)

@@ -12,7 +12,7 @@ from blockshake.solvers.ls_dem.contact.candidates import (
     locate_pair_into,
     nearest_node,
 )
-from blockshake.solvers.ls_dem.contact.packets import LANES, NORMAL_X
+from blockshake.solvers.ls_dem.contact.packets import LANES, NORMAL
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.joints import no_joints
 from blockshake.solvers.ls_dem.start.equilibrium import (
@@ -27,14 +27,12 @@ _ROUNDING = 1e-12  # m
 _TYPED = 2e-9  # m, of typed places: what a structure file may have is never refused here
 
 
-def joints_as_laid(structure, bodies, surfaces, interfaces, skin, state, settled):
+def joints_as_laid(structure, assembly, state, settled):
     """Joints whose shifts leave no overlap but the elastic one of the weight that the joint carries.
 
     Parameters
     ----------
-    structure, bodies, surfaces, interfaces : Structure, Bodies, Surfaces, Interfaces
-    skin : float
-        Reach of the lists [m].
+    structure, assembly : Structure, Assembly
     state : State
         As given.
     settled : bool array, shape (n_bodies,)
@@ -43,7 +41,7 @@ def joints_as_laid(structure, bodies, surfaces, interfaces, skin, state, settled
 
     Returns
     -------
-    joints : Joints
+    joints : NearPairs
     overlap : float
         Deepest that was taken up, zero where no joint has a shift [m].
 
@@ -57,16 +55,12 @@ def joints_as_laid(structure, bodies, surfaces, interfaces, skin, state, settled
     A pair is parted along the normal at its deepest node until no node is inside. The elastic penetration comes from
     one solution of the bonded joints under gravity: the normal force of a joint over its stiffness.
     """
+    bodies, surfaces = assembly.bodies, assembly.surfaces
     rotation = np.ascontiguousarray(rotation_matrices(state.orientation))
     poses = Poses(state.position, rotation, state.position, rotation)
+    none = empty_candidates(len(bodies.mass))
     candidates, joints = find_candidates(
-        surfaces,
-        bodies.driven,
-        poses,
-        state.orientation,
-        skin,
-        empty_candidates(len(bodies.mass)),
-        no_joints(),
+        surfaces, bodies.driven, poses, state.orientation, assembly.skin, none, no_joints()
     )
     pairs, shift = candidates.pairs, candidates.shift
     depth, rest = _part_into(candidates, surfaces, poses)
@@ -74,7 +68,7 @@ def joints_as_laid(structure, bodies, surfaces, interfaces, skin, state, settled
     if not (unsettled | (depth > START_TOLERANCE)).any():
         return joints, 0.0
     stiffness, pull, _, _ = joint_stiffness(
-        candidates, interfaces, surfaces, poses, START_TOLERANCE, downwards(bodies)
+        candidates, assembly.interfaces, surfaces, poses, START_TOLERANCE, downwards(bodies)
     )
     load = pull + np.pad(bodies.mass[:, None] * bodies.gravity, ((0, 0), (0, 3)))
     moves = ways_to_move(bodies)
@@ -133,7 +127,7 @@ def _part_into(candidates, surfaces, poses):
                 break
             of_first = candidates.first[2 * pair] + row < candidates.first[2 * pair + 1]
             for i in range(3):
-                n = candidates.located[row, NORMAL_X + i * LANES + lane]
+                n = candidates.located[row, NORMAL + i * LANES + lane]
                 if of_first:
                     candidates.shift[pair, i] += rest[pair] * n
                 else:

@@ -14,10 +14,10 @@ from blockshake.solvers.ls_dem.contact.candidates import (
     nearest_node,
 )
 from blockshake.solvers.ls_dem.contact.contact_forces import clear_loads, contact_forces_into, no_loads
-from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES, NORMAL_X, PHI, PLACE_X
+from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES, NORMAL, PHI, PLACE
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
-from blockshake.solvers.ls_dem.start.stability import stable_time_step
+from blockshake.solvers.ls_dem.start.stability import assembled, stable_time_step
 
 _MOST_ITERATIONS = 20
 _AT_REST = 1e-9  # out-of-balance force over weight; the thump it leaves is as small
@@ -25,20 +25,18 @@ _SEATED = 1e-5  # m; nodes of a hollow joint that are open by so much more than 
 _SOFT = 1e-9  # of the stiffest entry; it lets a body that nothing holds move far, and is told by that
 
 
-def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near, joints):
+def approach_equilibrium(assembly, state, near, joints):
     """Poses at which stacks rest under gravity on the springs between them, near the given poses.
 
     Parameters
     ----------
-    bodies, surfaces, interfaces : Bodies, Surfaces, Interfaces
-    skin : float
-        Reach of the lists [m].
+    assembly : Assembly
     state : State
         Given poses; not changed.
     near : float
         Joints open by less than this are taken to close, and a stack with a body that moves farther
         has no equilibrium near [m].
-    joints : Joints
+    joints : NearPairs
         Shifts of the pairs; forces and slips are overwritten.
 
     Returns
@@ -60,12 +58,13 @@ def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near, joints
     pulling it close; of hollow faces only the nodes at the rim. Where joints open or slide it may not converge, and
     relaxation has more to do. Bodies without inverse inertia do not turn.
     """
+    bodies, surfaces, interfaces = assembly.bodies, assembly.surfaces, assembly.interfaces
     n_bodies = len(bodies.mass)
     position, orientation = state.position.copy(), state.orientation.copy()
     rotation = np.ascontiguousarray(rotation_matrices(orientation))
     poses = Poses(position, rotation, position.copy(), rotation.copy())
     candidates, joints = find_candidates(
-        surfaces, bodies.driven, poses, orientation, skin, empty_candidates(n_bodies), joints
+        surfaces, bodies.driven, poses, orientation, assembly.skin, empty_candidates(n_bodies), joints
     )
     loads = no_loads(n_bodies, joints)
     radius = surfaces.radius
@@ -81,7 +80,7 @@ def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near, joints
             candidates, interfaces, surfaces, poses, reach, downwards(bodies)
         )
         if iteration == 0:
-            stable_step = _stable_step(candidates.pairs, stiffness, relaxation, bodies)
+            stable_step = stable_time_step(candidates.pairs, stiffness, relaxation, bodies)
             at_rest = np.maximum(at_rest, _rounding(candidates.pairs, stiffness, position))
             group = _groups(candidates.pairs[touching], bodies.driven)
         load = np.where(moves, np.concatenate([loads.force, loads.moment], axis=1) + pull, 0.0)
@@ -104,24 +103,6 @@ def approach_equilibrium(bodies, surfaces, interfaces, skin, state, near, joints
             left = lost & ~bodies.driven
         rotation[:] = rotation_matrices(orientation)
     return position, orientation, at_rest, left, stable_step
-
-
-def _stable_step(pairs, stiffness, relaxation, bodies):
-    """Largest stable time step with this stiffness of the pairs and dashpots of these relaxation times [s]."""
-    free = np.flatnonzero(~bodies.driven)
-    chosen = (6 * free[:, None] + np.arange(6)).ravel()
-    size = 6 * len(bodies.mass)
-    parts = [stiffness, stiffness * relaxation[:, None, None]]
-    K, C = (_assembled(pairs, part, size)[chosen][:, chosen] for part in parts)
-    return stable_time_step(K, C, bodies, free)
-
-
-def _assembled(pairs, stiffness, size):
-    """Sparse matrix of the pairs' 12 x 12 blocks."""
-    entries = (6 * pairs[:, :, None] + np.arange(6)).reshape(-1, 12)
-    row = np.repeat(entries, 12, axis=1).ravel()
-    column = np.tile(entries, (1, 12)).ravel()
-    return coo_array((stiffness.ravel(), (row, column)), shape=(size, size)).tocsr()
 
 
 def _rounding(pairs, stiffness, position):
@@ -152,7 +133,7 @@ def downwards(bodies):
 def displacements(pairs, stiffness, solved, load):
     """Displacements and rotations under these loads, zero where not solved for: (n_bodies, 2, 3) [m, rad]."""
     chosen = np.flatnonzero(solved)
-    matrix = _assembled(pairs, stiffness, solved.size)[chosen][:, chosen]
+    matrix = assembled(pairs, stiffness, solved.size)[chosen][:, chosen]
     soft = _SOFT * abs(matrix).max() + 1e-300
     move = np.zeros(solved.size)
     move[chosen] = splu((matrix + soft * eye_array(len(chosen))).tocsc()).solve(load.ravel()[chosen])
@@ -213,8 +194,8 @@ def joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
                     n, arm = np.zeros(3), np.zeros(3)
                     for i in range(3):
                         for j in range(3):
-                            n[i] += R[i, j] * found[NORMAL_X + j * LANES + lane]
-                            arm[i] += R[i, j] * (node[PLACE_X + j * LANES + lane] - surfaces.offset[other, j])
+                            n[i] += R[i, j] * found[NORMAL + j * LANES + lane]
+                            arm[i] += R[i, j] * (node[PLACE + j * LANES + lane] - surfaces.offset[other, j])
                     if phi >= 0.0 and abs(n[0] * down[0] + n[1] * down[1] + n[2] * down[2]) < 0.5:
                         continue
                     touching[pair] = True

@@ -14,14 +14,13 @@ _MOST_STEPS = 400_000
 
 
 @kernel
-def settle(bodies, surfaces, interfaces, skin, dt, given, state, near, at_rest, left, candidates, joints):
+def settle(assembly, given, state, near, at_rest, left, candidates, joints):
     """Find the equilibrium under gravity near the given poses by dynamic relaxation.
 
     Parameters
     ----------
-    bodies, surfaces, interfaces : Bodies, Surfaces, Interfaces
-    skin, dt : float
-        Reach of the lists [m] and pseudo time step [s].
+    assembly : Assembly
+        Its time step is that of the relaxation.
     given, state : State
         Poses from where motion counts, and poses to start from, which are moved to the equilibrium;
         velocities do not enter.
@@ -31,12 +30,12 @@ def settle(bodies, surfaces, interfaces, skin, dt, given, state, near, at_rest, 
         Out-of-balance force below which a body is at rest [N].
     left : bool array, shape (n_bodies,)
         Free bodies known to have no equilibrium; those found to have none are added.
-    candidates, joints : Candidates, Joints
+    candidates, joints : Candidates, NearPairs
         Before the first search.
 
     Returns
     -------
-    candidates, joints : Candidates, Joints
+    candidates, joints : Candidates, NearPairs
         Near nodes with the shear springs of the equilibrium, and the pairs they belong to.
     steps : int
         Pseudo steps made.
@@ -47,7 +46,8 @@ def settle(bodies, surfaces, interfaces, skin, dt, given, state, near, at_rest, 
     out-of-balance force and moment acts against the velocity. A body that leaves is held where it
     is from then on and its contacts with it, so that the others can settle.
     """
-    n_bodies = bodies.mass.size
+    bodies, surfaces, interfaces = assembly.bodies, assembly.surfaces, assembly.interfaces
+    n_bodies, skin, dt = bodies.mass.size, assembly.skin, assembly.dt
     velocity, momentum, spin = np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3))
     turn = np.empty(3)
     rotation, rotation_before = np.empty((n_bodies, 3, 3)), np.empty((n_bodies, 3, 3))

@@ -1,20 +1,29 @@
 """The largest time step that the joints of a structure allow."""
 
 import numpy as np
-from scipy.sparse import block_diag
+from scipy.sparse import block_diag, coo_array
 from scipy.sparse.linalg import eigsh
 
 
-def stable_time_step(stiffness, damping, bodies, solved):
+def assembled(pairs, stiffness, size):
+    """Sparse matrix (size, size) of the 12 x 12 blocks of pairs of bodies."""
+    entries = (6 * pairs[:, :, None] + np.arange(6)).reshape(-1, 12)
+    row = np.repeat(entries, 12, axis=1).ravel()
+    column = np.tile(entries, (1, 12)).ravel()
+    return coo_array((stiffness.ravel(), (row, column)), shape=(size, size)).tocsr()
+
+
+def stable_time_step(pairs, stiffness, relaxation, bodies):
     """Largest stable time step of the joints at the start [s]; infinite where nothing holds a body.
 
     Parameters
     ----------
-    stiffness, damping : scipy sparse arrays, shape (6 n_solved, 6 n_solved)
-        Of the free bodies' displacements and rotations; what the dashpots give.
+    pairs : int64 array, shape (n_pairs, 2)
+    stiffness : float64 array, shape (n_pairs, 12, 12)
+        Of the pairs' springs, as from `joint_stiffness`.
+    relaxation : float64 array, shape (n_pairs,)
+        Of the dashpots beside them [s].
     bodies : Bodies
-    solved : int array, shape (n_solved,)
-        The free bodies.
 
     Notes
     -----
@@ -22,20 +31,21 @@ def stable_time_step(stiffness, damping, bodies, solved):
     ``3/2 v(n-1/2) - 1/2 v(n-3/2)`` is stable while ``w dt <= 2 (sqrt(1 + 4 z^2) - 2 z)``: there the root of its
     characteristic polynomial reaches -1. Joints that close later may allow less.
     """
-    mass = block_diag(
-        [
-            block
-            for body in solved
-            for block in (bodies.mass[body] * np.eye(3), bodies.inertia[body])
-        ],
-        format="csc",
-    )  # fmt: skip
-    if len(solved) == 0 or abs(stiffness).max() == 0.0:
+    free = np.flatnonzero(~bodies.driven)
+    chosen = (6 * free[:, None] + np.arange(6)).ravel()
+    K, C = (
+        assembled(pairs, part, 6 * len(bodies.mass))[chosen][:, chosen]
+        for part in (stiffness, stiffness * relaxation[:, None, None])
+    )
+    if len(free) == 0 or abs(K).max() == 0.0:
         return np.inf
-    start = np.cos(
-        np.arange(1, 6 * len(solved) + 1)
-    )  # any vector that no mode is orthogonal to, always the same
-    value, vector = eigsh(stiffness, k=1, M=mass, which="LM", v0=start, tol=1e-3)
+    M = block_diag(
+        [block for body in free for block in (bodies.mass[body] * np.eye(3), bodies.inertia[body])],
+        format="csc",
+    )
+    # any vector that no mode is orthogonal to, always the same
+    start = np.cos(np.arange(1, len(chosen) + 1))
+    value, vector = eigsh(K, k=1, M=M, which="LM", v0=start, tol=1e-3, rng=0)
     frequency, mode = np.sqrt(value[0]), vector[:, 0]
-    ratio = mode @ (damping @ mode) / (2.0 * frequency * (mode @ (mass @ mode)))
+    ratio = mode @ (C @ mode) / (2.0 * frequency * (mode @ (M @ mode)))
     return float(2.0 * (np.sqrt(1.0 + 4.0 * ratio**2) - 2.0 * ratio) / frequency)

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.jit import borrowing_kernel, kernel
+from blockshake.solvers.near_boxes import find_pairs
 from blockshake.solvers.nscd.contact.detection import detect_pair_into
-from blockshake.solvers.nscd.contact.polyhedra import find_pairs
-from blockshake.solvers.nscd.vectors import cross, dot, matrix_product, put_into, transposed_product
+from blockshake.solvers.vectors import cross, difference, dot, matrix_product, put_into, transposed_product
 
 # Contacts are looked for at least this far apart, since a body at rest may be pushed within a step [m].
 _LEAST_MARGIN = 1e-4
@@ -61,7 +61,8 @@ def empty_contacts(capacity):
 
 
 @kernel
-def _first_rows(contacts, count):
+def first_rows(contacts, count):
+    """The first so many contacts, as views."""
     return Contacts(
         contacts.body_a[:count], contacts.body_b[:count], contacts.basis[:count], contacts.arm_a[:count],
         contacts.arm_b[:count], contacts.home[:count], contacts.gap[:count], contacts.friction[:count],
@@ -81,6 +82,20 @@ def contact_margin(v_start, radius, gravity, dt):
 
 
 @borrowing_kernel
+def add_contact_into(contacts, count, a, b, placed, rotations, normal, point, gap, compliance):
+    """Write a contact of the bodies a and b at a point, (3,) in the world frame [m], into row ``count``.
+
+    ``normal`` (3,): from a to b; ``gap`` [m] and ``compliance`` [1/kg] as in `Contacts`.
+    """
+    contacts.body_a[count], contacts.body_b[count] = a, b
+    contacts.gap[count], contacts.compliance[count] = gap, compliance
+    put_into(normal, contacts.basis[count, 0])
+    put_into(difference(point, placed.center[a]), contacts.arm_a[count])
+    put_into(difference(point, placed.center[b]), contacts.arm_b[count])
+    put_into(transposed_product(rotations[a], contacts.arm_a[count]), contacts.home[count])
+
+
+@borrowing_kernel
 def _detect_into(
     pairs, polyhedra, placed, rotations, margin, shrink, layers, admittance, memory, normal, points, gaps, areas,
     contacts,
@@ -96,14 +111,10 @@ def _detect_into(
         if found == 0:
             memory[a, b] = -1
         for point in range(found):
-            contacts.body_a[count], contacts.body_b[count] = a, b
-            contacts.gap[count] = gaps[point]
-            contacts.compliance[count] = layer / (admittance * areas[point])
-            put_into(normal, contacts.basis[count, 0])
-            for axis in range(3):
-                contacts.arm_a[count, axis] = points[point, axis] - placed.center[a, axis]
-                contacts.arm_b[count, axis] = points[point, axis] - placed.center[b, axis]
-            put_into(transposed_product(rotations[a], contacts.arm_a[count]), contacts.home[count])
+            compliance = layer / (admittance * areas[point])
+            add_contact_into(
+                contacts, count, a, b, placed, rotations, normal, points[point], gaps[point], compliance
+            )
             count += 1
     return count
 
@@ -135,13 +146,13 @@ def detect_contacts(
     contacts : Contacts
         Geometry, gap and compliance filled in; the rows of the stoppers are still empty.
     """
-    pairs = find_pairs(placed, bodies.driven, margin)
+    pairs = find_pairs(placed.low, placed.high, bodies.driven, margin)
     contacts = empty_contacts(5 * pairs.shape[0] + n_stoppers)
     count = _detect_into(
         pairs, polyhedra, placed, rotations, margin, shrink, layers, admittance, memory, np.empty(3),
         np.empty((5, 3)), np.empty(5), np.empty(5), contacts,
     )  # fmt: skip
-    return _first_rows(contacts, count + n_stoppers)
+    return first_rows(contacts, count + n_stoppers)
 
 
 @borrowing_kernel

@@ -9,7 +9,7 @@ from blockshake.solvers.nscd.contact.overlap_polygon import (
     clip_face_into,
     shrink_polygon_into,
 )
-from blockshake.solvers.nscd.vectors import dot, put_into
+from blockshake.solvers.vectors import cross, difference, dot, put_into
 
 # Relative to the smaller radius of the pair: an axis must separate this much better than the one of
 # the step before, or an edge axis than a face, to take its place; so resting contacts do not flip.
@@ -90,8 +90,7 @@ def _face_separation(polyhedra, placed, face, other):
     n = placed.normals[face]
     lowest = np.inf
     for row in range(polyhedra.first_vertex[other], polyhedra.first_vertex[other + 1]):
-        x = placed.vertices[row]
-        lowest = min(lowest, n[0] * x[0] + n[1] * x[1] + n[2] * x[2])
+        lowest = min(lowest, dot(n, placed.vertices[row]))
     return lowest - placed.offsets[face]
 
 
@@ -107,9 +106,7 @@ def _best_face(polyhedra, placed, a, b, margin, last_face, bias):
     threshold = best + bias
     for owner, other in ((a, b), (b, a)):
         for face in range(polyhedra.first_face[owner], polyhedra.first_face[owner + 1]):
-            n, center = placed.normals[face], placed.center[other]
-            bound = n[0] * center[0] + n[1] * center[1] + n[2] * center[2] - placed.offsets[face]
-            if bound <= threshold:
+            if dot(placed.normals[face], placed.center[other]) - placed.offsets[face] <= threshold:
                 continue
             separation = _face_separation(polyhedra, placed, face, other)
             if separation > threshold:
@@ -129,13 +126,11 @@ def _incident_face(polyhedra, placed, face, other):
     limit = lowest + 1e-6 * polyhedra.radius[other]
     best, chosen = np.inf, -1
     for candidate in range(polyhedra.first_face[other], polyhedra.first_face[other + 1]):
-        m = placed.normals[candidate]
-        cosine = n[0] * m[0] + n[1] * m[1] + n[2] * m[2]
+        cosine = dot(n, placed.normals[candidate])
         if cosine >= best - 1e-12:
             continue
         for corner in range(polyhedra.first_corner[candidate], polyhedra.first_corner[candidate + 1]):
-            x = placed.vertices[polyhedra.corners[corner]]
-            if n[0] * x[0] + n[1] * x[1] + n[2] * x[2] <= limit:
+            if dot(n, placed.vertices[polyhedra.corners[corner]]) <= limit:
                 best, chosen = cosine, candidate
                 break
     return chosen
@@ -161,13 +156,13 @@ def _face_points_into(polyhedra, placed, other, face, margin, shrink, layer, poi
     count = 0
     for index in range(n_corners):
         x = polygon[index]
-        gap = n[0] * x[0] + n[1] * x[1] + n[2] * x[2] - offset
+        gap = dot(n, x) - offset
         if gap <= margin:
             put_into(x, polygon[count])
             distance[count] = gap
             count += 1
     count = choose_four_into(polygon, distance, count, n, chosen)
-    gap = n[0] * middle[0] + n[1] * middle[1] + n[2] * middle[2] - offset
+    gap = dot(n, middle) - offset
     lowest = gap
     for index in range(count):
         lowest = min(lowest, distance[chosen[index]])
@@ -188,34 +183,29 @@ def _face_points_into(polyhedra, placed, other, face, margin, shrink, layer, poi
 def _best_edge_into(polyhedra, placed, a, b, normal):
     """Largest separation along a cross of edge directions [m]; its unit vector from ``a`` to ``b``."""
     best = -np.inf
-    dx = placed.center[b, 0] - placed.center[a, 0]
-    dy = placed.center[b, 1] - placed.center[a, 1]
-    dz = placed.center[b, 2] - placed.center[a, 2]
+    way = difference(placed.center[b], placed.center[a])
     reach = polyhedra.inradius[a] + polyhedra.inradius[b]
     for i in range(polyhedra.first_direction[a], polyhedra.first_direction[a + 1]):
         u = placed.directions[i]
         for j in range(polyhedra.first_direction[b], polyhedra.first_direction[b + 1]):
-            v = placed.directions[j]
-            x, y, z = u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+            x, y, z = cross(u, placed.directions[j])
             sine = np.sqrt(x * x + y * y + z * z)
             if sine < _PARALLEL:
                 continue
-            x, y, z = x / sine, y / sine, z / sine
-            along = x * dx + y * dy + z * dz
+            n = x / sine, y / sine, z / sine
+            along = dot(n, way)
             if along < 0.0:
-                x, y, z, along = -x, -y, -z, -along
+                n, along = (-n[0], -n[1], -n[2]), -along
             if along - reach <= best:
                 continue
             highest, lowest = -np.inf, np.inf
             for row in range(polyhedra.first_vertex[a], polyhedra.first_vertex[a + 1]):
-                p = placed.vertices[row]
-                highest = max(highest, x * p[0] + y * p[1] + z * p[2])
+                highest = max(highest, dot(n, placed.vertices[row]))
             for row in range(polyhedra.first_vertex[b], polyhedra.first_vertex[b + 1]):
-                p = placed.vertices[row]
-                lowest = min(lowest, x * p[0] + y * p[1] + z * p[2])
+                lowest = min(lowest, dot(n, placed.vertices[row]))
             if lowest - highest > best:
                 best = lowest - highest
-                normal[0], normal[1], normal[2] = x, y, z
+                put_into(n, normal)
     return best
 
 
@@ -225,17 +215,10 @@ def _support_edge(polyhedra, placed, body, normal, sign):
     best, chosen = -np.inf, -1
     for edge in range(polyhedra.first_edge[body], polyhedra.first_edge[body + 1]):
         p, q = placed.vertices[polyhedra.edges[edge, 0]], placed.vertices[polyhedra.edges[edge, 1]]
-        height_p = sign * (normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2])
-        height_q = sign * (normal[0] * q[0] + normal[1] * q[1] + normal[2] * q[2])
-        lower = min(height_p, height_q)
+        lower = min(sign * dot(normal, p), sign * dot(normal, q))
         if lower > best:
             best, chosen = lower, edge
     return chosen
-
-
-@borrowing_kernel
-def _less(x, y):
-    return x[0] - y[0], x[1] - y[1], x[2] - y[2]
 
 
 @borrowing_kernel
@@ -244,7 +227,8 @@ def _edge_point_into(polyhedra, placed, a, b, normal, points):
     edge_a = polyhedra.edges[_support_edge(polyhedra, placed, a, normal, 1.0)]
     edge_b = polyhedra.edges[_support_edge(polyhedra, placed, b, normal, -1.0)]
     p, q = placed.vertices[edge_a[0]], placed.vertices[edge_b[0]]
-    u, v, w = _less(placed.vertices[edge_a[1]], p), _less(placed.vertices[edge_b[1]], q), _less(q, p)
+    u, v = difference(placed.vertices[edge_a[1]], p), difference(placed.vertices[edge_b[1]], q)
+    w = difference(q, p)
     uu, uv, vv = dot(u, u), dot(u, v), dot(v, v)
     determinant = uu * vv - uv * uv
     if determinant < _PARALLEL * _PARALLEL * uu * vv:

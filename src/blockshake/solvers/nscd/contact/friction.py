@@ -11,10 +11,10 @@ from blockshake.dynamics.friction import (
     friction_coefficient,
 )
 from blockshake.jit import borrowing_kernel
-from blockshake.solvers.nscd.vectors import dot
+from blockshake.solvers.vectors import dot
 
 
-class Friction(NamedTuple):
+class OrderedFriction(NamedTuple):
     """``laws`` (FrictionLaws), bodies in the solver's order; ``file_index`` int64 (n_bodies,): theirs in the file."""
 
     laws: FrictionLaws
@@ -29,7 +29,7 @@ def ordered_friction(structure, order):
         material=np.ascontiguousarray(laws.material[order]),
         joint=np.ascontiguousarray(np.sort(place[laws.joint], axis=1)),
     )
-    return Friction(ordered, np.ascontiguousarray(order))
+    return OrderedFriction(ordered, np.ascontiguousarray(order))
 
 
 @borrowing_kernel
@@ -38,7 +38,7 @@ def friction_into(friction, joints, rotations, contacts):
 
     Parameters
     ----------
-    friction : Friction
+    friction : OrderedFriction
     joints : Joints
         Slip rate and slip at the start of the step: the coefficient follows them a step behind.
     rotations : float64 array, shape (n_bodies, 3, 3)

@@ -2,7 +2,7 @@
 
 from blockshake.jit import borrowing_kernel
 from blockshake.solvers.nscd.solve.gauss_seidel import relative_velocity
-from blockshake.solvers.nscd.vectors import dot
+from blockshake.solvers.vectors import dot
 
 
 @borrowing_kernel

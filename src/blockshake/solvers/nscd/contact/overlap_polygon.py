@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.jit import borrowing_kernel
-from blockshake.solvers.nscd.vectors import put_into
+from blockshake.solvers.vectors import cross, difference, dot, put_into
 
 # Points this far outside a side plane count as inside, so that flush faces do not flicker [m].
 _FLUSH = 1e-9
@@ -38,18 +38,16 @@ def clip_face_into(polyhedra, placed, reference, incident):
         start = placed.vertices[polyhedra.corners[corner]]
         following = corner + 1 if corner + 1 < ref_last else ref_first
         end = placed.vertices[polyhedra.corners[following]]
-        ex, ey, ez = end[0] - start[0], end[1] - start[1], end[2] - start[2]
         # edge x normal points out of a face that is counter-clockwise about its normal
-        mx, my, mz = ey * n[2] - ez * n[1], ez * n[0] - ex * n[2], ex * n[1] - ey * n[0]
-        length = np.sqrt(mx * mx + my * my + mz * mz)
-        mx, my, mz = mx / length, my / length, mz / length
-        limit = mx * start[0] + my * start[1] + mz * start[2] + _FLUSH
+        m = cross(difference(end, start), n)
+        length = np.sqrt(dot(m, m))
+        m = m[0] / length, m[1] / length, m[2] / length
+        limit = dot(m, start) + _FLUSH
         kept = 0
         for index in range(count):
             here = polygon[index]
             there = polygon[index + 1 if index + 1 < count else 0]
-            d_here = mx * here[0] + my * here[1] + mz * here[2] - limit
-            d_there = mx * there[0] + my * there[1] + mz * there[2] - limit
+            d_here, d_there = dot(m, here) - limit, dot(m, there) - limit
             if d_here <= 0.0:
                 put_into(here, clipped[kept])
                 kept += 1
@@ -83,8 +81,8 @@ def _without_doubles_into(polygon, count):
 
 @borrowing_kernel
 def _squared_distance(x, y):
-    dx, dy, dz = x[0] - y[0], x[1] - y[1], x[2] - y[2]
-    return dx * dx + dy * dy + dz * dz
+    d = difference(x, y)
+    return dot(d, d)
 
 
 @borrowing_kernel
@@ -93,15 +91,8 @@ def area_and_centroid_into(polygon, count, center):
     weight = 0.0
     center[0] = center[1] = center[2] = 0.0
     for index in range(1, count - 1):
-        ux, uy, uz = (
-            polygon[index, 0] - polygon[0, 0], polygon[index, 1] - polygon[0, 1], polygon[index, 2] - polygon[0, 2]
-        )  # fmt: skip
-        vx, vy, vz = (
-            polygon[index + 1, 0] - polygon[0, 0], polygon[index + 1, 1] - polygon[0, 1],
-            polygon[index + 1, 2] - polygon[0, 2],
-        )  # fmt: skip
-        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        area = np.sqrt(x * x + y * y + z * z)
+        normal = cross(difference(polygon[index], polygon[0]), difference(polygon[index + 1], polygon[0]))
+        area = np.sqrt(dot(normal, normal))
         weight += area
         for axis in range(3):
             center[axis] += area * (polygon[0, axis] + polygon[index, axis] + polygon[index + 1, axis]) / 3.0
@@ -194,7 +185,4 @@ def choose_four_into(points, gaps, count, normal, chosen):
 
 @borrowing_kernel
 def _signed_area(a, b, c, normal):
-    ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
-    x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-    return 0.5 * (x * normal[0] + y * normal[1] + z * normal[2])
+    return 0.5 * dot(cross(difference(b, a), difference(c, a)), normal)

@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_rows
 from blockshake.jit import borrowing_kernel, kernel
-from blockshake.solvers.nscd.vectors import put_into, rows_product
+from blockshake.solvers.vectors import put_into, rows_product
 
 # Edge directions closer than this are one separating axis: only rounding tells them apart.
 _SAME_DIRECTION = 1e-9
@@ -136,9 +136,14 @@ def _directions(solid, edges):
 
 
 @kernel
-def empty_outline(room):
-    """Workspace for that many corners."""
-    return Outline(
+def empty_placed(polyhedra):
+    """Arrays for `place_into`."""
+    n_bodies = polyhedra.radius.size
+    most = 0
+    for face in range(polyhedra.normals.shape[0]):
+        most = max(most, polyhedra.first_corner[face + 1] - polyhedra.first_corner[face])
+    room = 2 * most + 2
+    outline = Outline(
         np.empty((room, 3)),
         np.empty((room, 3)),
         np.empty(room),
@@ -146,19 +151,10 @@ def empty_outline(room):
         np.empty(3),
         np.empty(3),
     )
-
-
-@kernel
-def empty_placed(polyhedra):
-    """Arrays for `place_into`."""
-    n_bodies = polyhedra.radius.size
-    most = 0
-    for face in range(polyhedra.normals.shape[0]):
-        most = max(most, polyhedra.first_corner[face + 1] - polyhedra.first_corner[face])
     return Placed(
         np.empty((n_bodies, 3)), np.empty(polyhedra.vertices.shape), np.empty(polyhedra.normals.shape),
         np.empty(polyhedra.offsets.shape), np.empty(polyhedra.directions.shape), np.empty((n_bodies, 3)),
-        np.empty((n_bodies, 3)), empty_outline(2 * most + 2),
+        np.empty((n_bodies, 3)), outline,
     )  # fmt: skip
 
 
@@ -193,39 +189,3 @@ def place_into(polyhedra, position, orientation, placed):
             )
         first, last = polyhedra.first_direction[body], polyhedra.first_direction[body + 1]
         _turn_into(R, polyhedra.directions, first, last, placed.directions)
-
-
-@kernel
-def find_pairs(placed, driven, margin):
-    """Pairs whose bounding boxes come within ``margin``: int64 (n_pairs, 2), sorted.
-
-    Sweep along x over the boxes sorted by their lower ends. Pairs of driven bodies are left out.
-    """
-    n_bodies = driven.size
-    order = np.argsort(placed.low[:, 0], kind="mergesort")
-    low, high = placed.low, placed.high
-    codes = np.empty(8 * n_bodies, np.int64)
-    count = 0
-    for rank in range(n_bodies):
-        one = order[rank]
-        for later in range(rank + 1, n_bodies):
-            other = order[later]
-            if low[other, 0] > high[one, 0] + margin:
-                break
-            if driven[one] and driven[other]:
-                continue
-            apart = False
-            for axis in range(1, 3):
-                if low[one, axis] > high[other, axis] + margin or low[other, axis] > high[one, axis] + margin:
-                    apart = True
-            if apart:
-                continue
-            if count == codes.size:
-                codes = np.concatenate((codes, np.empty(codes.size, np.int64)))
-            codes[count] = min(one, other) * n_bodies + max(one, other)
-            count += 1
-    codes = np.sort(codes[:count])
-    pairs = np.empty((count, 2), np.int64)
-    for pair in range(count):
-        pairs[pair, 0], pairs[pair, 1] = codes[pair] // n_bodies, codes[pair] % n_bodies
-    return pairs

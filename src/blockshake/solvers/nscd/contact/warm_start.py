@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.jit import borrowing_kernel
 from blockshake.solvers.nscd.contact.friction import coefficient_along
-from blockshake.solvers.nscd.vectors import matrix_product, transposed_product
+from blockshake.solvers.vectors import matrix_product, transposed_product
 
 # A contact takes over the impulse of the nearest one of its pair within this share of the radius.
 _SAME_CONTACT = 0.1

@@ -6,7 +6,7 @@ from blockshake.jit import borrowing_kernel
 from blockshake.solvers.nscd.contact.contacts import W_11, W_22, W_N1, W_N2, W_NN, effective_mass
 from blockshake.solvers.nscd.contact.friction import coefficient_along
 from blockshake.solvers.nscd.solve.local_solve import contact_residual, solve_contact
-from blockshake.solvers.nscd.vectors import cross, matrix_product, transposed_product
+from blockshake.solvers.vectors import add_impulse_into, cross, matrix_product, transposed_product
 
 
 @borrowing_kernel
@@ -15,17 +15,12 @@ def relative_velocity(contacts, contact, v):
 
     ``v`` (n_bodies, 6): velocity [m/s] and angular velocity [rad/s] of the bodies, world frame.
     """
-    basis = contacts.basis[contact]
     a, b = v[contacts.body_a[contact]], v[contacts.body_b[contact]]
     r, s = contacts.arm_a[contact], contacts.arm_b[contact]
     x = b[0] + b[4] * s[2] - b[5] * s[1] - a[0] - a[4] * r[2] + a[5] * r[1]
     y = b[1] + b[5] * s[0] - b[3] * s[2] - a[1] - a[5] * r[0] + a[3] * r[2]
     z = b[2] + b[3] * s[1] - b[4] * s[0] - a[2] - a[3] * r[1] + a[4] * r[0]
-    return (
-        basis[0, 0] * x + basis[0, 1] * y + basis[0, 2] * z,
-        basis[1, 0] * x + basis[1, 1] * y + basis[1, 2] * z,
-        basis[2, 0] * x + basis[2, 1] * y + basis[2, 2] * z,
-    )
+    return matrix_product(contacts.basis[contact], (x, y, z))
 
 
 @borrowing_kernel
@@ -36,29 +31,12 @@ def contact_velocities_into(contacts, v, u):
 
 
 @borrowing_kernel
-def _push_into(v, arm, inverse_mass, inverse_inertia, x, y, z):
-    """Velocity of one body after an impulse (x, y, z) [N s] at ``arm`` from its mass centre."""
-    v[0] += inverse_mass * x
-    v[1] += inverse_mass * y
-    v[2] += inverse_mass * z
-    tx, ty, tz = arm[1] * z - arm[2] * y, arm[2] * x - arm[0] * z, arm[0] * y - arm[1] * x
-    J = inverse_inertia
-    v[3] += J[0, 0] * tx + J[0, 1] * ty + J[0, 2] * tz
-    v[4] += J[1, 0] * tx + J[1, 1] * ty + J[1, 2] * tz
-    v[5] += J[2, 0] * tx + J[2, 1] * ty + J[2, 2] * tz
-
-
-@borrowing_kernel
-def apply_impulse_into(bodies, inverse_inertia, contacts, contact, p_n, p_1, p_2, v):
-    """Add the effect of an impulse [N s], along the basis, to the velocities of both bodies."""
-    basis = contacts.basis[contact]
-    x = basis[0, 0] * p_n + basis[1, 0] * p_1 + basis[2, 0] * p_2
-    y = basis[0, 1] * p_n + basis[1, 1] * p_1 + basis[2, 1] * p_2
-    z = basis[0, 2] * p_n + basis[1, 2] * p_1 + basis[2, 2] * p_2
-    a, b = contacts.body_a[contact], contacts.body_b[contact]
-    _push_into(v[b], contacts.arm_b[contact], bodies.inverse_mass[b], inverse_inertia[b], x, y, z)
-    if not bodies.driven[a]:
-        _push_into(v[a], contacts.arm_a[contact], bodies.inverse_mass[a], inverse_inertia[a], -x, -y, -z)
+def _push_into(v, arm, inverse_mass, inverse_inertia, sign, impulse):
+    """Velocity of one body after ``sign`` times an impulse [N s] at ``arm`` from its mass centre."""
+    spin = matrix_product(inverse_inertia, cross(arm, impulse))
+    for axis in range(3):
+        v[axis] += sign * inverse_mass * impulse[axis]
+        v[3 + axis] += sign * spin[axis]
 
 
 @borrowing_kernel
@@ -67,13 +45,8 @@ def apply_impulses_into(bodies, inverse_inertia, contacts, v_free, v):
     v[:] = 0.0
     for contact in range(contacts.gap.size):
         world = transposed_product(contacts.basis[contact], contacts.impulse[contact])
-        a, b = v[contacts.body_a[contact]], v[contacts.body_b[contact]]
-        moment_a, moment_b = cross(contacts.arm_a[contact], world), cross(contacts.arm_b[contact], world)
-        for axis in range(3):
-            a[axis] -= world[axis]
-            a[3 + axis] -= moment_a[axis]
-            b[axis] += world[axis]
-            b[3 + axis] += moment_b[axis]
+        add_impulse_into(-1.0, world, contacts.arm_a[contact], v[contacts.body_a[contact]])
+        add_impulse_into(1.0, world, contacts.arm_b[contact], v[contacts.body_b[contact]])
     for body in range(bodies.mass.size):
         if bodies.driven[body]:
             for i in range(6):
@@ -86,20 +59,27 @@ def apply_impulses_into(bodies, inverse_inertia, contacts, v_free, v):
 
 
 @borrowing_kernel
-def relative_residual(contacts, v, floor):
+def law_velocity(contacts, contact, u):
+    """Velocity that the law is written in: a contact's ``u`` and its shifts, compliance in the normal [m/s]."""
+    shift = contacts.shift[contact]
+    u_n = (
+        contacts.share[contact] * (u[0] + shift[0])
+        + contacts.compliance[contact] * contacts.impulse[contact, 0]
+    )
+    return u_n, u[1] + shift[1], u[2] + shift[2]
+
+
+@borrowing_kernel
+def relative_residual(contacts, u, floor):
     """Residual of the contact law, relative to the impulses [1].
 
     Root of the summed squares of `contact_residual` over all contacts, divided by that of the
-    impulses or by ``floor`` [N s], whichever is larger.
+    impulses or by ``floor`` [N s], whichever is larger. ``u`` (n_contacts, 3): as from `contact_velocities_into`.
     """
     left, load = 0.0, 0.0
     for contact in range(contacts.gap.size):
-        u_n, u_1, u_2 = relative_velocity(contacts, contact, v)
-        p = contacts.impulse[contact]
-        shift = contacts.shift[contact]
-        u_n = contacts.share[contact] * (u_n + shift[0]) + contacts.compliance[contact] * p[0]
-        u_1, u_2 = u_1 + shift[1], u_2 + shift[2]
-        rho = effective_mass(contacts.delassus[contact])
+        p, rho = contacts.impulse[contact], effective_mass(contacts.delassus[contact])
+        u_n, u_1, u_2 = law_velocity(contacts, contact, u[contact])
         mu = coefficient_along(contacts, contact, p[1] - rho * u_1, p[2] - rho * u_2)
         part = contact_residual(p[0], p[1], p[2], u_n, u_1, u_2, mu, rho)
         left += part * part
@@ -125,21 +105,24 @@ def sweep_into(bodies, inverse_inertia, contacts, upwards, v):
     n_contacts = contacts.gap.size
     for rank in range(n_contacts):
         contact = rank if upwards else n_contacts - 1 - rank
-        u_n, u_1, u_2 = relative_velocity(contacts, contact, v)
-        p, shift, w = contacts.impulse[contact], contacts.shift[contact], contacts.delassus[contact]
-        q_n = contacts.share[contact] * (u_n + shift[0]) + contacts.compliance[contact] * p[0]
-        q_n -= w[W_NN] * p[0] + w[W_N1] * p[1] + w[W_N2] * p[2]
-        q_1 = u_1 + shift[1] - (w[W_N1] * p[0] + w[W_11] * p[1])
-        q_2 = u_2 + shift[2] - (w[W_N2] * p[0] + w[W_22] * p[2])
+        u_n, u_1, u_2 = law_velocity(contacts, contact, relative_velocity(contacts, contact, v))
+        p, w = contacts.impulse[contact], contacts.delassus[contact]
+        q_n = u_n - (w[W_NN] * p[0] + w[W_N1] * p[1] + w[W_N2] * p[2])
+        q_1 = u_1 - (w[W_N1] * p[0] + w[W_11] * p[1])
+        q_2 = u_2 - (w[W_N2] * p[0] + w[W_22] * p[2])
         rho = effective_mass(w)
-        mu = coefficient_along(
-            contacts, contact, p[1] - rho * (u_1 + shift[1]), p[2] - rho * (u_2 + shift[2])
-        )
+        mu = coefficient_along(contacts, contact, p[1] - rho * u_1, p[2] - rho * u_2)
         p_n, p_1, p_2, slip_ratio = solve_contact(
             w[W_NN], w[W_11], w[W_22], w[W_N1], w[W_N2], q_n, q_1, q_2, mu, contacts.slip_ratio[contact]
         )
-        d_n, d_1, d_2 = p_n - p[0], p_1 - p[1], p_2 - p[2]
-        if d_n != 0.0 or d_1 != 0.0 or d_2 != 0.0:
-            apply_impulse_into(bodies, inverse_inertia, contacts, contact, d_n, d_1, d_2, v)
+        change = p_n - p[0], p_1 - p[1], p_2 - p[2]
+        if change[0] != 0.0 or change[1] != 0.0 or change[2] != 0.0:
+            world = transposed_product(contacts.basis[contact], change)
+            a, b = contacts.body_a[contact], contacts.body_b[contact]
+            _push_into(v[b], contacts.arm_b[contact], bodies.inverse_mass[b], inverse_inertia[b], 1.0, world)
+            if not bodies.driven[a]:
+                _push_into(
+                    v[a], contacts.arm_a[contact], bodies.inverse_mass[a], inverse_inertia[a], -1.0, world
+                )
             p[0], p[1], p[2] = p_n, p_1, p_2
             contacts.slip_ratio[contact] = slip_ratio

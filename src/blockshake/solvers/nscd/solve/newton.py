@@ -13,8 +13,8 @@ from blockshake.solvers.nscd.solve.block_elimination import (
     find_block,
     solve_blocks_into,
 )
-from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into, relative_velocity
-from blockshake.solvers.nscd.vectors import cross, matrix_product, transposed_product
+from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into, law_velocity, relative_velocity
+from blockshake.solvers.vectors import add_impulse_into, cross, matrix_product, transposed_product
 
 
 class NewtonSpace(NamedTuple):
@@ -77,7 +77,7 @@ def linear_law_into(contacts, contact, u, stiffness, D, c):
     c[:] = 0.0
     p, shift = contacts.impulse[contact], contacts.shift[contact]
     share, compliance = contacts.share[contact], contacts.compliance[contact]
-    u_n, u_1, u_2 = share * (u[0] + shift[0]) + compliance * p[0], u[1] + shift[1], u[2] + shift[2]
+    u_n, u_1, u_2 = law_velocity(contacts, contact, u)
     rho = effective_mass(contacts.delassus[contact])
     trial_n = p[0] - rho * u_n
     if trial_n <= 0.0:
@@ -156,15 +156,6 @@ def _add_contact_into(contacts, contact, slope, entry, system, T):
 
 
 @borrowing_kernel
-def _add_impulse_into(sign, arm, f, x):
-    """Add an impulse [N s] and its moment to the right side of a body."""
-    moment = cross(arm, f)
-    for axis in range(3):
-        x[axis] += sign * f[axis]
-        x[3 + axis] += sign * moment[axis]
-
-
-@borrowing_kernel
 def _assemble_into(bodies, inertia, contacts, stiffness, v, newton):
     """Linear laws of all contacts, and the system that they give."""
     system = newton.system
@@ -189,9 +180,9 @@ def _assemble_into(bodies, inertia, contacts, stiffness, v, newton):
         change = transposed_product(contacts.basis[contact], (c[0] - p[0], c[1] - p[1], c[2] - p[2]))
         a, b = system.rank[contacts.body_a[contact]], system.rank[contacts.body_b[contact]]
         if a >= 0:
-            _add_impulse_into(-1.0, contacts.arm_a[contact], change, system.x[a])
+            add_impulse_into(-1.0, change, contacts.arm_a[contact], system.x[a])
         if b >= 0:
-            _add_impulse_into(1.0, contacts.arm_b[contact], change, system.x[b])
+            add_impulse_into(1.0, change, contacts.arm_b[contact], system.x[b])
         if D[0, 0] > 0.0:
             _add_contact_into(contacts, contact, D, newton.entry[contact], system, T)
 

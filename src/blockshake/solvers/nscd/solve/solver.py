@@ -2,8 +2,13 @@
 
 import numpy as np
 
-from blockshake.jit import kernel
-from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into, relative_residual, sweep_into
+from blockshake.jit import borrowing_kernel, kernel
+from blockshake.solvers.nscd.solve.gauss_seidel import (
+    apply_impulses_into,
+    contact_velocities_into,
+    relative_residual,
+    sweep_into,
+)
 from blockshake.solvers.nscd.solve.newton import newton_space, newton_step_into
 
 # Newton settles within a few steps, or wanders among states that do not fit together: the stiffer the
@@ -18,8 +23,15 @@ _TRUSTED = 1e-4
 _LAST_SWEEPS = 200
 
 
+@borrowing_kernel
+def _residual(contacts, v, floor, u):
+    """`relative_residual` for velocities ``v`` of the bodies; ``u`` (n_contacts, 3) is worked in."""
+    contact_velocities_into(contacts, v, u)
+    return relative_residual(contacts, u, floor)
+
+
 @kernel
-def _restart_into(bodies, inverse_inertia, contacts, floor, residual, v_free, v):
+def _restart_into(bodies, inverse_inertia, contacts, floor, residual, v_free, v, u):
     """Sweeps from no impulse: their answer where it is nearer to the contact law, and the residual of the better one.
 
     Blocks that are wedged can hold any impulses against each other. A search that wanders among such impulses, and is
@@ -33,7 +45,7 @@ def _restart_into(bodies, inverse_inertia, contacts, floor, residual, v_free, v)
     v[:] = v_free
     for sweep in range(_LAST_SWEEPS):
         sweep_into(bodies, inverse_inertia, contacts, sweep % 2 == 0, v)
-    new = relative_residual(contacts, v, floor)
+    new = _residual(contacts, v, floor, u)
     if new * max(np.sqrt((contacts.impulse**2).sum()), floor) < old_size:
         return new
     contacts.impulse[:] = old_impulse
@@ -77,9 +89,9 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
     n_contacts = contacts.gap.size
     if n_contacts == 0:
         return 0, 0.0
-    v_free = v.copy()
+    v_free, u = v.copy(), np.empty((n_contacts, 3))
     apply_impulses_into(bodies, inverse_inertia, contacts, v_free, v)
-    best, best_impulse, best_v = relative_residual(contacts, v, floor), contacts.impulse.copy(), v.copy()
+    best, best_impulse, best_v = _residual(contacts, v, floor, u), contacts.impulse.copy(), v.copy()
     iterations, sweeps = 0, FIRST_SWEEPS
     newton = newton_space(bodies.driven, contacts.body_a, contacts.body_b)
     while True:
@@ -92,7 +104,7 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
                     bodies, inertia, inverse_inertia, contacts, STIFFNESS[attempt], v_free, v, newton
                 ):
                     break
-                residual = relative_residual(contacts, v, floor)
+                residual = _residual(contacts, v, floor, u)
                 if residual < best:
                     best = residual
                     best_impulse[:] = contacts.impulse
@@ -110,7 +122,7 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
                 break
             iterations += 1
             sweep_into(bodies, inverse_inertia, contacts, sweep % 2 == 0, v)
-        residual = relative_residual(contacts, v, floor)
+        residual = _residual(contacts, v, floor, u)
         if residual < best:
             best = residual
             best_impulse[:] = contacts.impulse
@@ -119,6 +131,6 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
             contacts.impulse[:] = best_impulse
             v[:] = best_v
             if best > _TRUSTED:
-                best = _restart_into(bodies, inverse_inertia, contacts, floor, best, v_free, v)
+                best = _restart_into(bodies, inverse_inertia, contacts, floor, best, v_free, v, u)
             return iterations, best
         sweeps *= 2

@@ -5,8 +5,8 @@ import numpy as np
 from blockshake.jit import borrowing_kernel
 from blockshake.solvers.nscd.contact.contacts import effective_mass
 from blockshake.solvers.nscd.contact.friction import coefficient_along
+from blockshake.solvers.nscd.solve.gauss_seidel import law_velocity
 from blockshake.solvers.nscd.solve.local_solve import solve_contact
-from blockshake.solvers.nscd_deformable.solve.residual import law_velocity
 
 
 @borrowing_kernel

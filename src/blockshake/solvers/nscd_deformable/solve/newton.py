@@ -6,9 +6,9 @@ import numpy as np
 
 from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.nscd.solve.newton import linear_law_into
-from blockshake.solvers.nscd.vectors import matrix_product
 from blockshake.solvers.nscd_deformable.solve.band_elimination import factor_into, solve_into
 from blockshake.solvers.nscd_deformable.solve.operator import extend_into, velocities_into
+from blockshake.solvers.vectors import matrix_product
 
 OPEN, STUCK, SLIPPING = 0, 1, 2
 _SAME_PLACE = 0.01  # m; contacts that moved farther on their body have another operator
@@ -191,7 +191,7 @@ def newton_step_into(problem, contacts, stiffness, fresh, operator, motion, laws
         Factor anew even where the kept factorisation belongs to these contacts.
     operator : Operator
         Of this step; extended where it is needed.
-    motion : Motion
+    motion : ContactMotion
         Of the impulses before, and after.
     laws : Laws
         Overwritten.

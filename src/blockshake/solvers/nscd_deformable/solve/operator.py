@@ -6,14 +6,10 @@ import numpy as np
 
 from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.nscd.contact.contacts import W_11, W_22, W_N1, W_N2, W_NN
-from blockshake.solvers.nscd.solve.gauss_seidel import (
-    apply_impulses_into,
-    contact_velocities_into,
-    relative_velocity,
-)
-from blockshake.solvers.nscd.vectors import cross, dot, matrix_product, put_into, transposed_product
+from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into, relative_velocity
 from blockshake.solvers.nscd_deformable.contact_points import anchored
 from blockshake.solvers.nscd_deformable.elastic_step import compliance_of
+from blockshake.solvers.vectors import cross, dot, matrix_product, put_into, transposed_product
 
 
 class Problem(NamedTuple):
@@ -22,7 +18,7 @@ class Problem(NamedTuple):
     ``inverse_inertia`` (n_bodies, 3, 3): world frame [1/(kg m2)]; ``rotations`` (n_bodies, 3, 3), body to world;
     ``v_free`` (n_bodies, 6) and ``point_free`` (n_points, 3): velocities of the bodies, world frame, and of the
     lattice's points, body frames, at the end of the step without contact; ``bodies``, ``elastic``, ``response``,
-    ``anchors``: Bodies, Elastic, Response, Anchors.
+    ``anchors``: Bodies, Elastic, ElasticResponse, Anchors.
     """
 
     bodies: tuple
@@ -35,7 +31,7 @@ class Problem(NamedTuple):
     point_free: np.ndarray
 
 
-class Motion(NamedTuple):
+class ContactMotion(NamedTuple):
     """Velocities that belong to the impulses.
 
     ``v`` (n_bodies, 6); ``forces`` and ``points`` (n_points, 3): impulses on the lattice's points and their velocities,
@@ -51,7 +47,7 @@ class Motion(NamedTuple):
 @kernel
 def empty_motion(n_bodies, n_points, n_contacts):
     """Work space."""
-    return Motion(
+    return ContactMotion(
         np.empty((n_bodies, 6)), np.empty((n_points, 3)), np.empty((n_points, 3)), np.empty((n_contacts, 3))
     )
 
@@ -106,11 +102,17 @@ def velocities_into(problem, contacts, motion):
                         motion.points[point, 0] += force * row[at]
                         motion.points[point, 1] += force * row[at + 1]
                         motion.points[point, 2] += force * row[at + 2]
+    surface_velocities_into(anchors, problem.rotations, contacts, motion.v, motion.points, motion.u)
+
+
+@borrowing_kernel
+def surface_velocities_into(anchors, rotations, contacts, v, points, u):
+    """Velocities ``u`` (n_contacts, 3) of the contacts, for those of the bodies, ``v``, and of the lattices' points."""
     for contact in range(contacts.gap.size):
-        u = relative_velocity(contacts, contact, motion.v)
-        e = elastic_velocity(anchors, problem.rotations, contacts, contact, motion.points)
+        rigid = relative_velocity(contacts, contact, v)
+        elastic = elastic_velocity(anchors, rotations, contacts, contact, points)
         for axis in range(3):
-            motion.u[contact, axis] = u[axis] + e[axis]
+            u[contact, axis] = rigid[axis] + elastic[axis]
 
 
 @borrowing_kernel
@@ -210,18 +212,6 @@ def _own_operators_into(problem, contacts, lever, held, W):
 def own_operators_into(problem, contacts):
     """Fill in ``contacts.delassus``: what each contact's velocity makes of its own impulse."""
     _own_operators_into(problem, contacts, np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)))
-
-
-@kernel
-def working_velocities(anchors, rotations, contacts, v, points):
-    """Velocities that impulses do work on: of the contacts, for velocities ``v`` of the bodies and of the points."""
-    u = np.empty((contacts.gap.size, 3))
-    contact_velocities_into(contacts, v, u)
-    for contact in range(contacts.gap.size):
-        e = elastic_velocity(anchors, rotations, contacts, contact, points)
-        for axis in range(3):
-            u[contact, axis] += e[axis]
-    return u
 
 
 class Operator(NamedTuple):

@@ -3,6 +3,7 @@
 import numpy as np
 
 from blockshake.jit import kernel
+from blockshake.solvers.nscd.solve.gauss_seidel import relative_residual
 from blockshake.solvers.nscd.solve.solver import FIRST_SWEEPS, NEWTON_STEPS, STIFFNESS
 from blockshake.solvers.nscd_deformable.solve.gauss_seidel import sweep_into
 from blockshake.solvers.nscd_deformable.solve.newton import empty_laws, newton_step_into
@@ -12,7 +13,6 @@ from blockshake.solvers.nscd_deformable.solve.operator import (
     own_operators_into,
     velocities_into,
 )
-from blockshake.solvers.nscd_deformable.solve.residual import residual_of
 
 # A kept factorisation that lowers the residual by less than this is made anew.
 _SLOW = 0.1
@@ -28,12 +28,12 @@ def solve_contacts_into(problem, contacts, floor, tolerance, max_iterations, mot
     contacts : Contacts
         ``impulse`` holds the start and, afterwards, the answer.
     floor : float
-        As in `residual_of` [N s].
+        As in `relative_residual` [N s].
     tolerance : float
         Relative residual that ends the search [1].
     max_iterations : int
         Newton steps and sweeps allowed, together.
-    motion : Motion
+    motion : ContactMotion
         Overwritten with the velocities of the answer.
     factor : Factor
         Kept from an earlier step.
@@ -51,7 +51,7 @@ def solve_contacts_into(problem, contacts, floor, tolerance, max_iterations, mot
     velocities_into(problem, contacts, motion)
     if n == 0:
         return 0, 0.0, factor
-    best, best_impulse = residual_of(contacts, motion.u, floor), contacts.impulse.copy()
+    best, best_impulse = relative_residual(contacts, motion.u, floor), contacts.impulse.copy()
     operator, laws = empty_operator(problem, contacts), empty_laws(n)
     iterations, sweeps = 0, FIRST_SWEEPS
     while True:
@@ -61,13 +61,13 @@ def solve_contacts_into(problem, contacts, floor, tolerance, max_iterations, mot
                 if iterations == max_iterations:
                     break
                 iterations += 1
-                before = residual_of(contacts, motion.u, floor)
+                before = relative_residual(contacts, motion.u, floor)
                 done, made, factor = newton_step_into(
                     problem, contacts, STIFFNESS[attempt], fresh, operator, motion, laws, factor
                 )
                 if not done:
                     break
-                residual = residual_of(contacts, motion.u, floor)
+                residual = relative_residual(contacts, motion.u, floor)
                 fresh = not made and residual > _SLOW * before
                 if residual < best:
                     best = residual
@@ -85,7 +85,7 @@ def solve_contacts_into(problem, contacts, floor, tolerance, max_iterations, mot
             iterations += 1
             sweep_into(contacts, operator.matrix, sweep % 2 == 0, motion.u)
         velocities_into(problem, contacts, motion)
-        residual = residual_of(contacts, motion.u, floor)
+        residual = relative_residual(contacts, motion.u, floor)
         if residual < best:
             best = residual
             best_impulse[:] = contacts.impulse

@@ -36,6 +36,21 @@ def dot(x, y):
 
 
 @borrowing_kernel
+def difference(x, y):
+    """``x`` less ``y``."""
+    return x[0] - y[0], x[1] - y[1], x[2] - y[2]
+
+
+@borrowing_kernel
+def add_impulse_into(sign, f, arm, total):
+    """Add ``sign`` times an impulse, or a force, at ``arm``, and its moment, to ``total`` (6,)."""
+    moment = cross(arm, f)
+    for axis in range(3):
+        total[axis] += sign * f[axis]
+        total[3 + axis] += sign * moment[axis]
+
+
+@borrowing_kernel
 def rows_product(rows, x):
     """``R x`` for a matrix given by its rows, three tuples."""
     return dot(rows[0], x), dot(rows[1], x), dot(rows[2], x)
@@ -69,7 +84,7 @@ def tensor_in_world_into(R, A, out):
 
 @borrowing_kernel
 def velocity_at(v, arm):
-    """Velocity [m/s] of a body's point at ``arm`` from its mass centre; ``v`` (6,) as in `Step`."""
+    """Velocity [m/s] of a body's point at ``arm`` from its mass centre; ``v`` (6,): velocity and spin."""
     return (
         v[0] + v[4] * arm[2] - v[5] * arm[1],
         v[1] + v[5] * arm[0] - v[3] * arm[2],
