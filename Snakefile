@@ -1,4 +1,4 @@
-# The study: its targets and the order of its rules. The keys of the configuration are in docs/keys.md.
+# The study: its targets and the order of its rules. The keys of the configuration are in docs/guide/keys.md.
 from snakemake.utils import min_version
 
 min_version("9.27")

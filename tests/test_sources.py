@@ -75,7 +75,18 @@ def test_numbas_options_are_watched_by_what_they_compile():
 def test_what_judges_is_no_source_of_what_is_simulated():
     for script in ("simulate_batch", "simulate_nominal"):
         assert not any(
-            one.startswith(("report/", "diagnosis/evidence/", "diagnosis/gain/", "diagnosis/verdict/"))
+            one.startswith(
+                (
+                    "pages/",
+                    "views/",
+                    "study/report/",
+                    "study/statements/",
+                    "diagnosis/report/",
+                    "diagnosis/evidence/",
+                    "diagnosis/gain/",
+                    "diagnosis/verdict/",
+                )
+            )
             for one in script_sources(script)
         )
 

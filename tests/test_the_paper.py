@@ -1,4 +1,4 @@
-"""The statements of the paper that no study decides, and the departures from it: the tables of docs/the-paper.md."""
+"""Statements of the paper that no study decides, and departures from it: the tables of docs/results/the-paper.md."""
 
 import ast
 import re
@@ -12,7 +12,6 @@ from blockshake.geometry.reference_block import reference_block
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.sensors import accelerometers, markers
-from blockshake.report.study.statements.table import STATEMENTS
 from blockshake.simulation.models import MODELS
 from blockshake.solvers.ls_dem.interfaces import damping_ratio
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
@@ -23,9 +22,10 @@ from blockshake.study.calibration.answers import LEVEL
 from blockshake.study.config import load_config
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 from blockshake.study.sampling.distributions import LINKED, TABLE_2
+from blockshake.study.statements.table import STATEMENTS
 from blockshake.study.stiffness.wave_step import STEP_VELOCITY
 
-PAGE = HOME / "docs" / "the-paper.md"
+PAGE = HOME / "docs" / "results" / "the-paper.md"
 CAMPAIGNS = HOME / "data" / "virtual-campaign"
 
 

@@ -75,7 +75,7 @@ def test_edit_of_a_solver_reruns_that_solver_only(finished, source, simulated):
 
 
 def test_edit_of_the_report_simulates_nothing(finished):
-    source = "report/study/report.py"
+    source = "study/report/report.py"
     path = finished.folder / "src" / "blockshake" / source
     before = path.read_text()
     try:

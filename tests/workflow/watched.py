@@ -16,12 +16,12 @@ EDITS = {
     "study": (
         "solvers/ls_dem/driver.py", "solvers/nscd/driver.py", "study/ensembles/envelope.py",
         "study/stiffness/wave_speed.py", "study/sampling/distributions.py", "dynamics/intensity.py",
-        "report/study/report.py", "errors.py",
+        "study/report/report.py", "errors.py",
     ),
     "diagnosis": (
         "solvers/ls_dem/driver.py", "diagnosis/evidence/likelihood.py", "diagnosis/answer/decide.py",
         "diagnosis/misfit/predictability.py", "diagnosis/verdict/ladder.py", "parity/marker_faults.py",
-        "report/diagnosis/odds_section.py",
+        "diagnosis/report/odds_section.py",
     ),
 }  # fmt: skip
 STEPS = "diagnosis/steps.py"  # a rule runs one function of it

@@ -145,7 +145,7 @@ CHECKED = study_config()
 config.update(CHECKED.model_dump(mode="json"))
 
 TEMPLATES = expand(
-    beside(PACKAGE / "report" / "document" / "templates" / "{name}"),
+    beside(PACKAGE / "pages" / "templates" / "{name}"),
     name=["report.html.j2", "report.css", "report.js", "moving.js", "report.typ"],
 )
 STUDY = config["name"]

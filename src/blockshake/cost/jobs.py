@@ -8,7 +8,7 @@ from typing import NamedTuple
 from blockshake.errors import InputError
 
 # CPU seconds of jobs beside their simulations: 5 s of the start, and what Snakemake's benchmarks of the default study
-# said (2026-11-23, on the machine of docs/bench.md, where the plan of that study took `_PLANNED`)
+# said (2026-11-23, on the machine of docs/results/bench.md, where the plan of that study took `_PLANNED`)
 _USUAL = 7.0
 _FIXED = {
     "all": 0.0,

@@ -141,7 +141,7 @@ class Diagnosis(Strict):
 
     campaigns: tuple[str, ...] = Field((), description="folders of the campaigns")
     effort: Literal["quick", "standard", "deep"] = Field(
-        "standard", description="how many tests are simulated: docs/diagnosis.md"
+        "standard", description="how many tests are simulated: docs/guide/diagnosis.md"
     )
 
 

@@ -9,14 +9,13 @@ from blockshake.dynamics.system import Status
 from blockshake.errors import InputError
 from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
-from blockshake.simulation.models import model_of
 from blockshake.statistics.intervals import CONFIDENCE
 from blockshake.statistics.resampling import DRAWS, bootstrap_interval, chance_level
 from blockshake.study.described import describe
 from blockshake.study.ensembles.ensemble import ALONG_X, POSES, join_batches
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.sampling.latin_hypercube import load_design
-from blockshake.study.sampling.sample_parameters import sample_parameters
+from blockshake.study.sampling.sample_parameters import sample_parameters, unused_variables
 from blockshake.study.sensitivity.histories import completed_histories, principal_components, window_bounds
 from blockshake.study.sensitivity.measures import (
     FEWEST_SAMPLES,
@@ -121,15 +120,6 @@ def sensitivity(ensemble, variables, controls=()):
     result = result.merge(_over_time(counted, markers, slab, inputs, generator))
     result["control"] = ("parameter", np.array([name in controls for name in variables], dtype=np.int8))
     return _described(result.assign_coords(marker=markers, parameter=variables), ensemble, counted, seed)
-
-
-def unused_variables(variables, model, parameters):
-    """Variables that cannot matter: controls that a sound measure must find at the level of chance.
-
-    Dotted names. ``parameters``: what a sample gives to the structure, from `sample_parameters`, without what it lacks.
-    """
-    unused = model_of(model).without_effect
-    return [name for name in variables if name not in parameters or name.rsplit(".", 1)[1] in unused]
 
 
 def _outputs(counted, quantity, markers, slab):
