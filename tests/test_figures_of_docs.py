@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from blockshake.study.statements.section import HEADER, count_words
-from blockshake.study.statements.statement import Verdict
+from blockshake.study.statements.statement import PaperVerdict
 from blockshake.study.statements.table import STATEMENTS
 
 ROOT = Path(__file__).parents[1]
@@ -43,7 +43,7 @@ def test_findings_on_the_paper_are_on_the_statements_of_today(figures):
     rows = [row for row in rows if row[0] not in (HEADER[0], "---")]
     stated = [(one.place, one.claim) for statements in STATEMENTS.values() for one in statements]
     assert [(row[0], row[1]) for row in rows] == stated
-    assert {row[2] for row in rows} == set(Verdict)
+    assert {row[2] for row in rows} == set(PaperVerdict)
     assert count_words({"all": rows}) in " ".join(page.split())
 
 

@@ -25,7 +25,7 @@ _PLANNED = 6.0  # CPU s
 _ROW = re.compile(r"^(\w+) +(\d+)$", re.MULTILINE)
 
 
-class Part(NamedTuple):
+class CostPart(NamedTuple):
     """Runs or jobs of one kind.
 
     Attributes
@@ -48,9 +48,9 @@ class Jobs(NamedTuple):
     slowness: float
 
     def as_part(self):
-        """`Part` of a study: all that its jobs take beside the simulations that are tried."""
+        """`CostPart` of a study: all that its jobs take beside the simulations that are tried."""
         seconds = sum(count * _FIXED.get(rule, _USUAL) for rule, count in self.counts.items())
-        return Part("jobs beside their runs", sum(self.counts.values()), self.slowness * seconds)
+        return CostPart("jobs beside their runs", sum(self.counts.values()), self.slowness * seconds)
 
 
 def planned_jobs(command):

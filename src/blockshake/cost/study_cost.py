@@ -3,7 +3,7 @@
 import sys
 
 from blockshake.cost.diagnosis_cost import diagnosis_cost
-from blockshake.cost.jobs import Part, planned_jobs
+from blockshake.cost.jobs import CostPart, planned_jobs
 from blockshake.cost.trial import run_seconds
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import HOME
@@ -25,7 +25,7 @@ def study_cost(path):
 
     Returns
     -------
-    list of Part
+    list of CostPart
 
     Raises
     ------
@@ -48,7 +48,7 @@ def study_cost(path):
             asked = _runs(config, model, case)
             runs = sum(count for count, _ in asked.values())
             each = run_seconds(structure, motion, trial, case.duration, runs)
-            parts += [Part(name, count, whole * each) for name, (count, whole) in asked.items()]
+            parts += [CostPart(name, count, whole * each) for name, (count, whole) in asked.items()]
     tried = {}
     for folder in config.diagnosis.campaigns:
         parts += diagnosis_cost(folder, config.diagnosis.effort, tried)

@@ -12,7 +12,7 @@ from blockshake.errors import InputError
 from blockshake.store import load_made
 
 
-class Measured(NamedTuple):
+class DecidedCampaign(NamedTuple):
     """Sensors checked against each other, what the tests speak for, and their rows as forces."""
 
     parity: object
@@ -32,7 +32,7 @@ def decide(folder, without):
 
     Returns
     -------
-    Measured
+    DecidedCampaign
     """
     from blockshake.diagnosis.answer.decide import decide
     from blockshake.diagnosis.evidence.seen_campaign import see_campaign
@@ -44,7 +44,7 @@ def decide(folder, without):
         raise InputError(
             folder, "tests", f"expected an open test whose forces can be read; {'; '.join(unseen)}"
         )
-    return Measured(seen.parity, *decide(seen.tests, without, unseen))
+    return DecidedCampaign(seen.parity, *decide(seen.tests, without, unseen))
 
 
 def simulate_nominal(folder, effort, number, solver, store):

@@ -16,6 +16,7 @@ from blockshake.pages.blocks import PAGE_WIDTH
 BLACK, ORANGE, BLUE, GREEN, RED = "#000000", "#e69f00", "#0072b2", "#009e73", "#cc3311"
 SKY, PURPLE = "#56b4e9", "#cc79a7"
 LIGHT_GREY, GREY, DARK_GREY = "#e2e2e2", "#b8b8b8", "#555555"
+MEASURED = {"color": BLACK, "linestyle": (0, (4, 2)), "linewidth": 0.9}  # line of a measured curve
 _INCH = 0.0254  # m
 STYLE = {
     "font.family": "DejaVu Sans",

@@ -27,7 +27,7 @@ _PIXELS = 100  # an inch
 _LARGEST, _SMALLEST = 7.0, 3.6  # inches, of the drawing's sides
 _LETTERS = 17.0  # of the title, an inch
 _MARGIN = 0.04  # of the drawing, around the blocks
-_NEWS = 10.0  # s of wall time between lines of progress
+_NEWS_EVERY = 10.0  # s of wall time between lines of progress
 _log = logging.getLogger(__name__)
 
 
@@ -189,7 +189,7 @@ class _Film:
 
 def _frames(film, times):
     """Draw one frame after the other and say how far it is."""
-    news = Due(_NEWS)
+    news = Due(_NEWS_EVERY)
     for frame, time in enumerate(times):
         film.draw(frame, time)
         yield

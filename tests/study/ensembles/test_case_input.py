@@ -18,7 +18,7 @@ from blockshake.study.ensembles.batch import CaseRuns, simulate_samples
 from blockshake.study.ensembles.case_input import driving_motions, measured_input, measured_on_clock
 from blockshake.study.ensembles.ensemble import join_batches
 from blockshake.study.ensembles.measured import compared_curves
-from blockshake.virtual.table import Table, followed
+from blockshake.virtual.table import TableErrors, followed
 
 FRICTION = "friction.stone.stone"
 STRUCTURE = """
@@ -41,7 +41,7 @@ name: sliding
 structure: one-block.yaml
 tests: [{name: t1, file: t1.nc, motion: motion.csv, scale: 1.0, role: fit}]
 """
-OFF = Table(gain=1.06, high=-0.02, corner=2.0, pitch=5e-5)
+OFF = TableErrors(gain=1.06, high=-0.02, corner=2.0, pitch=5e-5)
 SIZE, DURATION = 20, 3.0
 
 
@@ -85,14 +85,14 @@ def score(case, tmp_path):
 
 
 def test_a_table_five_per_cent_off_costs_nothing(score):
-    exact = score(Table(), "measured")
+    exact = score(TableErrors(), "measured")
     assert score(OFF, "measured") == pytest.approx(exact, rel=0.15)
     assert score(OFF, "commanded") > 3.0 * exact
-    assert score(Table(), "commanded") == pytest.approx(exact, rel=0.15)
+    assert score(TableErrors(), "commanded") == pytest.approx(exact, rel=0.15)
 
 
 def test_samples_have_draws_of_their_own_and_models_the_same(case, score, tmp_path):
-    score(Table(), "measured")
+    score(TableErrors(), "measured")
     named = {"campaign": str(tmp_path), "test": "t1"}
     driven = {**case, "input": "measured"}
     base = measured_input(driven, named)
@@ -105,7 +105,7 @@ def test_samples_have_draws_of_their_own_and_models_the_same(case, score, tmp_pa
 
 
 def test_a_record_that_ends_before_the_window_is_refused_where_it_is_the_input(case, score, tmp_path):
-    score(Table(), "commanded")
+    score(TableErrors(), "commanded")
     named = {"campaign": str(tmp_path), "test": "t1"}
     longer = {**case, "duration": 10.0}
     with pytest.raises(InputError, match=r"t1: duration: expected at most 3 s, .* or input: commanded"):
@@ -117,7 +117,7 @@ def test_a_record_that_ends_before_the_window_is_refused_where_it_is_the_input(c
 def test_a_gap_in_which_the_slab_s_motion_is_lost_is_refused_where_it_is_the_input(
     lost, case, score, tmp_path
 ):
-    score(Table(), "commanded")
+    score(TableErrors(), "commanded")
     path, named = tmp_path / "t1.nc", {"campaign": str(tmp_path), "test": "t1"}
     whole = xr.load_dataset(path, decode_times=False)
     inside = (whole["time"] > 1.0) & (whole["time"] < 1.8)

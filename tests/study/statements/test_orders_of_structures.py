@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from blockshake.study.statements import envelopes, rocking
-from blockshake.study.statements.statement import Verdict
+from blockshake.study.statements.statement import PaperVerdict
 
-MET, NOT_MET, UNJUDGED = Verdict.MET, Verdict.NOT_MET, Verdict.UNJUDGED
+MET, NOT_MET, UNJUDGED = PaperVerdict.MET, PaperVerdict.NOT_MET, PaperVerdict.UNJUDGED
 FIRST, FOURTH = "configuration-1", "configuration-4"
 
 

@@ -8,7 +8,7 @@ from blockshake.study.statements.section import (
     judge_statements,
     statements,
 )
-from blockshake.study.statements.statement import Verdict
+from blockshake.study.statements.statement import PaperVerdict
 from blockshake.study.statements.table import STATEMENTS
 
 
@@ -19,7 +19,7 @@ def test_every_statement_has_a_place_a_verdict_and_a_command(content):
     for place, claim, verdict, words, command in rows:
         assert place
         assert claim.endswith(".")
-        assert verdict in list(Verdict)
+        assert verdict in list(PaperVerdict)
         assert words.endswith(".")
         assert "nan" not in words.split()
         assert command.startswith(("snakemake -c2 results/fake/", "blockshake "))
@@ -43,7 +43,7 @@ def test_a_study_of_one_model_and_no_test_judges_what_it_can(content):
         del case.responses["nscd-rigid"]
         content.cases[name] = replace(case, measured=None, base=None, synthetic=False)
     rows = [row for rows in judge_statements(content).values() for row in rows]
-    unjudged = [row for row in rows if row[2] == Verdict.UNJUDGED]
+    unjudged = [row for row in rows if row[2] == PaperVerdict.UNJUDGED]
     assert {row[1] for row in unjudged} >= {
         "A mean of 0.75 is the best.", "The two models behave alike.", "Both models resemble the tests closely.",
     }  # fmt: skip

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from blockshake.study.statements import measured_tests, solvers
-from blockshake.study.statements.statement import Verdict, against_tests
+from blockshake.study.statements.statement import PaperVerdict, against_tests
 
-MET, NOT_MET, UNJUDGED = Verdict.MET, Verdict.NOT_MET, Verdict.UNJUDGED
+MET, NOT_MET, UNJUDGED = PaperVerdict.MET, PaperVerdict.NOT_MET, PaperVerdict.UNJUDGED
 
 
 def test_a_step_is_judged_against_the_limit_of_stability(content):

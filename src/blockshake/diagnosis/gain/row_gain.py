@@ -10,13 +10,13 @@ from blockshake.diagnosis.answer.explain import likelihoods
 from blockshake.diagnosis.evidence.joint_rows import JointRows
 from blockshake.diagnosis.evidence.slab_motion import slab_motion, slab_turns
 from blockshake.diagnosis.nominal.ensemble import DISCREPANCY, EXTENDED, NOMINAL, RECALIBRATED
-from blockshake.diagnosis.verdict.verdict import Contrast, Gain
+from blockshake.diagnosis.verdict.verdict import OF_A_GAIN, Contrast, Gain
 from blockshake.effects.registry import EFFECTS
 from blockshake.statistics.resampling import limits_of, resampled_weights
 
 _WIDER = (1.0, 3.0, 10.0)  # times the priors of the joints' own errors: a discrepancy without a name
 _BLOCK = 0.5  # s, of rows that are drawn together
-_DRAWS, _CONFIDENCE = 1000, 0.9
+_DRAWS = 1000
 _NOTHING = 1.645  # standard deviations of the floor, within which nothing is to gain
 NOTHING = Contrast(estimate=0.0, lower=-1.0, upper=1.0)
 NOTHING_TO_GAIN = "nothing to gain on the sealed tests' forces against the {} model: it is within its errors"
@@ -81,7 +81,7 @@ def _contrast(means, drawn, rival):
     floor = drawn["floor"][0]
     whole = _ratio(means[rival], means[EXTENDED], floor)
     values = _ratio(drawn[rival][1:], drawn[EXTENDED][1:], drawn["floor"][1:])
-    lower, upper = limits_of(values, _CONFIDENCE)
+    lower, upper = limits_of(values, OF_A_GAIN)
     return Contrast(estimate=float(whole), lower=float(min(lower, whole)), upper=float(max(upper, whole)))
 
 

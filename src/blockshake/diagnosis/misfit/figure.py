@@ -5,10 +5,9 @@ from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from blockshake.pages.drawing import BLACK, LIGHT_GREY, SKY, new_figure
+from blockshake.pages.drawing import LIGHT_GREY, MEASURED, SKY, new_figure
 from blockshake.pages.units import printed
 
-_MEASURED = {"color": BLACK, "linestyle": (0, (4, 2)), "linewidth": 0.9}
 _COLUMNS = 2
 
 
@@ -38,7 +37,7 @@ def draw_history(axes, own, color):
     low, middle, high = (factor * own["band"].sel(quantile=one) for one in (0.05, 0.5, 0.95))
     axes.fill_between(time, low, high, color=color, alpha=0.35, linewidth=0.0)
     axes.plot(time, middle, color=darker(color), linewidth=0.7)
-    axes.plot(time, factor * own["measured"], **_MEASURED)
+    axes.plot(time, factor * own["measured"], **MEASURED)
     if end < time[-1]:
         axes.axvspan(max(end, time[0]), time[-1], color=LIGHT_GREY, alpha=0.45, linewidth=0.0, zorder=0)
     axes.set_xlim(time[0], time[-1])
@@ -54,7 +53,7 @@ def add_legend(figure, colors, measured_word):
     """Legend of bands in these colours, of their medians and of the measured curve."""
     patches = tuple(Patch(facecolor=color, edgecolor="none", alpha=0.35) for color in colors)
     lines = tuple(Line2D([], [], color=darker(color), linewidth=0.9) for color in colors)
-    entries = [(patches, "5 to 95 %"), (lines, "median"), (Line2D([], [], **_MEASURED), measured_word)]
+    entries = [(patches, "5 to 95 %"), (lines, "median"), (Line2D([], [], **MEASURED), measured_word)]
     figure.legend(
         [handle for handle, _ in entries], [label for _, label in entries],
         handler_map={tuple: HandlerTuple(ndivide=None)}, loc="outside upper center", ncols=len(entries),

@@ -1,17 +1,14 @@
 """Second section of a diagnosis: the odds of every cause that was tried, and how they were counted."""
 
-import numpy as np
-
 from blockshake.diagnosis.answer.answer import FREE_SHARE
 from blockshake.diagnosis.answer.odds import COARSENING, ODDS, coarsened
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.diagnosis.report.figures.odds import plot_odds
+from blockshake.diagnosis.report.statement import RATIO
 from blockshake.diagnosis.wording import name_of
 from blockshake.pages.blocks import Figure, Section, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.wording import number, sentence_case
-
-_RATIO = round(np.exp(ODDS))
 
 
 def odds_section(found):
@@ -43,7 +40,7 @@ def odds_section(found):
             Figure(
                 f"{sentence_case(part.readings)[:-1]}: how many times less likely each cause is than "
                 f"{first.title}, the likeliest (left; arrows: beyond the axis), and its gain over nothing (right; "
-                f"of the likeliest {number(first.gain)}). Shaded: within {_RATIO} times, dashed, so that the tests "
+                f"of the likeliest {number(first.gain)}). Shaded: within {RATIO} times, dashed, so that the tests "
                 "do not tell them apart. Blue: effects of the registry; orange, in italics: forms from outside, "
                 "which none of them is.",
                 svg_of(plot_odds, rows, [name in FORMS for name in names], nothing, ODDS),

@@ -18,7 +18,7 @@ from blockshake.effects.registry import title_of
 from blockshake.pages.wording import count_words
 
 _MOST_PLACES = 4
-_RATIO = round(np.exp(ODDS))  # of odds, within which causes are not told apart
+RATIO = round(np.exp(ODDS))  # of odds, within which causes are not told apart
 
 
 def statement(found):
@@ -95,7 +95,7 @@ def _not_told_from(found, part):
     rivals = {name: odds for name, odds in part.odds.items() if odds >= ODDS}
     if others:
         names = listed(f"{one.title} ({times_words(one.odds)})" for one in others)
-        words = f"{first.title} is likelier than {names}, and {_RATIO} times would tell them apart."
+        words = f"{first.title} is likelier than {names}, and {RATIO} times would tell them apart."
     elif rivals:
         nearest = min(rivals, key=rivals.get)
         words = (

@@ -8,7 +8,7 @@ from blockshake.pages.drawing import BLACK, BLUE, LIGHT_GREY, ORANGE, RED, new_f
 from blockshake.pages.wording import model_label, parameter_label
 from blockshake.study.calibration.calibration import ALL, models_of
 
-_COLUMNS = 3
+_PANELS_ABREAST = 3
 _ROW = 0.052  # m of paper
 _COLORS = (BLUE, ORANGE)
 _THICK, _THIN = 1.8, 0.8
@@ -17,7 +17,7 @@ _THICK, _THIN = 1.8, 0.8
 def plot_calibration(found):
     """Figure of the scores of `calibrate` above the lowest of each line; in grey the range that all tests leave."""
     parameters, models = found["parameters"], models_of(found)
-    columns = min(len(parameters), _COLUMNS)
+    columns = min(len(parameters), _PANELS_ABREAST)
     rows = -(-len(parameters) // columns)
     figure = new_figure(rows * _ROW + 0.008)
     panels = figure.subplots(rows, columns, squeeze=False).ravel()

@@ -7,12 +7,12 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from blockshake.pages.drawing import BLUE, LIGHT_GREY, ORANGE, RED, new_figure
+from blockshake.pages.units import FINEST
 from blockshake.pages.wording import model_label
 from blockshake.study.comparison.tables import larger_floor
 
-_COLUMNS = 2
+_PANELS_ABREAST = 2
 _ROW = 0.0048  # m of paper, of one pair
-_FINEST = 1e-4  # mm; histories are stored to this
 _DISTANCE = {"marker": "o", "color": BLUE, "markersize": 4.0}
 _HISTORY = {"marker": "D", "color": ORANGE, "markersize": 3.4}
 _FLOOR = {"marker": "x", "color": RED, "markersize": 4.4, "markeredgewidth": 1.1}
@@ -24,8 +24,8 @@ def plot_differences(differences):
     ``differences``: from `compare_models`, by case. Dots: distance of the ensembles, with the level of chance as a grey
     bar from the left; diamonds: difference of the same samples, with limits; crosses: larger floor of both numerics.
     """
-    rows = -(-len(differences) // _COLUMNS)
-    columns = min(len(differences), _COLUMNS)
+    rows = -(-len(differences) // _PANELS_ABREAST)
+    columns = min(len(differences), _PANELS_ABREAST)
     longest = max(len(list(combinations(one["model"].values, 2))) for one in differences.values())
     figure = new_figure(rows * (0.016 + _ROW * longest) + 0.008)
     panels = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
@@ -41,7 +41,7 @@ def plot_differences(differences):
         axes.set_axis_off()
     panels[0, 0].set_ylim(longest - 0.4, -0.6)
     drawn = np.concatenate([line.get_xdata() for axes in panels.flat for line in axes.lines])
-    panels[0, 0].set_xlim(left=max(_FINEST, 0.3 * np.nanmin(drawn)) if np.isfinite(drawn).any() else _FINEST)
+    panels[0, 0].set_xlim(left=max(FINEST, 0.3 * np.nanmin(drawn)) if np.isfinite(drawn).any() else FINEST)
     for axes in panels[-1]:
         axes.set_xlabel("difference [mm]")
     entries = {
@@ -58,9 +58,7 @@ def _draw_pair(axes, place, found, own, other):
     at = found.sel(model=own, other=other)
     chance = 1e3 * float(at["distance_chance"])
     if np.isfinite(chance):
-        axes.barh(
-            place, chance - _FINEST, left=_FINEST, height=0.7, color=LIGHT_GREY, linewidth=0.0, zorder=1
-        )
+        axes.barh(place, chance - FINEST, left=FINEST, height=0.7, color=LIGHT_GREY, linewidth=0.0, zorder=1)
     limits = 1e3 * at["history_difference_interval"].to_numpy()
     axes.plot(limits, [place, place], color=ORANGE, linewidth=0.8, zorder=2)
     floors = [larger_floor(found, model) for model in (own, other)]
@@ -70,5 +68,5 @@ def _draw_pair(axes, place, found, own, other):
         (at["history_difference"], _HISTORY),
         (floor, _FLOOR),
     ):
-        shown = max(1e3 * float(value), _FINEST) if np.isfinite(float(value)) else np.nan
+        shown = max(1e3 * float(value), FINEST) if np.isfinite(float(value)) else np.nan
         axes.plot(shown, place, linestyle="none", zorder=3, **style)

@@ -5,12 +5,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from blockshake.measurement.motion.compared_curves import curves_along_x
+from blockshake.measurement.motion.compared_curves import SAME_TIME, curves_along_x
 from blockshake.measurement.sensors.markers import noisy_reading
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW, in_frames, peak_and_residual
 from blockshake.study.ensembles.envelope import counted_samples
-
-_SAME_TIME = 1e-6  # s
 
 
 class ComparedCurves(NamedTuple):
@@ -67,6 +65,6 @@ def measured_curves(test, slab_marker, duration):
     ``duration`` of the window [s].
     """
     along = test["marker_displacement"].sel(axis="x", drop=True)
-    along = in_frames(along.isel(time=(along["time"] <= duration + _SAME_TIME).to_numpy()), slab_marker)
+    along = in_frames(along.isel(time=(along["time"] <= duration + SAME_TIME).to_numpy()), slab_marker)
     peak, residual = peak_and_residual(along, duration - RESIDUAL_WINDOW, skipna=True)
     return xr.Dataset({"displacement": along, "peak": peak, "residual": residual})

@@ -20,7 +20,7 @@ from blockshake.study.ensembles.outcomes import count_outcomes
 from blockshake.study.fragility.figure import plot_fragility
 from blockshake.study.fragility.fragility import SAFE
 
-_SHOWN = (0.5, 0.95)
+_SHOWN_SHARES = (0.5, 0.95)
 
 
 def fragility(content):
@@ -124,9 +124,9 @@ def _table(content):
             rows.append((
                 name, given(scale), number(scale * unit), str(climbed),
                 f"{percent(at['share'])} [{low}, {high}]" if known else MISSING,
-                " / ".join(millimetres(at["peak"].sel(quantile=one)) for one in _SHOWN) if climbed else MISSING,
+                " / ".join(millimetres(at["peak"].sel(quantile=one)) for one in _SHOWN_SHARES) if climbed else MISSING,
             ))  # fmt: skip
-    quantiles = " / ".join(map(quantile_percent, _SHOWN))
+    quantiles = " / ".join(map(quantile_percent, _SHOWN_SHARES))
     return Table(
         "Levels that the samples climbed. Not passed: share that does not pass this level, or did not pass a lower "
         "one, of the samples of which this is known, with Clopper-Pearson limits of 95 %. Displacement: the largest of "

@@ -15,6 +15,7 @@ from blockshake.pages.drawing import (
     SKY,
     new_figure,
 )
+from blockshake.pages.units import FINEST
 from blockshake.pages.wording import model_label, number, parameter_label
 from blockshake.study.sensitivity.findings import differs, is_known
 
@@ -25,7 +26,6 @@ SHOWN = {
 _COLORS = {"first_order": BLUE, "rank_correlation": RED}
 # by place of the variable, so that one has its colour in every case
 _LINES = (BLUE, ORANGE, SKY, GREEN, RED, GREY, PURPLE, BLACK, DARK_GREY)
-_FINEST = 1e-4  # mm; histories are stored to this
 _ROW = 0.003  # m of paper, of one variable
 
 
@@ -119,7 +119,7 @@ def plot_sensitivity_over_time(sensitivities, marker, noise):
             known = bool(np.isfinite(spread).any())
             _say(below, "samples differ by less\nthan the marker's noise" if known else "too few samples")
             below.tick_params(labelbottom=True, bottom=True)
-    panels[0, 0].set_ylim(bottom=_FINEST)
+    panels[0, 0].set_ylim(bottom=FINEST)
     panels[0, 0].set_ylabel("spread [mm]")
     panels[1, 0].set_ylabel("share of it [1]")
     handles = dict(zip(*reversed(panels[1, 0].get_legend_handles_labels()), strict=True))

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.stats import rankdata
 
 FEWEST_DEGREES = 5  # of freedom below which a partial correlation says nothing
-_ROUNDING = 1e-9  # of a standardised slope, and of a share of the variance
+_NEGLIGIBLE = 1e-9  # of a standardised slope, and of a share of the variance
 FEWEST_SAMPLES = 6  # below which no class of two samples and its rival remain
 
 
@@ -104,7 +104,7 @@ def partial_rank_correlation(inputs, outputs):
 
 
 def _beyond_rounding(values):
-    return np.where(np.abs(values) > _ROUNDING, values, 0.0)
+    return np.where(np.abs(values) > _NEGLIGIBLE, values, 0.0)
 
 
 def _standardised(ranks):

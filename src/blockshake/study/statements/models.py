@@ -8,8 +8,9 @@ from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.analyses import OF_THE_PAPER
 from blockshake.study.ensembles.coverage import UNLIKELY, is_likely
 from blockshake.study.ensembles.envelope import counted_samples
+from blockshake.study.statements.solvers import RIGID
 from blockshake.study.statements.statement import (
-    Verdict,
+    PaperVerdict,
     against_tests,
     compared,
     judged,
@@ -17,7 +18,7 @@ from blockshake.study.statements.statement import (
     unjudged,
 )
 
-_RIGID, _ELASTIC, _VISCOELASTIC = "nscd-rigid", "nscd-elastic", "nscd-viscoelastic"
+_ELASTIC, _VISCOELASTIC = "nscd-elastic", "nscd-viscoelastic"
 _NEARER, _FARTHER, _UNDECIDED, _UNKNOWN = "nearer", "farther", "not told apart", "too few samples"
 _NO_TEST = "This study has no measured test."
 _NO_FIT = f"A chance of {percent(UNLIKELY)} % or less, or the lowest that the samples tell, counts as no fit."
@@ -49,12 +50,12 @@ def resemblance(content):
 
 def best_model(content):
     """Viscoelastic blocks nearest to the tests of all configurations."""
-    if absent := missing(content, _RIGID, _ELASTIC, _VISCOELASTIC):
+    if absent := missing(content, RIGID, _ELASTIC, _VISCOELASTIC):
         return unjudged(absent)
     cases = {case.name: case for case in compared(content)}
     if not cases:
         return unjudged(_NO_TEST)
-    sides = [_side(cases.get(name), other) for name in OF_THE_PAPER for other in (_RIGID, _ELASTIC)]
+    sides = [_side(cases.get(name), other) for name in OF_THE_PAPER for other in (RIGID, _ELASTIC)]
     nearer, farther, undecided, unknown = map(sides.count, (_NEARER, _FARTHER, _UNDECIDED, _UNKNOWN))
     words = (
         f"By continuous ranked probability scores, of {len(sides)} comparisons of two models {nearer} bear the "
@@ -102,13 +103,13 @@ def satisfactory(content, model, fits, fails=()):
         words += f" Not in this study, or of fewer than three samples: {', '.join(absent)}."
     words = f"{words} {_NO_FIT}"
     found = against_tests(cases, holds, words)
-    return unjudged(words) if absent and found.verdict == Verdict.MET else found
+    return unjudged(words) if absent and found.verdict == PaperVerdict.MET else found
 
 
 def alike(content):
     """LS-DEM beside rigid and viscoelastic blocks in contact dynamics."""
-    others = [model for model in (_RIGID, _VISCOELASTIC) if model in content.study["models"]]
-    if absent := missing(content, "ls-dem", *([] if others else [_RIGID])):
+    others = [model for model in (RIGID, _VISCOELASTIC) if model in content.study["models"]]
+    if absent := missing(content, "ls-dem", *([] if others else [RIGID])):
         return unjudged(absent)
     told, few, apart, beyond = [], [], 0, 0
     for case in content.cases.values():

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.study.sensitivity.summary import shaking
-from blockshake.study.statements.statement import Finding, Verdict, judged, unjudged
+from blockshake.study.statements.statement import PaperFinding, PaperVerdict, judged, unjudged
 
 
 class Limited(NamedTuple):
@@ -78,5 +78,7 @@ def all_of(findings):
         [*(f"{name}: {one.words}" for name, one in findings.items()), "The worst of the models counts."]
     )
     verdicts = {one.verdict for one in findings.values()}
-    worst = next(one for one in (Verdict.NOT_MET, Verdict.UNJUDGED, Verdict.MET) if one in verdicts)
-    return Finding(worst, words)
+    worst = next(
+        one for one in (PaperVerdict.NOT_MET, PaperVerdict.UNJUDGED, PaperVerdict.MET) if one in verdicts
+    )
+    return PaperFinding(worst, words)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from blockshake.pages.blocks import Heading, Section, Table, Text
 from blockshake.pages.wording import given, model_label
-from blockshake.study.statements.statement import Verdict
+from blockshake.study.statements.statement import PaperVerdict
 from blockshake.study.statements.table import STATEMENTS
 
 HEADER = ("Place", "Statement of the paper", "Verdict", "Finding", "Command")
@@ -46,7 +46,7 @@ def _row(content, statement):
 def count_words(rows_by_heading):
     """How many statements have which verdict, in a sentence."""
     verdicts = [row[2] for rows in rows_by_heading.values() for row in rows]
-    counts = ", ".join(f"{verdicts.count(one)} {one}" for one in Verdict)
+    counts = ", ".join(f"{verdicts.count(one)} {one}" for one in PaperVerdict)
     return f"Of {len(verdicts)} statements: {counts}."
 
 

@@ -8,7 +8,7 @@ from blockshake.study.ensembles.outcomes import count_outcomes, numerical_figure
 from blockshake.study.statements.statement import judged, missing, setting, unjudged
 
 _CONSERVED = 0.01  # of the energy in play: a residual below it counts as none
-_RIGID = "nscd-rigid"
+RIGID = "nscd-rigid"
 
 
 def stable_step(content):
@@ -54,14 +54,14 @@ def converged(content):
 
 def conserves(content):
     """Energy without damping."""
-    if absent := missing(content, _RIGID):
+    if absent := missing(content, RIGID):
         return unjudged(absent)
-    theta = setting(content, _RIGID, "nscd.theta")
-    residuals = _figure(content, _RIGID, "energy_residual", np.max)
+    theta = setting(content, RIGID, "nscd.theta")
+    residuals = _figure(content, RIGID, "energy_residual", np.max)
     if not residuals:
         return unjudged("The runs of this study have no energy audit.")
     outcomes = [
-        count_outcomes(case.responses[_RIGID].samples["status"].values) for case in content.cases.values()
+        count_outcomes(case.responses[RIGID].samples["status"].values) for case in content.cases.values()
     ]
     failed, every = sum(one.failed for one in outcomes), sum(sum(one) for one in outcomes)
     return judged(
@@ -75,15 +75,15 @@ def conserves(content):
 
 def dear_steps(content):
     """Few steps, each of them dear."""
-    if absent := missing(content, "ls-dem", _RIGID):
+    if absent := missing(content, "ls-dem", RIGID):
         return unjudged(absent)
     ratios = []
     for name in content.cases:
         cost = {one.model: one.cpu_per_simulated for one in content.timings if one.case == name}
         by_step = {
-            model: cost[model] * content.study["models"][model]["time_step"] for model in ("ls-dem", _RIGID)
+            model: cost[model] * content.study["models"][model]["time_step"] for model in ("ls-dem", RIGID)
         }
-        ratios.append((name, by_step[_RIGID] / by_step["ls-dem"], cost[_RIGID] / cost["ls-dem"]))
+        ratios.append((name, by_step[RIGID] / by_step["ls-dem"], cost[RIGID] / cost["ls-dem"]))
     if not all(np.isfinite(ratio) for _, *pair in ratios for ratio in pair):
         return unjudged("Logs of this study's jobs do not tell their cost.")
     told = ", ".join(

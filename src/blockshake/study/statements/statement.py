@@ -9,7 +9,7 @@ from blockshake.pages.wording import given, model_label
 from blockshake.simulation.models import MODELS
 
 
-class Verdict(StrEnum):
+class PaperVerdict(StrEnum):
     """How a study judges a statement."""
 
     MET = "met"
@@ -17,10 +17,10 @@ class Verdict(StrEnum):
     UNJUDGED = "cannot be judged"
 
 
-class Finding(NamedTuple):
+class PaperFinding(NamedTuple):
     """A verdict and the numbers that it rests on, in words."""
 
-    verdict: Verdict
+    verdict: PaperVerdict
     words: str
 
 
@@ -35,7 +35,7 @@ class Statement:
     claim : str
         The statement in the words of this program.
     judge : callable
-        `Content` of a study to `Finding`.
+        `Content` of a study to `PaperFinding`.
     target : str
         Result that the finding rests on: a target of the workflow, with ``{study}`` and ``{case}`` to be filled in,
         or, with a space in it, a whole command.
@@ -48,17 +48,17 @@ class Statement:
 
 
 def judged(holds, words):
-    """`Finding` of a statement that holds or does not."""
-    return Finding(Verdict.MET if holds else Verdict.NOT_MET, words)
+    """`PaperFinding` of a statement that holds or does not."""
+    return PaperFinding(PaperVerdict.MET if holds else PaperVerdict.NOT_MET, words)
 
 
 def unjudged(words):
-    """`Finding` of a statement that the study cannot judge, with the reason in words."""
-    return Finding(Verdict.UNJUDGED, words)
+    """`PaperFinding` of a statement that the study cannot judge, with the reason in words."""
+    return PaperFinding(PaperVerdict.UNJUDGED, words)
 
 
 def against_tests(cases, holds, words):
-    """`Finding` that hangs on measured curves: those of virtual tests say nothing of the specimens of the paper."""
+    """`PaperFinding` that hangs on measured curves: those of virtual tests say nothing of the paper's specimens."""
     synthetic = [case.name for case in cases if case.synthetic]
     if not synthetic:
         return judged(holds, words)

@@ -6,10 +6,10 @@ from blockshake.pages.drawing import BLACK, BLUE, LIGHT_GREY, new_figure
 from blockshake.pages.units import printed
 
 _MOST_TESTS, _MOST_BODIES = 5, 2
-_FEWEST = 10  # instants of a test that is drawn
+_FEWEST_INSTANTS = 10  # instants of a test that is drawn
 _GAP = 0.05  # s, between instants of one curve
 _SPREADS = 2.0  # standard deviations of the sensors, to either side
-_KILO = 1e-3
+_TO_KILO = 1e-3
 _FITTING = 99.5  # percent of all instants that an axis has room for
 _MARGIN = 1.15
 _ALIKE = 0.98  # of two curves' product over their lengths, from which they are one but for a factor
@@ -22,7 +22,7 @@ _MANY = 200  # points, from which on they are small
 def shown_tests(departures):
     """Names of the tests of `departures` with the largest forces, by name."""
     names, counts = np.unique(departures["test"], return_counts=True)
-    names = [str(name) for name in names[counts >= min(_FEWEST, counts.max())]]
+    names = [str(name) for name in names[counts >= min(_FEWEST_INSTANTS, counts.max())]]
     square = [float((_of(departures, name)["measured"] ** 2).sum()) for name in names]
     chosen = np.sort(np.argsort(square)[::-1][:_MOST_TESTS])
     return [names[place] for place in chosen]
@@ -61,7 +61,8 @@ def plot_forces(departures, tests, bodies, explained, measured_word):
             if explained:
                 axes.plot(one["time"], one["explained"], **_EXPLAINED, label=explained)
         _limit(
-            row, *(_KILO * departures[name].sel(body=body).to_numpy() for name in ("measured", "explained"))
+            row,
+            *(_TO_KILO * departures[name].sel(body=body).to_numpy() for name in ("measured", "explained")),
         )
         row[0].set_ylabel(f"{body}\nforce [kN]")
     return _finished(figure, panels)
@@ -125,5 +126,5 @@ def _with_gaps(one):
     time = one["time"].to_numpy()
     gaps = np.flatnonzero(np.diff(time) > _GAP) + 1
     names = ("measured", "deviation", "explained")
-    found = {name: np.insert(_KILO * one[name].to_numpy(), gaps, np.nan) for name in names}
+    found = {name: np.insert(_TO_KILO * one[name].to_numpy(), gaps, np.nan) for name in names}
     return {"time": np.insert(time, gaps, time[gaps - 1]), **found}

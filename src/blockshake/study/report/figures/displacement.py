@@ -3,11 +3,10 @@
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from blockshake.pages.drawing import BLACK, GREY, LIGHT_GREY, RED, new_figure
+from blockshake.pages.drawing import GREY, LIGHT_GREY, MEASURED, RED, new_figure
 from blockshake.pages.wording import model_label
 
 _MOST_BAND_POINTS = 500  # in print a fifth of a point apart or more; bands drawn finer only make files large
-_MEASURED = {"color": BLACK, "linestyle": (0, (4, 2)), "linewidth": 0.9}
 
 
 def plot_displacements(envelopes, measured, markers, labels, frame, synthetic):
@@ -39,7 +38,7 @@ def plot_displacements(envelopes, measured, markers, labels, frame, synthetic):
             at = {"frame": frame, "marker": marker}
             _draw_ensemble(axes, envelope.sel(axis="x", **at))
             if measured is not None and marker in measured["marker"].values:
-                axes.plot(measured["time"], 1e3 * measured["displacement"].sel(**at), **_MEASURED)
+                axes.plot(measured["time"], 1e3 * measured["displacement"].sel(**at), **MEASURED)
         counted, samples = (int(envelope.attrs[name]) for name in ("counted", "samples"))
         column[0].set_title(f"{model_label(model)}\n{counted} of {samples} samples")
         column[-1].set_xlabel("time [s]")
@@ -48,7 +47,7 @@ def plot_displacements(envelopes, measured, markers, labels, frame, synthetic):
         axes.set_ylabel(f"{label}\n[mm]")
     figure.align_ylabels(panels[:, 0])
     word = "virtual test (synthetic)" if synthetic else "measured"
-    _add_legend(figure, {} if measured is None else {word: Line2D([], [], **_MEASURED)})
+    _add_legend(figure, {} if measured is None else {word: Line2D([], [], **MEASURED)})
     return figure
 
 
