@@ -1,6 +1,6 @@
 # make study   sets up and runs the default study      make quick   the same DAG in minutes
 # make test    sets up and runs the tests               make paper   the paper's full size, hours
-# make peers   LMGC90 and MuJoCo, for comparisons alone: docs/peers.md
+# make peers   LMGC90 and MuJoCo, for comparisons alone: docs/results/peers.md
 PYTHON ?= python3
 CORES ?= $(shell nproc)
 VENV := .venv
@@ -47,7 +47,7 @@ test-slow: setup
 	$(BIN)/pytest -m slow
 
 # a small study and a small diagnosis, each killed at MOMENTS moments, interrupted and edited, the study damaged and on
-# a full disk too: long; prints what was done and what was lost, and writes it to docs/faults.md
+# a full disk too: long; prints what was done and what was lost, and writes it to docs/results/faults.md
 MOMENTS ?= 20
 test-faults: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" BLOCKSHAKE_MOMENTS=$(MOMENTS) $(BIN)/pytest -m faults
@@ -95,7 +95,7 @@ $(PEERS)/ready:
 	@$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps compas_lmgc90==0.1.11
 	@touch $@
 
-# adds Snakemake's executor for SLURM to the environment: docs/cluster.md
+# adds Snakemake's executor for SLURM to the environment: docs/guide/cluster.md
 cluster: $(VENV)/cluster
 
 $(VENV)/cluster: $(READY)

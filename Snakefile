@@ -1,4 +1,4 @@
-# The study: its targets and the order of its rules. The keys of the configuration are in docs/keys.md.
+# The study: its targets and the order of its rules. The keys of the configuration are in docs/guide/keys.md.
 from snakemake.utils import min_version
 
 min_version("9.27")
@@ -12,16 +12,15 @@ if "cases" not in config:
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/case.smk"
 include: "workflow/rules/motion.smk"
 include: "workflow/rules/sampling.smk"
 include: "workflow/rules/stiffness.smk"
 include: "workflow/rules/measured_input.smk"
 include: "workflow/rules/simulation.smk"
 include: "workflow/rules/envelope.smk"
-include: "workflow/rules/friction.smk"
 include: "workflow/rules/calibration.smk"
 include: "workflow/rules/fragility.smk"
-include: "workflow/rules/campaign.smk"
 include: "workflow/rules/diagnosed.smk"
 include: "workflow/rules/diagnosis.smk"
 include: "workflow/rules/report.smk"

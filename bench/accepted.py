@@ -1,11 +1,11 @@
-"""The last accepted figures: their table in docs/bench.md, and what the tests hold new code against."""
+"""The last accepted figures: their table in docs/results/bench.md, and what the tests hold new code against."""
 
 from datetime import UTC, datetime
 from pathlib import Path
 
 from blockshake.files import load_json, write_json, write_text
 
-PAGE = Path(__file__).parents[1] / "docs" / "bench.md"
+PAGE = Path(__file__).parents[1] / "docs" / "results" / "bench.md"
 COUNTS = Path(__file__).with_name("accepted.json")
 LARGEST_LOSS = 1.3  # operations over the accepted ones
 

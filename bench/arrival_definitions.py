@@ -15,8 +15,8 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.system import Status
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.markers import block_markers, driven_marker
-from blockshake.report.document.units import printed
-from blockshake.report.document.wording import given, millimetres, number, percent
+from blockshake.pages.units import printed
+from blockshake.pages.wording import given, millimetres, number, percent
 from blockshake.simulation.simulate import simulate
 from blockshake.solvers.ls_dem.own_stiffness import own_stiffness
 from blockshake.solvers.ls_dem.parameters import LsDemParameters

@@ -36,7 +36,7 @@ def main(arguments=None):
     parser.add_argument(
         "--accept",
         action="store_true",
-        help="keep the table in docs/bench.md, the operations in bench/accepted.json",
+        help="keep the table in docs/results/bench.md, the operations in bench/accepted.json",
     )
     parser.add_argument("--output", type=Path, default=Path("results/bench.json"))
     options = parser.parse_args(arguments)

@@ -6,7 +6,7 @@ The runs are the stack under one cycle of sine, and its lowest block alone, whic
 from shaken_stack import SHAKING, shaken_stack
 
 from blockshake.geometry.structure import load_structure
-from blockshake.report.document.wording import MICRO, number
+from blockshake.pages.wording import MICRO, number
 from blockshake.simulation.models import model_of
 from blockshake.solvers.ls_dem.own_stiffness import own_stiffness
 from blockshake.solvers.ls_dem.parameters import LsDemParameters

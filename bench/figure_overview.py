@@ -19,15 +19,15 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Sensors
 from blockshake.measurement.motion.outliers import without_outliers
 from blockshake.measurement.sensors.instruments import Instruments, observe
-from blockshake.report.document.drawing import BLACK, DARK_GREY, RED, SKY, new_figure, save_picture
-from blockshake.report.run.animation import magnified
-from blockshake.report.scene.colors import body_colors
-from blockshake.report.scene.projection import Scene
+from blockshake.pages.drawing import BLACK, DARK_GREY, RED, SKY, new_figure, save_picture
+from blockshake.pages.scene.colors import body_colors
+from blockshake.pages.scene.projection import Scene
 from blockshake.simulation.simulate import simulate
 from blockshake.study.ensembles.case_input import driving_motions, measured_input, measured_on_clock
 from blockshake.study.sampling.distributions import LINKED
 from blockshake.study.sampling.latin_hypercube import draw_samples
 from blockshake.study.sampling.sample_parameters import sample_parameters
+from blockshake.views.animation import magnified
 
 MEASURED = {"campaign": "data/virtual-campaign/configuration-1", "test": "basso-tirreno-200"}
 CASE = {

@@ -1,4 +1,4 @@
-"""Figure of ``docs/peers.md``: nine blocks in LMGC90 and here, and three in MuJoCo; needs ``make peers``.
+"""Figure of ``docs/results/peers.md``: nine blocks in LMGC90 and here, and three in MuJoCo; needs ``make peers``.
 
 Run it from the project's root as ``python bench/figure_peers.py``; without the peers it says so and ends well.
 """
@@ -28,7 +28,7 @@ EVERY = 5  # steps of 1 ms between points
 def main():
     """Draw and write."""
     parser = argparse.ArgumentParser(prog="figure_peers", description=__doc__.partition("\n")[0])
-    parser.add_argument("--output", type=Path, default=Path("docs/peers.png"))
+    parser.add_argument("--output", type=Path, default=Path("docs/results/peers.png"))
     output = parser.parse_args().output
     for peer in (peers.LMGC90, peers.MUJOCO):
         if peers.peer_version(peer) is None:

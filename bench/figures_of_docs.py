@@ -29,17 +29,17 @@ from shear_damping import shear_damping_rows, shear_damping_words
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import load_json, load_yaml, write_text
 from blockshake.geometry.structure import load_structure
-from blockshake.report.document.wording import model_label, number
-from blockshake.report.study.calibrations.all_tests import answers_table, tests_table
-from blockshake.report.study.content import load_content
-from blockshake.report.study.sensitivity.summary import markers_by_height
-from blockshake.report.study.sensitivity.words import sentence
-from blockshake.report.study.statements.section import HEADER, count_words
+from blockshake.pages.wording import model_label, number
 from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.simulate import simulate
+from blockshake.study.calibration.section import answers_table, tests_table
 from blockshake.study.config import load_config
+from blockshake.study.report.content import load_content
 from blockshake.study.sampling.distributions import LINKED, TABLE_2
 from blockshake.study.sampling.sample_parameters import sample_parameters
+from blockshake.study.sensitivity.summary import markers_by_height
+from blockshake.study.sensitivity.words import sentence
+from blockshake.study.statements.section import HEADER, count_words
 from blockshake.study.stiffness.wave_speed import calibrate_stiffness, stiffness_parameters
 
 DOCS = Path(__file__).parents[1] / "docs"

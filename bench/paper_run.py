@@ -18,7 +18,6 @@ _KINDS = {
     "samples": ("simulate_batch/{model}/{case}/*.log", "samples/{model}/{case}.nc"),
     "twins": ("run_twins/{model}/{case}.log", "twins/{model}/{case}.nc"),
     "calibration": ("compare_open_tests/{model}/{case}.log", "open-tests/{model}/{case}.nc"),
-    "mean friction": ("calibrate_friction/{case}.log", "friction/{case}.json"),
     "fragility": ("climb_samples/{case}/*.log", "fragility/{case}.nc"),
 }
 _PART = re.compile(r"^(.+?) {2,}(\d+) +([\d.]+)$", re.MULTILINE)

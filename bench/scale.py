@@ -62,7 +62,7 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(prog="scale", description=__doc__.partition("\n")[0])
     parser.add_argument("--only", choices=_SIZES, action="append", help="measure this part; may be repeated")
     parser.add_argument("--quick", action="store_true", help="smallest works, to see that the program works")
-    parser.add_argument("--accept", action="store_true", help="keep the table in docs/bench.md")
+    parser.add_argument("--accept", action="store_true", help="keep the table in docs/results/bench.md")
     parser.add_argument("--output", type=Path, default=Path("results/scale.json"))
     options = parser.parse_args(arguments)
     sizes = _QUICK if options.quick else _SIZES

@@ -10,7 +10,7 @@ from blockshake.diagnosis.nominal import ensemble
 from blockshake.diagnosis.nominal.histories import read_histories
 from blockshake.diagnosis.nominal.nominal_model import draw_nominal
 from blockshake.diagnosis.nominal.planned_test import PlannedTest
-from blockshake.diagnosis.nominal.simulated_test import KeptHistories, simulated_test
+from blockshake.diagnosis.nominal.simulated_test import simulated_test
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.motion import ground_motion
 from blockshake.files import write_dataset
@@ -44,12 +44,12 @@ def hold_ensemble(draws, duration):
     def drawn(*_):
         histories = first.copy(deep=True)
         histories["slip"] *= 1.0 + 0.1 * generator.normal(size=histories["slip"].shape)
-        return KeptHistories(histories, "kept")
+        return histories
 
     ensemble.simulated_histories = drawn  # all but the simulation of each draw is what is measured
     members = ensemble.nominal_members("test", planned, model, draws - 1, 0)
     began = time.process_time()
-    found = ensemble.simulate_members(members, "", "", lambda line: None)
+    found = ensemble.simulate_members(members, None)
     with tempfile.TemporaryDirectory() as folder:
         write_dataset(f"{folder}/runs.nc", found)
         gathered = time.process_time()

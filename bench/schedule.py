@@ -103,8 +103,7 @@ def timed_study(jobs, config, done, times):
     """Give the jobs of a study their times, from those of the study that was done.
 
     Runs and climbs take as long as there by sample and by step, climbs of a case that did not climb as those that did;
-    twins, a search of the mean friction and open tests as their runs; all other jobs as there, whatever the number of
-    samples.
+    twins and open tests as their runs; all other jobs as there, whatever the number of samples.
     """
     for job in jobs:
         if job.rule in ("simulate_batch", "run_twins"):
@@ -117,26 +116,13 @@ def timed_study(jobs, config, done, times):
             job.seconds = job.samples * each * _steps(config, done, config.fragility.model, case)
         elif job.rule == "compare_open_tests":
             model, case = job.key
-            tests = load_campaign(config.case(case).measured.campaign).tests.values()
-            runs = config.calibration.size * sum(test.role != "sealed" for test in tests)
+            runs = config.calibration.size * len(load_campaign(config.case(case).measured.campaign).open)
             # the records are as long as the windows of the study that was done
             steps = done.models[model].time_step / config.models[model].time_step
             job.seconds = runs * times["simulate_batch", job.key] * steps
-        elif job.rule == "calibrate_friction":
-            (case,) = job.key
-            run = _run_of_search(done, done.friction_calibration.cases[0], times)
-            share = times[job.rule, ()] / run / done.friction_calibration.runs  # of the runs that it may need
-            steps = _steps(config, done, config.friction_calibration.model, case)
-            job.seconds = (
-                share * config.friction_calibration.runs * _run_of_search(config, case, times) * steps
-            )
         else:
             job.seconds = times.get((job.rule, job.key), times.get((job.rule, ()), _START))
     return jobs
-
-
-def _run_of_search(config, case, times):
-    return times["simulate_batch", (config.friction_calibration.model, case)]
 
 
 def _steps(config, done, model, case):

@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.markers import NOISE, block_markers, driven_marker
-from blockshake.report.document.wording import number, percent, share_words
+from blockshake.pages.wording import number, percent, share_words
 from blockshake.simulation.simulate import simulate
 from blockshake.study.comparison.comparison import TOLD_APART_BY
 from blockshake.study.comparison.twins import NUDGE

@@ -15,7 +15,7 @@ SEEDS = Path(__file__).parent / "seeds.yaml"
 CALIBRATION_SEEDS = Path(__file__).parent / "calibration-seeds.yaml"
 SMALL_SEEDS = Path(__file__).parent / "small-seeds.yaml"
 TRACK_RECORD = ROOT / "data" / "track-record" / "hidden-effects.json"
-PAGE = ROOT / "docs" / "hidden-effects.md"
+PAGE = ROOT / "docs" / "results" / "hidden-effects.md"
 Seed = Annotated[int, Field(strict=True, ge=0)]
 
 

@@ -139,7 +139,7 @@ def _diagnose_quickly(results, case):
         gained = steps.measure_gain(str(folder), "quick", files)
         files.gain = [str(out / "gain.json")]
         write_json(files.gain[0], gained.summary.model_dump(mode="json"))
-    write_verdict(verdict_of(results, case.name), steps.conclude(str(folder), "quick", files))
+    write_verdict(verdict_of(results, case.name), steps.conclude(str(folder), 0, files))
     return case.name, time.monotonic() - begin
 
 

@@ -5,7 +5,7 @@ from outside_forces import OUTSIDE
 
 from blockshake.diagnosis.verdict.track_record import Answers, JudgedCase, Median, Row, Share
 from blockshake.effects.registry import EFFECTS
-from blockshake.study.ensembles.intervals import quantile_ranks, share_interval
+from blockshake.statistics.intervals import quantile_ranks, share_interval
 
 LATE = 0.2  # s
 _TIMED = ("push", "blow")

@@ -1,4 +1,4 @@
-"""Tables of the track record as text, for the terminal and for docs/hidden-effects.md; no figure is typed."""
+"""Tables of the track record as text, for the terminal and for docs/results/hidden-effects.md; no figure is typed."""
 
 from outside_forces import OUTSIDE
 

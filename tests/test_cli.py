@@ -1,4 +1,4 @@
-"""The command line of docs/contracts.md: files, messages and exit codes."""
+"""The command line of docs/guide/contracts.md: files, messages and exit codes."""
 
 import json
 import os

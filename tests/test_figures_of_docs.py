@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from blockshake.report.study.statements.section import HEADER, count_words
-from blockshake.report.study.statements.statement import Verdict
-from blockshake.report.study.statements.table import STATEMENTS
+from blockshake.study.statements.section import HEADER, count_words
+from blockshake.study.statements.statement import PaperVerdict
+from blockshake.study.statements.table import STATEMENTS
 
 ROOT = Path(__file__).parents[1]
 
@@ -27,23 +27,23 @@ def test_every_figure_has_its_maker_and_its_page(figures):
 
 
 def test_a_page_holds_the_figures_of_today(figures):
-    page = ROOT / "docs" / "calibration.md"
+    page = ROOT / "docs" / "guide" / "calibration.md"
     assert figures.blocks(page)["slenderness"] == figures.slenderness()
 
 
 @pytest.mark.parametrize("kind", ["structure", "study", "campaign", "import"])
 def test_keys_of_a_file_are_those_of_its_schema_and_each_has_a_meaning(kind, figures):
-    assert figures.blocks(ROOT / "docs" / "keys.md")[f"{kind}-keys"] == figures.keys_of(kind)()
+    assert figures.blocks(ROOT / "docs" / "guide" / "keys.md")[f"{kind}-keys"] == figures.keys_of(kind)()
     assert all(row[-1] for row in figures.key_rows(kind))
 
 
 def test_findings_on_the_paper_are_on_the_statements_of_today(figures):
-    page = figures.blocks(ROOT / "docs" / "the-paper.md")["statements"]
+    page = figures.blocks(ROOT / "docs" / "results" / "the-paper.md")["statements"]
     rows = [line.strip("| ").split(" | ") for line in page.splitlines() if line.startswith("| ")]
     rows = [row for row in rows if row[0] not in (HEADER[0], "---")]
     stated = [(one.place, one.claim) for statements in STATEMENTS.values() for one in statements]
     assert [(row[0], row[1]) for row in rows] == stated
-    assert {row[2] for row in rows} == set(Verdict)
+    assert {row[2] for row in rows} == set(PaperVerdict)
     assert count_words({"all": rows}) in " ".join(page.split())
 
 

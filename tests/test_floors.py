@@ -11,16 +11,15 @@ FLOORS = [
     ["caches", "errors", "interrupts"],
     ["files", "paths", "quantities", "working_folder"],
     ["validation", "log", "sources", "store"],
-    ["tables"],
+    ["tables", "statistics"],
     ["jit"],
     ["geometry"],
     ["dynamics"],
     ["solvers", "measurement"],
     ["simulation", "parity", "forces"],
-    ["effects"],
-    ["study"],
+    ["effects", "pages"],
+    ["study", "views"],
     ["diagnosis", "virtual"],
-    ["report"],
     ["run_diagnosis", "own_files"],
     ["cost"],
     ["cli"],
@@ -29,14 +28,36 @@ ROOMS_OF_DIAGNOSIS = [
     ["evidence"],
     ["outside"],
     ["answer"],
-    ["nominal"],
+    ["nominal", "wording"],
     ["misfit"],
     ["verdict"],
     ["gain"],
-    ["steps"],
+    ["report", "steps"],
 ]
-ROOMS_OF_REPORT = [["document"], ["scene"], ["study", "diagnosis", "run"]]
+ROOMS_OF_STUDY = [
+    ["described", "motion_remarks", "sampling", "structure_remarks"],
+    ["ensembles", "stiffness"],
+    ["comparison", "fragility", "sensitivity"],
+    ["calibration"],
+    ["config_checks"],
+    ["analyses"],
+    ["config"],
+    ["statements"],
+    ["report"],
+]
 MOST_MODULES = 15
+WITH_ROOMS = ("diagnosis", "study")  # whose folders have a budget each
+MOST_LINES = {
+    ".": 2150, "tables": 650, "statistics": 400, "geometry": 2500, "dynamics": 2900, "solvers": 9300,
+    "measurement": 4200, "simulation": 1700, "parity": 2300, "forces": 1800, "effects": 1050, "pages": 1250,
+    "study": 900, "study/sampling": 1000, "study/ensembles": 1400, "study/stiffness": 600,
+    "study/comparison": 900, "study/fragility": 550, "study/sensitivity": 950, "study/calibration": 1100,
+    "study/statements": 1300, "study/report": 2200, "views": 850, "diagnosis": 350,
+    "diagnosis/evidence": 1200, "diagnosis/outside": 750, "diagnosis/answer": 1300,
+    "diagnosis/nominal": 850, "diagnosis/misfit": 400, "diagnosis/verdict": 650, "diagnosis/gain": 1250,
+    "diagnosis/report": 1050, "virtual": 550, "own_files": 500, "cost": 350,
+}  # fmt: skip
+MOST_LINES_TOGETHER = 50_300
 
 
 def place(name, floors):
@@ -76,11 +97,11 @@ def test_no_module_imports_from_a_floor_above():
     assert set(upward(FLOORS, 0)) - allowed == set()
 
 
-@pytest.mark.parametrize(
-    ("inside", "floors"), [("diagnosis", ROOMS_OF_DIAGNOSIS), ("report", ROOMS_OF_REPORT)]
-)
+@pytest.mark.parametrize(("inside", "floors"), [("diagnosis", ROOMS_OF_DIAGNOSIS), ("study", ROOMS_OF_STUDY)])
 def test_rooms_inside_a_room_have_floors_too(inside, floors):
     assert upward(floors, 1, (inside,)) == []
+    rooms = {path.stem for path in (PACKAGE / inside).iterdir()} - {"__init__", "__pycache__"}
+    assert rooms == {room for floor in floors for room in floor}
 
 
 def test_rooms_of_the_diagnosis_have_few_arrows():
@@ -96,3 +117,52 @@ def test_no_folder_holds_more_than_fifteen_modules():
     for folder in {path.parent for path in PACKAGE.rglob("*.py")}:
         modules = [path for path in folder.glob("*.py") if path.stem != "__init__"]
         assert len(modules) <= MOST_MODULES, folder.relative_to(PACKAGE)
+
+
+def lines_of_rooms():
+    """Lines of every room, templates included; of the package's own modules as those of ``.``."""
+    lines = dict.fromkeys(MOST_LINES, 0)
+    for path in PACKAGE.rglob("*"):
+        if path.is_file() and path.suffix != ".pyc":
+            folders = path.relative_to(PACKAGE).parts[:-1]
+            room = "/".join(folders[: 1 + (folders[0] in WITH_ROOMS)]) if folders else "."
+            lines[room] = lines.get(room, 0) + len(path.read_text(encoding="utf-8").splitlines())
+    return lines
+
+
+def test_every_room_keeps_to_its_budget_of_lines():
+    """A budget falls with its room. It rises where another one falls, by a decision and not by the way."""
+    lines = lines_of_rooms()
+    assert set(lines) == set(MOST_LINES)
+    assert {room: count for room, count in lines.items() if count > MOST_LINES[room]} == {}
+    assert sum(lines.values()) <= MOST_LINES_TOGETHER
+
+
+def shows(own):
+    """Whether a module only shows results: a page's part, a section, a figure, a report."""
+    words = own[-1].split("_")
+    return own[0] == "pages" or "figures" in own or words[-1] in ("section", "sections", "figure", "report")
+
+
+def test_pages_and_sections_compute_nothing():
+    """No statistics, no solver and no random numbers: `scipy.spatial` alone, by which solids are drawn."""
+    computing = []
+    for path in sorted(PACKAGE.rglob("*.py")):
+        own = path.relative_to(PACKAGE).with_suffix("").parts
+        if not shows(own):
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+            names += (
+                [f"numpy.{node.attr}"] if isinstance(node, ast.Attribute) and node.attr == "random" else []
+            )
+            computing += [
+                ("/".join(own), name)
+                for name in names
+                if name.startswith(
+                    ("scipy", "numpy.random", "random", "blockshake.solvers", "blockshake.jit")
+                )
+                and not name.startswith("scipy.spatial")
+            ]
+    assert computing == []

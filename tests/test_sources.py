@@ -75,7 +75,18 @@ def test_numbas_options_are_watched_by_what_they_compile():
 def test_what_judges_is_no_source_of_what_is_simulated():
     for script in ("simulate_batch", "simulate_nominal"):
         assert not any(
-            one.startswith(("report/", "diagnosis/evidence/", "diagnosis/gain/", "diagnosis/verdict/"))
+            one.startswith(
+                (
+                    "pages/",
+                    "views/",
+                    "study/report/",
+                    "study/statements/",
+                    "diagnosis/report/",
+                    "diagnosis/evidence/",
+                    "diagnosis/gain/",
+                    "diagnosis/verdict/",
+                )
+            )
             for one in script_sources(script)
         )
 
@@ -92,7 +103,6 @@ def test_an_ensemble_of_one_solver_does_not_watch_the_driver_of_the_other(model,
     listed = script_sources("simulate_nominal", model)
     assert set(own) <= set(listed)
     assert not {one for one in unwatched if one.endswith("driver.py")} & set(listed)
-    # the rules name the solver, and the ensembles' names none
     rules = [(PACKAGE.parents[1] / "workflow" / "rules" / f"{name}.smk").read_text() for name in RULES]
     assert 'source_of("simulate_nominal", wildcards.solver)' in rules[0]
     assert rules[1].count("source=solver_source") == 2

@@ -6,11 +6,17 @@ import xarray as xr
 
 from blockshake.errors import InputError
 from blockshake.files import write_dataset
-from blockshake.store import keep_dataset, kept, kept_value, load_made
+from blockshake.store import Store, kept, load_made
 
 DATASET = xr.Dataset(
     {"v": ("time", np.linspace(0.0, 1.0, 500) ** 3, {"units": "m"}), "who": ("k", ["a", "bc"])}
 )
+
+
+def _put(folder, name="a"):
+    """A unit of some name; its path."""
+    run = DATASET.assign_attrs(status="completed")
+    return Store(folder, "source").dataset("a run", (name,), lambda _: run)
 
 
 def _cut(path):
@@ -32,8 +38,7 @@ def _foreign(path):
 
 
 def _of_another_name(path):
-    keep_dataset(path.with_name("other.nc"), DATASET)
-    path.write_bytes(path.with_name("other.nc").read_bytes())
+    path.write_bytes(_put(path.parent, "other").read_bytes())
 
 
 def _a_folder(path):
@@ -42,44 +47,43 @@ def _a_folder(path):
 
 
 def test_a_kept_dataset_is_an_ordinary_file(tmp_path):
-    path = tmp_path / "store" / "a.nc"
-    assert not kept(path)
-    keep_dataset(path, DATASET)
+    path = _put(tmp_path / "store")
     assert kept(path)
-    xr.testing.assert_identical(xr.load_dataset(path), DATASET)
+    assert not kept(path.with_name("other.nc"))
+    xr.testing.assert_equal(xr.load_dataset(path), DATASET)
     assert list(path.parent.iterdir()) == [path]
 
 
 @pytest.mark.parametrize("damage", [_cut, _emptied, _flipped, _foreign, _of_another_name, _a_folder])
 def test_damage_is_seen(damage, tmp_path):
-    keep_dataset(tmp_path / "a.nc", DATASET)
-    damage(tmp_path / "a.nc")
-    assert not kept(tmp_path / "a.nc")
+    path = _put(tmp_path)
+    damage(path)
+    assert not kept(path)
 
 
 def test_a_value_is_made_once_and_a_damaged_one_anew(tmp_path):
     made = []
 
-    def make():
+    def make(_):
         made.append({"peak": 0.1 + 0.2, "none": float("nan"), "text": "é"})
         return made[-1]
 
-    first = kept_value(tmp_path / "store", "key", make)
+    first = Store(tmp_path / "store", "source").value(("key",), make)
     assert first["peak"] == 0.1 + 0.2
     assert np.isnan(first["none"])
-    assert kept_value(tmp_path / "store", "key", make)["text"] == "é"
+    assert Store(tmp_path / "store", "source").value(("key",), make)["text"] == "é"
     assert len(made) == 1
     (path,) = (tmp_path / "store").iterdir()
     for count, damage in enumerate((_cut, _emptied, _flipped), start=2):
         damage(path)
-        assert kept_value(tmp_path / "store", "key", make)["peak"] == 0.1 + 0.2
+        assert Store(tmp_path / "store", "source").value(("key",), make)["peak"] == 0.1 + 0.2
         assert len(made) == count
         assert kept(path)
 
 
 def test_what_fails_leaves_nothing(tmp_path):
     with pytest.raises(TypeError):
-        kept_value(tmp_path / "store", "key", lambda: {"a": object()})
+        Store(tmp_path / "store", "source").value(("key",), lambda _: {"a": object()})
     assert list((tmp_path / "store").iterdir()) == []
 
 
@@ -93,3 +97,21 @@ def test_a_damaged_file_of_an_earlier_job_is_one_line(damage, tmp_path):
     ) as error:
         load_made(tmp_path / "a.nc")
     assert "\n" not in str(error.value)
+
+
+def test_a_run_is_made_once_by_each_source_and_the_line_says_how_it_ended(tmp_path):
+    lines, made = [], []
+
+    def make(checkpoint):
+        made.append(checkpoint)
+        return DATASET.assign_attrs(status="falling", reason="a block")
+
+    path = Store(tmp_path, "source", lines.append).dataset("run 1", (1.0, np.arange(3.0)), make)
+    assert Store(tmp_path, "source", lines.append).dataset("run 1", (1.0, np.arange(3.0)), make) == path
+    assert lines == ["run 1, simulated: falling a block", "run 1, kept: falling a block"]
+    assert made == [path.with_suffix(".checkpoint")]
+    xr.testing.assert_equal(xr.load_dataset(path), DATASET)
+    others = [("other", (1.0, np.arange(3.0))), ("source", (1.0, np.arange(1.0, 4.0))), ("source", (2.0,))]
+    for source, given in others:
+        assert Store(tmp_path, source, lines.append).dataset("run 1", given, make) != path
+    assert len(made) == 4

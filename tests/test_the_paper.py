@@ -1,4 +1,4 @@
-"""The statements of the paper that no study decides, and the departures from it: the tables of docs/the-paper.md."""
+"""Statements of the paper that no study decides, and departures from it: the tables of docs/results/the-paper.md."""
 
 import ast
 import re
@@ -12,19 +12,20 @@ from blockshake.geometry.reference_block import reference_block
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.sensors import accelerometers, markers
-from blockshake.report.study.statements.table import STATEMENTS
 from blockshake.simulation.models import MODELS
 from blockshake.solvers.ls_dem.interfaces import damping_ratio
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.nscd.parameters import NscdParameters
 from blockshake.solvers.nscd_deformable.parameters import DeformableParameters
-from blockshake.study.config import OF_THE_PAPER, load_config
+from blockshake.study.analyses import OF_THE_PAPER
+from blockshake.study.calibration.answers import LEVEL
+from blockshake.study.config import load_config
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
-from blockshake.study.friction.settings import FrictionSearch
 from blockshake.study.sampling.distributions import LINKED, TABLE_2
+from blockshake.study.statements.table import STATEMENTS
 from blockshake.study.stiffness.wave_step import STEP_VELOCITY
 
-PAGE = HOME / "docs" / "the-paper.md"
+PAGE = HOME / "docs" / "results" / "the-paper.md"
 CAMPAIGNS = HOME / "data" / "virtual-campaign"
 
 
@@ -196,8 +197,7 @@ def of_studies(studies):
     rise = load_yaml(HOME / "config" / "virtual-campaign.yaml")["intensities"]["increment"]
     medians = {name: one.stratum_medians(study.ensemble.size) for name, one in TABLE_2.items()}
     short = [1.0 - one.std() / one.mean() / TABLE_2[name].cov for name, one in medians.items()]
-    searches = [one.friction_calibration for one in studies]
-    assert {one.model for one in searches} == {"nscd-rigid"}
+    assert [list(one.calibration.cases) for one in studies] == [["ls-dem", "nscd-rigid"], ["nscd-rigid"]]
     (window,) = {case.duration for case in study.cases}
     *walls, last = (case.samples for case in study.cases)
     (fewer,) = {count for samples in walls for count in samples.values()}
@@ -212,9 +212,9 @@ def of_studies(studies):
         ],
         "Slab, and steel on steel and on the slab, are not in Table 2.": [len(LINKED)],
         "The mean friction is drawn at random from 0.3 to 0.8, with 50 samples by both models.": [
-            number for one in searches for number in (one.size, one.replicates)
+            one.calibration.size for one in studies
         ],
-        "The mean friction whose envelope contains the test.": [FrictionSearch.model_fields["finest"].default],
+        "The mean friction whose envelope contains the test.": [1e2 * LEVEL],
         "50 samples over whole records.": [window, fewer, fewest],
     }  # fmt: skip
 

@@ -281,10 +281,10 @@ def _show_progress():
 
 def _plot(options):
     output = check_output(options.output or Path(options.file).with_suffix(".png"))
-    from blockshake.report.document.drawing import check_picture, save_picture
-    from blockshake.report.run.figure import plot_run
+    from blockshake.pages.drawing import check_picture, save_picture
     from blockshake.simulation.load_run import load_run
     from blockshake.simulation.run_histories import run_histories
+    from blockshake.views.figure import plot_run
 
     check_picture(output)
     run, structure = load_run(options.file, options.meshes)
@@ -294,8 +294,8 @@ def _plot(options):
 
 def _animate(options):
     output = check_output(options.output or Path(options.file).with_suffix(".gif"))
-    from blockshake.report.run.animation import animate_run, check_animation
     from blockshake.simulation.load_run import load_run
+    from blockshake.views.animation import animate_run, check_animation
 
     check_animation(output)
     _show_progress()
@@ -305,10 +305,10 @@ def _animate(options):
 
 
 def _export(options):
-    from blockshake.report.run.export import check_export, export_run
-    from blockshake.report.run.local_origin import local_origin
     from blockshake.simulation.load_run import load_run
     from blockshake.simulation.run_histories import run_histories
+    from blockshake.views.export import check_export, export_run
+    from blockshake.views.local_origin import local_origin
 
     check_export(options.output)
     run, structure = load_run(options.file, options.meshes)
@@ -389,8 +389,8 @@ def _check(options):
 
 def _draw_structure(files, picture):
     from blockshake.geometry.structure import load_structure
-    from blockshake.report.document.drawing import check_picture, save_picture
-    from blockshake.report.run.structure_picture import plot_understood
+    from blockshake.pages.drawing import check_picture, save_picture
+    from blockshake.views.structure_picture import plot_understood
 
     check_picture(picture)
     if len(files) != 1:

@@ -53,7 +53,9 @@ PHYSICAL = (
     Quantity("bodies.BODY.velocity", "v", "m/s", "velocity at the start", "structure file"),
     Quantity("bodies.BODY.angular_velocity", "omega", "rad/s", "angular velocity at the start", "structure file"),
     Quantity("shapes.SHAPE.chamfer", "c", "m", "leg of the 45-degree chamfer of a box", f"{_PAPER}, section LS-DEM"),
-    Quantity("shapes.SHAPE.hollow", "h", "m", "depth of the middle of each face below its rim", "docs/rocking.md"),
+    Quantity(
+        "shapes.SHAPE.hollow", "h", "m", "depth of the middle of each face below its rim", "docs/theory/rocking.md"
+    ),
     Quantity("stoppers.INDEX.gap", "g", "m", "clearance of a stopper, counted from 0", "structure file"),
     Quantity("stoppers.INDEX.stiffness", "k", "N/m", "stiffness of a stopper", "structure file"),
 )  # fmt: skip

@@ -13,8 +13,8 @@ from blockshake.files import HOME, PACKAGE, check_output
 from blockshake.working_folder import hold, this_command
 
 _KEPT = ("verdict.json", "decision.json", "parity.json", "evidence.nc")
-_MISFIT = "misfit.nc"  # at an effort that simulates anything
-_GAIN = "gain.nc"  # where a cause was found and there are sealed tests
+_OF_MISFIT = "misfit.nc"  # at an effort that simulates anything
+_OF_GAIN = "gain.nc"  # where a cause was found and there are sealed tests
 _GRACE = 15.0  # s; for a workflow that is interrupted to end
 
 
@@ -78,7 +78,7 @@ def diagnose(campaign, output, effort="standard", cores=None):
         raise WorkflowError(exit_code)
     name = result_name(campaign)
     results = work / "results" / "diagnosis" / name
-    made = {_MISFIT: bool(plan.tests), _GAIN: load_verdict(results / "verdict.json").gain is not None}
+    made = {_OF_MISFIT: bool(plan.tests), _OF_GAIN: load_verdict(results / "verdict.json").gain is not None}
     kept = [*_KEPT, *(name for name, there in made.items() if there)]
     found = [results / file for file in kept]
     found += [work / "reports" / f"diagnosis-{name}.{kind}" for kind in ("html", "pdf")]

@@ -2,15 +2,82 @@
 
 import hashlib
 import json
+from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
+import numpy as np
 import xarray as xr
 
 from blockshake.errors import InputError
-from blockshake.files import MADE_ANEW, replacing, write_dataset, write_json
+from blockshake.files import MADE_ANEW, content_digest, replacing, write_dataset, write_json
 from blockshake.interrupts import delayed_interrupts
 
 _SEAL = 64  # bytes at the end of a kept file: the digest of its name and of all before them
+
+
+class Store(NamedTuple):
+    """Folder of finished units, the digest of the sources that make them, and who hears of each.
+
+    A unit is named by the digest of the sources and of all that it follows from beside them: another source makes it
+    anew. It goes to the folder at once, whole or not at all; a run that was cut short goes on from a checkpoint there.
+
+    Attributes
+    ----------
+    folder : str or path
+    source : str
+    say : callable
+        Of a line of text.
+    """
+
+    folder: str | Path
+    source: str
+    say: Callable = print
+
+    def value(self, given, make):
+        """JSON-like value of a unit, made where the store has not got it.
+
+        Parameters
+        ----------
+        given : sequence
+            All that the unit follows from: arrays, and values as of `content_digest`.
+        make : callable
+            Of the path of a checkpoint: the value. All digits of its numbers are kept, NaN too.
+        """
+        path = self._path(given, ".json")
+        if not kept(path):
+            value = make(path.with_suffix(".checkpoint"))
+            _keep(path, lambda temporary: write_json(temporary, value))
+        return json.loads(path.read_bytes()[:-_SEAL])
+
+    def dataset(self, words, given, make, decimals=None):
+        """File of the Dataset of a run, simulated where the store has not got it; a line says how the run ended.
+
+        Parameters
+        ----------
+        words : str
+            Which run it is.
+        given : sequence
+            All that the unit follows from: arrays, and values as of `content_digest`.
+        make : callable
+            Of the path of a checkpoint: the Dataset, with the run's ``status`` and, where there is one, ``reason`` as
+            attributes.
+        decimals : dict, optional
+            As of `write_dataset`.
+        """
+        path, how = self._path(given, ".nc"), "kept"
+        if not kept(path):
+            made = make(path.with_suffix(".checkpoint"))
+            _keep(path, lambda temporary: write_dataset(temporary, made, decimals))
+            how = "simulated"
+        with delayed_interrupts(), xr.open_dataset(path) as unit:
+            ended = f"{unit.attrs['status']} {unit.attrs.get('reason', '')}".rstrip()
+        self.say(f"{words}, {how}: {ended}")
+        return path
+
+    def _path(self, given, suffix):
+        content = (part.tobytes() if isinstance(part, np.ndarray) else part for part in given)
+        return Path(self.folder, content_digest(self.source, *content)).with_suffix(suffix)
 
 
 def kept(path):
@@ -23,33 +90,6 @@ def kept(path):
     except OSError:
         return False
     return content[-_SEAL:] == _seal(path, content[:-_SEAL])
-
-
-def keep_dataset(path, dataset, decimals=None):
-    """Put an xarray Dataset into a store, whole or not at all; ``decimals`` as of `write_dataset`.
-
-    The seal stands behind the file's own end, where readers of netCDF do not look.
-    """
-    _keep(path, lambda temporary: write_dataset(temporary, dataset, decimals))
-
-
-def kept_value(store, key, make):
-    """JSON-like value of a unit, made where the store has not got it.
-
-    Parameters
-    ----------
-    store : str or path
-        Folder of finished units.
-    key : str
-        Digest of the sources that compute and of all that they are given.
-    make : callable
-        Gives the value. All digits of its numbers are kept, NaN too.
-    """
-    path = Path(store) / f"{key}.json"
-    if not kept(path):
-        value = make()
-        _keep(path, lambda temporary: write_json(temporary, value))
-    return json.loads(path.read_bytes()[:-_SEAL])
 
 
 def load_made(path, without=(), chosen=None):
@@ -73,6 +113,7 @@ def load_made(path, without=(), chosen=None):
 
 
 def _keep(path, write):
+    """Write a unit, and its seal behind the file's own end, where readers of netCDF do not look."""
     with replacing(path) as temporary:
         write(temporary)
         seal = _seal(path, temporary.read_bytes())

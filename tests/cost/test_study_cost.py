@@ -9,7 +9,6 @@ from blockshake.cost.jobs import Jobs, planned_jobs
 from blockshake.diagnosis.nominal.plan import plan_diagnosis
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE
-from blockshake.study.config import load_config
 
 ROOT = PACKAGE.parents[1]
 
@@ -26,14 +25,12 @@ def test_every_run_of_the_default_study_is_counted(monkeypatch):
     )
     monkeypatch.setattr(study_cost, "diagnosis_cost", lambda folder, effort, tried: [])
     monkeypatch.setattr(study_cost, "planned_jobs", lambda command: Jobs({}, 1.0))
-    search = load_config("config/study.yaml").friction_calibration
-    assert search.runs == (6 + 2 * 2) * 10 * 3
     samples = 2 * 4 * 50 + 2 * (8 + 8 + 8 + 3)
     twins = 4 * 4  # of every model and case
     climbs = 2 * 20 * 23  # two cases, 20 samples, 0.5 to 6 by 0.25
     opened = 30 * (4 + 3) * 7  # four cases by LS-DEM, three by rigid blocks; seven open tests each
     parts = study_cost.study_cost("config/study.yaml")
-    runs = samples + 3 * twins + search.runs + climbs + opened
+    runs = samples + 3 * twins + climbs + opened
     # an open test drives from the start of its command on, 2 to 4 ms after its first reading
     seconds = sum(part.seconds for part in parts)
     assert runs * 10.0 - 0.004 * opened < seconds <= runs * 10.0

@@ -1,4 +1,4 @@
-"""Names, needs, constants and efforts of docs/diagnosis.md, and fields of the verdict, are those of the program."""
+"""Names, needs, constants and efforts on both pages of the diagnosis, and fields of the verdict, are the program's."""
 
 import importlib
 import re
@@ -13,7 +13,7 @@ from blockshake.effects.registry import EFFECTS
 from blockshake.files import PACKAGE
 
 DOCS = PACKAGE.parents[1] / "docs"
-PAGE = (DOCS / "diagnosis.md").read_text(encoding="utf-8")
+PAGE = "".join((DOCS / room / "diagnosis.md").read_text(encoding="utf-8") for room in ("guide", "theory"))
 ROWS = [
     [cell.strip() for cell in line.strip("|").split("|")]
     for line in PAGE.splitlines()
@@ -55,7 +55,7 @@ def test_the_efforts():
 
 
 def test_the_contract_has_every_field_of_the_verdict():
-    text = (DOCS / "contracts.md").read_text(encoding="utf-8")
+    text = (DOCS / "guide" / "contracts.md").read_text(encoding="utf-8")
     section = text[text.index("\n## Verdict") : text.index("\n## Conventions")]
     stated = [
         name

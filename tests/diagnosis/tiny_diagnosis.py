@@ -13,13 +13,10 @@ from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
 from blockshake.parity.parity import check_parity
+from blockshake.store import Store
 
 TINY = efforts.Effort(tests=2, draws=10, members=6, twins=2)
 SOLVERS = ("ls-dem", "nscd-rigid")
-
-
-def silent(line):
-    """No progress."""
 
 
 @contextmanager
@@ -33,22 +30,16 @@ def a_formula():
 
 def simulate_open_tests(folder, campaign):
     """Parity and nominal ensembles of a campaign, as files."""
-    config, made_by = (
-        {"diagnosed": [campaign], "diagnosis_effort": "tiny"},
-        (folder / "store", "source", silent),
-    )
     planned = plan.plan_diagnosis(campaign, "tiny")
     files = SimpleNamespace(parity=str(folder / "parity.json"), ensembles=[])
     tests = {name: load_test(planned.campaign, name) for name in planned.open}
     parity = check_parity(tests, load_structure(planned.campaign.structure), planned.campaign.sensors)
     write_json(files.parity, parity.as_json())
-    for test in planned.tests:
-        name = planned.ensemble(test, "shared")
+    for number in range(len(planned.tests)):
         for solver in SOLVERS:
-            files.ensembles.append(str(folder / f"{name}-{solver}.nc"))
-            write_dataset(
-                files.ensembles[-1], steps.simulate_nominal(name, solver, config, "shared", *made_by)
-            )
+            files.ensembles.append(str(folder / f"{number}-{solver}.nc"))
+            runs = steps.simulate_nominal(campaign, "tiny", number, solver, Store(folder / "store", "source"))
+            write_dataset(files.ensembles[-1], runs)
     return files
 
 
@@ -61,7 +52,7 @@ def gain_of(folder, campaign, files, decision):
     extended = []
     for number, solver in enumerate(SOLVERS):
         own = SimpleNamespace(**of_decision, ensembles=files.ensembles[number :: len(SOLVERS)])
-        runs = steps.extend_model(campaign, "tiny", solver, own, folder / "store", "source", silent)
+        runs = steps.extend_model(campaign, "tiny", solver, own, Store(folder / "store", "source"))
         extended.append(str(folder / f"extended-{solver}.nc"))
         write_dataset(extended[-1], runs)
     every = SimpleNamespace(**of_decision, ensembles=files.ensembles, extended=extended)

@@ -5,28 +5,12 @@ import functools
 
 import pytest
 from ledger import DONE
-from watched import modules_of
+from watched import EDITS, modules_of
 from work import BOTH, WORKS
 
 pytestmark = pytest.mark.faults
 # models that the scripts of rules run, but for those whose jobs name one
-_MODELS = {
-    "climb_ladder": ("ls-dem",),
-    "climb_samples": ("nscd-rigid",), "calibrate_friction": ("nscd-rigid",), "predict_twins": ("ls-dem", "nscd-rigid"),
-}  # fmt: skip
-EDITS = {
-    "study": (
-        "solvers/ls_dem/driver.py", "solvers/nscd/driver.py", "study/ensembles/envelope.py",
-        "study/stiffness/wave_speed.py", "study/sampling/distributions.py", "dynamics/intensity.py",
-        "report/study/report.py", "errors.py",
-    ),
-    "diagnosis": (
-        "solvers/ls_dem/driver.py", "diagnosis/libraries/library.py", "diagnosis/inference/decide.py",
-        "diagnosis/misfit/predictability.py", "diagnosis/verdict/ladder.py", "parity/marker_faults.py",
-        "report/diagnosis/odds_section.py",
-    ),
-}  # fmt: skip
-OF_LIBRARIES = ("simulate_cause", "extend_model", "predict_twins")
+_MODELS = {"climb_ladder": ("ls-dem",), "climb_samples": ("nscd-rigid",)}
 GATHER = {"all", "ladder", "diagnose"}  # rules without a script
 
 
@@ -85,9 +69,7 @@ def runs_module(job, module):
     )
     if job.rule == "compile_kernels":
         return module in modules_of(None, *models)
-    # the names of libraries, which these rules take, hold the sources that both solvers share
-    scripts = {job.rule, "simulate_library"} if job.rule in OF_LIBRARIES else {job.rule}
-    return any(module in modules_of(script, *models) for script in scripts)
+    return module in modules_of(job.rule, *models)
 
 
 def named(jobs):
@@ -128,14 +110,16 @@ def test_comments_and_explanations_rerun_nothing(work, copied):
 
 def test_an_edit_of_an_effort_reruns_what_takes_the_number(copied):
     checkout = copied("diagnosis")
-    with edited(
-        checkout, **{"diagnosis/libraries/efforts.py": exchanged("members=0, twins=3", "members=0, twins=4")}
-    ):
+    more = exchanged("tests=0, draws=0, members=0, twins=0", "tests=1, draws=4, members=4, twins=1")
+    with edited(checkout, **{"diagnosis/nominal/efforts.py": more}):
         due = checkout.due(*WORKS["diagnosis"])
-    DONE["diagnosis: a number of an effort edited"] += 1
-    own = [job for job in due if "Params have changed" in job.reason]
-    assert {job.rule for job in own} == {"predict_twins", "conclude"}
-    assert {job.rule for job in due} == {"predict_twins", "conclude", "make_diagnosis_report", "diagnose"}
+    DONE["diagnosis: numbers of an effort edited"] += 1
+    own = [job for job in due if "Params have changed" in job.reason or "Missing output" in job.reason]
+    simulated = {"simulate_nominal", "describe_misfit"}
+    assert {job.rule for job in own} - {"compile_kernels"} == {*simulated, "conclude"}
+    assert {job.rule for job in due} - {"compile_kernels"} == {
+        *simulated, "conclude", "make_diagnosis_report", "diagnose"
+    }  # fmt: skip
 
 
 # in compiled kernels: half a kick of Newton's law, half a step's mean velocity
@@ -164,15 +148,11 @@ def test_an_edit_of_a_kernel_runs_no_old_machine_code(model, whole, tmp_path):
     assert all(path.read_bytes() == before[one][0] for one, path in paths.items())
 
 
-def test_an_edit_of_the_decision_simulates_nothing_and_decides_anew(copied):
+def test_an_edit_of_the_decision_decides_anew(copied):
     checkout = copied("diagnosis")
-    results = checkout.folder / "results"
-    libraries = {
-        path: path.stat().st_mtime_ns for path in (results / "libraries").rglob("*") if path.is_file()
-    }
-    decision = results / "diagnosis" / "small-campaign" / "decision.json"
+    decision = checkout.folder / "results" / "diagnosis" / "small-campaign" / "decision.json"
     before = decision.read_bytes()
-    with edited(checkout, **{"diagnosis/inference/decide.py": exchanged("PLACEBOS = 19", "PLACEBOS = 1")}):
+    with edited(checkout, **{"diagnosis/answer/size.py": exchanged("(0.05, 0.5, 0.95)", "(0.1, 0.5, 0.9)")}):
         answer = checkout.snakemake(*WORKS["diagnosis"])
         assert answer.returncode == 0, answer.stdout + answer.stderr
         assert decision.read_bytes() != before
@@ -180,4 +160,3 @@ def test_an_edit_of_the_decision_simulates_nothing_and_decides_anew(copied):
     DONE["diagnosis: a constant of the decision edited and put back, results compared"] += 1
     assert answer.returncode == 0, answer.stdout + answer.stderr
     assert decision.read_bytes() == before
-    assert {path: path.stat().st_mtime_ns for path in libraries} == libraries

@@ -22,7 +22,7 @@ from blockshake.errors import InputError
 from blockshake.files import PACKAGE, write_dataset
 from blockshake.geometry.structure import build_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
-from blockshake.report.document.blocks import (
+from blockshake.pages.blocks import (
     Document,
     Figure,
     Heading,
@@ -33,10 +33,10 @@ from blockshake.report.document.blocks import (
     Text,
     numbered,
 )
-from blockshake.report.document.box import Box
-from blockshake.report.document.drawing import new_figure, svg_of
-from blockshake.report.document.html import write_html
-from blockshake.report.document.pdf import write_pdf
+from blockshake.pages.box import Box
+from blockshake.pages.drawing import new_figure, svg_of
+from blockshake.pages.html import write_html
+from blockshake.pages.pdf import write_pdf
 from blockshake.simulation.simulate import simulate
 from blockshake.study.config import check_config
 

@@ -36,7 +36,7 @@ def test_a_world_frame_turn_multiplies_from_the_left(start, turn, scale):
 
 
 def test_positive_about_y_leans_the_top_to_plus_x():
-    """Rotations are right-handed (docs/contracts.md, frames)."""
+    """Rotations are right-handed (docs/guide/contracts.md, frames)."""
     q = np.array([1.0, 0.0, 0.0, 0.0])
     rotate_into(q, np.array([0.0, 0.1, 0.0]), q)
     assert (rotation_matrices(q) @ [0.0, 0.0, 1.0])[0] > 0.0

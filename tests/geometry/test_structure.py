@@ -160,7 +160,7 @@ def _set(mapping, path, value):
     ],
 )
 def test_bad_input_is_one_line_that_names_the_key(mapping, path, value, message):
-    """Each fault alone, in a structure that loads without it (docs/contracts.md, structure file)."""
+    """Each fault alone, in a structure that loads without it (docs/guide/contracts.md, structure file)."""
     build_structure(copy.deepcopy(mapping), "s.yaml", ".")
     _set(mapping, path, value)
     with pytest.raises(InputError) as error:
@@ -233,7 +233,7 @@ def test_an_overlap_below_a_millimetre_is_an_initial_penetration(mapping):
 
 @pytest.mark.parametrize(("gap", "touching"), [(0.9e-4, True), (1.1e-4, False)])
 def test_bodies_touch_within_a_tenth_of_a_millimetre(mapping, gap, touching):
-    """Bodies within 0.1 mm are a touching pair (docs/contracts.md, start of a run)."""
+    """Bodies within 0.1 mm are a touching pair (docs/guide/contracts.md, start of a run)."""
     mapping["bodies"][2]["position"] = [0.0, 0.0, 2.4 + gap]
     assert build_structure(mapping, "s.yaml", ".").touching[1, 2] == touching
 

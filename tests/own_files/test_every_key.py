@@ -178,7 +178,6 @@ def test_a_calibration_without_a_parameter_of_the_model_is_refused(good, monkeyp
     monkeypatch.chdir(good)
     study = changed(STUDY, ("ensemble",), {"size": 10, "seed": 1, "linked": {}, "distributions": {
         "materials.granite.density": STUDY["ensemble"]["distributions"]["materials.granite.density"]}})  # fmt: skip
-    study = {key: value for key, value in study.items() if key != "friction_calibration"}
     study["calibration"] = {"cases": {"nscd-rigid": ["wall"]}}
     assert "that nscd-rigid has a use for" in refusal(good, "study", study)
 
@@ -186,7 +185,8 @@ def test_a_calibration_without_a_parameter_of_the_model_is_refused(good, monkeyp
 def test_materials_of_a_pair_may_be_in_either_order(good, monkeypatch):
     monkeypatch.chdir(good)
     config = load_config("study.yaml")
-    (own,) = config.friction_calibration.variables
+    own, *others = config.calibration.parameters
+    assert others == ["restitution", "hollow"]
     assert own != TURNED
     assert own in config.ensemble.distributions
     assert list(config.calibration.ranges) == [own]

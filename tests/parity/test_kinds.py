@@ -5,7 +5,7 @@ import pytest
 from blockshake.files import PACKAGE
 from blockshake.parity.kinds.registry import KINDS
 
-PAGE = (PACKAGE.parents[1] / "docs" / "parity.md").read_text(encoding="utf-8")
+PAGE = (PACKAGE.parents[1] / "docs" / "theory" / "parity.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)

@@ -1,4 +1,4 @@
-"""The run file of docs/contracts.md, by both solvers."""
+"""The run file of docs/guide/contracts.md, by both solvers."""
 
 import json
 

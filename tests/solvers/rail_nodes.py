@@ -10,7 +10,7 @@ def rail_nodes(size, chamfer, hollow, spacing, inset):
 
     They share the area of the whole face, so that its stiffness in compression is kept. A face of such nodes
     is hollow, as the four contact points of nonsmooth contact dynamics are; a whole face has another impact
-    (docs/rocking.md, *Why 0.86 and not 0.71*).
+    (docs/theory/rocking.md, *Why 0.86 and not 0.71*).
     """
     points, areas = box_nodes(size, chamfer, hollow, spacing, inset)
     level = np.isclose(np.abs(points[:, 2]), 0.5 * size[2])

@@ -127,7 +127,7 @@ def test_configuration_1_agrees_for_seven_impacts(on_rails):
     """Its twins do not part in 6 s, so that 2 % until then is aimed at. This is missed, by the joints' impacts.
 
     An impact opens the upper joints by some 0.1 mrad for an instant, which rigid contacts do not, and takes up to 3 %
-    more or less energy. The stack swings on with another period, and drifts out of step: docs/nscd.md.
+    more or less energy. The stack swings on with another period, and drifts out of step: docs/theory/nscd.md.
     """
     exact = by_nscd("configuration-1", 4.5)
     difference = apart(by_ls_dem("configuration-1", 4.5, 1000, 2e-6), exact)

@@ -1,10 +1,18 @@
+import copy
+import shutil
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from fake_study import FakeStudy
+from page import Page
 
 from blockshake.measurement.sensors.markers import noisy_reading
 from blockshake.study.ensembles.ensemble import gather_ensemble
+from blockshake.study.report.content import load_content
+from blockshake.study.report.report import compose, make_report
 
 TIME = np.arange(401) / 200.0
 MARKERS = ["slab-face", "block-1-face"]
@@ -109,3 +117,44 @@ def one_block(tmp_path):
         return path
 
     return written
+
+
+@pytest.fixture(scope="session")
+def fake(tmp_path_factory):
+    """The made-up study's files."""
+    return FakeStudy(tmp_path_factory.mktemp("fake"))
+
+
+@pytest.fixture(scope="session")
+def report(fake, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    paths = folder / "fake.html", folder / "fake.pdf", folder / "the-paper.json"
+    make_report(fake.study, fake.results, fake.logs, *paths)
+    return paths
+
+
+@pytest.fixture(scope="session")
+def document(fake):
+    """Composed a second time from the same files."""
+    return compose(load_content(fake.study, fake.results, fake.logs))
+
+
+@pytest.fixture
+def copied(fake, tmp_path):
+    """The made-up study with results of its own, to be changed."""
+    own = copy.copy(fake)
+    own.results = Path(shutil.copytree(fake.results, tmp_path / "results"))
+    return own
+
+
+@pytest.fixture(scope="session")
+def page(report):
+    parsed = Page()
+    parsed.feed(report[0].read_text(encoding="utf-8"))
+    parsed.close()
+    return parsed
+
+
+@pytest.fixture(scope="session")
+def text(page):
+    return " ".join(" ".join(page.words).split())

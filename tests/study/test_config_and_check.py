@@ -14,7 +14,7 @@ from blockshake.own_files.check import check_file
 from blockshake.quantities import USUAL
 from blockshake.simulation.models import MODELS
 from blockshake.simulation.parameter_table import instances
-from blockshake.study.comparison.differences import FEWEST
+from blockshake.statistics.scores import FEWEST
 from blockshake.study.config import check_config, load_config
 from blockshake.study.motion_remarks import motion_remarks
 from blockshake.study.sampling.distributions import TABLE_2
@@ -155,7 +155,7 @@ NEEDED = {
 def test_nothing_more_is_needed():
     config = check_config(copy.deepcopy(NEEDED), "mine.yaml")
     assert config.cases[0].measured is None
-    assert config.friction_calibration is None
+    assert config.calibration is None
     assert config.ladder.motions == ()
 
 
@@ -170,20 +170,15 @@ def test_all_wrong_keys_are_named_at_once_with_the_nearest_known_one():
     mapping = copy.deepcopy(NEEDED)
     mapping["modles"] = mapping.pop("models")
     mapping["cases"][0]["duraton"] = mapping["cases"][0].pop("duration")
-    mapping["friction_calibration"] = {
-        "cases": ["configuration-2"],
-        "variables": ["x"],
-        "finnest": 0.1,
-        "zzz": 1,
-    }
+    mapping["calibration"] = {"cases": {"nscd-rigid": ["configuration-2"]}, "lnked": {}, "zzz": 1}
     with pytest.raises(InputError) as error:
         check_config(mapping, "mine.yaml")
     assert str(error.value).removeprefix("mine.yaml: ").split("; ") == [
         "models: missing key",
         "cases.0.duration: missing key",
         "cases.0.duraton: unknown key, did you mean duration?",
-        "friction_calibration.finnest: unknown key, did you mean finest?",
-        "friction_calibration.zzz: unknown key",
+        "calibration.lnked: unknown key, did you mean linked?",
+        "calibration.zzz: unknown key",
         "modles: unknown key, did you mean models?",
     ]
 
@@ -217,7 +212,7 @@ def test_a_decimal_comma_is_named():
 
 def test_friction_is_calibrated_against_a_measured_test_alone(mapping):
     mapping["cases"][0]["measured"] = None
-    line = "friction_calibration.cases: expected cases with a measured test: .*, not configuration-1"
+    line = "calibration.cases.ls-dem: expected cases with a measured test: .*, not configuration-1"
     with pytest.raises(InputError, match=line):
         check_config(mapping, "study.yaml")
 
@@ -364,7 +359,7 @@ def own_study(mapping, folder, structure, **changes):
     """The default study with an own structure alone, by rigid contact dynamics and without what hangs on others."""
     (folder / "own.yaml").write_text(yaml.safe_dump(structure))
     case = {"structure": str(folder / "own.yaml"), "motion": "alkion", "scale": 1.0, "duration": 5.0}
-    for key in ("friction_calibration", "calibration", "fragility", "diagnosis"):
+    for key in ("calibration", "fragility", "diagnosis"):
         del mapping[key]
     return {**mapping, "models": {"nscd-rigid": {"time_step": 1e-3}}, "cases": [case]} | changes
 

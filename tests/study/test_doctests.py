@@ -5,7 +5,7 @@ import pytest
 
 from blockshake.files import PACKAGE
 
-ROOMS = ("study", "report/document")
+ROOMS = ("statistics", "study", "pages")
 MODULES = [
     ".".join(("blockshake", *path.relative_to(PACKAGE).with_suffix("").parts))
     for room in ROOMS

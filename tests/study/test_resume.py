@@ -19,7 +19,8 @@ from blockshake.simulation.models import MODELS
 from blockshake.simulation.simulate import simulate
 from blockshake.solvers import pieces
 from blockshake.solvers.checkpoint import Checkpoint
-from blockshake.study.ensembles.batch import simulate_samples
+from blockshake.store import Store
+from blockshake.study.ensembles.batch import CaseRuns, simulate_samples
 
 # seconds of motion that take some seconds of wall time, whatever the model
 LONG = {"ls-dem": 12.0, "nscd-rigid": 40.0, "nscd-elastic": 6.0, "nscd-viscoelastic": 6.0}
@@ -118,8 +119,8 @@ def test_a_killed_sample_goes_on_in_the_store(model, tmp_path, monkeypatch):
     step = 5e-5 if model == "ls-dem" else 1e-3
 
     def attempt(store):
-        given = {"time_step": step}, 50.0, rows, {}, store, "source"
-        return simulate_samples(case, lambda sample: motion, model, *given, lambda line: None)
+        runs = CaseRuns(case, model, {"time_step": step}, {}, 50.0)
+        return simulate_samples(runs, lambda sample: motion, rows, Store(store, "source"))
 
     (whole,) = attempt(tmp_path / "whole")
 

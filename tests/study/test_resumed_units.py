@@ -3,7 +3,9 @@
 import pandas as pd
 import pytest
 
+from blockshake import store
 from blockshake.files import content_digest, write_json
+from blockshake.store import Store
 from blockshake.study.config import Ladder
 from blockshake.study.ensembles import ladder
 from blockshake.study.sampling.latin_hypercube import write_design
@@ -26,19 +28,21 @@ class CutShortError(Exception):
 
 def _climb(path, store):
     climbed = [CASE], {"alkion": "auto"}, 1e-4, RUNGS
-    write_json(path, ladder.climb_ladders(*climbed, store, "source", lambda line: None))
+    write_json(path, ladder.climb_ladders(*climbed, Store(store, "source")))
 
 
 def test_a_structure_of_two_cases_is_climbed_once_for_the_longer_one(tmp_path, monkeypatch):
     climbed = []
-    monkeypatch.setattr(ladder, "climb", lambda structure, motion, *run: climbed.append(run[3]) or [])
+    monkeypatch.setattr(
+        ladder, "climb", lambda structure, runs, *_: climbed.append(runs.case["duration"]) or []
+    )
     cases = [CASE, CASE | {"duration": 0.1}]
-    ladder.climb_ladders(cases, {"alkion": "auto"}, 1e-4, RUNGS, tmp_path, "source", lambda line: None)
+    ladder.climb_ladders(cases, {"alkion": "auto"}, 1e-4, RUNGS, Store(tmp_path, "source"))
     assert climbed == [0.1]
 
 
 def _calibrate(path, store):
-    write_design(path, wave_speed.calibrate_design("configuration-2", DESIGN, {}, store, "source"))
+    write_design(path, wave_speed.calibrate_design("configuration-2", DESIGN, {}, Store(store, "source")))
 
 
 # what makes the rule's file, the module and the function that makes a unit, and how many units are let through
@@ -76,7 +80,7 @@ def test_a_killed_rule_makes_each_unit_once(rule, tmp_path, monkeypatch):
     make_file(tmp_path / "again", tmp_path / "store")
     assert len(made) == units
     # other sources are other units
-    monkeypatch.setattr(module, "content_digest", lambda source, *given: content_digest("edited", *given))
+    monkeypatch.setattr(store, "content_digest", lambda source, *given: content_digest("edited", *given))
     limit = units
     with pytest.raises(CutShortError):
         make_file(tmp_path / "edited", tmp_path / "store")

@@ -9,7 +9,8 @@ import pytest
 from blockshake.dynamics.system import FINISHED
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.markers import driven_marker
-from blockshake.study.ensembles.batch import simulate_samples
+from blockshake.store import Store
+from blockshake.study.ensembles.batch import CaseRuns, simulate_samples
 from blockshake.study.ensembles.case_input import driving_motions
 from blockshake.study.ensembles.ensemble import join_batches, relative_to_slab
 from blockshake.study.sampling.distributions import LINKED
@@ -37,9 +38,8 @@ def simulated(step, rows, linked, store):
     """Drift of the top block's marker at one time step [m], shape (sample, time)."""
     structure = load_structure(CASE["structure"])
     motions = driving_motions(CASE, None, SEEDS[0])
-    files = simulate_samples(
-        CASE, motions, "ls-dem", {"time_step": step}, 200.0, rows, linked, store, "", _log.info
-    )
+    runs = CaseRuns(CASE, "ls-dem", {"time_step": step}, linked, 200.0)
+    files = simulate_samples(runs, motions, rows, Store(store, "", _log.info))
     ensemble = join_batches(files)
     assert np.isin(ensemble["status"], FINISHED).all()
     drift = relative_to_slab(ensemble["marker_displacement"], driven_marker(structure))
@@ -100,7 +100,9 @@ def drifts(tmp_path_factory):
     linked = LINKED
     design = pd.concat([draw_samples(SIZE, seed).values for seed in SEEDS], ignore_index=True)
     design.index.name = "sample"
-    stiffness = calibrate_design("configuration-2", design, linked, tmp_path_factory.mktemp("store"), "")
+    stiffness = calibrate_design(
+        "configuration-2", design, linked, Store(tmp_path_factory.mktemp("store"), "")
+    )
     rows = pd.concat([design, stiffness], axis=1)
     return [simulated(step, rows, linked, tmp_path_factory.mktemp("store")) for step in STEPS]
 

@@ -1,7 +1,7 @@
 """Our nonsmooth contact dynamics beside LMGC90's, the paper's program, and both beside theory.
 
 The wheel finds its contacts on the faces that touch at the start and finds no others, stops its Gauss-Seidel at 1.7e-4
-of its own norm, and starts from rest: see ``docs/peers.md``.
+of its own norm, and starts from rest: see ``docs/results/peers.md``.
 """
 
 import numpy as np

@@ -19,7 +19,7 @@ def test_three_blocks_rock_alike_for_three_seconds(run_mujoco, run_nscd, relativ
     motion = harmonic(3.1, 3.0)
     theirs = run_mujoco(sharp_stack, motion, 3.0)
     soft = relative(theirs, sharp_stack, motion)
-    # a step of 0.1 ms: at 1 ms our own error in time is larger than what the softness costs (docs/peers.md)
+    # a step of 0.1 ms: at 1 ms our own error in time is larger than what the softness costs (docs/results/peers.md)
     exact = relative(run_nscd(sharp_stack, motion, 3.0, time_step=1e-4), sharp_stack, motion)
     peaks = np.abs(exact).max(axis=0)
     assert peaks[-1] > 0.3

@@ -120,29 +120,6 @@ def test_a_restored_stack_is_surveyed_where_it_was_put(make):
     assert np.ptp(free, axis=0).min() > 0.0
 
 
-def test_a_stack_that_is_not_put_back_starts_where_it_came_to_rest(make):
-    folder, truth, _ = make(restored=False)
-    campaign = load_campaign(folder)
-    names = list(campaign.tests)
-    left = np.array(json.loads((truth / f"{names[1]}.json").read_text())["places_left"])
-    assert np.abs(left[1:, 0]).max() > 5e-3
-    surveyed = _survey(campaign, names[2])
-    # 4 standard deviations of the survey
-    np.testing.assert_allclose(surveyed[:, :2], left[:, :2], atol=4e-4)
-
-
-def test_what_is_carried_on_is_where_the_blocks_rest_and_not_where_a_record_was_cut(make):
-    # a joint that slides, the record cut in full motion or after it: the stack ends in the same place
-    left = []
-    for duration in (1.0, 3.0):
-        folder, truth, _ = make(f"d{duration:g}", duration=duration, restored=False)
-        left.append(np.array(json.loads((truth / "motion-200.json").read_text())["places_left"]))
-        test = load_test(load_campaign(folder), "motion-200")
-        assert float(test["time"][-1]) == pytest.approx(duration, abs=1e-4)  # from the start that is found
-    assert np.abs(left[0][1:, 0]).max() > 5e-3
-    np.testing.assert_allclose(left[0], left[1], atol=1e-9)
-
-
 def test_a_clock_that_is_ahead_reads_to_the_end(make):
     folder, _, _ = make(
         hidden={"effect": "clock-lag", "values": {"lag": -0.02}},
@@ -178,7 +155,7 @@ def test_a_test_in_which_a_block_falls_is_not_in_the_campaign(make):
     # two blocks of a joint without friction slide apart
     folder, truth, said = make(
         hidden={"effect": "weak-joint", "values": {"factor": 0.0}, "place": {"joint": ["block-2", "block-3"]}},
-        motions=["push.csv"], restored=False, intensities={"first": 1.0, "increment": 1.0, "highest": 2.0},
+        motions=["push.csv"], intensities={"first": 1.0, "increment": 1.0, "highest": 2.0},
     )  # fmt: skip
     assert said[-1].startswith("push-200: collapsed")
     assert list(load_campaign(folder).tests) == ["push-100"]

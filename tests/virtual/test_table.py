@@ -8,13 +8,13 @@ from blockshake.dynamics.motion import ground_motion
 from blockshake.effects.effect import Experiment
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.instruments import Instruments
-from blockshake.virtual.table import Table, followed
+from blockshake.virtual.table import TableErrors, followed
 
 STRUCTURE = load_structure("configuration-1")
 
 
 def on_table(motion, **table):
-    return followed(Experiment(STRUCTURE, motion, Instruments()), Table(**table)).motion
+    return followed(Experiment(STRUCTURE, motion, Instruments()), TableErrors(**table)).motion
 
 
 @pytest.mark.parametrize("frequency", [0.2, 2.0, 15.0])

@@ -167,4 +167,4 @@ def test_a_diagnosis_ends_with_its_first_step(tmp_path, body, code, reason):
     assert job.startswith("  job: decide, which makes results/diagnosis/")
     assert log.startswith("  log: logs/")
     assert not (tmp_path / "new").exists()
-    assert not list(tmp_path.glob("results/ensembles/**/*.nc"))
+    assert not list(tmp_path.glob("results/diagnosis/*/ensembles/*.nc"))

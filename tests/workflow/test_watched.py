@@ -3,16 +3,14 @@
 import dataclasses
 
 import pytest
-from watched import SCRIPTS, modules_of
+from watched import EDITS, SCRIPTS, modules_of
 
 from blockshake.diagnosis.nominal.efforts import EFFORTS
-from blockshake.diagnosis.nominal.plan import plan_diagnosis
 from blockshake.files import PACKAGE
 from blockshake.simulation.models import MODELS
 from blockshake.sources import kernel_sources, script_sources
 
 BY_MODEL = ("simulate_batch", "run_twins", "simulate_nominal")
-CAMPAIGN = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-1"
 
 
 @pytest.mark.parametrize("script", sorted(path.stem for path in SCRIPTS.glob("*.py")))
@@ -26,13 +24,15 @@ def test_kernels_follow_the_modules_of_their_driver(model):
     assert set(kernel_sources(model)) == modules_of(None, model)
 
 
+@pytest.mark.parametrize("module", [module for modules in EDITS.values() for module in modules])
+def test_the_modules_that_faults_edit_are_there(module):
+    """Tests of faults are long and seldom run."""
+    assert (PACKAGE / module).is_file()
+
+
 @pytest.mark.parametrize("name", [field.name for field in dataclasses.fields(EFFORTS["quick"])])
-def test_every_number_of_an_effort_is_in_a_name_or_a_parameter(name):
+def test_every_number_of_an_effort_is_a_parameter_of_a_rule(name):
     """The file of the efforts is no source: an edit there may leave no result as it was."""
-    plan = plan_diagnosis(CAMPAIGN, "standard")
-    effort = dataclasses.replace(plan.effort, **{name: getattr(plan.effort, name) + 1})
-    other = dataclasses.replace(plan, effort=effort)
-    named = [plan.ensemble(test, "") != other.ensemble(test, "") for test in plan.tests]
     rules = "".join(path.read_text() for path in (PACKAGE.parents[1] / "workflow" / "rules").glob("*.smk"))
     # the number of tests is that of the ensembles
-    assert all(named) or f"effort().{name}" in rules or name == "tests"
+    assert f"effort().{name}" in rules or name == "tests"

@@ -8,9 +8,22 @@ from blockshake.files import PACKAGE
 from blockshake.simulation.models import MODELS
 
 SCRIPTS = PACKAGE.parents[1] / "workflow" / "scripts"
-# their numbers are in names of files and in parameters of rules, see `effort` in workflow/rules/diagnosed.smk
+# their numbers are in parameters of rules, see `effort` in workflow/rules/diagnosed.smk
 PLANS = {f"diagnosis/nominal/{name}.py" for name in ("efforts", "plan")}
 BESIDE = {"caches.py", "log.py", "sources.py"}  # what these compute is in no result
+# modules that the tests of faults edit, by the work whose jobs are then due
+EDITS = {
+    "study": (
+        "solvers/ls_dem/driver.py", "solvers/nscd/driver.py", "study/ensembles/envelope.py",
+        "study/stiffness/wave_speed.py", "study/sampling/distributions.py", "dynamics/intensity.py",
+        "study/report/report.py", "errors.py",
+    ),
+    "diagnosis": (
+        "solvers/ls_dem/driver.py", "diagnosis/evidence/likelihood.py", "diagnosis/answer/decide.py",
+        "diagnosis/misfit/predictability.py", "diagnosis/verdict/ladder.py", "parity/marker_faults.py",
+        "diagnosis/report/odds_section.py",
+    ),
+}  # fmt: skip
 STEPS = "diagnosis/steps.py"  # a rule runs one function of it
 
 

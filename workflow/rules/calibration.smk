@@ -1,20 +1,17 @@
+CALIBRATION = config.get("calibration") or {}
+
+
 rule compare_open_tests:
     """The open tests of a case's campaign against the samples of the calibration by a model; finished runs are kept."""
     input:
-        structure=lambda wildcards: definition(
-            "structures", CASES[wildcards.case]["structure"]
-        ),
-        campaign=lambda wildcards: open_files(wildcards.case),
+        structure=structure_file,
+        campaign=lambda wildcards: campaign_files(wildcards.case, every=True),
         kernels=lambda wildcards: kernels(wildcards.model),
     output:
         "results/{study}/open-tests/{model}/{case}.nc",
     log:
         "logs/{study}/compare_open_tests/{model}/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
     resources:
-        mem_mb=2000,
         runtime=720,
     params:
         case=lambda wildcards: {
@@ -44,8 +41,6 @@ rule calibrate_jointly:
         "results/{study}/calibration.json",
     log:
         "logs/{study}/calibrate_jointly.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         study={key: config[key] for key in ("calibration", "ensemble", "cases")},
         source=source_of("calibrate_jointly"),

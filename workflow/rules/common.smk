@@ -1,5 +1,6 @@
 """Shared by the rules: the checked configuration, ids for paths, digests of sources."""
 
+import contextlib
 import os
 import sys
 from pathlib import Path
@@ -26,7 +27,8 @@ from blockshake.log import Failures
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.simulation.models import MODELS as SOLVERS
 from blockshake.sources import kernel_sources, script_sources, source_digest
-from blockshake.study.config import StudyConfig, check_config, shows_stiffness
+from blockshake.study.analyses import ANALYSES
+from blockshake.study.config import StudyConfig, check_config
 from blockshake.validation import validated
 from blockshake.working_folder import (
     end_with_command,
@@ -39,10 +41,14 @@ from blockshake.working_folder import (
 GIVEN = ("campaign", "campaigns", "effort", "without")
 
 
-def refuse(error):
+@contextlib.contextmanager
+def refusing():
     """End with one line on bad input and exit 2."""
-    print(f"blockshake: {error}", file=sys.stderr, flush=True)
-    os._exit(BAD_INPUT)
+    try:
+        yield
+    except InputError as error:
+        print(f"blockshake: {error}", file=sys.stderr, flush=True)
+        os._exit(BAD_INPUT)
 
 
 def hold_folder():
@@ -50,10 +56,8 @@ def hold_folder():
 
     It ends itself with the command that started it, such as `blockshake diagnose`.
     """
-    try:
+    with refusing():
         hold(Path.cwd())
-    except InputError as error:
-        refuse(error)
     end_with_command()
     start_jobs()
 
@@ -62,23 +66,19 @@ def study_config():
     """The configuration checked, with the defaults of its schema; what it names is checked once, not in every job."""
     study = {key: value for key, value in config.items() if key not in GIVEN}
     where = " + ".join(map(str, workflow.configfiles))
-    try:
+    with refusing():
         if workflow.exec_mode == workflow.exec_mode.DEFAULT:
             return check_config(study, where)
         return validated(StudyConfig, study, where)
-    except InputError as error:
-        refuse(error)
 
 
 def configuration():
     """The configuration as the program reads YAML, which is not how Snakemake does: octal numbers, keys twice."""
     given, read = workflow.config_settings, {}
     own = [path for path in workflow.configfiles if path not in given.configfiles]
-    try:
+    with refusing():
         for path in (*own, *given.configfiles):
             update_config(read, load_yaml(path))
-    except InputError as error:
-        refuse(error)
     update_config(read, with_numbers(dict(given.config)))
     return read
 
@@ -108,114 +108,6 @@ def beside(path):
     return str(path.relative_to(Path.cwd()) if Path.cwd() in path.parents else path)
 
 
-def campaign_files(case):
-    """The test that a case is compared with and what describes it; never another, which may be sealed."""
-    campaign = load_campaign(CASES[case]["measured"]["campaign"])
-    return files_of_test(campaign, campaign.tests[CASES[case]["measured"]["test"]])
-
-
-def open_files(case):
-    """The tests of a case's campaign that are not sealed, and what describes them."""
-    campaign = load_campaign(CASES[case]["measured"]["campaign"])
-    opened = [test for test in campaign.tests.values() if test.role != "sealed"]
-    files = [file for test in opened for file in files_of_test(campaign, test)]
-    return list(dict.fromkeys(files))
-
-
-def files_of_test(campaign, test):
-    """The file of a campaign, that of one of its tests, and others that describe the test, as far as they are there."""
-    files = [campaign.folder / "campaign.yaml", campaign.folder / test.file]
-    beside = [
-        campaign.folder / f"{Path(test.file).stem}-acc.csv",
-        campaign.folder / test.motion,
-        Path(campaign.structure),
-    ]
-    return [str(path) for path in (*files, *filter(Path.is_file, beside))]
-
-
-def batches(model, case):
-    """Ids of the batches of a case."""
-    return batch_ids(CHECKED.samples(model, case))
-
-
-def batch_ids(count):
-    """Ids of the batches of so many samples: first and last sample."""
-    size = config["samples_per_job"]
-    return [
-        f"{first:03d}-{min(first + size, count) - 1:03d}"
-        for first in range(0, count, size)
-    ]
-
-
-def batch_files(wildcards, model=None):
-    """Batch files of a case by a model, of the wildcards if none is named."""
-    model = model or wildcards.model
-    return expand(
-        "results/{study}/runs/{model}/{case}/{batch}.nc",
-        study=wildcards.study,
-        model=model,
-        case=wildcards.case,
-        batch=batches(model, wildcards.case),
-    )
-
-
-def files_of_models(wildcards):
-    """Batch files of a case by every model, and their twins, each under a name of its own for the rule's input."""
-    twins = "results/{study}/twins/{model}/{case}.nc"
-    named = {f"batches {model}": batch_files(wildcards, model) for model in MODELS}
-    named |= {
-        f"twins {model}": twins.format(
-            study=wildcards.study, model=model, case=wildcards.case
-        )
-        for model in MODELS
-        if CHECKED.has_twins(model, wildcards.case)
-    }
-    return named
-
-
-def files_of_report(cases):
-    """Files that a report of these cases is made of, by name."""
-    measured = [case for case in cases if case in MEASURED]
-    stiff = cases if shows_stiffness(config) else []
-    motions = {Path(CASES[case]["motion"]).stem for case in cases}
-
-    def results(pattern, **named):
-        return expand(f"results/{STUDY}/{pattern}", **named)
-
-    def by_model(kind, named):
-        return results(f"{kind}/{{model}}/{{case}}.nc", model=MODELS, case=named)
-
-    return {
-        "structures": [
-            definition("structures", CASES[case]["structure"]) for case in cases
-        ],
-        "campaigns": [file for case in measured for file in campaign_files(case)],
-        "templates": TEMPLATES,
-        "motions": results("motions/{motion}.nc", motion=sorted(motions)),
-        "design": results("design.{suffix}", suffix=["csv", "json"]),
-        "stiffness": results("stiffness/{case}.csv", case=stiff),
-        "waves": results("waves/{case}.nc", case=stiff),
-        "bases": results("inputs/{case}.nc", case=measured),
-        "envelopes": by_model("envelopes", cases),
-        "samples": by_model("samples", cases),
-        "shown": by_model("shown", cases),
-        "comparisons": by_model("comparisons", measured),
-        "differences": results("differences/{case}.nc", case=cases),
-        "friction": results(
-            "friction/{case}.json",
-            case=[case for case in FRICTION_SEARCH.get("cases", []) if case in cases],
-        ),
-        "calibration": (
-            results("calibration.json") if CALIBRATION and cases == list(CASES) else []
-        ),
-        "fragility": results(
-            "fragility/{case}.nc",
-            case=[case for case in FRAGILITY.get("cases", []) if case in cases],
-        ),
-        "sensitivities": by_model("sensitivities", cases),
-    }
-
-
 def source_of(script, *models):
     """Digest of all that a script imports, and of the solvers of the models that it runs."""
     return source_digest(*script_sources(script, *models))
@@ -228,43 +120,6 @@ def kernels(model):
     would not do: with it a study whose compilation is due runs that and nothing else (issue 4166).
     """
     return f"results/kernels/{model}-{source_digest(*kernel_sources(model))}.json"
-
-
-def campaign_kernels(wildcards):
-    """Mark that the kernels of the virtual campaign's model are compiled."""
-    from blockshake.virtual.settings import load_settings
-
-    return kernels(load_settings(HOME / "config" / "virtual-campaign.yaml").model)
-
-
-def stiffness_file(wildcards):
-    """Calibrated stiffness of the samples, for the models that have any: an edit of LS-DEM reruns no NSCD."""
-    return stiffness_of(wildcards.model, wildcards.study, wildcards.case)
-
-
-def stiffness_of(model, study, case):
-    """The same of a model, a study and a case by their names."""
-    return f"results/{study}/stiffness/{case}.csv" if SOLVERS[model].calibrated else []
-
-
-def base_file(wildcards):
-    """The slab's measured motion, for the cases that it drives."""
-    if CASES[wildcards.case]["input"] == "commanded":
-        return []
-    return f"results/{wildcards.study}/inputs/{wildcards.case}.nc"
-
-
-def time_step_of(model):
-    """Time step of a model [s]: the study's, or the model's own where it is not in the study."""
-    return config["models"].get(model, {}).get("time_step", SOLVERS[model].time_step)
-
-
-def case_definition(wildcards):
-    """Keys of a case in the configuration that its runs depend on."""
-    return {
-        key: CASES[wildcards.case][key]
-        for key in ("structure", "motion", "scale", "baseline", "duration", "input")
-    }
 
 
 FAILURES = Failures()
@@ -289,23 +144,15 @@ config.update(configuration())
 CHECKED = study_config()
 config.update(CHECKED.model_dump(mode="json"))
 
-# models that the null hypothesis of a diagnosis holds
-NULL_MODELS = [name for name, model in SOLVERS.items() if model.perturbation]
 TEMPLATES = expand(
-    beside(PACKAGE / "report" / "document" / "templates" / "{name}"),
+    beside(PACKAGE / "pages" / "templates" / "{name}"),
     name=["report.html.j2", "report.css", "report.js", "moving.js", "report.typ"],
 )
 STUDY = config["name"]
 MODELS = list(config["models"])
 CASES = {case["name"]: case for case in config["cases"]}
 MEASURED = [name for name, case in CASES.items() if case["measured"]]
-FRICTION_SEARCH = config.get("friction_calibration") or {}
-CALIBRATION = config.get("calibration") or {}
-FRAGILITY = config.get("fragility") or {}
 BASELINES = {motion: baseline for _, motion, baseline in CHECKED.named_motions()}
-LADDER_MOTIONS = config["ladder"]["motions"] or list(
-    dict.fromkeys(case["motion"] for case in config["cases"])
-)
 MOTIONS = {Path(motion).stem: motion for motion in BASELINES}
 
 

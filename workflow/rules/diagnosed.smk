@@ -5,46 +5,32 @@ from functools import cache
 
 
 def by_name(folders, without):
-    """Folders of campaigns by the names of their results."""
-    from blockshake.diagnosis.nominal.plan import result_name
+    """Folders of campaigns by the names of their results; refuses to leave an effect out that does not exist."""
+    from blockshake.diagnosis.nominal.plan import considered, result_name
 
     named = {result_name(folder, without): str(folder) for folder in folders}
-    if len(named) < len(folders):
-        refuse(
-            InputError(
-                "campaigns",
-                ", ".join(map(str, folders)),
-                "expected folders of different names",
-            )
-        )
-    return named
-
-
-def check_left_out(without):
-    """Refuse to leave an effect out that does not exist."""
-    from blockshake.diagnosis.nominal.plan import considered
-
-    try:
+    with refusing():
         considered(without)
-    except InputError as error:
-        refuse(error)
+        if len(named) < len(folders):
+            given = ", ".join(map(str, folders))
+            raise InputError("campaigns", given, "expected folders of different names")
+    return named
 
 
 EFFORT = config.get("effort", config["diagnosis"]["effort"])
 WITHOUT = config.get("without", [])
-check_left_out(WITHOUT)
-if "campaign" in config:
-    CAMPAIGNS = by_name([config["campaign"]], WITHOUT)
-else:
-    CAMPAIGNS = by_name(
-        config.get("campaigns", config["diagnosis"]["campaigns"]), WITHOUT
-    )
+CAMPAIGNS = by_name(
+    (
+        [config["campaign"]]
+        if "campaign" in config
+        else config.get("campaigns", config["diagnosis"]["campaigns"])
+    ),
+    WITHOUT,
+)
+# models that the null hypothesis of a diagnosis holds
+NULL_MODELS = [name for name, model in SOLVERS.items() if model.perturbation]
 # how often the procedure was right
 TRACK_RECORD = beside(HOME / "data" / "track-record" / "hidden-effects.json")
-ENSEMBLE_SOURCE = source_of("simulate_nominal")  # of what both solvers share
-
-
-config["diagnosed"], config["diagnosis_effort"] = list(CAMPAIGNS.values()), EFFORT
 
 
 def solver_source(wildcards):
@@ -60,19 +46,17 @@ def plan(campaign):
     """Plan of a campaign by its name; made when a rule first asks, since it reads the open tests."""
     from blockshake.diagnosis.nominal.plan import plan_diagnosis
 
-    try:
+    with refusing():
         return plan_diagnosis(CAMPAIGNS[campaign], EFFORT)
-    except InputError as error:
-        refuse(error)
 
 
 def ensemble_files(campaign, solvers=NULL_MODELS):
     """Nominal ensembles of a campaign's open tests, test by test; none at an effort that simulates nothing."""
-    names = [
-        plan(campaign).ensemble(test, ENSEMBLE_SOURCE) for test in plan(campaign).tests
-    ]
     return expand(
-        "results/ensembles/{ensemble}/{solver}.nc", ensemble=names, solver=solvers
+        "results/diagnosis/{campaign}/ensembles/{number}-{solver}.nc",
+        campaign=campaign,
+        number=range(len(plan(campaign).tests)),
+        solver=solvers,
     )
 
 
@@ -83,7 +67,7 @@ def misfit_files(wildcards):
 
 
 def effort():
-    """Amounts of simulation. The plan is no source of a rule: its numbers are in names of files and in parameters."""
+    """Amounts of simulation. The plan is no source of a rule: its numbers are in parameters."""
     from blockshake.diagnosis.nominal.efforts import EFFORTS
 
     return EFFORTS[EFFORT]
@@ -91,26 +75,16 @@ def effort():
 
 def test_files(campaign, role):
     """What describes a campaign, and the files of its tests that are sealed or that are judged by."""
-    given = load_campaign(CAMPAIGNS[campaign])
-    if role == "sealed":
-        tests = [test for test in given.tests.values() if test.role == "sealed"]
-    else:
-        tests = [given.tests[name] for name in plan(campaign).open]
-    files = [given.folder / "campaign.yaml", Path(given.structure)]
-    for test in tests:
-        path = given.folder / test.file
-        files += [
-            path,
-            path.with_name(f"{path.stem}-acc.csv"),
-            given.folder / test.motion,
-        ]
-    return [str(path) for path in files if path.is_file()]
+    with refusing():
+        given = load_campaign(CAMPAIGNS[campaign])
+    names = given.sealed if role == "sealed" else plan(campaign).open
+    return files_of_tests(given, [given.tests[name] for name in names])
 
 
 def sealed_motions(campaign):
     """Files of the motions that were commanded in the sealed tests, which are no readings."""
     given = load_campaign(CAMPAIGNS[campaign])
-    motions = [test.motion for test in given.tests.values() if test.role == "sealed"]
+    motions = [test.motion for test in given.sealed.values()]
     paths = [given.folder / motion for motion in motions]
     paths += [Path(definition("motions", motion)) for motion in motions]
     return sorted({str(path) for path in paths if path.is_file()})
@@ -121,10 +95,8 @@ def decided(wildcards):
     from blockshake.diagnosis.answer.decision import load_decision
 
     path = checkpoints.decide.get(campaign=wildcards.campaign).output.decision
-    try:
+    with refusing():
         return load_decision(path)
-    except InputError as error:
-        refuse(error)
 
 
 def extended_files(wildcards):
@@ -141,16 +113,13 @@ def extended_files(wildcards):
 
 def gain_files(wildcards):
     """The gain and its scores, where there are sealed tests, and causes or faults of sensors."""
-    from blockshake.diagnosis.nominal.plan import sealed_tests
     from blockshake.parity.parity import load_parity
 
     parity = f"results/diagnosis/{wildcards.campaign}/parity.json"
     acting = decided(wildcards).extending
-    try:
+    with refusing():
         acting = acting or load_parity(parity).findings
-    except InputError as error:
-        refuse(error)
-    if acting and sealed_tests(plan(wildcards.campaign).campaign):
+    if acting and plan(wildcards.campaign).campaign.sealed:
         return expand(
             f"results/diagnosis/{wildcards.campaign}/{{name}}",
             name=["gain.json", "gain.nc"],

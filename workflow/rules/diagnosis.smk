@@ -1,14 +1,14 @@
 """What the simulation of measured tests gets wrong, the cause, the extended model and its gain.
 
-Ensembles are named by their content: equal structures, motions and sensors have equal ones, whatever campaign they
-are of, so that a second campaign simulates nothing but its own extension.
+Equal structures, motions and sensors have equal ensembles, whatever campaign they are of: their runs are kept in the
+store, so that a second campaign simulates nothing but its own extension.
 """
 
 
 wildcard_constraints:
     campaign="|".join(map(re.escape, CAMPAIGNS)) or "none",
     solver="|".join(NULL_MODELS),
-    ensemble="[0-9a-f]{12}",
+    number=r"\d+",
 
 
 rule diagnose:
@@ -38,8 +38,6 @@ checkpoint decide:
         frozen="results/diagnosis/{campaign}/frozen.json",
     log:
         "logs/diagnosis/{campaign}/decide.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         without=WITHOUT,
@@ -51,19 +49,19 @@ checkpoint decide:
 rule simulate_nominal:
     """Simulated tests of one structure under one motion by nominal models, and twins."""
     input:
+        tests=lambda wildcards: test_files(wildcards.campaign, "open"),
         kernels=lambda wildcards: kernels(wildcards.solver),
     output:
-        "results/ensembles/{ensemble}/{solver}.nc",
+        "results/diagnosis/{campaign}/ensembles/{number}-{solver}.nc",
     log:
-        "logs/simulate_nominal/{ensemble}-{solver}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
+        "logs/diagnosis/{campaign}/simulate_nominal/{number}-{solver}.log",
     resources:
-        mem_mb=2000,
         runtime=480,
     params:
-        shared=ENSEMBLE_SOURCE,
+        folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
+        effort=EFFORT,
+        draws=lambda wildcards: effort().draws,
+        twins=lambda wildcards: effort().twins,
         source=solver_source,
         store="results/store/diagnosis",
     script:
@@ -80,8 +78,6 @@ rule describe_misfit:
         "results/diagnosis/{campaign}/misfit.nc",
     log:
         "logs/diagnosis/{campaign}/describe_misfit.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
@@ -106,11 +102,7 @@ rule extend_model:
         "results/diagnosis/{campaign}/extended/{solver}.nc",
     log:
         "logs/diagnosis/{campaign}/extend_model/{solver}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
     resources:
-        mem_mb=2000,
         runtime=480,
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
@@ -138,8 +130,6 @@ rule measure_gain:
         summary="results/diagnosis/{campaign}/gain.json",
     log:
         "logs/diagnosis/{campaign}/measure_gain.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
@@ -158,11 +148,9 @@ rule conclude:
         "results/diagnosis/{campaign}/verdict.json",
     log:
         "logs/diagnosis/{campaign}/conclude.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
-        effort=EFFORT,
+        runs=lambda wildcards: plan(wildcards.campaign).runs,
         source=source_of("conclude"),
     script:
         "../scripts/conclude.py"
@@ -190,8 +178,6 @@ rule make_diagnosis_report:
         pdf=report("reports/diagnosis-{campaign}.pdf", category="Diagnosis"),
     log:
         "logs/diagnosis/{campaign}/make_diagnosis_report.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         results=lambda wildcards, input: str(Path(input.results[0]).parent),

@@ -1,17 +1,27 @@
+def files_of_models(wildcards):
+    """Batch files of a case by every model, and their twins, each under a name of its own for the rule's input."""
+    twins = "results/{study}/twins/{model}/{case}.nc"
+    named = {f"batches {model}": batch_files(wildcards, model) for model in MODELS}
+    named |= {
+        f"twins {model}": twins.format(
+            study=wildcards.study, model=model, case=wildcards.case
+        )
+        for model in MODELS
+        if CHECKED.has_twins(model, wildcards.case)
+    }
+    return named
+
+
 rule make_envelope:
     """Bounds and quantiles over the samples, and what each sample came to."""
     input:
         batches=batch_files,
-        structure=lambda wildcards: definition(
-            "structures", CASES[wildcards.case]["structure"]
-        ),
+        structure=structure_file,
     output:
         envelope="results/{study}/envelopes/{model}/{case}.nc",
         samples="results/{study}/samples/{model}/{case}.nc",
     log:
         "logs/{study}/make_envelope/{model}/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
         largest_drift=lookup(dpath="ladder/largest_drift", within=config),
@@ -28,8 +38,6 @@ rule show_samples:
         "results/{study}/shown/{model}/{case}.nc",
     log:
         "logs/{study}/show_samples/{model}/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         source=source_of("show_samples"),
     script:
@@ -46,8 +54,6 @@ rule compare_with_measurement:
         "results/{study}/comparisons/{model}/{case}.nc",
     log:
         "logs/{study}/compare_with_measurement/{model}/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
         source=source_of("compare_with_measurement"),
@@ -59,16 +65,12 @@ rule measure_sensitivity:
     """Which random variable makes the samples differ, block by block, with intervals and the level of chance."""
     input:
         batches=batch_files,
-        structure=lambda wildcards: definition(
-            "structures", CASES[wildcards.case]["structure"]
-        ),
+        structure=structure_file,
         design="results/{study}/design.csv",
     output:
         "results/{study}/sensitivities/{model}/{case}.nc",
     log:
         "logs/{study}/measure_sensitivity/{model}/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
         linked=lookup(dpath="ensemble/linked", within=config),
@@ -93,8 +95,6 @@ rule compare_models:
         "results/{study}/differences/{case}.nc",
     log:
         "logs/{study}/compare_models/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         models=MODELS,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],

@@ -1,12 +1,12 @@
+FRAGILITY = config.get("fragility") or {}
+
+
 rule climb_samples:
     """Some samples of a case, each at rising intensities until its potential collapse; finished runs are in the store."""
     input:
-        structure=lambda wildcards: definition(
-            "structures", CASES[wildcards.case]["structure"]
-        ),
-        motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
+        unpack(case_files),
         design="results/{study}/design.csv",
-        stiffness=lambda wildcards: stiffness_of(
+        stiffness=lambda wildcards: stiffness_file(
             FRAGILITY["model"], wildcards.study, wildcards.case
         ),
         kernels=lambda wildcards: kernels(FRAGILITY["model"]),
@@ -14,21 +14,11 @@ rule climb_samples:
         "results/{study}/climbs/{case}/{batch}.nc",
     log:
         "logs/{study}/climb_samples/{case}/{batch}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
     resources:
-        mem_mb=2000,
         runtime=240,
     params:
-        case=lambda wildcards: {
-            key: CASES[wildcards.case][key]
-            for key in ("structure", "motion", "baseline", "duration")
-        },
-        model=lambda wildcards: FRAGILITY["model"],
-        settings=lambda wildcards: config["models"][FRAGILITY["model"]],
+        runs=lambda wildcards: runs_of(FRAGILITY["model"], case_keys(wildcards.case)),
         ladder=lookup(dpath="ladder", within=config),
-        linked=lookup(dpath="ensemble/linked", within=config),
         store="results/store",
         source=lambda wildcards: source_of("climb_samples", FRAGILITY["model"]),
     script:
@@ -48,8 +38,6 @@ rule fit_fragility:
         "results/{study}/fragility/{case}.nc",
     log:
         "logs/{study}/fit_fragility/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         source=source_of("fit_fragility"),
     script:

@@ -1,17 +1,12 @@
 rule measure_input:
     """Motion of the slab in the test that a case is compared with: the input of its models, and the test's clock."""
     input:
-        structure=lambda wildcards: definition(
-            "structures", CASES[wildcards.case]["structure"]
-        ),
-        motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
+        unpack(case_files),
         campaign=lambda wildcards: campaign_files(wildcards.case),
     output:
         "results/{study}/inputs/{case}.nc",
     log:
         "logs/{study}/measure_input/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         case=case_definition,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],

@@ -1,11 +1,76 @@
+def run_files(wildcards):
+    """All that the samples of a case by a model are simulated from, by name."""
+    study, model, case = wildcards.study, wildcards.model, wildcards.case
+    return {
+        **case_files(wildcards),
+        "base": (
+            f"results/{study}/inputs/{case}.nc"
+            if CASES[case]["input"] == "measured"
+            else []
+        ),
+        "design": f"results/{study}/design.csv",
+        "stiffness": stiffness_file(model, study, case),
+        "kernels": kernels(model),
+    }
+
+
+def stiffness_file(model, study, case):
+    """Calibrated stiffness of the samples, for the models that have any: an edit of LS-DEM reruns no NSCD."""
+    return f"results/{study}/stiffness/{case}.csv" if SOLVERS[model].calibrated else []
+
+
+def runs_of(model, case, **others):
+    """`CaseRuns` of a case, a mapping, by a model."""
+    return {
+        "case": case,
+        "model": model,
+        "settings": config["models"][model],
+        "linked": config["ensemble"]["linked"],
+        **others,
+    }
+
+
+def sample_runs(wildcards):
+    """Those of the samples of an ensemble."""
+    case, rate = case_definition(wildcards), config["output_rate"]
+    return runs_of(wildcards.model, case, output_rate=rate)
+
+
+def batch_ids(count):
+    """Ids of the batches of so many samples: first and last sample."""
+    size = config["samples_per_job"]
+    return [
+        f"{first:03d}-{min(first + size, count) - 1:03d}"
+        for first in range(0, count, size)
+    ]
+
+
+def batch_files(wildcards, model=None):
+    """Batch files of a case by a model, of the wildcards if none is named."""
+    model = model or wildcards.model
+    return expand(
+        "results/{study}/runs/{model}/{case}/{batch}.nc",
+        study=wildcards.study,
+        model=model,
+        case=wildcards.case,
+        batch=batch_ids(CHECKED.samples(model, wildcards.case)),
+    )
+
+
+LS_DEM_STEP = (
+    config["models"].get("ls-dem", {}).get("time_step", SOLVERS["ls-dem"].time_step)
+)
+LADDER_MOTIONS = config["ladder"]["motions"] or list(
+    dict.fromkeys(case["motion"] for case in config["cases"])
+)
+
+
 rule compile_kernels:
     """A solver compiled once, before jobs that would all do it."""
     output:
         "results/kernels/{model}-{digest}.json",
     log:
         "logs/compile_kernels/{model}-{digest}.log",
-    conda:
-        "../envs/blockshake.yaml"
     script:
         "../scripts/compile_kernels.py"
 
@@ -17,29 +82,15 @@ rule simulate_batch:
     no declared output, because Snakemake deletes those of a killed job.
     """
     input:
-        structure=lambda wildcards: definition(
-            "structures", CASES[wildcards.case]["structure"]
-        ),
-        motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
-        base=base_file,
-        design="results/{study}/design.csv",
-        stiffness=stiffness_file,
-        kernels=lambda wildcards: kernels(wildcards.model),
+        unpack(run_files),
     output:
         "results/{study}/runs/{model}/{case}/{batch}.nc",
     log:
         "logs/{study}/simulate_batch/{model}/{case}/{batch}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
     resources:
-        mem_mb=2000,
         runtime=240,
     params:
-        case=case_definition,
-        settings=lookup(dpath="models/{model}", within=config),
-        output_rate=lookup(dpath="output_rate", within=config),
-        linked=lookup(dpath="ensemble/linked", within=config),
+        runs=sample_runs,
         seed=lookup(dpath="ensemble/seed", within=config),
         store="results/store",
         source=lambda wildcards: source_of("simulate_batch", wildcards.model),
@@ -50,29 +101,15 @@ rule simulate_batch:
 rule run_twins:
     """The first sample a little stronger and at half the step, and one block alone: the floor of a model's numerics."""
     input:
-        structure=lambda wildcards: definition(
-            "structures", CASES[wildcards.case]["structure"]
-        ),
-        motion=lambda wildcards: definition("motions", CASES[wildcards.case]["motion"]),
-        base=base_file,
-        design="results/{study}/design.csv",
-        stiffness=stiffness_file,
-        kernels=lambda wildcards: kernels(wildcards.model),
+        unpack(run_files),
     output:
         "results/{study}/twins/{model}/{case}.nc",
     log:
         "logs/{study}/run_twins/{model}/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    threads: 1
     resources:
-        mem_mb=2000,
         runtime=240,
     params:
-        case=case_definition,
-        settings=lookup(dpath="models/{model}", within=config),
-        output_rate=lookup(dpath="output_rate", within=config),
-        linked=lookup(dpath="ensemble/linked", within=config),
+        runs=sample_runs,
         seed=lookup(dpath="ensemble/seed", within=config),
         store="results/store",
         source=lambda wildcards: source_of("run_twins", wildcards.model),
@@ -92,13 +129,11 @@ rule climb_ladder:
         "results/{study}/ladder.json",
     log:
         "logs/{study}/climb_ladder.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         cases=[case for case in CASES.values()],
         motions={motion: BASELINES[motion] for motion in LADDER_MOTIONS},
         ladder=lookup(dpath="ladder", within=config),
-        time_step=time_step_of("ls-dem"),
+        time_step=LS_DEM_STEP,
         store="results/store",
         source=source_of("climb_ladder", "ls-dem"),
     script:

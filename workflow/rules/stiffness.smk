@@ -2,17 +2,13 @@ rule calibrate_stiffness:
     """Contact stiffness of every sample of a case from the wave speed in a tower of four of its blocks."""
     input:
         design="results/{study}/design.csv",
-        structure=lambda wildcards: definition(
-            "structures", CASES[wildcards.case]["structure"]
-        ),
+        structure=structure_file,
         kernels=kernels("ls-dem"),
     output:
         stiffness="results/{study}/stiffness/{case}.csv",
         waves="results/{study}/waves/{case}.nc",
     log:
         "logs/{study}/calibrate_stiffness/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
         linked=lookup(dpath="ensemble/linked", within=config),

@@ -4,5 +4,5 @@ from blockshake.log import logging_to
 
 with logging_to(snakemake.log[0]):
     write_verdict(
-        snakemake.output[0], conclude(snakemake.params.folder, snakemake.params.effort, snakemake.input)
+        snakemake.output[0], conclude(snakemake.params.folder, snakemake.params.runs, snakemake.input)
     )

@@ -1,8 +1,9 @@
 from blockshake.diagnosis.steps import extend_model
 from blockshake.files import write_dataset
 from blockshake.log import logging_to
+from blockshake.store import Store
 
 with logging_to(snakemake.log[0]) as say:
-    of, solver = snakemake.params, snakemake.wildcards.solver
-    runs = extend_model(of.folder, of.effort, solver, snakemake.input, of.store, of.source, say)
+    of, store = snakemake.params, Store(snakemake.params.store, snakemake.params.source, say)
+    runs = extend_model(of.folder, of.effort, snakemake.wildcards.solver, snakemake.input, store)
     write_dataset(snakemake.output[0], runs)

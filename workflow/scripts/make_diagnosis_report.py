@@ -1,5 +1,5 @@
+from blockshake.diagnosis.report.report import make_diagnosis_report
 from blockshake.log import logging_to
-from blockshake.report.diagnosis.report import make_diagnosis_report
 
 with logging_to(snakemake.log[0]):
     of, made = snakemake.params, snakemake.output

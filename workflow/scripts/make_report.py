@@ -1,5 +1,5 @@
 from blockshake.log import logging_to
-from blockshake.report.study.report import make_report
+from blockshake.study.report.report import make_report
 
 with logging_to(snakemake.log[0]):
     of, made = snakemake.params, snakemake.output

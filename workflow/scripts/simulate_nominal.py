@@ -1,11 +1,10 @@
 from blockshake.diagnosis.steps import simulate_nominal
 from blockshake.files import write_dataset
 from blockshake.log import logging_to
+from blockshake.store import Store
 
 with logging_to(snakemake.log[0]) as say:
-    wanted, params = snakemake.wildcards, snakemake.params
-    runs = simulate_nominal(
-        *(wanted.ensemble, wanted.solver, snakemake.config),
-        *(params.shared, params.store, params.source, say),
-    )
+    of, wanted = snakemake.params, snakemake.wildcards
+    store = Store(of.store, of.source, say)
+    runs = simulate_nominal(of.folder, of.effort, int(wanted.number), wanted.solver, store)
     write_dataset(snakemake.output[0], runs)

@@ -4,8 +4,7 @@ import time
 
 import numpy as np
 
-from blockshake.cost.jobs import planned_jobs
-from blockshake.cost.part import Part
+from blockshake.cost.jobs import CostPart, planned_jobs
 from blockshake.diagnosis.nominal.histories import read_histories
 from blockshake.diagnosis.nominal.nominal_model import MODELS, draw_nominal
 from blockshake.diagnosis.nominal.plan import plan_diagnosis
@@ -36,7 +35,7 @@ def diagnosis_cost(folder, effort, tried):
 
     Returns
     -------
-    list of Part
+    list of CostPart
         The last one only takes place where a cause is found. Empty at an effort that simulates nothing.
 
     Raises
@@ -52,10 +51,10 @@ def diagnosis_cost(folder, effort, tried):
             key = planned.digest(), model
             if key not in tried:
                 tried[key] = _seconds_of_draws(planned, model)
-                parts.append(Part(f"ensemble of {name}, {model}", count, count * tried[key]))
+                parts.append(CostPart(f"ensemble of {name}, {model}", count, count * tried[key]))
             means.append(tried[key])
     more = plan.runs_of_cause
-    return [*parts, Part("tests with a cause, where one is found", more, more * float(np.mean(means)))]
+    return [*parts, CostPart("tests with a cause, where one is found", more, more * float(np.mean(means)))]
 
 
 def _seconds_of_draws(planned, model):

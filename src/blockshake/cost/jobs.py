@@ -1,15 +1,14 @@
-"""Jobs of the workflow: their number, and the CPU time of each beside its simulations."""
+"""Parts of a cost; jobs of the workflow: their number, and the CPU time of each beside its simulations."""
 
 import os
 import re
 import subprocess
 from typing import NamedTuple
 
-from blockshake.cost.part import Part
 from blockshake.errors import InputError
 
 # CPU seconds of jobs beside their simulations: 5 s of the start, and what Snakemake's benchmarks of the default study
-# said (2026-11-23, on the machine of docs/bench.md, where the plan of that study took `_PLANNED`)
+# said (2026-11-23, on the machine of docs/results/bench.md, where the plan of that study took `_PLANNED`)
 _USUAL = 7.0
 _FIXED = {
     "all": 0.0,
@@ -26,6 +25,22 @@ _PLANNED = 6.0  # CPU s
 _ROW = re.compile(r"^(\w+) +(\d+)$", re.MULTILINE)
 
 
+class CostPart(NamedTuple):
+    """Runs or jobs of one kind.
+
+    Attributes
+    ----------
+    name : str
+    count : int
+    seconds : float
+        CPU time of all of them [s].
+    """
+
+    name: str
+    count: int
+    seconds: float
+
+
 class Jobs(NamedTuple):
     """Number of jobs by rule, and how slow this machine is beside that of the fixed costs [1]."""
 
@@ -33,9 +48,9 @@ class Jobs(NamedTuple):
     slowness: float
 
     def as_part(self):
-        """`Part` of a study: all that its jobs take beside the simulations that are tried."""
+        """`CostPart` of a study: all that its jobs take beside the simulations that are tried."""
         seconds = sum(count * _FIXED.get(rule, _USUAL) for rule, count in self.counts.items())
-        return Part("jobs beside their runs", sum(self.counts.values()), self.slowness * seconds)
+        return CostPart("jobs beside their runs", sum(self.counts.values()), self.slowness * seconds)
 
 
 def planned_jobs(command):

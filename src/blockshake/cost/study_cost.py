@@ -3,8 +3,7 @@
 import sys
 
 from blockshake.cost.diagnosis_cost import diagnosis_cost
-from blockshake.cost.jobs import planned_jobs
-from blockshake.cost.part import Part
+from blockshake.cost.jobs import CostPart, planned_jobs
 from blockshake.cost.trial import run_seconds
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import HOME
@@ -26,7 +25,7 @@ def study_cost(path):
 
     Returns
     -------
-    list of Part
+    list of CostPart
 
     Raises
     ------
@@ -34,8 +33,8 @@ def study_cost(path):
 
     Notes
     -----
-    Twins count as one run and one of twice the steps; the search of the mean friction and the fragility with as
-    many runs as they may need; a diagnosis without the runs of a cause, which it has only where it finds one.
+    Twins count as one run and one of twice the steps; the fragility with as many runs as it may need; a diagnosis
+    without the runs of a cause, which it has only where it finds one.
     """
     config = load_config(path)
     parts = []
@@ -49,7 +48,7 @@ def study_cost(path):
             asked = _runs(config, model, case)
             runs = sum(count for count, _ in asked.values())
             each = run_seconds(structure, motion, trial, case.duration, runs)
-            parts += [Part(name, count, whole * each) for name, (count, whole) in asked.items()]
+            parts += [CostPart(name, count, whole * each) for name, (count, whole) in asked.items()]
     tried = {}
     for folder in config.diagnosis.campaigns:
         parts += diagnosis_cost(folder, config.diagnosis.effort, tried)
@@ -66,9 +65,6 @@ def _runs(config, model, case):
     found = {f"samples of {case.name}, {model}": (samples, samples)}
     if config.has_twins(model, case.name):
         found[f"twins of {case.name}, {model}"] = _TWINS, _TWINS
-    search = config.friction_calibration
-    if search is not None and search.model == model and case.name in search.cases:
-        found[f"mean friction of {case.name}"] = search.runs, search.runs
     asked = config.calibration
     if asked is not None and case.name in asked.cases.get(model, ()):
         # a test is simulated for its record where that is shorter than the case
@@ -84,9 +80,5 @@ def _runs(config, model, case):
 def _open_records(case):
     """Lengths of the open tests of a case's campaign [s]."""
     campaign = load_campaign(case.measured.campaign)
-    times = [
-        load_test(campaign, name)["time"].to_numpy()
-        for name, test in campaign.tests.items()
-        if test.role != "sealed"
-    ]
+    times = [load_test(campaign, name)["time"].to_numpy() for name in campaign.open]
     return [float(time[-1] - record_start(time)) for time in times]

@@ -12,7 +12,7 @@ from blockshake.errors import InputError
 from blockshake.store import load_made
 
 
-class Measured(NamedTuple):
+class DecidedCampaign(NamedTuple):
     """Sensors checked against each other, what the tests speak for, and their rows as forces."""
 
     parity: object
@@ -32,7 +32,7 @@ def decide(folder, without):
 
     Returns
     -------
-    Measured
+    DecidedCampaign
     """
     from blockshake.diagnosis.answer.decide import decide
     from blockshake.diagnosis.evidence.seen_campaign import see_campaign
@@ -44,23 +44,20 @@ def decide(folder, without):
         raise InputError(
             folder, "tests", f"expected an open test whose forces can be read; {'; '.join(unseen)}"
         )
-    return Measured(seen.parity, *decide(seen.tests, without, unseen))
+    return DecidedCampaign(seen.parity, *decide(seen.tests, without, unseen))
 
 
-def simulate_nominal(name, solver, config, shared, store, source, progress):
+def simulate_nominal(folder, effort, number, solver, store):
     """Simulate one open test by one solver: the ensemble of nominal models, and twins.
 
     Parameters
     ----------
-    name : str
-        Of the ensemble, as of `Plan.ensemble`.
+    folder, effort : str
+        Of the campaign; one at which something is simulated.
+    number : int
+        Of the test among those that are simulated.
     solver : str
-    config : dict
-        Entries ``diagnosed``, folders of campaigns, and ``diagnosis_effort``.
-    shared : str
-        Digest of the sources that both solvers share, which is in the ensemble's name.
-    store, source, progress
-        As of `simulate_members`; ``source`` is the solver's own.
+    store : Store
 
     Returns
     -------
@@ -68,11 +65,12 @@ def simulate_nominal(name, solver, config, shared, store, source, progress):
         From `simulate_members`.
     """
     from blockshake.diagnosis.nominal.ensemble import nominal_members, simulate_members
-    from blockshake.diagnosis.nominal.plan import plan_of_ensemble
+    from blockshake.diagnosis.nominal.plan import plan_diagnosis
 
-    plan, test = plan_of_ensemble(name, config["diagnosed"], config["diagnosis_effort"], shared)
+    plan = plan_diagnosis(folder, effort)
+    test = list(plan.tests)[number]
     members = nominal_members(test, plan.tests[test], solver, plan.effort.draws, plan.effort.twins)
-    return simulate_members(members, store, source, progress)
+    return simulate_members(members, store)
 
 
 def describe_misfit(folder, effort, files):
@@ -109,7 +107,7 @@ def _by_test(plan, files):
     return {name: runs[place * count : (place + 1) * count] for place, name in enumerate(plan.tests)}
 
 
-def extend_model(folder, effort, solver, files, store, source, progress):
+def extend_model(folder, effort, solver, files, store):
     """Simulate sealed tests by one solver: the nominal, the recalibrated, the extended and the placebo model.
 
     Parameters
@@ -118,8 +116,7 @@ def extend_model(folder, effort, solver, files, store, source, progress):
     files : object
         Attributes ``frozen``, ``decision``, ``parity`` and ``ensembles`` (by test, of this solver): files of the
         earlier steps.
-    store, source, progress
-        As of `simulate_members`.
+    store : Store
 
     Returns
     -------
@@ -137,7 +134,7 @@ def extend_model(folder, effort, solver, files, store, source, progress):
     plan, causes = plan_diagnosis(folder, effort), acting_causes(load_decision(files.decision))
     measured = measured_histories(plan.campaign, plan.tests, load_parity(files.parity).findings)
     nominal = {name: runs for name, (runs,) in _by_test(plan, files.ensembles).items()}
-    return extended_runs(plan, solver, causes, nominal, measured, store, source, progress)
+    return extended_runs(plan, solver, causes, nominal, measured, store)
 
 
 def measure_gain(folder, effort, files):
@@ -160,7 +157,7 @@ def measure_gain(folder, effort, files):
     from blockshake.diagnosis.gain.row_gain import row_gain
     from blockshake.diagnosis.gain.sensor_gain import sensors_gain
     from blockshake.diagnosis.nominal.measured import measured_histories
-    from blockshake.diagnosis.nominal.plan import plan_diagnosis, sealed_tests
+    from blockshake.diagnosis.nominal.plan import plan_diagnosis
     from blockshake.diagnosis.verdict.frozen import check_frozen
     from blockshake.measurement.campaigns.campaign import load_campaign
     from blockshake.parity.parity import load_parity
@@ -169,7 +166,7 @@ def measure_gain(folder, effort, files):
     campaign, decision = load_campaign(folder), load_decision(files.decision)
     findings = load_parity(files.parity).findings
     if not decision.parts:
-        return sensors_gain(campaign, decision.tests, sealed_tests(campaign), findings)
+        return sensors_gain(campaign, decision.tests, list(campaign.sealed), findings)
     sealed = see_sealed(campaign)
     rows = row_gain(decision, see_campaign(campaign).tests, sealed.tests)
     if not files.extended:
@@ -178,19 +175,21 @@ def measure_gain(folder, effort, files):
     responses = campaign_gain(
         plan,
         measured_histories(campaign, plan.tests, findings),
-        measured_histories(campaign, sealed_tests(campaign), sealed.parity.findings),
+        measured_histories(campaign, list(campaign.sealed), sealed.parity.findings),
         _by_test(plan, files.ensembles),
         [load_made(path) for path in files.extended],
     )
     return with_rows(responses, *rows)
 
 
-def conclude(folder, effort, files):
+def conclude(folder, runs, files):
     """Put sensors, decision and gain together to the verdict.
 
     Parameters
     ----------
-    folder, effort : str
+    folder : str
+    runs : int
+        Simulated tests in all nominal ensembles, as of `Plan`.
     files : object
         Attributes ``parity``, ``decision`` and ``gain`` (the summary, or empty): files of the earlier steps.
 
@@ -199,7 +198,6 @@ def conclude(folder, effort, files):
     Verdict
     """
     from blockshake.diagnosis.answer.decision import load_decision
-    from blockshake.diagnosis.nominal.plan import plan_diagnosis
     from blockshake.diagnosis.verdict.conclusion import conclude, no_gain
     from blockshake.diagnosis.verdict.verdict import load_gain
     from blockshake.measurement.campaigns.campaign import load_campaign
@@ -215,4 +213,4 @@ def conclude(folder, effort, files):
     if not files.gain:
         caveats += no_gain(campaign, [*decision.parts, *parity.findings])
     verdict = conclude(decision, parity.findings, parity.recorder_sensors, caveats, measured)
-    return verdict.model_copy(update={"runs": plan_diagnosis(folder, effort).runs + verdict.runs})
+    return verdict.model_copy(update={"runs": runs + verdict.runs})

@@ -50,7 +50,7 @@ Baseline = Annotated[
     BeforeValidator(checked_baseline, json_schema_input_type=Literal["auto", "none"] | Positive),
     Field(
         description="of the motion: auto corrects a record that does not end at rest, none nothing, and a corner "
-        "frequency in Hz any motion of even accelerations; docs/motions.md"
+        "frequency in Hz any motion of even accelerations; docs/guide/motions.md"
     ),
 ]
 

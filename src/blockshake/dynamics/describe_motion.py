@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.dynamics.intensity import motion_figures
-from blockshake.dynamics.provenance import plain_attribute
+from blockshake.dynamics.provenance import plain_attributes
 from blockshake.dynamics.response_spectrum import DAMPING, response_spectrum
 from blockshake.dynamics.synthetic_motion import target_acceleration
 from blockshake.dynamics.synthetic_schema import load_synthetic
@@ -57,7 +57,7 @@ def describe_motion(motion, definition):
         "Conventions": "CF-1.11",
         "title": f"ground motion {motion.name}",
         "name": motion.name,
-        **{name: plain_attribute(value) for name, value in motion.attributes.items()},
+        **plain_attributes(motion.attributes),
         **motion_figures(motion),
     }
     return described

@@ -1,13 +1,6 @@
 """Where a motion comes from, in words and as attributes of a file."""
 
 
-def plain_attribute(value):
-    """Attribute as netCDF can hold it: truth values as 0 and 1, all else that is no number as text."""
-    if isinstance(value, bool):
-        return int(value)
-    return value if isinstance(value, (str, float, int)) else str(value)
-
-
 def provenance(attributes):
     """One line for reports and checks: source and format of a motion, assumptions, and the treatment of its baseline.
 
@@ -22,3 +15,9 @@ def provenance(attributes):
     if attributes.get("assumed"):
         words += f"; assumed: {attributes['assumed']}"
     return words + (f"; baseline: {attributes['baseline']}" if "baseline" in attributes else "")
+
+
+def plain_attributes(attributes):
+    """Attributes as netCDF can hold them: truth values as 0 and 1, all else that is no number as text."""
+    plain = {name: int(value) if isinstance(value, bool) else value for name, value in attributes.items()}
+    return {name: value if isinstance(value, (float, int)) else str(value) for name, value in plain.items()}

@@ -1,7 +1,7 @@
 """Seeded stochastic records that stand in for waveforms that may not be redistributed.
 
 Windowed noise takes the Fourier shape of a point source and is then matched to a target response
-spectrum. The method, its sources and the figures reached are in docs/motions.md.
+spectrum. The method, its sources and the figures reached are in docs/guide/motions.md.
 """
 
 import numpy as np

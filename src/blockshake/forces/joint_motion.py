@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from blockshake.geometry.rotations import rotation_matrices
 
 TURNED = 3e-4  # rad: a joint that bears on an edge; elastic joints turn by a tenth of it before they open
-_SURE = 5.0  # standard deviations
+SURE = 5.0  # standard deviations
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ def _bearing(rotation, bend, error, width):
     """
     side = np.sign(rotation)
     least = np.fmin(np.abs(rotation), side * (rotation - 0.5 * width**2 * bend))
-    return np.where(least > np.maximum(TURNED, _SURE * error), side, 0.0).astype(np.int8)
+    return np.where(least > np.maximum(TURNED, SURE * error), side, 0.0).astype(np.int8)
 
 
 def _one_joint(structure, face, motion, still):

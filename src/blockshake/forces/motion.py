@@ -14,7 +14,7 @@ from blockshake.measurement.motion.body_poses import NOTHING, PLANAR, TRANSLATIO
 WIDTH = 0.015  # s, standard deviation of the smoothing kernel
 _COVERED = 2.5  # of it: an instant nearer to an end of the record is left out
 _SHORTEST = 0.5  # s of instants
-_OUTLIER = 6.0  # median distances, four standard deviations
+_FAR_OUT = 6.0  # median distances, four standard deviations
 
 
 @dataclass(frozen=True)
@@ -205,7 +205,7 @@ def _usual(values):
     if len(values) == 0:
         return 0.0
     away = np.abs(values - np.median(values))
-    return values[away <= _OUTLIER * np.median(away)].mean()
+    return values[away <= _FAR_OUT * np.median(away)].mean()
 
 
 def _carried(structure, sensor, rotation):

@@ -132,10 +132,9 @@ def _read_measured(config, source):
 def _read_open_tests(folder):
     """Read the tests of a campaign that are not sealed, and their commands."""
     campaign = load_campaign(folder)
-    for name, test in campaign.tests.items():
-        if test.role != "sealed":
-            load_test(campaign, name)
-            planned_motion(campaign, name)
+    for name in campaign.open:
+        load_test(campaign, name)
+        planned_motion(campaign, name)
 
 
 def _study_remarks(config, motions):

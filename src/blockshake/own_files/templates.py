@@ -12,7 +12,7 @@ from blockshake.files import read_text, replacing_folder, shipped, write_text
 STRUCTURE, STUDY, CAMPAIGN = "structure", "study", "campaign"
 _MOTION = "alkion"
 _MARKERS = ("slab-lvdt", "block-1-lvdt", "block-2-lvdt")
-_RATE, _DURATION, _NOISE = 100.0, 12.0, 1e-4  # Hz, s, m
+_READING_RATE, _DURATION, _NOISE = 100.0, 12.0, 1e-4  # Hz, s, m
 
 
 def write_template(kind, path):
@@ -60,7 +60,7 @@ def _template(kind, name):
 
 def _synthetic_test():
     """CSV of transducers along x on blocks that the table carries, with noise."""
-    time = np.arange(round(_DURATION * _RATE)) / _RATE
+    time = np.arange(round(_DURATION * _READING_RATE)) / _READING_RATE
     moved = load_motion(_MOTION).evaluate(time)[:, :1]
     readings = moved - moved[0] + np.random.default_rng(1).normal(0.0, _NOISE, (len(time), len(_MARKERS)))
     lines = [",".join(["time_s", *(f"{name}.x" for name in _MARKERS)])]

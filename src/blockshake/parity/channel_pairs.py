@@ -12,7 +12,7 @@ from blockshake.parity.body_markers import LARGEST_MAGNIFICATION, LARGEST_UNSEEN
 _SHORT_GAUSSIAN, _LONG_GAUSSIAN = 0.02, 0.1  # s, standard deviations of the two: a band of 1.5 to 10 Hz
 _FINE_GAUSSIAN = 0.012  # s, of the Gaussian within which a body's axes do not turn
 _SLOW_GAUSSIAN = 0.25  # s, of the Gaussian that shows drifts
-_COLOUR = 3.0  # of noise with a coefficient of 0.5 from reading to reading: its variance after a long filter
+COLOUR = 3.0  # of noise with a coefficient of 0.5 from reading to reading: its variance after a long filter
 _SUPPORT = 5.0  # standard deviations
 _READINGS = 50  # that a channel needs
 _SIGNAL_TO_NOISE = 10.0  # times its own noise that a channel must show in the band
@@ -85,7 +85,7 @@ def channel_pairs(structure, test, poses, accelerometer_noise):
     rate = (len(time_acc) - 1) / (time_acc[-1] - time_acc[0])
     pulse = np.zeros(4 * _reach(_LONG_GAUSSIAN, rate))
     pulse[len(pulse) // 2] = 1.0
-    noise = accelerometer_noise * np.sqrt(_COLOUR * (_band(pulse, rate) ** 2).sum())
+    noise = accelerometer_noise * np.sqrt(COLOUR * (_band(pulse, rate) ** 2).sum())
     pairs = []
     for sensor in structure.file.accelerometers:
         pose = poses.get(sensor.body)

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from blockshake.measurement.checks.quiet_noise import NORMAL
 from blockshake.measurement.sensors.transducers import reach
 from blockshake.parity.body_markers import (
     FEWEST_MARKERS,
@@ -11,14 +12,12 @@ from blockshake.parity.body_markers import (
     LARGEST_UNSEEN_ARM,
     sight,
 )
-from blockshake.parity.channel_pairs import between_readings
+from blockshake.parity.channel_pairs import COLOUR, between_readings
 
 _SPAN = 0.1  # s, over which readings are averaged: the noise of a mean enters the equations, not that of a reading
 _SEEN = 0.5  # of the span's marker readings that must be there
 _FEWEST_MEANS = 12
-_STEP = 1e-3  # s, of the difference that gives the readings' rate
-_COLOUR = 3.0  # noise with a coefficient of 0.5 from reading to reading averages out so much more slowly
-_NORMAL = 0.6745  # of a standard deviation is the median size of a normal deviate
+STEP = 1e-3  # s, of the difference that gives the readings' rate
 _SHIFTS = 4  # Gauss-Newton steps to the lag of the clocks
 
 
@@ -122,10 +121,10 @@ def _expectation(structure, item, ends):
 def _held(time, expected, places, reading, lag):
     """Means of all, at the lag that fits best; None where too little was read."""
     usual = _SPAN / np.median(np.diff(time))
-    noise = _noise(expected) * np.sqrt(_COLOUR / usual)
+    noise = _noise(expected) * np.sqrt(COLOUR / usual)
     for _ in range(_SHIFTS):
-        read, before, after = (reading(time - lag - shift) for shift in (0.0, _STEP, -_STEP))
-        late = (before - after) / (2.0 * _STEP)
+        read, before, after = (reading(time - lag - shift) for shift in (0.0, STEP, -STEP))
+        late = (before - after) / (2.0 * STEP)
         columns = np.column_stack([time, read - expected, expected, places, late])
         columns = columns[np.isfinite(columns).all(axis=1)]
         means = _means(columns, np.floor((columns[:, 0] - time[0]) / _SPAN).astype(int), _SEEN * usual)
@@ -142,7 +141,7 @@ def _held(time, expected, places, reading, lag):
 def _noise(expected):
     """Standard deviation of an expectation's error [m], from its third differences, which no slow motion enters."""
     steps = np.abs(np.diff(expected, 3))
-    return np.median(steps[np.isfinite(steps)]) / _NORMAL / np.sqrt(20.0) if np.isfinite(steps).any() else 0.0
+    return np.median(steps[np.isfinite(steps)]) / NORMAL / np.sqrt(20.0) if np.isfinite(steps).any() else 0.0
 
 
 def _means(rows, group, fewest):

@@ -11,28 +11,10 @@ from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES, QUATERNION
 from blockshake.geometry.structure import build_structure
 from blockshake.interrupts import delayed_interrupts
+from blockshake.simulation.run_dataset import RUN_HISTORIES
 from blockshake.tables.damaged_hdf5 import has_endless_heap
 
-_VARIABLES = {
-    "position": ("time", "body", "axis"),
-    "orientation": ("time", "body", "quaternion"),
-    "velocity": ("time", "body", "axis"),
-    "angular_velocity": ("time", "body", "axis"),
-    "marker_displacement": ("time", "marker", "axis"),
-    "energy": ("time", "term"),
-    "joint_force": ("time", "joint", "axis"),
-    "lower": ("joint",),
-    "upper": ("joint",),
-}
-_UNITS = {
-    "position": "m",
-    "orientation": "1",
-    "velocity": "m s-1",
-    "angular_velocity": "rad s-1",
-    "marker_displacement": "m",
-    "energy": "J",
-    "joint_force": "N",
-}
+_JOINTS = ("lower", "upper")
 _ATTRIBUTES = ("structure_file", "structure", "motion", "motion_scale", "motion_synthetic", "model")
 _ORDERS = {"axis": AXES, "quaternion": QUATERNION, "term": ENERGY_TERMS}
 
@@ -75,16 +57,17 @@ def load_run(path, meshes=None):
     ) as error:  # of a damaged file
         reason = getattr(error, "strerror", None) or error
         raise InputError(path, "", f"expected a readable netCDF file; {reason}") from None
-    for name, dims in _VARIABLES.items():
+    known = {name: tuple(dims.split()) for name, (dims, _, _) in RUN_HISTORIES.items()}
+    for name, dims in {**known, **dict.fromkeys(_JOINTS, ("joint",))}.items():
         if name not in run.variables or run[name].dims != dims:
             raise InputError(path, name, f"expected a run file of blockshake simulate, with {name}{dims}")
-    for name in ("time", *_UNITS):
+    for name in ("time", *RUN_HISTORIES):
         if name not in run.variables or run[name].dtype.kind != "f":
             raise InputError(path, name, "expected numbers")
     for name in _ATTRIBUTES:
         if name not in run.attrs:
             raise InputError(path, name, "expected a run file of blockshake simulate, with this attribute")
-    for name, unit in _UNITS.items():
+    for name, (_, unit, _) in RUN_HISTORIES.items():
         if run[name].attrs.get("units") != unit:
             raise InputError(path, f"{name}.units", f"expected {unit}")
     structure = _structure_of(run, path, Path(path).parent if meshes is None else Path(meshes))
@@ -92,7 +75,7 @@ def load_run(path, meshes=None):
     for name, order in {**_ORDERS, "body": structure.body_names, "marker": markers}.items():
         if name not in run.coords or run[name].values.tolist() != list(order):
             raise InputError(path, name, f"expected {', '.join(order)}")
-    for name in ("lower", "upper"):
+    for name in _JOINTS:
         if not set(run[name].values.tolist()) <= set(structure.body_names):
             raise InputError(
                 path, name, f"expected bodies of the structure: {', '.join(structure.body_names)}"

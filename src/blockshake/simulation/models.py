@@ -1,4 +1,4 @@
-"""The one table of solvers: a model is one row. The report alone adds words to some, docs/adding-a-solver.md."""
+"""The one table of solvers: a model is one row. The report alone adds words to some, docs/theory/adding-a-solver.md."""
 
 import importlib
 import re
@@ -177,7 +177,7 @@ MODELS = {
             parameters="blockshake.solvers.nscd.parameters:NscdParameters",
             refusal="blockshake.solvers.nscd.contact.polyhedra:check_convex",
             without_effect=("viscous_modulus", "youngs_modulus", "hollow"),  # rigid, and bearing on corners
-            # a closer time step where bodies meet, as studies should: docs/nscd.md
+            # a closer time step where bodies meet, as studies should: docs/theory/nscd.md
             perturbation=Perturbation(
                 stream=1,
                 uncertain=(Uncertain("nscd.shrink", 0.0, 0.02),),

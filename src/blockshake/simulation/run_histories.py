@@ -7,7 +7,22 @@ from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.contact_normals import contact_normals
 from blockshake.measurement.motion.joint_coordinates import find_joints, joint_coordinates
 from blockshake.simulation.energy_residual import unexplained_energy
+from blockshake.simulation.run_dataset import histories
 
+# dimensions, unit and name of the histories of the joints, and of all
+JOINT_HISTORIES = {
+    "normal_force": ("time joint", "N", "normal force, compression positive"),
+    "shear_force": ("time joint", "N", "magnitude of the shear force"),
+    "friction_ratio": ("time joint", "1", "shear over Coulomb's limit"),
+    "uplift": ("time joint", "m", "opening at the middle of the face"),
+    "slip": ("time joint", "m", "slip at the middle of the face, magnitude"),
+}
+_HISTORIES = {
+    "drift": ("time body axis", "m", "displacement against the base"),
+    **JOINT_HISTORIES,
+    "joint_position": ("time joint axis", "m", "middle of the joint"),
+    "residual": ("time", "J", "unexplained energy"),
+}
 _LEAST_LOAD = 0.01  # of the upper body's weight: below it the ratio of two small forces tells nothing
 
 
@@ -47,25 +62,17 @@ def run_histories(run, structure):
         [[names.index(name) for name in run[side].values] for side in ("lower", "upper")], dtype=int
     ).T
 
-    def variable(dims, values, units, long_name):
-        return (dims.split(), values, {"units": units, "long_name": long_name})
-
     joints = _joint_states(run, structure, pairs, position, turns)
     return xr.Dataset(
-        {
-            "drift": variable(
-                "time body axis", drift_histories(structure, position, turns), "m", "displacement against the base"
-            ),
-            "normal_force": variable("time joint", joints["normal_force"], "N", "normal force, compression positive"),
-            "shear_force": variable("time joint", joints["shear_force"], "N", "magnitude of the shear force"),
-            "friction_ratio": variable("time joint", joints["friction_ratio"], "1", "shear over Coulomb's limit"),
-            "uplift": variable("time joint", joints["uplift"], "m", "opening at the middle of the face"),
-            "slip": variable("time joint", joints["slip"], "m", "slip at the middle of the face, magnitude"),
-            "joint_position": variable(
-                "time joint axis", _middles(structure, pairs, position, turns), "m", "middle of the joint"
-            ),
-            "residual": variable("time", unexplained_energy(run["energy"].to_numpy()), "J", "unexplained energy"),
-        },
+        histories(
+            _HISTORIES,
+            {
+                **joints,
+                "drift": drift_histories(structure, position, turns),
+                "joint_position": _middles(structure, pairs, position, turns),
+                "residual": unexplained_energy(run["energy"].to_numpy()),
+            },
+        ),
         coords={
             "time": run["time"],
             "body": run["body"],
@@ -94,10 +101,7 @@ def drift_histories(structure, position, turns):
 
 def _joint_states(run, structure, pairs, position, turns):
     """Forces along the faces of the joints and motion across them, by name, float64 arrays (n_times, n_joints)."""
-    found = {
-        name: np.full((len(position), len(pairs)), np.nan)
-        for name in ("normal_force", "shear_force", "friction_ratio", "uplift", "slip")
-    }
+    found = {name: np.full((len(position), len(pairs)), np.nan) for name in JOINT_HISTORIES}
     known = find_joints(structure)[0]
     if not len(known):
         return found

@@ -106,7 +106,8 @@ class RunParts:
     def readings(self):
         """Yield the readings of every channel, float64 (n_readings,) [m/s2]: the low-pass wants a whole record."""
         for channel in range(len(self.channels)):
-            yield readings_of(self._forces(channel)[:, None], self.reading_times())[:, 0]
+            forces = np.concatenate([np.empty(0), *self._forces(channel)])
+            yield readings_of(forces[:, None], self.reading_times())[:, 0]
 
     def lengthenings(self):
         """Yield the readings of all transducers since the start, which follow each other in time [m]."""
@@ -120,15 +121,7 @@ class RunParts:
         yield np.full((len(self.reading_times()) - done, len(self.transducers)), np.nan)
 
     def _forces(self, channel):
-        """Specific forces of a channel between all fine times that the run reached, float64 (n_intervals,) [m/s2]."""
-        forces, done = np.empty(len(self._fine)), 0
-        for part in self._forces_by_part(channel):
-            forces[done : done + len(part)] = part
-            done += len(part)
-        return forces[:done]
-
-    def _forces_by_part(self, channel):
-        """Yield those of each part, and between two parts those across their ends."""
+        """Yield the specific forces of a channel in each part [m/s2], and between two parts those across their ends."""
         name, before = f"force-{channel}", None
         for part in self._read("ends", name):
             ends = part["ends"]

@@ -10,7 +10,7 @@ import blockshake
 from blockshake.dynamics.baseline import check_window
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.motion import PITCH, GroundMotion
-from blockshake.dynamics.provenance import plain_attribute
+from blockshake.dynamics.provenance import plain_attributes
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.errors import InputError
 from blockshake.geometry.overlap import depths_of_pairs
@@ -180,7 +180,7 @@ class _SetUp(NamedTuple):
             "structure_file": file.model_dump_json(),
             "motion_scale": 1.0,
             "motion_synthetic": 0,
-            **{f"motion_{name}": plain_attribute(value) for name, value in motion.attributes.items()},
+            **{f"motion_{name}": value for name, value in plain_attributes(motion.attributes).items()},
             "parameters": json.dumps(
                 effective_parameters(self.structure, self.model, self.numerical), sort_keys=True
             ),

@@ -9,19 +9,17 @@ from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.measurement.sensors.markers import RATE
-from blockshake.simulation.models import MODELS, ModelName
+from blockshake.simulation.models import ModelName
+from blockshake.statistics.scores import FEWEST
+from blockshake.study.analyses import ANALYSES
 from blockshake.study.calibration.settings import CalibrationSettings
-from blockshake.study.comparison.differences import FEWEST
 from blockshake.study.config_checks import check_named
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED
 from blockshake.study.ensembles.rungs import Rungs
 from blockshake.study.fragility.settings import FragilitySettings
-from blockshake.study.friction.settings import FrictionSearch
 from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, known_as, load_distributions
 from blockshake.study.sampling.latin_hypercube import LARGEST_SIZE, SMALLEST_SIZE
 from blockshake.validation import Count, Positive, Strict, Whole, validated
-
-OF_THE_PAPER = tuple(f"configuration-{place}" for place in (1, 2, 3, 4))
 
 
 def _links(ensemble):
@@ -143,7 +141,7 @@ class Diagnosis(Strict):
 
     campaigns: tuple[str, ...] = Field((), description="folders of the campaigns")
     effort: Literal["quick", "standard", "deep"] = Field(
-        "standard", description="how many tests are simulated: docs/diagnosis.md"
+        "standard", description="how many tests are simulated: docs/guide/diagnosis.md"
     )
 
 
@@ -174,7 +172,6 @@ class StudyConfig(Strict):
     ensemble: Ensemble
     ladder: Ladder = Ladder()
     fragility: FragilitySettings | None = Field(None, description="none: no sample climbs the ladder")
-    friction_calibration: FrictionSearch | None = None
     calibration: CalibrationSettings | None = Field(
         None, description="none: friction, restitution and contact stiffness are taken as they are"
     )
@@ -190,14 +187,17 @@ class StudyConfig(Strict):
 
         linked = {target: own(source) for target, source in self.ensemble.linked.items()}
         changes = {"ensemble": self.ensemble.model_copy(update={"linked": linked})}
-        if (search := self.friction_calibration) is not None:
-            variables = tuple(map(own, search.variables))
-            changes["friction_calibration"] = search.model_copy(update={"variables": variables})
         if (asked := self.calibration) is not None:
             ranges = {own(name): span for name, span in asked.ranges.items()}
             if len(ranges) < len(asked.ranges):
                 raise InputError("", "study.calibration.ranges", "expected every pair once")
-            changes["calibration"] = asked.model_copy(update={"ranges": ranges})
+            named = {
+                "ranges": ranges,
+                "linked": {own(name): own(source) for name, source in asked.linked.items()},
+            }
+            if asked.parameters is not None:
+                named["parameters"] = tuple(map(own, asked.parameters))
+            changes["calibration"] = asked.model_copy(update=named)
         return self.model_copy(update=changes)
 
     def case(self, name):
@@ -218,18 +218,6 @@ class StudyConfig(Strict):
         return self.samples(model, case) >= FEWEST
 
 
-def shows_stiffness(study):
-    """Whether a study, as a mapping, tells of contact stiffness: a model has any, or a structure is the paper's."""
-    return any(MODELS[model].calibrated for model in study["models"]) or any(
-        is_of_the_paper(case["structure"]) for case in study["cases"]
-    )
-
-
-def is_of_the_paper(structure):
-    """Whether a structure is one of Zhou et al. (2023), by its shipped name."""
-    return structure in OF_THE_PAPER
-
-
 def load_config(path):
     """Configuration from a YAML file, checked with all that it names.
 
@@ -244,5 +232,9 @@ def load_config(path):
 def check_config(mapping, where):
     """Configuration from a mapping, checked with all that it names; ``where`` is its file."""
     config = validated(StudyConfig, mapping, where)
-    check_named(config, where)
+    structures = check_named(config, where)
+    for analysis in ANALYSES:
+        asked = getattr(config, analysis.settings) if analysis.settings else None
+        if asked is not None:
+            analysis.check(asked, config, structures, where)
     return config

@@ -28,7 +28,7 @@ from blockshake.study.stiffness.tower import tower_of
 
 _NAME = re.compile(r"\w[\w.-]{0,99}")  # of a structure, a motion or a case: it names results
 _RULE = re.compile(r"^(?:rule|checkpoint) (\w+):", re.MULTILINE)
-_SHARED = re.compile(r"diagnosis(-.*)?|hidden-effects|kernels|libraries|store|virtual-(campaign|truth)")
+_SHARED = re.compile(r"diagnosis(-.*)?|hidden-effects|kernels|store")
 # where the configuration says what `simulate` calls by its option
 _OPTIONS = {
     "--set": "models.{model}.parameters",
@@ -39,7 +39,12 @@ _OPTIONS = {
 
 
 def check_named(config, where):
-    """Refuse a `StudyConfig` that names what is not there, or of which a job could not be done.
+    """Refuse a `StudyConfig` that names what is not there, or of which a job could not be done; its analyses apart.
+
+    Returns
+    -------
+    dict of str to Structure
+        By the name of their file.
 
     Raises
     ------
@@ -75,14 +80,12 @@ def check_named(config, where):
     for index, case in enumerate(config.cases):
         motion = scaled(motions[case.motion], case.scale, case.motion)
         check_simulations(config, index, structures[case.structure], motion, where)
-    check_friction_search(config, structures, where)
-    check_fragility(config, where)
-    check_calibration(config, structures, where)
     for folder in config.diagnosis.campaigns:
         with faults_of(where, "diagnosis.campaigns"):
             load_campaign(folder)
     folders = [Path(folder).resolve().name for folder in config.diagnosis.campaigns]
     _each_once(folders, where, "diagnosis.campaigns")
+    return structures
 
 
 def _read_motions(config, where):
@@ -257,9 +260,10 @@ def check_measured(case, structure, where, key):
             f"{key}.campaign",
             f"expected a campaign of the structure {case.name}, not another one's content",
         )
-    open_tests = [name for name, test in campaign.tests.items() if test.role != "sealed"]
-    if case.measured.test not in open_tests:
-        raise InputError(where, f"{key}.test", f"expected a test that is not sealed: {', '.join(open_tests)}")
+    if case.measured.test not in campaign.open:
+        raise InputError(
+            where, f"{key}.test", f"expected a test that is not sealed: {', '.join(campaign.open)}"
+        )
     test = campaign.tests[case.measured.test]
     commands = [(Path(one.motion).stem, one.scale, one.baseline) for one in (test, case)]
     if commands[0] != commands[1]:
@@ -277,11 +281,8 @@ def check_measured(case, structure, where, key):
         )
 
 
-def check_fragility(config, where):
+def check_fragility(asked, config, structures, where):
     """Cases and a model of the study, and no more samples than there are."""
-    asked = config.fragility
-    if asked is None:
-        return
     for name in asked.cases:
         _one_of(name, [case.name for case in config.cases], where, "fragility.cases")
     _each_once(asked.cases, where, "fragility.cases")
@@ -301,17 +302,19 @@ def check_measured_cases(names, config, where, key):
     _each_once(names, where, key)
 
 
-def check_calibration(config, structures, where):
+def check_calibration(asked, config, structures, where):
     """Models and measured cases of the study, and values of parameters that models and structures have a use for."""
-    asked = config.calibration
-    if asked is None:
-        return
-    ranges = asked.ranges_of(config.ensemble.distributions)
+    frictions = [name for name in config.ensemble.distributions if name.startswith("friction.")]
+    known = [*frictions, *OTHERS]
+    for name in asked.parameters or ():
+        _one_of(name, known, where, "calibration.parameters")
     for name in asked.ranges:
-        known = [
-            *(name for name in config.ensemble.distributions if name.startswith("friction.")), *OTHERS
-        ]  # fmt: skip
-        _one_of(name, known, where, f"calibration.ranges.{name}")
+        _one_of(name, asked.parameters or known, where, f"calibration.ranges.{name}")
+    _each_once(asked.parameters or (), where, "calibration.parameters")
+    ranges = asked.ranges_of(config.ensemble.distributions)
+    for name, source in asked.linked.items():
+        _one_of(name, frictions, where, "calibration.linked")
+        _one_of(source, [one for one in frictions if one in ranges], where, f"calibration.linked.{name}")
     for model, names in asked.cases.items():
         key = f"calibration.cases.{model}"
         _one_of(model, config.models, where, key)
@@ -330,23 +333,3 @@ def check_calibration(config, structures, where):
                 return {name: factor * values[one] for one, (name, factor) in placed.items()}
 
             check_ends(structure, ends, parameters, where, "calibration.ranges")
-
-
-def check_friction_search(config, structures, where):
-    """A model, measured cases and frictions of the study, and at least two candidates."""
-    search = config.friction_calibration
-    if search is None:
-        return
-    key = "friction_calibration"
-    check_measured_cases(search.cases, config, where, f"{key}.cases")
-    _one_of(search.model, config.models, where, f"{key}.model")
-    for name in search.variables:
-        known = [name for name in config.ensemble.distributions if name.startswith("friction.")]
-        _one_of(name, known, where, f"{key}.variables")
-    _each_once(search.variables, where, f"{key}.variables")
-    for name in search.cases:
-        structure = structures[config.case(name).structure]
-        if not any(has_parameter(structure, variable) for variable in search.variables):
-            raise InputError(where, f"{key}.variables", f"expected a friction that {name} has")
-    if search.lowest + search.step > search.highest + 1e-9:
-        raise InputError(where, f"{key}.step", "expected at least two candidates between lowest and highest")

@@ -7,7 +7,7 @@ from blockshake.dynamics.motion import PITCH
 from blockshake.dynamics.provenance import provenance
 from blockshake.dynamics.response_spectrum import acceleration_segments
 
-_GRAVITY = 9.81  # m/s2
+_ONE_G = 9.81  # m/s2
 _WEAKEST, _STRONGEST = 0.5, 30.0  # m/s2, of peak accelerations that move blocks and that were ever recorded
 _FARTHEST = 1.0  # m, of a shake table or of the ground
 _STEEPEST = 0.05  # rad, of a table
@@ -36,7 +36,7 @@ def motion_remarks(motion):
     peak = float(max(np.abs(end).max() for end in ends))
     place = motion.evaluate(motion.table.breaks) - motion.evaluate(motion.table.breaks[:1])
     moved, pitched = float(np.abs(place[:, :PITCH]).max()), float(np.abs(place[:, PITCH]).max())
-    strength = f"the peak acceleration is {peak / _GRAVITY:.2g} g"
+    strength = f"the peak acceleration is {peak / _ONE_G:.2g} g"
     if peak == 0.0 and pitched == 0.0:
         remarks.append("nothing moves")
     elif 0.0 < peak < _WEAKEST:

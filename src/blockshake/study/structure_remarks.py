@@ -11,7 +11,7 @@ from blockshake.geometry.structure_file import point_remarks
 from blockshake.quantities import PHYSICAL, USUAL
 from blockshake.simulation.parameter_table import instances
 
-_FAR = 1e4  # m, from the origin: with some digits of forces lost, docs/contracts.md
+_FAR = 1e4  # m, from the origin: with some digits of forces lost, docs/guide/contracts.md
 _SMALLEST, _LARGEST = (
     0.005,
     25.0,

@@ -35,7 +35,7 @@ class TableLayout(Strict):
     )
 
 
-class Table(NamedTuple):
+class CellTable(NamedTuple):
     """Cells of a table below its header.
 
     Attributes
@@ -141,7 +141,7 @@ def cell_number(text, decimal):
 
 
 def read_table(source, layout):
-    """`Table` of a text file, or of a sheet of a workbook.
+    """`CellTable` of a text file, or of a sheet of a workbook.
 
     Parameters
     ----------
@@ -177,7 +177,9 @@ def read_table(source, layout):
             source, "", f"expected rows of numbers below the names in line {first}; there is none"
         )
     notes = [row for line, row in rows if first < line < start]
-    return Table(str(source), names, notes, [line for line, _ in below], [row for _, row in below], decimal)
+    return CellTable(
+        str(source), names, notes, [line for line, _ in below], [row for _, row in below], decimal
+    )
 
 
 def path_and_sheet(source):

@@ -17,7 +17,7 @@ from blockshake.measurement.campaigns.campaign_folder import (
 )
 from blockshake.measurement.sensors.markers import driven_marker
 from blockshake.study.ensembles.ensemble import relative_to_slab
-from blockshake.virtual.shake_table import final_places, shake, swelling_sine
+from blockshake.virtual.shake_table import shake, swelling_sine
 from blockshake.virtual.truth import hidden_effect, true_parameters
 
 DECIMALS = {"m": 5, "m s-2": 3}  # digits kept of a reading: a tenth and a twentieth of its usual noise
@@ -43,7 +43,7 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
     Notes
     -----
     A motion's ladder ends with the first test in which a marker drifts too far, as read; one in which a block
-    fell, whose markers fell with it, is not part of the campaign. Then the stack is put back in any case. Tests that
+    fell, whose markers fell with it, is not part of the campaign. The stack is put back before each test. Tests that
     an earlier call has finished are kept.
     """
     folder, truth = Path(folder), Path(truth)
@@ -63,7 +63,6 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
             if drift is not None:
                 tests.append(entry)
             if drift is None or drift > settings.intensities.largest_drift:
-                table.put_back()
                 break
     entries = [*({**entry, "role": "fit"} for entry in gentle), *with_roles(tests)]
     noise = settings.instruments
@@ -98,7 +97,7 @@ def with_roles(tests):
 
 
 class _Table:
-    """The table, its truth, and the stack as the last test left it."""
+    """The table and its truth."""
 
     def __init__(self, settings, structure, folder, truth, source, progress):
         self.settings, self.structure, self.folder, self.truth = settings, structure, folder, truth
@@ -106,16 +105,14 @@ class _Table:
         self.effect = hidden_effect(settings.hidden, structure, settings.seed)
         self.parameters = true_parameters(structure, settings.seed)
         self.count = 0
-        self.put_back()
 
     def test(self, entry, motion, duration):
         """Largest drift read in a test [m], or None where a block fell or the run failed."""
         self.count += 1
-        if self.settings.restored:
-            self.put_back()
+        places = self._places()
         made_by = content_digest(
             self.source, self.settings.model_dump(mode="json"), self.parameters, self.effect, self.count,
-            self.places.tobytes(), *(part.tobytes() for part in motion.table), duration,
+            places.tobytes(), *(part.tobytes() for part in motion.table), duration,
         )  # fmt: skip
         entry["file"] = f"{entry['name']}.nc"
         path, record = self.folder / entry["file"], self.truth / f"{entry['name']}.json"
@@ -123,18 +120,11 @@ class _Table:
         if happened.get("made_by") != made_by or (
             happened["status"] == Status.COMPLETED and not path.exists()
         ):
-            happened = {"made_by": made_by, **self._shake(path, entry, motion, duration)}
+            happened = {"made_by": made_by, **self._shake(path, entry, motion, duration, places)}
             write_json(record, happened)
         self.progress(
             f"{entry['name']}: {happened['status']}, largest drift {1e3 * happened['drift']:.1f} mm"
         )
-        if happened["places_left"] is not None:
-            self.places = np.array(happened["places_left"])
-        elif happened["status"] == Status.COMPLETED and not self.settings.restored:
-            self.progress(
-                f"{entry['name']}: the blocks did not come to rest in their places and are put back"
-            )
-            self.put_back()
         return happened["drift"] if happened["status"] == Status.COMPLETED else None
 
     def sine(self, after):
@@ -146,34 +136,28 @@ class _Table:
         entry = {"name": f"sine-{after:02d}", "motion": "sine.csv", "scale": 1.0}
         return [entry] if self.test(entry, motion, self.settings.sine.duration) is not None else []
 
-    def _shake(self, path, entry, motion, duration):
+    def _shake(self, path, entry, motion, duration, places):
         test, run = shake(
-            self.structure, self.parameters, self.effect, motion, self.settings, self.places, duration,
+            self.structure, self.parameters, self.effect, motion, self.settings, places, duration,
             int(content_digest(self.settings.seed, self.count), 16),
         )  # fmt: skip
         test.attrs |= {"motion": entry["motion"], "motion_scale": entry["scale"]}
         if run.attrs["status"] == Status.COMPLETED:
             write_dataset(path, test, DECIMALS)
         slab = driven_marker(self.structure)
-        left = (
-            final_places(run, self.structure, self.places)
-            if run.attrs["status"] == Status.COMPLETED
-            else None
-        )
         drift = np.abs(relative_to_slab(test["marker_displacement"], slab).sel(axis="x")).max()
         return {
             "status": run.attrs["status"],
             "reason": run.attrs["reason"],
             "drift": float(drift),
-            "places": self.places.tolist(),
-            "places_left": None if left is None else left.tolist(),
+            "places": places.tolist(),
         }
 
-    def put_back(self):
-        """Put the blocks in their places, but for a little along x and y."""
+    def _places(self):
+        """Places of the blocks as they are put back before a test, but for a little along x and y."""
         generator = np.random.default_rng([self.settings.seed, _PLACES, self.count])
         places = np.zeros((len(self.structure.driven), 3))
         places[~self.structure.driven, :2] = generator.normal(
             0.0, self.settings.misplacement, ((~self.structure.driven).sum(), 2)
         )
-        self.places = places
+        return places

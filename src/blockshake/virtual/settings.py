@@ -20,7 +20,7 @@ from blockshake.simulation.models import ModelName, model_of, split_parameters
 from blockshake.simulation.simulate import check_run
 from blockshake.study.ensembles.rungs import Rungs
 from blockshake.validation import Count, Finite, NotNegative, Positive, Strict, validated
-from blockshake.virtual.table import Table
+from blockshake.virtual.table import TableErrors
 from blockshake.virtual.truth import hidden_effect
 
 _FEWEST_READINGS = 40  # of a test
@@ -69,10 +69,7 @@ class VirtualCampaign(Strict):
     baseline: Baseline = AUTO
     intensities: Intensities = Intensities()
     sine: Sine | None = None
-    table: Table = Table()
-    restored: bool = Field(
-        True, description="the stack is put back before a test; otherwise it starts as the last left it"
-    )
+    table: TableErrors = TableErrors()
     misplacement: NotNegative = Field(
         3e-4, description="standard deviation of where a block is put, along x and y [m]"
     )

@@ -1,7 +1,6 @@
 """One test on the virtual shake table: the stack put in place, surveyed, shaken and read."""
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from blockshake.dynamics.motion import ground_motion
 from blockshake.effects.effect import Experiment
@@ -13,8 +12,6 @@ from blockshake.simulation.placement import placed
 from blockshake.simulation.simulate import simulate
 from blockshake.virtual.table import followed
 
-_REST = 10.0  # s that a stack which is not put back is given after the motion's end
-_STILL = 1e-3  # m/s; a block slower than this against the slab is at rest
 _SINE_ROWS = 1000  # a second
 
 
@@ -52,10 +49,8 @@ def shake(structure, parameters, effect, motion, settings, places, duration, see
     experiment = followed(Experiment(standing, motion, settings.instruments), settings.table)
     if effect is not None:
         experiment = with_effect(experiment, **effect)
-    # a clock that is ahead shows what comes after the end; what is not put back must come to rest first
+    # a clock that is ahead shows what comes after the end
     longer = max(duration - experiment.instruments.marker_lag, duration)
-    if not settings.restored:
-        longer = max(longer, motion.duration) + _REST
     run = simulate(
         experiment.structure, experiment.motion, settings.model, numerics,
         time_step=settings.time_step, duration=longer, output_rate=RATE,
@@ -81,28 +76,6 @@ def swelling_sine(sine):
     swell = np.clip(np.minimum(time, time[-1] - time) / (0.2 * sine.duration), 0.0, 1.0)
     displacement = -sine.acceleration / omega**2 * np.sin(omega * time) * swell**2 * (3.0 - 2.0 * swell)
     return ground_motion("sine", time, {"x": displacement}, "displacement", {"synthetic": True})
-
-
-def final_places(run, structure, places):
-    """Where the blocks stand after a test, off the structure file in the slab's frame, as `shake` takes it.
-
-    A block at rest lies flat: what is left of height and tilt is not carried on. None where they do not rest.
-    """
-    slab = int(np.argmax(structure.driven))
-    velocity = run["velocity"].isel(time=-1).to_numpy()
-    if not np.abs(velocity - velocity[slab]).max() < _STILL:
-        return None
-    moved = (run["position"].isel(time=-1) - run["position"].isel(time=0)).to_numpy()
-    moved -= moved[slab]
-    first, last = (
-        Rotation.from_quat(run["orientation"].isel(time=time).to_numpy(), scalar_first=True)
-        for time in (0, -1)
-    )
-    left = places.copy()
-    left[:, :2] += moved[:, :2]
-    left[:, 2] += (last * first.inv()).as_rotvec()[:, 2]
-    left[structure.driven] = 0.0
-    return left
 
 
 def _add_survey(test, structure, places, noise, seed):

@@ -9,7 +9,7 @@ from blockshake.effects.registry import with_effect
 from blockshake.validation import Finite, Positive, Strict
 
 
-class Table(Strict):
+class TableErrors(Strict):
     """How the table errs; the defaults follow the command exactly."""
 
     gain: Positive = Field(1.0, description="displacement along x over the command, far below the corner [1]")
@@ -24,7 +24,7 @@ def followed(experiment, table):
     Parameters
     ----------
     experiment : Experiment
-    table : Table
+    table : TableErrors
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""An effect that the registry does not have, as docs/effects.md says: friction is larger for slip to one side."""
+"""An effect that is not in the registry, as docs/theory/effects.md says: friction is larger for slip to one side."""
 
 import numpy as np
 

@@ -27,7 +27,7 @@ def impacts(share, plastic, blocks=1, n_impacts=12, error=0.01, scatter=0.01, se
 
 @pytest.mark.parametrize("plastic", [0.5, 0.7, 0.87])
 def test_shares_of_rigid_edges_and_of_flat_faces_are_nominal(judged, plastic):
-    # losses over Housner's of contact dynamics and of LS-DEM at a restitution of 0.1 and 0.5 (docs/rocking.md)
+    # losses over Housner's of contact dynamics and of LS-DEM at a restitution of 0.1 and 0.5 (docs/theory/rocking.md)
     for loss in (1.03, 0.63, 0.52):
         assert judged(impacts(1.0 - loss * (1.0 - plastic), plastic)).gain < 0.0
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from fair_score import crps
 from judged_tests import CELLS, TIME, judged
 
 from blockshake.diagnosis.gain.response_gain import gain_of_verdict, response_gain
-from blockshake.study.ensembles.scores import crps
 
 COUNT = 24
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from fair_score import crps
 from judged_tests import CELLS, TIME, judged
 from scipy.stats import kstest
 
 from blockshake.diagnosis.misfit.misfit import misfit
-from blockshake.study.ensembles.scores import crps
 
 COUNT = 20
 

@@ -6,8 +6,6 @@ from blockshake.diagnosis.nominal.plan import (
     considered,
     open_tests,
     plan_diagnosis,
-    plan_of_ensemble,
-    sealed_tests,
     simulated_tests,
 )
 from blockshake.errors import InputError
@@ -20,7 +18,7 @@ CAMPAIGN = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-2"
 def test_strongest_of_each_motion_then_by_falling_scale():
     campaign = load_campaign(CAMPAIGN)
     names = open_tests(campaign)
-    assert not set(names) & set(sealed_tests(campaign))
+    assert not set(names) & set(campaign.sealed)
     assert simulated_tests(campaign, names, 2) == ["alkion-275", "basso-tirreno-200"]
     assert simulated_tests(campaign, names, 3) == ["alkion-200", "alkion-275", "basso-tirreno-200"]
     assert simulated_tests(campaign, names, 99) == names
@@ -38,10 +36,7 @@ def test_a_copy_of_a_campaign_has_the_same_ensembles(tmp_path):
     shutil.copytree(CAMPAIGN, copy)
     plan, other = (plan_diagnosis(folder, "standard") for folder in (CAMPAIGN, copy))
     test = next(iter(plan.tests))
-    assert plan.ensemble(test, "s") == other.ensemble(test, "s")
-    assert plan.ensemble(test, "s") != plan.ensemble(test, "t")
-    found, name = plan_of_ensemble(plan.ensemble(test, "s"), [str(copy)], "standard", "s")
-    assert (name, found.campaign.folder) == (test, copy)
+    assert plan.tests[test].digest() == other.tests[test].digest()
 
 
 def test_a_sealed_test_is_simulated_as_an_open_one_under_its_motion():

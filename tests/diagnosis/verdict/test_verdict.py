@@ -1,4 +1,4 @@
-"""The form of the verdict is that of docs/contracts.md."""
+"""The form of the verdict is that of docs/guide/contracts.md."""
 
 import json
 

@@ -15,7 +15,7 @@ UNDAMPED = 1e-3  # ten impacts of 2e-3 of a twentieth; nodes 0.3 % and 0.66 % in
 
 
 def _residual(run):
-    """Residual of the energy balance of docs/contracts.md: held - initial - input + dissipated."""
+    """Residual of the energy balance of docs/guide/contracts.md: held - initial - input + dissipated."""
     e = run.energy
     held = e[:, :3].sum(axis=1)
     return held - held[0] - e[:, INPUT] + e[:, 3:6].sum(axis=1) - e[0, 3:6].sum()

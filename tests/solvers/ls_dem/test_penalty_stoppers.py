@@ -64,7 +64,7 @@ def test_a_stopper_travels_with_the_driven_body(make_structure, run_ls_dem):
 
 
 def test_a_stopper_turns_with_the_driven_body(make_structure, run_ls_dem):
-    """A stop is fixed to the driven body: a slow pitch of the whole closes no stopper high up (docs/contracts.md)."""
+    """A stop is fixed to the driven body: a slow pitch of the whole closes none high up (docs/guide/contracts.md)."""
     time = np.linspace(0.0, 1.0, 201)
     pitch = 0.02 * np.sin(np.pi * time) ** 2
     motion = ground_motion("p", time, {"pitch_y": pitch}, "displacement")

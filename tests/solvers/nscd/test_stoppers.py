@@ -79,7 +79,7 @@ def pitching(angle):
 
 
 def test_stopper_turns_with_the_driven_body(scene, simulate):
-    # a stop is fixed to the driven body: pitching the whole closes no stopper high up (docs/contracts.md)
+    # a stop is fixed to the driven body: pitching the whole closes no stopper high up (docs/guide/contracts.md)
     stops = [
         {"body": "b", "position": [x, 0, 0.25], "axis": axis, "gap": 1e-3, "stiffness": 1.0e6}
         for axis, x in (("+x", 0.25), ("-x", -0.25))

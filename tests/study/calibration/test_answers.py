@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from fair_score import crps
 from numpy.testing import assert_allclose
 from scipy.stats import binomtest
 
 from blockshake.study.calibration.answers import LEVEL, answer_questions
 from blockshake.study.calibration.scores import chance_of_test, distances, weighted_scores, weights_near
-from blockshake.study.ensembles.scores import crps
 
 N_SAMPLES, N_TIMES = 30, 40
 

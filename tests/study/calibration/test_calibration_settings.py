@@ -16,7 +16,7 @@ from blockshake.study.calibration.settings import (
     CalibrationSettings,
     Range,
 )
-from blockshake.study.config import check_config
+from blockshake.study.config import check_config, load_config
 from blockshake.study.sampling.distributions import TABLE_2
 
 ROOT = PACKAGE.parents[1]
@@ -37,6 +37,20 @@ def test_a_range_that_is_given_takes_the_place_of_the_usual_one():
     assert found["restitution"] == given
     assert found["friction.concrete.steel"] == FRICTION_OF_STEEL
     assert set(found) == {*(name for name in TABLE_2 if name.startswith("friction.")), *OTHERS}
+
+
+def test_one_parameter_is_the_search_of_the_paper(monkeypatch):
+    """Zhou et al. (2023): one friction of all concrete, from 0.3 to 0.8."""
+    monkeypatch.chdir(ROOT)
+    found = load_config("config/paper.yaml").calibration
+    assert found.ranges_of(TABLE_2) == {"friction.concrete.concrete": Range(lowest=0.3, highest=0.8)}
+    assert found.linked == {"friction.concrete.foundation": "friction.concrete.concrete"}
+
+
+def test_a_linked_friction_is_not_calibrated_by_itself():
+    linked = {"friction.concrete.foundation": "friction.concrete.concrete"}
+    found = CalibrationSettings(cases={"ls-dem": ("one",)}, linked=linked).ranges_of(TABLE_2)
+    assert set(found) == {"friction.concrete.concrete", "friction.concrete.steel", *OTHERS}
 
 
 def test_the_fewest_samples_are_those_with_which_a_range_has_an_end():

@@ -10,6 +10,7 @@ from blockshake.files import write_dataset
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.simulation.simulate import simulate
+from blockshake.store import Store
 from blockshake.study.calibration import comparison
 from blockshake.study.calibration.calibration import ALL, calibrate, models_of
 from blockshake.study.calibration.comparison import compare_open_tests
@@ -82,7 +83,8 @@ def _answers(folder, models, size, duration, tmp_path):
     case = {"name": "one-block", "structure": str(folder / "one-block.yaml"), "duration": duration}
     study = _study({model: ("one-block",) for model in models}, size) | {"cases": [case]}
     compared = [
-        compare_open_tests(case, str(folder), model, study, tmp_path / "store", print) for model in models
+        compare_open_tests(case, str(folder), model, study, Store(tmp_path / "store", "source"))
+        for model in models
     ]
     return compared, calibrate(compared, study)
 
@@ -124,6 +126,28 @@ def test_rigid_contact_needs_no_wave_test_and_a_test_no_accelerometers(campaign,
     assert compared[0]["parameter"].values.tolist() == [FRICTION]
     assert [one["reading"] for one in found["tests"]] == ["displacement"]
     assert found["left_out"] == []
+
+
+def test_one_parameter_alone_is_calibrated_and_another_takes_its_value(campaign, tmp_path, monkeypatch):
+    """The springs stay the structure's, without a wave test, and a linked friction has the calibrated one's value."""
+    folder = campaign(SQUAT, {FRICTION: 0.4}, [_noise(seed, 4.0, 2.5, 4.0) for seed in range(2)], 2.5)
+    case = {"name": "one-block", "structure": str(folder / "one-block.yaml"), "duration": 2.5}
+    study = _study({"ls-dem": ("one-block",)}, 20)
+    linked = {"friction.stone.glass": FRICTION}
+    study["calibration"] |= {"parameters": (FRICTION,), "linked": linked}
+    monkeypatch.setattr("blockshake.study.calibration.comparison.calibrate_design", None)
+    asked = {}
+
+    def unread(test, model, settings, rows, steps, ensemble, *rest):
+        asked.update(rows=rows, steps=steps, linked=ensemble["linked"])
+        return [None] * len(rows)
+
+    monkeypatch.setattr(comparison, "simulate_readings", unread)
+    compared = compare_open_tests(case, str(folder), "ls-dem", study, tmp_path / "store", print)
+    assert compared["parameter"].values.tolist() == [FRICTION]
+    assert list(asked["rows"]) == [FRICTION, *DENSITY]
+    assert set(asked["steps"]) == {MODELS["ls-dem"]["time_step"]}
+    assert asked["linked"] == linked
 
 
 def test_a_test_that_many_samples_do_not_end_is_not_asked(campaign, tmp_path, monkeypatch):

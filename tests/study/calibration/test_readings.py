@@ -6,9 +6,9 @@ import pytest
 import xarray as xr
 from numpy.testing import assert_allclose
 
+from blockshake.files import write_dataset
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.instruments import Instruments
-from blockshake.store import keep_dataset
 from blockshake.study.calibration.comparison import _time_steps, has_use
 from blockshake.study.calibration.readings import (
     OpenTest,
@@ -59,7 +59,7 @@ def files(tmp_path):
                 along = test[["marker_displacement"]].assign(
                     log_spectrum=log_spectrum(test, STRUCTURE, DURATION)
                 )
-                keep_dataset(path, along.assign_attrs(test.attrs))
+                write_dataset(path, along.assign_attrs(test.attrs))
             paths.append(None if test is None else path)
         return paths
 

@@ -6,7 +6,7 @@ import xarray as xr
 
 from blockshake.files import write_dataset
 from blockshake.study.comparison import comparison
-from blockshake.study.comparison.comparison import compare_models
+from blockshake.study.comparison.comparison import compare_models, parting_time
 from blockshake.study.comparison.twins import TWINS
 
 BLOCK = "block-1-face"
@@ -80,6 +80,21 @@ def test_medians_and_width_of_a_block(compared):
     assert "slab-face" not in compared["marker"].values
 
 
+def test_range_of_the_residual_is_that_of_its_quantiles_and_its_limits_hold_it(ensembles):
+    whole = ensembles["ls-dem"]
+    assert np.isnan(compare_models({"ls-dem": whole}, {}, None)["residual_range"]).all()  # four samples
+    eight = xr.concat([whole, whole], dim="sample").assign_coords(sample=range(8))
+    at = compare_models({"ls-dem": eight.assign_attrs(whole.attrs)}, {}, None).sel(
+        model="ls-dem", marker=BLOCK
+    )
+    residual = eight["residual"].sel(frame="slab", marker=BLOCK).to_numpy()
+    assert float(at["residual_range"]) == pytest.approx(
+        np.ptp(np.quantile(residual, (0.05, 0.95))), rel=1e-12
+    )
+    lower, upper = at["residual_range_interval"].to_numpy()
+    assert lower < float(at["residual_range"]) < upper
+
+
 def test_of_many_samples_the_first_are_compared(ensembles, tmp_path, monkeypatch):
     monkeypatch.setattr(comparison, "MOST", 3)
     whole = ensembles["ls-dem"]
@@ -130,3 +145,13 @@ def test_models_all_of_whose_samples_failed_have_no_numbers(ensembles, make_run,
     assert int(at["counted"]) == 0
     assert np.isnan(at[["peak", "width", "score"]].to_array()).all()
     assert np.isnan(at["history_difference"].sel(other="ls-dem"))
+
+
+def test_curves_part_where_one_is_beyond_the_limit_or_has_ended():
+    time = np.arange(4.0)
+    own = np.zeros((4, 2))
+    other = np.array([[0.0, 0.0], [0.1, 0.0], [0.1, 0.5], [0.1, 0.0]])
+    assert parting_time(time, own, other, 0.2) == 2.0
+    assert parting_time(time, own, other, 0.6) == np.inf
+    other[1:] = np.nan
+    assert parting_time(time, own, other, 0.6) == 1.0

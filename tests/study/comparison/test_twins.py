@@ -7,8 +7,10 @@ import pytest
 from blockshake.dynamics.motion import ground_motion
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.simulate import simulate
+from blockshake.store import Store
 from blockshake.study.comparison.kicked_block import housner_ratio
 from blockshake.study.comparison.twins import NUDGE, TWINS, simulate_twins
+from blockshake.study.ensembles.batch import CaseRuns
 
 CASE = {"structure": "configuration-1", "duration": 0.2}
 SETTINGS = {"time_step": 1e-3, "parameters": {"nscd.impact_parts": 20}}
@@ -24,9 +26,9 @@ def motion():
 
 @pytest.fixture(scope="module")
 def twins(tmp_path_factory, motion):
-    row, store = pd.DataFrame({FRICTION: [0.7]}), tmp_path_factory.mktemp("store")
-    run = SETTINGS, RATE, row, {}, store, "source", lambda line: None
-    return simulate_twins(CASE, lambda sample: motion, "nscd-rigid", *run)
+    row, store = pd.DataFrame({FRICTION: [0.7]}), Store(tmp_path_factory.mktemp("store"), "source")
+    runs = CaseRuns(CASE, "nscd-rigid", SETTINGS, {}, RATE)
+    return simulate_twins(runs, lambda sample: motion, row, store)
 
 
 def test_twins_are_the_sample_a_little_stronger_and_at_half_the_step(twins, motion):

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from fair_score import crps
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
@@ -12,11 +13,12 @@ from blockshake.files import write_dataset
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.simulation.simulate import simulate
-from blockshake.study.ensembles.batch import simulate_samples
+from blockshake.store import Store
+from blockshake.study.ensembles.batch import CaseRuns, simulate_samples
 from blockshake.study.ensembles.case_input import driving_motions, measured_input, measured_on_clock
 from blockshake.study.ensembles.ensemble import join_batches
-from blockshake.study.friction.calibration import mean_score
-from blockshake.virtual.table import Table, followed
+from blockshake.study.ensembles.measured import compared_curves
+from blockshake.virtual.table import TableErrors, followed
 
 FRICTION = "friction.stone.stone"
 STRUCTURE = """
@@ -39,7 +41,7 @@ name: sliding
 structure: one-block.yaml
 tests: [{name: t1, file: t1.nc, motion: motion.csv, scale: 1.0, role: fit}]
 """
-OFF = Table(gain=1.06, high=-0.02, corner=2.0, pitch=5e-5)
+OFF = TableErrors(gain=1.06, high=-0.02, corner=2.0, pitch=5e-5)
 SIZE, DURATION = 20, 3.0
 
 
@@ -70,25 +72,27 @@ def score(case, tmp_path):
         write_dataset(tmp_path / "t1.nc", observe(run, structure, Instruments(), 4))
         base = measured_input({**case, "input": driven_by}, named)
         values = 0.5 * np.exp(0.05 * np.linspace(-1.6, 1.6, SIZE))
+        runs = CaseRuns({**case, "input": driven_by}, "nscd-rigid", {"time_step": 1e-3}, {}, 200.0)
+        motions = driving_motions(runs.case, base, 1)
         finished = simulate_samples(
-            case, driving_motions({**case, "input": driven_by}, base, 1), "nscd-rigid", {"time_step": 1e-3}, 200.0,
-            pd.DataFrame({FRICTION: values}), {}, tmp_path / "store", "test", lambda line: None,
-        )  # fmt: skip
+            runs, motions, pd.DataFrame({FRICTION: values}), Store(tmp_path / "store", "test")
+        )
         measured, noise = measured_on_clock(named, base)
-        return mean_score(join_batches(finished), measured, noise, 1)
+        compared = compared_curves(measured, join_batches(finished), noise, 1)
+        return np.nanmean(crps(compared.readings, compared.measured.to_numpy()))
 
     return scored
 
 
 def test_a_table_five_per_cent_off_costs_nothing(score):
-    exact = score(Table(), "measured")
+    exact = score(TableErrors(), "measured")
     assert score(OFF, "measured") == pytest.approx(exact, rel=0.15)
     assert score(OFF, "commanded") > 3.0 * exact
-    assert score(Table(), "commanded") == pytest.approx(exact, rel=0.15)
+    assert score(TableErrors(), "commanded") == pytest.approx(exact, rel=0.15)
 
 
 def test_samples_have_draws_of_their_own_and_models_the_same(case, score, tmp_path):
-    score(Table(), "measured")
+    score(TableErrors(), "measured")
     named = {"campaign": str(tmp_path), "test": "t1"}
     driven = {**case, "input": "measured"}
     base = measured_input(driven, named)
@@ -101,7 +105,7 @@ def test_samples_have_draws_of_their_own_and_models_the_same(case, score, tmp_pa
 
 
 def test_a_record_that_ends_before_the_window_is_refused_where_it_is_the_input(case, score, tmp_path):
-    score(Table(), "commanded")
+    score(TableErrors(), "commanded")
     named = {"campaign": str(tmp_path), "test": "t1"}
     longer = {**case, "duration": 10.0}
     with pytest.raises(InputError, match=r"t1: duration: expected at most 3 s, .* or input: commanded"):
@@ -113,7 +117,7 @@ def test_a_record_that_ends_before_the_window_is_refused_where_it_is_the_input(c
 def test_a_gap_in_which_the_slab_s_motion_is_lost_is_refused_where_it_is_the_input(
     lost, case, score, tmp_path
 ):
-    score(Table(), "commanded")
+    score(TableErrors(), "commanded")
     path, named = tmp_path / "t1.nc", {"campaign": str(tmp_path), "test": "t1"}
     whole = xr.load_dataset(path, decode_times=False)
     inside = (whole["time"] > 1.0) & (whole["time"] < 1.8)

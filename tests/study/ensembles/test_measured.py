@@ -2,8 +2,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from blockshake.errors import InputError
-from blockshake.study.ensembles.measured import compared_curves, measured_curves
+from blockshake.study.ensembles.measured import measured_curves
 
 TIME = np.arange(0.0, 2.001, 0.01)
 
@@ -24,9 +23,3 @@ def test_measured_extremes_are_of_the_window_and_relative_to_the_slab():
     # the mean over the last half second, but for the gap at 0.95 s
     times = np.delete(TIME[50:101], 45)
     assert float(found["residual"].sel(frame="inertial")) == pytest.approx(0.05 * times.mean(), rel=1e-12)
-
-
-def test_a_comparison_needs_its_members():
-    ensemble = xr.Dataset({"status": ("sample", ["completed", "failed"])})
-    with pytest.raises(InputError, match="at least 2 completed or collapsed samples"):
-        compared_curves(None, ensemble, 1e-4, 0, fewest=2)

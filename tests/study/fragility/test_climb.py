@@ -5,7 +5,9 @@ import pandas as pd
 import pytest
 import yaml
 
+from blockshake.store import Store
 from blockshake.study.config import Ladder
+from blockshake.study.ensembles.batch import CaseRuns
 from blockshake.study.fragility.climb import climb_samples, gathered
 from blockshake.study.fragility.fragility import fragility
 
@@ -46,9 +48,9 @@ def test_capacities_enclose_those_of_a_block_that_slides(case, tmp_path):
     rows = pd.DataFrame({PAIR: [0.3, 0.4]})
     ladder = Ladder(first=3.0, increment=0.25, highest=8.0, largest_drift=0.048)
     told = []
-    found = climb_samples(
-        case, "nscd-rigid", {"time_step": 1e-3}, rows, {}, ladder, tmp_path / "store", "source", told.append
-    )
+    runs = CaseRuns(case, "nscd-rigid", {"time_step": 1e-3}, {})
+    store = Store(tmp_path / "store", "source", told.append)
+    found = climb_samples(runs, rows, ladder, store)
     for sample, friction in enumerate(rows[PAIR]):
         lower, upper = (float(found[f"capacity_{side}"][sample]) for side in ("lower", "upper"))
         assert sliding(lower, friction) <= 0.048 < sliding(upper, friction)
@@ -57,9 +59,7 @@ def test_capacities_enclose_those_of_a_block_that_slides(case, tmp_path):
         assert float(stood) == pytest.approx(sliding(lower, friction), abs=1e-3)
         assert np.isnan(found["passed"].sel(sample=sample, scale=slice(upper + 0.1, None))).all()
     assert len(told) == 2
-    again = climb_samples(
-        case, "nscd-rigid", {"time_step": 1e-3}, rows, {}, ladder, tmp_path / "store", "source", told.append
-    )
+    again = climb_samples(runs, rows, ladder, store)
     assert found.identical(again)  # from the store
 
 

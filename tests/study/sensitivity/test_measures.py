@@ -8,9 +8,8 @@ from scipy.integrate import quad
 from scipy.special import ndtri
 from scipy.stats import binom
 
+from blockshake.statistics.resampling import bootstrap_interval, chance_level
 from blockshake.study.sensitivity.measures import (
-    bootstrap_interval,
-    chance_level,
     class_count,
     first_order_share,
     partial_rank_correlation,
@@ -138,7 +137,7 @@ def test_without_effect_one_picture_in_twenty_passes_the_chance_level(measure):
         generator = np.random.default_rng(1000 + seed)
         inputs = hypercube(generator, 50, 9)
         outputs = as_output(generator.normal(size=(50, 2)))
-        level = chance_level(measured, inputs, outputs, 0.95, 100, generator)
+        level = chance_level(measured, inputs, outputs, generator, 100)
         passed += np.abs(measured(inputs, outputs)).max() > level
     # 5 % of the trials, and the level itself rests on 100 permutations: between the 0.1 and 99.9 % points at 4 and 7 %
     assert binom.ppf(0.001, trials, 0.04) <= passed <= binom.ppf(0.999, trials, 0.07)
@@ -156,9 +155,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say(measure):
     truth = np.mean([measured(*sample(seed)) for seed in range(400)], axis=0)
     inside = []
     for seed in range(5000, 5040):
-        pair = sample(seed)
-        estimate = measured(*pair)
-        low, high = bootstrap_interval(measured, *pair, estimate, 0.95, 200, np.random.default_rng(seed))
+        low, high = bootstrap_interval(measured, sample(seed), np.random.default_rng(seed), 200)
         inside.append((low <= truth) & (truth <= high))
     share = np.mean(inside)  # of 40 designs and nine inputs; a design's inputs are nearly independent
     # 95 % asked for; the bootstrap may err by a few per cent at 50 samples, hardly ever below

@@ -7,8 +7,8 @@ from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
 from blockshake.study.ensembles.ensemble import gather_ensemble
 from blockshake.study.sampling.latin_hypercube import draw_samples
-from blockshake.study.sampling.sample_parameters import sample_parameters
-from blockshake.study.sensitivity.sensitivity import QUANTITIES, sensitivity, unused_variables
+from blockshake.study.sampling.sample_parameters import sample_parameters, unused_variables
+from blockshake.study.sensitivity.sensitivity import QUANTITIES, sensitivity
 
 FRICTION, DENSITY = "friction.concrete.concrete", "materials.concrete.density"
 VISCOUS, YOUNG = "materials.concrete.viscous_modulus", "materials.concrete.youngs_modulus"

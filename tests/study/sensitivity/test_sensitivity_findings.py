@@ -9,7 +9,6 @@ from blockshake.study.sensitivity.findings import (
     quiet_markers,
     windows_beyond_chance,
 )
-from blockshake.study.sensitivity.thickness import Thickness, growth_with_structure, thickness
 
 NAMES = ["a", "b", "c"]
 
@@ -73,22 +72,3 @@ def test_quiet_markers_have_a_known_spread_below_the_noise():
         coords={"quantity": ["history"], "marker": ["x", "y", "z"]},
     )
     assert quiet_markers(spread, ["x", "y", "z"], 1e-4) == 1
-
-
-def test_thickness_reads_the_markers_from_the_lowest_up():
-    spread = xr.Dataset(
-        {"spread": (("quantity", "marker"), [[3.0, 1.0]])},
-        coords={"quantity": ["history"], "marker": ["t", "f"]},
-    )
-    found = thickness(spread, ["f", "t"], 2, ("m", 1.0))
-    assert found.spread == (1.0, 3.0)
-    assert found.grows_upward
-    assert not Thickness(2, (), (3.0, 1.0)).grows_upward
-    assert not Thickness(2, (), (3.0, np.nan)).known
-
-
-def test_growth_counts_pairs_of_different_size_only():
-    small, other = Thickness(3, ("m",), (1.0, 2.0)), Thickness(3, ("m",), (1.0, 9.0))
-    large, unknown = Thickness(9, ("n",), (1.0, 5.0)), Thickness(20, ("n",), (np.nan, np.nan))
-    assert growth_with_structure([large, unknown, small, other]) == (2, 1, False)
-    assert growth_with_structure([small, other]) == (0, 0, True)

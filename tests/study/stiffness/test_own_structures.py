@@ -13,6 +13,7 @@ from blockshake.geometry.reference_block import half_width, reference_block
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.parameter_table import parameter_table
 from blockshake.simulation.simulate import simulate
+from blockshake.store import Store
 from blockshake.study.stiffness.tower import tower_of
 from blockshake.study.stiffness.wave_speed import calibrate_design, calibrate_stiffness, wave_tests
 from blockshake.virtual.truth import true_parameters
@@ -125,7 +126,7 @@ def test_parameters_of_a_structure_are_printed_with_its_stiffness(own):
 
 def test_samples_of_an_own_material_have_their_own_stiffness(own, tmp_path):
     design = pd.DataFrame({"materials.granite.youngs_modulus": [4e10, 6e10]})
-    found = calibrate_design(own("granite", 1.6), design, {}, tmp_path, "source")
+    found = calibrate_design(own("granite", 1.6), design, {}, Store(tmp_path, "source"))
     np.testing.assert_allclose(found.iloc[1] / found.iloc[0], 1.5, rtol=0.01)
 
 

@@ -14,8 +14,9 @@ from blockshake.dynamics.motion import GroundMotion, MotionTable
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.simulation import simulate as simulation
 
-# LS-DEM: an acrylic cube is nearer 3e10 N/m3 (E over its side); a tenth of it moves no figure of docs/tosses.md and
-# allows a larger step. Nodes: three a side of each face, half a percent of it inside; none of the slab's within 1.5 m.
+# LS-DEM: an acrylic cube is nearer 3e10 N/m3 (E over its side); a tenth of it moves no figure of docs/results/tosses.md
+# and allows a larger step. Nodes: three a side of each face, half a percent of it inside; none of the slab's within
+# 1.5 m.
 SETTINGS = {
     "ls-dem": (
         {

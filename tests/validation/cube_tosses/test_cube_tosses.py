@@ -1,4 +1,4 @@
-"""Real tosses of a cube by both solvers (docs/tosses.md): the data of ContactNets, Pfrommer, Halm and Posa (2020).
+"""Real tosses of a cube by both solvers (docs/results/tosses.md): data of ContactNets, Pfrommer, Halm and Posa (2020).
 
 The data are no part of the project; what needs them is skipped where they are absent.
 """

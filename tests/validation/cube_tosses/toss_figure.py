@@ -1,4 +1,4 @@
-"""Figure of ``docs/tosses.md``: how the errors grow after the first impact, and how far off the cube rests."""
+"""Figure of ``docs/results/tosses.md``: how the errors grow after the first impact, and how far off the cube rests."""
 
 import matplotlib
 

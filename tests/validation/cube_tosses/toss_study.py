@@ -1,8 +1,8 @@
 """The tosses replayed by both solvers: fit on half, predict the other half, and what the errors come from.
 
-Run it as ``python tests/validation/cube_tosses/toss_study.py --figure docs/tosses.png`` from the project's root; it
+Run it as ``python tests/validation/cube_tosses/toss_study.py --figure docs/results/tosses.png`` from the root; it
 takes about a quarter of an hour on one core. Without the data it says so and ends well. The tables of
-``docs/tosses.md`` are its output.
+``docs/results/tosses.md`` are its output.
 """
 
 import argparse

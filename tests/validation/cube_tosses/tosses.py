@@ -11,7 +11,8 @@ import numpy as np
 from blockshake.geometry.rotations import rotation_matrices
 
 GRAVITY = 9.81  # m/s2; the file's own, in half-widths, is this over the half-width
-CLEAR = 2e-3  # m, the lowest corner of a cube in free flight; farther than the tracked corners sink in (docs/tosses.md)
+# m, the lowest corner of a cube in free flight; farther than the tracked corners sink in (docs/results/tosses.md)
+CLEAR = 2e-3
 CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
 
 

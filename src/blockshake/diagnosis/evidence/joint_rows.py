@@ -66,7 +66,7 @@ class JointRows:
 
     @property
     def rows(self):
-        """`Rows` of the test."""
+        """`EquilibriumRows` of the test."""
         return self.seen.rows
 
     @cached_property

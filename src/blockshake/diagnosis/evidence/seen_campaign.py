@@ -42,11 +42,10 @@ def see_campaign(campaign, without=()):
     InputError
         No open test, or a file that `load_test` refuses.
     """
-    names = [test.name for test in campaign.tests.values() if test.role != "sealed"]
-    if not names:
+    if not campaign.open:
         expected = "expected a test with the role fit or select, found none"
         raise InputError(campaign.folder / "campaign.yaml", "tests", expected)
-    return _seen(campaign, read_open_tests(campaign, names), without)
+    return _seen(campaign, read_open_tests(campaign, list(campaign.open)), without)
 
 
 def see_sealed(campaign):

@@ -78,7 +78,7 @@ def _names(place):
     return {place} if isinstance(place, str) else {"-".join(place), "-".join(place[::-1])}
 
 
-def extended_runs(plan, model, causes, nominal, measured, *made_by):
+def extended_runs(plan, model, causes, nominal, measured, store):
     """Simulated sealed tests of the nominal, the recalibrated, the extended and the placebo model.
 
     Parameters
@@ -92,8 +92,7 @@ def extended_runs(plan, model, causes, nominal, measured, *made_by):
         By open test: its nominal ensemble by this solver.
     measured : dict of str to xarray.Dataset
         By open test: from `read_histories`.
-    *made_by
-        ``store``, ``source`` and ``progress`` of `simulate_members`.
+    store : Store
 
     Returns
     -------
@@ -114,7 +113,7 @@ def extended_runs(plan, model, causes, nominal, measured, *made_by):
     drawn = {RECALIBRATED: (recalibration.draws, ())}
     if causes:
         ensembles = {
-            test: _beside_twins(_members(EXTENDED, test, planned, draws, causes), nominal[test], *made_by)
+            test: _beside_twins(_members(EXTENDED, test, planned, draws, causes), nominal[test], store)
             for test, planned in plan.tests.items()
         }
         extended = _conditioned(draws, ensembles, measured, EXTENDED).draws
@@ -127,7 +126,7 @@ def extended_runs(plan, model, causes, nominal, measured, *made_by):
         members += nominal_members(test, planned, model, count, plan.effort.twins)
         for kind, (own, acting) in drawn.items():
             members += _members(kind, test, planned, own[:count], acting)
-    runs = simulate_members(members, *made_by)
+    runs = simulate_members(members, store)
     count = len(members) + (len(plan.tests) * plan.effort.draws if causes else 0)
     return runs.merge(recalibration.informed, combine_attrs="override").assign_attrs(simulated=count)
 
@@ -139,10 +138,10 @@ def _members(kind, test, planned, draws, causes):
     ]
 
 
-def _beside_twins(members, nominal, *made_by):
+def _beside_twins(members, nominal, store):
     """Ensemble of members of an open test, with the twins of its nominal ensemble."""
     twins = nominal.isel(run=nominal["kind"].to_numpy() == TWIN)
-    runs = [simulate_members(members, *made_by), twins]
+    runs = [simulate_members(members, store), twins]
     return xr.concat(
         runs, dim="run", join="outer", coords="minimal", compat="override", combine_attrs="override"
     )

@@ -7,17 +7,10 @@ import pandas as pd
 import xarray as xr
 
 from blockshake.diagnosis.nominal.ensemble import EXTENDED, NOMINAL, RECALIBRATED
-from blockshake.diagnosis.verdict.verdict import Contrast, Gain, MeasuredGain
-from blockshake.study.comparison.differences import (
-    ensemble_score,
-    limits_of,
-    mean_differences,
-    mean_width,
-    member_scores,
-    resampled_weights,
-)
+from blockshake.diagnosis.verdict.verdict import OF_A_GAIN, Contrast, Gain, MeasuredGain
+from blockshake.statistics.resampling import limits_of, resampled_weights
+from blockshake.statistics.scores import ensemble_score, mean_differences, mean_width, member_scores
 
-_CONFIDENCE = 0.9
 _FLOOR_QUANTILE = 0.95  # share of the extended members' own scores that a rival must exceed
 _CONFIRMING_SHARE = 0.5  # share of the fall that each solver must show by itself
 
@@ -104,7 +97,7 @@ def response_gain(tests):
     highest = np.quantile(member_scores(cells.pairs[EXTENDED]) @ cells.weights[0], _FLOOR_QUANTILE)
     gain = np.array([_ratio(score[kind] - score[EXTENDED], score[kind] - floor) for kind in rivals])
     able = np.array([score[kind][0] > highest for kind in rivals])
-    limits = np.where(able, limits_of(gain.T, _CONFIDENCE), np.nan)
+    limits = np.where(able, limits_of(gain.T, OF_A_GAIN), np.nan)
     of_solver = {
         kind: [cells.whole(cells.by_cell(kind, models == solver))[0] for solver in solvers] for kind in kinds
     }

@@ -10,12 +10,13 @@ from blockshake.diagnosis.answer.explain import likelihoods
 from blockshake.diagnosis.evidence.joint_rows import JointRows
 from blockshake.diagnosis.evidence.slab_motion import slab_motion, slab_turns
 from blockshake.diagnosis.nominal.ensemble import DISCREPANCY, EXTENDED, NOMINAL, RECALIBRATED
-from blockshake.diagnosis.verdict.verdict import Contrast, Gain
+from blockshake.diagnosis.verdict.verdict import OF_A_GAIN, Contrast, Gain
 from blockshake.effects.registry import EFFECTS
+from blockshake.statistics.resampling import limits_of, resampled_weights
 
 _WIDER = (1.0, 3.0, 10.0)  # times the priors of the joints' own errors: a discrepancy without a name
 _BLOCK = 0.5  # s, of rows that are drawn together
-_REPLICATES, _INTERVAL = 1000, (0.05, 0.95)
+_DRAWS = 1000
 _NOTHING = 1.645  # standard deviations of the floor, within which nothing is to gain
 NOTHING = Contrast(estimate=0.0, lower=-1.0, upper=1.0)
 NOTHING_TO_GAIN = "nothing to gain on the sealed tests' forces against the {} model: it is within its errors"
@@ -80,7 +81,7 @@ def _contrast(means, drawn, rival):
     floor = drawn["floor"][0]
     whole = _ratio(means[rival], means[EXTENDED], floor)
     values = _ratio(drawn[rival][1:], drawn[EXTENDED][1:], drawn["floor"][1:])
-    lower, upper = np.quantile(values, _INTERVAL)
+    lower, upper = limits_of(values, OF_A_GAIN)
     return Contrast(estimate=float(whole), lower=float(min(lower, whole)), upper=float(max(upper, whole)))
 
 
@@ -89,13 +90,10 @@ def _ratio(rival, extended, floor):
 
 
 def _drawn(whole):
-    """Means of the whole and of replicates, by kind and of the floor, (1 + n_replicates,)."""
+    """Means of the whole and of blocks drawn again, by kind and of the floor, (1 + n_draws,)."""
     count = int(whole.block.max()) + 1
     rows = np.bincount(whole.block, minlength=count)
-    times = np.concatenate([
-        np.ones((1, count)),
-        np.random.default_rng([count, len(whole.block)]).multinomial(count, np.full(count, 1.0 / count), _REPLICATES),
-    ])  # fmt: skip
+    times = resampled_weights(count, np.random.default_rng([count, len(whole.block)]), _DRAWS)
     total = np.maximum(times @ rows, 1)
     sums = {**whole.by_kind, "floor": whole.floor}
     return {

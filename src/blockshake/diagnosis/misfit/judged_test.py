@@ -8,7 +8,7 @@ import xarray as xr
 from blockshake.diagnosis.misfit.predictability import horizons
 from blockshake.diagnosis.nominal.ensemble import NOMINAL, TWIN, runs_of
 from blockshake.diagnosis.nominal.histories import as_cells, at_readings, common_times
-from blockshake.study.ensembles.intervals import sample_quantiles
+from blockshake.statistics.intervals import sample_quantiles
 
 BAND = (0.05, 0.5, 0.95)
 _MOVES = 5.0  # standard deviations of a reading, beyond which a cell moves

@@ -4,7 +4,8 @@ import numpy as np
 import xarray as xr
 
 from blockshake.diagnosis.nominal.ensemble import NOMINAL
-from blockshake.study.comparison.differences import ensemble_score, mean_differences, member_scores
+from blockshake.statistics.resampling import rank_chance
+from blockshake.statistics.scores import ensemble_score, mean_differences, member_scores
 
 
 def misfit(tests):
@@ -40,7 +41,7 @@ def misfit(tests):
             test.bands().sel(kind=NOMINAL, drop=True).assign(
                 score=("cell", score),
                 usual=("cell", by),
-                chance=("cell", _chance(score, members)),
+                chance=("cell", rank_chance(score, members)),
                 worst_time=("cell", _worst_times(test), {"units": "s"}),
             )
         )  # fmt: skip
@@ -50,7 +51,7 @@ def misfit(tests):
     where = _where(tests[worst], parts[worst].isel(cell=place), excess[worst][place])
     return (
         whole.assign_coords(test=[test.name for test in tests])
-        .assign(p=_chance(excess[worst][place], largest))
+        .assign(p=rank_chance(excess[worst][place], largest))
         .assign_attrs(where=where, members=len(largest))
     )
 
@@ -65,10 +66,6 @@ def _scores(test):
 
 def _excess(score, usual):
     return np.nan_to_num(score / np.where(usual > 0.0, usual, np.inf))
-
-
-def _chance(score, members):
-    return np.where(np.isnan(score), np.nan, (1.0 + (members >= score).sum(axis=0)) / (1.0 + len(members)))
 
 
 def _worst_times(test):

@@ -35,16 +35,13 @@ def nominal_members(test, planned, model, count, twins):
     ]
 
 
-def simulate_members(members, store, source, progress):
+def simulate_members(members, store):
     """Histories of members by one solver.
 
     Parameters
     ----------
     members : list of Member
-    store, source
-        As of `simulated_histories`.
-    progress : callable
-        Called with a line of text after each.
+    store : Store
 
     Returns
     -------
@@ -54,12 +51,8 @@ def simulate_members(members, store, source, progress):
     """
     parts = []
     for done, member in enumerate(members, start=1):
-        histories, how = simulated_histories(member.planned, member.draw, store, source, member.extension)
-        parts.append(histories)
-        progress(
-            f"{member.test} {member.draw.model} {member.kind} {member.number} {done}/{len(members)} {how}: "
-            f"{histories.attrs['status']}"
-        )
+        words = f"{member.test} {member.draw.model} {member.kind} {member.number} {done}/{len(members)}"
+        parts.append(simulated_histories(words, member.planned, member.draw, store, member.extension))
     whole = xr.concat(
         parts, dim="run", join="outer", coords="minimal", compat="override", combine_attrs="drop_conflicts"
     )

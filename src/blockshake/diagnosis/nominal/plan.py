@@ -3,7 +3,6 @@
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 from blockshake.diagnosis.nominal.efforts import EFFORTS, ENSEMBLES_OF_SEALED_TEST, Effort
 from blockshake.diagnosis.nominal.nominal_model import MODELS
@@ -40,7 +39,7 @@ class Plan:
     @property
     def sealed(self):
         """Sealed tests as they are simulated, by name; empty where nothing is simulated."""
-        names = sealed_tests(self.campaign) if self.tests else []
+        names = self.campaign.sealed if self.tests else ()
         return {name: planned_sealed(self.campaign, name, self.tests) for name in names}
 
     @property
@@ -52,12 +51,8 @@ class Plan:
     def runs_of_cause(self):
         """Simulated tests at most, once a cause was found: of the open tests with it, and of the sealed ones."""
         of_sealed = ENSEMBLES_OF_SEALED_TEST * self.effort.members + self.effort.twins
-        sealed = len(sealed_tests(self.campaign)) if self.tests else 0
+        sealed = len(self.campaign.sealed) if self.tests else 0
         return len(MODELS) * (len(self.tests) * self.effort.draws + sealed * of_sealed)
-
-    def ensemble(self, test, source):
-        """Name of the ensemble of a test: equal content and sources that both solvers share, equal name."""
-        return content_digest(self.tests[test].digest(), self.effort.draws, self.effort.twins, source)
 
 
 def plan_diagnosis(folder, effort):
@@ -93,14 +88,13 @@ def open_tests(campaign):
     InputError
         All tests are sealed.
     """
-    names = [test.name for test in campaign.tests.values() if test.role != "sealed"]
-    if not names:
+    if not campaign.open:
         raise InputError(
             campaign.folder / "campaign.yaml",
             "tests",
             "expected a test with the role fit or select, found none",
         )
-    return list(read_open_tests(campaign, names).tests)
+    return list(read_open_tests(campaign, list(campaign.open)).tests)
 
 
 def simulated_tests(campaign, names, most):
@@ -117,42 +111,11 @@ def simulated_tests(campaign, names, most):
     return [name for name in names if name in chosen]
 
 
-def sealed_tests(campaign):
-    """Names of the sealed tests."""
-    return [test.name for test in campaign.tests.values() if test.role == "sealed"]
-
-
 def result_name(folder, without=()):
     """Name of a campaign's results: the folder's, with digits of its path unless it lies in the checkout."""
     path = Path(folder).resolve()
     name = path.name if _CHECKOUT in path.parents else f"{path.name}-{content_digest(str(path))[:6]}"
     return "-without-".join([re.sub(r"[^A-Za-z0-9._-]", "-", name), *without])
-
-
-class PlannedEnsemble(NamedTuple):
-    """The plan of a campaign, and the name of the test that an ensemble is of."""
-
-    plan: Plan
-    test: str
-
-
-def plan_of_ensemble(ensemble, folders, effort, source):
-    """`PlannedEnsemble`: plan and test of the first of several campaigns that has an ensemble.
-
-    Parameters
-    ----------
-    ensemble : str
-        Name, as of `Plan.ensemble`.
-    folders : sequence of str
-        Of campaigns.
-    effort, source : str
-    """
-    for folder in folders:
-        plan = plan_diagnosis(folder, effort)
-        for test in plan.tests:
-            if plan.ensemble(test, source) == ensemble:
-                return PlannedEnsemble(plan, test)
-    raise InputError("ensemble", ensemble, f"expected the ensemble of a test of {', '.join(folders)}")
 
 
 def considered(without=()):

@@ -1,6 +1,5 @@
 """Synthetic readings that one sampled model gives for a planned test, and the histories that they show."""
 
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -10,13 +9,12 @@ from scipy.ndimage import gaussian_filter1d
 
 from blockshake.diagnosis.nominal.histories import read_histories
 from blockshake.effects.effect import Experiment
-from blockshake.files import content_digest
 from blockshake.measurement.campaigns.command_clock import since
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.simulation.models import part_parameters
 from blockshake.simulation.placement import placed
 from blockshake.simulation.simulate import simulate
-from blockshake.store import keep_dataset, kept, load_made
+from blockshake.store import load_made
 
 _SLOW = 0.04  # s, standard deviation of a Gaussian that is some 0.1 s wide at half its height
 
@@ -26,13 +24,6 @@ class SimulatedTest(NamedTuple):
 
     test: xr.Dataset
     status: str
-
-
-class KeptHistories(NamedTuple):
-    """Histories as from `read_histories`, the run's ``status`` an attribute; ``how``: ``kept`` or ``simulated``."""
-
-    histories: xr.Dataset
-    how: str
 
 
 def simulated_test(planned, draw, extension=None):
@@ -84,28 +75,31 @@ def faster_part(motion):
     return CubicSpline(breaks, np.interp(breaks, times, fast)).c[::-1].T
 
 
-def simulated_histories(planned, draw, store, source, extension=None):
-    """`KeptHistories` of a simulated test, from the store if it was simulated before.
+def simulated_histories(words, planned, draw, store, extension=None):
+    """Histories of a simulated test as from `read_histories`, simulated where the store has not got them.
 
     Parameters
     ----------
+    words : str
+        Which test by which model it is.
     planned : PlannedTest
     draw : Draw
-    store : str or path
-        Folder of finished tests: one that is there is not simulated again.
-    source : str
-        Digest of the sources that compute.
+    store : Store
     extension : callable, optional
         As of `simulated_test`, with an attribute ``digest`` of all that it does.
+
+    Returns
+    -------
+    xarray.Dataset
+        With the run's ``status`` as an attribute.
     """
-    key = content_digest(
-        source, planned.digest(), draw.model, draw.time_step, draw.parameters, draw.amplitude, draw.fast,
-        draw.noise, draw.places.tobytes(), draw.seed, extension.digest if extension else "",
+
+    def simulated(_):
+        test, status = simulated_test(planned, draw, extension)
+        return read_histories(test, planned.structure, planned.sensors).assign_attrs(status=status)
+
+    given = (
+        planned.digest(), draw.model, draw.time_step, draw.parameters, draw.amplitude, draw.fast, draw.noise,
+        draw.places, draw.seed, extension.digest if extension else "",
     )  # fmt: skip
-    path = Path(store) / f"{key}.nc"
-    if kept(path):
-        return KeptHistories(load_made(path), "kept")
-    test, status = simulated_test(planned, draw, extension)
-    histories = read_histories(test, planned.structure, planned.sensors).assign_attrs(status=status)
-    keep_dataset(path, histories)
-    return KeptHistories(histories, "simulated")
+    return load_made(store.dataset(words, given, simulated))

@@ -6,7 +6,7 @@ from blockshake.diagnosis.evidence.explanation import mean_evidence, single
 from blockshake.diagnosis.outside.form import Form
 
 _STARTS_EVERY = 0.5  # s
-_SCALE = 0.05  # m
+_INSET_SCALE = 0.05  # m
 _NEVER = -1e3  # nats
 
 
@@ -34,13 +34,13 @@ def explain_changed_edge(likelihood, tests, place, key):
     if not tried:
         return
     whitened = likelihood.whiten([np.stack(rows, axis=1) for rows in columns])
-    gain, mean, deviation = likelihood.single(whitened, _SCALE, positive=True)
+    gain, mean, deviation = likelihood.single(whitened, _INSET_SCALE, positive=True)
     widest = 0.5 * float(np.ptp(tests[0].seen.faces[key[0]].corners[:, key[1]]))
     gain = np.where(mean < widest, gain, _NEVER)  # an edge lies on its face
     best = int(np.argmax(gain))
     own, start, lasts, edge = tried[best]
     yield single(
-        "changed-edge", place, mean_evidence(gain), [rows[best] for rows in columns], _SCALE,
+        "changed-edge", place, mean_evidence(gain), [rows[best] for rows in columns], _INSET_SCALE,
         (float(mean[best]), float(deviation[best])),
         {
             "test": tests[own].seen.name, "start": start, "lasts": lasts, "edge": edge,

@@ -11,7 +11,7 @@ from blockshake.effects.effect import Columns
 from blockshake.forces.seen.wrench_histories import force_at
 
 _GRIPS = (0.05, 0.1, 0.2, 0.3)  # coefficients of friction; one that holds is an unmodelled mass
-_SCALE = 0.2  # of the block's mass
+_SHARE_SCALE = 0.2  # of the block's mass
 
 
 def explain_loose_weight(likelihood, tests, place, body):
@@ -24,7 +24,7 @@ def explain_loose_weight(likelihood, tests, place, body):
     place : str
     body : int
     """
-    scale = _SCALE * tests[0].seen.structure.mass[body]
+    scale = _SHARE_SCALE * tests[0].seen.structure.mass[body]
     variants = [
         [Columns({"grip": grip}, _rows(test.seen, body, grip)[:, None], (scale,), True) for test in tests]
         for grip in _GRIPS

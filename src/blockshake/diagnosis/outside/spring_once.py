@@ -7,7 +7,7 @@ from blockshake.diagnosis.outside.form import Form, above_centre, with_entry
 from blockshake.effects.stopper_contact import spring_rows
 
 _GAPS = np.concatenate([[-0.02], np.arange(0.0, 0.0401, 0.002)])  # m; below 0 it is taut from the start
-_SCALE = 1e7  # N/m
+_STIFFNESS_SCALE = 1e7  # N/m
 
 
 def explain_spring_once(likelihood, points, weight):
@@ -17,7 +17,7 @@ def explain_spring_once(likelihood, points, weight):
         for side in (1, -1):
             rows = np.stack([spring_rows(one, side, gap) for gap in _GAPS], axis=1)
             gain, mean, deviation = likelihood.single(
-                likelihood.whiten_one(test, rows), _SCALE, positive=True, test=test
+                likelihood.whiten_one(test, rows), _STIFFNESS_SCALE, positive=True, test=test
             )
             best = int(np.argmax(gain))
             fitted = float(mean[best]), float(deviation[best])
@@ -27,7 +27,13 @@ def explain_spring_once(likelihood, points, weight):
     columns = [rows if test == own else np.zeros(len(one.unit)) for test, one in enumerate(points.by_test)]
     values = {"test": points.tests[own], "side": side, "gap": float(gap)}
     return single(
-        "spring-once", points.place, mean_evidence([one[0] for one in found]), columns, _SCALE, fitted, values
+        "spring-once",
+        points.place,
+        mean_evidence([one[0] for one in found]),
+        columns,
+        _STIFFNESS_SCALE,
+        fitted,
+        values,
     )
 
 

@@ -11,6 +11,7 @@ from blockshake.files import load_json, write_json
 from blockshake.validation import Count, Finite, Fraction, Strict, validated
 
 VERSION = 3
+OF_A_GAIN = 0.9  # probability of the interval of a gain
 
 
 class Contrast(Strict):

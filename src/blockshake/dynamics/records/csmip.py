@@ -19,7 +19,12 @@ _INTERVAL = re.compile(r"equally-spaced intervals of\s+(\S+)\s+sec", re.IGNORECA
 _PEAK = re.compile(r"peak\s+acceleration\s*=\s*(\S+)\s+(\S+)\s+at\s+(\S+)\s*sec", re.IGNORECASE)
 _CHANNEL = re.compile(r"\bchan\s+\S+?:\s*(.*?)\s*(?:\bfrom\b.*)?$", re.IGNORECASE)
 _REALS, _REAL_COLUMNS, _REAL_WIDTH = 100, 8, 10
-_LENGTH, _STEP, _PEAK_TIME, _PEAK_VALUE = 60, 61, 65, 66  # entries of the real header, from 1: s, s, s, cm/s2
+_LENGTH, _STEP, _TIME_OF_PEAK, _PEAK_VALUE = (
+    60,
+    61,
+    65,
+    66,
+)  # entries of the real header, from 1: s, s, s, cm/s2
 
 
 def is_csmip(text):
@@ -91,9 +96,9 @@ def _check_real_header(lines, checks):
     reals = [text for line in lines[-rows:] for text in cut_columns(line, _REAL_WIDTH)]
     if len(reals) != _REALS or None in map(plain_number, reals):
         return
-    texts = {number: reals[number - 1] for number in (_LENGTH, _STEP, _PEAK_TIME, _PEAK_VALUE)}
+    texts = {number: reals[number - 1] for number in (_LENGTH, _STEP, _TIME_OF_PEAK, _PEAK_VALUE)}
     checks.length(f"real header, entry {_LENGTH}", texts[_LENGTH])
     checks.step(f"real header, entry {_STEP}", texts[_STEP])
     checks.peak(f"real header, entry {_PEAK_VALUE}", texts[_PEAK_VALUE], 0.01)
     if float(plain_number(texts[_PEAK_VALUE])) not in (0.0, -999.0):
-        checks.peak_time(f"real header, entry {_PEAK_TIME}", texts[_PEAK_TIME])
+        checks.peak_time(f"real header, entry {_TIME_OF_PEAK}", texts[_TIME_OF_PEAK])

@@ -5,7 +5,7 @@ import numpy as np
 from blockshake.dynamics.records.record import finite_number
 from blockshake.errors import InputError
 
-_ROUNDING = 1e-3  # of a stated figure: peaks of single precision, steps such as 1/150 s with four digits
+ROUNDING = 1e-3  # of a stated figure: peaks of single precision, steps such as 1/150 s with four digits
 _UNKNOWN = (0.0, -999.0)  # stand for a missing entry in the headers of COSMOS and CSMIP
 
 
@@ -37,7 +37,7 @@ class HeaderChecks:
         """Another statement of the time step [s]."""
         stated = self._stated(key, text)
         if stated is not None:
-            slack = _half_digit(text) + _ROUNDING * self.time_step
+            slack = _half_digit(text) + ROUNDING * self.time_step
             self._hold(key, "time step", abs(stated - self.time_step) <= slack, stated, self.time_step, "s")
 
     def length(self, key, text, slack=0.0):
@@ -45,7 +45,7 @@ class HeaderChecks:
         stated = self._stated(key, text)
         if stated is not None:
             length = len(self.values) * self.time_step
-            slack = max(slack, _half_digit(text)) + _ROUNDING * length + self.time_step
+            slack = max(slack, _half_digit(text)) + ROUNDING * length + self.time_step
             self._hold(key, "length", abs(stated - length) <= slack, stated, length, "s")
 
     def peak(self, key, text, size):
@@ -55,7 +55,7 @@ class HeaderChecks:
         """
         stated = self._stated(key, text, size)
         if stated is not None:
-            slack = _half_digit(text) * size + _ROUNDING * abs(stated)
+            slack = _half_digit(text) * size + ROUNDING * abs(stated)
             peaks = [_peak(series, stated) for series in self._series()]
             agrees = any(abs(abs(stated) - peak) <= slack for peak in peaks)
             self._hold(key, "peak", agrees, stated, float(np.abs(self.values).max()), "m/s2")
@@ -64,7 +64,7 @@ class HeaderChecks:
         """Largest value, or the smallest one where the entry is negative."""
         stated = self._stated(key, text, size)
         if stated is not None:
-            slack = _half_digit(text) * size + _ROUNDING * abs(stated)
+            slack = _half_digit(text) * size + ROUNDING * abs(stated)
             extremes = [float(side) for series in self._series() for side in (series.max(), series.min())]
             nearest = min(extremes, key=lambda extreme: abs(extreme - stated))
             self._hold(key, "peak", abs(nearest - stated) <= slack, stated, nearest, "m/s2")
@@ -74,13 +74,13 @@ class HeaderChecks:
         stated = self._stated(key, text, blanks=(-999.0,))
         if stated is None:
             return
-        slack = 1.5 * self.time_step + _half_digit(text) + _ROUNDING * stated
+        slack = 1.5 * self.time_step + _half_digit(text) + ROUNDING * stated
         nearest = None
         for series in self._series():
             heights = sign * series if sign else np.abs(series)
             # values that the print makes equal to the peak are peaks too
             times = self.time_step * np.flatnonzero(
-                heights >= heights.max() - _ROUNDING * np.abs(heights).max()
+                heights >= heights.max() - ROUNDING * np.abs(heights).max()
             )
             off = float(times[np.argmin(np.abs(times - stated))])
             nearest = off if nearest is None or abs(off - stated) < abs(nearest - stated) else nearest
@@ -116,5 +116,5 @@ def _half_digit(text):
 
 
 def _peak(series, stated):
-    return float(-series.min() if stated < 0.0 and -series.min() >= (1.0 - _ROUNDING) * series.max() else
+    return float(-series.min() if stated < 0.0 and -series.min() >= (1.0 - ROUNDING) * series.max() else
                  np.abs(series).max() if stated >= 0.0 else np.inf)  # fmt: skip

@@ -7,6 +7,7 @@ import numpy as np
 
 from blockshake.dynamics.baseline import settle
 from blockshake.dynamics.motion import CHANNELS, check_finite, ground_motion
+from blockshake.dynamics.records.header_checks import ROUNDING
 from blockshake.dynamics.records.times import check_times
 from blockshake.errors import InputError
 from blockshake.tables.numbers import plain_number
@@ -33,7 +34,6 @@ _COUNT = re.compile(
 _COUNT_AND_STEP = re.compile(rf"(\d+)[\s,]+{_NUMBER}[\s,]+npts\s*,\s*dt", re.IGNORECASE)
 _UNIT = re.compile(r"\bunits?\s*(?:of|in|[=:])\s*([^\s,;]+)", re.IGNORECASE)
 _OF_VALUES = re.compile(r"acc|vel|disp|\bin\b|^\S+$", re.IGNORECASE)  # in a line that may end with their unit
-_ROUNDING = 1e-3  # of a stated time step, such as 1/150 s
 
 
 def load_motion_table(source, layout, time, columns, unit, time_unit, baseline, time_step):
@@ -121,7 +121,7 @@ def _check_untimed(table, columns, time_step):
             time = None
         if time is None or len(time) < 2 or not (np.diff(time) > 0.0).all():
             continue
-        if not np.isclose((time[-1] - time[0]) / (len(time) - 1), [1.0, time_step], rtol=_ROUNDING).any():
+        if not np.isclose((time[-1] - time[0]) / (len(time) - 1), [1.0, time_step], rtol=ROUNDING).any():
             wrong = f"expected a table without times; '{name}' counts as they do: --time and --time-unit"
             raise InputError("--time-step", f"{time_step:g}", wrong)
 
@@ -140,7 +140,7 @@ def _series(source, layout, time_step, given):
         (counts, len(values), "number of values"),
     ):
         for one in stated:
-            if abs(one - actual) > _ROUNDING * actual * (name == "--time-step"):
+            if abs(one - actual) > ROUNDING * actual * (name == "--time-step"):
                 raise InputError(source, name, f"expected {one:g}, as the file says, found {actual:g}")
     named = [(stated, known_unit(stated)) for stated in _UNIT.findall(header)]
     for line in header.split("\n"):

@@ -17,7 +17,7 @@ _TURNS = 3.0  # standard deviations, by which such a face turns to that side: a 
 
 
 @dataclass(frozen=True)
-class Rows:
+class EquilibriumRows:
     """Equations that hold without any force of a joint: ``z . (M a - M g) = z . (wrenches of what is not modelled)``.
 
     Attributes
@@ -192,7 +192,7 @@ def bearing_points(frames, states):
 
 
 def equilibrium_rows(frames, states, motion, required, free):
-    """Rows of a test, see `Rows`.
+    """Rows of a test, see `EquilibriumRows`.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def equilibrium_rows(frames, states, motion, required, free):
 
     Returns
     -------
-    Rows
+    EquilibriumRows
         At instants 20 ms apart.
 
     Notes
@@ -233,7 +233,7 @@ def equilibrium_rows(frames, states, motion, required, free):
     value = np.einsum("rbk,rbk->r", direction[:, free], wrench[instant])
     roots = covariance_root(information[chosen])[place]
     noise = np.einsum("rbi,rbij->rbj", direction[:, free], roots).reshape(len(place), 6 * len(free))
-    return Rows(instant, motion.time[instant], direction, value, noise)
+    return EquilibriumRows(instant, motion.time[instant], direction, value, noise)
 
 
 def _carried(frames, states, face):

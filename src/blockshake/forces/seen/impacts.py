@@ -8,7 +8,7 @@ import numpy as np
 from scipy.integrate import cumulative_trapezoid
 from scipy.sparse.csgraph import connected_components
 
-_CALM, _FARTHEST = 3.0, 9.0  # widths of the kernel from an impact: nearer a rate feels it
+_NEAREST, _FARTHEST = 3.0, 9.0  # widths of the kernel from an impact: nearer a rate feels it
 _FEWEST = 4  # instants on either side
 _CLOSED = 0.08  # s: a joint that stays closed for longer has come to rest
 _SAME = 0.01  # s: the closing and the opening are one impact
@@ -130,8 +130,8 @@ def _window(seen, side, near, at):
     time = seen.motion.time
     away = (time - at) * np.sign(time[near] - at) / seen.motion.width
     other = (side != side[near]) & (away > away[near])
-    ends = np.min(away[other], initial=np.inf) - _CALM
-    return np.flatnonzero((away > _CALM) & (away < min(_FARTHEST, ends)))
+    ends = np.min(away[other], initial=np.inf) - _NEAREST
+    return np.flatnonzero((away > _NEAREST) & (away < min(_FARTHEST, ends)))
 
 
 def _closes(seen, face, near):

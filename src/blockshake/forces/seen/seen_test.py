@@ -13,8 +13,8 @@ from blockshake.forces.quiet_start import counted_from_rest
 from blockshake.forces.required import RequiredWrenches, required_wrenches
 from blockshake.forces.seen.equilibrium_rows import (
     ContactForces,
+    EquilibriumRows,
     FaceFrames,
-    Rows,
     bearing_points,
     contact_forces,
     equilibrium_rows,
@@ -26,7 +26,7 @@ from blockshake.geometry.structure import Structure
 
 _STEP = 0.01  # s, between instants: less than the kernel's width
 _LEAST_STILL = 0.1  # s of rest before the table moves, from whose mean the readings count
-_DRIFT, _SURE = 1e-3, 5.0  # m, standard deviations: between the halves of a rest
+_DRIFT, _SURE_DRIFT = 1e-3, 5.0  # m, standard deviations: between the halves of a rest
 _MOTION = (
     "position", "velocity", "acceleration", "rotation", "angular_velocity", "angular_acceleration",
 )  # fmt: skip
@@ -51,7 +51,7 @@ class SeenTest:
     frames : FaceFrames
     states : FaceStates
     forces : ContactForces
-    rows : Rows
+    rows : EquilibriumRows
     """
 
     name: str
@@ -64,7 +64,7 @@ class SeenTest:
     frames: FaceFrames
     states: FaceStates
     forces: ContactForces
-    rows: Rows
+    rows: EquilibriumRows
 
     @property
     def faces(self):
@@ -142,4 +142,4 @@ def _rests(readings, until, noise):
     moved = readings["marker_displacement"].transpose("time", "marker", "axis").to_numpy()[time <= until]
     first, second = (np.ma.masked_invalid(half).mean(axis=0) for half in np.array_split(moved, 2))
     drift = np.ma.filled(np.abs(second - first), 0.0)
-    return until - time[0] >= _LEAST_STILL and bool((drift < max(_DRIFT, _SURE * noise)).all())
+    return until - time[0] >= _LEAST_STILL and bool((drift < max(_DRIFT, _SURE_DRIFT * noise)).all())

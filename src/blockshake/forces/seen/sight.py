@@ -26,7 +26,7 @@ def sight_lines(campaign):
         in them.
     """
     structure = load_structure(campaign.structure)
-    name = next((one.name for one in campaign.tests.values() if one.role != "sealed"), None)
+    name = next(iter(campaign.open), None)
     if name is None:
         return []
     test = without_outliers(load_test(campaign, name, structure), structure)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import minimum_filter1d, uniform_filter1d
 
-from blockshake.forces.joint_motion import from_rest
+from blockshake.forces.joint_motion import SURE, from_rest
 from blockshake.geometry.rotations import rotation_matrices
 
 _LIFTED, _FLIES = (
@@ -15,7 +15,6 @@ _LIFTED, _FLIES = (
 _SLIPS = 0.01  # m/s, mean over `_OVER`
 _OVER = 0.1  # s; a creep drowns in the rate's own noise and shows in the displacement over this time
 _STILL = 0.5  # of the mean, that a slip that goes on has at least
-_SURE = 5.0  # standard deviations
 _CALM = 3.0  # widths of the kernel: a change farther away moves a lever by less than a millimetre
 _EITHER = 99  # number of no state
 
@@ -68,7 +67,7 @@ def face_states(structure, faces, motion, joints, still):
         closed &= steady
         edge[..., tangent] *= steady & ~lifted
     mean = uniform_filter1d(np.nan_to_num(joints.slip_rate), max(1, round(_OVER / step)), axis=0)
-    least = np.maximum(_SLIPS, np.sqrt(2.0) * _SURE * joints.slip_error / _OVER)
+    least = np.maximum(_SLIPS, np.sqrt(2.0) * SURE * joints.slip_error / _OVER)
     slip = np.where(np.abs(mean) > least, np.sign(mean), 0.0).astype(np.int8)
     # the mean still remembers a slip that has ended
     ends = np.sign(mean) * joints.slip_rate < _STILL * np.abs(mean)

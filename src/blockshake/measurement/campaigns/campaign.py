@@ -71,6 +71,16 @@ class Campaign:
     sensors: Sensors
     tests: dict
 
+    @property
+    def open(self):
+        """Tests that are not sealed, by name."""
+        return {name: test for name, test in self.tests.items() if test.role != "sealed"}
+
+    @property
+    def sealed(self):
+        """Sealed tests, by name."""
+        return {name: test for name, test in self.tests.items() if test.role == "sealed"}
+
 
 def load_campaign(folder):
     """Campaign of a folder, its test files found but not yet read.

@@ -13,7 +13,7 @@ _SPAN = 0.06  # s, over which velocities are means: half a period of 8 Hz, some 
 _EVEN = (
     1e-5  # s, by which an even clock may err as written: in five digits, in 32 bits, or in seconds since 1970
 )
-_GAP = 1.5  # usual steps, beyond which a clock lacks a row
+_LACKING = 1.5  # usual steps, beyond which a clock lacks a row
 _DIGITS = 9  # of a time after the decimal point: nanoseconds
 
 
@@ -80,7 +80,7 @@ def missing_rows(time):
     """Number of rows that a clock (n_times,) lacks between each one and the next, int64 (n_times - 1,)."""
     steps = np.diff(time)
     rows = steps / np.median(steps)
-    return np.where(rows > _GAP, np.rint(rows) - 1, 0).astype(np.int64)
+    return np.where(rows > _LACKING, np.rint(rows) - 1, 0).astype(np.int64)
 
 
 def from_first_reading(test):

@@ -33,7 +33,7 @@ _DAMAGE = (OSError, ValueError, RuntimeError, LookupError, TypeError, AttributeE
 
 
 def read_netcdf(path):
-    """Variables of a test in a netCDF file, float64, in the order of dimensions of docs/campaigns.md.
+    """Variables of a test in a netCDF file, float64, in the order of dimensions of docs/guide/campaigns.md.
 
     Raises
     ------

@@ -50,8 +50,9 @@ def read_test(path, structure):
     Returns
     -------
     xarray.Dataset
-        Variables of docs/campaigns.md, float64; NaN along a direction that was not measured, and where a column holds
-        no readings, as of `without_faulty`. All times count from the markers' first reading. The file is never changed.
+        Variables of docs/guide/campaigns.md, float64; NaN along a direction that was not measured, and where a column
+        holds no readings, as of `without_faulty`. All times count from the markers' first reading. The file
+        is never changed.
 
     Raises
     ------

@@ -6,9 +6,9 @@ from scipy.signal import butter, correlate, sosfiltfilt
 from blockshake.measurement.sensors.markers import slab_displacement
 
 _RATE = 100.0  # Hz, at which both are compared
-_BAND = (1.0, 8.0)  # Hz, where a table's motion is well above the noise of both instruments
-_SHORTEST = 3.0  # s, of both records together
-_RELATED = 0.8  # correlation, that instruments of one slab have
+BAND = (1.0, 8.0)  # Hz, where a table's motion is well above the noise of both instruments
+SHORTEST = 3.0  # s, of both records together
+RELATED = 0.8  # correlation, that instruments of one slab have
 _NEAR = 0.1  # s: smaller lags are found by the parity checks, as the fault `clock-lag`
 
 
@@ -45,7 +45,7 @@ def on_one_clock(test, structure):
         return test
     moved = np.gradient(np.gradient(moved))
     lag, found, near = _best_lag(moved, felt, time[0] - time_acc[0])
-    if found < _RELATED or near >= _RELATED:
+    if found < RELATED or near >= RELATED:
         return test
     late = test["time_acc"] - lag
     return test.assign_coords(time_acc=late).assign_attrs(recorder_late=float(lag))
@@ -53,7 +53,7 @@ def on_one_clock(test, structure):
 
 def _best_lag(moved, felt, apart):
     """Lag of the recorder's clock [s], the correlation there, and the largest one within 0.1 s."""
-    fewest = int(_SHORTEST * _RATE)
+    fewest = int(SHORTEST * _RATE)
     products = np.abs(correlate(felt, moved, mode="full"))
     ones = (
         correlate(felt**2, np.ones(len(moved)), mode="full"),
@@ -73,9 +73,9 @@ def _best_lag(moved, felt, apart):
 def _band(time, values):
     """Values at the common rate in the band; None of a record that is short or mostly lost."""
     known = np.isfinite(values)
-    if known.mean() < 0.5 or time[-1] - time[0] < _SHORTEST:
+    if known.mean() < 0.5 or time[-1] - time[0] < SHORTEST:
         return None
     grid = np.arange(time[0], time[-1], 1.0 / _RATE)
-    sections = butter(4, _BAND, btype="bandpass", fs=_RATE, output="sos")
+    sections = butter(4, BAND, btype="bandpass", fs=_RATE, output="sos")
     whole = np.interp(grid, time[known], values[known])
     return sosfiltfilt(sections, whole - whole.mean())

@@ -35,7 +35,7 @@ from blockshake.measurement.sensors.transducers import transducer_names
 
 _QUIET = 0.5  # s at most that are taken as the quiet start
 _QUIET_PART = 0.02  # of the commanded peak displacement: the record is quiet until the command reaches it
-_FIRST = 10  # readings whose mean is the start
+_AT_START = 10  # readings whose mean is the start
 _SILENT = 10  # readings in a row that all are gaps
 _START = 10.0  # times the noise, within which displacements start: the first reading's own is in all others
 
@@ -187,7 +187,7 @@ class _Described:
             )
 
     def _hold_start(self, quiet):
-        start = np.abs(_mean(self.readings[quiet][:_FIRST].swapaxes(0, 1)))
+        start = np.abs(_mean(self.readings[quiet][:_AT_START].swapaxes(0, 1)))
         start = np.where(np.isfinite(start), start, 0.0).max(axis=1)
         far = int(start.argmax())
         if start[far] > _START * self.sensors.marker_noise:

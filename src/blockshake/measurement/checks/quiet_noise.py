@@ -11,7 +11,7 @@ _FEWEST = 10  # readings of a quiet start
 _OTHER_UNIT = 100.0
 _WORST_MARKER = 1e-3  # m
 _MANY = 3  # names that a remark spells out
-_NORMAL = 0.6745  # of a standard deviation is the median size of a normal deviate
+NORMAL = 0.6745  # of a standard deviation is the median size of a normal deviate
 
 
 def marker_noise(readings):
@@ -70,7 +70,7 @@ def accelerometer_noise(readings):
         steps = np.diff(values)
         steps = steps[np.isfinite(steps)]
         if len(steps) >= _FEWEST:
-            fast[channel] = np.median(np.abs(steps)) / _NORMAL / np.sqrt(2.0)
+            fast[channel] = np.median(np.abs(steps)) / NORMAL / np.sqrt(2.0)
             whole[channel] = np.nanstd(values)
     return fast, whole
 

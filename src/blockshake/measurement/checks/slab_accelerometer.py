@@ -4,14 +4,12 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from blockshake.errors import InputError
+from blockshake.measurement.campaigns.recorder_clock import BAND, RELATED, SHORTEST
+from blockshake.measurement.sensors.whole_channels import EVEN
 
-_BAND = (1.0, 8.0)  # Hz, where a table's motion is well above the noise of both instruments
 _END = 0.5  # s at both ends, where the filter is not yet itself
-_EVEN = 0.01  # of the step, by which times may be uneven
-_SHORTEST = 3.0  # s
 _GAPS = 0.05  # of the readings, which may be lost
 _SEEN = 5.0  # times its noise, that the acceleration of the markers must have
-_RELATED = 0.8  # correlation, that instruments of one slab have
 _LARGEST_LAG = 0.05  # s searched: less than half a period of 8 Hz, so that a sine's sign is never in doubt
 _LAG = 0.01  # s without a word; the campaigns of data/ are found within 0.0012 s
 _GAIN = (0.5, 2.0)  # accelerometer over marker, without a word; those of data/ are within 0.97 to 1.01
@@ -47,11 +45,11 @@ def clock_remarks(time, marker, time_acc, acceleration, noise, path):
     begin = max(time[0], time_acc[0]) + _END + _LARGEST_LAG
     end = min(time[-1], time_acc[-1]) - _END - _LARGEST_LAG
     inside = (time >= begin) & (time <= end)
-    if end - begin < _SHORTEST:
+    if end - begin < SHORTEST:
         return []
     step = np.median(np.diff(time))
     moved = np.gradient(np.gradient(_band(time, marker), time), time)[inside]
-    unseen = noise * (2.0 * np.pi) ** 2 * np.sqrt((_BAND[1] ** 5 - _BAND[0] ** 5) / 5.0 * 2.0 * step)
+    unseen = noise * (2.0 * np.pi) ** 2 * np.sqrt((BAND[1] ** 5 - BAND[0] ** 5) / 5.0 * 2.0 * step)
     if np.sqrt(np.mean(moved**2)) < _SEEN * unseen or not moved.any():
         return []
     read = _band(time_acc, acceleration)
@@ -59,7 +57,7 @@ def clock_remarks(time, marker, time_acc, acceleration, noise, path):
     shifted = [np.interp(time[inside] - lag, time_acc, read) for lag in lags]
     correlation = np.array([_correlation(moved, values) for values in shifted])
     best = int(np.abs(correlation).argmax())
-    if abs(correlation[best]) < _RELATED:
+    if abs(correlation[best]) < RELATED:
         return [
             f"the slab's accelerometer along x does not read what its markers do (correlation {correlation[best]:.2f})"
         ]
@@ -83,13 +81,13 @@ def _unfit(time, values):
     """Too short, too many gaps, or uneven."""
     steps = np.diff(time)
     lost = np.mean(~np.isfinite(values))
-    return time[-1] - time[0] < _SHORTEST or lost > _GAPS or np.ptp(steps) > _EVEN * np.median(steps)
+    return time[-1] - time[0] < SHORTEST or lost > _GAPS or np.ptp(steps) > EVEN * np.median(steps)
 
 
 def _band(time, values):
     known = np.isfinite(values)
     whole = np.interp(time, time[known], values[known])
-    sections = butter(4, _BAND, btype="bandpass", fs=1.0 / np.median(np.diff(time)), output="sos")
+    sections = butter(4, BAND, btype="bandpass", fs=1.0 / np.median(np.diff(time)), output="sos")
     return sosfiltfilt(sections, whole - whole.mean())
 
 

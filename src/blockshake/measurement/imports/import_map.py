@@ -12,14 +12,14 @@ from blockshake.tables.table_file import TableLayout
 from blockshake.validation import NotNegative, Strict, validated
 
 
-class Column(Strict):
+class NamedColumn(Strict):
     """A column of a file."""
 
     column: str = Field(description="its name in the header, or its number where there is none")
     unit: str | None = Field(None, description="by default that of all columns of its kind")
 
 
-class Reading(Column):
+class Reading(NamedColumn):
     """A column of readings."""
 
     reversed: bool = Field(False, description="positive readings are along the negative axis")
@@ -30,7 +30,7 @@ def _entry(given):
     return {"column": str(given)} if isinstance(given, (str, int)) else given
 
 
-TimeEntry = Annotated[Column, BeforeValidator(_entry, json_schema_input_type=Column | str | int)]
+TimeEntry = Annotated[NamedColumn, BeforeValidator(_entry, json_schema_input_type=NamedColumn | str | int)]
 ReadingEntry = Annotated[Reading, BeforeValidator(_entry, json_schema_input_type=Reading | str | int)]
 
 

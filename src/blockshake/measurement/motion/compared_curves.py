@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.errors import InputError
 
-_SAME_TIME = 1e-6  # s
+SAME_TIME = 1e-6  # s
 
 
 def curves_along_x(measured, members):
@@ -33,7 +33,7 @@ def curves_along_x(measured, members):
         raise InputError("coverage", "marker", "expected a measured marker that the simulation has too")
     time = members["time"].to_numpy()
     asked = measured["time"].to_numpy()
-    inside = (asked >= time[0] - _SAME_TIME) & (asked <= time[-1] + _SAME_TIME)
+    inside = (asked >= time[0] - SAME_TIME) & (asked <= time[-1] + SAME_TIME)
     if inside.sum() < 2:
         raise InputError("curves", "time", "expected measured times within the ensemble's")
     read, curves = _along_x(measured, markers).isel(time=inside), _along_x(members, markers)
@@ -56,7 +56,7 @@ def at_times(curves, time, asked):
     """
     place = (asked - time[0]) / (time[1] - time[0])
     nearest = np.rint(place).astype(int)
-    if np.abs(place - nearest).max() * (time[1] - time[0]) < _SAME_TIME:
+    if np.abs(place - nearest).max() * (time[1] - time[0]) < SAME_TIME:
         return curves[..., nearest, :]
     first = np.clip(np.floor(place).astype(int) - 1, 0, len(time) - 4)
     found = np.zeros((*curves.shape[:-2], len(asked), curves.shape[-1]))

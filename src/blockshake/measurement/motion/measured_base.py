@@ -19,7 +19,7 @@ from blockshake.measurement.motion.base_motion import (
 from blockshake.measurement.motion.kalman import ACCELERATION, DISPLACEMENT, OFFSET, VELOCITY, walk_into
 from blockshake.measurement.motion.outliers import without_outliers
 
-_LARGEST_LAG = 0.05  # s, between the clocks of the two systems
+_LARGEST_CLOCK_LAG = 0.05  # s, between the clocks of the two systems
 _LAG_STEP = 0.005  # s, of the lags that are tried first
 _LONG_NAMES = {
     "marker": "displacement of the slab's mass centre since the first reading, or its pitch, as the markers read it",
@@ -174,7 +174,7 @@ def _accelerometer_lag(read, time_acc, level, density):
     def unlikely(lag):
         return -smooth_readings(together(*read, time_acc + lag, *level), density).likelihood
 
-    count = round(_LARGEST_LAG / _LAG_STEP)
+    count = round(_LARGEST_CLOCK_LAG / _LAG_STEP)
     lags = _LAG_STEP * np.arange(-count, count + 1)
     best = lags[int(np.argmin([unlikely(lag) for lag in lags]))]
     ends = best - _LAG_STEP, best + _LAG_STEP

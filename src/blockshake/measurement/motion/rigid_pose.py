@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.measurement.motion.body_frame import rigid_jacobian
 
-_FEWEST = 3
+_FEWEST_POINTS = 3
 # Two markers' spread over the largest below which they lie on a line.
 COLLINEAR = 1e-3
 
@@ -43,7 +43,7 @@ def fit_poses(points, readings, marker_noise):
     read = np.isfinite(readings).all(axis=2)
     # times that read the same markers are fitted at once
     for pattern in np.unique(read, axis=0):
-        if pattern.sum() < _FEWEST or spread(points[pattern])[1] < COLLINEAR * spread(points)[0]:
+        if pattern.sum() < _FEWEST_POINTS or spread(points[pattern])[1] < COLLINEAR * spread(points)[0]:
             continue
         times = np.flatnonzero((read == pattern).all(axis=1))
         known = points[pattern]

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 LONGEST_GAP = 10  # readings; across more a spline no longer knows what the blocks did
-_EVEN = 0.01  # of the step, by which times may be uneven
+EVEN = 0.01  # of the step, by which times may be uneven
 
 
 class WholeChannels(NamedTuple):
@@ -64,7 +64,7 @@ def whole_channels(test, structure):
     time, values = readings["time_acc"].to_numpy(), readings.sel(channel=names).to_numpy()
     steps = np.diff(time)
     even = np.linspace(time[0], time[-1], len(time))
-    uneven = np.ptp(steps) > _EVEN * np.median(steps)
+    uneven = np.ptp(steps) > EVEN * np.median(steps)
     for column in range(len(names)):
         known = np.isfinite(values[:, column])
         if uneven or not known.all():

@@ -11,11 +11,10 @@ from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.body_poses import PLANAR, POSE, body_poses
 from blockshake.measurement.motion.joint_coordinates import find_joints, joint_coordinates
 from blockshake.parity.finding import chance_within
-from blockshake.parity.kinds.gain import GAIN
+from blockshake.parity.kinds.gain import GAIN, SEGMENT
 from blockshake.parity.regression import Size, regression
 
 _EVERY = 0.05  # s, between readings that are compared
-_SEGMENT = 0.5  # s: residuals of one segment count as one
 _TOLERANCE = 0.002  # of a gain
 _LEFT = 0.4  # share of every joint's slip that the gain may leave
 _SEEN = 3.0  # standard deviations: of a slip worth a look
@@ -96,7 +95,7 @@ def _gain(pairs, body, seen):
             joints.append((known, np.hypot(*seen[0][2][pair])))
     if len(joints) < _FEWEST_JOINTS:
         return None
-    share = regression([part for known, _ in joints for part in known], _SEGMENT)
+    share = regression([part for known, _ in joints for part in known], SEGMENT)
     if share is None:
         return None
     ratio = share.estimate[0]  # reading over truth, less 1, over the reading

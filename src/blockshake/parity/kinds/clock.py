@@ -4,16 +4,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.parity.kinds.gain import SEGMENT
 from blockshake.parity.kinds.kind import Kind
 from blockshake.parity.regression import Size, regression
+from blockshake.parity.transducer_readings import STEP
 
 _LAG_TOLERANCE = 5e-4  # s; half a millisecond of trigger jitter is no fault
 _SKEW_TOLERANCE = 5e-5  # two quartz clocks
-_SEGMENT = 0.5  # s; longer than the kernels, so that segments are independent
 _COARSE_STRIDE = 5  # readings, a quarter of the band's shortest period
 _FARTHEST_LAG = 0.1  # s, that is searched
 _STEPS = 4  # of Newton's method
-_STEP = 1e-3  # s, of the difference that gives the readings' rate
 
 
 def _correct_lag(test, findings, structure):
@@ -56,11 +56,11 @@ def clock_lag(pairs_by_test):
             if part is None:
                 break
             lag = (part[0][:, 0] @ part[1]) / (part[0][:, 0] @ part[0][:, 0])
-        alone = regression([(part[0][:, :1], *part[1:])], _SEGMENT) if part else None
+        alone = regression([(part[0][:, :1], *part[1:])], SEGMENT) if part else None
         if alone is not None:
             lags[name] = alone
             parts.append(part)
-    return ClockLag(lags, regression(parts, _SEGMENT) if parts else None)
+    return ClockLag(lags, regression(parts, SEGMENT) if parts else None)
 
 
 def clock_findings(clock, level):
@@ -94,7 +94,7 @@ def _lag_equations(pairs, lag):
     """Columns of lag and skew, values and times of all channels, linear about a lag; None of too little."""
     columns, values, times = [], [], []
     for pair in pairs:
-        late = (pair.read(pair.time - lag - _STEP) - pair.read(pair.time - lag + _STEP)) / (2.0 * _STEP)
+        late = (pair.read(pair.time - lag - STEP) - pair.read(pair.time - lag + STEP)) / (2.0 * STEP)
         read = np.where(np.isfinite(late), pair.read(pair.time - lag), np.nan)
         known = pair.enough(read)
         if known is None:

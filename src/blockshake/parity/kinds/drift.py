@@ -6,7 +6,7 @@ from blockshake.parity.kinds.kind import Column, Kind, readings_of
 from blockshake.parity.regression import regression
 
 FRAME = ("optical frame",)
-_SEGMENT = 1.0  # s
+SEGMENT = 1.0  # s
 _MOVES = 1e-3  # m/s2, of what a channel should read at low frequencies: less tells no gain there
 
 
@@ -57,4 +57,4 @@ def _drift(pair, lag):
         values - basis @ (basis.T @ values)
         for values in (since / np.ptp(pair.time) - 0.5, read[known] - expected)
     )
-    return regression([(column[:, None], rest, since)], _SEGMENT)
+    return regression([(column[:, None], rest, since)], SEGMENT)

@@ -4,10 +4,9 @@ import numpy as np
 
 from blockshake.measurement.sensors.markers import slab_displacement
 from blockshake.parity.finding import chance_within
-from blockshake.parity.kinds.drift import DRIFT, FRAME
+from blockshake.parity.kinds.drift import DRIFT, FRAME, SEGMENT
 from blockshake.parity.regression import regression
 
-_SEGMENT = 1.0  # s
 _FEWEST = 100  # readings
 _SHORTEST = 3.0  # s: a shorter record has fewer than four segments, whose scatter tells no error
 _HALVES_DIFFER_BY_ERRORS = 3.0  # standard errors by which the drifts of a record's halves may differ
@@ -67,4 +66,4 @@ def _slope(time, values, nuisance):
     columns = np.column_stack([scale, 0.5 * np.abs(scale)])
     basis = np.linalg.qr(np.column_stack([np.ones(len(since)), *(column[known] for column in nuisance)]))[0]
     columns, rest = (part - basis @ (basis.T @ part) for part in (columns, values[known]))
-    return regression([(columns, rest, since)], _SEGMENT)
+    return regression([(columns, rest, since)], SEGMENT)

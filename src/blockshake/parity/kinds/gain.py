@@ -8,7 +8,7 @@ from blockshake.parity.regression import Size, regression
 _REST = 0.1  # s, whose mean is an accelerometer's reading at rest
 _TOLERANCE = 1e-2  # of an accelerometer's calibration
 _CROSS_SPREAD = 1e-2  # rad, by which a sensor's axes may be turned
-_SEGMENT = 0.5  # s; longer than the kernels, so that segments are independent
+SEGMENT = 0.5  # s; longer than the kernels, so that segments are independent
 
 
 def _correct(test, findings, structure):
@@ -72,7 +72,7 @@ def _slope(parts):
     noise = np.var(expected - read * (read @ expected) / (read @ read))
     ridge = np.full(parts[0][0].shape[1], noise / _CROSS_SPREAD**2)
     ridge[0] = 0.0
-    slope = regression(parts, _SEGMENT, ridge)
+    slope = regression(parts, SEGMENT, ridge)
     return None if slope is None else slope.part(0)
 
 

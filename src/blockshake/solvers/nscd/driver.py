@@ -54,7 +54,7 @@ def simulate_nscd(structure, motion, parameters, record_times, time_step=1e-3, c
 
     Notes
     -----
-    Theta scheme of Moreau (1988) and Jean (1999) as in Dubois et al. (2018); ``docs/nscd.md`` has the equations.
+    Theta scheme of Moreau (1988) and Jean (1999) as in Dubois et al. (2018); ``docs/theory/nscd.md`` has the equations.
     Bodies are handled from the lowest upwards, whatever their order in the file.
     """
     times = np.ascontiguousarray(record_times, dtype=float)

@@ -49,8 +49,8 @@ def simulate_deformable(
 
     Notes
     -----
-    ``docs/nscd-deformable.md`` has the equations. Bodies are handled from the lowest upwards, whatever their order in
-    the file.
+    ``docs/theory/nscd-deformable.md`` has the equations. Bodies are handled from the lowest upwards, whatever their
+    order in the file.
     """
     times = np.ascontiguousarray(record_times, dtype=float)
     order = order_of_bodies(structure)

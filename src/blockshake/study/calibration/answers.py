@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from blockshake.statistics.resampling import rank_chance
 from blockshake.study.calibration.scores import Distances, weighted_scores, weights_near
 
 LEVEL = 0.95  # of a whole family of questions, and of each range of values that are not refused
@@ -89,7 +90,7 @@ def answer_questions(questions, seed):
     largest = np.max(shuffled, axis=0)
     answers = {}
     for name, (shares, tests) in questions.items():
-        chance = float((1 + (largest >= told[name]).sum()) / (1 + _SHUFFLES))
+        chance = float(rank_chance(told[name], largest))
         answers[name] = _answer(scores[name], chance, shares, tests, counts[name])
     return answers
 

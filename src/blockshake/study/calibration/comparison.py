@@ -20,12 +20,11 @@ from blockshake.study.calibration.readings import (
 from blockshake.study.calibration.scores import Distances, chance_of_test, distances
 from blockshake.study.calibration.settings import (
     HOLLOW,
-    OF_CONTACT_SPRINGS,
+    OTHERS,
     RESTITUTION,
     STIFFNESS,
     CalibrationSettings,
 )
-from blockshake.study.friction.replicates import replicate_seed
 from blockshake.study.sampling.distributions import load_distributions
 from blockshake.study.sampling.latin_hypercube import draw_samples
 from blockshake.study.sampling.sample_parameters import has_parameter
@@ -35,7 +34,7 @@ _CURVES, _SPECTRA = "displacement", "acceleration"
 _FEWEST = 0.9  # of the samples, that have a reading: with fewer some values would have none near them
 
 
-def compare_open_tests(case, campaign, model, given, store, progress):
+def compare_open_tests(case, campaign, model, given, store):
     """Distances of the samples' readings of all open tests of a case from the measured ones and from each other.
 
     Parameters
@@ -47,10 +46,7 @@ def compare_open_tests(case, campaign, model, given, store, progress):
     model : str
     given : dict
         Entries ``calibration``, ``ensemble``, ``models`` and ``output_rate`` of the configuration.
-    store : str or path
-        Of finished samples, from which a job that was cut goes on.
-    progress : callable
-        Called with a line of text after each sample.
+    store : Store
 
     Returns
     -------
@@ -62,7 +58,11 @@ def compare_open_tests(case, campaign, model, given, store, progress):
         reason. ``reading``: the displacement, and the spectrum of the acceleration. Attributes ``case``, ``model``.
     """
     settings = CalibrationSettings(**given["calibration"])
-    ensemble = {**given["ensemble"], "seed": replicate_seed(given["ensemble"]["seed"], 0)}
+    ensemble = {
+        **given["ensemble"],
+        "seed": _seed_beside(given["ensemble"]["seed"]),
+        "linked": given["ensemble"]["linked"] | settings.linked,
+    }
     variables = load_distributions(ensemble["distributions"], "ensemble")
     ranges = settings.ranges_of(variables)
     drawn = draw_samples(settings.size, ensemble["seed"], variables | ranges).values
@@ -71,15 +71,14 @@ def compare_open_tests(case, campaign, model, given, store, progress):
     rows = _as_parameters(drawn, used, structure, case["structure"], store)
     run_settings = {**given["models"][model], "output_rate": given["output_rate"]}
     steps = _time_steps(drawn, used, run_settings["time_step"])
-    source = source_digest(*script_sources("compare_open_tests", model))
     tests = {}
     for name, listed in load_campaign(campaign).tests.items():
         if listed.role != "sealed":
             test = open_test(case, campaign, name)
-            progress(
+            store.say(
                 f"{name}: {test.case['motion']} at {test.case['scale']:g}, {test.case['duration']:.4g} s"
             )
-            run = run_settings, rows, steps, ensemble, store, source, progress
+            run = run_settings, rows, steps, ensemble, store
             tests[name] = _compared(test, simulate_readings(test, model, *run))
     shares = [ranges[one].share(drawn[one].to_numpy()) for one in used]
     found = xr.concat(tests.values(), dim=xr.Variable("test", list(tests)))
@@ -90,6 +89,11 @@ def compare_open_tests(case, campaign, model, given, store, progress):
         "model": model,
     }
     return found
+
+
+def _seed_beside(seed):
+    """Seed of the calibration's design, whose samples are others than those of the study."""
+    return int(np.random.SeedSequence([seed, 0]).generate_state(1)[0])
 
 
 def _compared(test, files):
@@ -117,7 +121,7 @@ def has_use(model, structure, parameter):
     """Whether a model has a use for a parameter of the calibration in a structure."""
     if parameter == HOLLOW and hollow_shape(structure)[0] is None:
         return False
-    if parameter in OF_CONTACT_SPRINGS:
+    if parameter in OTHERS:
         return bool(model_of(model).calibrated)
     return has_parameter(structure, parameter)
 
@@ -159,10 +163,12 @@ def _as_parameters(drawn, used, structure, named, store):
 
     Parameters of contact springs are left out where the model has none: rigid contact needs no wave test.
     """
-    rows = drawn.drop(columns=[one for one in OF_CONTACT_SPRINGS if one not in used or one != RESTITUTION])
+    rows = drawn.drop(
+        columns=[one for one in OTHERS if one in drawn and (one not in used or one != RESTITUTION)]
+    )
     if STIFFNESS in used:
-        source = source_digest(*script_sources("calibrate_stiffness"))
-        wave = calibrate_design(named, pd.DataFrame(index=[0]), {}, store, source).iloc[0]
+        waves = store._replace(source=source_digest(*script_sources("calibrate_stiffness")))
+        wave = calibrate_design(named, pd.DataFrame(index=[0]), {}, waves).iloc[0]
         rows = rows.assign(**{name: value * drawn[STIFFNESS] for name, value in wave.items()})
     if HOLLOW in used:
         hollow, edge = parameter_of(structure, HOLLOW)
@@ -175,5 +181,5 @@ def _time_steps(drawn, used, usual):
 
     The largest stable step goes with the period of the springs.
     """
-    factor = drawn[STIFFNESS] if STIFFNESS in used else 0.0 * drawn[STIFFNESS]
+    factor = drawn[STIFFNESS] if STIFFNESS in used else pd.Series(1.0, drawn.index)
     return usual / np.ceil(np.sqrt(factor.clip(lower=1.0)))

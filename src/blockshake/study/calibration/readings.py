@@ -1,6 +1,5 @@
 """Readings of the instruments of an open test, of the specimen and of every sample alike: curves and spectra."""
 
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +17,7 @@ from blockshake.measurement.sensors.markers import driven_marker
 from blockshake.measurement.sensors.whole_channels import whole_channels
 from blockshake.simulation.simulate import simulate
 from blockshake.simulation.structure_digest import structure_digest
-from blockshake.store import keep_dataset, kept, load_made
+from blockshake.store import load_made
 from blockshake.study.ensembles.case_input import (
     MEASURED,
     check_known,
@@ -79,7 +78,7 @@ def open_test(case, campaign, name):
     return OpenTest(name, {**case, "duration": duration}, base, measured, instruments)
 
 
-def simulate_readings(test, model, settings, rows, time_steps, ensemble, store, source, progress):
+def simulate_readings(test, model, settings, rows, time_steps, ensemble, store):
     """Synthetic readings of every sample, simulated where the store has not got them.
 
     Parameters
@@ -94,12 +93,7 @@ def simulate_readings(test, model, settings, rows, time_steps, ensemble, store, 
         Of the samples [s].
     ensemble : dict
         ``seed`` of the design, of which the motions' draws are, and ``linked``, parameters that take another's value.
-    store : str or path
-        Of finished samples; one that was cut goes on from its checkpoint there.
-    source : str
-        Digest of the sources that compute.
-    progress : callable
-        Called with a line of text after each sample.
+    store : Store
 
     Returns
     -------
@@ -113,27 +107,25 @@ def simulate_readings(test, model, settings, rows, time_steps, ensemble, store, 
     for sample, row in rows.iterrows():
         motion = motions(sample)
         parameters = settings["parameters"] | sample_parameters(row, structure, ensemble["linked"])
-        key = content_digest(
-            source, "readings", test.name, model, identity, *(part.tobytes() for part in motion.table),
-            case["duration"], settings["output_rate"], time_steps[sample], parameters, int(sample),
-            test.instruments.model_dump(),
-        )  # fmt: skip
-        path = Path(store) / f"{key}.nc"
-        how = "kept"
-        if not kept(path):
+
+        def simulated(checkpoint, sample=sample, motion=motion, parameters=parameters):
             run = simulate(
                 structure, motion, model, parameters, time_step=time_steps[sample],
-                duration=case["duration"], output_rate=settings["output_rate"],
-                checkpoint=path.with_suffix(".checkpoint"),
+                duration=case["duration"], output_rate=settings["output_rate"], checkpoint=checkpoint,
             )  # fmt: skip
             noise = content_digest("noise", test.name, model, identity, ensemble["seed"], int(sample))
             read = observe(run, structure, test.instruments, int(noise, 16))
             along = read[["marker_displacement"]].sel(axis=["x"])
             along = along.assign(log_spectrum=log_spectrum(read, structure, case["duration"]))
-            keep_dataset(path, along.assign_attrs(status=run.attrs["status"]), _DECIMALS)
-            how = "simulated"
+            return along.assign_attrs(status=run.attrs["status"])
+
+        given = (
+            "readings", test.name, model, identity, *motion.table, case["duration"], settings["output_rate"],
+            time_steps[sample], parameters, int(sample), test.instruments.model_dump(),
+        )  # fmt: skip
+        words = f"{structure.file.name} {model} sample {sample}"
+        path = store.dataset(words, given, simulated, _DECIMALS)
         status = load_made(path, ("marker_displacement", "log_spectrum")).attrs["status"]
-        progress(f"{structure.file.name} {model} sample {sample}, {how}: {status}")
         found.append(path if status in FINISHED else None)
     return found
 

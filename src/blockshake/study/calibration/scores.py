@@ -4,6 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.statistics.resampling import rank_chance
+from blockshake.statistics.scores import ensemble_score
+
 _HALF_WIDTH = 0.2  # of a parameter's range, within which samples count for a value
 
 
@@ -74,31 +77,16 @@ def weights_near(shares, values):
 
 
 def weighted_scores(weights, found):
-    """Continuous ranked probability score of weighted samples, mean over the places of `distances`, shape (...,) [1].
+    """`ensemble_score` of weighted samples, mean over the places of `distances`, shape (...,) [1].
 
-    Parameters
-    ----------
-    weights : float64 array, shape (..., n_samples)
-    found : Distances
-
-    Notes
-    -----
-    ``sum_i w_i d_i - sum_(i != j) w_i w_j d_ij / (2 (1 - sum_i w_i^2))``: with equal weights the estimate that is fair
-    to small ensembles (Ferro 2014, Q. J. R. Meteorol. Soc. 140). Samples without an answer have no weight. With equal
-    weights the score is 0.5 in the mean where the test is one more of the samples' kind.
+    ``weights`` (..., n_samples); ``found``: `Distances`. Samples without an answer have no weight. With equal weights
+    the score is 0.5 in the mean where the test is one more of the samples' kind.
     """
-    answered = np.isfinite(found.to_test)
-    weights = weights * answered
-    with np.errstate(invalid="ignore"):
-        weights = weights / weights.sum(axis=-1, keepdims=True)
-    to_test, between = (np.nan_to_num(part) for part in found)
-    spread = ((weights @ between) * weights).sum(axis=-1)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return weights @ to_test - 0.5 * spread / (1.0 - (weights**2).sum(axis=-1))
+    return ensemble_score(*map(np.nan_to_num, found), weights * np.isfinite(found.to_test))
 
 
 def chance_of_test(found):
-    """Rank of the test's mean distance from the samples among those of the samples from the others [1].
+    """`rank_chance` of the test's mean distance from the samples among those of the samples from the others [1].
 
     A test that no sample resembles has the chance 1 / (n_samples + 1).
     """
@@ -107,4 +95,4 @@ def chance_of_test(found):
     if count < 2:
         return np.nan
     own = np.nansum(found.between[np.ix_(answered, answered)], axis=1) / (count - 1)
-    return float((1 + (own >= found.to_test[answered].mean()).sum()) / (count + 1))
+    return float(rank_chance(found.to_test[answered].mean(), own))

@@ -12,7 +12,6 @@ FEWEST = 19  # samples with which a range of 95 % has an end: the largest excess
 RESTITUTION = "restitution"
 STIFFNESS = "stiffness_factor"  # of k_n and k_s together, over those of the wave speed
 HOLLOW = "hollow"  # of the faces of the structure's upright blocks, over their smallest edge
-OF_CONTACT_SPRINGS = (RESTITUTION, STIFFNESS, HOLLOW)  # models without contact springs have no use for them
 
 
 class Range(Strict):
@@ -49,7 +48,7 @@ class Range(Strict):
 
 FRICTION = Range(lowest=0.2, highest=1.0)
 FRICTION_OF_STEEL = Range(lowest=0.1, highest=0.8)
-OTHERS = {
+OTHERS = {  # of contact springs: models without any have no use for them
     RESTITUTION: Range(lowest=0.05, highest=0.95),
     STIFFNESS: Range(lowest=0.03, highest=3.0, scale="log"),
     HOLLOW: Range(lowest=1e-5, highest=3e-3, scale="log"),
@@ -57,13 +56,25 @@ OTHERS = {
 
 
 class CalibrationSettings(Strict):
-    """Friction, restitution, stiffness and flatness of contacts by all open tests of some cases, by some models."""
+    """Friction, restitution, stiffness and flatness of contacts by all open tests of some cases, by some models.
+
+    With one parameter, the friction of concrete on concrete, this is the search of Zhou et al. (2023) for the mean
+    whose envelope fits.
+    """
 
     cases: dict[ModelName, tuple[str, ...]] = Field(
         min_length=1, description="by model, one of the study's: names of cases with a measured test"
     )
     size: Whole = Field(
         40, ge=FEWEST, description="samples by which every test is simulated; fewer would give no range [1]"
+    )
+    parameters: tuple[str, ...] | None = Field(
+        None,
+        min_length=1,
+        description="those that are calibrated, the others as in the study; by default all that `ranges` may name",
+    )
+    linked: dict[str, str] = Field(
+        {}, description="frictions that take the calibrated value of another parameter, by name"
     )
     ranges: dict[str, Range] = Field(
         {},
@@ -79,4 +90,5 @@ class CalibrationSettings(Strict):
             for name in variables
             if name.startswith("friction.")
         }
-        return {**usual, **OTHERS, **self.ranges}
+        spans = {**usual, **OTHERS, **self.ranges}
+        return {name: spans[name] for name in self.parameters or spans if name not in self.linked}

@@ -8,32 +8,36 @@ import xarray as xr
 from blockshake.files import content_digest
 from blockshake.measurement.motion.compared_curves import curves_along_x
 from blockshake.measurement.sensors import markers
-from blockshake.store import load_made
-from blockshake.study.comparison.differences import (
-    FEWEST,
+from blockshake.statistics.intervals import SURE_FROM, quantile_interval, sample_quantiles
+from blockshake.statistics.resampling import (
+    bootstrap_interval,
     chance_distance,
-    ensemble_distance,
-    ensemble_score,
     limits_of,
-    mean_differences,
-    mean_width,
-    parting_time,
     resampled_weights,
 )
+from blockshake.statistics.scores import (
+    FEWEST,
+    ensemble_distance,
+    ensemble_score,
+    mean_differences,
+    mean_width,
+)
+from blockshake.store import load_made
 from blockshake.study.comparison.twins import TWINS
 from blockshake.study.described import describe
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.ensemble import ALONG_X, POSES, join_batches, relative_to_slab
 from blockshake.study.ensembles.envelope import counted_samples
-from blockshake.study.ensembles.intervals import SURE_FROM, quantile_interval, sample_quantiles
 
 MOST = 400  # samples of a model that are compared: each is held against each
 TOLD_APART_BY = 3.0  # standard deviations of a marker's noise that curves are apart when they have parted
 _MIDDLE = [0.5]
+_ENDS = (0.05, 0.95)  # quantiles between which a range lies
 _DESCRIBED = {
     "counted": ("samples that enter statistics", "1"),
     "peak": ("median of the largest displacement along x relative to the slab", "m"),
     "residual": ("median of the displacement along x relative to the slab at the end", "m"),
+    "residual_range": ("from the 5 % to the 95 % quantile of the residual", "m"),
     "width": ("mean absolute difference of two samples relative to the slab", "m"),
     "distance": ("energy distance of the ensembles, mean over times and blocks", "m"),
     "distance_chance": ("distance that random divisions of the samples stay below", "m"),
@@ -89,13 +93,14 @@ def compare_models(ensembles, twins, measured):
     -------
     xarray.Dataset
         Displacements are along x relative to the slab's marker [m]; markers are those of the blocks. Of one model:
-        ``counted(model)``; medians ``peak``, ``residual(model, marker)`` and ``width(model, marker)``, the mean
-        absolute difference of two samples. Of two models, ``other`` the second: ``distance``, the energy distance of
-        the ensembles, with ``distance_chance``; ``history_difference`` and ``parting_time`` of the ``common`` samples.
-        Of the numerics, NaN without twins: ``floor`` and ``horizon(model, twin)``; ``impact_ratio(model, step)`` and
-        ``housner_ratio``. Against the measured curves, NaN without any: ``score(model)`` and ``score_difference(model,
-        other)``. Limits of 95 %, ``NAME_interval(bound, ...)``: of medians by order statistics, of width and scores by
-        bootstrap. NaN where an ensemble has fewer than three samples, times infinite where nothing parts.
+        ``counted(model)``; medians ``peak`` and ``residual(model, marker)``; ``residual_range(model, marker)``, from
+        its 5 % to its 95 % quantile; and ``width(model, marker)``, the mean absolute difference of two samples. Of two
+        models, ``other`` the second: ``distance``, the energy distance of the ensembles, with ``distance_chance``;
+        ``history_difference`` and ``parting_time`` of the ``common`` samples. Of the numerics, NaN without twins:
+        ``floor`` and ``horizon(model, twin)``; ``impact_ratio(model, step)`` and ``housner_ratio``. Against the
+        measured curves, NaN without any: ``score(model)`` and ``score_difference(model, other)``. Limits of 95 %,
+        ``NAME_interval(bound, ...)``: of medians by order statistics, of range, width and scores by bootstrap. NaN
+        where an ensemble has fewer than three samples, of a range six; times infinite where nothing parts.
     """
     models = list(ensembles)
     counted = {model: counted_samples(one) for model, one in ensembles.items()}
@@ -162,6 +167,7 @@ def _alone(counted, seed):
             values = ensemble[name].sel(frame="slab", marker=blocks).transpose("sample", "marker").to_numpy()
             one[name] = ("marker", sample_quantiles(values, _MIDDLE)[0])
             one[f"{name}_interval"] = (("bound", "marker"), quantile_interval(values, _MIDDLE)[:, 0])
+        one |= _residual_range(values, _generator(seed, "residual", model))
         width = np.full((1, len(blocks)), np.nan)
         if size >= FEWEST:
             curves = _of(ensemble)
@@ -172,6 +178,19 @@ def _alone(counted, seed):
         one["width_interval"] = (("bound", "marker"), limits)
         parts.append(xr.Dataset(one, {"marker": blocks, "bound": ["lower", "upper"]}))
     return xr.concat(parts, dim=xr.Variable("model", list(counted)))
+
+
+def _residual_range(values, generator):
+    """Range of the residuals (n_samples, n_markers) of the samples that have one, with its limits."""
+    values = values[np.isfinite(values).all(axis=1)]
+    found, limits = np.full(values.shape[1], np.nan), np.full((2, values.shape[1]), np.nan)
+    if len(values) >= SURE_FROM:
+        found, limits = _range(values), bootstrap_interval(_range, [values], generator)
+    return {"residual_range": ("marker", found), "residual_range_interval": (("bound", "marker"), limits)}
+
+
+def _range(values):
+    return np.diff(sample_quantiles(values, _ENDS), axis=0)[0]
 
 
 def _pairs(counted, limit, seed):
@@ -213,6 +232,18 @@ def _pairs(counted, limit, seed):
     result["common"] = (pair, common)
     result["history_difference_interval"] = (("bound", *pair), interval)
     return result.assign_coords(model=models, other=models, bound=["lower", "upper"])
+
+
+def parting_time(time, curve, other, limit):
+    """First time at which two curves differ by more than a limit at any marker [s]; infinite if they never do.
+
+    ``curve``, ``other`` (n_times, n_markers) [m]; a run that ended before the other differs from then on.
+    """
+    with np.errstate(invalid="ignore"):
+        beyond = np.abs(curve - other) > limit
+    beyond |= np.isfinite(curve) != np.isfinite(other)
+    parted = beyond.any(axis=1)
+    return float(time[np.argmax(parted)]) if parted.any() else np.inf
 
 
 def _upper_median(times):

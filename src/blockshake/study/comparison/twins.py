@@ -13,13 +13,13 @@ TWINS = ("nudged", "half-step")
 NUDGE = 1e-6  # share by which the ground motion of a twin is larger
 
 
-def simulate_twins(case, motions, model, settings, output_rate, row, linked, store, source, progress):
+def simulate_twins(runs, motions, row, store):
     """Twins of one sample of a case by a model, and what an impact of one of its blocks keeps.
 
     Parameters
     ----------
-    case, motions, model, settings, output_rate, linked, store, source, progress
-        As of `simulate_samples`, with its store and checkpoints.
+    runs, motions, store
+        As of `simulate_samples`.
     row : pandas.DataFrame
         One row: the sample.
 
@@ -31,19 +31,20 @@ def simulate_twins(case, motions, model, settings, output_rate, row, linked, sto
         velocity after the first impact over that before of the structure's lowest block, which rocks on the slab
         alone after a kick, at the time step and at half of it, nominal parameters; ``housner_ratio`` [1] for it.
     """
+    model, settings = runs.model, runs.settings
     half = settings | {"time_step": 0.5 * settings["time_step"]}
-    runs = []
-    for moved, own in ((lambda sample: motions(sample).scaled(1.0 + NUDGE), settings), (motions, half)):
-        (path,) = simulate_samples(case, moved, model, own, output_rate, row, linked, store, source, progress)
-        runs.append(load_made(path)[["marker_displacement"]].isel(sample=0, drop=True))
-    structure, solver = load_structure(case["structure"]), model_of(model)
+    twins = []
+    for moved, taken in ((lambda sample: motions(sample).scaled(1.0 + NUDGE), settings), (motions, half)):
+        (path,) = simulate_samples(runs._replace(settings=taken), moved, row, store)
+        twins.append(load_made(path)[["marker_displacement"]].isel(sample=0, drop=True))
+    structure, solver = load_structure(runs.case["structure"]), model_of(model)
     given = solver.stiffness_of(structure) | settings.get("parameters", {})
     numerical = split_parameters(given, model)[1]
     ratios = [
         rocking_block(structure, model, numerical, one["time_step"], 1.0)["impact_ratio"]
         for one in (settings, half)
     ]
-    result = xr.concat(runs, dim="twin", coords="minimal", compat="override", join="override").assign_coords(
+    result = xr.concat(twins, dim="twin", coords="minimal", compat="override", join="override").assign_coords(
         twin=list(TWINS), step=["usual", "half"]
     )
     result["impact_ratio"] = ("step", ratios)

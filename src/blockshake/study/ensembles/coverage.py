@@ -1,10 +1,9 @@
 """Coverage: how much of a measured curve lies within an ensemble's bounds, never without its reference."""
 
-from typing import NamedTuple
-
 import numpy as np
 import xarray as xr
 
+from blockshake.statistics.resampling import rank_chance
 from blockshake.study.described import describe
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.distance import distances
@@ -14,6 +13,7 @@ from blockshake.study.ensembles.measured import compared_curves
 
 REFERENCE_QUANTILES = (0.05, 0.5, 0.95)
 _FEWEST_MEMBERS = 3
+_NOISE_SEED = 0  # of the readings of the members
 UNLIKELY = 0.05  # chance of a whole curve at or below which an ensemble does not fit
 _DESCRIBED = {
     "coverage": ("fraction of the time that the measured curve is within the bounds", "1"),
@@ -31,13 +31,6 @@ _DESCRIBED = {
 }
 
 
-class Band(NamedTuple):
-    """Edges of a band, float64 arrays, shape (n_times, ...)."""
-
-    lower: np.ndarray
-    upper: np.ndarray
-
-
 def coverage_of_case(named, base, batches):
     """`coverage` of the test that a case is compared with, ``named`` by ``campaign``, a folder, and ``test``.
 
@@ -47,7 +40,7 @@ def coverage_of_case(named, base, batches):
     return coverage(measured, join_batches(batches, POSES, ALONG_X), marker_noise)
 
 
-def coverage(measured, ensemble, marker_noise, seed=0):
+def coverage(measured, ensemble, marker_noise):
     """Fraction of the time that a measured curve lies within the bounds, and the same of the members.
 
     Parameters
@@ -59,8 +52,6 @@ def coverage(measured, ensemble, marker_noise, seed=0):
         From `gather_ensemble`; only completed and collapsed samples count.
     marker_noise : float
         Standard deviation of a measured marker's position [m].
-    seed : int
-        Of the noise given to the members.
 
     Returns
     -------
@@ -87,14 +78,14 @@ def coverage(measured, ensemble, marker_noise, seed=0):
     measured curve wherever the band is thinner than the noise. There coverage says nothing at all, of any curve, and
     the distance decides.
     """
-    read, members, curves, readings = compared_curves(measured, ensemble, marker_noise, seed, fewest=0)
+    read, members, curves, readings = compared_curves(measured, ensemble, marker_noise, _NOISE_SEED)
     markers = list(read["marker"].values)
     enough = len(curves) >= _FEWEST_MEMBERS
     by_curve = np.full((len(curves) + 1, len(markers)), np.nan)
     inside, width, (*member_coverage, _) = by_curve[-1], by_curve[-1], by_curve
     *members_away, away = by_curve
     if enough:
-        lower, upper = band(curves)
+        lower, upper = np.fmin.reduce(curves, axis=0), np.fmax.reduce(curves, axis=0)
         inside, member_coverage = (
             share_inside(read.to_numpy(), lower, upper),
             members_inside(curves, readings),
@@ -118,11 +109,7 @@ def coverage(measured, ensemble, marker_noise, seed=0):
             "member_coverage": by_member,
             "distance": ("marker", away),
             "member_distance": member_distance,
-            "curve_probability": (member_distance >= xr.DataArray(away, dims="marker"))
-            .sum("sample")
-            .pipe(
-                lambda beyond: (1.0 + beyond) / (1.0 + len(member_coverage)) if enough else np.nan * beyond
-            ),
+            "curve_probability": ("marker", rank_chance(away, members_away) if enough else away * np.nan),
             "band_width": ("marker", width),
             "measured_peak": ("marker", _measured_peak(measured, members.attrs["slab_marker"], markers)),
         },
@@ -135,7 +122,7 @@ def coverage(measured, ensemble, marker_noise, seed=0):
         "synthetic": int(measured.attrs.get("synthetic", 0)),
         "counted": members.sizes["sample"],
         "marker_noise": float(marker_noise),
-        "noise_seed": int(seed),
+        "noise_seed": _NOISE_SEED,
     }
     return result
 
@@ -155,27 +142,6 @@ def relative_width(comparison, peak):
     ``peak``: of the displacement relative to the slab over the simulated window [m].
     """
     return comparison["band_width"] / peak
-
-
-def band(curves):
-    """Smallest and largest value at each time.
-
-    Parameters
-    ----------
-    curves : float64 array, shape (n_curves, n_times, ...)
-        NaN is no value.
-
-    Returns
-    -------
-    Band
-        NaN where no curve has a value.
-
-    Examples
-    --------
-    >>> band(np.array([[0.0, 2.0], [1.0, np.nan]]))
-    Band(lower=array([0., 2.]), upper=array([1., 2.]))
-    """
-    return Band(np.fmin.reduce(curves, axis=0), np.fmax.reduce(curves, axis=0))
 
 
 def share_inside(curve, lower, upper):

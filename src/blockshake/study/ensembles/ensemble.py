@@ -1,7 +1,5 @@
 """Ensembles: the runs of one structure, motion and model, side by side along ``sample``."""
 
-from typing import NamedTuple
-
 import numpy as np
 import xarray as xr
 
@@ -16,13 +14,6 @@ FRAMES = ("inertial", "slab")
 POSES = ("position", "orientation")
 ALONG_X = {"axis": ["x"]}
 _OF_ONE_RUN = ("status", "reason", "end_time", "sample", "parameters")
-
-
-class PeakAndResidual(NamedTuple):
-    """Peak and residual of displacements, float64 xarray.DataArrays without ``time`` [m]."""
-
-    peak: xr.DataArray
-    residual: xr.DataArray
 
 
 def gather_ensemble(runs, samples, parameters, slab_marker):
@@ -219,12 +210,12 @@ def in_frames(displacement, slab_marker):
 
 
 def peak_and_residual(along, since, skipna):
-    """`PeakAndResidual`: largest magnitude of curves along x over ``time`` [m], and their mean from ``since`` [s] on.
+    """Largest magnitude of curves along x over ``time``, and their mean from ``since`` [s] on, xarray.DataArrays [m].
 
     ``skipna``: gaps are left out of the mean; otherwise the mean of a curve with a gap is NaN.
     """
     window = (along["time"] >= since).to_numpy()
-    return PeakAndResidual(np.abs(along).max("time"), along.isel(time=window).mean("time", skipna=skipna))
+    return np.abs(along).max("time"), along.isel(time=window).mean("time", skipna=skipna)
 
 
 def _extremes(ensemble):

@@ -5,13 +5,13 @@ import xarray as xr
 
 from blockshake.dynamics.system import FALLEN, FINISHED
 from blockshake.simulation.joint_figures import JOINT_FIGURES
-from blockshake.study.ensembles.ensemble import POSES, in_frames, join_batches
-from blockshake.study.ensembles.intervals import (
+from blockshake.statistics.intervals import (
     CONFIDENCE,
     quantile_interval,
     sample_quantiles,
     share_interval,
 )
+from blockshake.study.ensembles.ensemble import POSES, in_frames, join_batches
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 BOUNDS = {"lower": 0.0, "upper": 1.0}

@@ -5,13 +5,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from blockshake.errors import InputError
-from blockshake.measurement.motion.compared_curves import curves_along_x
+from blockshake.measurement.motion.compared_curves import SAME_TIME, curves_along_x
 from blockshake.measurement.sensors.markers import noisy_reading
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW, in_frames, peak_and_residual
 from blockshake.study.ensembles.envelope import counted_samples
-
-_SAME_TIME = 1e-6  # s
 
 
 class ComparedCurves(NamedTuple):
@@ -32,7 +29,7 @@ class ComparedCurves(NamedTuple):
     readings: np.ndarray
 
 
-def compared_curves(measured, ensemble, marker_noise, seed, fewest):
+def compared_curves(measured, ensemble, marker_noise, seed):
     """`ComparedCurves` of a measured test and of an ensemble, the ensemble's read with noise too.
 
     Parameters
@@ -46,19 +43,13 @@ def compared_curves(measured, ensemble, marker_noise, seed, fewest):
         Standard deviation of a measured marker's position [m].
     seed : int
         Of the noise that the members are read with.
-    fewest : int
-        Members that the comparison needs.
 
     Raises
     ------
     InputError
-        Fewer members, no marker or no time in common.
+        No marker or no time in common.
     """
     members = counted_samples(ensemble)
-    if members.sizes["sample"] < fewest:
-        raise InputError(
-            "comparison", "samples", f"expected at least {fewest} completed or collapsed samples"
-        )
     read, curves = curves_along_x(measured, members)
     curves, generator = curves.to_numpy(), np.random.default_rng(seed)
     readings = [noisy_reading(curve, marker_noise, generator) for curve in curves]
@@ -74,6 +65,6 @@ def measured_curves(test, slab_marker, duration):
     ``duration`` of the window [s].
     """
     along = test["marker_displacement"].sel(axis="x", drop=True)
-    along = in_frames(along.isel(time=(along["time"] <= duration + _SAME_TIME).to_numpy()), slab_marker)
+    along = in_frames(along.isel(time=(along["time"] <= duration + SAME_TIME).to_numpy()), slab_marker)
     peak, residual = peak_and_residual(along, duration - RESIDUAL_WINDOW, skipna=True)
     return xr.Dataset({"displacement": along, "peak": peak, "residual": residual})

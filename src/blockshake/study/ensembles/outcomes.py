@@ -27,13 +27,6 @@ class Outcomes(NamedTuple):
         return self.completed + self.collapsed + self.falling
 
 
-class EnergyResiduals(NamedTuple):
-    """Energy residuals over the samples of an ensemble [1]; NaN where no sample has one."""
-
-    median: float
-    largest: float
-
-
 class Shortfall(NamedTuple):
     """Samples that are missing from the statistics of an ensemble.
 
@@ -59,13 +52,6 @@ def unfinished(samples):
     return [
         samples.sel(sample=one) for one in samples["sample"].values[samples["status"].values != "completed"]
     ]
-
-
-def energy_residuals(samples):
-    """`EnergyResiduals` over the samples of `sample_figures`: median and largest."""
-    return EnergyResiduals(
-        *(numerical_figure(samples, "energy_residual", one) for one in (np.median, np.max))
-    )
 
 
 def numerical_figure(samples, name, statistic):

@@ -7,7 +7,7 @@ from scipy.optimize import minimize
 from scipy.special import ndtr, ndtri
 from scipy.stats import t
 
-from blockshake.study.ensembles.intervals import CONFIDENCE
+from blockshake.statistics.intervals import CONFIDENCE
 
 _SHARPEST, _WIDEST = 1e-6, 10.0  # dispersions that stand for none and for any [1]
 # the grid of limits: logarithms beyond the levels, its smallest dispersion, and its points

@@ -1,17 +1,13 @@
 """Samples of a case that climb the ladder of intensities, each until its potential collapse."""
 
-from functools import partial
-
 import numpy as np
 import xarray as xr
 
-from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.system import FINISHED
 from blockshake.geometry.reference_block import half_width
 from blockshake.geometry.structure import load_structure
 from blockshake.study.described import describe
 from blockshake.study.ensembles.ladder import climb
-from blockshake.study.sampling.sample_parameters import sample_parameters
 
 _DESCRIBED = {
     "scale": ("factor of the motion", "1"),
@@ -22,25 +18,17 @@ _DESCRIBED = {
 }
 
 
-def climb_samples(case, model, settings, rows, linked, ladder, store, source, progress):
+def climb_samples(runs, rows, ladder, store):
     """Levels that each sample of a case passes, from the restored stack each time.
 
     Parameters
     ----------
-    case : dict
-        ``structure``, ``motion``, ``baseline`` and ``duration`` [s] of a case of the configuration.
-    model : str
-    settings : dict
-        The model's, as of `simulate_samples`.
+    runs : CaseRuns
+        With ``motion`` and ``baseline`` of the case.
     rows : pandas.DataFrame
         Sampled values, index the sample, contact stiffness included.
-    linked : dict of str to str
-        As in `sample_parameters`.
     ladder : Ladder
-    store, source
-        As of `climb`.
-    progress : callable
-        Called with a line of text after each sample.
+    store : Store
 
     Returns
     -------
@@ -54,16 +42,12 @@ def climb_samples(case, model, settings, rows, linked, ladder, store, source, pr
     nothing of its level, so that its sample is only known to pass the levels before. A stack may stand a level above
     one that it did not pass; its capacity is the first that it did not.
     """
-    structure = load_structure(case["structure"])
+    structure = load_structure(runs.case["structure"])
     climbs = []
     for sample, row in rows.iterrows():
-        parameters = settings.get("parameters", {}) | sample_parameters(row, structure, linked)
-        rungs = climb(
-            structure, partial(load_motion, case["motion"], baseline=case["baseline"]), model, parameters,
-            settings["time_step"], case["duration"], ladder, store, source,
-        )  # fmt: skip
+        rungs = climb(structure, runs, runs.parameters(row, structure), ladder, store)
         climbs.append(rungs)
-        progress(f"{structure.file.name} {model} sample {sample}: {_words(rungs)}")
+        store.say(f"{structure.file.name} {runs.model} sample {sample}: {_words(rungs)}")
     return gathered(
         rows.index.to_numpy(), climbs, ladder.scales, ladder.largest_drift or half_width(structure)
     )

@@ -3,10 +3,10 @@
 import numpy as np
 import xarray as xr
 
+from blockshake.statistics.intervals import CONFIDENCE, share_interval
 from blockshake.store import load_made
 from blockshake.study.described import describe
 from blockshake.study.ensembles.envelope import BOUNDS, QUANTILES, over_samples
-from blockshake.study.ensembles.intervals import CONFIDENCE, share_interval
 from blockshake.study.fragility.capacity import Capacity, fit_capacity, likely_capacities
 
 SAFE = 0.05  # probability of a potential collapse that a safe level may have

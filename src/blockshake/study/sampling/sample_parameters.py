@@ -1,5 +1,7 @@
 """Parameters of one structure that a sample of the design stands for."""
 
+from blockshake.simulation.models import model_of
+
 
 def sample_parameters(row, structure, linked):
     """Parameters of one sample that this structure has, by dotted name, from a row that has stiffness too.
@@ -31,3 +33,12 @@ def own_value(structure, name):
         same = [entry for entry in structure.file.friction if sorted(entry.pair) == sorted(parts)]
         return same[0].coefficient if same else 0.0
     return getattr(structure.file.materials.get(parts[0]), parts[1], 0.0)
+
+
+def unused_variables(variables, model, parameters):
+    """Variables that cannot matter: controls that a sound measure must find at the level of chance.
+
+    Dotted names. ``parameters``: what a sample gives to the structure, from `sample_parameters`, without what it lacks.
+    """
+    unused = model_of(model).without_effect
+    return [name for name in variables if name not in parameters or name.rsplit(".", 1)[1] in unused]

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.stats import rankdata
 
 FEWEST_DEGREES = 5  # of freedom below which a partial correlation says nothing
-_ROUNDING = 1e-9  # of a standardised slope, and of a share of the variance
+_NEGLIGIBLE = 1e-9  # of a standardised slope, and of a share of the variance
 FEWEST_SAMPLES = 6  # below which no class of two samples and its rival remain
 
 
@@ -104,70 +104,7 @@ def partial_rank_correlation(inputs, outputs):
 
 
 def _beyond_rounding(values):
-    return np.where(np.abs(values) > _ROUNDING, values, 0.0)
-
-
-def bootstrap_interval(measure, inputs, outputs, estimate, confidence, count, generator):
-    """Interval of a measure from samples drawn again with replacement.
-
-    Parameters
-    ----------
-    measure : callable
-        ``measure(inputs, outputs)`` -> array like ``estimate``.
-    inputs, outputs : float64 arrays, shapes (n_samples, n_inputs), (n_samples, n_outputs, n_components)
-    estimate : float64 array
-        The measure of the samples themselves.
-    confidence : float
-        In (0, 1).
-    count : int
-        Times to draw.
-    generator : numpy.random.Generator
-
-    Returns
-    -------
-    float64 array, shape (2, *estimate.shape)
-        Quantiles of the drawn measures, shifted so that their mean is the estimate.
-
-    Notes
-    -----
-    Samples drawn twice agree with themselves and raise what a class mean explains; the shift takes that out (as the
-    bias-reducing estimate of Plischke, Borgonovo and Smith 2013 does). The pairing in a Latin hypercube makes
-    estimates a little steadier than independent draws: the interval errs on the wide side.
-    """
-    n_samples = len(inputs)
-    drawn = np.empty((count, *estimate.shape))
-    for index in range(count):
-        rows = generator.integers(0, n_samples, n_samples)
-        drawn[index] = measure(inputs[rows], outputs[rows])
-    tails = (0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence)
-    return np.quantile(drawn, tails, axis=0) - drawn.mean(axis=0) + estimate
-
-
-def chance_level(measure, inputs, outputs, confidence, count, generator):
-    """Level that the largest of all measures reaches by chance where no input has any effect.
-
-    Parameters
-    ----------
-    measure, inputs, outputs, confidence, count, generator
-        As in `bootstrap_interval`.
-
-    Returns
-    -------
-    float
-        Quantile ``confidence`` of the largest absolute measure over all outputs and inputs, the outputs' rows permuted
-        together; NaN where nothing is defined.
-
-    Notes
-    -----
-    One level for all pairs (Westfall and Young 1993): if nothing matters, one picture in twenty has any point beyond
-    the level of 95 %. Markers of one run move together, and the permutation keeps that.
-    """
-    largest = np.full(count, np.nan)
-    for index in range(count):
-        found = np.abs(measure(inputs, outputs[generator.permutation(len(outputs))]))
-        if np.isfinite(found).any():
-            largest[index] = np.nanmax(found)
-    return float(np.quantile(largest, confidence))
+    return np.where(np.abs(values) > _NEGLIGIBLE, values, 0.0)
 
 
 def _standardised(ranks):

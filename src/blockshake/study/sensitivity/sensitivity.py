@@ -9,26 +9,43 @@ from blockshake.dynamics.system import Status
 from blockshake.errors import InputError
 from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
-from blockshake.simulation.models import model_of
+from blockshake.statistics.intervals import CONFIDENCE
+from blockshake.statistics.resampling import DRAWS, bootstrap_interval, chance_level
+from blockshake.study.described import describe
 from blockshake.study.ensembles.ensemble import ALONG_X, POSES, join_batches
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.sampling.latin_hypercube import load_design
-from blockshake.study.sampling.sample_parameters import sample_parameters
+from blockshake.study.sampling.sample_parameters import sample_parameters, unused_variables
 from blockshake.study.sensitivity.histories import completed_histories, principal_components, window_bounds
 from blockshake.study.sensitivity.measures import (
     FEWEST_SAMPLES,
-    bootstrap_interval,
-    chance_level,
     first_order_share,
     partial_rank_correlation,
 )
 
 QUANTITIES = {"history": "m", "peak": "m", "residual": "m", "rotation": "rad"}
-CONFIDENCE = 0.95
-_DRAWS = 400  # bootstrap and permutations: the tail of 2.5 % then rests on ten draws
 _MEASURES = {
     "first_order": first_order_share,
     "rank_correlation": lambda *pair: partial_rank_correlation(*pair)[0],
+}
+_DESCRIBED = {
+    "first_order": ("first-order Sobol index, correlation ratio over classes of ranks", "1"),
+    "rank_correlation": ("partial rank correlation", "1"),
+    "window_first_order": ("first-order Sobol index of the displacement within a second", "1"),
+    "window_first_order_chance": (
+        "what the largest of all seconds, markers and variables reaches without any effect", "1",
+    ),
+    "window_spread": ("standard deviation over the samples within a second", "m"),
+    "window": ("middle of the second", "s"),
+    "explained": ("adjusted R^2 of a regression of ranks on all variables", "1"),
+    "used": ("samples used", "1"),
+    "control": ("1 where model or structure has no use for the variable", "1"),
+}  # fmt: skip
+_NAMED = {  # without a unit
+    "spread": "standard deviation over the samples, in quantity_unit",
+    "marker": "marker, relative to the slab's marker",
+    "parameter": "dotted name of the random variable",
+    "bound": "edge of the interval",
 }
 
 
@@ -105,15 +122,6 @@ def sensitivity(ensemble, variables, controls=()):
     return _described(result.assign_coords(marker=markers, parameter=variables), ensemble, counted, seed)
 
 
-def unused_variables(variables, model, parameters):
-    """Variables that cannot matter: controls that a sound measure must find at the level of chance.
-
-    Dotted names. ``parameters``: what a sample gives to the structure, from `sample_parameters`, without what it lacks.
-    """
-    unused = model_of(model).without_effect
-    return [name for name in variables if name not in parameters or name.rsplit(".", 1)[1] in unused]
-
-
 def _outputs(counted, quantity, markers, slab):
     """Values of one quantity, float64 (n_samples, n_markers, n_components); NaN where a sample has none."""
     completed = counted["status"].values == Status.COMPLETED
@@ -144,7 +152,7 @@ def _over_time(counted, markers, slab, inputs, generator):
         outputs = np.concatenate(padded, axis=1)
         shares = first_order_share(inputs[used], outputs).reshape(*shape, -1)
         spread = np.sqrt(outputs.var(axis=0).sum(axis=1)).reshape(shape)
-        level = chance_level(first_order_share, inputs[used], outputs, CONFIDENCE, _DRAWS, generator)
+        level = chance_level(first_order_share, inputs[used], outputs, generator)
     return xr.Dataset(
         {
             "window_first_order": (("window", "marker", "parameter"), shares),
@@ -171,8 +179,8 @@ def _measured(inputs, outputs, is_history, generator):
         if enough and not (is_history and name == "rank_correlation"):
             estimate = measure(inputs, outputs)
         if np.isfinite(estimate).any():
-            interval = bootstrap_interval(measure, inputs, outputs, estimate, CONFIDENCE, _DRAWS, generator)
-            level = chance_level(measure, inputs, outputs, CONFIDENCE, _DRAWS, generator)
+            interval = bootstrap_interval(measure, [inputs, outputs], generator)
+            level = chance_level(measure, inputs, outputs, generator)
         result[name] = (by_pair, estimate)
         result[f"{name}_interval"] = (("bound", *by_pair), np.clip(interval, -1.0, 1.0))
         result[f"{name}_chance"] = ((), level)
@@ -180,59 +188,27 @@ def _measured(inputs, outputs, is_history, generator):
 
 
 def _described(result, ensemble, counted, seed):
-    what = {
-        "first_order": "first-order Sobol index, correlation ratio over classes of ranks",
-        "rank_correlation": "partial rank correlation",
-    }
-    for name, long_name in what.items():
-        result[name].attrs = {
-            "long_name": long_name, "units": "1",
-            "ancillary_variables": f"{name}_interval {name}_chance",
-        }  # fmt: skip
-        result[f"{name}_interval"].attrs = {
-            "long_name": f"bootstrap interval of the {long_name}",
-            "units": "1",
-            "confidence": CONFIDENCE,
-        }
-        result[f"{name}_chance"].attrs = {
-            "long_name": f"what the largest absolute {long_name} reaches without any effect",
-            "units": "1",
-            "confidence": CONFIDENCE,
-        }
-    result["window_first_order"].attrs = {
-        "long_name": "first-order Sobol index of the displacement within a second",
-        "units": "1",
-        "ancillary_variables": "window_first_order_chance",
-    }
-    result["window_first_order_chance"].attrs = {
-        "long_name": "what the largest of all seconds, markers and variables reaches without any effect",
-        "units": "1",
-        "confidence": CONFIDENCE,
-    }
-    result["window_spread"].attrs = {
-        "long_name": "standard deviation over the samples within a second",
-        "units": "m",
-    }
-    result["window"].attrs = {"long_name": "middle of the second", "units": "s"}
-    result["explained"].attrs = {
-        "long_name": "adjusted R^2 of a regression of ranks on all variables",
-        "units": "1",
-    }
-    result["spread"].attrs = {"long_name": "standard deviation over the samples, in quantity_unit"}
-    result["used"].attrs = {"long_name": "samples used", "units": "1"}
-    result["control"].attrs = {
-        "long_name": "1 where model or structure has no use for the variable",
-        "units": "1",
-    }
-    result["marker"].attrs = {"long_name": "marker, relative to the slab's marker"}
-    result["parameter"].attrs = {"long_name": "dotted name of the random variable"}
-    result["bound"].attrs = {"long_name": "edge of the interval"}
     result = result.assign_coords(quantity_unit=("quantity", list(QUANTITIES.values())))
+    describe(result, _DESCRIBED)
+    for name in _MEASURES:
+        of = result[name].attrs
+        result[f"{name}_interval"].attrs = {
+            "long_name": f"bootstrap interval of the {of['long_name']}", "units": "1", "confidence": CONFIDENCE,
+        }  # fmt: skip
+        result[f"{name}_chance"].attrs = {
+            "long_name": f"what the largest absolute {of['long_name']} reaches without any effect", "units": "1",
+            "confidence": CONFIDENCE,
+        }  # fmt: skip
+        of["ancillary_variables"] = f"{name}_interval {name}_chance"
+    result["window_first_order"].attrs["ancillary_variables"] = "window_first_order_chance"
+    result["window_first_order_chance"].attrs["confidence"] = CONFIDENCE
+    for name, long_name in _NAMED.items():
+        result[name].attrs = {"long_name": long_name}
     result.attrs = {
         **ensemble.attrs,
         "title": "sensitivity of an ensemble of simulated runs to its random variables",
         "counted": counted.sizes["sample"],
         "sensitivity_seed": f"{seed:x}",
-        "draws": _DRAWS,
+        "draws": DRAWS,
     }
     return result

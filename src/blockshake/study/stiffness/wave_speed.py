@@ -6,12 +6,10 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import model_of
 from blockshake.simulation.structure_digest import structure_digest
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
-from blockshake.store import kept_value
 from blockshake.study.sampling.sample_parameters import sample_parameters
 from blockshake.study.stiffness.tower import tower_of
 from blockshake.study.stiffness.wave_step import (
@@ -152,7 +150,7 @@ def calibrate_stiffness(structure, parameters=None):
     }
 
 
-def calibrate_design(structure, design, linked, store, source):
+def calibrate_design(structure, design, linked, store):
     """Stiffness of a structure for every sample of a design.
 
     Parameters
@@ -162,10 +160,7 @@ def calibrate_design(structure, design, linked, store, source):
         Sampled values, columns the dotted names.
     linked : dict of str to str
         Parameters that take another's sampled value.
-    store : str or path
-        Folder of finished samples: one that is there is not calibrated again.
-    source : str
-        Digest of the sources that compute.
+    store : Store
 
     Returns
     -------
@@ -176,8 +171,10 @@ def calibrate_design(structure, design, linked, store, source):
     identity, found = structure_digest(loaded), []
     for _, row in design.iterrows():
         parameters = sample_parameters(row, loaded, linked)
-        key = content_digest(source, "stiffness", identity, parameters)
-        calibrated = kept_value(store, key, lambda given=parameters: calibrate_stiffness(loaded, given))
+        calibrated = store.value(
+            ("stiffness", identity, parameters),
+            lambda _, given=parameters: calibrate_stiffness(loaded, given),
+        )
         found.append(stiffness_parameters(calibrated))
     return pd.DataFrame(found, index=design.index)
 

@@ -36,7 +36,7 @@ def test_equation_2_as_printed_may_pull_while_inside():
 
 
 def test_like_on_like_has_the_stiffness_given_and_unlike_ones_act_in_series():
-    """Configuration 4: steel of 2.1e11 Pa on concrete of 3.45e10 Pa (docs/contracts.md, parameters)."""
+    """Configuration 4: steel of 2.1e11 Pa on concrete of 3.45e10 Pa (docs/guide/contracts.md, parameters)."""
     structure = load_structure("configuration-4")
     interfaces = assemble_interfaces(structure, PARAMETERS)
     names = structure.body_names

@@ -58,7 +58,7 @@ def test_a_tilted_stack_starts_on_its_stretched_shear_springs(make_structure, ru
 
 
 def test_a_flying_body_is_left_as_given_beside_a_stack_that_settles(make_structure, run_ls_dem):
-    """The equilibrium is the start only where it lies within 0.1 mm (docs/contracts.md, start of a run)."""
+    """The equilibrium is the start only where it lies within 0.1 mm (docs/guide/contracts.md, start of a run)."""
     q = [np.cos(0.2), 0.0, np.sin(0.2), 0.0]
     structure = make_structure(
         [
@@ -84,7 +84,7 @@ def test_a_flying_body_is_left_as_given_beside_a_stack_that_settles(make_structu
 
 
 def test_a_block_tilted_on_its_edge_stays_tilted(make_structure, run_ls_dem):
-    """No equilibrium within 0.1 mm: the given pose is the start (docs/contracts.md, start of a run)."""
+    """No equilibrium within 0.1 mm: the given pose is the start (docs/guide/contracts.md, start of a run)."""
     angle = 0.05
     position = [
         0.4 - 0.4 * np.cos(angle) + 0.8 * np.sin(angle),
@@ -128,7 +128,7 @@ def test_a_tower_of_eight_settles_without_relaxation(make_structure, run_ls_dem)
 
 
 def test_a_tower_that_sinks_by_more_than_a_tenth_of_a_millimetre_starts_as_given(make_structure, run_ls_dem):
-    """Twelve blocks on soft joints sink by more than 0.1 mm: the given poses are the start (docs/contracts.md)."""
+    """Twelve blocks on soft joints sink by more than 0.1 mm and start as given (docs/guide/contracts.md)."""
     bodies = [
         {"name": f"b{index}", "shape": "cube", "position": [0.0, 0.0, 0.5 + index]} for index in range(12)
     ]

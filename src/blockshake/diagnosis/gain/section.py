@@ -1,0 +1,145 @@
+"""Fourth section of a diagnosis: what the cause means for the structure, on tests that nothing was fitted to."""
+
+from blockshake.diagnosis.gain.figure import plot_drift
+from blockshake.diagnosis.wording import percent_words
+from blockshake.pages.blocks import Figure, Section, Table, Text
+from blockshake.pages.drawing import svg_of
+from blockshake.pages.wording import MISSING, model_label, number, sentence_case
+
+_RIVALS = {
+    "nominal": "the nominal model",
+    "recalibrated": "the nominal model, recalibrated on the open tests",
+    "discrepancy": "the nominal model with a discrepancy without a name",
+    "placebo": "the same cause at another place",
+}
+_KINDS = {
+    "nominal": "Without",
+    "recalibrated": "Recalibrated without",
+    "extended": "With the cause",
+    "placebo": "Cause elsewhere",
+}
+_MOST_TESTS = 3
+OF_GAIN = ("gain was measured", "nothing to gain")  # by which caveats on the gain are known
+
+
+def gain_section(found):
+    """Gain on forces and responses against each rival, largest drift with and without the cause."""
+    verdict, gain = found.verdict, found.gain
+    title = "Gain on sealed tests"
+    if verdict.gain is None and verdict.row_gain is None:
+        reasons = [one for one in verdict.caveats if OF_GAIN[0] in one]
+        words = (
+            "; ".join(reasons) or "no gain was measured: nothing acts by which the model could be extended"
+        )
+        return Section(title, "gain", (Text(sentence_case(words)),))
+    blocks = [
+        Text(
+            "The sealed tests were opened after the decision had been frozen; nothing was fitted to them. Gain: "
+            "the share of a rival's error that the model with the cause removes; 100 % leaves nothing to gain, "
+            "below 0 the cause makes the prediction worse."
+        ),
+        _gains(verdict),
+        *(Text(sentence_case(one)) for one in verdict.caveats if any(words in one for words in OF_GAIN)),
+    ]
+    if gain is not None and "where" in gain.attrs:
+        blocks.append(_of_sensor(gain))
+    elif gain is not None and "largest" in gain:
+        blocks += [_solvers(gain), _largest(found), _drift(found)]
+    return Section(title, "gain", tuple(blocks))
+
+
+def _gains(verdict):
+    columns = [one for one in ((verdict.row_gain, "Forces"), (verdict.gain, "Responses")) if one[0]]
+    rows = []
+    for rival, words in _RIVALS.items():
+        own = [getattr(gain, rival, None) for gain, _ in columns]
+        if any(own):
+            rows.append((words, *(percent_words(one) if one else MISSING for one in own)))
+    return Table(
+        "Gain against each rival with its interval of 90 %. Forces: those that sound blocks do not make, or the "
+        "motion of the slab that a sound table does not make, at the frozen sizes. Responses: simulated rotations "
+        "and slips of the joints and the drift of the top, as long as each can be predicted.",
+        ("Rival", *(name for _, name in columns)),
+        tuple(rows),
+        "l" + "r" * len(columns),
+    )
+
+
+def _solvers(gain):
+    kinds = [str(kind) for kind in gain["kind"].values]
+    rows = [
+        (
+            model_label(str(model)),
+            *(number(gain["score_of_solver"].sel(model=model, kind=kind)) for kind in kinds),
+        )
+        for model in gain["model"].values
+    ]
+    rows.append(("all together", *(number(gain["score"].sel(kind=kind)) for kind in kinds)))
+    return Table(
+        "Scores by solver: continuous ranked probability score of the responses in units of their spread, lower "
+        f"is better. A record that the extended model had made itself would score {number(gain['floor'])} in the "
+        "mean.",
+        ("Solver", *(_kind(kind) for kind in kinds)),
+        tuple(rows),
+        "l" + "r" * len(kinds),
+    )
+
+
+def _kind(kind):
+    return _KINDS.get(kind, kind.capitalize())
+
+
+def _largest(found):
+    gain = found.gain
+    kinds = [kind for kind in _KINDS if kind in gain["kind"].values]
+    rows = []
+    for test in gain["test"].values:
+        own = gain.sel(test=test)
+        rows.append((
+            str(test), *(_with_band(own.sel(kind=kind)) for kind in kinds), number(1e3 * own["largest_measured"]),
+        ))  # fmt: skip
+    return Table(
+        "What it means for the structure: largest drift of the top against the table [mm], median of the members "
+        f"and their 5 to 95 %, and {'of the virtual test' if found.synthetic else 'measured'}.",
+        ("Test", *(_KINDS[kind] for kind in kinds), "Virtual test" if found.synthetic else "Measured"),
+        tuple(rows),
+        "l" + "r" * (len(kinds) + 1),
+    )
+
+
+def _with_band(own):
+    median, lower, upper = (number(1e3 * own[f"largest{end}"]) for end in ("", "_lower", "_upper"))
+    return f"{median} ({lower} to {upper})"
+
+
+def _drift(found):
+    tests = [str(name) for name in found.gain["test"].values][:_MOST_TESTS]
+    return Figure(
+        "Drift of the top against the table on sealed tests, without and with the cause: 5 to 95 % and median of the "
+        f"members of all solvers, and {found.measured_word}. Shaded: beyond the time for which it can be predicted.",
+        svg_of(plot_drift, found.gain, tests, ("recalibrated", "extended"), found.measured_word),
+    )
+
+
+def _of_sensor(scores):
+    """Gain of taking a sensor's fault out: its readings against those of the other sensors."""
+    factor, unit = (1e3, "mm") if scores["score"].attrs["units"] == "m" else (1e3, "ms")
+    words = {
+        "nominal": "As read",
+        "extended": "Fault taken out",
+        "discrepancy": "Mean of the open tests taken off",
+    }
+    rows = [
+        (
+            str(name), *(number(factor * float(scores["score"].sel(test=name, kind=kind))) for kind in words),
+            number(factor * float(scores["floor"].sel(test=name))),
+        )
+        for name in scores["test"].values
+    ]  # fmt: skip
+    return Table(
+        f"Root mean square distance of the readings of {scores.attrs['where']} from where the other sensors put them "
+        f"[{unit}]; the floor is that while nothing moves.",
+        ("Test", *words.values(), "Floor"),
+        tuple(rows),
+        "lrrrr",
+    )

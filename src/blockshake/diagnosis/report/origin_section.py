@@ -1,0 +1,59 @@
+"""Last section of a diagnosis: tests, assumptions, and the files and programs from which all this comes."""
+
+from blockshake.dynamics.provenance import provenance
+from blockshake.pages.blocks import Items, Section, Table
+from blockshake.pages.origin import command_blocks, digests_table, versions_table
+from blockshake.pages.wording import given
+
+
+def origin_section(found):
+    """Tests of the campaign, motions, digests, versions."""
+    blocks = [
+        Items(_assumed(found)),
+        _tests_table(found),
+        *command_blocks(f"snakemake -c2 diagnose --config campaign=FOLDER effort={found.effort}"),
+        digests_table(found.digests),
+        versions_table(found.versions),
+    ]
+    return Section("Tests, assumptions, origin", "origin", tuple(blocks))
+
+
+def _assumed(found):
+    motions = [
+        f"{name}{' (SYNTHETIC)' if one.get('synthetic') else ''}"
+        + (f": {provenance(one)}" if one["source"] != name or one["format"] != "csv" else "")
+        for name, one in found.motions.items()
+    ]
+    items = [
+        "Assumed: rigid blocks of the stated sizes and masses, of which edges, faces, mass centres and friction "
+        "scatter as sound blocks do; markers and accelerometers with the stated noise.",
+        "Forces are read off the measured motion; the decision rests on no simulation.",
+    ]
+    if found.verdict.runs:
+        items.append(
+            f"{found.verdict.runs} simulated tests, for the gain on the responses and the misfit alone."
+        )
+    if motions:
+        items.append(f"Commanded motions: {'; '.join(motions)}.")
+    items += [
+        f"{test} is judged until {one.body} falls, at {one.time:.2f} s."
+        for test, one in found.parity.falls.items()
+    ]
+    return tuple(items)
+
+
+def _tests_table(found):
+    rows = []
+    for test in found.campaign.tests.values():
+        use = "judged by" if test.name in found.decision.tests else "left out"
+        if test.name in found.decision.silent:
+            use += ", no joint moved"
+        if test.role == "sealed":
+            read = found.verdict.gain or found.verdict.row_gain
+            use = "sealed: read for the gain alone" if read else "sealed: not read"
+        rows.append((test.name, test.motion, given(test.scale), test.role, use))
+    words = (
+        f"Tests of the campaign {found.campaign.name}. Role, as the campaign says: fit and select are open, to "
+        "find the cause by; sealed is kept for the gain."
+    )
+    return Table(words, ("Test", "Motion", "Scale", "Role", "Use"), tuple(rows), "llrll")

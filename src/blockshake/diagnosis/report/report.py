@@ -1,0 +1,69 @@
+"""The report of a diagnosis: one page and one PDF from the same content."""
+
+from blockshake.diagnosis.gain.section import gain_section
+from blockshake.diagnosis.misfit.section import misfit_section
+from blockshake.diagnosis.report.answer_section import answer_section
+from blockshake.diagnosis.report.content import load_diagnosed
+from blockshake.diagnosis.report.limits_section import limits_section
+from blockshake.diagnosis.report.odds_section import odds_section
+from blockshake.diagnosis.report.origin_section import origin_section
+from blockshake.diagnosis.report.sensors_section import sensors_section
+from blockshake.diagnosis.report.size_section import size_section
+from blockshake.diagnosis.verdict.track_record_section import track_record_section
+from blockshake.pages.blocks import Document, numbered
+from blockshake.pages.html import write_html
+from blockshake.pages.pdf import write_pdf
+from blockshake.pages.wording import count_words
+
+_SECTIONS = (
+    answer_section,
+    odds_section,
+    size_section,
+    gain_section,
+    sensors_section,
+    misfit_section,
+    limits_section,
+    track_record_section,
+    origin_section,
+)
+
+
+def make_diagnosis_report(campaign, results, effort, track_record, html, pdf):
+    """Write the report of a diagnosis that has ended.
+
+    Parameters
+    ----------
+    campaign : str or path
+        Folder of the campaign.
+    results : str or path
+        Folder with its ``verdict.json`` and what that rests on.
+    effort : str
+    track_record : str or path
+        The procedure's track record; without one the report says so.
+    html, pdf : str or path
+        To write, each whole or not at all. Same results, same bytes.
+
+    Raises
+    ------
+    InputError
+        A file is missing or holds something else.
+    """
+    document = compose_diagnosis(load_diagnosed(campaign, results, effort, track_record))
+    write_html(html, document)
+    write_pdf(pdf, document)
+
+
+def compose_diagnosis(found):
+    """The report's document from what was found; a section that has nothing to say is left out."""
+    tests = found.decision.tests
+    sections = (section(found) for section in _SECTIONS)
+    return numbered(
+        Document(
+            title=f"blockshake: diagnosis of {found.campaign.name}",
+            subtitle=(
+                f"{found.structure}, judged by {count_words(len(tests), 'test')} ({', '.join(tests)})"
+                f", effort {found.effort}"
+            ),
+            sections=tuple(section for section in sections if section),
+        )
+    )

@@ -1,0 +1,77 @@
+"""Third section of a diagnosis: what was added to the model, its size with interval, and what it rests on."""
+
+from blockshake.diagnosis.report.figures.sizes import plot_sizes
+from blockshake.diagnosis.wording import (
+    estimate_words,
+    place_words,
+    range_words,
+    size_words,
+    when_words,
+)
+from blockshake.effects.registry import EFFECTS
+from blockshake.pages.blocks import Figure, Items, Section, Table
+from blockshake.pages.drawing import svg_of
+
+_WHERE = {
+    "input": "on the table's motion",
+    "contact": "in the contacts",
+    "geometry": "in the blocks' geometry and mass",
+    "force": "as a force on a block",
+    "observation": "in the sensors alone",
+}
+
+
+def size_section(found):
+    """Size, range, equation and place of every cause that is not excluded; None where nothing acts."""
+    causes = [one for part in found.decision.parts for one in part.causes]
+    if not causes:
+        return None
+    blocks = [_table(causes)]
+    effects = [one for one in causes if not one.outside]
+    if effects:
+        blocks.append(
+            Figure(
+                "Sizes on the ranges of the registry (grey): likeliest (dot) and its interval of 90 % (blue); "
+                "without the cause (dashed); the draws by which the model is extended (ticks).",
+                svg_of(plot_sizes, effects, [EFFECTS[one.name].parameters for one in effects]),
+            )
+        )
+    return Section("Size of what acts", "size", (*blocks, Items(tuple(map(_described, causes)))))
+
+
+def _described(cause):
+    title, place = cause.title[0].upper() + cause.title[1:], place_words(cause.place)
+    if cause.outside:
+        acts = ", ".join(words for words in (place, when_words(cause.when)) if words)
+        return f"{title}: at {acts}. A form that the forces have, and no effect of the registry."
+    effect = EFFECTS[cause.name]
+    return (
+        f"{title}: acts {_WHERE[effect.acts]}{f', at {place}' if place else ''}. Equation: {effect.equation} "
+        f"({effect.source}). Told apart from what looks alike by: {effect.told_apart_by}."
+    )
+
+
+def _table(causes):
+    rows = []
+    for cause in causes:
+        known = {} if cause.outside else {one.name: one for one in EFFECTS[cause.name].parameters}
+        for number, (name, estimate) in enumerate(cause.parameters.items()):
+            one = known.get(name)
+            rows.append((
+                cause.title, meaning_words(one) if one else name, estimate_words(name, estimate),
+                range_words(one.lower, one.upper, one.unit) if one else "",
+                "" if number else size_words(one.null if one else 0.0, estimate.unit),
+            ))  # fmt: skip
+    return Table(
+        "Sizes with their intervals of 90 %, from all instants of all tests; the range of the registry, and the "
+        "value in a model without the cause.",
+        ("Cause", "Parameter", "Size", "Range", "Without"),
+        tuple(rows),
+        "lllrr",
+    )
+
+
+def meaning_words(parameter):
+    """Name and meaning of an `EffectParameter`: ``offset of the mass centre along x``."""
+    joint = " " if parameter.meaning.startswith(("of ", "on ")) else ": "
+    return f"{parameter.name}{joint}{parameter.meaning}"

@@ -1,0 +1,45 @@
+"""Eighth section of a diagnosis: how often the procedure was right where the truth was known."""
+
+from blockshake.diagnosis.verdict.track_record import procedure_digest
+from blockshake.pages.blocks import Section, Table, Text
+from blockshake.pages.wording import MISSING, percent
+
+_MET = {True: "met", False: "missed"}
+
+
+def track_record_section(found):
+    """Shares of the campaigns in which an effect was hidden."""
+    record = found.track_record
+    if record is None:
+        text = (
+            "This procedure has no track record yet: it has not been run on campaigns in which an effect was hidden, "
+            "so that nobody knows how often its answers are right. Read the answer accordingly."
+        )
+        return Section("Track record of the procedure", "track-record", (Text(text, strong=True),))
+    blocks = [
+        Text(
+            f"The procedure was run on {record.date}, sources {record.commit}, on campaigns in which the "
+            "truth was known to the scorer alone (docs/results/hidden-effects.md). The figures hold for such "
+            "campaigns; on another structure they are an indication."
+        )
+    ]
+    if record.procedure != procedure_digest():
+        words = "The program that decides has been changed since: the track record is that of an earlier one."
+        blocks.append(Text(words, strong=True))
+    return Section("Track record of the procedure", "track-record", (*blocks, _shares(record)))
+
+
+def _shares(record):
+    rows = []
+    for one in (one for one in record.shares.values() if one.goal is not None):
+        rows.append((
+            one.meaning, MISSING if one.estimate is None else f"{percent(one.estimate)} %", f"{one.hits} of {one.n}",
+            f"{percent(one.lower)} to {percent(one.upper)} %",
+            f"{one.side} {percent(one.goal)} %", _MET.get(one.met, ""),
+        ))  # fmt: skip
+    return Table(
+        "Shares of the cases with intervals of 95 %, and the goals set beforehand.",
+        ("Figure", "Found", "Cases", "Interval", "Goal", ""),
+        tuple(rows),
+        "lrrrrl",
+    )

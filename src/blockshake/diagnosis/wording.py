@@ -1,0 +1,130 @@
+"""Words of a diagnosis: causes, places, sizes, and what a form from outside is."""
+
+import numpy as np
+
+from blockshake.diagnosis.answer.places import EVERYWHERE
+from blockshake.diagnosis.outside.registry import FORMS
+from blockshake.effects.registry import EFFECTS, title_of
+from blockshake.pages.units import Printed, printed
+from blockshake.pages.wording import number
+
+_MANY = 1e6  # from which on odds are told in words
+_ALONG_X = ("force", "impulse", "offset")
+_HIGH = 0.25  # of a body's height above its middle, from which on a force acts near the top
+
+
+def name_of(cause):
+    """A cause's name in words, effect of the registry or form from outside."""
+    return FORMS[cause].title if cause in FORMS else title_of(cause)
+
+
+def shown_unit(unit):
+    """Factor and name of the unit in which a size is shown: of a share, percent."""
+    return Printed(100.0, "%") if unit == "1" else printed(unit)
+
+
+def size_words(value, unit, digits=3):
+    """A size with its unit: ``19.6 mm``."""
+    factor, name = shown_unit(unit)
+    return f"{number(factor * value, digits)} {name}"
+
+
+def range_words(lower, upper, unit):
+    """Two ends with their unit: ``-150 to 150 mm``."""
+    factor, name = shown_unit(unit)
+    return f"{number(factor * lower)} to {number(factor * upper)} {name}"
+
+
+def estimate_words(name, estimate):
+    """An estimate of a parameter: ``0.62 mrad per m/s2 (0.48 to 0.77)``; of one along x with its side."""
+    factor, unit = shown_unit(estimate.unit)
+    values = [factor * one for one in (estimate.estimate, estimate.lower, estimate.upper)]
+    side = ""
+    if name in _ALONG_X and values[1] * values[2] > 0.0:
+        side = " towards +x" if values[0] > 0.0 else " towards -x"
+        values = [abs(values[0]), *sorted(map(abs, values[1:]))]
+    middle, lower, upper = map(number, values)
+    return f"{middle} {unit} ({lower} to {upper}){side}"
+
+
+def place_words(place):
+    """A place of a file in words, such as ``joint slab / block-1``; empty where a cause has none."""
+    if "joint" in place:
+        return f"joint {' / '.join(place['joint'])}"
+    body = place.get("body", "")
+    return f"{_level(place['height'])} of {body}" if "height" in place else body
+
+
+def named_place(name, bodies):
+    """A place of the evidence in words, ``block-1@0.42`` as ``top of block-1``, among the names of all bodies."""
+    body, _, height = name.rpartition("@")
+    if body:
+        return f"{_level(float(height))} of {body}"
+    return name if name in (EVERYWHERE, *bodies) else f"joint {name}"
+
+
+def _level(height):
+    return "top" if height > _HIGH else "middle"
+
+
+def sizes_of(cause):
+    """Parameters of a `Cause` in words: ``offset 37.7 mm (30.4 to 44.8) towards +x``."""
+    return ", ".join(f"{name} {estimate_words(name, own)}" for name, own in cause.parameters.items())
+
+
+def cause_words(cause, place):
+    """A `Cause` with its place in words, its sizes, and when it acts."""
+    name = f"{cause.title}{f' ({place})' if place else ''}"
+    return ", ".join(part for part in (name, sizes_of(cause), when_words(cause.when)) if part)
+
+
+def when_words(when):
+    """When a form from outside acts; empty of what acts all the time."""
+    if "starts" in when:
+        starts = (f"{_seconds(start)} of {test}" for test, start in when["starts"].items())
+        return f"from {listed(starts)} on"
+    if "blows" in when:
+        blows = (f"{_seconds(one['time'])} of {test}" for test, one in when["blows"].items())
+        return f"at {listed(blows)}"
+    if "start" in when:
+        after = " and in the tests after it" if when["lasts"] else ""
+        return f"from {_seconds(when['start'])} of {when['test']} on{after}"
+    return f"in {when['test']} alone" if "test" in when else ""
+
+
+def _seconds(time):
+    return f"{max(time, 0.0):.2f} s"
+
+
+def listed(words, last="and"):
+    """Words in a row: ``a, b and c``."""
+    *others, end = words
+    return f"{', '.join(others)} {last} {end}" if others else end
+
+
+def times_words(odds):
+    """How many times likelier, from the logarithm of the odds: ``57 times``."""
+    if odds > np.log(_MANY):
+        return "more than a million times"
+    ratio = float(f"{np.exp(odds):.2g}")
+    return f"{ratio:,.0f} times" if ratio > 10.0 else f"{number(ratio, 2)} times"
+
+
+def beyond(effect, value):
+    """A size in words from which on an effect would have been seen."""
+    first = EFFECTS[effect].parameters[0]
+    return f"{'below' if first.visible < first.null else 'beyond'} {size_words(value, first.unit)}"
+
+
+def chance_words(p):
+    """A chance, as a number where it is not too small for one."""
+    return f"p = {number(p, 2)}" if p > 1.0 / _MANY else "less than 1 in a million"
+
+
+def percent_words(contrast):
+    """A gain with its interval in percent: ``71 % (62 to 80 %)``; from -1 to 1 where nothing is there to gain."""
+    if contrast.lower <= -1.0 and contrast.upper >= 1.0:
+        return "nothing to gain"
+    return (
+        f"{100.0 * contrast.estimate:.0f} % ({100.0 * contrast.lower:.0f} to {100.0 * contrast.upper:.0f} %)"
+    )

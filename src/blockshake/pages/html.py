@@ -1,0 +1,44 @@
+"""The report as one page that needs nothing else."""
+
+import re
+
+import jinja2
+from plotly.offline import get_plotlyjs
+
+from blockshake.files import write_text
+from blockshake.pages.blocks import PAGE_WIDTH
+
+
+def write_html(path, document):
+    """Write a numbered `Document` as one self-contained HTML file: no link out of it."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("blockshake.pages"),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    template = environment.get_template("report.html.j2")
+    blocks = [block for section in document.sections for block in section.blocks]
+    library = get_plotlyjs() if any(getattr(block, "interactive", "") for block in blocks) else ""
+    rendered = template.render(
+        document=document, picture=_picture, embedded=_embedded, library=jinja2.filters.Markup(library)
+    )
+    write_text(path, rendered)
+
+
+def _embedded(text):
+    """JSON to stand in a script element: nothing in it ends the element."""
+    return jinja2.filters.Markup(text.replace("<", "\\u003c"))
+
+
+def _picture(block):
+    """SVG of a figure to stand in the page: ids of its own, its caption for readers who hear it."""
+    own = f"figure-{block.number}-"
+    svg = re.sub(r'\bid="', f'id="{own}', block.svg)
+    svg = re.sub(r'href="#', f'href="#{own}', svg)
+    svg = svg.replace("url(#", f"url(#{own}")
+    share = 100.0 * block.width / PAGE_WIDTH
+    label = jinja2.filters.escape(f"Figure {block.number}")
+    start = f'<svg role="img" aria-label="{label}" style="max-width: {share:.0f}%" '
+    return jinja2.filters.Markup(svg.replace("<svg ", start, 1))

@@ -1,1 +1,0 @@
-"""Figures, tables and pages: from Datasets to files; nothing is computed here."""

@@ -1,1 +1,0 @@
-"""Sections on calibrations against measured tests."""

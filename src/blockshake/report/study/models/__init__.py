@@ -1,1 +1,0 @@
-"""The section that holds the models against each other."""

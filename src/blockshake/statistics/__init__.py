@@ -1,0 +1,1 @@
+"""Scores of ensembles, resampling, and intervals of statistics of few samples."""

@@ -1,0 +1,102 @@
+"""Analyses of a study: a row each, all that the checks, the workflow and the report know of their results."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from blockshake.files import load_json
+from blockshake.simulation.models import MODELS
+from blockshake.store import load_made
+from blockshake.study.config_checks import (
+    check_calibration,
+    check_fragility,
+)
+from blockshake.study.sampling.latin_hypercube import load_design
+
+OF_THE_PAPER = tuple(f"configuration-{number}" for number in (1, 2, 3, 4))
+
+
+def is_of_the_paper(structure):
+    """Whether a structure is one of Zhou et al. (2023), by its shipped name."""
+    return structure in OF_THE_PAPER
+
+
+def _every_case(study):
+    return [case["name"] for case in study["cases"]]
+
+
+def _measured_cases(study):
+    return [case["name"] for case in study["cases"] if case["measured"]]
+
+
+def _cases_of_stiffness(study):
+    """Cases of a study that tells of contact stiffness: a model has any, or a structure is the paper's."""
+    calibrated = any(MODELS[model].calibrated for model in study["models"])
+    named = calibrated or any(is_of_the_paper(case["structure"]) for case in study["cases"])
+    return _every_case(study) if named else []
+
+
+class Analysis(NamedTuple):
+    """An analysis of a study.
+
+    Attributes
+    ----------
+    name : str
+    file : str
+        Its result, below the folder of the study's results: one for each ``{case}`` and ``{model}`` that is in it.
+    load : callable
+        Reads it.
+    cases : callable or None
+        Names of the cases that have it, from the configuration as a mapping; None for one of the study as a whole,
+        which no report of a case alone has.
+    settings : str or None
+        Key of the configuration without which a study has not got it.
+    check : callable or None
+        Refuses settings by which it cannot be made: of the settings, the `StudyConfig`, its structures by name and the
+        file to name.
+    """
+
+    name: str
+    file: str
+    load: Callable = load_made
+    cases: Callable | None = _every_case
+    settings: str | None = None
+    check: Callable | None = None
+
+    def files(self, study, only=None):
+        """Files that the report of a study, or of one of its cases, reads, by case and model; None without one."""
+        if self.settings and not study.get(self.settings):
+            return {}
+        if self.cases is None:
+            return {} if only else {(None, None): self.file}
+        return {
+            (case, model): self.file.format(case=case, model=model)
+            for case in self.cases(study)
+            if only in (None, case)
+            for model in (study["models"] if "{model}" in self.file else [None])
+        }
+
+    def results(self, study, folder, only=None):
+        """These as they are read from the folder of the study's results, by case and model."""
+        return {key: self.load(Path(folder, file)) for key, file in self.files(study, only).items()}
+
+
+def _cases_of(settings):
+    return lambda study: study[settings]["cases"]
+
+
+ANALYSES = (
+    Analysis("stiffness", "stiffness/{case}.csv", load_design, _cases_of_stiffness),
+    Analysis("waves", "waves/{case}.nc", cases=_cases_of_stiffness),
+    Analysis("inputs", "inputs/{case}.nc", cases=_measured_cases),
+    Analysis("envelopes", "envelopes/{model}/{case}.nc"),
+    Analysis("samples", "samples/{model}/{case}.nc"),
+    Analysis("shown", "shown/{model}/{case}.nc"),
+    Analysis("comparisons", "comparisons/{model}/{case}.nc", cases=_measured_cases),
+    Analysis("sensitivities", "sensitivities/{model}/{case}.nc"),
+    Analysis("differences", "differences/{case}.nc"),
+    Analysis(
+        "fragility", "fragility/{case}.nc", load_made, _cases_of("fragility"), "fragility", check_fragility
+    ),
+    Analysis("calibration", "calibration.json", load_json, None, "calibration", check_calibration),
+)

@@ -1,0 +1,151 @@
+"""Tables of what differs between the models: blocks, pairs of models, numerics, scores."""
+
+from itertools import combinations
+
+import numpy as np
+
+from blockshake.pages.blocks import Table
+from blockshake.pages.rows import face_markers
+from blockshake.pages.wording import MISSING, given, millimetres, model_label, number
+from blockshake.statistics.intervals import SURE_FROM
+from blockshake.study.comparison.comparison import TOLD_APART_BY
+from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
+
+
+def block_tables(case):
+    """Peak, residual and width of the envelope of every block by every model, a table each."""
+    found = case.differences
+    at_end = f"mean over the last {given(RESIDUAL_WINDOW)} s of the window"
+    limits = (
+        f"In brackets limits of 95 % by order statistics, which fewer than {SURE_FROM} samples do not bear."
+    )
+    captions = {
+        "peak": f"peak displacement along x relative to the slab [mm], median over the n samples. {limits}",
+        "residual": f"residual displacement ({at_end}) relative to the slab [mm], median over the samples. {limits}",
+        "width": "width of the envelope [mm]: mean difference of two samples, over all pairs and times. The width does "
+        "not grow with the number of samples, as the bounds in the figures do. In brackets bootstrap limits of 95 %, "
+        f"which hold in 89 to 93 of 100 cases; none with fewer than {SURE_FROM} samples, and no width with fewer than "
+        "three.",
+    }
+    return [_block_table(case, found, name, f"{case.name}: {words}") for name, words in captions.items()]
+
+
+def _block_table(case, found, name, caption):
+    rows = []
+    compared = case.measured is not None and name in case.measured
+    for body, marker in face_markers(case.structure).items():
+        at = found.sel(marker=marker)
+        known = compared and marker in case.measured["marker"].values
+        read = (
+            [millimetres(case.measured[name].sel(frame="slab", marker=marker)) if known else MISSING]
+            if compared
+            else []
+        )
+        rows.append((body, *read, *(_with_limits(at.sel(model=model), name) for model in case.responses)))
+    labels = (
+        f"{model_label(model)} (n = {int(found['counted'].sel(model=model))})" for model in case.responses
+    )
+    word = f"{case.curve_word[0].upper()}{case.curve_word[1:]}"
+    header = ("Block", *([word] if compared else []), *labels)
+    return Table(caption, header, tuple(rows), "l" + "r" * (len(header) - 1))
+
+
+def _with_limits(at, name, show=millimetres):
+    value = float(at[name])
+    if not np.isfinite(value):
+        return MISSING
+    limits = [float(at[f"{name}_interval"].sel(bound=one)) for one in ("lower", "upper")]
+    if not np.isfinite(limits).all():
+        return show(value)  # of few samples
+    return f"{show(value)} [{', '.join(map(show, limits))}]"
+
+
+def pairs_table(content):
+    """Distances of every pair of models in every case, beside chance and the floor of their numerics."""
+    rows = []
+    for case in content.cases.values():
+        found = case.differences
+        for own, other in combinations(found["model"].values, 2):
+            at = found.sel(model=own, other=other)
+            floors = [larger_floor(found, model) for model in (own, other)]
+            rows.append((
+                case.name, f"{model_label(own)} and {model_label(other)}", in_millimetres(at["distance"]),
+                in_millimetres(at["distance_chance"]), _with_limits(at, "history_difference", in_millimetres),
+                str(int(at["common"])), " / ".join(map(in_millimetres, floors)), _seconds(at["parting_time"], case),
+            ))  # fmt: skip
+    return Table(
+        "Pairs of models. Distance: of the ensembles; chance: the distance that 95 of 100 random divisions of the same "
+        "samples into two ensembles stay below. Difference: of the same sample by both models, mean over times and "
+        "blocks, median over the n samples that both ran, with limits by order statistics. Floor: the same difference "
+        "of one sample from its twin by each of the two models, the larger of two twins. Parting: when the same sample "
+        f"by both models is first told apart, median. {MISSING}: too few samples, or no twins.",
+        (
+            "Case", "Models", "Distance [mm]", "Chance [mm]", "Difference [mm]", "n", "Floors [mm]", "Parting [s]",
+        ),
+        tuple(rows), "llrrrrrr",
+    )  # fmt: skip
+
+
+def numerics_table(content):
+    """Floor and horizon of each model's numerics, and what an impact of one block keeps."""
+    rows = []
+    for case in content.cases.values():
+        found = case.differences
+        for model in found["model"].values:
+            at = found.sel(model=model)
+            ratios = [number(at["impact_ratio"].sel(step=one)) for one in ("usual", "half")]
+            rows.append((
+                case.name, given(case.settings["scale"]), model_label(model),
+                *(in_millimetres(at["floor"].sel(twin=one)) for one in ("nudged", "half-step")),
+                *(_seconds(at["horizon"].sel(twin=one), case) for one in ("nudged", "half-step")),
+                *ratios, number(found["housner_ratio"]),
+            ))  # fmt: skip
+    return Table(
+        "Numerics of each model. Twins of the first sample: with a ground motion larger by one part in a million "
+        "(nudged), and with half the time step. Floor: mean difference from the twin. Horizon: when the sample is "
+        f"first told apart from its twin, by more than {given(TOLD_APART_BY)} standard deviations of a marker's noise "
+        "at any block. Impact ratio: angular velocity after the first impact over that before, of the lowest block "
+        "rocking alone on the slab after a kick, nominal parameters, and that of a rigid block on two edges (Housner "
+        f"1963). {MISSING}: no twins, because the model ran fewer than three samples of the case.",
+        (
+            "Case", "Scale", "Model", "Floor, nudged [mm]", "Floor, half step [mm]", "Horizon, nudged [s]",
+            "Horizon, half step [s]", "Impact ratio [1]", "Half step [1]", "Housner [1]",
+        ),
+        tuple(rows), "lrlrrrrrrr",
+    )  # fmt: skip
+
+
+def scores_table(content):
+    """Score of every model against the measured curves of every case; None where no case is compared with any."""
+    compared = [case for case in content.cases.values() if case.measured is not None]
+    if not compared:
+        return None
+    models = content.study["models"]
+    rows = []
+    for case in compared:
+        at = case.differences
+        known = at["score"].dropna("model")
+        best = model_label(str(known["model"].values[known.argmin("model")])) if known.size else MISSING
+        cells = (_with_limits(at.sel(model=model), "score") for model in models)
+        rows.append((case.name, case.curve_word, *cells, best))
+    return Table(
+        "Continuous ranked probability score of every model against the measured curves [mm], mean over times and "
+        "blocks, fair to small ensembles; the lower the better. In brackets bootstrap limits of 95 %, "
+        f"none with fewer than {SURE_FROM} samples. {MISSING}: fewer than three samples.",
+        ("Case", "Curves", *map(model_label, models), "Lowest"), tuple(rows), "ll" + "r" * len(models) + "l",
+    )  # fmt: skip
+
+
+def larger_floor(found, model):
+    """Larger of the floors of a model's twins [m]; NaN without twins."""
+    return float(found["floor"].sel(model=model).max())
+
+
+def in_millimetres(value):
+    """A difference [m] in mm with two digits: some are far smaller than any marker reads."""
+    return number(1e3 * value, 2)
+
+
+def _seconds(value, case):
+    """A time at which something parts [s]; nothing that parts within the window of a case is beyond its end."""
+    return f"> {given(case.settings['duration'])}" if np.isposinf(float(value)) else number(value)

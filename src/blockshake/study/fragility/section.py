@@ -1,0 +1,139 @@
+"""Section on the fragility: how the probability of a potential collapse grows with the intensity."""
+
+import numpy as np
+
+from blockshake.pages.blocks import Figure, Items, Section, Table, Text
+from blockshake.pages.drawing import svg_of
+from blockshake.pages.wording import (
+    MISSING,
+    SQUARED,
+    count_words,
+    given,
+    millimetres,
+    model_label,
+    number,
+    percent,
+    quantile_percent,
+)
+from blockshake.statistics.intervals import CONFIDENCE
+from blockshake.study.ensembles.outcomes import count_outcomes
+from blockshake.study.fragility.figure import plot_fragility
+from blockshake.study.fragility.fragility import SAFE
+
+_SHOWN_SHARES = (0.5, 0.95)
+
+
+def fragility(content):
+    """Samples that climb the ladder of intensities; None where the study asks for none."""
+    if not content.fragility:
+        return None
+    asked = content.study["fragility"]
+    limits = " or ".join(
+        sorted({millimetres(one.attrs["largest_drift"]) for one in content.fragility.values()})
+    )
+    blocks = [
+        Text(
+            f"Samples that climb the ladder by {model_label(asked['model'])}: each is shaken by the case's commanded "
+            "motion at rising factors, from the restored stack each time, until it collapses, still falls as its "
+            f"window ends, or the mass centre of a block moves from the slab by more than {limits} mm, which counts as "
+            "a potential collapse. The capacity of a sample lies between the last factor that it passed and the first "
+            "that it did not. Where these tell "
+            "one, the figure has the lognormal distribution of largest likelihood for such bounds (incremental dynamic "
+            "analysis, Vamvatsikos and Cornell 2002; fragility by maximum likelihood, Shinozuka et al. 2000). The "
+            "spread is that of the sampled variables. The motion is one: another motion of the same peak has another "
+            "fragility."
+        ),
+        Items(tuple(words(content, name) for name in content.fragility)),
+        Figure(
+            "Largest displacement of the mass centre of any block from the slab, up to twice the one that counts as a "
+            "potential collapse, and probability of such a collapse, by the factor of the motion. Dotted: "
+            f"{percent(SAFE)} %.",
+            svg_of(plot_fragility, content.fragility),
+        ),
+        _table(content),
+    ]
+    return Section("Fragility", "fragility", tuple(blocks))
+
+
+def words(content, name):
+    """Median capacity, safe factor and what the samples do not tell, of one case in sentences."""
+    one, case = content.fragility[name], content.cases[name]
+    unit = content.motions[case.motion].attrs["peak_acceleration"]
+    size = one.sizes["sample"]
+    model = model_label(content.study["fragility"]["model"])
+    who = f"{name}, {case.motion}, {size} samples by {model}"
+    ended = count_outcomes(one["status"])
+    less = "".join(
+        f" The last run of {count_words(count, 'sample')} {how}."
+        for count, how in (
+            (ended.falling, "still fell when the window ended, which counts as a collapse"),
+            (ended.failed, "ended for a numerical reason"),
+        )
+        if count
+    )
+    median = float(one["median"])
+    if not np.isfinite(median):
+        passed = float(one["capacity_lower"].min())
+        side = (
+            f"all pass the highest factor that was climbed, {given(passed)}"
+            if passed
+            else f"none passes the lowest factor, {given(one['scale'][0])}"
+        )
+        return f"{who}: {side}, so that no fragility is told.{less}"
+    if float(one["dispersion"]) == 0.0:
+        low, high = float(one["capacity_lower"].max()), float(one["capacity_upper"].min())
+        return (
+            f"{who}: all capacities lie between {given(low)} and {given(high)} times the motion ({number(low * unit)} "
+            f"and {number(high * unit)} m/s{SQUARED}). The levels are too far apart to tell more.{less}"
+        )
+    if float(one["dispersion"]) < _told_from(one):
+        less += (
+            " The capacities differ by less than the levels are apart: the dispersion, and with it the factor that "
+            f"{percent(SAFE)} % are below, is bounded by the level below alone."
+        )
+    return (
+        f"{who}: half of the capacities are below {_limited(one, 'median')} times the motion "
+        f"({number(median * unit)} m/s{SQUARED}), {percent(SAFE)} % below {_limited(one, 'safe_scale')} "
+        f"({number(float(one['safe_scale']) * unit)} m/s{SQUARED}); limits of {quantile_percent(CONFIDENCE)} in "
+        f"brackets. Dispersion: {_limited(one, 'dispersion')}.{less}"
+    )
+
+
+def _told_from(one):
+    """Dispersion of capacities below which a step of the scales hides it: of a uniform spread over one step [1]."""
+    return float(one["scale"][1] - one["scale"][0]) / float(one["median"]) / np.sqrt(12.0)
+
+
+def _limited(one, name):
+    limits = one[f"{name}_interval"].sel(bound=["lower", "upper"])
+    if not np.isfinite(limits).all():
+        return "a factor of which the samples bear no limits"
+    return f"{number(one[name])} [{', '.join(map(number, limits))}]"
+
+
+def _table(content):
+    rows = []
+    for name, one in content.fragility.items():
+        case = content.cases[name]
+        unit = content.motions[case.motion].attrs["peak_acceleration"]
+        for scale in one["scale"].values:
+            at = one.sel(scale=scale)
+            known = int(at["known"])
+            climbed = int(at["passed"].notnull().sum())
+            low, high = (percent(at["share_interval"].sel(bound=side)) for side in ("lower", "upper"))
+            rows.append((
+                name, given(scale), number(scale * unit), str(climbed),
+                f"{percent(at['share'])} [{low}, {high}]" if known else MISSING,
+                " / ".join(millimetres(at["peak"].sel(quantile=one)) for one in _SHOWN_SHARES) if climbed else MISSING,
+            ))  # fmt: skip
+    quantiles = " / ".join(map(quantile_percent, _SHOWN_SHARES))
+    return Table(
+        "Levels that the samples climbed. Not passed: share that does not pass this level, or did not pass a lower "
+        "one, of the samples of which this is known, with Clopper-Pearson limits of 95 %. Displacement: the largest of "
+        f"the mass centre of any block from the slab, quantiles {quantiles} over the samples that climbed this level.",
+        (
+            "Case", "Factor", f"Peak acceleration [m/s{SQUARED}]", "Climbed", "Not passed [%]",
+            f"Displacement, {quantiles} [mm]",
+        ),
+        tuple(rows), "lrrrrr",
+    )  # fmt: skip

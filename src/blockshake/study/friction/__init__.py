@@ -1,1 +1,0 @@
-"""Friction calibrated against measured tests."""

@@ -1,0 +1,266 @@
+"""Content of the report of a study, read from its files into one structure."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+import xarray as xr
+
+from blockshake.files import content_digest, file_digest, load_json, named_file
+from blockshake.geometry.structure import Structure, load_structure
+from blockshake.measurement.campaigns.campaign import load_campaign
+from blockshake.measurement.sensors import markers
+from blockshake.pages.origin import software_versions
+from blockshake.store import load_made
+from blockshake.study.analyses import ANALYSES, is_of_the_paper
+from blockshake.study.ensembles.case_input import measured_on_clock
+from blockshake.study.ensembles.measured import measured_curves
+from blockshake.study.ensembles.timing import read_timings
+from blockshake.study.sampling.distributions import load_distributions
+from blockshake.study.sampling.latin_hypercube import load_design
+from blockshake.study.sampling.sample_parameters import has_parameter
+
+_PACKAGES = ("numpy", "scipy", "numba", "xarray", "pandas", "snakemake", "matplotlib", "typst")
+
+
+@dataclass(frozen=True)
+class Response:
+    """Results of one case by one model: envelope, figures of the samples, motion of those that are shown, coverage of
+    the measured curves where there are any, and sensitivity to the random variables."""
+
+    envelope: xr.Dataset
+    samples: xr.Dataset
+    shown: xr.Dataset
+    comparison: xr.Dataset | None
+    sensitivity: xr.Dataset
+
+
+@dataclass(frozen=True)
+class ReportedCase:
+    """One structure under one motion.
+
+    Attributes
+    ----------
+    name : str
+    settings : dict
+        The case's entry in the configuration.
+    structure : Structure
+    motion : str
+        Name of its motion in `Content.motions`.
+    base : xarray.Dataset or None
+        The slab's measured motion, from `measured_input`; none where the case is compared with no test.
+    measured : xarray.Dataset or None
+        From `measured_curves`; none likewise.
+    test : xarray.Dataset or None
+        The measured test, from `measured_on_clock`.
+    test_file : Path or None
+        Its file.
+    synthetic : bool
+        The measured test is a virtual one.
+    marker_noise : float
+        Standard deviation of the measured markers, or of the optical system's [m].
+    responses : dict of str to Response
+        By model.
+    differences : xarray.Dataset
+        From `compare_models`.
+    """
+
+    name: str
+    settings: dict
+    structure: Structure
+    motion: str
+    base: xr.Dataset | None
+    measured: xr.Dataset | None
+    test: xr.Dataset | None
+    test_file: Path | None
+    synthetic: bool
+    marker_noise: float
+    responses: dict
+    differences: xr.Dataset
+
+    @property
+    def curve_word(self):
+        """Name of the measured curve."""
+        return "virtual test (synthetic)" if self.synthetic else "measured"
+
+    @property
+    def title(self):
+        """Name and description."""
+        return f"{self.name}: {self.structure.file.description}"
+
+    @property
+    def is_shipped(self):
+        """Whether the structure is one of the paper's, by its name."""
+        return is_of_the_paper(self.settings["structure"])
+
+
+@dataclass(frozen=True)
+class Calibrated:
+    """Contact stiffness of the samples, one row each, and wave tests behind it, of cases whose blocks are alike."""
+
+    cases: tuple
+    stiffness: pd.DataFrame
+    waves: xr.Dataset
+
+
+@dataclass(frozen=True)
+class Content:
+    """The study's results.
+
+    Attributes
+    ----------
+    study : dict
+        The configuration.
+    only : str or None
+        Name of the case that is reported alone; none where all are.
+    cases : dict of str to ReportedCase
+    motions : dict of str to xarray.Dataset
+        From `describe_motion`, by name.
+    design : pandas.DataFrame
+        One row a sample.
+    design_summary : dict
+    distributions : dict of str to Lognormal
+    calibrated : tuple of Calibrated
+        Every case in one of them; empty where the study tells of no contact stiffness.
+    calibration : dict or None
+        From `calibrate`, where the study asks for one; a case alone has none.
+    fragility : dict of str to xarray.Dataset
+        From `fragility`, by case; empty where the study asks for none.
+    timings : tuple of Timing
+    digests : dict of str to str
+        Of input files and of tables that all samples come from, by path.
+    versions : dict of str to str
+        Of the software that made the report.
+    """
+
+    study: dict
+    only: str | None
+    cases: dict
+    motions: dict
+    design: pd.DataFrame
+    design_summary: dict
+    distributions: dict
+    calibrated: tuple
+    calibration: dict | None
+    fragility: dict
+    timings: tuple
+    digests: dict
+    versions: dict
+
+    @property
+    def name(self):
+        """Name of the report, as in the names of its files."""
+        return f"{self.study['name']}-{self.only}" if self.only else self.study["name"]
+
+    def peak_acceleration(self, case):
+        """Peak ground acceleration of a case's scaled motion [m/s2]."""
+        return case.settings["scale"] * self.motions[case.motion].attrs["peak_acceleration"]
+
+    def users(self, variable):
+        """Names of the cases whose structure has what a random variable describes."""
+        return [case.name for case in self.cases.values() if has_parameter(case.structure, variable)]
+
+
+def load_content(study, results, logs, only=None):
+    """Read the `Content` of a finished study, or of one of its cases.
+
+    Parameters
+    ----------
+    study : dict
+        Its configuration, checked.
+    results, logs : str or path
+        Folders of its results and of its jobs' logs.
+    only : str, optional
+        Name of the case that is reported alone: nothing of the others is read.
+
+    Raises
+    ------
+    InputError
+        A file is missing or holds something else.
+    """
+    results = Path(results)
+    every = {case["name"]: case for case in study["cases"]}
+    cases = {only: every[only]} if only else every
+    read = {one.name: one.results(study, results, only) for one in ANALYSES}
+    loaded = {name: _case(study, read, name, settings) for name, settings in cases.items()}
+    motions = {}
+    climbed = [] if only else study["ladder"]["motions"]
+    for named in [*(case["motion"] for case in cases.values()), *climbed]:
+        motions[Path(named).stem] = load_made(results / "motions" / f"{Path(named).stem}.nc")
+    design = results / "design.csv"
+    stiffness = [results / "stiffness" / f"{name}.csv" for name, _ in read["stiffness"]]
+    inputs = [
+        named_file(f"{kind}s", case[kind]) for kind in ("structure", "motion") for case in cases.values()
+    ]
+    tests = [case.test_file for case in loaded.values() if case.test_file]
+    return Content(
+        study=study,
+        only=only,
+        cases=loaded,
+        motions=motions,
+        design=load_design(design),
+        design_summary=load_json(results / "design.json"),
+        distributions=load_distributions(study["ensemble"].get("distributions"), study["name"]),
+        calibrated=_calibrated(read["stiffness"], read["waves"]),
+        calibration=next(iter(read["calibration"].values()), None),
+        fragility={case: made for (case, _), made in read["fragility"].items()},
+        timings=read_timings(
+            logs,
+            {(model, case.name): one.samples for case in loaded.values() for model, one in case.responses.items()},
+        ),
+        digests={
+            "configuration of the study": content_digest(study),
+            **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, *stiffness]},
+        },
+        versions=software_versions(_PACKAGES),
+    )  # fmt: skip
+
+
+def _case(study, read, name, settings):
+    named = settings.get("measured")
+    responses = {
+        model: Response(
+            *(read[kind][name, model] for kind in ("envelopes", "samples", "shown")),
+            comparison=read["comparisons"].get((name, model)),
+            sensitivity=read["sensitivities"][name, model],
+        )
+        for model in study["models"]
+    }
+    base = campaign = test = None
+    marker_noise = markers.NOISE
+    if named:
+        campaign = load_campaign(named["campaign"])
+        base = read["inputs"][name, None]
+        test, marker_noise = measured_on_clock(named, base)
+    return ReportedCase(
+        name=name,
+        settings=settings,
+        structure=load_structure(settings["structure"]),
+        motion=Path(settings["motion"]).stem,
+        base=base,
+        measured=measured_curves(test, test.attrs["slab_marker"], settings["duration"]) if named else None,
+        test=test,
+        test_file=campaign.folder / campaign.tests[named["test"]].file if named else None,
+        synthetic=bool(test.attrs.get("synthetic", 0)) if named else False,
+        marker_noise=marker_noise,
+        responses=responses,
+        differences=read["differences"][name, None],
+    )
+
+
+def _calibrated(stiffness_of, waves_of):
+    """Stiffness of the cases, those of equal tables and waves together."""
+    groups = []
+    for (name, _), stiffness in stiffness_of.items():
+        waves = waves_of[name, None]
+        alike = [one for one in groups if one[1].equals(stiffness) and one[2].equals(waves)]
+        if alike:
+            alike[0][0].append(name)
+        else:
+            groups.append(([name], stiffness, waves))
+    return tuple(Calibrated(tuple(cases), stiffness, waves) for cases, stiffness, waves in groups)
+
+
+def _shown(path):
+    """Path as a reader of another machine knows it: its last three parts."""
+    return "/".join(Path(path).parts[-3:])

@@ -1,0 +1,87 @@
+"""The report of a study, or of one of its cases: one page and one PDF from the same content."""
+
+from blockshake.files import write_json
+from blockshake.pages.blocks import Document, numbered
+from blockshake.pages.html import write_html
+from blockshake.pages.pdf import write_pdf
+from blockshake.study.calibration.section import calibration
+from blockshake.study.comparison.section import models
+from blockshake.study.fragility.section import fragility
+from blockshake.study.report.closing_sections import checks, limits, origin, timings
+from blockshake.study.report.content import load_content
+from blockshake.study.report.opening_sections import motions, structures, summary
+from blockshake.study.report.result_sections import responses
+from blockshake.study.sampling.section import samples
+from blockshake.study.sensitivity.section import sensitivities
+from blockshake.study.statements.section import findings, statements
+from blockshake.study.stiffness.section import stiffness
+
+_SECTIONS = (
+    summary,
+    structures,
+    motions,
+    samples,
+    stiffness,
+    responses,
+    fragility,
+    models,
+    sensitivities,
+    calibration,
+    statements,
+    checks,
+    timings,
+    limits,
+    origin,
+)
+# these judge the study as a whole
+_NOT_OF_A_CASE = (statements,)
+
+
+def make_report(study, results, logs, html, pdf, paper):
+    """Write the report of a finished study.
+
+    Parameters
+    ----------
+    study : dict
+        Its configuration, checked.
+    results, logs : str or path
+        Folders of its results and of its jobs' logs.
+    html, pdf : str or path
+        To write, each whole or not at all. Same results, same bytes.
+    paper : str or path
+        JSON of the findings on the statements of the paper, to write likewise.
+
+    Raises
+    ------
+    InputError
+        A results file is missing or holds something else.
+    """
+    content = load_content(study, results, logs)
+    document = compose(content)
+    write_html(html, document)
+    write_pdf(pdf, document)
+    write_json(paper, findings(content))
+
+
+def make_case_report(study, case, results, logs, html, pdf):
+    """Write the report of one case of a study, from the results of this case alone; parameters as of `make_report`."""
+    document = compose(load_content(study, results, logs, case))
+    write_html(html, document)
+    write_pdf(pdf, document)
+
+
+def compose(content):
+    """Document of the content of a study or of one of its cases."""
+    sections = [one for one in _SECTIONS if not (content.only and one in _NOT_OF_A_CASE)]
+    return numbered(
+        Document(
+            title=f"blockshake: {content.study['name']}" + (f", {content.only}" if content.only else ""),
+            subtitle=" ".join(content.study["description"].split()),
+            details=tuple(
+                (name.capitalize(), content.study[name])
+                for name in ("project", "author", "date")
+                if content.study.get(name)
+            ),
+            sections=tuple(made for section in sections if (made := section(content)) is not None),
+        )
+    )

@@ -1,0 +1,148 @@
+"""Section on the responses: displacement of the blocks by every model, case by case."""
+
+from blockshake.pages.blocks import Figure, Heading, Section, Text
+from blockshake.pages.drawing import svg_of
+from blockshake.pages.rows import face_markers, main_bodies
+from blockshake.pages.wording import given, model_label, number, share_words
+from blockshake.study.comparison.tables import block_tables
+from blockshake.study.ensembles.outcomes import shortfall
+from blockshake.study.report.figures.displacement import plot_displacements
+from blockshake.study.report.figures.interactive import interactive_displacements
+from blockshake.study.report.figures.moving import moving_samples, plot_still, usual_magnification
+from blockshake.study.report.joint_blocks import joint_blocks
+from blockshake.study.report.result_tables import coverage_table, top_block_table
+from blockshake.study.sensitivity.findings import quiet_markers
+
+_PAPER_FIGURES = {f"configuration-{place}": 10 + place for place in (1, 2, 3, 4)}
+
+
+def responses(content):
+    """Displacement of the blocks by every model, case by case."""
+    blocks = [
+        Text(
+            "Displacement along x of one marker of each block, from the top block down: that named BLOCK-face, or the "
+            "block's first. A marker higher on a block that rocks moves farther. Grey: area of "
+            "the samples; red: the smallest and the largest value at each time. Two bounds of n samples hold one "
+            "further run of the same model at one instant with probability (n - 1) / (n + 1). For a whole record no "
+            "probability is known; therefore every coverage stands beside its leave-one-out reference."
+        ),
+        top_block_table(content),
+    ]
+    for case in content.cases.values():
+        blocks += _response(case, content.motions[case.motion])
+    return Section("Displacement of the blocks", "responses", tuple(blocks))
+
+
+def _response(case, motion):
+    markers = face_markers(case.structure)
+    main = main_bodies(case.structure, markers)
+    envelopes = {model: one.envelope for model, one in case.responses.items()}
+    paper = (
+        f" (after the paper's Fig. {_PAPER_FIGURES[case.name]})"
+        if case.name in _PAPER_FIGURES and case.settings["structure"] == case.name
+        else ""
+    )
+    some = "" if len(main) == len(markers) else "; all blocks are in the next figure"
+
+    def figure(bodies, frame, caption):
+        chosen = [markers[body] for body in bodies]
+        shown = envelopes, case.measured, chosen, bodies, frame, case.synthetic
+        return Figure(
+            caption, svg_of(plot_displacements, *shown), interactive=interactive_displacements(*shown)
+        )
+
+    return [
+        Heading(case.title, f"response-{case.name}"),
+        Text(
+            f"{case.motion}, scale {given(case.settings['scale'])}, first {given(case.settings['duration'])} s."
+            + _noise(case)
+        ),
+        *_early_end(case, motion),
+        *_gaps(case),
+        *_lines(case, markers.values()),
+        figure(main, "inertial", f"{case.name}: displacement in the inertial frame{paper}{some}."),
+        *_moving(case),
+        *block_tables(case),
+        *([] if case.measured is None else [coverage_table(case)]),
+        figure(
+            list(markers), "slab", f"{case.name}: displacement relative to the slab's marker, every block."
+        ),
+        *joint_blocks(case),
+    ]
+
+
+def _moving(case):
+    """Blocks of some samples in space, where any sample has a result."""
+    if not any(one.shown.sizes["sample"] for one in case.responses.values()):
+        return []
+    times = usual_magnification(case)
+    size = "not at all" if times == 1.0 else f"{given(times)} times"
+    markers = f", points: markers, {case.curve_word}" if case.test is not None else ""
+    return [
+        Figure(
+            f"{case.name}: blocks of samples by every model{markers}. Displacement is relative to the slab's marker. "
+            f"In print: the sample of the median peak of all markers when a block is farthest, magnified {size}. "
+            "On a screen: the samples of the median and of the largest peak of all markers, moving in real time; the "
+            "displacement of each point is multiplied, so that blocks look bent where the magnification is large.",
+            svg_of(plot_still, case),
+            interactive=moving_samples(case),
+        )
+    ]
+
+
+def _noise(case):
+    """Marker noise in words, with the curve that has it."""
+    if case.measured is None:
+        return " No measured test is compared with the samples."
+    word = case.curve_word if case.synthetic else "measured curve"
+    return f" Marker noise of the {word}: {given(1e3 * case.marker_noise)} mm (standard deviation)."
+
+
+def _early_end(case, motion):
+    """A remark where the window ends within the motion."""
+    if case.settings["duration"] >= motion.attrs["duration"]:
+        return []
+    return [
+        Text(
+            f"The window ends before the motion, which lasts {given(motion.attrs['duration'])} s (strong until "
+            f"{number(motion.attrs['significant_end'])} s): the residuals below are displacements at the end of the "
+            "window and need not be final."
+        )
+    ]
+
+
+def _gaps(case):
+    """Numbers of samples that contribute where some stopped early or failed."""
+    texts = []
+    for model, one in case.responses.items():
+        found = shortfall(one.envelope)
+        if found.since == found.since:
+            texts.append(
+                Text(
+                    f"{model_label(model)}: {found.counted} samples contribute until {number(found.since)} s, "
+                    f"{found.at_end} at the end; bounds and quantiles are of those that contribute, and peaks of "
+                    "samples that fell are lower limits."
+                )
+            )
+        if found.failed:
+            texts.append(
+                Text(f"{model_label(model)}: the statistics leave out failed samples ({found.failed}).")
+            )
+    return texts
+
+
+def _lines(case, markers):
+    """A remark on each model whose samples are nearly one and the same run, or one only."""
+    texts = []
+    for model, one in case.responses.items():
+        if one.envelope.attrs["counted"] == 1:
+            texts.append(Text(f"{model_label(model)}: one sample, whose curve is drawn in place of a band."))
+        quiet = quiet_markers(one.sensitivity, markers, case.marker_noise)
+        if quiet:
+            texts.append(
+                Text(
+                    f"{model_label(model)}: the samples of {share_words(quiet, len(markers))} blocks differ by less "
+                    "than the noise of a marker (standard deviation over samples and time): their bands close to lines."
+                )
+            )
+    return texts

@@ -1,0 +1,73 @@
+"""Histograms of the samples with the densities they come from: the paper's Fig. 8."""
+
+import numpy as np
+
+from blockshake.pages.drawing import LIGHT_GREY, RED, new_figure
+from blockshake.pages.units import printed
+from blockshake.pages.wording import parameter_label
+from blockshake.study.sampling.distributions import parameter_unit
+
+_COLUMNS = 3
+_ROW_HEIGHT = 0.044  # m of paper
+
+
+def plot_samples(design, distributions):
+    """Figure of the density of each sampled variable beside its target.
+
+    ``design``: one row a sample, columns the dotted names, SI; ``distributions``: `Lognormal` targets by dotted name.
+    """
+    rows = -(-len(distributions) // _COLUMNS)
+    figure = new_figure(_ROW_HEIGHT * rows + 0.008)
+    panels = figure.subplots(rows, _COLUMNS, squeeze=False)
+    for axes, (name, target) in zip(panels.flat, distributions.items(), strict=False):
+        factor, unit = printed(parameter_unit(name))
+        _, edges, _ = axes.hist(
+            factor * design[name], bins=bin_count(len(design)), density=True, color=LIGHT_GREY,
+            edgecolor="#808080", linewidth=0.5, label="samples",
+        )  # fmt: skip
+        reach = 0.15 * (edges[-1] - edges[0])
+        values = np.linspace(edges[0] - reach, edges[-1] + reach, 200)
+        axes.plot(values, target.density(values / factor) / factor, color=RED, label="target density")
+        axes.set(title=parameter_label(name), xlabel=f"value [{unit}]")
+        axes.tick_params(labelleft=False, left=False)
+        axes.grid(False)
+    for axes in panels.flat[len(distributions) :]:
+        axes.set_axis_off()
+    for axes in panels[:, 0]:
+        axes.set_ylabel("density")
+    figure.get_layout_engine().set(hspace=0.06)
+    handles, labels = panels[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=2)
+    return figure
+
+
+def plot_correlation(correlation, labels):
+    """Figure of the correlation reached between the labelled variables, as numbers on a shaded square [1]."""
+    correlation = np.asarray(correlation, dtype=float)
+    figure = new_figure(0.105, 0.15)
+    axes = figure.subplots()
+    axes.grid(False)
+    picture = np.ma.masked_where(np.eye(len(labels), dtype=bool), correlation)
+    limit = max(float(np.abs(picture).max()), 0.05) if picture.count() else 1.0
+    shade = axes.pcolormesh(picture, cmap="PuOr", vmin=-limit, vmax=limit, edgecolors="white", linewidth=0.5)
+    for row, column in np.ndindex(correlation.shape):
+        if row != column:
+            value = correlation[row, column]
+            dark = abs(value) > 0.7 * limit
+            axes.text(
+                column + 0.5, row + 0.5, f"{value:.3f}", ha="center", va="center", fontsize=5.5,
+                color="white" if dark else "black",
+            )  # fmt: skip
+    places = np.arange(len(labels)) + 0.5
+    axes.set_yticks(places, labels)
+    axes.set_xticks(places, labels, rotation=40, ha="right", rotation_mode="anchor")
+    axes.invert_yaxis()
+    bar = figure.colorbar(shade, ax=axes, label="correlation [1]")
+    bar.outline.set_linewidth(0.5)
+    bar.solids.set(rasterized=False, edgecolor="face")
+    return figure
+
+
+def bin_count(size):
+    """Bins of a histogram of this many samples: their square root, up, and one."""
+    return int(np.ceil(np.sqrt(size))) + 1

@@ -1,0 +1,93 @@
+"""Section on the statements of the paper, one by one, and the same as values for other pages."""
+
+from dataclasses import replace
+
+from blockshake.pages.blocks import Heading, Section, Table, Text
+from blockshake.pages.wording import given, model_label
+from blockshake.study.statements.statement import PaperVerdict
+from blockshake.study.statements.table import STATEMENTS
+
+HEADER = ("Place", "Statement of the paper", "Verdict", "Finding", "Command")
+_WIDTHS = (6, 9, 5, 17, 9)
+
+
+def judge_statements(content):
+    """Findings of a study on the statements: rows of text under `HEADER`, by heading; none without the structures of
+    the paper, which the statements are about."""
+    content = _of_the_paper(content)
+    if not content.cases:
+        return {}
+    return {
+        heading: tuple(_row(content, one) for one in statements) for heading, statements in STATEMENTS.items()
+    }
+
+
+def _of_the_paper(content):
+    """The content without the cases of other structures, and without a calibration that they take part in."""
+    cases = {name: case for name, case in content.cases.items() if case.is_shipped}
+    calibrated = [
+        replace(one, cases=tuple(name for name in one.cases if name in cases)) for one in content.calibrated
+    ]
+    return replace(
+        content,
+        cases=cases,
+        calibrated=tuple(one for one in calibrated if one.cases),
+        calibration=content.calibration if len(cases) == len(content.cases) else None,
+    )
+
+
+def _row(content, statement):
+    verdict, words = statement.judge(content)
+    made = statement.target.format(study=content.study["name"], case="CASE")
+    command = made if " " in made else f"snakemake -c2 {made}"
+    return statement.place, statement.claim, str(verdict), words, command
+
+
+def count_words(rows_by_heading):
+    """How many statements have which verdict, in a sentence."""
+    verdicts = [row[2] for rows in rows_by_heading.values() for row in rows]
+    counts = ", ".join(f"{verdicts.count(one)} {one}" for one in PaperVerdict)
+    return f"Of {len(verdicts)} statements: {counts}."
+
+
+def findings(content):
+    """Findings of a study as JSON-like values: what it is, and the rows of `judge_statements`."""
+    return {
+        "study": content.study["name"],
+        "description": " ".join(content.study["description"].split()),
+        "samples": len(content.design),
+        "cases": [
+            f"{case.name}, {case.motion} at {given(case.settings['scale'])}, {given(case.settings['duration'])} s"
+            for case in content.cases.values()
+        ],
+        "models": [model_label(model) for model in content.study["models"]],
+        "version": content.versions["blockshake"],
+        "findings": {heading: list(map(list, rows)) for heading, rows in judge_statements(content).items()},
+    }
+
+
+def statements(content):
+    """The paper, statement by statement; None where no structure of the study is one of the paper's."""
+    rows_by_heading = judge_statements(content)
+    if not rows_by_heading:
+        return None
+    blocks = [
+        Text(
+            "Zhou et al. (2023), statement by statement, in the words of this program. Met: the study at hand finds "
+            "or does the same. Not met: it finds or does something else. Cannot be judged: the study lacks the model, "
+            "the case or the real measurement that the statement hangs on. A synthetic test judges no statement about "
+            "the real specimens; the synthetic tests that ship are runs of LS-DEM with an effect hidden in them, "
+            "none of contact dynamics. The numbers of a finding are computed from this study. The last column has the "
+            "command, in which CASE is a case of the study. The command takes --configfile FILE at its end for another "
+            "study than the default one. Statements that no study decides, and departures from the paper: "
+            "docs/results/the-paper.md."
+        ),
+        Text(count_words(rows_by_heading)),
+    ]
+    for heading, rows in rows_by_heading.items():
+        key = heading.lower().replace(" ", "-").replace(",", "")
+        blocks += [
+            Heading(heading, f"paper-{key}"),
+            Table(f"{heading}: findings of this study.", HEADER, rows, "lllll", _WIDTHS),
+        ]
+    return Section("The paper, statement by statement", "paper", tuple(blocks))

@@ -1,0 +1,69 @@
+"""Section on the contact stiffness: waves, their speed, and the stiffness of every sample."""
+
+from blockshake.pages.blocks import Figure, Section, Table, Text
+from blockshake.pages.drawing import svg_of
+from blockshake.pages.units import printed, quantity
+from blockshake.pages.wording import given, number, parameter_label, percent
+from blockshake.study.sampling.distributions import parameter_unit
+from blockshake.study.stiffness.figure import plot_stiffness, plot_waves
+from blockshake.study.stiffness.wave_speed import speed_deviation
+
+_ALIKE = 1e-3  # of the mean: values that lie closer print alike
+
+
+def stiffness(content):
+    """Waves, their speed, and the stiffness of every sample, for each kind of blocks; None where the study has none."""
+    if not content.calibrated:
+        return None
+    waves = content.calibrated[0].waves
+    blocks = [
+        Text(
+            "The contact stiffness of LS-DEM follows for every sample from the speed of waves in a tower of "
+            f"{waves.sizes['block']} of the structure's blocks, matched to that of the material of the sample (Zhou et "
+            f"al. 2023, Eqs. 7 and 8). Definition: {waves.attrs['definition']}."
+        )
+    ]
+    for calibrated in content.calibrated:
+        of = f"; {', '.join(calibrated.cases)}" if len(content.calibrated) > 1 else ""
+        blocks += [
+            Figure(
+                "Displacement of the blocks of the tower after a step of velocity of "
+                f"{given(1e3 * calibrated.waves.attrs['step_velocity'])} mm/s at its base, nominal parameters{of}; "
+                "dots: arrivals (after the paper's Fig. 9).",
+                svg_of(plot_waves, calibrated.waves),
+            ),
+            _speeds(calibrated.waves, of),
+            _stiffness_of_samples(calibrated.stiffness, of),
+        ]
+    blocks.append(
+        Text("The stiffness by other definitions of arrival and dampings: docs/guide/uncertainty.md.")
+    )
+    return Section("Contact stiffness", "stiffness", tuple(blocks))
+
+
+def _speeds(waves, of):
+    """Wave speed reached against its target at nominal parameters; ``of``: more words for the caption."""
+    rows = []
+    for direction in waves["direction"].values:
+        one = waves.sel(direction=direction)
+        rows.append((
+            str(direction), number(one["target_wave_speed"], 5), number(one["wave_speed"], 5),
+            f"{1e6 * speed_deviation(waves, direction):.0f}", quantity(float(one["stiffness"]), "N/m3", 4),
+        ))  # fmt: skip
+    return Table(
+        f"Effective wave speed at the calibrated stiffness, nominal parameters{of}.",
+        ("Direction", "Target [m/s]", "Reached [m/s]", "Difference [ppm]", "Stiffness"), tuple(rows), "lrrrr",
+    )  # fmt: skip
+
+
+def _stiffness_of_samples(stiffness, of):
+    """Histograms of the stiffness of the samples, or their one value."""
+    caption = f"Stiffness per area of the {len(stiffness)} samples{of}"
+    mean, spread = stiffness.mean(), stiffness.max() - stiffness.min()
+    if (spread > _ALIKE * mean).any():
+        return Figure(f"{caption} (after the paper's Fig. 10).", svg_of(plot_stiffness, stiffness))
+    values = []
+    for name, value in mean.items():
+        factor, unit = printed(parameter_unit(name))
+        values.append(f"{parameter_label(name)} {number(factor * value)} {unit}")
+    return Text(f"{caption}: {', '.join(values)}, the same in all within {percent(_ALIKE)} %.")

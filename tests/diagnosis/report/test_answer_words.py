@@ -1,0 +1,130 @@
+from types import SimpleNamespace
+
+import pytest
+from fake_diagnosis import FakeDiagnosis
+from fake_findings import ECCENTRIC, KINDS, part
+
+from blockshake.diagnosis.answer.decision import Cause, Estimate, Part
+from blockshake.diagnosis.report.answer_section import percent_words
+from blockshake.diagnosis.report.content import load_diagnosed
+from blockshake.diagnosis.report.statement import not_told, statement
+from blockshake.diagnosis.verdict.verdict import Contrast
+from blockshake.diagnosis.wording import (
+    chance_words,
+    estimate_words,
+    named_place,
+    place_words,
+    times_words,
+    when_words,
+)
+
+STATEMENTS = {
+    "none": "No misfit larger than chance: 672 equations of motion in 3 tests hold no force that sound blocks would "
+    "not make.",
+    "named": "Probable: eccentric mass of a block (block-2), offset 50 mm (45.0 to 55.0) towards +x.",
+    "ambiguous": "One of these, which the tests do not tell apart: joint of low friction (joint slab / block-1), "
+    "factor 41 % (36.9 to 45.1); or friction that falls with slip rate, drop 61 % (54.9 to 67.1), scale 12 mm/s "
+    "(10.8 to 13.2).",
+    "combination": "Probable: pitch of the table, coefficient 0.500 mrad per m/s² (0.450 to 0.550), frequency 11 Hz "
+    "(9.90 to 12.1); together with eccentric mass of a block (block-2), offset 50 mm (45.0 to 55.0) towards +x.",
+    "unknown": "Something acts, cause unknown. No effect of the registry makes these forces; most like a steady push "
+    "(block-2 or block-1), force 2 kN (1.80 to 2.20) towards -x, from 2.20 s of alkion-250 and 2.70 s of basso-200 on.",
+}
+NOT_TOLD = {
+    "named": "The tests tell eccentric mass of a block from all others that were tried (1 cause); it is 160,000 times "
+    "likelier than an edge that changed, the nearest of them.",
+    "ambiguous": "Joint of low friction is likelier than friction that falls with slip rate (4.5 times), and 20 times "
+    "would tell them apart.",
+    "unknown": "The tests tell a steady push from all others that were tried (2 causes); it is 160,000 times likelier "
+    "than an edge that changed, the nearest of them. Its place, block-2 or block-1, is not told; likeliest is top of "
+    "block-2.",
+}
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    return {
+        kind: load_diagnosed(*FakeDiagnosis(tmp_path_factory.mktemp(kind), kind).arguments())
+        for kind in KINDS
+    }
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_answer_says_what_acts_where_and_how_large(found, kind):
+    assert statement(found[kind]) == STATEMENTS[kind]
+
+
+@pytest.mark.parametrize("kind", NOT_TOLD)
+def test_beside_the_answer_stands_what_is_not_told_from_it(found, kind):
+    assert not_told(found[kind]) == [NOT_TOLD[kind]]
+
+
+def test_every_part_of_a_combination_has_its_own_sentence(found):
+    of_slab, of_joints = not_told(found["combination"])
+    assert of_slab == "Rotation of the slab: no other cause was tried on these readings."
+    assert of_joints.startswith("Joints: the tests tell eccentric mass of a block from")
+
+
+def test_a_height_that_is_not_told_is_not_called_a_place():
+    cause = {**ECCENTRIC, "name": "rope", "place": {"body": "block-3", "height": 0.42}}
+    cause |= {"places": ["block-3@0.42", "block-3@0"], "parameters": {}}
+    one = Part.model_validate(part("joints", cause))
+    found = SimpleNamespace(decision=SimpleNamespace(parts=[one]), bodies=("block-3",))
+    assert not_told(found)[0].endswith("Its height is not told; likeliest is top of block-3.")
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "unit", "words"),
+    [
+        ("offset", (-0.0947, -0.105, -0.0849), "m", "94.7 mm (84.9 to 105) towards -x"),
+        ("force", (2e3, -1e3, 5e3), "N", "2 kN (-1 to 5)"),  # to either side
+        ("coefficient", (-5e-4, -6e-4, -4e-4), "rad s2/m", "-0.500 mrad per m/s² (-0.600 to -0.400)"),
+        ("factor", (0.153, 0.0, 0.384), "1", "15.3 % (0 to 38.4)"),
+    ],
+)
+def test_sizes_have_units_and_sides(name, values, unit, words):
+    middle, lower, upper = values
+    assert estimate_words(name, Estimate(estimate=middle, lower=lower, upper=upper, unit=unit)) == words
+
+
+def test_places_in_words():
+    assert place_words({"joint": ["slab", "block-1"]}) == "joint slab / block-1"
+    assert place_words({"body": "block-1", "height": 0.0}) == "middle of block-1"
+    assert place_words({}) == ""
+    assert named_place("block-1@0.42", ()) == "top of block-1"
+    assert named_place("slab-block-1", ("block-1",)) == "joint slab-block-1"
+
+
+@pytest.mark.parametrize(
+    ("when", "words"),
+    [
+        ({"blows": {"t2": {"time": 3.52, "width": 0.08}}}, "at 3.52 s of t2"),
+        (
+            {"test": "t3", "start": 1.665, "lasts": True, "edge": 1},
+            "from 1.67 s of t3 on and in the tests after it",
+        ),
+        ({"test": "t3", "start": 1.5, "lasts": False}, "from 1.50 s of t3 on"),
+        ({"test": "t4", "side": 1, "gap": 0.01}, "in t4 alone"),
+        ({"starts": {"t1": -0.02}}, "from 0.00 s of t1 on"),
+        ({"grip": 0.2}, ""),
+    ],
+)
+def test_when_a_form_acts(when, words):
+    assert when_words(when) == words
+
+
+def test_chances_and_odds_are_not_printed_with_more_digits_than_they_have():
+    assert chance_words(0.0123) == "p = 0.012"
+    assert chance_words(1e-30) == "less than 1 in a million"
+    assert times_words(0.9) == "2.5 times"
+    assert times_words(9.675) == "16,000 times"
+    assert times_words(40.0) == "more than a million times"
+
+
+def test_a_gain_without_anything_to_gain_is_called_so():
+    assert percent_words(Contrast(estimate=0.0, lower=-1.0, upper=1.0)) == "nothing to gain"
+    assert percent_words(Contrast(estimate=0.5, lower=-0.1, upper=0.7)) == "50 % (-10 to 70 %)"
+
+
+def test_cause_has_the_title_of_its_form():
+    assert Cause.model_validate({**ECCENTRIC, "name": "blow"}).title == "a blow"

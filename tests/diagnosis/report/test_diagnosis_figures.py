@@ -1,0 +1,111 @@
+import numpy as np
+import pytest
+from fake_findings import ECCENTRIC, OPEN, SEALED, departures, misfit, responses
+
+from blockshake.diagnosis.answer.decision import Cause
+from blockshake.diagnosis.gain.figure import plot_drift
+from blockshake.diagnosis.misfit.figure import plot_misfit
+from blockshake.diagnosis.report.figures.forces import plot_forces, plot_slab, shown_bodies, shown_tests
+from blockshake.diagnosis.report.figures.odds import plot_odds
+from blockshake.diagnosis.report.figures.sizes import plot_sizes
+from blockshake.effects.registry import EFFECTS
+
+BODIES = ("block-1", "block-2", "block-3")
+
+
+def curves(axes, label):
+    return [line for line in axes.get_lines() if line.get_label() == label]
+
+
+def test_forces_are_drawn_in_kilonewtons_with_gaps_between_movements():
+    shown = departures("named", BODIES)
+    figure = plot_forces(shown, list(OPEN[1:]), ["block-1"], "a cause", "measured")
+    for axes, test in zip(figure.axes, OPEN[1:], strict=True):
+        (measured,), (made,) = curves(axes, "measured"), curves(axes, "a cause")
+        own = shown.isel(instant=np.flatnonzero(shown["test"] == test)).sel(body="block-1")
+        assert axes.get_title() == test
+        known = np.isfinite(measured.get_ydata())
+        np.testing.assert_allclose(measured.get_ydata()[known], own["measured"] / 1e3)
+        assert np.count_nonzero(~known) == 1  # from 3 to 4 s nothing moves
+        assert np.nanmin(made.get_ydata()) == -2.0
+
+
+def test_without_a_cause_nothing_is_drawn_as_explained():
+    figure = plot_forces(departures("none", BODIES), [OPEN[1]], ["block-1"], "", "measured")
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["noise of the sensors", "measured"]
+
+
+def test_a_body_whose_force_is_another_s_times_a_factor_is_not_drawn_again():
+    shown = departures("named", BODIES)
+    base = shown["measured"].sel(body="block-1").to_numpy()
+    alike = shown.assign(measured=(("instant", "body"), base[:, None] / np.array([1.0, 2.0, 3.0])))
+    assert shown_bodies(alike, []) == ["block-1"]
+    assert shown_bodies(alike, ["block-3"]) == ["block-3"]
+    unlike = alike["measured"].to_numpy().copy()
+    unlike[::2, 1] *= -1.0
+    assert shown_bodies(alike.assign(measured=(("instant", "body"), unlike)), []) == ["block-1", "block-2"]
+
+
+def test_a_body_without_rows_is_not_drawn():
+    shown = departures("named", BODIES)
+    values = shown["measured"].to_numpy().copy()
+    values[:, 0] = np.nan
+    assert shown_bodies(shown.assign(measured=(("instant", "body"), values)), ["block-1"])[0] != "block-1"
+
+
+def test_tests_of_few_instants_are_left_out():
+    shown = departures("named", BODIES)
+    few = shown.isel(instant=[*range(5), *np.flatnonzero(shown["test"] == OPEN[2])])
+    assert shown_tests(shown) == list(OPEN[1:])
+    assert shown_tests(few) == [OPEN[2]]
+    assert shown_tests(few.isel(instant=slice(5))) == [OPEN[1]]  # no other
+
+
+def test_the_slab_s_rotation_is_drawn_in_milliradians():
+    figure = plot_slab(departures("combination", BODIES), "turn", "pitch", "measured")
+    assert len(figure.axes) == len(OPEN)
+    assert figure.axes[0].get_ylabel() == "rotation [mrad]"
+    assert max(curves(figure.axes[0], "pitch")[0].get_ydata()) == pytest.approx(0.5, rel=1e-3)
+
+
+def test_odds_are_shaded_within_twenty_times_and_end_in_arrows_beyond_the_axis():
+    rows = [("a push", 0.0, 300.0), ("an eccentric mass", 2.0, 285.0), ("a soft joint", 60.0, -1.0)]
+    odds, gains = plot_odds(rows, [True, False, False], 40.0, np.log(20.0)).axes
+    assert [label.get_text() for label in odds.get_yticklabels()] == [one[0] for one in rows] + ["nothing"]
+    assert len(odds.patches) == 2
+    markers = [line for line in odds.get_lines() if line.get_marker() in (">", "o")]
+    assert [line.get_marker() for line in markers] == ["o", "o", ">", ">"]
+    assert markers[1].get_xdata()[0] == pytest.approx(2.0 / np.log(10.0))
+    assert odds.get_yticklabels()[0].get_style() == "italic"
+    ticks = gains.get_xticks()
+    assert 0 in ticks
+    assert max(ticks) <= 1.3 * 300.0
+
+
+def test_a_size_stands_on_its_range_with_its_members():
+    cause = Cause.model_validate(ECCENTRIC)
+    (axes,) = plot_sizes([cause], [EFFECTS["eccentricity"].parameters]).axes
+    members, size = (line for line in axes.get_lines() if line.get_marker() in ("|", "o"))
+    np.testing.assert_allclose(members.get_xdata(), [1e3 * one["offset"] for one in cause.members])
+    assert size.get_xdata()[0] == 50.0
+    assert axes.get_xlabel() == "offset [mm], eccentric mass of a block"
+
+
+def test_drift_with_and_without_the_cause_ends_where_it_can_be_predicted():
+    gain = responses(["slab-block-1"], "block-3")
+    panels = plot_drift(gain, [SEALED[0]], ("recalibrated", "extended"), "measured").axes
+    assert [axes.get_title() for axes in panels] == ["without the cause, recalibrated", "with the cause"]
+    without, with_it = (max(axes.get_lines()[0].get_ydata()) for axes in panels)
+    assert with_it == pytest.approx(1.3 * without)
+    for axes in panels:
+        shade = axes.patches[-1]
+        assert shade.get_x() == 4.0
+
+
+def test_misfit_has_a_panel_a_history_in_its_unit():
+    found = misfit(["slab-block-1"], "block-3")
+    figure = plot_misfit(found, [(2, 2), (1, 0)], "measured")
+    drift, rotation = figure.axes
+    assert drift.get_ylabel() == "drift [mm]"
+    assert drift.get_title() == f"{OPEN[2]}, block-3"
+    assert rotation.get_ylabel() == "rotation [mrad]"

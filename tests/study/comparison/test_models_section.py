@@ -1,0 +1,108 @@
+"""The section that holds the models against each other says what its files say."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from blockshake.simulation.models import MODELS
+from blockshake.study.comparison.figure import plot_differences
+from blockshake.study.comparison.section import models
+from blockshake.study.comparison.tables import block_tables, numerics_table, pairs_table
+from blockshake.study.comparison.words import case_words, impact_words
+from blockshake.study.report.content import load_content
+
+FIRST, LAST = "configuration-1", "configuration-4"
+
+
+@pytest.fixture
+def content(fake):
+    return load_content(fake.study, fake.results, fake.logs)
+
+
+def test_every_block_has_its_numbers_by_every_model(content):
+    case = content.cases[FIRST]
+    peak, residual, width = block_tables(case)
+    assert [row[0] for row in peak.rows] == ["block-3", "block-2", "block-1"]
+    labels = [f"{model.label} (n = {4 if 'elastic' in name else 10})" for name, model in MODELS.items()]
+    assert peak.header == ("Block", "Virtual test (synthetic)", *labels)
+    assert width.header == ("Block", *labels)
+    at = case.differences.sel(marker="block-3-face", model="ls-dem")
+    low, high = (1e3 * float(one) for one in at["peak_interval"])
+    assert peak.rows[0][2] == f"{1e3 * float(at['peak']):.1f} [{low:.1f}, {high:.1f}]"
+    assert float(at["peak"]) == float(
+        case.responses["ls-dem"].envelope["peak"].sel(frame="slab", marker="block-3-face", quantile=0.5)
+    )
+    # the smallest and the largest of four samples hold the median in 88 of 100 cases: no limits
+    assert "which fewer than 6 samples do not bear" in peak.caption
+    few = case.differences["peak"].sel(marker="block-3-face", model="nscd-elastic")
+    assert f"{1e3 * float(few):.1f}" in peak.rows[0]
+    assert "LS-DEM (" not in peak.caption
+    assert len({len(row) for row in (*residual.rows, residual.header)}) == 1
+
+
+def test_one_sample_has_medians_and_no_width(content):
+    peak, _, width = block_tables(content.cases[LAST])
+    place = width.header.index("NSCD elastic (n = 1)")
+    assert {row[place] for row in width.rows} == {"none"}
+    top = content.cases[LAST].differences["peak"].sel(model="nscd-elastic", marker="top-face")
+    assert peak.rows[0][peak.header.index("NSCD elastic (n = 1)")] == f"{1e3 * float(top):.1f}"
+    assert "NSCD elastic (" not in peak.caption
+
+
+def test_every_pair_and_every_model_has_a_row(content):
+    assert len(pairs_table(content).rows) == 2 * 6
+    assert len(numerics_table(content).rows) == 2 * 4
+    rows = {row[:2]: row for row in pairs_table(content).rows}
+    assert rows[LAST, "LS-DEM and NSCD elastic"][2:4] == ("none", "none")
+
+
+def test_models_of_rigid_blocks_are_held_against_their_numerics(content):
+    case = content.cases[FIRST]
+    words = case_words(case)
+    assert words.startswith("configuration-1, basso-tirreno x 2: the ensembles of ")
+    assert words.count("both have rigid blocks") == 1
+    pair = {"model": "ls-dem", "other": "nscd-rigid"}
+    floors = case.differences["floor"].max("twin")
+    case.differences["history_difference"].loc[pair] = 4.0 * float(
+        floors.sel(model=["ls-dem", "nscd-rigid"]).max()
+    )
+    assert "4 times the larger floor of their numerics" in case_words(case)
+    case.differences["parting_time"].loc[pair] = np.inf
+    assert "the runs are not told apart within the window" in case_words(case)
+
+
+def test_pairs_beyond_chance_are_counted(content):
+    case = content.cases[FIRST]
+    case.differences["distance_chance"][:] = 0.0
+    assert "of all 6 pairs of models are farther apart" in case_words(case)
+    case.differences["distance_chance"][:] = 1.0
+    assert "of none of 6 pairs of models are farther apart" in case_words(case)
+    case.differences["distance_chance"][:] = np.nan
+    assert "x 2: too few samples to tell the ensembles of any two models apart." in case_words(case)
+
+
+def test_impacts_of_equal_blocks_are_said_once(content):
+    cases = [content.cases[FIRST], dataclasses.replace(content.cases[FIRST], name="other")]
+    (words,) = impact_words(cases)
+    assert "configuration-1, other: LS-DEM 0.800, NSCD rigid 0.820" in words
+    assert words.endswith("a rigid block on two edges 0.731 (Housner 1963).")
+
+
+def test_a_study_without_tests_has_no_scores_and_one_of_one_model_no_section(fake, content):
+    untested = {**fake.study, "cases": [{**case, "measured": None} for case in fake.study["cases"]]}
+    assert "scores" in [block.key for block in models(content).blocks if block.kind == "heading"]
+    section = models(load_content(untested, fake.results, fake.logs))
+    assert "scores" not in [block.key for block in section.blocks if block.kind == "heading"]
+    alone = {**fake.study, "models": {"ls-dem": fake.study["models"]["ls-dem"]}}
+    assert models(load_content(alone, fake.results, fake.logs)) is None
+
+
+def test_figure_has_the_distances_in_millimetres(content):
+    differences = {name: case.differences for name, case in content.cases.items()}
+    axes = plot_differences(differences).axes[0]
+    dots = [line for line in axes.lines if line.get_marker() == "o"]
+    drawn = [float(line.get_xdata()[0]) for line in dots]
+    found = differences[FIRST]["distance"].to_numpy()[np.triu_indices(4, 1)]
+    np.testing.assert_allclose(drawn, np.maximum(1e3 * found, 1e-4))
+    assert len([line for line in axes.lines if line.get_marker() == "x"]) == 6

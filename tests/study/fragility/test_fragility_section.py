@@ -1,0 +1,72 @@
+"""Section on the fragility: figures of the files, in words and in a table."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from blockshake.study.fragility.section import fragility, words
+from blockshake.study.report.content import load_content
+
+CASE = "configuration-1"
+
+
+@pytest.fixture(scope="module")
+def content(fake):
+    return load_content(fake.study, fake.results, fake.logs)
+
+
+def with_fragility(content, **variables):
+    """The content with values of its fragility replaced."""
+    one = content.fragility[CASE].copy(deep=True)
+    for name, values in variables.items():
+        one[name].values[...] = values
+    return replace(content, fragility={CASE: one})
+
+
+def test_median_is_told_as_a_factor_and_as_an_acceleration(content):
+    one, peak = content.fragility[CASE], content.motions["basso-tirreno"].attrs["peak_acceleration"]
+    told = words(content, CASE)
+    assert f"half of the capacities are below {float(one['median']):.2f} [" in told
+    assert f"({float(one['median']) * peak:.2f} m/s" in told
+    assert "The last run of 1 sample ended for a numerical reason." in told
+    # whose it is
+    assert "5 samples by NSCD rigid: half of the capacities" in told
+
+
+def test_samples_that_still_fall_are_told(content):
+    falling = with_fragility(content, status="falling")
+    assert "5 samples still fell when the window ended, which counts as a collapse." in words(falling, CASE)
+
+
+def test_a_table_has_every_level_with_its_share(content):
+    *_, table = fragility(content).blocks
+    assert len(table.rows) == 6
+    # the first of five does not pass 1.0; the last one's run there tells nothing of 1.25
+    assert table.rows[2][1:2] + table.rows[2][3:4] == ("1", "5")
+    assert table.rows[2][4].startswith("20.0 [0.5, 71.6]")
+    assert table.rows[5][3] == "0"
+    assert table.rows[5][5] == "none"
+
+
+def test_samples_that_all_pass_tell_no_fragility(content):
+    silent = with_fragility(content, median=np.nan, capacity_lower=1.75)
+    assert "all pass the highest factor that was climbed, 1.75, so that no fragility" in words(silent, CASE)
+    none = with_fragility(content, median=np.nan, capacity_lower=0.0)
+    assert "none passes the lowest factor, 0.5" in words(none, CASE)
+
+
+def test_capacities_between_the_same_levels_are_told_by_these_alone(content):
+    same = with_fragility(content, dispersion=0.0, capacity_lower=1.0, capacity_upper=1.25)
+    told = words(same, CASE)
+    assert "all capacities lie between 1 and 1.25 times the motion" in told
+    assert "half of the capacities" not in told
+
+
+def test_a_dispersion_that_the_levels_hide_is_said(content):
+    assert "differ by less than the levels are apart" in words(with_fragility(content, dispersion=0.01), CASE)
+    assert "differ by less" not in words(with_fragility(content, dispersion=0.4), CASE)
+
+
+def test_a_study_without_it_has_no_section(content):
+    assert fragility(replace(content, fragility={})) is None

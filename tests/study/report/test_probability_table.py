@@ -1,0 +1,21 @@
+from blockshake.study.report.content import load_content
+from blockshake.study.report.probability_table import probability_table
+
+
+def test_collapse_and_quantiles_are_those_of_the_files_with_limits(fake):
+    content = load_content(fake.study, fake.results, fake.logs)
+    table = probability_table(content)
+    rows = {row[:2]: row[2:] for row in table.rows}
+    # one collapsed and one failed of six: 1 of 5 counts, limits of Clopper and Pearson
+    counted, collapse, drift, *_ = rows["configuration-4, top-face", "NSCD rigid"]
+    assert counted == "5 + 1 failed"
+    assert collapse == "20.0 [0.5, 71.6]"
+    assert drift == collapse  # a collapse is a drift beyond all limits, and no other sample drifts by 400 mm
+    assert rows["configuration-1, block-3-face", "LS-DEM"][:2] == ("10", "0.0 [0.0, 30.8]")
+    envelope = content.cases["configuration-1"].responses["ls-dem"].envelope
+    peak = envelope["peak"].sel(frame="slab", marker="block-3-face", quantile=0.5)
+    assert rows["configuration-1, block-3-face", "LS-DEM"][3].startswith(f"{1e3 * float(peak):.1f} [")
+    # ten samples bear no limits of the quantile 95 %, and five none of a median
+    assert rows["configuration-1, block-3-face", "LS-DEM"][4] == "none"
+    assert rows["configuration-4, top-face", "NSCD rigid"][3] == "none"
+    assert "95 % needs 59" in table.caption

@@ -1,0 +1,305 @@
+import json
+import re
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from fake_inputs import PEAK_ACCELERATION
+from fake_study import COLLAPSE_REASON, CPU_TIME, MODELS
+from page import CLAIMS, Page, texts
+
+from blockshake.errors import InputError
+from blockshake.files import HOME, load_json
+from blockshake.pages.blocks import Table
+from blockshake.pages.html import write_html
+from blockshake.pages.pdf import write_pdf
+from blockshake.pages.wording import number
+from blockshake.study import analyses
+from blockshake.study.calibration.section import calibration
+from blockshake.study.report import closing_sections, content
+from blockshake.study.report.closing_sections import checks
+from blockshake.study.report.content import load_content
+from blockshake.study.report.report import compose, make_case_report, make_report
+from blockshake.study.report.result_sections import responses
+from blockshake.study.statements.section import findings
+
+
+def test_tags_close_and_ids_are_unique(page):
+    assert page.open == []
+    assert len(set(page.ids)) == len(page.ids)
+
+
+def test_head_says_who_and_when_as_stated(text):
+    assert "Author: A. <Nobody> Date: 2026-11-23" in text
+    assert "Project:" not in text
+
+
+def test_page_refers_to_nothing_outside_itself(page):
+    inside = {f"#{one}" for one in page.ids}
+    for reference in page.references:
+        assert reference in inside or reference.startswith("data:"), reference
+    assert not {"link", "iframe", "object"} & set(page.tags)
+
+
+def test_style_and_drawings_refer_to_nothing_outside(report, page):
+    whole = report[0].read_text(encoding="utf-8")
+    html = re.sub(
+        r"<script>.*?</script>", "", whole, flags=re.DOTALL
+    )  # of programs the browser's console tells
+    used = set(re.findall(r"url\(([^)]*)\)", html))
+    assert used  # clipped curves are
+    assert used <= {f"#{one}" for one in page.ids}
+    assert "@import" not in html
+
+
+@pytest.mark.parametrize(
+    "title",
+    [
+        "Summary", "Structures", "Ground motions", "Samples", "Contact stiffness", "Displacement of the blocks",
+        "Models against each other",
+        "Causes of the thickness of the envelopes", "Completion, energy and computation", "Timings", "Origin",
+        "Limits of this study", "The paper, statement by statement",
+    ],
+)  # fmt: skip
+def test_sections_and_contents(text, title):
+    assert text.count(title) >= 2  # in the table of contents and over the section
+
+
+def test_synthetic_is_said_where_it_shows(report, text):
+    assert "The measured curves of configuration-1, configuration-4 are SYNTHETIC" in text
+    assert "ground motions are synthetic" in text
+    assert "Virtual test (synthetic)" in text
+    assert not [claim for claim in CLAIMS if claim in text.lower()]
+
+
+def test_peaks_are_those_of_the_files(fake, text):
+    for model in MODELS:
+        envelope = xr.load_dataset(fake.results / "envelopes" / model / "configuration-4.nc")
+        peak = envelope["peak"].sel(frame="slab", marker="top-face")
+        shown = " / ".join(f"{1e3 * float(peak.sel(quantile=one)):.1f}" for one in (0.05, 0.5, 0.95))
+        one = f"{shown.partition(' ')[0]} (one sample)"
+        assert (
+            one if envelope.attrs["counted"] == 1 else f"{shown} (n = {envelope.attrs['counted']})"
+        ) in text
+
+
+def test_measured_peak_is_that_of_the_simulated_window(fake, tmp_path):
+    study = {**fake.study, "cases": [{**fake.study["cases"][0], "duration": 1.0}]}
+    case = load_content(study, fake.results, fake.logs).cases["configuration-1"]
+    test = xr.load_dataset(f"{study['cases'][0]['measured']['campaign']}/virtual.nc")
+    along = test["marker_displacement"].sel(axis="x")
+    relative = np.abs(along.sel(marker="block-3-face") - along.sel(marker="slab-face"))
+    shown = float(case.measured["peak"].sel(frame="slab", marker="block-3-face"))
+    assert shown == float(relative.sel(time=slice(0.0, 1.0 + 1e-9)).max())
+    assert shown < float(relative.max())
+
+
+def test_coverage_never_stands_alone(fake, text):
+    compared = xr.load_dataset(fake.results / "comparisons" / "ls-dem" / "configuration-1.nc").sel(
+        marker="block-2-face"
+    )
+    reference = " / ".join(f"{100 * float(one):.1f}" for one in compared["reference"])
+    width = f"{1e3 * float(compared['band_width']):.1f}"
+    chance = number(float(compared["curve_probability"]), 2)
+    distance = number(float(compared["distance"]), 2)
+    assert f"{100 * float(compared['coverage']):.1f} {reference} {distance} {chance} {width}" in text
+
+
+def test_samples_that_did_not_complete_are_listed_with_their_reason(text):
+    assert f"configuration-4 NSCD rigid 2 collapsed 1 {COLLAPSE_REASON}" in text
+    assert "configuration-4 NSCD rigid 4 not-converged" in text
+    assert "48 runs: 46 completed, 1 collapsed, 0 still falling when the window ended, 1 failed" in text
+    assert "NSCD rigid: 5 samples contribute until" in text
+    assert "the statistics leave out failed samples (1)" in text
+
+
+def test_fewer_samples_of_a_model_are_said_first_and_their_cost_with_the_samples(text):
+    assert text.index("NSCD rigid (n = 5), configuration-4") < text.index("Table 1.")
+    assert "NSCD rigid ran 6 of the 10 samples on configuration-4, where a sample cost 7.2 CPU s" in text
+    assert "NSCD elastic ran 1 of the 10 samples on configuration-4" in text
+    assert text.count("Bounds of fewer samples are narrower") == 1
+
+
+def test_figures_of_motion_computation_and_cost(text):
+    assert f"{2.0 * PEAK_ACCELERATION:.2f}" in text  # scaled by the case
+    assert "3.50e-06" in text  # residual of NSCD
+    simulated = 10 * 2.0
+    assert f"{simulated:.0f} {CPU_TIME:.1f} 50 {CPU_TIME / simulated:.2f}" in text
+
+
+def test_a_model_without_words_of_its_own_has_its_figures(fake, monkeypatch):
+    monkeypatch.setattr(closing_sections, "_COMPUTATION", {})
+    made = checks(load_content(fake.study, fake.results, fake.logs))
+    titles = [block.caption for block in made.blocks if block.kind == "table"]
+    assert [f"{label}: figures" in " ".join(titles) for label in ("LS-DEM", "NSCD rigid")] == [True, True]
+
+
+def test_pages_that_the_report_names_are_there(text):
+    pages = set(re.findall(r"docs/[\w/.-]+\.md", text))
+    assert pages >= {
+        "docs/method.md",
+        "docs/results/peers.md",
+        "docs/results/the-paper.md",
+        "docs/guide/uncertainty.md",
+    }
+    assert [page for page in pages if not (HOME / page).is_file()] == []
+
+
+def test_origin_holds_configuration_digests_and_seed(text):
+    assert "0123456789ab (blockshake 0.0.7)" in text
+    assert "seed: 77" in text
+    assert "friction.concrete.concrete" in text
+    assert "snakemake -c2 reports/fake.html" in text
+
+
+def test_figures_and_tables_are_counted(document):
+    for kind in ("figure", "table"):
+        blocks = [block for section in document.sections for block in section.blocks if block.kind == kind]
+        assert [block.number for block in blocks] == list(range(1, len(blocks) + 1))
+        assert len(blocks) > 8
+
+
+def test_rows_are_as_long_as_their_header(document):
+    tables = [block for section in document.sections for block in section.blocks if block.kind == "table"]
+    for table in tables:
+        assert {len(table.header), len(table.align)} == {len(row) for row in table.rows}
+
+
+def test_pdf_has_pages_and_vector_figures(report):
+    pdf = report[1].read_bytes()
+    assert pdf.startswith(b"%PDF")
+    assert len(re.findall(rb"/Type\s*/Page\b", pdf)) > 8
+    assert b"CreationDate" not in pdf
+    assert b"/Subtype/Image" not in pdf.replace(b" ", b"")
+
+
+def test_same_results_same_bytes(document, report, tmp_path):
+    again = tmp_path / "fake.html", tmp_path / "fake.pdf"
+    write_html(again[0], document)
+    write_pdf(again[1], document)
+    for first, second in zip(report, again, strict=False):
+        assert first.read_bytes() == second.read_bytes()
+
+
+def test_findings_on_the_paper_are_left_as_values(fake, report):
+    left = load_json(report[2])
+    assert left == json.loads(json.dumps(findings(load_content(fake.study, fake.results, fake.logs))))
+    assert left["study"] == "fake"
+    assert "basso-tirreno at 2" in left["cases"][0]
+
+
+def test_complete_study_says_that_all_completed(fake):
+    study = {**fake.study, "cases": fake.study["cases"][:1]}
+    section = checks(load_content(study, fake.results, fake.logs))
+    assert section.blocks[0].text == "Every sample of every case and model completed."
+
+
+def test_own_structures_by_rigid_models_need_no_contact_stiffness(copied, monkeypatch):
+    for module in (analyses, content):
+        monkeypatch.setattr(module, "is_of_the_paper", lambda structure: False)
+    for name in ("stiffness", "waves"):
+        shutil.rmtree(copied.results / name)
+    study = {**copied.study, "models": {"nscd-rigid": MODELS["nscd-rigid"]}}
+    found = load_content(study, copied.results, copied.logs)
+    assert not {"stiffness", "statements"} & {section.key for section in compose(found).sections}
+    assert findings(found)["findings"] == {}
+
+
+def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
+    fake = copied
+    others = fake.results.rglob("configuration-1*")
+    for path in [*others, fake.results / "motions" / "alkion.nc"]:
+        path.unlink()
+    html, pdf = tmp_path / "case.html", tmp_path / "case.pdf"
+    make_case_report(fake.study, "configuration-4", fake.results, fake.logs, html, pdf)
+    assert pdf.read_bytes().startswith(b"%PDF")
+    parsed = Page()
+    parsed.feed(html.read_text(encoding="utf-8"))
+    said = " ".join(" ".join(parsed.words).split())
+    assert "blockshake: fake, configuration-4" in said
+    assert "1 case, 4 models" in said
+    assert "reports/fake-configuration-4.html" in said
+    assert {"summary", "structures", "responses", "models", "limits", "origin"} <= set(parsed.ids)
+    assert not {"statements"} & set(parsed.ids)
+    before = said[: said.index("Configuration used")]
+    assert "configuration-1" not in before
+
+
+def test_quantiles_that_print_alike_say_why(text):
+    assert re.search(r"\d+\.\d \(one sample\)", text)
+    assert "NSCD elastic: one sample, whose curve is drawn in place of a band." in text
+
+
+def test_missing_results_are_named(copied, tmp_path):
+    fake = copied
+    missing = fake.results / "envelopes" / "ls-dem" / "configuration-1.nc"
+    missing.unlink()
+    made = [tmp_path / f"a.{kind}" for kind in ("html", "pdf", "json")]
+    with pytest.raises(InputError, match=r"envelopes/ls-dem/configuration-1\.nc"):
+        make_report(fake.study, fake.results, fake.logs, *made)
+    assert not (tmp_path / "a.html").exists()
+
+
+def test_one_friction_alone_is_said_to_be_the_search_of_the_paper(fake):
+    content = load_content(fake.study, fake.results, fake.logs)
+    whole = calibration(content).blocks[0].text
+    assert "over a range: friction, concrete on concrete; restitution C_res; " in whole
+    assert "Zhou" not in whole
+    name = "friction.concrete.concrete"
+    one = {**content.calibration, "parameters": {name: content.calibration["parameters"][name]}}
+    assert (
+        "is the search of Zhou et al. (2023)" in calibration(replace(content, calibration=one)).blocks[0].text
+    )
+
+
+def test_the_calibration_says_what_all_tests_tell_and_what_they_do_not(document):
+    section = next(section for section in document.sections if section.key == "calibration")
+    said = next(block.items for block in section.blocks if block.kind == "items")
+    assert said[0].startswith("friction, concrete on concrete: between 0.")
+    assert (
+        said[1] == "restitution C_res: the tests tell nothing about it; 0.5 is neither borne out nor refused."
+    )
+    assert said[-1].startswith("2 tests of 2 are synthetic")
+    answers, tests = (block for block in section.blocks if block.kind == "table")
+    row = dict(zip(answers.header, answers.rows[1], strict=True))
+    assert row["NSCD rigid"] == "has no use for it"
+    assert row["All"].startswith("not told (p ")
+    assert "2 of 4 are below 0.05" in tests.caption
+    assert "4 runs ended for a numerical reason" in tests.caption
+    assert len(tests.rows) == 4
+
+
+def test_a_study_without_a_calibration_has_no_such_section(fake):
+    study = {name: value for name, value in fake.study.items() if name != "calibration"}
+    assert calibration(load_content(study, fake.results, fake.logs)) is None
+
+
+def test_bands_that_are_lines_are_counted(fake):
+    content = load_content(fake.study, fake.results, fake.logs)
+    assert not [one for one in texts(responses(content)) if "close to lines" in one]
+    spread = content.cases["configuration-1"].responses["nscd-rigid"].sensitivity["spread"]
+    spread.loc[{"quantity": "history", "marker": "block-1-face"}] = 1e-6
+    (said,) = [one for one in texts(responses(content)) if "close to lines" in one]
+    assert said.startswith("NSCD rigid: the samples of 1 of 3 blocks differ by less")
+
+
+def test_a_window_that_ends_with_the_motion_has_no_remark(fake):
+    content = load_content(fake.study, fake.results, fake.logs)
+    remarks = [
+        one for one in texts(responses(content)) if one.startswith("The window ends before the motion")
+    ]
+    assert len(remarks) == len(content.cases)
+    for motion in content.motions.values():
+        motion.attrs["duration"] = 2.0
+    assert not [one for one in texts(responses(content)) if one.startswith("The window ends")]
+
+
+def test_study_without_measured_tests_tells_of_its_samples_alone(fake):
+    study = {**fake.study, "cases": [{**case, "measured": None} for case in fake.study["cases"]]}
+    document = compose(load_content(study, fake.results, fake.logs))
+    tables = [block for section in document.sections for block in section.blocks if isinstance(block, Table)]
+    said = " ".join([table.caption + " ".join(table.header) for table in tables])
+    assert "Peak displacement of the top block" in said
+    assert "virtual test" not in said

@@ -1,0 +1,128 @@
+"""Section of the report on sensitivities, where the answer is known."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from blockshake.geometry.structure import load_structure
+from blockshake.pages.rows import bodies_by_height, face_markers
+from blockshake.study.report.content import load_content
+from blockshake.study.sensitivity.figure import plot_sensitivity, plot_sensitivity_over_time
+from blockshake.study.sensitivity.sensitivity import QUANTITIES
+from blockshake.study.sensitivity.summary import summary_table
+from blockshake.study.sensitivity.words import sentence
+
+NOISE = 1e-4  # m
+FRICTION, VISCOUS = "friction.concrete.concrete", "materials.concrete.viscous_modulus"
+
+
+def made_up(share=0.6, correlation=-0.7, spread=0.01, level=0.3):
+    """Sensitivity of two blocks to friction, with a control without effect."""
+    pairs = ("quantity", "marker", "parameter")
+    shape = (len(QUANTITIES), 2, 2)
+    first, rank = np.zeros(shape), np.zeros(shape)
+    first[..., 0], rank[..., 0] = share, correlation
+    rank[0] = np.nan
+    levels = np.full(len(QUANTITIES), level)
+    windows = np.zeros((3, 2, 2))
+    windows[0, :, 0] = share
+    result = xr.Dataset(
+        {
+            "first_order": (pairs, first),
+            "first_order_interval": (("bound", *pairs), np.stack([first - 0.1, first + 0.1])),
+            "first_order_chance": ("quantity", levels),
+            "rank_correlation": (pairs, rank),
+            "rank_correlation_interval": (("bound", *pairs), np.stack([rank - 0.2, rank + 0.2])),
+            "rank_correlation_chance": ("quantity", np.where(np.arange(len(QUANTITIES)) == 0, np.nan, level)),
+            "explained": (("quantity", "marker"), np.full(shape[:2], 0.42)),
+            "spread": (("quantity", "marker"), np.full(shape[:2], spread)),
+            "used": ("quantity", np.full(len(QUANTITIES), 50)),
+            "control": ("parameter", [0, 1]),
+            "window_first_order": (("window", "marker", "parameter"), windows),
+            "window_spread": (("window", "marker"), np.full((3, 2), spread)),
+            "window_first_order_chance": ((), level),
+        },
+        coords={
+            "quantity": list(QUANTITIES), "marker": ["low-face", "high-face"], "parameter": [FRICTION, VISCOUS],
+            "bound": ["lower", "upper"], "window": [0.5, 1.5, 2.5],
+        },
+    )  # fmt: skip
+    return result
+
+
+def test_the_dominating_variable_is_named_with_its_interval_and_the_level_of_chance():
+    words = sentence(made_up(), "block-2", "high-face", NOISE)
+    assert "differ by 10.0 mm" in words
+    assert "by itself: friction, concrete on concrete 0.60 [0.50, 0.70]; level of chance 0.30" in words
+    assert "follows friction, concrete on concrete -0.70 [-0.90, -0.50]" in words
+    assert "in 1 (first about 0.5 s, last 0.5 s, at most 0.60)" in words
+    assert "explain 42.0 % of the ranks" in words
+    assert "viscous" not in words
+
+
+def test_nothing_is_named_within_chance():
+    words = sentence(made_up(share=0.2, correlation=0.25), "block-2", "high-face", NOISE)
+    assert "No variable is shown to explain any of that by itself" in words
+    assert "No variable is shown to steer the peak" in words
+    assert "In no single second is any share beyond chance (0.30)" in words
+
+
+def test_samples_closer_than_the_noise_have_nothing_to_explain():
+    words = sentence(made_up(spread=2.5e-5), "block-2", "high-face", NOISE)
+    assert "differ by 0.025 mm" in words
+    assert "nothing to explain" in words
+    assert "friction" not in words
+
+
+def test_figure_shows_every_variable_with_interval_and_level():
+    figure = plot_sensitivity(
+        {"ls-dem": made_up(), "nscd-rigid": made_up(spread=1e-6)},
+        {"low": "low-face", "high": "high-face"},
+        NOISE,
+        "first_order",
+    )
+    assert len(figure.axes) == 2  # the model whose samples differ, two blocks
+    axes = figure.axes[0]
+    dots = [line for line in axes.lines if line.get_marker() == "o"]
+    assert [tuple(np.ravel(dot.get_xydata())) for dot in dots] == [(0.6, 0.0), (0.0, 1.0)]
+    assert [dot.get_markerfacecolor() == "white" for dot in dots] == [False, True]
+    band = axes.patches[0]
+    assert band.get_x() == pytest.approx(-0.3)
+    assert band.get_width() == pytest.approx(0.6)
+    assert axes.get_yticklabels()[0].get_text() == "friction, concrete on concrete"
+    quiet = {"nscd-rigid": made_up(spread=1e-6)}
+    assert plot_sensitivity(quiet, {"low": "low-face"}, NOISE, "first_order") is None
+
+
+def test_curves_over_time_are_the_files_and_stop_below_the_noise():
+    result = made_up()
+    result["window_spread"][2] = 1e-5
+    below = plot_sensitivity_over_time({"ls-dem": result}, "high-face", NOISE).axes[1]
+    curve = next(line for line in below.lines if line.get_label().startswith("friction"))
+    np.testing.assert_array_equal(curve.get_ydata(), [0.6, 0.0, np.nan])
+    assert not [line for line in below.lines if "viscous" in line.get_label()]
+
+
+def test_too_few_samples_are_not_called_close_to_each_other():
+    result = made_up(spread=np.nan)
+    below = plot_sensitivity_over_time({"nscd-rigid": result}, "high-face", NOISE).axes[1]
+    assert [text.get_text() for text in below.texts] == ["too few samples"]
+
+
+def test_columns_are_one_body_of_each_height_from_the_lowest():
+    structure = load_structure("configuration-3")
+    bodies = bodies_by_height(structure, face_markers(structure))
+    assert bodies == ["wall-a-1", "wall-a-2", "wall-a-3", "wall-a-4", "top"]
+    assert bodies_by_height(structure, face_markers(structure), most=3) == ["wall-a-1", "wall-a-3", "top"]
+
+
+def test_summary_has_the_lowest_and_the_highest_block_of_every_case_and_model(fake):
+    content = load_content(fake.study, fake.results, fake.logs)
+    table = summary_table(content)
+    assert [row[:3] for row in table.rows[:2]] == [
+        ("configuration-1", "LS-DEM", f"block-{place}") for place in (1, 3)
+    ]
+    # six samples of configuration-4 by NSCD, one of them failed and one collapsed, are too few for anything
+    assert {row[4:] for row in table.rows if row[:2] == ("configuration-4", "NSCD rigid")} == {
+        ("none", "none")
+    }
