@@ -11,6 +11,8 @@ rule compare_open_tests:
         "results/{study}/open-tests/{model}/{case}.nc",
     log:
         "logs/{study}/compare_open_tests/{model}/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
     resources:
         runtime=720,
     params:
@@ -41,6 +43,8 @@ rule calibrate_jointly:
         "results/{study}/calibration.json",
     log:
         "logs/{study}/calibrate_jointly.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         study={key: config[key] for key in ("calibration", "ensemble", "cases")},
         source=source_of("calibrate_jointly"),

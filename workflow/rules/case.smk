@@ -1,4 +1,4 @@
-"""What the rules of a case share: its files, and the entries of its configuration that runs depend on."""
+"""Files that go from rule to rule, and the entries of a case's configuration that its runs depend on."""
 
 
 def campaign_files(case, every=False):
@@ -39,3 +39,103 @@ def case_keys(case, *more):
 def case_definition(wildcards):
     """The same of a case under one motion of its own."""
     return case_keys(wildcards.case, "scale", "input")
+
+
+def run_files(wildcards):
+    """All that the samples of a case by a model are simulated from, by name."""
+    study, model, case = wildcards.study, wildcards.model, wildcards.case
+    return {
+        **case_files(wildcards),
+        "base": (
+            f"results/{study}/inputs/{case}.nc"
+            if CASES[case]["input"] == "measured"
+            else []
+        ),
+        "design": f"results/{study}/design.csv",
+        "stiffness": stiffness_file(model, study, case),
+        "kernels": kernels(model),
+    }
+
+
+def stiffness_file(model, study, case):
+    """Calibrated stiffness of the samples, for the models that have any: an edit of LS-DEM reruns no NSCD."""
+    return f"results/{study}/stiffness/{case}.csv" if SOLVERS[model].calibrated else []
+
+
+def runs_of(model, case, **others):
+    """`CaseRuns` of a case, a mapping, by a model."""
+    return {
+        "case": case,
+        "model": model,
+        "settings": config["models"][model],
+        "linked": config["ensemble"]["linked"],
+        **others,
+    }
+
+
+def sample_runs(wildcards):
+    """Those of the samples of an ensemble."""
+    case, rate = case_definition(wildcards), config["output_rate"]
+    return runs_of(wildcards.model, case, output_rate=rate)
+
+
+def batch_ids(count):
+    """Ids of the batches of so many samples: first and last sample."""
+    size = config["samples_per_job"]
+    return [
+        f"{first:03d}-{min(first + size, count) - 1:03d}"
+        for first in range(0, count, size)
+    ]
+
+
+def batch_files(wildcards, model=None):
+    """Batch files of a case by a model, of the wildcards if none is named."""
+    model = model or wildcards.model
+    return expand(
+        "results/{study}/runs/{model}/{case}/{batch}.nc",
+        study=wildcards.study,
+        model=model,
+        case=wildcards.case,
+        batch=batch_ids(CHECKED.samples(model, wildcards.case)),
+    )
+
+
+def files_of_models(wildcards):
+    """Batch files of a case by every model, and their twins, each under a name of its own for the rule's input."""
+    twins = "results/{study}/twins/{model}/{case}.nc"
+    named = {f"batches {model}": batch_files(wildcards, model) for model in MODELS}
+    named |= {
+        f"twins {model}": twins.format(
+            study=wildcards.study, model=model, case=wildcards.case
+        )
+        for model in MODELS
+        if CHECKED.has_twins(model, wildcards.case)
+    }
+    return named
+
+
+def files_of_report(only=None):
+    """Files that the report of the study, or of one of its cases, is made of, by name."""
+    cases = [only] if only else list(CASES)
+    motions = {Path(CASES[case]["motion"]).stem for case in cases}
+    folder = f"results/{STUDY}"
+    return {
+        "structures": [
+            definition("structures", CASES[case]["structure"]) for case in cases
+        ],
+        "campaigns": [
+            file
+            for case in cases
+            if CASES[case]["measured"]
+            for file in campaign_files(case)
+        ],
+        "templates": TEMPLATES,
+        "motions": [f"{folder}/motions/{motion}.nc" for motion in sorted(motions)],
+        "design": [f"{folder}/design.{suffix}" for suffix in ("csv", "json")],
+        **{
+            analysis.name: [
+                f"{folder}/{file}" for file in analysis.files(config, only).values()
+            ]
+            for analysis in ANALYSES
+        },
+    }

@@ -38,6 +38,8 @@ checkpoint decide:
         frozen="results/diagnosis/{campaign}/frozen.json",
     log:
         "logs/diagnosis/{campaign}/decide.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         without=WITHOUT,
@@ -55,6 +57,8 @@ rule simulate_nominal:
         "results/diagnosis/{campaign}/ensembles/{number}-{solver}.nc",
     log:
         "logs/diagnosis/{campaign}/simulate_nominal/{number}-{solver}.log",
+    conda:
+        "../envs/blockshake.yaml"
     resources:
         runtime=480,
     params:
@@ -78,6 +82,8 @@ rule describe_misfit:
         "results/diagnosis/{campaign}/misfit.nc",
     log:
         "logs/diagnosis/{campaign}/describe_misfit.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
@@ -102,6 +108,8 @@ rule extend_model:
         "results/diagnosis/{campaign}/extended/{solver}.nc",
     log:
         "logs/diagnosis/{campaign}/extend_model/{solver}.log",
+    conda:
+        "../envs/blockshake.yaml"
     resources:
         runtime=480,
     params:
@@ -130,6 +138,8 @@ rule measure_gain:
         summary="results/diagnosis/{campaign}/gain.json",
     log:
         "logs/diagnosis/{campaign}/measure_gain.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         effort=EFFORT,
@@ -148,6 +158,8 @@ rule conclude:
         "results/diagnosis/{campaign}/verdict.json",
     log:
         "logs/diagnosis/{campaign}/conclude.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         runs=lambda wildcards: plan(wildcards.campaign).runs,
@@ -178,6 +190,8 @@ rule make_diagnosis_report:
         pdf=report("reports/diagnosis-{campaign}.pdf", category="Diagnosis"),
     log:
         "logs/diagnosis/{campaign}/make_diagnosis_report.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
         results=lambda wildcards, input: str(Path(input.results[0]).parent),

@@ -1,17 +1,3 @@
-def files_of_models(wildcards):
-    """Batch files of a case by every model, and their twins, each under a name of its own for the rule's input."""
-    twins = "results/{study}/twins/{model}/{case}.nc"
-    named = {f"batches {model}": batch_files(wildcards, model) for model in MODELS}
-    named |= {
-        f"twins {model}": twins.format(
-            study=wildcards.study, model=model, case=wildcards.case
-        )
-        for model in MODELS
-        if CHECKED.has_twins(model, wildcards.case)
-    }
-    return named
-
-
 rule make_envelope:
     """Bounds and quantiles over the samples, and what each sample came to."""
     input:
@@ -22,6 +8,8 @@ rule make_envelope:
         samples="results/{study}/samples/{model}/{case}.nc",
     log:
         "logs/{study}/make_envelope/{model}/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
         largest_drift=lookup(dpath="ladder/largest_drift", within=config),
@@ -38,6 +26,8 @@ rule show_samples:
         "results/{study}/shown/{model}/{case}.nc",
     log:
         "logs/{study}/show_samples/{model}/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         source=source_of("show_samples"),
     script:
@@ -54,6 +44,8 @@ rule compare_with_measurement:
         "results/{study}/comparisons/{model}/{case}.nc",
     log:
         "logs/{study}/compare_with_measurement/{model}/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
         source=source_of("compare_with_measurement"),
@@ -71,6 +63,8 @@ rule measure_sensitivity:
         "results/{study}/sensitivities/{model}/{case}.nc",
     log:
         "logs/{study}/measure_sensitivity/{model}/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
         linked=lookup(dpath="ensemble/linked", within=config),
@@ -95,6 +89,8 @@ rule compare_models:
         "results/{study}/differences/{case}.nc",
     log:
         "logs/{study}/compare_models/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         models=MODELS,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],

@@ -14,6 +14,8 @@ rule climb_samples:
         "results/{study}/climbs/{case}/{batch}.nc",
     log:
         "logs/{study}/climb_samples/{case}/{batch}.log",
+    conda:
+        "../envs/blockshake.yaml"
     resources:
         runtime=240,
     params:
@@ -38,6 +40,8 @@ rule fit_fragility:
         "results/{study}/fragility/{case}.nc",
     log:
         "logs/{study}/fit_fragility/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         source=source_of("fit_fragility"),
     script:

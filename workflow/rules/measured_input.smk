@@ -7,6 +7,8 @@ rule measure_input:
         "results/{study}/inputs/{case}.nc",
     log:
         "logs/{study}/measure_input/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         case=case_definition,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],

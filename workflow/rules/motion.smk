@@ -6,6 +6,8 @@ rule describe_motion:
         "results/{study}/motions/{motion}.nc",
     log:
         "logs/{study}/describe_motion/{motion}.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         baseline=lambda wildcards: BASELINES[MOTIONS[wildcards.motion]],
         source=source_of("describe_motion"),

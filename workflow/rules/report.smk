@@ -1,30 +1,3 @@
-def files_of_report(only=None):
-    """Files that the report of the study, or of one of its cases, is made of, by name."""
-    cases = [only] if only else list(CASES)
-    motions = {Path(CASES[case]["motion"]).stem for case in cases}
-    folder = f"results/{STUDY}"
-    return {
-        "structures": [
-            definition("structures", CASES[case]["structure"]) for case in cases
-        ],
-        "campaigns": [
-            file
-            for case in cases
-            if CASES[case]["measured"]
-            for file in campaign_files(case)
-        ],
-        "templates": TEMPLATES,
-        "motions": [f"{folder}/motions/{motion}.nc" for motion in sorted(motions)],
-        "design": [f"{folder}/design.{suffix}" for suffix in ("csv", "json")],
-        **{
-            analysis.name: [
-                f"{folder}/{file}" for file in analysis.files(config, only).values()
-            ]
-            for analysis in ANALYSES
-        },
-    }
-
-
 rule make_report:
     """The study as one self-contained page and as a PDF, and its findings on the paper, from the same content."""
     input:
@@ -42,6 +15,8 @@ rule make_report:
         paper="results/{study}/the-paper.json",
     log:
         "logs/{study}/make_report.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         study=CHECKED.model_dump(mode="json"),
         results="results/{study}",
@@ -60,6 +35,8 @@ rule make_case_report:
         pdf=report("reports/{study}-{case}.pdf", category="Study"),
     log:
         "logs/{study}/make_case_report/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         study=CHECKED.model_dump(mode="json"),
         case="{case}",

@@ -5,6 +5,8 @@ rule draw_samples:
         summary="results/{study}/design.json",
     log:
         "logs/{study}/draw_samples.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         ensemble=lookup(dpath="ensemble", within=config),
         source=source_of("draw_samples"),

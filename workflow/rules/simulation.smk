@@ -1,62 +1,3 @@
-def run_files(wildcards):
-    """All that the samples of a case by a model are simulated from, by name."""
-    study, model, case = wildcards.study, wildcards.model, wildcards.case
-    return {
-        **case_files(wildcards),
-        "base": (
-            f"results/{study}/inputs/{case}.nc"
-            if CASES[case]["input"] == "measured"
-            else []
-        ),
-        "design": f"results/{study}/design.csv",
-        "stiffness": stiffness_file(model, study, case),
-        "kernels": kernels(model),
-    }
-
-
-def stiffness_file(model, study, case):
-    """Calibrated stiffness of the samples, for the models that have any: an edit of LS-DEM reruns no NSCD."""
-    return f"results/{study}/stiffness/{case}.csv" if SOLVERS[model].calibrated else []
-
-
-def runs_of(model, case, **others):
-    """`CaseRuns` of a case, a mapping, by a model."""
-    return {
-        "case": case,
-        "model": model,
-        "settings": config["models"][model],
-        "linked": config["ensemble"]["linked"],
-        **others,
-    }
-
-
-def sample_runs(wildcards):
-    """Those of the samples of an ensemble."""
-    case, rate = case_definition(wildcards), config["output_rate"]
-    return runs_of(wildcards.model, case, output_rate=rate)
-
-
-def batch_ids(count):
-    """Ids of the batches of so many samples: first and last sample."""
-    size = config["samples_per_job"]
-    return [
-        f"{first:03d}-{min(first + size, count) - 1:03d}"
-        for first in range(0, count, size)
-    ]
-
-
-def batch_files(wildcards, model=None):
-    """Batch files of a case by a model, of the wildcards if none is named."""
-    model = model or wildcards.model
-    return expand(
-        "results/{study}/runs/{model}/{case}/{batch}.nc",
-        study=wildcards.study,
-        model=model,
-        case=wildcards.case,
-        batch=batch_ids(CHECKED.samples(model, wildcards.case)),
-    )
-
-
 LS_DEM_STEP = (
     config["models"].get("ls-dem", {}).get("time_step", SOLVERS["ls-dem"].time_step)
 )
@@ -71,6 +12,8 @@ rule compile_kernels:
         "results/kernels/{model}-{digest}.json",
     log:
         "logs/compile_kernels/{model}-{digest}.log",
+    conda:
+        "../envs/blockshake.yaml"
     script:
         "../scripts/compile_kernels.py"
 
@@ -87,6 +30,8 @@ rule simulate_batch:
         "results/{study}/runs/{model}/{case}/{batch}.nc",
     log:
         "logs/{study}/simulate_batch/{model}/{case}/{batch}.log",
+    conda:
+        "../envs/blockshake.yaml"
     resources:
         runtime=240,
     params:
@@ -106,6 +51,8 @@ rule run_twins:
         "results/{study}/twins/{model}/{case}.nc",
     log:
         "logs/{study}/run_twins/{model}/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
     resources:
         runtime=240,
     params:
@@ -129,6 +76,8 @@ rule climb_ladder:
         "results/{study}/ladder.json",
     log:
         "logs/{study}/climb_ladder.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         cases=[case for case in CASES.values()],
         motions={motion: BASELINES[motion] for motion in LADDER_MOTIONS},

@@ -9,6 +9,8 @@ rule calibrate_stiffness:
         waves="results/{study}/waves/{case}.nc",
     log:
         "logs/{study}/calibrate_stiffness/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
         linked=lookup(dpath="ensemble/linked", within=config),
