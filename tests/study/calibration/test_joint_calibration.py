@@ -143,7 +143,7 @@ def test_one_parameter_alone_is_calibrated_and_another_takes_its_value(campaign,
         return [None] * len(rows)
 
     monkeypatch.setattr(comparison, "simulate_readings", unread)
-    compared = compare_open_tests(case, str(folder), "ls-dem", study, tmp_path / "store", print)
+    compared = compare_open_tests(case, str(folder), "ls-dem", study, Store(tmp_path / "store", "source"))
     assert compared["parameter"].values.tolist() == [FRICTION]
     assert list(asked["rows"]) == [FRICTION, *DENSITY]
     assert set(asked["steps"]) == {MODELS["ls-dem"]["time_step"]}

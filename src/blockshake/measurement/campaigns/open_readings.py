@@ -41,15 +41,14 @@ def read_open_tests(campaign, names):
     and evidence that counts them twice would be as sure of one test as of two.
     """
     for name in names:
-        if name not in campaign.tests or campaign.tests[name].role == "sealed":
-            usable = [test.name for test in campaign.tests.values() if test.role != "sealed"]
-            raise InputError(campaign.folder, f"tests.{name}", f"expected one of {', '.join(usable)}")
+        if name not in campaign.open:
+            raise InputError(campaign.folder, f"tests.{name}", f"expected one of {', '.join(campaign.open)}")
     return _readings(campaign, names)
 
 
 def read_sealed_tests(campaign):
     """`OpenReadings` of the sealed tests: for the gain alone, once all is decided."""
-    return _readings(campaign, [test.name for test in campaign.tests.values() if test.role == "sealed"])
+    return _readings(campaign, list(campaign.sealed))
 
 
 def _readings(campaign, names):

@@ -72,14 +72,11 @@ def compare_open_tests(case, campaign, model, given, store):
     run_settings = {**given["models"][model], "output_rate": given["output_rate"]}
     steps = _time_steps(drawn, used, run_settings["time_step"])
     tests = {}
-    for name, listed in load_campaign(campaign).tests.items():
-        if listed.role != "sealed":
-            test = open_test(case, campaign, name)
-            store.say(
-                f"{name}: {test.case['motion']} at {test.case['scale']:g}, {test.case['duration']:.4g} s"
-            )
-            run = run_settings, rows, steps, ensemble, store
-            tests[name] = _compared(test, simulate_readings(test, model, *run))
+    for name in load_campaign(campaign).open:
+        test = open_test(case, campaign, name)
+        store.say(f"{name}: {test.case['motion']} at {test.case['scale']:g}, {test.case['duration']:.4g} s")
+        run = run_settings, rows, steps, ensemble, store
+        tests[name] = _compared(test, simulate_readings(test, model, *run))
     shares = [ranges[one].share(drawn[one].to_numpy()) for one in used]
     found = xr.concat(tests.values(), dim=xr.Variable("test", list(tests)))
     found = found.assign(share=(("parameter", "sample"), shares)).assign_coords(parameter=used)
