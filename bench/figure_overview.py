@@ -7,14 +7,13 @@ import argparse
 from pathlib import Path
 
 import numpy as np
-from blockshake.forces.joint_forces import joint_forces
-from blockshake.forces.laws.lever import bears_on_an_edge
 from figures_of_docs import top_drift
 from matplotlib.collections import PolyCollection
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
+from blockshake.forces.seen.seen_test import see_test
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Sensors
 from blockshake.measurement.motion.outliers import without_outliers
@@ -36,11 +35,13 @@ CASE = {
     "scale": 2.0,
     "duration": 10.0,
     "input": "measured",
+    "baseline": "auto",
 }
 TIME_STEPS = {"nscd-rigid": 1e-3, "ls-dem": 5e-5}  # s
 SAMPLES = 20
 MAGNIFICATION = 6.0
 INSET = 0.06  # m, of the reduced bearing
+LOWEST = 0  # face of the lowest joint
 _SIZE = 0.075, 0.25  # m of paper
 
 
@@ -111,13 +112,12 @@ def _what_the_readings_show(axes, structure, motion):
         (reduced, RED, f"bearing {1e3 * INSET:.0f} mm in"),
     ):
         test = observe(_run(experiment.structure, motion), structure, experiment.instruments, seed=1)
-        forces = joint_forces(without_outliers(test, structure), structure, Sensors())
-        told = bears_on_an_edge(forces, 0)
-        turn = forces.joints.rotation[told, forces.faces.index(forces.transmitted.faces[0])]
-        axes.plot(
-            1e3 * turn, 1e3 * forces.transmitted.lever[told, 0], ".", color=colour, markersize=2, label=words
-        )
-    half = 1e3 * forces.transmitted.faces[0].half_width
+        seen = see_test(words, without_outliers(test, structure), structure, Sensors())
+        turned = seen.states.edge[:, LOWEST, 0] != 0
+        turn, force = seen.joints.rotation[turned, LOWEST], seen.forces.force[turned, LOWEST, 2]
+        lever = -seen.forces.moment[turned, LOWEST, 1] / force
+        axes.plot(1e3 * turn, 1e3 * lever, ".", color=colour, markersize=2, label=words)
+    half = 1e3 * seen.faces[LOWEST].half_width
     for edge in (-half, half):
         axes.axhline(edge, color=DARK_GREY, linewidth=0.6, linestyle=(0, (4, 2)))
     axes.set(
