@@ -173,7 +173,7 @@ def test_every_effect_is_drawn_by_some_seed_with_a_size_that_shows(stiffness):
         share = abs((effect["values"][size.name] - size.null) / (size.visible - size.null))
         assert 0.49 < share < 1.51
         names.add(effect["name"])
-    # a seed misses an effect by (11/12)^100, 2e-4
+    # a seed misses an effect by (12/13)^100, 3e-4
     assert names == set(EFFECTS)
 
 
