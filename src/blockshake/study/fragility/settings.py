@@ -11,7 +11,7 @@ class FragilitySettings(Strict):
 
     model: ModelName = Field("nscd-rigid", description="solver that climbs, one of the study's")
     cases: tuple[str, ...] = Field(
-        min_length=1, description="names of the cases, that is of their structures' files without the ending"
+        min_length=1, description="names of cases of the study"
     )
     size: Whole = Field(
         20, ge=3, description="samples that climb: the first rows of the design, no more than there are [1]"
