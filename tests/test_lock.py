@@ -9,6 +9,8 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+from blockshake.files import load_yaml
+
 ROOT = Path(__file__).parents[1]
 PIN = re.compile(r"(\S+)==(\S+?)(?: ; .*)? \\\n((?:    --hash=sha256:[0-9a-f]{64}(?: \\)?\n)+)")
 
@@ -33,6 +35,14 @@ def test_only_pins_are_installed():
         "pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock"
         in (ROOT / "Makefile").read_text()
     )
+
+
+def test_the_environment_of_the_rules_holds_all_that_the_package_needs():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    conda = load_yaml(ROOT / "workflow" / "envs" / "blockshake.yaml")["dependencies"]
+    listed = [one for one in conda if isinstance(one, str)] + conda[-1]["pip"]
+    names = {one.split()[0].removesuffix("-base") for one in listed} - {"python", "pip"}
+    assert names == {Requirement(one).name for one in project["dependencies"]} - {"snakemake"}
 
 
 @pytest.fixture(scope="module")

@@ -78,7 +78,7 @@ def _extent(structure, chosen):
 
 
 def _turns(slab):
-    """Rotation of the slab by the moment on it."""
+    """Rotation of the slab by the moment at its bottom."""
     return [Columns({}, slab.moment[slab.at][:, None], (_SCALE,), False)]
 
 
@@ -86,7 +86,7 @@ EFFECT = Effect(
     name="base-compliance",
     title="compliant base",
     acts="contact",
-    equation="rotation of the driven body = c M, M the moment on it about y, as a bed of springs beneath it",
+    equation="rotation of the driven body = c M, M the moment about y at its bottom, as a bed of springs beneath it",
     source="rocking stiffness of a bedded slab: Winkler's bed; range of shake tables and grouted slabs",
     parameters=(
         EffectParameter("compliance", "rad/(N m)", "rotation of the base by moment", 0.0, 0.0, 6e-9, 2e-9),

@@ -15,7 +15,7 @@ from blockshake.effects.weak_joint import EFFECT as WEAK_JOINT
 FREE_SHARE = 0.85  # of what any force at its place would explain, that a named form must
 FREE_FORCE = "unknown-force"
 _PRIOR, _PRIOR_OUTSIDE, _PRIOR_FREE = -3.0, -3.5, -6.0
-_NEEDED = 6.0  # nats over none that are no chance: of 50 sound sets of joints none gained 2
+_NEEDED = 6.0  # nats over none that are no chance: of 40 sound open cases none gained 2
 _NEEDED_OF_FREE = 20.0  # any error of the joints' model speaks for a force without a form
 _NEEDED_IN_LOOPS = 40.0  # of lost friction: where joints make a loop, the normal force of none is known
 _NEEDED_OF_SLAB = {"turns": 8.0, "lifts": 20.0}  # outliers of one marker lift the slab

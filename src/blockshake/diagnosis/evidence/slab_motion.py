@@ -32,8 +32,9 @@ class SlabMotion:
     time, turn, lift, travel : float64 arrays, shape (n_times,)
         Rotation about y, vertical displacement, and displacement along x, from rest [s, rad, m, m].
     acceleration, moment, force : float64 arrays, shape (n_times,)
-        Of the slab along x, and of the contacts on it: about y through its centre, and downwards, from rest [m/s2, N m,
-        N]; zero where unknown; smoothed as displacements are.
+        Of the slab along x; on its base, by what stands on it and by its own inertia along x: about y through the
+        middle of its bottom; and by what stands on it, downwards. From rest [m/s2, N m, N]; zero where unknown;
+        smoothed as displacements are.
     at : int array
         Instants that are compared.
     turn_noise, lift_noise : float
