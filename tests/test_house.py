@@ -130,6 +130,15 @@ def test_every_name_of_a_page_can_be_imported(page):
     assert missing == []
 
 
+@pytest.mark.parametrize("folder", ["bench", "examples", "hidden_effects", "workflow"])
+def test_every_name_that_a_program_imports_is_there(folder):
+    for path in sorted((ROOT / folder).rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("blockshake"):
+                for name in node.names:
+                    pkgutil.resolve_name(f"{node.module}.{name.name}")
+
+
 @by_name(PAGES)
 def test_lines_of_a_page_fit_a_screen(page):
     long = [number for number, line in prose(page) if len(line) > WIDTH]
