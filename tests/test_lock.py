@@ -9,6 +9,7 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+import blockshake
 from blockshake.files import load_yaml
 
 ROOT = Path(__file__).parents[1]
@@ -35,6 +36,13 @@ def test_only_pins_are_installed():
         "pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock"
         in (ROOT / "Makefile").read_text()
     )
+
+
+def test_the_version_is_one():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    cited = load_yaml(ROOT / "CITATION.cff")["version"]
+    released = re.search(r"^## (\S+), ", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
+    assert project["version"] == cited == released[1] == blockshake.__version__
 
 
 def test_the_environment_of_the_rules_holds_all_that_the_package_needs():

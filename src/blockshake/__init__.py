@@ -9,7 +9,7 @@ import importlib
 
 from blockshake.caches import set_cache_home
 
-__version__ = "0.1.0"
+__version__ = "0.9.0"
 
 _HOMES = {
     "load_structure": "blockshake.geometry.structure",
