@@ -18,8 +18,7 @@ from blockshake.measurement.sensors.markers import block_markers, driven_marker
 from blockshake.pages.units import printed
 from blockshake.pages.wording import given, millimetres, number, percent
 from blockshake.simulation.simulate import simulate
-from blockshake.solvers.ls_dem.own_stiffness import own_stiffness
-from blockshake.solvers.ls_dem.parameters import LsDemParameters
+from blockshake.solvers.ls_dem.parameters import LsDemParameters, own_stiffness
 from blockshake.study.stiffness.tower import tower_of
 from blockshake.study.stiffness.wave_speed import target_wave_speeds, wave_tests
 from blockshake.study.stiffness.wave_step import AXES, STEP_VELOCITY, crossing, send_step

@@ -8,8 +8,7 @@ from shaken_stack import SHAKING, shaken_stack
 from blockshake.geometry.structure import load_structure
 from blockshake.pages.wording import MICRO, number
 from blockshake.simulation.models import model_of
-from blockshake.solvers.ls_dem.own_stiffness import own_stiffness
-from blockshake.solvers.ls_dem.parameters import LsDemParameters
+from blockshake.solvers.ls_dem.parameters import LsDemParameters, own_stiffness
 from blockshake.study.comparison.kicked_block import rocking_block
 from blockshake.study.comparison.twins import NUDGE
 

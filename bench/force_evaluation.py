@@ -11,8 +11,8 @@ from blockshake.solvers.ls_dem.contact.contact_forces import contact_forces_into
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.driver import simulate_ls_dem
 from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
-from blockshake.solvers.ls_dem.joints import no_joints
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
+from blockshake.solvers.ls_dem.progress import no_joints
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces
 
 STRUCTURE = "configuration-1"

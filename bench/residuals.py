@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.solvers.nscd.solve.local_solve import contact_residual
+from blockshake.solvers.nscd.solve.gauss_seidel import contact_residual
 
 
 def law_residual(structure, answer, step, time_step):

@@ -16,8 +16,6 @@ FOLDERS = ("src", "tests", "docs", "bench", "hidden_effects", "workflow", "confi
 WIDTH = 100
 MOST_UNFORMATTED = 190  # lines and statements of `src` that keep a layout of their own; formulas need one
 MOST_LINES_OF_COMMON = 165
-# two files with kernels, whose edit compiles all anew
-TWICE_IN_KERNELS = {"_LEAST_AREA", "_ROUNDING"}
 # names of pages, folders and hosts outside of the project; written so that this file does not hold them
 OUTSIDE = re.compile(
     r"design[.]md|facts[.]md|design[ ]contract|(?<![\w.])/work[/]|design[ ]section|the[ ]issue(?:'s| asks)"
@@ -219,7 +217,7 @@ def test_no_private_constant_stands_twice():
     """Of one name and one value it is one fact, and has one home; or it is two, and they have two names."""
     constants = [(entry, path) for path, tree in parsed_modules() for entry in private_constants(tree)]
     twice = {name: files for (name, _), files in names_twice(constants).items()}
-    assert {name: files for name, files in twice.items() if name not in TWICE_IN_KERNELS} == {}
+    assert twice == {}
 
 
 def test_layouts_of_their_own_and_the_common_rules_do_not_grow():

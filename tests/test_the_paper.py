@@ -15,8 +15,7 @@ from blockshake.measurement.sensors import accelerometers, markers
 from blockshake.simulation.models import MODELS
 from blockshake.solvers.ls_dem.interfaces import damping_ratio
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
-from blockshake.solvers.nscd.parameters import NscdParameters
-from blockshake.solvers.nscd_deformable.parameters import DeformableParameters
+from blockshake.solvers.nscd.parameters import DeformableParameters, NscdParameters
 from blockshake.study.analyses import OF_THE_PAPER
 from blockshake.study.calibration.answers import LEVEL
 from blockshake.study.config import load_config

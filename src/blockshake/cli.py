@@ -229,8 +229,7 @@ def _simulate(options):
         raise InputError("--output", options.output, "expected a netCDF file, RUN.nc")
     import xarray as xr
 
-    from blockshake.dynamics.load_motion import load_motion
-    from blockshake.dynamics.provenance import provenance
+    from blockshake.dynamics.load_motion import load_motion, provenance
     from blockshake.dynamics.system import FINISHED
     from blockshake.geometry.structure import load_structure
     from blockshake.jit import CACHE_FOLDER

@@ -55,6 +55,9 @@ def test_two_free_bodies_that_may_pull(pulling, make_structure, run_ls_dem):
         gravity=[0.0, 0.0, 0.0],
     )  # fmt: skip
     run = run_ls_dem(structure, 0.01, time_step=STEP, pulling=pulling)
+    momentum = structure.mass[1:] @ run.velocity[:, 1:, 2].T
+    # rounding: 1000 steps of 1e-16 of the momentum
+    np.testing.assert_allclose(momentum, momentum[0], rtol=1e-13)
     zeta = critical_part(0.5)
     omega_dt = STEP * np.sqrt(K_N * (1.0 / structure.mass[1] + 1.0 / structure.mass[2]))
     parting = (run.velocity[-1, 2, 2] - run.velocity[-1, 1, 2]) / SPEED

@@ -11,10 +11,8 @@ import pytest
 
 from blockshake.dynamics.baseline import check_window, checked_baseline, fast_length, high_pass
 from blockshake.dynamics.intensity import motion_figures
-from blockshake.dynamics.load_motion import load_motion
-from blockshake.dynamics.provenance import provenance
-from blockshake.dynamics.synthetic_motion import synthesise
-from blockshake.dynamics.synthetic_schema import load_synthetic
+from blockshake.dynamics.load_motion import load_motion, provenance
+from blockshake.dynamics.synthetic_motion import load_synthetic, synthesise
 from blockshake.errors import InputError
 from blockshake.files import shipped
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from scipy.signal import lsim
 
+from blockshake.dynamics.intensity import response_spectrum
 from blockshake.dynamics.motion import ground_motion
-from blockshake.dynamics.response_spectrum import response_spectrum
 
 # 32 points a cycle: the peak between two of them is missed by 1 - cos(pi / 32) at most
 MISSED = 1.0 - np.cos(np.pi / 32.0)

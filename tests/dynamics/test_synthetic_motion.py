@@ -2,12 +2,13 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 
-from blockshake.dynamics.intensity import arias_intensity, motion_figures
+from blockshake.dynamics.intensity import arias_intensity, motion_figures, response_spectrum
 from blockshake.dynamics.motion import ground_motion
-from blockshake.dynamics.response_spectrum import response_spectrum
 from blockshake.dynamics.synthetic_motion import (
+    Envelope,
     close_integrals,
     end_of_motion,
+    load_synthetic,
     source_shape,
     standard_normal,
     synthesise,
@@ -15,7 +16,6 @@ from blockshake.dynamics.synthetic_motion import (
     target_acceleration,
     window,
 )
-from blockshake.dynamics.synthetic_schema import Envelope, load_synthetic
 from blockshake.errors import InputError
 from blockshake.files import shipped
 

@@ -5,9 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from blockshake.geometry.level_set import box_distance
-from blockshake.geometry.level_set_grid import box_grid, grid_table, mesh_grid
+from blockshake.geometry.level_set_grid import box_grid, grid_distance, grid_table, mesh_grid
 from blockshake.geometry.polyhedron import box_vertices, convex_polyhedron, triangles
-from blockshake.geometry.trilinear import grid_distance
 from blockshake.jit import kernel
 
 SIZE, CHAMFER, SPACING = np.array([0.8, 2.4, 1.6]), 0.02, 0.02  # Zhou et al. (2023)

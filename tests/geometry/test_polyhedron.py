@@ -61,22 +61,6 @@ def test_mass_properties_of_the_chamfered_box_are_the_slicing_integral(size, par
     np.testing.assert_allclose(properties.centroid, 0.0, atol=1e-13)
 
 
-def test_the_slicing_integral_itself_agrees_with_random_points():
-    """The reference above against counting: 2e5 points, four standard errors."""
-    size, chamfer = np.array([1.0, 1.2, 0.9]), 0.3
-    points = (np.random.default_rng(1).random((200_000, 3)) - 0.5) * size
-    u = np.abs(points) - size / 2.0
-    inside = np.all([u[:, i] + u[:, j] <= -chamfer for i, j in ((0, 1), (0, 2), (1, 2))], axis=0)
-    volume, inertia = _chamfered_box_by_slices(size, chamfer)
-    box = size.prod()
-    for moment, of_point in (
-        (volume, np.ones(len(points))),
-        (inertia[0], points[:, 1] ** 2 + points[:, 2] ** 2),
-    ):
-        counted = box * of_point * inside
-        assert abs(counted.mean() - moment) < 4.0 * counted.std() / np.sqrt(len(points))
-
-
 def test_a_sharp_box_has_the_textbook_inertia():
     solid = convex_polyhedron(box_vertices(BLOCK, 0.0))
     properties = mass_properties(solid.vertices, triangles(solid))

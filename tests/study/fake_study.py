@@ -35,7 +35,7 @@ FEWER = {
     "configuration-1": {"nscd-elastic": 4, "nscd-viscoelastic": 4},
     "configuration-4": {"nscd-rigid": 6, "nscd-elastic": 1, "nscd-viscoelastic": 3},
 }
-COLLAPSE_REASON = "wall-b-4 tipped over or dropped at 1.000 s"
+COLLAPSE_REASON = "wall-b-4 tipped over or dropped by 1.000 s"
 CPU_TIME = 43.21  # s, of every job
 HOUSNER = 0.731
 # of the first sample, and what an impact keeps

@@ -3,6 +3,7 @@
 import numpy as np
 
 from blockshake.geometry.rotations import rotation_rows
+from blockshake.geometry.vectors import dot
 from blockshake.jit import borrowing_kernel
 
 # Cosine of the tilt from which a block does not come back.
@@ -24,9 +25,8 @@ def collapse_limits(structure):
         Half the smallest extent of each along its own axes [m].
     """
     smallest = [np.ptp(structure.solid(body).vertices, axis=0).min() for body in range(len(structure.mass))]
-    return structure.touching.any(axis=1) & ~structure.driven & structure.driven.any(), 0.5 * np.array(
-        smallest
-    )
+    supported = structure.touching.any(axis=1) & ~structure.driven & structure.driven.any()
+    return supported, 0.5 * np.array(smallest)
 
 
 @borrowing_kernel
@@ -58,7 +58,6 @@ def find_collapsed(bodies, state, supported, drop_limit):
             return body
         _, _, start = rotation_rows(bodies.home_orientation[body])
         _, _, now = rotation_rows(state.orientation[body])
-        cosine = now[0] * start[0] + now[1] * start[1] + now[2] * start[2]
-        if cosine < COSINE_OF_TILT:
+        if dot(now, start) < COSINE_OF_TILT:
             return body
     return -1

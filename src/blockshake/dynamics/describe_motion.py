@@ -3,11 +3,9 @@
 import numpy as np
 import xarray as xr
 
-from blockshake.dynamics.intensity import motion_figures
-from blockshake.dynamics.provenance import plain_attributes
-from blockshake.dynamics.response_spectrum import DAMPING, response_spectrum
-from blockshake.dynamics.synthetic_motion import target_acceleration
-from blockshake.dynamics.synthetic_schema import load_synthetic
+from blockshake.dynamics.intensity import DAMPING, motion_figures, response_spectrum
+from blockshake.dynamics.load_motion import plain_attributes
+from blockshake.dynamics.synthetic_motion import load_synthetic, target_acceleration
 
 _RATE = 200.0  # Hz, of the histories
 _PERIODS = np.geomspace(0.04, 4.0, 120)  # s

@@ -1,4 +1,4 @@
-"""Coulomb's coefficient of a joint: by pair of materials, slip rate, slip, direction and joint."""
+"""Laws of a joint: Coulomb's coefficient by materials, slip rate, slip and direction; compliance of a soft layer."""
 
 from typing import NamedTuple
 
@@ -36,11 +36,11 @@ def assemble_friction(structure):
             entry.coefficient, entry.rate_drop, entry.rate_scale, entry.slip_drop, entry.slip_scale, entry.asymmetry,
         )  # fmt: skip
     bodies = structure.body_names
-    own = [sorted(bodies.index(name) for name in joint.bodies) for joint in file.joints]
+    pairs = [sorted(bodies.index(name) for name in joint.bodies) for joint in file.joints]
     return FrictionLaws(
         material=np.array([names.index(body.material) for body in file.bodies]),
         law=law,
-        joint=np.array(own, dtype=np.int64).reshape(-1, 2),
+        joint=np.array(pairs, dtype=np.int64).reshape(-1, 2),
         factor=np.array([joint.friction_factor for joint in file.joints], dtype=float),
     )
 
@@ -72,11 +72,11 @@ def friction_coefficient(laws, a, b, slip_rate, slip):
         mu *= 1.0 - rate_drop * (1.0 - np.exp(-slip_rate / law[first, second, RATE_SCALE]))
     if slip_drop > 0.0:
         mu *= 1.0 - slip_drop * (1.0 - np.exp(-slip / law[first, second, SLIP_SCALE]))
-    for own in range(laws.factor.size):
-        if (laws.joint[own, 0] == a and laws.joint[own, 1] == b) or (
-            laws.joint[own, 0] == b and laws.joint[own, 1] == a
+    for joint in range(laws.factor.size):
+        if (laws.joint[joint, 0] == a and laws.joint[joint, 1] == b) or (
+            laws.joint[joint, 0] == b and laws.joint[joint, 1] == a
         ):
-            mu *= laws.factor[own]
+            mu *= laws.factor[joint]
     return mu
 
 
@@ -84,3 +84,18 @@ def friction_coefficient(laws, a, b, slip_rate, slip):
 def friction_asymmetry(laws, a, b):
     """Share by which the coefficient is larger for slip along +x of the joint's first body, smaller along -x [1]."""
     return laws.law[laws.material[a], laws.material[b], ASYMMETRY]
+
+
+def joint_compliance(structure):
+    """Normal compliance of the layer in each joint, for either solver.
+
+    Returns
+    -------
+    float64 array, shape (n_bodies, n_bodies)
+        Symmetric, zero where there is no layer: closing per pressure [m3/N].
+    """
+    compliance = np.zeros((len(structure.mass), len(structure.mass)))
+    for joint in structure.file.joints:
+        a, b = (structure.body_names.index(name) for name in joint.bodies)
+        compliance[a, b] = compliance[b, a] = joint.compliance
+    return compliance

@@ -1,19 +1,18 @@
-"""A ground motion from a name that ships with the program or from a file of any known format."""
+"""A ground motion from a shipped name or from a file of any known format, and where it comes from."""
 
 import numpy as np
 
 from blockshake.dynamics.baseline import AUTO, NONE, settle
 from blockshake.dynamics.motion import check_finite, ground_motion
 from blockshake.dynamics.records.at2 import is_at2, read_at2
-from blockshake.dynamics.records.channels import chosen_records
 from blockshake.dynamics.records.contract_csv import read_motion_csv
 from blockshake.dynamics.records.cosmos import is_cosmos, read_cosmos
 from blockshake.dynamics.records.csmip import is_csmip, read_csmip
 from blockshake.dynamics.records.dyna import is_dyna, read_dyna
 from blockshake.dynamics.records.knet import is_knet, read_knet
+from blockshake.dynamics.records.record import chosen_records
 from blockshake.dynamics.records.smc import is_smc, read_smc
-from blockshake.dynamics.synthetic_motion import synthesise
-from blockshake.dynamics.synthetic_schema import load_synthetic
+from blockshake.dynamics.synthetic_motion import load_synthetic, synthesise
 from blockshake.errors import InputError
 from blockshake.files import named_file, read_foreign_text
 
@@ -131,3 +130,25 @@ def _record_motion(records, path, baseline, channels):
     motion = ground_motion(path.stem, time, columns, "acceleration", {**attributes, **first.metadata})
     check_finite(motion, path)
     return settle(motion, baseline, path, published=True)
+
+
+def provenance(attributes):
+    """One line for reports and checks: source and format of a motion, assumptions, and the treatment of its baseline.
+
+    Parameters
+    ----------
+    attributes : dict
+        Of a `GroundMotion`; ``source`` alone is needed.
+    """
+    words = attributes["source"]
+    if attributes.get("format", "synthetic") != "synthetic":
+        words += f" ({attributes['format']})"
+    if attributes.get("assumed"):
+        words += f"; assumed: {attributes['assumed']}"
+    return words + (f"; baseline: {attributes['baseline']}" if "baseline" in attributes else "")
+
+
+def plain_attributes(attributes):
+    """Attributes as netCDF can hold them: truth values as 0 and 1, all else that is no number as text."""
+    plain = {name: int(value) if isinstance(value, bool) else value for name, value in attributes.items()}
+    return {name: value if isinstance(value, (float, int)) else str(value) for name, value in plain.items()}

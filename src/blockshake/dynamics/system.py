@@ -9,6 +9,7 @@ import numpy as np
 from blockshake.dynamics.motion import PITCH
 from blockshake.geometry.rotations import rotation_rows, turned
 from blockshake.geometry.structure_file import signed_axis
+from blockshake.geometry.vectors import columns_product, dot
 from blockshake.jit import borrowing_kernel
 
 ENERGY_TERMS = (
@@ -207,14 +208,11 @@ def kinetic_energy(bodies, velocity, angular_velocity, orientation):
     for body in range(bodies.mass.size):
         if bodies.driven[body]:
             continue
-        x, y, z = rotation_rows(orientation[body])
-        v, w, inertia = velocity[body], angular_velocity[body], bodies.inertia[body]
-        energy += 0.5 * bodies.mass[body] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+        spin = columns_product(rotation_rows(orientation[body]), angular_velocity[body])
+        energy += 0.5 * bodies.mass[body] * dot(velocity[body], velocity[body])
         for i in range(3):
-            spin_i = x[i] * w[0] + y[i] * w[1] + z[i] * w[2]
             for j in range(3):
-                spin_j = x[j] * w[0] + y[j] * w[1] + z[j] * w[2]
-                energy += 0.5 * spin_i * inertia[i, j] * spin_j
+                energy += 0.5 * spin[i] * bodies.inertia[body, i, j] * spin[j]
     return energy
 
 

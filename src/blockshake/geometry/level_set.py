@@ -43,19 +43,9 @@ def box_distance(x, y, z, a, b, c, chamfer):
 
 @inline_kernel
 def hollow_depth(u, v, hollow):
-    """Depth of a hollow face below its perimeter: ``hollow (1 - u^2)^2 (1 - v^2)^2``, which ends there without a kink.
+    """Depth of a hollow face below its perimeter: ``hollow (1 - u^2)^2 (1 - v^2)^2``, without a kink there [m].
 
-    Parameters
-    ----------
-    u, v : float
-        Place across the face over its half widths [1].
-    hollow : float
-        Depth in the middle [m].
-
-    Returns
-    -------
-    float
-        [m]; zero beyond the perimeter.
+    ``u, v``: across the face over its half widths [1]; ``hollow``: in the middle [m]. It is zero beyond the perimeter.
     """
     p, q = 1.0 - u * u, 1.0 - v * v
     p, q = p if p > 0.0 else 0.0, q if q > 0.0 else 0.0
@@ -64,21 +54,11 @@ def hollow_depth(u, v, hollow):
 
 @inline_kernel
 def hollow_box_distance(x, y, z, a, b, c, chamfer, hollow):
-    """As `box_distance`, of a box whose six faces are hollow.
+    """Level-set value and normal of a chamfered box whose six faces are hollow, by arguments of `box_distance`.
 
-    Parameters
-    ----------
-    x, y, z, a, b, c, chamfer : float
-        As of `box_distance` [m].
-    hollow : float
-        Depth of the middle of each face below its perimeter [m]: see `hollow_depth`.
-
-    Returns
-    -------
-    phi : float
-        Distance along the normal of the face that is nearest [m], negative inside.
-    nx, ny, nz : float
-        Unit outward normal of that face as if it were flat: a hollow of 1 mm tilts it by some mrad.
+    ``hollow``: depth of the middle of each face below its perimeter [m], see `hollow_depth`. The value is the distance
+    along the normal of the face that is nearest [m], negative inside; the normal is that of the face as if it were
+    flat: a hollow of 1 mm tilts it by some mrad.
     """
     u, v, w = x * (1.0 / (a - chamfer)), y * (1.0 / (b - chamfer)), z * (1.0 / (c - chamfer))
     fx = abs(x) - a + hollow_depth(v, w, hollow)

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 
 from blockshake.errors import InputError
-from blockshake.geometry.meshes.crossings import shown
+from blockshake.geometry.meshes.mesh_file import shown
 
 
 def check_offset(body, solid, source):

@@ -1,8 +1,9 @@
-"""Depth by which two solids overlap, by the separating-axis theorem on their convex hulls."""
+"""Pairs of bodies whose boxes are near, and the depth by which two convex solids overlap (separating-axis theorem)."""
 
 import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.jit import kernel
 
 _MOST_AT_ONCE = 2**19  # pairs of edges, or of faces and corners, held at a time: some tens of megabytes
 
@@ -26,19 +27,44 @@ def near_pairs(solids, position, orientation, clearance):
     """
     turned = rotation_matrices(orientation)
     corners = [solid.vertices @ rotation.T for solid, rotation in zip(solids, turned, strict=True)]
-    low = position + [points.min(axis=0) for points in corners] - 0.5 * clearance
-    high = position + [points.max(axis=0) for points in corners] + 0.5 * clearance
-    # sweep along the axis where the bodies are spread most
-    sweep = np.ptp(position, axis=0).argmax()
-    order = np.argsort(low[:, sweep], kind="stable")
-    last = np.searchsorted(low[order, sweep], high[order, sweep], side="right")
-    pairs = [np.empty((0, 2), dtype=np.int64)]
-    for rank, body in enumerate(order):
-        others = order[rank + 1 : last[rank]]
-        others = others[((low[others] <= high[body]) & (low[body] <= high[others])).all(axis=1)]
-        pairs.append(np.stack([np.minimum(body, others), np.maximum(body, others)], axis=1))
-    pairs = np.concatenate(pairs)
-    return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
+    low = position + [points.min(axis=0) for points in corners]
+    high = position + [points.max(axis=0) for points in corners]
+    return find_pairs(low, high, np.zeros(len(low), dtype=bool), clearance)
+
+
+@kernel
+def find_pairs(low, high, driven, margin):
+    """Pairs whose bounding boxes come within ``margin`` [m]: int64 (n_pairs, 2), sorted; not of two driven bodies.
+
+    Sweep over the sorted lower ends along the axis on which the bodies are spread most, so that the
+    cost grows with the bodies and the neighbours of each.
+
+    Parameters
+    ----------
+    low, high : float64 arrays, shape (n_bodies, 3)
+        Corners of the boxes, world frame [m].
+    driven : bool array, shape (n_bodies,)
+    margin : float
+    """
+    n_bodies = driven.size
+    widest = np.argmax(np.array([np.ptp(low[:, axis]) for axis in range(3)]))
+    order = np.argsort(low[:, widest], kind="mergesort")
+    codes = []
+    for rank in range(n_bodies):
+        a = order[rank]
+        for later in range(rank + 1, n_bodies):
+            b = order[later]
+            if low[b, widest] > high[a, widest] + margin:
+                break
+            near = not (driven[a] and driven[b])
+            for axis in range(3):
+                near &= low[a, axis] <= high[b, axis] + margin and low[b, axis] <= high[a, axis] + margin
+            if near:
+                codes.append(min(a, b) * n_bodies + max(a, b))
+    sorted_codes = np.sort(np.array(codes)) if len(codes) > 0 else np.empty(0, np.int64)
+    pairs = np.empty((len(codes), 2), np.int64)
+    pairs[:, 0], pairs[:, 1] = sorted_codes // n_bodies, sorted_codes % n_bodies
+    return pairs
 
 
 def penetration_depths(solid_a, positions_a, orientations_a, solid_b, positions_b, orientations_b):
@@ -104,11 +130,11 @@ def depths_of_pairs(pairs, shapes, solids, position, orientation):
         [m]
     """
     depth, by_shapes = np.empty(len(pairs)), {}
-    for place, (a, b) in enumerate(pairs):
-        by_shapes.setdefault((shapes[a], shapes[b]), []).append(place)
-    for (first, second), places in by_shapes.items():
-        a, b = pairs[places].T
-        depth[places] = penetration_depths(
+    for index, (a, b) in enumerate(pairs):
+        by_shapes.setdefault((shapes[a], shapes[b]), []).append(index)
+    for (first, second), indices in by_shapes.items():
+        a, b = pairs[indices].T
+        depth[indices] = penetration_depths(
             solids[first], position[a], orientation[a], solids[second], position[b], orientation[b]
         )
     return depth

@@ -41,8 +41,8 @@ def reference_block(structure):
     if structure.driven.all():
         raise InputError(structure.source, "bodies", "expected a body that is not driven")
     material = bodies[reference_body(structure)].material
-    own = [body for body in np.flatnonzero(~structure.driven) if bodies[body].material == material]
-    sizes = {int(body): _upright_size(structure, body) for body in own}
+    candidates = [body for body in np.flatnonzero(~structure.driven) if bodies[body].material == material]
+    sizes = {int(body): _upright_size(structure, body) for body in candidates}
     weight = {}
     for body, size in sizes.items():
         height = round(float(size[2]), _SAME_HEIGHT)

@@ -142,8 +142,10 @@ class Structure:
     def same_as(self, other):
         """Whether another structure has the same content, whatever both and their files are called."""
         mine, others = (
-            one.file.model_dump(exclude={"name": True, "description": True, "shapes": {"__all__": {"mesh"}}})
-            for one in (self, other)
+            structure.file.model_dump(
+                exclude={"name": True, "description": True, "shapes": {"__all__": {"mesh"}}}
+            )
+            for structure in (self, other)
         )
         return mine == others and all(
             np.array_equal(solid.vertices, other.solids[name].vertices) for name, solid in self.solids.items()
@@ -151,8 +153,8 @@ class Structure:
 
     def solid(self, body):
         """Solid of the body with this index, about its mass centre."""
-        one = self.file.bodies[body]
-        return offset_solid(self.solids[one.shape], np.array(one.mass_offset))
+        entry = self.file.bodies[body]
+        return offset_solid(self.solids[entry.shape], np.array(entry.mass_offset))
 
     def carriers(self, points):
         """Bodies of markers, accelerometers, stoppers and the like: int64 array, shape (n_points,)."""
@@ -161,8 +163,8 @@ class Structure:
 
     def arms(self, points):
         """Places seen from the mass centres of their bodies: float64 array, shape (n_points, 3), body frames [m]."""
-        places = np.array([point.position for point in points], dtype=float).reshape(-1, 3)
-        return places - self.mass_offset[self.carriers(points)]
+        positions = np.array([point.position for point in points], dtype=float).reshape(-1, 3)
+        return positions - self.mass_offset[self.carriers(points)]
 
 
 def load_structure(source, parameters=None):
@@ -254,8 +256,8 @@ def _masses(file, solids):
     properties = [solids[body.shape].properties for body in file.bodies]
     mass = density * np.array([item.volume for item in properties])
     inertia = [
-        offset_inertia(one, unit * item.inertia, np.array(body.mass_offset))
-        for one, unit, item, body in zip(mass, density, properties, file.bodies, strict=True)
+        offset_inertia(kilograms, unit * item.inertia, np.array(body.mass_offset))
+        for kilograms, unit, item, body in zip(mass, density, properties, file.bodies, strict=True)
     ]
     return mass, np.array(inertia)
 
@@ -267,12 +269,12 @@ def _touching(file, source, solids, position, orientation):
     driven = np.array([body.driven for body in bodies])
     pairs = near_pairs([solids[name] for name in shape], position, orientation, START_TOLERANCE)
     depth = depths_of_pairs(pairs, shape, solids, position, orientation)
-    for place in np.flatnonzero(depth > DEEPEST_OVERLAP + _ROUNDING)[:1]:
-        a, b = pairs[place]
+    for index in np.flatnonzero(depth > DEEPEST_OVERLAP + _ROUNDING)[:1]:
+        a, b = pairs[index]
         raise InputError(
             source,
             f"bodies.{bodies[b].name}.position",
-            f"overlaps {bodies[a].name} by {1e3 * depth[place]:.3g} mm; "
+            f"overlaps {bodies[a].name} by {1e3 * depth[index]:.3g} mm; "
             f"expected at most {1e3 * DEEPEST_OVERLAP:.0f} mm, from boxes and positions in metres",
         )
     touching = np.zeros((len(bodies), len(bodies)), dtype=bool)

@@ -45,18 +45,18 @@ def replace_into(mapping, key, value, source):
             mapping["joints"] = [*mapping.get("joints", ()), entry]
         entry[parts[3]] = value
         return
-    place = mapping
+    node = mapping
     for part in parts[:-1]:
-        if isinstance(place, list):
-            items = [(index, item) for index, item in enumerate(place) if isinstance(item, dict)]
-            place = next((item for index, item in items if item.get("name", str(index)) == part), None)
-        elif isinstance(place, dict):
-            place = place.get(part)
-        if not isinstance(place, (dict, list)):
+        if isinstance(node, list):
+            items = [(index, item) for index, item in enumerate(node) if isinstance(item, dict)]
+            node = next((item for index, item in items if item.get("name", str(index)) == part), None)
+        elif isinstance(node, dict):
+            node = node.get(part)
+        if not isinstance(node, (dict, list)):
             raise InputError(source, key, f"expected a parameter of this structure; it has no '{part}' here")
-    if not isinstance(place, dict):
+    if not isinstance(node, dict):
         raise InputError(source, key, "expected a parameter of this structure")
-    place[parts[-1]] = value
+    node[parts[-1]] = value
 
 
 def _entry_of_pair(mapping, kind, named, parts):

@@ -41,7 +41,7 @@ def box_nodes(size, chamfer, hollow, spacing, inset):
         first, first_weight = line_nodes(widths[0], spacing, inside)
         second, second_weight = line_nodes(widths[1], spacing, inside)
         u, v = 2.0 * first / widths[0], 2.0 * second / widths[1]
-        depth = np.array([[hollow_depth(one, other, hollow) for other in v] for one in u])
+        depth = np.array([[hollow_depth(along, other, hollow) for other in v] for along in u])
         for side in (-0.5, 0.5):
             flat = np.zeros((first.size, second.size, 3))
             flat[..., axis] = side * (size[axis] - 2.0 * depth)

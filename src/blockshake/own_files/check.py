@@ -7,9 +7,8 @@ from blockshake.diagnosis.nominal.plan import plan_diagnosis
 from blockshake.diagnosis.nominal.planned_test import planned_motion
 from blockshake.dynamics.baseline import AUTO
 from blockshake.dynamics.intensity import strong_until
-from blockshake.dynamics.load_motion import load_motion, scaled
-from blockshake.dynamics.provenance import provenance
-from blockshake.dynamics.synthetic_schema import SyntheticMotion
+from blockshake.dynamics.load_motion import load_motion, provenance, scaled
+from blockshake.dynamics.synthetic_motion import SyntheticMotion
 from blockshake.errors import InputError, faults_of
 from blockshake.files import load_yaml, shipped_names
 from blockshake.forces.seen.sight import sight_lines

@@ -8,9 +8,8 @@ import numpy as np
 
 import blockshake
 from blockshake.dynamics.baseline import check_window
-from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.load_motion import load_motion, plain_attributes
 from blockshake.dynamics.motion import PITCH, GroundMotion
-from blockshake.dynamics.provenance import plain_attributes
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.errors import InputError
 from blockshake.geometry.overlap import depths_of_pairs
@@ -28,7 +27,7 @@ from blockshake.simulation.run_dataset import (
 )
 from blockshake.simulation.run_parts import RunParts, reduced
 from blockshake.simulation.write_run import write_run
-from blockshake.solvers.kept_rows import KeptRows
+from blockshake.solvers.checkpoint import KeptRows
 from blockshake.sources import module_sources, source_digest
 
 _WORST_RESIDUAL = 0.05  # a run whose energy audit misses more is not to be trusted

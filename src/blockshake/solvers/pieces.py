@@ -5,9 +5,8 @@ import time
 
 from blockshake.interrupts import held_interrupts
 from blockshake.jit import compiling
-from blockshake.solvers.kept_rows import AT_HAND
-from blockshake.solvers.record import empty_record, last_step, rows_at_hand
-from blockshake.solvers.status import NEXT_RECORD, PAUSED, STEP
+from blockshake.solvers.checkpoint import AT_HAND
+from blockshake.solvers.record import NEXT_RECORD, PAUSED, STEP, empty_record, last_step, rows_at_hand
 
 _log = logging.getLogger(__name__)
 _NEWS = 10.0  # s of wall time between lines of progress
@@ -44,7 +43,7 @@ def run_in_pieces(start, integrate, rows_of, times, time_step, checkpoint, kept=
         the solver's progress, with its ``clock``.
     integrate : callable
         ``integrate(pause, *parts)`` goes on to step ``pause`` at most and gives ``code, culprit, *parts``: a code of
-        `blockshake.solvers.status`, the body that ended the run or -1, and the last of the parts, where the others
+        `blockshake.solvers.record`, the body that ended the run or -1, and the last of the parts, where the others
         have changed in place. The last part is the record.
     rows_of : callable
         ``rows_of(*parts)`` gives the record as `Rows`.

@@ -1,14 +1,18 @@
-"""Record of a run at the times asked for: both solvers fill it in as they go."""
+"""Record of a run at the times asked for, which every solver fills in, and how the run ended."""
 
 import sys
 from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.dynamics.system import ENERGY_TERMS, Rows
-from blockshake.jit import kernel
-from blockshake.solvers.status import NEXT_RECORD
+from blockshake.dynamics.system import ENERGY_TERMS, Rows, Status
+from blockshake.jit import borrowing_kernel, kernel
 
+COMPLETED, COLLAPSED, DIVERGED, PAUSED = 0, 1, 2, 3
+# First entries of a solver's ``clock``: next step (so the number of steps made), and next record
+STEP, NEXT_RECORD = 0, 1
+# m/s; nothing that falls or shakes comes near it: a faster body means that the run has diverged
+SPEED_LIMIT = 1e3
 _SPARE_JOINTS = 16
 _LEAST_STEPS = 3  # of a record that is not of all times: a step in which it is filled, and one before
 
@@ -73,6 +77,15 @@ def recorded_rows(times, progress, record, pairs, joint_force, bodies=slice(None
     )
 
 
+def status_at_end(code, name, time):
+    """Status of a run that ended with a code, and the reason in words; ``name``: of the body that ended it."""
+    if code == COLLAPSED:
+        return Status.COLLAPSED, f"{name} tipped over or dropped by {time:.3f} s"
+    if code == DIVERGED:
+        return Status.DIVERGED, f"{name} is faster than {SPEED_LIMIT:.0f} m/s or not finite at {time:.6g} s"
+    return Status.COMPLETED, ""
+
+
 @kernel
 def with_room(record, n_joints):
     """The record, grown where it cannot hold so many joints; a new joint has carried nothing so far."""
@@ -90,3 +103,17 @@ def with_room(record, n_joints):
         force,
         record.first,
     )
+
+
+@borrowing_kernel
+def find_diverged(state):
+    """First body whose state is not finite or that is faster than anything real, or -1."""
+    for body in range(state.position.shape[0]):
+        speed = 0.0
+        for axis in range(3):
+            speed += abs(state.velocity[body, axis]) + abs(state.angular_velocity[body, axis])
+            speed += 0.0 * state.position[body, axis]
+        # not (x < y), so that NaN counts
+        if not speed < SPEED_LIMIT:
+            return body
+    return -1

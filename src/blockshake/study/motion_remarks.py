@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from blockshake.dynamics.intensity import motion_figures
+from blockshake.dynamics.intensity import acceleration_segments, motion_figures
+from blockshake.dynamics.load_motion import provenance
 from blockshake.dynamics.motion import PITCH
-from blockshake.dynamics.provenance import provenance
-from blockshake.dynamics.response_spectrum import acceleration_segments
 
 _ONE_G = 9.81  # m/s2
 _WEAKEST, _STRONGEST = 0.5, 30.0  # m/s2, of peak accelerations that move blocks and that were ever recorded

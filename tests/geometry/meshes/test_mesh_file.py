@@ -6,8 +6,7 @@ import trimesh
 from solid_angles import box, prism, sampled_properties, winding_numbers
 
 from blockshake.errors import InputError
-from blockshake.geometry.meshes.crossings import crossings, parts_of
-from blockshake.geometry.meshes.mesh_file import read_mesh
+from blockshake.geometry.meshes.mesh_file import crossings, parts_of, read_mesh
 from blockshake.geometry.polyhedron import mass_properties
 from blockshake.geometry.structure import build_structure
 

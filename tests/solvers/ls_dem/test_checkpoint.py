@@ -2,20 +2,16 @@
 
 import numpy as np
 import pytest
+from cut_runs import CutShortError, assert_same, cut_after
 
 from blockshake.dynamics.motion import ground_motion
 from blockshake.geometry.structure import load_structure
-from blockshake.solvers import pieces
 from blockshake.solvers.checkpoint import Checkpoint
 from blockshake.solvers.ls_dem.driver import simulate_ls_dem
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 
 G = 9.81
 TIMES = np.arange(0.0, 0.3001, 0.005)
-
-
-class CutShortError(Exception):
-    pass
 
 
 @pytest.fixture(scope="module")
@@ -30,33 +26,6 @@ def _run(motion, parameters=None, **keys):
     )
 
 
-def _cut_after(monkeypatch, n_savings):
-    """Save at every pause of 500 steps, and fall over after so many savings."""
-    made = []
-
-    def save(checkpoint, parts):
-        original(checkpoint, parts)
-        made.append(checkpoint)
-        if len(made) == n_savings:
-            raise CutShortError
-
-    original = Checkpoint.save
-    monkeypatch.setattr(pieces, "_SAVING", 0.0)
-    monkeypatch.setattr(pieces, "_FIRST_PIECE", 500)
-    monkeypatch.setattr(pieces, "_next_piece", lambda steps, spent: steps)
-    monkeypatch.setattr(Checkpoint, "save", save)
-
-
-def _assert_same(one, other):
-    for field in (
-        "position", "orientation", "velocity", "angular_velocity", "energy", "joints", "joint_force",
-    ):  # fmt: skip
-        assert getattr(one, field).tobytes() == getattr(other, field).tobytes(), field
-    assert (one.status, one.reason, one.end_time, one.numerics) == (
-        other.status, other.reason, other.end_time, other.numerics,
-    )  # fmt: skip
-
-
 @pytest.fixture(scope="module")
 def whole(motion):
     return _run(motion)
@@ -64,21 +33,18 @@ def whole(motion):
 
 def test_a_cut_run_goes_on_bit_by_bit(whole, motion, tmp_path, monkeypatch):
     path = tmp_path / "run.npz"
-    with monkeypatch.context() as patch:
-        _cut_after(patch, 5)
-        with pytest.raises(CutShortError):
-            _run(motion, checkpoint=path)
+    for savings in (5, 3):
+        with monkeypatch.context() as patch:
+            cut_after(patch, savings, 500)
+            with pytest.raises(CutShortError):
+                _run(motion, checkpoint=path)
     assert path.exists()
-    with monkeypatch.context() as patch:
-        _cut_after(patch, 3)
-        with pytest.raises(CutShortError):
-            _run(motion, checkpoint=path)
     steps = []
     original = Checkpoint.load
     monkeypatch.setattr(Checkpoint, "load", lambda self: steps.append(original(self)) or steps[-1])
     resumed = _run(motion, checkpoint=path)
     assert steps[0][0].clock[0] > 0  # it did read the checkpoint
-    _assert_same(whole, resumed)
+    assert_same(whole, resumed)
     assert not path.exists()
     assert np.abs(whole.orientation[:, 1:, 2]).max() > 1e-3  # it rocked, so that springs and lists mattered
 
@@ -86,18 +52,18 @@ def test_a_cut_run_goes_on_bit_by_bit(whole, motion, tmp_path, monkeypatch):
 def test_the_checkpoint_of_another_run_is_not_taken(motion, tmp_path, monkeypatch):
     path = tmp_path / "run.npz"
     with monkeypatch.context() as patch:
-        _cut_after(patch, 2)
+        cut_after(patch, 2, 500)
         with pytest.raises(CutShortError):
             _run(motion, checkpoint=path)
     softer = LsDemParameters(normal_stiffness=2.0e10)
-    _assert_same(_run(motion, softer, checkpoint=path), _run(motion, softer))
+    assert_same(_run(motion, softer, checkpoint=path), _run(motion, softer))
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04 cut short", b"not a checkpoint"])
 def test_a_checkpoint_that_cannot_be_read_starts_anew(content, whole, motion, tmp_path):
     path = tmp_path / "run.npz"
     path.write_bytes(content)
-    _assert_same(whole, _run(motion, checkpoint=path))
+    assert_same(whole, _run(motion, checkpoint=path))
 
 
 def test_bodies_that_meet_late_find_room_in_the_record(make_structure, run_ls_dem):

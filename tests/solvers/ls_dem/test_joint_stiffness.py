@@ -9,8 +9,8 @@ from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_
 from blockshake.solvers.ls_dem.contact.contact_forces import clear_loads, contact_forces_into, no_loads
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
-from blockshake.solvers.ls_dem.joints import no_joints
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
+from blockshake.solvers.ls_dem.progress import no_joints
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces
 
 DEPTH, LEAN = 1e-5, 1e-6  # m, rad; the face stays inside

@@ -1,6 +1,5 @@
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from blockshake.dynamics.motion import ground_motion
 
@@ -66,57 +65,9 @@ def test_a_sliding_block_stops_after_v2_over_2_mu_g(make_structure, run_ls_dem):
     np.testing.assert_allclose(np.diff(run.velocity[steady, 1, 0]) / 0.005, -MU * G, rtol=1e-4)
 
 
-def _newmark(acceleration, limit, duration):
-    """Newmark's (1965) rigid sliding block under a driven base, by events: slip(t) and its speed.
-
-    The block sticks while the base's acceleration stays below ``limit`` and slides with
-    ``limit`` against the relative velocity; positive slip is the block's motion ahead of the base.
-    """
-    t, slip, speed, sign = 0.0, 0.0, 0.0, 0.0
-    times, slips = [0.0], [0.0]
-    grid = np.linspace(0.0, duration, 20001)
-    sticking = True
-    while t < duration:
-        if sticking:
-            over = grid[(grid >= t) & (np.abs(acceleration(grid)) > limit)]
-            if over.size == 0:
-                break
-            t = over[0]
-            sign = -np.sign(acceleration(t))
-            times.append(t), slips.append(slip)
-            sticking = False
-            speed = sign * 1e-12
-
-        def stops(_, y, sign=sign):
-            return y[1] * sign
-
-        stops.terminal, stops.direction = True, -1.0
-        run = solve_ivp(
-            lambda s, y, sign=sign: [y[1], -sign * limit - acceleration(s)], (t, duration), [slip, speed],
-            events=stops, rtol=1e-10, atol=1e-12, max_step=1e-3,
-        )  # fmt: skip
-        times.extend(run.t[1:]), slips.extend(run.y[0][1:])
-        t, slip, speed = run.t[-1], run.y[0][-1], run.y[1][-1]
-        if run.t_events[0].size == 0:
-            break
-        # at rest: does the base's acceleration carry the block along or the other way?
-        if abs(acceleration(t)) <= limit:
-            sticking = True
-        else:
-            sign = -np.sign(acceleration(t))
-            speed = sign * 1e-12
-    return np.array(times), np.array(slips)
-
-
 def _slip(run):
     moved = run.position - run.position[0]
     return moved[:, 1, 0] - moved[:, 0, 0]
-
-
-def _base(values, spacing):
-    time = np.arange(len(values)) * spacing
-    motion = ground_motion("base", time, {"x": values}, "acceleration")
-    return motion, lambda t: np.interp(t, time, values)
 
 
 def test_newmarks_block_under_a_pulse(make_structure, run_ls_dem):
@@ -131,31 +82,6 @@ def test_newmarks_block_under_a_pulse(make_structure, run_ls_dem):
     expected = -(0.5 * lag * duration**2 + (lag * duration) ** 2 / (2.0 * MU * G))
     sliding = duration * a / (MU * G)
     assert _slip(run)[-1] == pytest.approx(expected, abs=ONSET * sliding)
-
-
-def test_newmarks_block_under_a_harmonic_base(make_structure, run_ls_dem):
-    """Amplitude 0.8 g at 3 Hz: slips both ways, four times; own event-driven integration."""
-    spacing = 1e-3
-    time = np.arange(0.0, 1.0 + spacing / 2, spacing)
-    motion, acceleration = _base(0.8 * G * np.sin(2.0 * np.pi * 3.0 * time), spacing)
-    structure = make_structure([BODY], friction=MU, shapes={**FLAT_CUBE, **WIDE})
-    run = run_ls_dem(structure, 1.0, motion=motion, rate=1000, **STIFF)
-    times, slips = _newmark(acceleration, MU * G, 1.0)
-    expected = np.interp(run.time, times, slips)
-    assert np.ptp(expected) > 0.01
-    # the base passes the limit gently, so ONSET is never reached: a tenth of it over each 0.1 s of sliding
-    np.testing.assert_allclose(_slip(run), expected, atol=0.1 * ONSET * 1.0)
-
-
-def test_two_horizontal_components_slide_along_their_resultant(make_structure, run_ls_dem):
-    """Coulomb's circle, not a square: a start at 30 degrees goes straight and as far as along x."""
-    angle = np.radians(30.0)
-    structure = make_structure(
-        [{**BODY, "velocity": [np.cos(angle), np.sin(angle), 0.0]}], friction=MU, shapes={**FLAT_CUBE, **WIDE}
-    )
-    run = run_ls_dem(structure, 0.4)
-    moved = run.position[-1, 1, :2] - run.position[0, 1, :2]
-    np.testing.assert_allclose(moved, [np.cos(angle) / (2 * MU * G), np.sin(angle) / (2 * MU * G)], atol=1e-4)
 
 
 def test_spring_and_dashpot_together_stay_below_coulombs_limit(make_structure, run_ls_dem):

@@ -13,9 +13,8 @@ from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_
 from blockshake.solvers.ls_dem.contact.contact_forces import clear_loads, contact_forces_into, no_loads
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
-from blockshake.solvers.ls_dem.joints import no_joints
-from blockshake.solvers.ls_dem.own_stiffness import own_stiffness
-from blockshake.solvers.ls_dem.parameters import LsDemParameters
+from blockshake.solvers.ls_dem.parameters import LsDemParameters, own_stiffness
+from blockshake.solvers.ls_dem.progress import no_joints
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces
 
 G = 9.81

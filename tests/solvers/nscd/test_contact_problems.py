@@ -6,8 +6,8 @@ from contact_problems import assert_contact_law, dense, random_problem, slow_ref
 from scipy.optimize import nnls
 
 from blockshake.geometry.structure import load_structure
-from blockshake.solvers.nscd.contact.contacts import delassus_into
-from blockshake.solvers.nscd.solve.gauss_seidel import contact_velocities_into, relative_residual
+from blockshake.solvers.nscd.contact.contacts import contact_velocities_into, delassus_into
+from blockshake.solvers.nscd.solve.gauss_seidel import relative_residual
 from blockshake.solvers.nscd.solve.solver import solve_contacts_into
 
 G, DT = 9.81, 1e-3

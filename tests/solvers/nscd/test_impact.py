@@ -4,63 +4,7 @@ from scipy.spatial.transform import Rotation
 
 from blockshake.simulation.energy_residual import energy_residual
 
-G = 9.81
-# a body lands as deep as the solver's tolerance leaves it: 1e-6 of the speed times the step
-PENETRATION = 1e-8
-SHAPES = {
-    "cube": {"box": [0.2, 0.2, 0.2]},
-    "plate": {"box": [0.3, 0.3, 0.1]},
-    "heavy": {"box": [0.4, 0.4, 0.4]},
-}
-
-
-@pytest.mark.parametrize("restitution", [0.0, 0.5])
-def test_falling_block_rebounds_by_newton(scene, simulate, restitution):
-    drop = 0.2
-    structure = scene(
-        SHAPES, [{"name": "b", "shape": "cube", "position": [0, 0, 0.1 + drop]}], nscd_restitution=restitution
-    )
-    run = simulate(structure, 0.5, output_step=1e-3)
-    after = run.time > np.sqrt(2.0 * drop / G) + 0.002
-    rebound = (run.position[after, 1, 2] - 0.1).max()
-    # the impact falls somewhere within a step: v dt = 2 mm against a rebound of e^2 h = 50 mm
-    assert rebound == pytest.approx(restitution**2 * drop, abs=2.5e-3)
-    assert run.position[:, 1, 2].min() > 0.1 - PENETRATION
-    kinetic = structure.mass[1] * G * drop
-    if restitution == 0.0:
-        assert rebound < 1e-6
-        assert run.energy[-1, 4] == pytest.approx(kinetic, rel=1e-3)
-
-
-@pytest.mark.parametrize("restitution", [0.0, 0.5])
-def test_two_free_bodies_keep_their_momentum(scene, simulate, restitution):
-    bodies = [
-        {"name": "a", "shape": "cube", "position": [0, 0, 0], "velocity": [1.0, 0, 0]},
-        {"name": "b", "shape": "heavy", "position": [0.5, 0.05, 0.02], "velocity": [-0.5, 0, 0]},
-    ]
-    structure = scene(
-        SHAPES, bodies, floor=False, gravity=[0, 0, 0], nscd_restitution=restitution, friction=0.3
-    )
-    run = simulate(structure, 1.0)
-    momentum = np.einsum("b,tba->ta", structure.mass, run.velocity)
-    np.testing.assert_allclose(
-        momentum, np.tile(momentum[0], (len(momentum), 1)), atol=1e-10 * structure.mass.sum()
-    )
-    # they met and lost energy, and nothing but the contact took it
-    assert run.energy[-1, 0] < 0.95 * run.energy[0, 0]
-    lost = run.energy[0, 0] - run.energy[-1, 0]
-    # dissipated terms never fall, so net work that turned back for a moment is left over
-    assert run.energy[-1, 3] + run.energy[-1, 4] == pytest.approx(lost, rel=1e-5)
-
-
-def test_central_collision_follows_newton(scene, simulate):
-    bodies = [
-        {"name": "a", "shape": "cube", "position": [0, 0, 0], "velocity": [1.0, 0, 0]},
-        {"name": "b", "shape": "cube", "position": [0.5, 0, 0]},
-    ]
-    run = simulate(scene(SHAPES, bodies, floor=False, gravity=[0, 0, 0], nscd_restitution=0.5), 1.0)
-    np.testing.assert_allclose(run.velocity[-1, :, 0], [0.25, 0.75], rtol=1e-6)
-    np.testing.assert_allclose(run.angular_velocity[-1], 0.0, atol=1e-9)
+SHAPES = {"plate": {"box": [0.3, 0.3, 0.1]}}
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from cut_runs import CutShortError, assert_same, cut_after
 
 from blockshake.dynamics.motion import ground_motion
 from blockshake.geometry.structure import load_structure
@@ -11,10 +12,6 @@ from blockshake.solvers.nscd.driver import simulate_nscd
 from blockshake.solvers.nscd.parameters import NscdParameters
 
 TIMES = np.arange(0.0, 1.2001, 0.005)
-
-
-class CutShortError(Exception):
-    pass
 
 
 @pytest.fixture(scope="module")
@@ -36,37 +33,8 @@ def motion():
     )
 
 
-def _run(structure, motion, parameters=None, **keys):
-    return simulate_nscd(
-        structure, motion, parameters or NscdParameters(theta=0.6, impact_parts=3), TIMES, 1e-3, **keys
-    )
-
-
-def _cut_after(monkeypatch, n_savings):
-    """Save at every pause of 70 steps, and fall over after so many savings."""
-    made = []
-
-    def save(checkpoint, parts):
-        original(checkpoint, parts)
-        made.append(checkpoint)
-        if len(made) == n_savings:
-            raise CutShortError
-
-    original = Checkpoint.save
-    monkeypatch.setattr(pieces, "_SAVING", 0.0)
-    monkeypatch.setattr(pieces, "_FIRST_PIECE", 70)
-    monkeypatch.setattr(pieces, "_next_piece", lambda steps, spent: steps)
-    monkeypatch.setattr(Checkpoint, "save", save)
-
-
-def _assert_same(one, other):
-    for field in (
-        "position", "orientation", "velocity", "angular_velocity", "energy", "joints", "joint_force",
-    ):  # fmt: skip
-        assert getattr(one, field).tobytes() == getattr(other, field).tobytes(), field
-    assert (one.status, one.reason, one.end_time, one.numerics) == (
-        other.status, other.reason, other.end_time, other.numerics,
-    )  # fmt: skip
+def _run(structure, motion, **keys):
+    return simulate_nscd(structure, motion, NscdParameters(theta=0.6, impact_parts=3), TIMES, 1e-3, **keys)
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +46,7 @@ def test_a_cut_run_goes_on_bit_by_bit(structure, whole, motion, tmp_path, monkey
     path = tmp_path / "run.checkpoint"
     for savings in (5, 3):
         with monkeypatch.context() as patch:
-            _cut_after(patch, savings)
+            cut_after(patch, savings, 70)
             with pytest.raises(CutShortError):
                 _run(structure, motion, checkpoint=path)
     assert path.exists()
@@ -88,7 +56,7 @@ def test_a_cut_run_goes_on_bit_by_bit(structure, whole, motion, tmp_path, monkey
     resumed = _run(structure, motion, checkpoint=str(path))
     # it did read the checkpoint, of 5 + 3 pieces
     assert steps[0][0].clock[0] >= 560
-    _assert_same(whole, resumed)
+    assert_same(whole, resumed)
     assert not path.exists()
     # it rocked and slid, so that impulses, faces and slips mattered
     assert np.abs(whole.orientation[:, 1:, 2]).max() > 1e-3
@@ -99,24 +67,7 @@ def test_a_cut_run_goes_on_bit_by_bit(structure, whole, motion, tmp_path, monkey
 def test_pauses_change_nothing(structure, whole, motion, monkeypatch):
     monkeypatch.setattr(pieces, "_FIRST_PIECE", 1)
     monkeypatch.setattr(pieces, "_next_piece", lambda steps, spent: steps)
-    _assert_same(whole, _run(structure, motion))
-
-
-def test_the_checkpoint_of_another_run_is_not_taken(structure, motion, tmp_path, monkeypatch):
-    path = tmp_path / "run.checkpoint"
-    with monkeypatch.context() as patch:
-        _cut_after(patch, 2)
-        with pytest.raises(CutShortError):
-            _run(structure, motion, checkpoint=path)
-    other = NscdParameters(theta=0.6, shrink=0.02)
-    _assert_same(_run(structure, motion, other, checkpoint=path), _run(structure, motion, other))
-
-
-@pytest.mark.parametrize("content", [b"", b"PK\x03\x04 cut short", b"not a checkpoint"])
-def test_a_checkpoint_that_cannot_be_read_starts_anew(content, structure, whole, motion, tmp_path):
-    path = tmp_path / "run.checkpoint"
-    path.write_bytes(content)
-    _assert_same(whole, _run(structure, motion, checkpoint=path))
+    assert_same(whole, _run(structure, motion))
 
 
 def test_bodies_that_meet_late_find_room_in_the_record(scene, simulate):

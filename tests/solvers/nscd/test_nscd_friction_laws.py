@@ -37,12 +37,6 @@ def test_null_values_change_no_bit(scene, simulate):
         assert getattr(plain, field).tobytes() == getattr(other, field).tobytes()
 
 
-def test_fast_slip_loses_the_rate_drop(scene, simulate):
-    """At a hundred times the scale nothing of the drop is left to lose: mu (1 - D)."""
-    run, block = slide(scene, simulate, law={"rate_drop": 0.3, "rate_scale": 0.003})
-    assert deceleration(run, block) == pytest.approx(0.7 * MU * G, rel=1e-6)
-
-
 def test_rate_weakening_follows_its_law(scene, simulate):
     """dv/dt = -mu g (1 - D (1 - exp(-v / v_c))), against its exact solution for v(t)."""
     drop, scale = 0.4, 0.5

@@ -1,7 +1,7 @@
 import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.solvers.nscd.rotation_step import turn_into
+from blockshake.solvers.nscd.step import turn_into
 
 # fixed-point iteration to rounding, added up over the steps
 ROUNDING = 1e-11

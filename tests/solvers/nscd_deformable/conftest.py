@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from blockshake.geometry.structure import build_structure
+from blockshake.solvers.nscd.parameters import DeformableParameters
 from blockshake.solvers.nscd_deformable.driver import simulate_deformable
-from blockshake.solvers.nscd_deformable.parameters import DeformableParameters
 
 SLAB = {"name": "slab", "shape": "slab", "position": [0.0, 0.0, -0.1], "driven": True}
 SHAPES = {

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from blockshake.solvers.nscd_deformable.block.shapes import elastic_shapes
+from blockshake.solvers.nscd.parameters import DeformableParameters
 from blockshake.solvers.nscd_deformable.contact_points import joint_points
 from blockshake.solvers.nscd_deformable.elastic_bodies import anchor_into, pack_elastic
-from blockshake.solvers.nscd_deformable.parameters import DeformableParameters
+from blockshake.solvers.nscd_deformable.shapes import elastic_shapes
 
 SQUARE = np.array([[0.0, 0.0, 0.0], [0.76, 0.0, 0.0], [0.76, 2.36, 0.0], [0.0, 2.36, 0.0]])
 

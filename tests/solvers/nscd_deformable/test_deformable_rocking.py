@@ -2,15 +2,13 @@
 
 import numpy as np
 import pytest
+from cut_runs import CutShortError, assert_same, cut_after
 
 from blockshake.dynamics.motion import ground_motion
 from blockshake.simulation.energy_residual import energy_residual
-from blockshake.solvers import pieces
-from blockshake.solvers.checkpoint import Checkpoint
 from blockshake.solvers.nscd.driver import simulate_nscd
-from blockshake.solvers.nscd.parameters import NscdParameters
+from blockshake.solvers.nscd.parameters import DeformableParameters, NscdParameters
 from blockshake.solvers.nscd_deformable.driver import simulate_deformable
-from blockshake.solvers.nscd_deformable.parameters import DeformableParameters
 
 COARSE = {"mesh_size": 0.4, "contact_spacing": 0.8}
 
@@ -99,18 +97,10 @@ def test_the_same_run_gives_the_same_bytes_also_when_it_is_cut(rocking, tmp_path
     structure, motion = rocking
     times, parameters = np.linspace(0.0, 0.6, 121), DeformableParameters(**COARSE)
     whole = simulate_deformable(structure, motion, parameters, times, 1e-3, viscous=True)
-    path, save = tmp_path / "run.checkpoint", Checkpoint.save
-
-    def save_and_stop(self, parts):
-        save(self, parts)
-        raise InterruptedError
-
-    monkeypatch.setattr(pieces, "_SAVING", 0.0)
-    monkeypatch.setattr(Checkpoint, "save", save_and_stop)
-    with pytest.raises(InterruptedError):
-        simulate_deformable(structure, motion, parameters, times, 1e-3, path, viscous=True)
-    monkeypatch.setattr(Checkpoint, "save", save)
-    cut = simulate_deformable(structure, motion, parameters, times, 1e-3, path, viscous=True)
+    path = tmp_path / "run.checkpoint"
+    with monkeypatch.context() as patch:
+        cut_after(patch, 1, 100)
+        with pytest.raises(CutShortError):
+            simulate_deformable(structure, motion, parameters, times, 1e-3, path, viscous=True)
+    assert_same(whole, simulate_deformable(structure, motion, parameters, times, 1e-3, path, viscous=True))
     assert not path.exists()
-    for name in ("position", "orientation", "velocity", "angular_velocity", "energy", "joint_force"):
-        assert getattr(cut, name).tobytes() == getattr(whole, name).tobytes()

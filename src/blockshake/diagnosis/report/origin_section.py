@@ -1,6 +1,6 @@
 """Last section of a diagnosis: tests, assumptions, and the files and programs from which all this comes."""
 
-from blockshake.dynamics.provenance import provenance
+from blockshake.dynamics.load_motion import provenance
 from blockshake.pages.blocks import Items, Section, Table
 from blockshake.pages.origin import command_blocks, digests_table, versions_table
 from blockshake.pages.wording import given

@@ -19,12 +19,8 @@ _INTERVAL = re.compile(r"equally-spaced intervals of\s+(\S+)\s+sec", re.IGNORECA
 _PEAK = re.compile(r"peak\s+acceleration\s*=\s*(\S+)\s+(\S+)\s+at\s+(\S+)\s*sec", re.IGNORECASE)
 _CHANNEL = re.compile(r"\bchan\s+\S+?:\s*(.*?)\s*(?:\bfrom\b.*)?$", re.IGNORECASE)
 _REALS, _REAL_COLUMNS, _REAL_WIDTH = 100, 8, 10
-_LENGTH, _STEP, _TIME_OF_PEAK, _PEAK_VALUE = (
-    60,
-    61,
-    65,
-    66,
-)  # entries of the real header, from 1: s, s, s, cm/s2
+# entries of the real header, from 1 [s, s, s, cm/s2]
+_LENGTH, _STEP, _TIME_OF_PEAK, _PEAK_VALUE = 60, 61, 65, 66
 
 
 def is_csmip(text):

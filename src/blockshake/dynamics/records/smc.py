@@ -21,10 +21,7 @@ _TEXT_LINES = 11
 _WHOLE = (48, 8, 10)  # numbers, columns, width
 _REAL = (50, 5, 15)
 _KINDS = ("1 UNCORRECTED ACCELEROGRAM", "2 CORRECTED ACCELEROGRAM")
-_USUAL, _PRECISE = (
-    (8, 10),
-    (5, 14),
-)  # columns and width of the values, of which entry 47 says 8 for the second
+_USUAL, _PRECISE = (8, 10), (5, 14)  # columns and width of the values; entry 47 is 8 for the second
 _UNIT = 0.01  # m/s2 of cm/s2, which the format prescribes
 _COMMENTS, _COUNT, _PRECISION = 16, 17, 47  # whole numbers, from 1
 _UNKNOWN, _RATE, _MAXIMUM_TIME, _MAXIMUM, _MINIMUM_TIME, _MINIMUM = (

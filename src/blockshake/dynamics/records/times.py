@@ -40,10 +40,10 @@ def check_times(time, lines, where, name):
     usual = float(np.median(steps)) if len(steps) else 0.0
     wide = _gaps(time, steps, usual) if len(time) >= _FEWEST_ROWS else np.zeros(0, dtype=bool)
     if wide.any():
-        place = int(np.argmax(wide))
+        index = int(np.argmax(wide))
         raise InputError(
-            where, f"line {lines[place + 1]}, {name}",
-            f"expected rows {usual:.4g} s apart as elsewhere; {steps[place]:.4g} s after {time[place]:g} s have none, "
+            where, f"line {lines[index + 1]}, {name}",
+            f"expected rows {usual:.4g} s apart as elsewhere; {steps[index]:.4g} s after {time[index]:g} s have none, "
             f"{int(wide.sum())} such gaps in all: write the rows that are missing, or split the motion",
         )  # fmt: skip
 

@@ -126,11 +126,8 @@ def _distances(corners, normals, centres, radii, x, y, z):
                 reach = np.sqrt((x[i0] - mx) ** 2 + (y[j0] - my) ** 2 + (z[k0] - mz) ** 2)
                 closest = np.inf
                 for triangle in range(n_triangles):
-                    dx, dy, dz = (
-                        mx - centres[triangle, 0],
-                        my - centres[triangle, 1],
-                        mz - centres[triangle, 2],
-                    )
+                    centre = centres[triangle]
+                    dx, dy, dz = mx - centre[0], my - centre[1], mz - centre[2]
                     away[triangle] = np.sqrt(dx * dx + dy * dy + dz * dz)
                     closest = min(closest, away[triangle])
                 count = 0

@@ -59,13 +59,13 @@ def mesh_nodes(vertices, faces, spacing, inset):
     sides = boundaries(vertices, faces, normals, patch)
     points, areas = [], []
     for label in range(n_patches):
-        own = np.flatnonzero((patch == label) & (doubled > 0.0))
-        if len(own) == 0:
+        members = np.flatnonzero((patch == label) & (doubled > 0.0))
+        if len(members) == 0:
             continue
         edge = perimeter_points(
-            vertices, normals, sides.get(label, []), 0.5 * doubled[own].sum(), spacing, inset
+            vertices, normals, sides.get(label, []), 0.5 * doubled[members].sum(), spacing, inset
         )
-        nodes, weights = _patch_nodes(corners[own], normals[own], spacing, edge)
+        nodes, weights = _patch_nodes(corners[members], normals[members], spacing, edge)
         points.append(nodes)
         areas.append(weights)
     return np.vstack(points), np.concatenate(areas)

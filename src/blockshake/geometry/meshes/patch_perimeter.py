@@ -111,14 +111,14 @@ def _turn(before, after, vertices, normals):
 def _chains(loop, vertices, normals):
     """Pieces of a loop between corners as (edge before, edges, edge after); None twice for one without corners."""
     breaks = [
-        place
-        for place, side in enumerate(loop)
-        if abs(_turn(loop[place - 1], side, vertices, normals)) > SHARP or loop[place - 1][3] != side[3]
+        index
+        for index, side in enumerate(loop)
+        if abs(_turn(loop[index - 1], side, vertices, normals)) > SHARP or loop[index - 1][3] != side[3]
     ]
     if not breaks:
         return [(None, loop, None)]
     turned = loop[breaks[0] :] + loop[: breaks[0]]
-    bounds = [place - breaks[0] for place in breaks] + [len(loop)]
+    bounds = [index - breaks[0] for index in breaks] + [len(loop)]
     return [
         (turned[start - 1], turned[start:end], turned[end % len(loop)]) for start, end in pairwise(bounds)
     ]
@@ -133,15 +133,15 @@ def _along(chain, vertices, normals, spacing, inset):
     reached = np.concatenate([[0.0], np.cumsum(lengths)])
     n_intervals = max(1 if reached[-1] < spacing else 2, round(reached[-1] / spacing))
     if before is None:
-        places = (np.arange(n_intervals) + 0.5) * reached[-1] / n_intervals
+        positions = (np.arange(n_intervals) + 0.5) * reached[-1] / n_intervals
     else:
         # where the perimeter turns by an angle t, a point at the inset from both edges is inset tan(t / 2) along
         skipped = [
             np.clip(inset * np.tan(0.5 * _turn(*edges, vertices, normals)), 0.0, 0.45 * reached[-1])
             for edges in ((before, sides[0]), (sides[-1], after))
         ]
-        places = np.linspace(skipped[0], reached[-1] - skipped[1], n_intervals + 1)
-    piece = np.clip(np.searchsorted(reached, places, side="right") - 1, 0, len(sides) - 1)
+        positions = np.linspace(skipped[0], reached[-1] - skipped[1], n_intervals + 1)
+    piece = np.clip(np.searchsorted(reached, positions, side="right") - 1, 0, len(sides) - 1)
     direction = steps[piece] / lengths[piece, None]
     inward = np.cross(normals[[sides[k][2] for k in piece]], direction)
-    return starts[piece] + (places - reached[piece])[:, None] * direction + inset * inward
+    return starts[piece] + (positions - reached[piece])[:, None] * direction + inset * inward

@@ -13,7 +13,7 @@ from blockshake.geometry.overlap import near_pairs
 from blockshake.geometry.polyhedron import convex_polyhedron
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.contact_normals import parting_normal
-from blockshake.solvers.stoppers import closure_into
+from blockshake.solvers.external_forces import closure_into
 
 _TOUCH = 1e-3  # m, below which two surfaces touch: rattling blocks hop by less
 _UNCARRIED = 1e-4  # of the weight of a block, or of it at a lever of the block's size, that counts as carried

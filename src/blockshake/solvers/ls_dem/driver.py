@@ -1,21 +1,70 @@
 """LS-DEM from a structure and a motion to a trajectory."""
 
 import functools
+from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.dynamics.motion import PITCH
-from blockshake.dynamics.system import Trajectory, assemble_bodies, place_driven_into
+from blockshake.dynamics.collapse import collapse_limits
+from blockshake.dynamics.motion import PITCH, MotionTable, rest_table
+from blockshake.dynamics.system import Bodies, Stoppers, Trajectory, assemble_bodies, place_driven_into
 from blockshake.solvers.checkpoint import Checkpoint, run_key
-from blockshake.solvers.ls_dem.assembly import assemble
+from blockshake.solvers.external_forces import ExternalForces, assemble_external_forces
 from blockshake.solvers.ls_dem.contact.candidates import Candidates
-from blockshake.solvers.ls_dem.joints import NearPairs
+from blockshake.solvers.ls_dem.interfaces import Interfaces, assemble_interfaces
 from blockshake.solvers.ls_dem.loop import integrate
-from blockshake.solvers.ls_dem.progress import SEARCHES, LeapfrogProgress, start_progress
+from blockshake.solvers.ls_dem.progress import SEARCHES, LeapfrogProgress, NearPairs, start_progress
 from blockshake.solvers.ls_dem.start.settled_start import settled_start
+from blockshake.solvers.ls_dem.surfaces import Surfaces, assemble_surfaces
 from blockshake.solvers.pieces import run_in_pieces
-from blockshake.solvers.record import RunRecord, recorded_rows
-from blockshake.solvers.status import COLLAPSED, DIVERGED, SPEED_LIMIT, STATUS, STEP
+from blockshake.solvers.record import (
+    STEP,
+    RunRecord,
+    recorded_rows,
+    status_at_end,
+)
+
+
+class Assembly(NamedTuple):
+    """Bodies and what acts on them.
+
+    ``table``: motion of the driven bodies. ``supported``, ``drop_limit`` (n_bodies,): of `collapse_limits`. ``skin``:
+    reach of the lists of near nodes [m]. ``dt`` [s], ``n_steps``: number of the last step.
+    """
+
+    bodies: Bodies
+    surfaces: Surfaces
+    interfaces: Interfaces
+    stoppers: Stoppers
+    forces: ExternalForces
+    table: MotionTable
+    supported: np.ndarray
+    drop_limit: np.ndarray
+    skin: float
+    dt: float
+    n_steps: int
+
+
+def assemble(structure, bodies, stoppers, motion, parameters, time_step, n_steps):
+    """`Assembly` of a structure under a motion, None for a ground at rest.
+
+    Raises
+    ------
+    InputError
+        A shape that LS-DEM cannot read.
+    """
+    return Assembly(
+        bodies,
+        assemble_surfaces(structure, parameters),
+        assemble_interfaces(structure, parameters),
+        stoppers,
+        assemble_external_forces(structure),
+        rest_table() if motion is None else motion.table,
+        *collapse_limits(structure),
+        parameters.skin,
+        time_step,
+        n_steps,
+    )
 
 
 def simulate_ls_dem(
@@ -83,7 +132,7 @@ def simulate_ls_dem(
     progress = parts[0]
     steps = min(int(progress.clock[STEP]), n_steps)
     end_time = min(steps * time_step, float(record_times[-1]))
-    status, reason = _status(code, structure, body, end_time)
+    status, reason = status_at_end(code, structure.body_names[body], end_time)
     return Trajectory(
         **vars(rows(*parts)),
         status=status,
@@ -98,15 +147,6 @@ def simulate_ls_dem(
             "list_searches": int(progress.clock[SEARCHES]),
         },
     )
-
-
-def _status(code, structure, body, time):
-    reason = ""
-    if code == COLLAPSED:
-        reason = f"{structure.body_names[body]} fell or overturned by {time:.3f} s"
-    if code == DIVERGED:
-        reason = f"a velocity grew beyond {SPEED_LIMIT:.0f} m/s or was no number at {time:.6f} s"
-    return STATUS[code], reason
 
 
 def _rows_of(structure, times, progress, joints, record):

@@ -4,8 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.dynamics.friction import FrictionLaws, assemble_friction
-from blockshake.dynamics.joint_layers import joint_compliance
+from blockshake.dynamics.friction import FrictionLaws, assemble_friction, joint_compliance
 from blockshake.geometry.reference_block import reference_body
 from blockshake.jit import inline_kernel
 

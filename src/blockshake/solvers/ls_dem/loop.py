@@ -19,6 +19,7 @@ from blockshake.dynamics.system import (
 )
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
 from blockshake.jit import borrowing_kernel, kernel
+from blockshake.solvers.external_forces import closure_into, external_wrenches_into
 from blockshake.solvers.ground import ground_at_start, move_ground_into
 from blockshake.solvers.ls_dem.contact.candidates import find_candidates, lists_expired
 from blockshake.solvers.ls_dem.contact.contact_forces import (
@@ -31,11 +32,6 @@ from blockshake.solvers.ls_dem.contact.contact_forces import (
     no_loads,
 )
 from blockshake.solvers.ls_dem.contact.relative_pose import keep_poses
-from blockshake.solvers.ls_dem.outside_loads import (
-    external_loads_into,
-    external_power,
-    stopper_forces_into,
-)
 from blockshake.solvers.ls_dem.progress import (
     DASHPOT_HEAT,
     FRICTION_HEAT,
@@ -43,8 +39,16 @@ from blockshake.solvers.ls_dem.progress import (
     MOST_FRICTION_HEAT,
     SEARCHES,
 )
-from blockshake.solvers.record import with_room
-from blockshake.solvers.status import COLLAPSED, COMPLETED, DIVERGED, NEXT_RECORD, PAUSED, SPEED_LIMIT, STEP
+from blockshake.solvers.record import (
+    COLLAPSED,
+    COMPLETED,
+    DIVERGED,
+    NEXT_RECORD,
+    PAUSED,
+    STEP,
+    find_diverged,
+    with_room,
+)
 
 # Code of `_advance` beside those of a run: a node outside the lists may touch by now
 _LISTS_EXPIRED = -1
@@ -71,7 +75,7 @@ def integrate(assembly, times, pause, progress, candidates, joints, record):
     Returns
     -------
     code, culprit : int
-        Of `blockshake.solvers.status`; body that collapsed or -1.
+        Of `blockshake.solvers.record`; body that collapsed or ran away, else -1.
     candidates, joints, record : Candidates, NearPairs, RunRecord
         To go on with.
 
@@ -104,24 +108,10 @@ def integrate(assembly, times, pause, progress, candidates, joints, record):
 
 @borrowing_kernel
 def _advance(assembly, times, pause, progress, candidates, record, searched, ground, turn, external, loads):
-    """Steps until the lists expire, or the run ends or pauses.
+    """Steps until the lists expire, or the run ends or pauses; code and culprit as in `integrate`, or `_LISTS_EXPIRED`.
 
-    Parameters
-    ----------
-    assembly, ..., record
-        As in `integrate`.
-    searched : bool
-        Whether the lists were made for the poses of the next step.
-    ground : Ground
-    turn, external : float64 arrays, shape (3,) and (n_bodies, 6)
-        Workspace of the record; external forces and moments, zero where there are none [N, N m].
-    loads : Loads
-        Workspace of the forces.
-
-    Returns
-    -------
-    code, culprit : int
-        As in `integrate`, or `_LISTS_EXPIRED` before the forces of a step.
+    ``searched``: whether the lists were made for the poses of the next step. ``turn`` (3,), ``external`` (n_bodies, 6)
+    [N, N m] and ``loads`` are worked in; ``external`` is zero where there are no external forces.
     """
     bodies, surfaces, interfaces, stoppers, forces, _, supported, drop_limit, skin, dt, n_steps = assembly
     state, poses, clock, audit = progress.state, progress.poses, progress.clock, progress.audit
@@ -160,8 +150,9 @@ def _advance(assembly, times, pause, progress, candidates, record, searched, gro
             loads.energy[STEP_EXTERNAL_WORK] = dt * external_power(external, state)
             # the first kick is half a step's
             audit[INPUT_WORK] += loads.energy[STEP_EXTERNAL_WORK] * (1.0 if step > 0 else 0.5)
-        if _has_diverged(state.velocity):
-            return DIVERGED, -1
+        runaway = find_diverged(state)
+        if runaway >= 0:
+            return DIVERGED, runaway
         while clock[NEXT_RECORD] < times.size and times[clock[NEXT_RECORD]] < t + 0.5 * dt:
             row, offset = clock[NEXT_RECORD] - record.first[0], times[clock[NEXT_RECORD]] - t
             _record_into(bodies, loads, offset, dt, progress, turn, row, record)
@@ -264,12 +255,45 @@ def _record_into(bodies, loads, offset, dt, progress, turn, row, record):
     record.joint_force[row, : loads.joints.slip.size] = loads.joints.force
 
 
-@borrowing_kernel
-def _has_diverged(velocity):
-    """Whether a velocity is beyond the limit or no number."""
-    for body in range(velocity.shape[0]):
+@kernel
+def stopper_forces_into(bodies, stoppers, state, loads):
+    """Add the forces of closed stoppers to ``loads``; the elastic energy they hold is returned [J].
+
+    With the closure ``c`` of its body's point beyond the gap, see `closure_into`, a stopper pushes the point back with
+    ``stiffness * c`` and the first driven body with the opposite.
+    """
+    energy = 0.0
+    driven = np.argmax(bodies.driven)
+    reach, arm, toward = np.empty(3), np.empty(3), np.empty(3)
+    for stopper in range(stoppers.body.size):
+        closure = closure_into(bodies, stoppers, stopper, driven, state, reach, arm, toward)
+        if closure > 0.0:
+            body, stiffness = stoppers.body[stopper], stoppers.stiffness[stopper]
+            force = -stiffness * closure * toward
+            loads.force[body] += force
+            loads.moment[body] += np.cross(arm, force)
+            loads.force[driven] -= force
+            loads.moment[driven] -= np.cross(reach, force)
+            energy += 0.5 * stiffness * closure * closure
+    return energy
+
+
+@kernel
+def external_loads_into(bodies, forces, state, time, external, loads):
+    """Add external forces to ``loads``; ``external`` (n_bodies, 6) is overwritten."""
+    external_wrenches_into(bodies, forces, state, time, 0.0, external)
+    for body in range(external.shape[0]):
         for axis in range(3):
-            # not (x <= limit), so that NaN counts
-            if not abs(velocity[body, axis]) <= SPEED_LIMIT:
-                return True
-    return False
+            loads.force[body, axis] += external[body, axis]
+            loads.moment[body, axis] += external[body, 3 + axis]
+
+
+@kernel
+def external_power(external, state):
+    """Power of external forces on bodies that move as ``state`` has it [W]."""
+    power = 0.0
+    for body in range(external.shape[0]):
+        for axis in range(3):
+            power += external[body, axis] * state.velocity[body, axis]
+            power += external[body, 3 + axis] * state.angular_velocity[body, axis]
+    return power

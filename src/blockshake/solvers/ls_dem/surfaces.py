@@ -6,10 +6,9 @@ import numpy as np
 
 from blockshake.errors import InputError
 from blockshake.geometry.level_set import box_distance, hollow_box_distance
-from blockshake.geometry.level_set_grid import box_grid, grid_table, mesh_grid
+from blockshake.geometry.level_set_grid import box_grid, grid_distance, grid_table, mesh_grid
 from blockshake.geometry.meshes.mesh_nodes import mesh_nodes
 from blockshake.geometry.surface_nodes import box_nodes
-from blockshake.geometry.trilinear import grid_distance
 from blockshake.jit import inline_kernel, kernel
 
 INVERSE_SPACING = 7  # column of ``Surfaces.lattice``
@@ -66,12 +65,8 @@ def assemble_surfaces(structure, parameters):
     shapes = structure.file.shapes
     nodes = [_nodes(structure, name, parameters) for name in names]
     planes = [_planes(structure, name, parameters) for name in names]
-    table = grid_table(
-        [
-            _grid(structure, name, parameters) if not len(own) else None
-            for name, own in zip(names, planes, strict=True)
-        ]
-    )
+    by_shape = zip(names, planes, strict=True)
+    table = grid_table([None if len(rows) else _grid(structure, name, parameters) for name, rows in by_shape])
     solids = [structure.solids[name] for name in names]
     low = np.array([solid.vertices.min(axis=0) for solid in solids])
     high = np.array([solid.vertices.max(axis=0) for solid in solids])
@@ -87,7 +82,7 @@ def assemble_surfaces(structure, parameters):
             [shapes[name].box or size for name, size in zip(names, high - low, strict=True)]
         ) / 2.0,
         middle=np.array(
-            [np.zeros(3) if shapes[name].box else place for name, place in zip(names, (low + high) / 2.0, strict=True)]
+            [np.zeros(3) if shapes[name].box else mid for name, mid in zip(names, (low + high) / 2.0, strict=True)]
         ),
         wide=np.array([_wide(shapes[name]) for name in names]),
         chamfer=np.array([shapes[name].chamfer for name in names]),
@@ -97,7 +92,7 @@ def assemble_surfaces(structure, parameters):
         ),
         values=table.values,
         steepest=table.steepest * np.array([_hollow_slope(shapes[name]) for name in names]),
-        first_plane=np.concatenate([[0], np.cumsum([len(own) for own in planes])]),
+        first_plane=np.concatenate([[0], np.cumsum([len(rows) for rows in planes])]),
         planes=np.vstack(planes),
         first_node=np.concatenate([[0], np.cumsum([len(areas) for _, areas in nodes])]),
         points=np.vstack([points for points, _ in nodes]),
@@ -132,11 +127,8 @@ def _nodes(structure, name, parameters):
     spacing = parameters.node_spacing * max(1.0, breadth / _BROAD)
     count = solid.properties.area / spacing**2
     if count > _MOST_NODES:
-        raise InputError(
-            structure.source,
-            f"shapes.{name}",
-            f"expected at most {_MOST_NODES:.0e} nodes, not {count:.1g}: a wider ls_dem.node_spacing",
-        )
+        expected = f"expected at most {_MOST_NODES:.0e} nodes, not {count:.1g}: a wider ls_dem.node_spacing"
+        raise _refusal(structure, name, expected)
     if shape.box is None:
         return mesh_nodes(solid.vertices, solid.triangles, spacing, parameters.perimeter_inset)
     return box_nodes(shape.box, shape.chamfer, shape.hollow, spacing, parameters.perimeter_inset)
@@ -145,13 +137,8 @@ def _nodes(structure, name, parameters):
 def _planes(structure, name, parameters):
     """Normals and distances of the faces of a convex mesh, shape (n, 4); none of another shape or of too many faces."""
     polyhedron = structure.solids[name].polyhedron
-    boxed = structure.file.shapes[name].box is not None
-    if (
-        boxed
-        or polyhedron is None
-        or parameters.level_set == "grid"
-        or len(polyhedron.offsets) > _MOST_PLANES
-    ):
+    sampled = structure.file.shapes[name].box is not None or parameters.level_set == "grid"
+    if sampled or polyhedron is None or len(polyhedron.offsets) > _MOST_PLANES:
         return np.empty((0, 4))
     return np.column_stack([polyhedron.normals, polyhedron.offsets])
 
@@ -177,29 +164,23 @@ def check_shapes(structure, parameters):
             _check_grid(structure, name, parameters)
 
 
+def _refusal(structure, name, expected):
+    return InputError(structure.source, f"shapes.{name}", expected)
+
+
 def _check_grid(structure, name, parameters):
     """Refuse a hollow face, and a lattice that is too coarse or of too many points."""
     spacing = parameters.grid_spacing
     if structure.file.shapes[name].hollow:
-        raise InputError(
-            structure.source,
-            f"shapes.{name}.hollow",
-            f"expected the exact distance with hollow faces: ls_dem.level_set is {parameters.level_set}",
-        )
+        given = f"ls_dem.level_set is {parameters.level_set}"
+        raise _refusal(structure, f"{name}.hollow", f"expected the exact distance with hollow faces: {given}")
     properties = structure.solids[name].properties
     widest = _COARSEST * properties.volume / properties.area
     if spacing > widest:
-        raise InputError(
-            structure.source,
-            f"shapes.{name}",
-            f"expected a ls_dem.grid_spacing of at most {widest:.2g} m, not {spacing:g} m: others fall through",
-        )
+        expected = f"a ls_dem.grid_spacing of at most {widest:.2g} m, not {spacing:g} m: others fall through"
+        raise _refusal(structure, name, f"expected {expected}")
     if np.prod(np.ptp(structure.solids[name].vertices, axis=0) / spacing + 4.0) > _MOST_POINTS:
-        raise InputError(
-            structure.source,
-            f"shapes.{name}",
-            f"expected fewer lattice points: ls_dem.grid_spacing is {spacing} m",
-        )
+        raise _refusal(structure, name, f"expected fewer lattice points: ls_dem.grid_spacing is {spacing} m")
 
 
 @kernel

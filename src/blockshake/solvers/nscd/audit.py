@@ -13,7 +13,9 @@ from blockshake.dynamics.system import (
     kinetic_energy,
     potential_energy,
 )
+from blockshake.geometry.vectors import dot, transposed_product, velocity_at
 from blockshake.jit import borrowing_kernel, kernel
+from blockshake.solvers.external_forces import closure_into
 from blockshake.solvers.nscd.progress import (
     BAD_STEPS,
     CAPPED_STEPS,
@@ -29,8 +31,6 @@ from blockshake.solvers.nscd.progress import (
     PARTED_STEPS,
     WORST_RESIDUAL,
 )
-from blockshake.solvers.stoppers import closure_into
-from blockshake.solvers.vectors import dot, transposed_product, velocity_at
 
 # Relative residual above which a step counts as badly solved; fixed by the project's contract.
 _BAD_RESIDUAL = 1e-4
@@ -106,29 +106,26 @@ def account_into(bodies, contacts, u_mean, step, theta, squeezed, deformation, p
 
     Parameters
     ----------
-    bodies : Bodies
-    contacts : Contacts
-        With the impulses of the step.
+    bodies, contacts, step, progress : Bodies, Contacts, Step, Progress
+        The contacts have the impulses of the step, and ``progress.state`` is that at its end; its energy and the net
+        work taken out so far are brought up to it.
     u_mean : float64 array, shape (n_contacts, 3)
         Velocities of the contacts that their impulses do work on, along their bases [m/s].
-    step : Step
     theta : float
         Weight of the end of the step [1].
     squeezed : float
         Energy in the stoppers at the end of the step, of `stopper_energy` [J].
     deformation : tuple of 3 float
         Kinetic and elastic energy of the bodies' deformation at the end of the step, and what it lost in it [J].
-    progress : Progress
-        ``state`` is that at the end of the step; the energy and the net work taken out so far are brought up to it.
 
     Notes
     -----
-    An impulse does the work ``p . u`` with the mean ``u`` of the velocities at the start and at the end
-    (`turn_into` for rotations), so that the terms add up to rounding at theta 0.5. A layer that gave the impulse p over
-    the step holds ``theta compliance p^2 / 2`` at its end. A dissipated
-    term is the largest net work so far: net work can fall for a moment by the error of the scheme, and the fall
-    then shows as the energy residual. In an oblique impact with Newton's restitution the work on friction, by mean
-    velocities, can truly be negative (Kane and Levinson 1985): it is taken off what the contact took out.
+    An impulse does the work ``p . u`` with the mean ``u`` of the velocities at the start and at the end (`turn_into`
+    for rotations), so that the terms add up to rounding at theta 0.5. A layer that gave the impulse p over the step
+    holds ``theta compliance p^2 / 2`` at its end. A dissipated term is the largest net work so far: net work can fall
+    for a moment by the error of the scheme, and the fall then shows as the energy residual. In an oblique impact with
+    Newton's restitution the work on friction, by mean velocities, can truly be negative (Kane and Levinson 1985): it is
+    taken off what the contact took out.
     """
     state, audit, energy = progress.state, progress.audit, progress.energy
     held = 0.0

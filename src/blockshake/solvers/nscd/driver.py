@@ -4,17 +4,38 @@ import functools
 
 import numpy as np
 
-from blockshake.dynamics.system import assemble_bodies
+from blockshake.dynamics.system import Status, Trajectory, assemble_bodies
 from blockshake.solvers.checkpoint import Checkpoint, run_key
 from blockshake.solvers.nscd.contact.contacts import Contacts, empty_contacts
-from blockshake.solvers.nscd.joints import Joints, no_joints
 from blockshake.solvers.nscd.loop import integrate
-from blockshake.solvers.nscd.outcome import rows_of, trajectory_of
-from blockshake.solvers.nscd.progress import Progress, start_progress
+from blockshake.solvers.nscd.progress import (
+    BAD_STEPS,
+    CAPPED_STEPS,
+    DEEPEST,
+    IN_PLAY,
+    ITERATIONS,
+    MISFIT,
+    MOST_ITERATIONS,
+    PARTED_STEPS,
+    WORST_RESIDUAL,
+    Joints,
+    Progress,
+    no_joints,
+    start_progress,
+)
 from blockshake.solvers.nscd.scene import assemble_scene, order_of_bodies, reordered
 from blockshake.solvers.nscd.start import settled_state
 from blockshake.solvers.pieces import run_in_pieces
-from blockshake.solvers.record import RunRecord
+from blockshake.solvers.record import (
+    DIVERGED,
+    STEP,
+    RunRecord,
+    recorded_rows,
+    status_at_end,
+)
+
+# Share of badly solved steps above which a run is not to be trusted; fixed by the project's contract.
+_MOST_BAD_STEPS = 0.01
 
 
 def simulate_nscd(structure, motion, parameters, record_times, time_step=1e-3, checkpoint=None, kept=None):
@@ -76,3 +97,54 @@ def simulate_nscd(structure, motion, parameters, record_times, time_step=1e-3, c
     code, culprit, parts = run_in_pieces(start, go_on, rows, times, time_step, saving, kept)
     progress, _, joints, record = parts
     return trajectory_of(structure, order, times, time_step, code, culprit, progress, joints, record)
+
+
+def trajectory_of(structure, order, times, time_step, code, culprit, progress, joints, record):
+    """`Trajectory` of a run from what `integrate` leaves at its end, with the rows of the record.
+
+    ``order`` int64 (n_bodies,) from `order_of_bodies`; ``times`` (n_times,) and ``time_step`` [s].
+    """
+    end_time = min(int(progress.clock[STEP]) * time_step, float(times[-1]))
+    name = structure.body_names[order[culprit]]
+    status, reason = _status(code, name, end_time, progress.clock)
+    return Trajectory(
+        **vars(rows_of(order, times, progress, joints, record)),
+        status=status,
+        reason=reason,
+        end_time=end_time,
+        numerics=_numerics(progress),
+    )
+
+
+def rows_of(order, times, progress, joints, record):
+    """`Rows` of a run's record, bodies in the order of the file; arguments as of `trajectory_of`."""
+    # a run that ends in its first step has found its joints and made no room for them
+    joint_force = np.zeros((len(record.energy), len(joints.slip), 3))
+    recorded = record.joint_force[:, : len(joints.slip)]
+    joint_force[:, : recorded.shape[1]] = recorded
+    return recorded_rows(times, progress, record, order[joints.pair], joint_force, np.argsort(order))
+
+
+def _status(code, name, end_time, clock):
+    status, reason = status_at_end(code, name, end_time)
+    bad = clock[BAD_STEPS] / max(clock[STEP], 1)
+    if code != DIVERGED and bad > _MOST_BAD_STEPS:
+        words = f"{100.0 * bad:.1f} % of the steps ended above a relative residual of 1e-4"
+        status, reason = Status.NOT_CONVERGED, "; ".join(part for part in (words, reason) if part)
+    return status, reason
+
+
+def _numerics(progress):
+    clock, audit = progress.clock, progress.audit
+    steps = max(int(clock[STEP]), 1)
+    return {
+        "steps": int(clock[STEP]),
+        "mean_iterations": int(clock[ITERATIONS]) / steps,
+        "max_iterations": int(clock[MOST_ITERATIONS]),
+        "max_residual": float(audit[WORST_RESIDUAL]),
+        "fraction_above_1e-4": int(clock[BAD_STEPS]) / steps,
+        "capped_steps": int(clock[CAPPED_STEPS]),
+        "parted_steps": int(clock[PARTED_STEPS]),
+        "energy_residual": float(audit[MISFIT] / audit[IN_PLAY]) if audit[IN_PLAY] > 0.0 else 0.0,
+        "max_penetration": float(audit[DEEPEST]),
+    }

@@ -4,27 +4,37 @@ import numpy as np
 
 from blockshake.dynamics.collapse import find_collapsed
 from blockshake.dynamics.system import place_driven_into
+from blockshake.geometry.vectors import dot
 from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.external_forces import external_wrenches_into
 from blockshake.solvers.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
 from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit, stopper_energy
-from blockshake.solvers.nscd.contact.contacts import contact_margin, delassus_into, detect_contacts
-from blockshake.solvers.nscd.contact.friction import friction_into
-from blockshake.solvers.nscd.contact.law_shift import bodies_meet, law_shift_into
+from blockshake.solvers.nscd.contact.contacts import (
+    contact_margin,
+    contact_velocities_into,
+    delassus_into,
+    detect_contacts,
+    place_stoppers_into,
+)
+from blockshake.solvers.nscd.contact.law import bodies_meet, friction_into, law_shift_into
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed, place_into
-from blockshake.solvers.nscd.contact.stoppers import place_stoppers_into
 from blockshake.solvers.nscd.contact.warm_start import warm_start_into
-from blockshake.solvers.nscd.joints import press_anew, slip_into, with_pressed
-from blockshake.solvers.nscd.progress import LAST_STEP
+from blockshake.solvers.nscd.progress import LAST_STEP, press_anew, slip_into, with_pressed
 from blockshake.solvers.nscd.recording import record_driven_into, record_forces_into, record_into
-from blockshake.solvers.nscd.solve.gauss_seidel import contact_velocities_into
 from blockshake.solvers.nscd.solve.solver import solve_contacts_into
 from blockshake.solvers.nscd.step import empty_step, move_into, predict_into
-from blockshake.solvers.record import with_room
-from blockshake.solvers.status import COLLAPSED, COMPLETED, DIVERGED, NEXT_RECORD, PAUSED, SPEED_LIMIT, STEP
-from blockshake.solvers.vectors import dot
+from blockshake.solvers.record import (
+    COLLAPSED,
+    COMPLETED,
+    DIVERGED,
+    NEXT_RECORD,
+    PAUSED,
+    STEP,
+    find_diverged,
+    with_room,
+)
 
-_ROUNDING = 1e-9  # of a step, when a record time meets the end of a step
+ROUNDING = 1e-9  # of a step, when a record time meets the end of a step
 
 
 @kernel
@@ -49,7 +59,7 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
     Returns
     -------
     code, culprit : int
-        Of `blockshake.solvers.status`; body that collapsed or ran away, else -1.
+        Of `blockshake.solvers.record`; body that collapsed or ran away, else -1.
     contacts, joints, record : Contacts, Joints, RunRecord
         To go on with.
 
@@ -66,7 +76,7 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
     gravity = np.linalg.norm(bodies.gravity)
     if clock[STEP] == 0:
         _start(scene, ground, step, placed, progress)
-    n_steps = int(np.ceil(times[times.size - 1] / dt - _ROUNDING))
+    n_steps = int(np.ceil(times[times.size - 1] / dt - ROUNDING))
     if n_steps == 0:
         record_into(bodies, state, state, energy, energy, 0.0, clock[NEXT_RECORD], record)
         clock[NEXT_RECORD] = 1
@@ -75,31 +85,31 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
             return PAUSED, -1, contacts, joints, record
         iterations, residual, part, parts = 0, 0.0, 0, 1
         while part < parts:
-            h, place = dt / parts, clock[STEP] * parts + part
-            move_ground_by_secant_into(ground, (place + 1.0 - theta) * h, (place + 2.0 - theta) * h, h)
+            h, number = dt / parts, clock[STEP] * parts + part
+            move_ground_by_secant_into(ground, (number + 1.0 - theta) * h, (number + 2.0 - theta) * h, h)
             if forces.body.size > 0:
-                external_wrenches_into(bodies, forces, state, (place + 0.5) * h, 0.5 * h, step.external)
+                external_wrenches_into(bodies, forces, state, (number + 0.5) * h, 0.5 * h, step.external)
                 step.external[:] *= h
             predict_into(bodies, state, ground, h, theta, step)
 
-            found = _detect(
+            renewed = _detect(
                 bodies, stoppers, layers, polyhedra, settings, watch.base, step, placed, progress.face, h
             )
-            n_contacts = found.gap.size - stoppers.body.size
-            friction_into(friction, joints, step.rotations, found)
-            law_shift_into(step, h, theta, settings.restitution, found)
-            warm_start_into(contacts, polyhedra.radius, h / audit[LAST_STEP], found)
-            tried, left = solve_contacts_into(
-                bodies, step.inertia, step.inverse_inertia, found, least_impulse(bodies, gravity, step.v, h),
+            n_contacts = renewed.gap.size - stoppers.body.size
+            friction_into(friction, joints, step.rotations, renewed)
+            law_shift_into(step, h, theta, settings.restitution, renewed)
+            warm_start_into(contacts, polyhedra.radius, h / audit[LAST_STEP], renewed)
+            tried, error = solve_contacts_into(
+                bodies, step.inertia, step.inverse_inertia, renewed, least_impulse(bodies, gravity, step.v, h),
                 settings.tolerance, settings.max_iterations, step.v,
             )  # fmt: skip
             iterations += tried
-            if parts < settings.impact_parts and bodies_meet(found, n_contacts, step.v_start, gravity * dt):
+            if parts < settings.impact_parts and bodies_meet(renewed, n_contacts, step.v_start, gravity * dt):
                 parts = settings.impact_parts
                 continue
-            contacts, residual = found, max(residual, left)
+            contacts, residual = renewed, max(residual, error)
 
-            move_ground_into(ground, (place + 1) * h)
+            move_ground_into(ground, (number + 1) * h)
             move_into(bodies, ground, h, theta, contacts, step, state)
             energy_before[:] = energy
             squeezed = stopper_energy(bodies, stoppers, watch.base, state) if stoppers.body.size > 0 else 0.0
@@ -120,7 +130,7 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
                 clock[STEP] += 1
                 return DIVERGED, runaway, contacts, joints, record
             record_until_into(
-                bodies, ground, step.before, energy_before, contacts, n_contacts, joints, place, h, times,
+                bodies, ground, step.before, energy_before, contacts, n_contacts, joints, number, h, times,
                 progress, record,
             )  # fmt: skip
         count_into(iterations, residual, settings.tolerance, parts, clock, audit)
@@ -162,16 +172,16 @@ def _detect(bodies, stoppers, layers, polyhedra, settings, base, step, placed, f
 
 @borrowing_kernel
 def record_until_into(
-    bodies, ground, before, energy_before, contacts, n_contacts, joints, place, dt, times, progress, record
+    bodies, ground, before, energy_before, contacts, n_contacts, joints, number, dt, times, progress, record
 ):
-    """Fill in the rows of the record whose times fall into a step, the one that began at ``place`` times ``dt``.
+    """Fill in the rows of the record whose times fall into a step, the one that began at ``number`` times ``dt``.
 
     ``before``, ``energy_before``: state and energy then; ``progress`` has those at the step's end.
     """
     clock = progress.clock
-    while clock[NEXT_RECORD] < times.size and times[clock[NEXT_RECORD]] <= (place + 1 + _ROUNDING) * dt:
+    while clock[NEXT_RECORD] < times.size and times[clock[NEXT_RECORD]] <= (number + 1 + ROUNDING) * dt:
         row, time = clock[NEXT_RECORD] - record.first[0], times[clock[NEXT_RECORD]]
-        share = min(max(time / dt - place, 0.0), 1.0)
+        share = min(max(time / dt - number, 0.0), 1.0)
         record_into(bodies, before, progress.state, energy_before, progress.energy, share, row, record)
         move_ground_into(ground, time)
         record_driven_into(bodies, ground, row, record)
@@ -191,17 +201,3 @@ def least_impulse(bodies, gravity, v, dt):
             lightest = min(lightest, bodies.mass[body])
             momentum += bodies.mass[body] * np.sqrt(dot(v[body, :3], v[body, :3]))
     return 1e-3 * dt * gravity * lightest + 1e-12 * momentum + 1e-300
-
-
-@borrowing_kernel
-def find_diverged(state):
-    """First body whose state is not finite or that is faster than anything real, or -1."""
-    for body in range(state.position.shape[0]):
-        speed = 0.0
-        for axis in range(3):
-            speed += abs(state.velocity[body, axis]) + abs(state.angular_velocity[body, axis])
-            speed += 0.0 * state.position[body, axis]
-        # not (x < y), so that NaN counts
-        if not speed < SPEED_LIMIT:
-            return body
-    return -1

@@ -4,8 +4,8 @@ import numpy as np
 
 from blockshake.dynamics.system import State, place_driven_into
 from blockshake.geometry.rotations import rotate_into
+from blockshake.geometry.vectors import transposed_product
 from blockshake.jit import borrowing_kernel
-from blockshake.solvers.vectors import transposed_product
 
 
 @borrowing_kernel

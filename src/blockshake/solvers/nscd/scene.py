@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.collapse import collapse_limits
-from blockshake.dynamics.joint_layers import joint_compliance
+from blockshake.dynamics.friction import joint_compliance
 from blockshake.dynamics.motion import MotionTable, rest_table
 from blockshake.dynamics.system import Bodies, Stoppers
 from blockshake.solvers.external_forces import ExternalForces, assemble_external_forces
-from blockshake.solvers.nscd.contact.friction import OrderedFriction, ordered_friction
+from blockshake.solvers.nscd.contact.law import OrderedFriction, ordered_friction
 from blockshake.solvers.nscd.contact.polyhedra import Polyhedra, pack_polyhedra
 
 
@@ -82,16 +82,16 @@ def assemble_scene(structure, bodies, stoppers, motion, parameters, time_step, o
     InputError
         A shape is not convex.
     """
-    place = np.argsort(order)
+    rank = np.argsort(order)
     table = rest_table() if motion is None else motion.table
     driven, forces = np.flatnonzero(structure.driven), assemble_external_forces(structure)
-    base = int(place[driven[0]]) if len(driven) else -1
+    base = int(rank[driven[0]]) if len(driven) else -1
     supported, drop_limit = collapse_limits(structure)
     return ContactScene(
         bodies=reordered(bodies._replace(gravity=None), order)._replace(gravity=bodies.gravity),
         friction=ordered_friction(structure, order),
-        stoppers=stoppers._replace(body=place[stoppers.body]),
-        forces=forces._replace(body=place[forces.body], base=base),
+        stoppers=stoppers._replace(body=rank[stoppers.body]),
+        forces=forces._replace(body=rank[forces.body], base=base),
         layers=np.ascontiguousarray(joint_compliance(structure)[np.ix_(order, order)]),
         polyhedra=pack_polyhedra(structure, order),
         table=MotionTable(*(np.ascontiguousarray(part) for part in table)),

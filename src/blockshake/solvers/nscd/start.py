@@ -9,10 +9,9 @@ from blockshake.geometry.structure import START_TOLERANCE
 from blockshake.jit import kernel
 from blockshake.solvers.ground import ground_at_start
 from blockshake.solvers.nscd.contact.contacts import delassus_into, detect_contacts
-from blockshake.solvers.nscd.contact.friction import friction_into
-from blockshake.solvers.nscd.contact.law_shift import law_shift_into
+from blockshake.solvers.nscd.contact.law import friction_into, law_shift_into
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed, place_into
-from blockshake.solvers.nscd.joints import no_joints
+from blockshake.solvers.nscd.progress import no_joints
 from blockshake.solvers.nscd.solve.solver import solve_contacts_into
 from blockshake.solvers.nscd.step import empty_step, predict_into
 

@@ -4,17 +4,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.geometry.overlap import find_pairs
+from blockshake.geometry.vectors import cross, difference, dot, put_into, transposed_product
 from blockshake.jit import borrowing_kernel, kernel
-from blockshake.solvers.near_boxes import find_pairs
 from blockshake.solvers.nscd.contact.contacts import add_contact_into, empty_contacts, first_rows
-from blockshake.solvers.nscd.contact.detection import detect_pair_into
+from blockshake.solvers.nscd.contact.detection import LEAST_AREA, detect_pair_into
 from blockshake.solvers.nscd_deformable.elastic_bodies import anchor_into
-from blockshake.solvers.vectors import cross, difference, dot, put_into, transposed_product
 
 # Corners of a joint are looked for this many margins apart, to find points between an open and a closed corner.
 _WIDE = 10.0
 _SAME_POINT = 1e-6  # m
-_LEAST_AREA = 1e-12  # m2, of a joint that has none
 
 
 class Anchors(NamedTuple):
@@ -32,40 +31,40 @@ class Anchors(NamedTuple):
 
 
 @borrowing_kernel
-def _parts(one, other, spacing):
+def _parts(side, other, spacing):
     """Equal parts of at most ``spacing`` into which the longer of two opposite sides, given by their ends, is cut."""
-    longest = np.sqrt(max(dot(one, one), dot(other, other)))
+    longest = np.sqrt(max(dot(side, side), dot(other, other)))
     return max(1, int(np.ceil(longest / spacing - 1e-6)))
 
 
 @borrowing_kernel
 def _joint_points_into(P, g, n_s, n_t, area, points, clearance, areas):
     """Points over a joint with four corners ``P`` and gaps ``g`` there, as in `joint_points`; their number."""
-    found = 0
+    count = 0
     for i in range(n_s + 1):
         for j in range(n_t + 1):
             s, t = i / n_s, j / n_t
             weights = ((1.0 - s) * (1.0 - t), s * (1.0 - t), s * t, (1.0 - s) * t)
             for axis in range(3):
-                points[found, axis] = (
+                points[count, axis] = (
                     weights[0] * P[0, axis] + weights[1] * P[1, axis]
                     + weights[2] * P[2, axis] + weights[3] * P[3, axis]
                 )  # fmt: skip
             share = (0.5 if i in (0, n_s) else 1.0) * (0.5 if j in (0, n_t) else 1.0) / (n_s * n_t)
             new = True
-            for other in range(found):
-                away = difference(points[other], points[found])
+            for other in range(count):
+                away = difference(points[other], points[count])
                 if dot(away, away) < _SAME_POINT * _SAME_POINT:
                     areas[other] += share * area
                     new = False
                     break
             if new:
-                clearance[found] = (
+                clearance[count] = (
                     weights[0] * g[0] + weights[1] * g[1] + weights[2] * g[2] + weights[3] * g[3]
                 )
-                areas[found] = share * area
-                found += 1
-    return found
+                areas[count] = share * area
+                count += 1
+    return count
 
 
 @kernel
@@ -100,14 +99,14 @@ def joint_points(corners, gaps, count, spacing):
         g[corner] = gaps[source]
     n_s = _parts(difference(P[1], P[0]), difference(P[2], P[3]), spacing)
     n_t = _parts(difference(P[3], P[0]), difference(P[2], P[1]), spacing)
-    area = _LEAST_AREA
+    area = LEAST_AREA
     for corner in (1, 2):
         x = cross(difference(P[corner], P[0]), difference(P[corner + 1], P[0]))
         area += 0.5 * np.sqrt(dot(x, x))
     points, clearance = np.empty(((n_s + 1) * (n_t + 1), 3)), np.empty((n_s + 1) * (n_t + 1))
     areas = np.empty((n_s + 1) * (n_t + 1))
-    found = _joint_points_into(P, g, n_s, n_t, area, points, clearance, areas)
-    return points[:found], clearance[:found], areas[:found]
+    n_points = _joint_points_into(P, g, n_s, n_t, area, points, clearance, areas)
+    return points[:n_points], clearance[:n_points], areas[:n_points]
 
 
 @kernel
@@ -154,32 +153,20 @@ def _add_joint_into(
 def find_contacts(
     bodies, elastic, polyhedra, placed, rotations, margin, spacing, layers, admittance, memory, n_stoppers
 ):
-    """Contacts of all pairs of bodies, with room for the stoppers after them, and their anchors.
+    """Contacts of all pairs of deformable bodies, with room for the stoppers after them, and their anchors.
 
     Parameters
     ----------
-    bodies, elastic : Bodies, Elastic
-    polyhedra, placed : Polyhedra, Placed
-        Without deformation.
-    rotations : float64 array, shape (n_bodies, 3, 3)
-        Body to world.
-    margin : float
-        Points with a larger gap are left out [m].
+    bodies, polyhedra, placed, rotations, margin, layers, admittance, memory, n_stoppers
+        Those of `detect_contacts`; the polyhedra are without deformation.
+    elastic : Elastic
     spacing : float
         Of the points of a joint [m].
-    layers : float64 array, shape (n_bodies, n_bodies)
-        Compliance of soft layers in the joints [m3/N].
-    admittance : float
-        Impulse over stiffness and velocity, ``theta h^2``, of an implicit spring [s2].
-    memory : int64 array, shape (n_bodies, n_bodies)
-        Reference faces, as in `detect_pair_into`.
-    n_stoppers : int
 
     Returns
     -------
-    contacts : Contacts
+    contacts, anchors : Contacts, Anchors
         Geometry, undeformed gap and compliance filled in; the rows of the stoppers are still empty.
-    anchors : Anchors
     """
     pairs = find_pairs(placed.low, placed.high, bodies.driven, margin)
     contacts = empty_contacts(64)
@@ -188,13 +175,13 @@ def find_contacts(
     count = 0
     for pair in range(pairs.shape[0]):
         a, b = pairs[pair, 0], pairs[pair, 1]
-        found = detect_pair_into(
+        n_corners = detect_pair_into(
             polyhedra, placed, a, b, _WIDE * margin, 0.0, 0.0, memory, normal, corners, gaps, unused
         )
-        if found == 0:
+        if n_corners == 0:
             memory[a, b] = -1
             continue
-        joint, clearance, areas = joint_points(corners, gaps, found, spacing)
+        joint, clearance, areas = joint_points(corners, gaps, n_corners, spacing)
         contacts, points, weights = _with_capacity(contacts, points, weights, count + clearance.size)
         count = _add_joint_into(
             elastic, placed, rotations, a, b, normal, joint, clearance, areas, margin,

@@ -2,23 +2,55 @@
 
 import dataclasses
 import functools
+from typing import NamedTuple
 
 import numpy as np
 
 from blockshake.dynamics.system import assemble_bodies
 from blockshake.solvers.checkpoint import Checkpoint, run_key
 from blockshake.solvers.nscd.contact.contacts import Contacts, empty_contacts
-from blockshake.solvers.nscd.joints import Joints, no_joints
-from blockshake.solvers.nscd.outcome import rows_of, trajectory_of
-from blockshake.solvers.nscd.progress import Progress, start_progress
-from blockshake.solvers.nscd.scene import order_of_bodies, reordered
-from blockshake.solvers.nscd_deformable.elastic_bodies import Deformation
+from blockshake.solvers.nscd.driver import rows_of, trajectory_of
+from blockshake.solvers.nscd.parameters import NscdParameters, StepParameters
+from blockshake.solvers.nscd.progress import Joints, Progress, no_joints, start_progress
+from blockshake.solvers.nscd.scene import ContactScene, assemble_scene, order_of_bodies, reordered
+from blockshake.solvers.nscd_deformable.elastic_bodies import Deformation, Elastic, pack_elastic
+from blockshake.solvers.nscd_deformable.elastic_step import ElasticResponse, step_response
 from blockshake.solvers.nscd_deformable.loop import integrate
-from blockshake.solvers.nscd_deformable.model import assemble_model
 from blockshake.solvers.nscd_deformable.solve.newton import Factor, no_factor
 from blockshake.solvers.nscd_deformable.start import settled_state
 from blockshake.solvers.pieces import run_in_pieces
 from blockshake.solvers.record import RunRecord
+
+
+class DeformableScene(NamedTuple):
+    """Bodies, what acts on them, and how they deform.
+
+    ``spacing`` [m]: of the points of a joint. ``whole``, ``part``: over a whole step, and over a part of one in which
+    bodies meet.
+    """
+
+    scene: ContactScene
+    elastic: Elastic
+    spacing: float
+    whole: ElasticResponse
+    part: ElasticResponse
+
+
+def assemble_model(structure, bodies, stoppers, motion, parameters, time_step, order, viscous):
+    """Model of a structure under a motion; arguments as of `assemble_scene` and `simulate_deformable`."""
+    rigid = NscdParameters(**parameters.model_dump(include=set(StepParameters.model_fields)))
+    elastic = pack_elastic(structure, order, parameters, viscous)
+    whole, part = (
+        step_response(elastic, time_step / parts, parameters.elastic_theta)
+        for parts in (1, parameters.impact_parts)
+    )
+    return DeformableScene(
+        scene=assemble_scene(structure, bodies, stoppers, motion, rigid, time_step, order),
+        elastic=elastic,
+        spacing=parameters.contact_spacing,
+        whole=whole,
+        part=part,
+    )
 
 
 def simulate_deformable(

@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.errors import InputError
 from blockshake.jit import borrowing_kernel, inline_kernel
-from blockshake.solvers.nscd_deformable.block.shapes import elastic_shapes
+from blockshake.solvers.nscd_deformable.shapes import elastic_shapes
 
 # What fits into 2 GiB: constraint shapes of a mesh, and all modes of one
 _MOST_NODES, _MOST_NODES_OF_FULL_MESH = 20_000, 3_000
@@ -70,30 +70,9 @@ def pack_elastic(structure, order, parameters, viscous):
     the box's volume, a chamfer being a small part of it.
     """
     check_boxes(structure, parameters)
-    file = structure.file
-    squared, damping, shape, lines, tables, n_points = [], [], [], [], [], []
-    for body in order:
-        one = file.bodies[body]
-        if one.driven:
-            squared.append(np.empty(0))
-            damping.append(np.empty(0))
-            shape.append(np.empty(0))
-            lines += [np.empty(0)] * 3
-            tables.append(np.empty(0, np.int64))
-            n_points.append(0)
-            continue
-        box, material = file.shapes[one.shape].box, file.materials[one.material]
-        found = elastic_shapes(
-            box, material.poisson_ratio, parameters.mesh_size, parameters.contact_spacing, parameters.modes
-        )
-        density = structure.mass[body] / np.prod(box)
-        squared.append(found.squared_frequency * material.youngs_modulus / density)
-        ratio = material.viscous_modulus / material.youngs_modulus if viscous else 0.0
-        damping.append(ratio * squared[-1])
-        shape.append((found.at_lattice() / np.sqrt(density)).ravel())
-        lines += [part - offset for part, offset in zip(found.lattice.lines, one.mass_offset, strict=True)]
-        tables.append(found.lattice.table.ravel())
-        n_points.append(len(found.lattice.nodes))
+    packed = [_packed_body(structure, body, parameters, viscous) for body in order]
+    squared, damping, shape, lines, tables, n_points = zip(*packed, strict=True)
+    lines = [part for three in lines for part in three]
     return Elastic(
         first_shape=_first(squared),
         first_point=np.concatenate([[0], np.cumsum(n_points)]).astype(np.int64),
@@ -106,6 +85,24 @@ def pack_elastic(structure, order, parameters, viscous):
         lines=np.concatenate(lines),
         table=np.concatenate(tables),
     )
+
+
+def _packed_body(structure, body, parameters, viscous):
+    """Squared frequencies, damping, shapes, lines and table of one body, as in `Elastic`; number of its points."""
+    entry = structure.file.bodies[body]
+    if entry.driven:
+        none = np.empty(0)
+        return none, none, none, [none] * 3, np.empty(0, np.int64), 0
+    box, material = structure.file.shapes[entry.shape].box, structure.file.materials[entry.material]
+    shapes = elastic_shapes(
+        box, material.poisson_ratio, parameters.mesh_size, parameters.contact_spacing, parameters.modes
+    )
+    lattice, density = shapes.lattice, structure.mass[body] / np.prod(box)
+    squared = shapes.squared_frequency * material.youngs_modulus / density
+    ratio = material.viscous_modulus / material.youngs_modulus if viscous else 0.0
+    shape = (shapes.at_lattice() / np.sqrt(density)).ravel()
+    lines = [part - offset for part, offset in zip(lattice.lines, entry.mass_offset, strict=True)]
+    return squared, ratio * squared, shape, lines, lattice.table.ravel(), len(lattice.nodes)
 
 
 def check_boxes(structure, parameters):
@@ -187,11 +184,11 @@ def anchor_into(elastic, body, x, outward, points, weights):
     for axis in range(1, 3):
         if abs(outward[axis]) > abs(outward[across]) + 1e-9:
             across = axis
-    one, other = (across + 1) % 3, (across + 2) % 3
+    along, other = (across + 1) % 3, (across + 2) % 3
     first = elastic.first_line
     last = first[3 * body + across + 1] - first[3 * body + across] - 1 if outward[across] > 0.0 else 0
     n_y, n_z = first[3 * body + 2] - first[3 * body + 1], first[3 * body + 3] - first[3 * body + 2]
-    u, share_u = _cell(elastic, body, one, x[one])
+    u, share_u = _cell(elastic, body, along, x[along])
     v, share_v = _cell(elastic, body, other, x[other])
     for corner in range(4):
         step_u, step_v = corner & 1, corner >> 1

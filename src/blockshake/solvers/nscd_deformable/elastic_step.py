@@ -43,8 +43,8 @@ def step_response(elastic, dt, theta):
     for body in range(n_bodies):
         if first_entry[body + 1] > first_entry[body]:
             shapes = shapes_of(elastic, body)
-            own = admittance[elastic.first_shape[body] : elastic.first_shape[body + 1]]
-            answer = np.dot(shapes * own, np.ascontiguousarray(shapes.T))
+            admittances = admittance[elastic.first_shape[body] : elastic.first_shape[body + 1]]
+            answer = np.dot(shapes * admittances, np.ascontiguousarray(shapes.T))
             compliance[first_entry[body] : first_entry[body + 1]] = answer.ravel()
     return ElasticResponse(dt, theta, admittance, first_entry, compliance)
 
@@ -76,23 +76,16 @@ def predict_elastic_into(elastic, response, deformation, amplitude, rate):
 def points_into(elastic, coordinates, anchors, points):
     """Displacements, or velocities, of the lattice's points that carry contact, body frames.
 
-    Parameters
-    ----------
-    elastic : Elastic
-    coordinates : float64 array, shape (n_shapes,)
-        Amplitudes or rates.
-    anchors : Anchors
-        Says which points.
-    points : float64 array, shape (n_points, 3)
-        Rows of these points are overwritten.
+    ``coordinates`` (n_shapes,): amplitudes or rates. Of ``points`` (n_points, 3) the rows that ``anchors`` (Anchors)
+    names are overwritten.
     """
     for body in range(elastic.first_shape.size - 1):
         shapes, first = shapes_of(elastic, body), elastic.first_point[body]
-        own = coordinates[elastic.first_shape[body] : elastic.first_shape[body + 1]]
+        values = coordinates[elastic.first_shape[body] : elastic.first_shape[body + 1]]
         for entry in range(anchors.first[body], anchors.first[body + 1]):
             point = anchors.active[entry]
             for axis in range(3):
-                points[point, axis] = _dot(shapes[3 * (point - first) + axis], own)
+                points[point, axis] = _dot(shapes[3 * (point - first) + axis], values)
 
 
 @borrowing_kernel
@@ -144,13 +137,11 @@ def _move_elastic_into(elastic, response, anchors, forces, rate, deformation, pu
 
 @kernel
 def move_elastic_into(elastic, response, anchors, forces, rate, deformation):
-    """Elastic coordinates at the end of the step; the energy that they lost in it is returned.
+    """Elastic coordinates at the end of the step; the energy that viscosity and the scheme took is returned [J].
 
     Parameters
     ----------
-    elastic : Elastic
-    response : ElasticResponse
-    anchors : Anchors
+    elastic, response, anchors : Elastic, ElasticResponse, Anchors
     forces : float64 array, shape (n_points, 3)
         Impulses on the points, body frames [N s]; rows of those that carry contact count.
     rate : float64 array, shape (n_shapes,)
@@ -158,16 +149,11 @@ def move_elastic_into(elastic, response, anchors, forces, rate, deformation):
     deformation : Deformation
         Changed in place.
 
-    Returns
-    -------
-    float
-        Energy that viscosity and the scheme took, neither below zero [J].
-
     Notes
     -----
     With rates and amplitudes weighted by theta the work of an impulse is ``impulse rate_theta``, the viscosity takes
     ``h damping rate_theta^2`` and the scheme ``(theta - 1/2) (change of rate^2 + omega^2 change of amplitude^2)``:
-    these add up to the change of the elastic and kinetic energy exactly.
+    these add up to the change of the elastic and kinetic energy exactly. Neither loss is below zero.
     """
     return _move_elastic_into(elastic, response, anchors, forces, rate, deformation, np.empty(rate.size))
 

@@ -8,50 +8,41 @@ from blockshake.jit import kernel
 from blockshake.solvers.external_forces import external_wrenches_into
 from blockshake.solvers.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
 from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit, stopper_energy
-from blockshake.solvers.nscd.contact.contacts import contact_margin
-from blockshake.solvers.nscd.contact.law_shift import bodies_meet
+from blockshake.solvers.nscd.contact.contacts import contact_margin, place_stoppers_into
+from blockshake.solvers.nscd.contact.law import bodies_meet, friction_into, law_shift_into
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed, place_into
-from blockshake.solvers.nscd.joints import press_anew, slip_into, with_pressed
-from blockshake.solvers.nscd.loop import find_diverged, least_impulse, record_until_into
-from blockshake.solvers.nscd.progress import LAST_STEP
+from blockshake.solvers.nscd.contact.warm_start import warm_start_into
+from blockshake.solvers.nscd.loop import ROUNDING, least_impulse, record_until_into
+from blockshake.solvers.nscd.progress import LAST_STEP, press_anew, slip_into, with_pressed
 from blockshake.solvers.nscd.recording import record_into
 from blockshake.solvers.nscd.step import empty_step, move_into, predict_into
-from blockshake.solvers.nscd_deformable.contact_points import find_contacts
-from blockshake.solvers.nscd_deformable.contact_step import solve_step
-from blockshake.solvers.nscd_deformable.elastic_step import elastic_energy, move_elastic_into, points_into
-from blockshake.solvers.nscd_deformable.solve.operator import surface_velocities_into
-from blockshake.solvers.record import with_room
-from blockshake.solvers.status import COLLAPSED, COMPLETED, DIVERGED, NEXT_RECORD, PAUSED, STEP
-
-_ROUNDING = 1e-9  # of a step, when a record time meets the end of a step
+from blockshake.solvers.nscd_deformable.contact_points import deform_gaps_into, find_contacts, tangents_into
+from blockshake.solvers.nscd_deformable.elastic_step import (
+    elastic_energy,
+    move_elastic_into,
+    points_into,
+    predict_elastic_into,
+)
+from blockshake.solvers.nscd_deformable.solve.operator import Problem, empty_motion, surface_velocities_into
+from blockshake.solvers.nscd_deformable.solve.solver import solve_contacts_into
+from blockshake.solvers.record import (
+    COLLAPSED,
+    COMPLETED,
+    DIVERGED,
+    NEXT_RECORD,
+    PAUSED,
+    STEP,
+    find_diverged,
+    with_room,
+)
 
 
 @kernel
 def integrate(model, times, pause, progress, deformation, contacts, joints, factor, record):
-    """Integrate from where ``progress`` stands to the last record time, to a pause, to collapse or divergence.
+    """Integrate deformable bodies, as `blockshake.solvers.nscd.loop.integrate` does rigid ones.
 
-    Parameters
-    ----------
-    model : DeformableScene
-    times : float64 array, shape (n_times,)
-        When to record, increasing from 0 [s].
-    pause : int
-        Number of steps made after which to pause.
-    progress, deformation : Progress, Deformation
-        Changed in place.
-    contacts : Contacts
-        Of the step before, to start the next one from.
-    joints : Joints
-    factor : Factor
-    record : RunRecord
-        Filled from the next record on.
-
-    Returns
-    -------
-    code, culprit : int
-        Of `blockshake.solvers.status`; body that collapsed or ran away, else -1.
-    contacts, joints, factor, record : Contacts, Joints, Factor, RunRecord
-        To go on with.
+    ``model`` (DeformableScene) takes the place of the scene. ``deformation`` (Deformation) is changed in place;
+    ``factor`` (Factor) is kept from step to step, and returned with the contacts, joints and record to go on with.
     """
     scene, elastic, bodies = model.scene, model.elastic, model.scene.bodies
     settings, state, clock = scene.settings, progress.state, progress.clock
@@ -62,7 +53,7 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
     rate = np.empty(deformation.rate.size)
     if clock[STEP] == 0:
         _start(model, ground, step, placed, deformation, progress)
-    n_steps = int(np.ceil(times[times.size - 1] / dt - _ROUNDING))
+    n_steps = int(np.ceil(times[times.size - 1] / dt - ROUNDING))
     if n_steps == 0:
         record_into(bodies, state, state, progress.energy, progress.energy, 0.0, clock[NEXT_RECORD], record)
         clock[NEXT_RECORD] = 1
@@ -71,27 +62,29 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
             return PAUSED, -1, contacts, joints, factor, record
         iterations, residual, part, parts, response = 0, 0.0, 0, 1, model.whole
         while part < parts:
-            h, place = dt / parts, clock[STEP] * parts + part
-            move_ground_by_secant_into(ground, (place + 1.0 - theta) * h, (place + 2.0 - theta) * h, h)
+            h, number = dt / parts, clock[STEP] * parts + part
+            move_ground_by_secant_into(ground, (number + 1.0 - theta) * h, (number + 2.0 - theta) * h, h)
             if scene.forces.body.size > 0:
-                external_wrenches_into(bodies, scene.forces, state, (place + 0.5) * h, 0.5 * h, step.external)
+                external_wrenches_into(
+                    bodies, scene.forces, state, (number + 0.5) * h, 0.5 * h, step.external
+                )
                 step.external[:] *= h
             predict_into(bodies, state, ground, h, theta, step)
 
             margin = contact_margin(step.v_start, scene.polyhedra.radius, bodies.gravity, h)
             floor, share = least_impulse(bodies, gravity, step.v, h), h / progress.audit[LAST_STEP]
-            found, anchors, motion, tried, left, factor = solve_step(
+            renewed, anchors, motion, tried, error, factor = solve_step(
                 model, response, theta, settings.restitution, margin, joints, progress.face, contacts, share,
                 floor, settings.tolerance, deformation, rate, step, placed, factor,
             )  # fmt: skip
-            n_contacts = found.gap.size - scene.stoppers.body.size
+            n_contacts = renewed.gap.size - scene.stoppers.body.size
             iterations += tried
-            if parts < settings.impact_parts and bodies_meet(found, n_contacts, step.v_start, gravity * dt):
+            if parts < settings.impact_parts and bodies_meet(renewed, n_contacts, step.v_start, gravity * dt):
                 parts, response = settings.impact_parts, model.part
                 continue
-            contacts, residual = found, max(residual, left)
+            contacts, residual = renewed, max(residual, error)
 
-            move_ground_into(ground, (place + 1) * h)
+            move_ground_into(ground, (number + 1) * h)
             move_into(bodies, ground, h, theta, contacts, step, state)
             mean = (1.0 - response.theta) * deformation.rate
             lost = move_elastic_into(elastic, response, anchors, motion.forces, rate, deformation)
@@ -116,7 +109,7 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
                 clock[STEP] += 1
                 return DIVERGED, runaway, contacts, joints, factor, record
             record_until_into(
-                bodies, ground, step.before, energy_before, contacts, n_contacts, joints, place, h, times, progress,
+                bodies, ground, step.before, energy_before, contacts, n_contacts, joints, number, h, times, progress,
                 record,
             )  # fmt: skip
         count_into(iterations, residual, settings.tolerance, parts, clock, progress.audit)
@@ -143,3 +136,65 @@ def _start(model, ground, step, placed, deformation, progress):
     )  # fmt: skip
     _, strain = elastic_energy(model.elastic, deformation)
     start_audit(scene.bodies, at_start, dt, theta, strain, progress)
+
+
+@kernel
+def solve_step(
+    model, response, theta, restitution, margin, joints, memory, contacts_before, share, floor, tolerance,
+    deformation, rate, step, placed, factor,
+):  # fmt: skip
+    """Contacts of a step whose free motion is predicted, with the impulses that satisfy their law.
+
+    Parameters
+    ----------
+    model, response : DeformableScene, ElasticResponse
+        The response is that over this step.
+    theta, restitution : float
+        Of the rigid motion; Newton's.
+    margin : float
+        Points with a larger gap are left out [m].
+    joints, memory : Joints, int64 array, shape (n_bodies, n_bodies)
+        The memory holds the reference faces of the pairs.
+    contacts_before, share : Contacts, float
+        Of the step before; length of this step over that of the one before [1].
+    floor, tolerance : float
+        Impulse below which impulses count as that [N s]; relative residual that ends the search [1].
+    deformation, rate : Deformation, float64 array, shape (n_shapes,)
+        At the start of the step; overwritten with the rates at its end without contact.
+    step, placed : Step, Placed
+        After `predict_into`, its ``v`` is overwritten with the velocities at the end of the step; work space.
+    factor : Factor
+        Kept from an earlier step.
+
+    Returns
+    -------
+    contacts, anchors, motion, iterations, residual, factor
+        Contacts, Anchors and ContactMotion of the answer; the rest is that of `solve_contacts_into`.
+    """
+    scene, elastic = model.scene, model.elastic
+    bodies, dt = scene.bodies, response.dt
+    place_into(scene.polyhedra, step.detection.position, step.detection.orientation, placed)
+    contacts, anchors = find_contacts(
+        bodies, elastic, scene.polyhedra, placed, step.rotations, margin, model.spacing, scene.layers,
+        theta * dt * dt, memory, scene.stoppers.body.size,
+    )  # fmt: skip
+    place_stoppers_into(bodies, scene.stoppers, scene.watch.base, step, dt, theta, contacts)
+    tangents_into(step.rotations, contacts)
+    motion = empty_motion(bodies.mass.size, elastic.first_point[bodies.mass.size], contacts.gap.size)
+    amplitude = np.empty(rate.size)
+    predict_elastic_into(elastic, response, deformation, amplitude, rate)
+    points_into(elastic, amplitude, anchors, motion.points)
+    deform_gaps_into(anchors, step.rotations, motion.points, contacts)
+    point_free = np.zeros(motion.points.shape)
+    points_into(elastic, rate, anchors, point_free)
+    friction_into(scene.friction, joints, step.rotations, contacts)
+    law_shift_into(step, dt, theta, restitution, contacts)
+    warm_start_into(contacts_before, scene.polyhedra.radius, share, contacts)
+    problem = Problem(
+        bodies, elastic, response, anchors, step.inverse_inertia, step.rotations, step.v.copy(), point_free
+    )
+    iterations, residual, factor = solve_contacts_into(
+        problem, contacts, floor, tolerance, scene.settings.max_iterations, motion, factor
+    )
+    step.v[:] = motion.v
+    return contacts, anchors, motion, iterations, residual, factor

@@ -7,12 +7,12 @@ from blockshake.jit import kernel
 from blockshake.solvers.ground import ground_at_start
 from blockshake.solvers.nscd.contact.contacts import empty_contacts
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed
-from blockshake.solvers.nscd.joints import no_joints
+from blockshake.solvers.nscd.progress import no_joints
 from blockshake.solvers.nscd.start import LONG_STEP, SETTLING_TOLERANCE, move_from_rest_into, settle_stacks
 from blockshake.solvers.nscd.step import empty_step, predict_into
-from blockshake.solvers.nscd_deformable.contact_step import solve_step
 from blockshake.solvers.nscd_deformable.elastic_bodies import undeformed
 from blockshake.solvers.nscd_deformable.elastic_step import move_elastic_into, step_response
+from blockshake.solvers.nscd_deformable.loop import solve_step
 from blockshake.solvers.nscd_deformable.solve.newton import no_factor
 
 _MOST_STEPS = 200
@@ -20,25 +20,18 @@ _AT_REST = 1e-12  # m, of a step's motion: near the rounding of a position
 
 
 def settled_state(model, touching, state):
-    """State and deformation of stacks that rest under gravity.
+    """State and deformation of stacks that rest under gravity, by implicit Euler steps as in `settle_stacks`.
 
     Parameters
     ----------
     model : DeformableScene
         The driven bodies have the pitch of the motion's start.
-    touching, state : bool array, State
-        As of `settle_stacks`.
+    touching, state : bool array, shape (n_bodies, n_bodies), State
 
     Returns
     -------
-    state : State
-        Poses as given where a body of the stack would move by more than 0.1 mm.
-    deformation : Deformation
-        At rest; none where poses are as given.
-
-    Notes
-    -----
-    Implicit Euler steps, each from rest and far longer than any period, as for soft joints between rigid bodies.
+    state, deformation : State, Deformation
+        Poses as given and no deformation where a body of the stack would move by more than 0.1 mm.
     """
     # without viscosity: at rest it has no say, and would only make the way there longer
     response = step_response(

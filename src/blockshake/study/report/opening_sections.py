@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.dynamics.provenance import provenance
+from blockshake.dynamics.load_motion import provenance
 from blockshake.pages.blocks import Figure, Heading, Items, Section, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.wording import (

@@ -3,7 +3,7 @@ import pytest
 import trimesh
 
 from blockshake.errors import InputError
-from blockshake.solvers.near_boxes import find_pairs
+from blockshake.geometry.overlap import find_pairs
 from blockshake.solvers.nscd.contact.detection import detect_pair_into
 from blockshake.solvers.nscd.contact.overlap_polygon import choose_four_into, shrink_polygon_into
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed, pack_polyhedra, place_into

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from blockshake.solvers.nscd.solve.local_solve import contact_residual, solve_contact
+from blockshake.solvers.nscd.solve.gauss_seidel import contact_residual, solve_contact
 
 # the local answer is exact but for rounding, which the condition of the random operators (below 1e4) enlarges
 ROUNDING = 1e-10

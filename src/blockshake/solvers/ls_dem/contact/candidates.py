@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.geometry.overlap import find_pairs
 from blockshake.geometry.rotations import rotation_matrix_into
 from blockshake.jit import borrowing_kernel, kernel
-from blockshake.solvers.ls_dem.contact.facing_flats import N_KEY, facing_key
 from blockshake.solvers.ls_dem.contact.joint_areas import joint_areas_into
 from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
 from blockshake.solvers.ls_dem.contact.packets import (
@@ -19,10 +19,9 @@ from blockshake.solvers.ls_dem.contact.packets import (
     POINT,
     put_triple,
 )
-from blockshake.solvers.ls_dem.contact.relative_pose import relative_pose_into
-from blockshake.solvers.ls_dem.joints import add_joints, find_joint
+from blockshake.solvers.ls_dem.contact.relative_pose import N_KEY, facing_key, relative_pose_into
+from blockshake.solvers.ls_dem.progress import add_joints, find_joint
 from blockshake.solvers.ls_dem.surfaces import level_set
-from blockshake.solvers.near_boxes import find_pairs
 
 _FRESH = -2  # no key begins so
 
@@ -112,15 +111,15 @@ def _boxes(surfaces, position, orientation):
 
 
 @kernel
-def _near_nodes(surfaces, pair, R, d, side, skin, found, count):
+def _near_nodes(surfaces, pair, R, d, side, skin, nodes, count):
     """Append the nodes of one side of a pair within ``skin`` of the other body; list and count are returned."""
     owner, other = pair[side], pair[1 - side]
     shape, other_shape = surfaces.shape[owner], surfaces.shape[other]
     most = surfaces.first_node[shape + 1] - surfaces.first_node[shape]
-    if count + most > found.size:
+    if count + most > nodes.size:
         longer = np.empty(2 * (count + most), np.int64)
-        longer[:count] = found[:count]
-        found = longer
+        longer[:count] = nodes[:count]
+        nodes = longer
     for node in range(surfaces.first_node[shape], surfaces.first_node[shape + 1]):
         p, e = surfaces.points[node], surfaces.offset[owner]
         px, py, pz = p[0] - e[0], p[1] - e[1], p[2] - e[2]
@@ -128,9 +127,9 @@ def _near_nodes(surfaces, pair, R, d, side, skin, found, count):
         y = R[side, 1, 0] * px + R[side, 1, 1] * py + R[side, 1, 2] * pz + d[side, 1]
         z = R[side, 2, 0] * px + R[side, 2, 1] * py + R[side, 2, 2] * pz + d[side, 2]
         if level_set(surfaces, other_shape, x, y, z) < surfaces.steepest[other_shape] * skin:
-            found[count] = node
+            nodes[count] = node
             count += 1
-    return found, count
+    return nodes, count
 
 
 @kernel
@@ -153,24 +152,18 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
 
     Parameters
     ----------
-    surfaces : Surfaces
-    driven : bool array, shape (n_bodies,)
-    poses : Poses
+    surfaces, driven : Surfaces, bool array, shape (n_bodies,)
+    poses, orientation : Poses, float64 array, shape (n_bodies, 4)
         Poses now and a step before, from where the nodes' next motion counts.
-    orientation : float64 array, shape (n_bodies, 4)
     skin : float
         [m]
-    old : Candidates
-        Lists so far.
-    joints : NearPairs
-        Joints so far.
+    old, joints : Candidates, NearPairs
+        Lists and joints so far.
 
     Returns
     -------
-    candidates : Candidates
-        Sorted by pair, side and node.
-    joints : NearPairs
-        With the pairs that have come near for the first time.
+    candidates, joints : Candidates, NearPairs
+        Sorted by pair, side and node; with the pairs that have come near for the first time.
     """
     position, rotation = poses.position, poses.rotation
     low, high = _boxes(surfaces, position, orientation)
@@ -180,7 +173,7 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
     shift = joints.shift[joint]
     n_sides = 2 * pairs.shape[0]
     R, d = np.empty((2, 3, 3)), np.empty((2, 3))
-    found, count = np.empty(1024, np.int64), np.zeros(n_sides + 1, np.int64)
+    nodes, count = np.empty(1024, np.int64), np.zeros(n_sides + 1, np.int64)
     share = np.empty(n_sides)
     for side in range(n_sides):
         pair, of = pairs[side // 2], side % 2
@@ -188,7 +181,7 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
         share[side] = _share(surfaces, driven, pair[of], pair[1 - of])
         if share[side] > 0.0:
             relative_pose_into(position, rotation, surfaces.offset, pair, shift[side // 2], of, R, d)
-            found, count[side + 1] = _near_nodes(surfaces, pair, R, d, of, skin, found, count[side])
+            nodes, count[side + 1] = _near_nodes(surfaces, pair, R, d, of, skin, nodes, count[side])
     first = np.zeros(n_sides + 1, np.int64)
     for side in range(n_sides):
         first[side + 1] = first[side] + (count[side + 1] - count[side] + LANES - 1) // LANES
@@ -199,11 +192,11 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
         pair, of = pairs[side // 2], side % 2
         e, n_nodes = surfaces.offset[pair[of]], count[side + 1] - count[side]
         for rank in range((first[side + 1] - first[side]) * LANES):
-            place = first[side] * LANES + rank
-            packet, lane = place // LANES, place % LANES
+            slot = first[side] * LANES + rank
+            packet, lane = slot // LANES, slot % LANES
             if rank < n_nodes:
-                node[place] = found[count[side] + rank]
-                p = surfaces.points[node[place]]
+                node[slot] = nodes[count[side] + rank]
+                p = surfaces.points[node[slot]]
                 put_triple(packets, packet, POINT, lane, p[0] - e[0], p[1] - e[1], p[2] - e[2])
             else:
                 packets[packet, POINT + lane] = FAR_AWAY
@@ -233,15 +226,7 @@ def _most_packets(first):
 def locate_pair_into(candidates, surfaces, poses, pair, R, d):
     """Locate the nodes of both sides of a pair; the area in touch, the mean of what the two sides find [m2].
 
-    Parameters
-    ----------
-    candidates : Candidates
-        Places and ``located`` are overwritten.
-    surfaces : Surfaces
-    poses : Poses
-    pair : int
-    R, d : float64 arrays, shape (2, 3, 3) and (2, 3)
-        Overwritten by `relative_pose_into`.
+    The places and ``located`` of the candidates, ``R`` (2, 3, 3) and ``d`` (2, 3) are overwritten.
     """
     pairs, first = candidates.pairs, candidates.first
     for side in range(2):
@@ -316,12 +301,12 @@ def _carry_over_into(old, earlier, new):
         if earlier[pair] < 0:
             continue
         for side in range(2):
-            place = old.first[2 * earlier[pair] + side] * LANES
+            slot = old.first[2 * earlier[pair] + side] * LANES
             end = old.first[2 * earlier[pair] + side + 1] * LANES
             for here in range(new.first[2 * pair + side] * LANES, new.first[2 * pair + side + 1] * LANES):
-                while place < end and old.node[place] != -1 and old.node[place] < new.node[here]:
-                    place += 1
-                if place < end and new.node[here] != -1 and old.node[place] == new.node[here]:
-                    source, target = old.packets[place // LANES], new.packets[here // LANES]
+                while slot < end and old.node[slot] != -1 and old.node[slot] < new.node[here]:
+                    slot += 1
+                if slot < end and new.node[here] != -1 and old.node[slot] == new.node[here]:
+                    source, target = old.packets[slot // LANES], new.packets[here // LANES]
                     for row in range(CLOSED, PACKET, LANES):
-                        target[row + here % LANES] = source[row + place % LANES]
+                        target[row + here % LANES] = source[row + slot % LANES]

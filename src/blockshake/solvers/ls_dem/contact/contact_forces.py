@@ -5,21 +5,19 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.friction import friction_asymmetry, friction_coefficient
+from blockshake.geometry.vectors import cross, difference, matrix_product
 from blockshake.jit import borrowing_kernel, inline_kernel, kernel
 from blockshake.solvers.ls_dem.contact.candidates import locate_pair_into
-from blockshake.solvers.ls_dem.contact.contact_law import Law
+from blockshake.solvers.ls_dem.contact.contact_law import Law, side_forces_into
 from blockshake.solvers.ls_dem.contact.packets import LANES, N_SUMS, SUM_DAMPED, SUM_HELD, SUM_SLID
-from blockshake.solvers.ls_dem.contact.side_forces import side_forces_into
 from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
-from blockshake.solvers.ls_dem.joints import NearPairs
-from blockshake.solvers.vectors import cross, difference, matrix_product
+from blockshake.solvers.ls_dem.progress import NearPairs
 
 # Entries of ``Loads.energy`` [J]: what springs hold, what friction and dashpots turned into heat in the step, and the
 # work of external forces in it
 SPRING_ENERGY, STEP_FRICTION_HEAT, STEP_DASHPOT_HEAT, STEP_EXTERNAL_WORK, N_ENERGIES = 0, 1, 2, 3, 4
-_RATE_TIME = (
-    1e-3  # s, of the slip rate's delay; the time step of the nonsmooth solver, which has one of its own
-)
+# s, of the slip rate's delay; the time step of the nonsmooth solver, which has one of its own
+_RATE_TIME = 1e-3
 
 
 class Loads(NamedTuple):
@@ -62,19 +60,9 @@ def clear_loads(bodies, loads):
 
 @borrowing_kernel
 def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
-    """Contact forces between all near pairs, added to ``loads``.
+    """Contact forces between all near pairs, added to ``loads``, with force and slip of the joints.
 
-    Parameters
-    ----------
-    candidates : Candidates
-        Near nodes; their places and shear springs are updated.
-    surfaces : Surfaces
-    interfaces : Interfaces
-    poses : Poses
-    dt : float
-        Time since the step before, zero at the first [s].
-    loads : Loads
-        Force, moment and energy are added to, and force and slip of the joints.
+    Places and shear springs of the candidates are updated. ``dt``: time since the step before, zero at the first [s].
 
     Notes
     -----

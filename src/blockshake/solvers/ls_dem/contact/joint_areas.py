@@ -4,8 +4,8 @@ import numpy as np
 
 from blockshake.geometry.level_set import hollow_depth
 from blockshake.jit import kernel
-from blockshake.solvers.ls_dem.contact.facing_flats import facing_of
 from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES
+from blockshake.solvers.ls_dem.contact.relative_pose import facing_of
 
 _ON_FACE = 1e-9  # m
 # A node counts where it stays inside the other's flat wherever the raster's place stands for, in steps of the raster.
@@ -18,16 +18,7 @@ _ORDERS = (6, 3, 1)  # terms of a polynomial of degree two, one and none
 
 @kernel
 def joint_areas_into(candidates, surfaces, pair, key):
-    """Areas and damping weights of the listed nodes of a pair.
-
-    Parameters
-    ----------
-    candidates : Candidates
-        Areas and damping weights of the pair's packets are overwritten.
-    surfaces : Surfaces
-    pair : int
-    key : int64 array, shape (4,)
-        From `facing_key`.
+    """Areas and damping weights of the listed nodes of a pair, whose key (4,) is that of `facing_key`; overwritten.
 
     Notes
     -----
@@ -154,14 +145,8 @@ def _solve_into(terms, weights, wanted, n_terms, factors):
 @kernel
 def _value(factors, x, y):
     """Polynomial at a place [1]."""
-    return (
-        factors[0]
-        + factors[1] * x
-        + factors[2] * y
-        + factors[3] * x * x
-        + factors[4] * x * y
-        + factors[5] * y * y
-    )
+    f = factors
+    return f[0] + f[1] * x + f[2] * y + f[3] * x * x + f[4] * x * y + f[5] * y * y
 
 
 @kernel
@@ -251,9 +236,9 @@ def _integral_into(polygon, count, centre, moments):
         o, p, q = polygon[0], polygon[index], polygon[index + 1]
         part = 0.5 * abs((p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]))
         area += part
-        for one, other in ((o, p), (p, q), (q, o)):
-            x = (0.5 * (one[0] + other[0]) - centre[0]) * centre[2]
-            y = (0.5 * (one[1] + other[1]) - centre[1]) * centre[2]
+        for start, end in ((o, p), (p, q), (q, o)):
+            x = (0.5 * (start[0] + end[0]) - centre[0]) * centre[2]
+            y = (0.5 * (start[1] + end[1]) - centre[1]) * centre[2]
             moments[0] += part / 3.0
             moments[1] += part / 3.0 * x
             moments[2] += part / 3.0 * y

@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.geometry.level_set import box_distance, hollow_box_distance
-from blockshake.geometry.trilinear import corner_values, interpolate, locate
+from blockshake.geometry.level_set_grid import corner_values, interpolate, locate
 from blockshake.jit import borrowing_kernel, inline_kernel, separate_kernel
 from blockshake.solvers.ls_dem.contact.packets import (
     AREA,
@@ -167,15 +167,8 @@ def _locate_in_planes_into(packets, located, first, last, start, first_plane, pl
                 nx, ny, nz = triple(located, row, NORMAL, lane)
                 phi, out = located[row, PHI + lane], px * x + py * y + pz * z - reach
                 farther = out > phi
-                put_triple(
-                    located,
-                    row,
-                    NORMAL,
-                    lane,
-                    px if farther else nx,
-                    py if farther else ny,
-                    pz if farther else nz,
-                )
+                nx, ny, nz = px if farther else nx, py if farther else ny, pz if farther else nz
+                put_triple(located, row, NORMAL, lane, nx, ny, nz)
                 located[row, PHI + lane] = out if farther else phi
         for lane in range(LANES):
             nx, ny, nz = triple(located, row, NORMAL, lane)

@@ -1,11 +1,19 @@
-"""Pose of one body in the frame of another, which contact at its nodes needs once a pair and step."""
+"""Pose of one body in the frame of another; of two boxes face to face, the flats that meet and where, on a fine raster.
+
+The raster makes the areas of a joint's nodes a function of where the bodies stand, not of how they came there, and so
+independent of when the lists of near nodes were made.
+"""
 
 from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.geometry.vectors import difference, dot, transposed_product
 from blockshake.jit import borrowing_kernel
-from blockshake.solvers.vectors import difference, dot, transposed_product
+
+_PARALLEL = 0.94  # cosine of 20 degrees: boxes turned further against each other meet at edges
+_RASTER = 1e-3  # steps of the raster, over the narrowest width of the two flats
+N_KEY = 4
 
 
 class Poses(NamedTuple):
@@ -49,3 +57,101 @@ def relative_pose_into(position, rotation, offset, pair, shift, side, R, d):
             )
         d[side, i] = away[i] + offset[other, i]
         d[side, i] += shift[i] if side == 0 else -dot(R[1, i], shift)
+
+
+class Facing(NamedTuple):
+    """How a box lies on another, by the flats that meet, in the plane of the first box's flat.
+
+    ``axis_a``, ``axis_b``: body axes along the flats' normals; ``sign_a``, ``sign_b`` 1.0 or -1.0: at which end.
+    The plane's axes are the two axes of the first body that follow ``axis_a``. ``u``, ``v``: middle of the second's
+    flat [m]; ``cosine``, ``sine``: direction of the body axis that follows ``axis_b``; ``step``: of the raster [m].
+    """
+
+    axis_a: int
+    sign_a: float
+    axis_b: int
+    sign_b: float
+    u: float
+    v: float
+    cosine: float
+    sine: float
+    step: float
+
+
+@borrowing_kernel
+def facing_key(surfaces, a, b, R, d):
+    """Position on the raster of body ``b`` as ``a`` sees it: four whole numbers, the first -1 where no flats meet.
+
+    ``R`` (2, 3, 3) and ``d`` (2, 3) are those of `relative_pose_into`, of which side 1 is read. The numbers are the
+    code of axes, ends and quarter turn; the middle along both axes of the plane, and the turn, in steps.
+
+    Notes
+    -----
+    Of the pairs of flats that are parallel within 20 degrees those meet that are farthest apart along their normal, or
+    overlap least.
+    """
+    shape_a, shape_b = surfaces.shape[a], surfaces.shape[b]
+    if surfaces.wide[shape_a] == 0.0 or surfaces.wide[shape_b] == 0.0:
+        return -1, 0, 0, 0
+    half_a, half_b, offset = surfaces.half[shape_a], surfaces.half[shape_b], surfaces.offset[b]
+    gap, axis_a, axis_b = -np.inf, -1, -1
+    for i in range(3):
+        for j in range(3):
+            if abs(R[1, j, i]) > _PARALLEL:
+                centre = d[1, j] - R[1, j, 0] * offset[0] - R[1, j, 1] * offset[1] - R[1, j, 2] * offset[2]
+                apart = abs(centre) - half_a[j] - half_b[i]
+                if apart > gap:
+                    gap, axis_a, axis_b = apart, j, i
+    if axis_a < 0:
+        return -1, 0, 0, 0
+    p, q, r = (axis_a + 1) % 3, (axis_a + 2) % 3, (axis_b + 1) % 3
+    height = R[1, axis_a, 0] * offset[0] + R[1, axis_a, 1] * offset[1] + R[1, axis_a, 2] * offset[2]
+    above = d[1, axis_a] - height > 0.0
+    # the end of b whose normal points at a
+    upper = (R[1, axis_a, axis_b] > 0.0) != above
+    reach = half_b[axis_b] if upper else -half_b[axis_b]
+    u, v = d[1, p] + R[1, p, axis_b] * reach, d[1, q] + R[1, q, axis_b] * reach
+    for k in range(3):
+        u -= R[1, p, k] * offset[k]
+        v -= R[1, q, k] * offset[k]
+    step, turn_step = _raster(surfaces, shape_a, shape_b, axis_a, axis_b)
+    cosine, sine = R[1, p, r], R[1, q, r]
+    along = abs(cosine) >= abs(sine)
+    quarter = (0 if cosine > 0.0 else 1) if along else (2 if sine > 0.0 else 3)
+    small = sine if along else cosine
+    ends = (1 if above else 0) + (2 if upper else 0)
+    code = ((axis_a * 3 + axis_b) * 4 + ends) * 4 + quarter
+    return (
+        code,
+        np.int64(np.floor(u / step + 0.5)),
+        np.int64(np.floor(v / step + 0.5)),
+        np.int64(np.floor(small / turn_step + 0.5)),
+    )
+
+
+@borrowing_kernel
+def facing_of(surfaces, a, b, key):
+    """The `Facing` of a key that is not -1."""
+    code = key[0]
+    quarter, ends, axes = code % 4, (code // 4) % 4, code // 16
+    axis_a, axis_b = axes // 3, axes % 3
+    step, turn_step = _raster(surfaces, surfaces.shape[a], surfaces.shape[b], axis_a, axis_b)
+    small = key[3] * turn_step
+    large = np.sqrt(max(1.0 - small * small, 0.0))
+    if quarter % 2 == 1:
+        large = -large
+    cosine, sine = (large, small) if quarter < 2 else (small, large)
+    return Facing(
+        axis_a, 1.0 if ends % 2 == 1 else -1.0, axis_b, 1.0 if ends >= 2 else -1.0,
+        key[1] * step, key[2] * step, cosine, sine, step,
+    )  # fmt: skip
+
+
+@borrowing_kernel
+def _raster(surfaces, shape_a, shape_b, axis_a, axis_b):
+    """Step of the raster [m], and that of the sine of the turn, which moves the smaller flat's corners as far."""
+    half_a, half_b = surfaces.half[shape_a], surfaces.half[shape_b]
+    p, q, r, s = (axis_a + 1) % 3, (axis_a + 2) % 3, (axis_b + 1) % 3, (axis_b + 2) % 3
+    step = 2.0 * _RASTER * min(min(half_a[p], half_a[q]), min(half_b[r], half_b[s]))
+    corner = min(half_a[p] * half_a[p] + half_a[q] * half_a[q], half_b[r] * half_b[r] + half_b[s] * half_b[s])
+    return step, step / np.sqrt(corner)

@@ -14,7 +14,7 @@ from blockshake.solvers.ls_dem.contact.candidates import (
 )
 from blockshake.solvers.ls_dem.contact.packets import LANES, NORMAL
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
-from blockshake.solvers.ls_dem.joints import no_joints
+from blockshake.solvers.ls_dem.progress import no_joints
 from blockshake.solvers.ls_dem.start.equilibrium import (
     displacements,
     downwards,
@@ -100,18 +100,10 @@ def _refuse_above(limit, structure, pairs, depth, where):
 
 @kernel
 def _part_into(candidates, surfaces, poses):
-    """Shift pairs of bodies apart until they just touch.
+    """Shift pairs of bodies apart until they just touch: the shifts of the candidates are overwritten.
 
-    Parameters
-    ----------
-    candidates : Candidates
-        Its shifts are overwritten.
-    surfaces, poses : Surfaces, Poses
-
-    Returns
-    -------
-    depth, rest : float64 arrays, shape (n_pairs,)
-        Of the deepest node of every pair, before and after [m]; zero where none is inside.
+    The depth of the deepest node of every pair before and after is returned, (n_pairs,) each, zero where none is
+    inside [m].
     """
     n_pairs = candidates.pairs.shape[0]
     depth, rest = np.zeros(n_pairs), np.zeros(n_pairs)

@@ -1,9 +1,9 @@
-"""Static equilibrium of stacks on their springs by Newton's method: relaxation alone takes ages in tall walls."""
+"""Static equilibrium of stacks on their springs by Newton's method, and the largest time step that these allow."""
 
 import numpy as np
-from scipy.sparse import coo_array, eye_array
+from scipy.sparse import block_diag, coo_array, eye_array
 from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import eigsh, splu
 
 from blockshake.geometry.rotations import rotate_into, rotation_matrices
 from blockshake.jit import kernel
@@ -17,7 +17,6 @@ from blockshake.solvers.ls_dem.contact.contact_forces import clear_loads, contac
 from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES, NORMAL, PHI, PLACE
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
-from blockshake.solvers.ls_dem.start.stability import assembled, stable_time_step
 
 _MOST_ITERATIONS = 20
 _AT_REST = 1e-9  # out-of-balance force over weight; the thump it leaves is as small
@@ -46,7 +45,7 @@ def approach_equilibrium(assembly, state, near, joints):
     at_rest : float64 array, shape (n_bodies,)
         Out-of-balance force below which a body is at rest: a billionth of its weight, or what the rounding of
         its position makes of its springs [N].
-    left : bool array, shape (n_bodies,)
+    leaving : bool array, shape (n_bodies,)
         Free bodies of stacks that would move farther even with their joints bonded: they have no equilibrium near.
     stable_step : float
         Largest stable time step of the joints in touch, see `stable_time_step` [s].
@@ -69,7 +68,7 @@ def approach_equilibrium(assembly, state, near, joints):
     loads = no_loads(n_bodies, joints)
     radius = surfaces.radius
     at_rest = _AT_REST * bodies.mass * np.linalg.norm(bodies.gravity) + 1e-300
-    moves, solved, left = ways_to_move(bodies), ~bodies.driven, np.zeros(n_bodies, dtype=bool)
+    moves, solved, leaving = ways_to_move(bodies), ~bodies.driven, np.zeros(n_bodies, dtype=bool)
     for iteration in range(_MOST_ITERATIONS):
         clear_loads(bodies, loads)
         contact_forces_into(candidates, surfaces, interfaces, poses, 0.0, loads)
@@ -100,9 +99,9 @@ def approach_equilibrium(assembly, state, near, joints):
         position[lost], orientation[lost] = state.position[lost], state.orientation[lost]
         solved &= ~lost
         if iteration == 0:
-            left = lost & ~bodies.driven
+            leaving = lost & ~bodies.driven
         rotation[:] = rotation_matrices(orientation)
-    return position, orientation, at_rest, left, stable_step
+    return position, orientation, at_rest, leaving, stable_step
 
 
 def _rounding(pairs, stiffness, position):
@@ -186,15 +185,15 @@ def joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
             R = poses.rotation[other]
             for packet in range(candidates.first[2 * pair + side], candidates.first[2 * pair + side + 1]):
                 node = candidates.packets[packet]
-                found = candidates.located[packet - candidates.first[2 * pair]]
+                located = candidates.located[packet - candidates.first[2 * pair]]
                 for lane in range(LANES):
-                    phi = found[PHI + lane]
+                    phi = located[PHI + lane]
                     if not phi < closed:
                         continue
                     n, arm = np.zeros(3), np.zeros(3)
                     for i in range(3):
                         for j in range(3):
-                            n[i] += R[i, j] * found[NORMAL + j * LANES + lane]
+                            n[i] += R[i, j] * located[NORMAL + j * LANES + lane]
                             arm[i] += R[i, j] * (node[PLACE + j * LANES + lane] - surfaces.offset[other, j])
                     if phi >= 0.0 and abs(n[0] * down[0] + n[1] * down[1] + n[2] * down[2]) < 0.5:
                         continue
@@ -202,8 +201,8 @@ def joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
                     half_area = 0.5 * node[AREA + lane]
                     area += half_area
                     weight += node[DAMPING_WEIGHT + lane]
-                    place = poses.position[other] + arm
-                    _relative_motion_into(place - poses.position[a], place - poses.position[b], B)
+                    point = poses.position[other] + arm
+                    _relative_motion_into(point - poses.position[a], point - poses.position[b], B)
                     for column in range(12):
                         along = n[0] * B[0, column] + n[1] * B[1, column] + n[2] * B[2, column]
                         for i in range(3):
@@ -215,7 +214,7 @@ def joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
                     if phi >= 0.0:
                         force = -half_area * k_n * phi * n
                         pull[owner, :3] += force
-                        pull[owner, 3:] += np.cross(place - poses.position[owner], force)
+                        pull[owner, 3:] += np.cross(point - poses.position[owner], force)
                         pull[other, :3] -= force
                         pull[other, 3:] -= np.cross(arm, force)
         if area > 0.0:
@@ -234,3 +233,49 @@ def _relative_motion_into(arm_a, arm_b, B):
     B[1, 5], B[2, 3], B[2, 4] = arm_a[0], arm_a[1], -arm_a[0]
     B[0, 10], B[0, 11], B[1, 9] = -arm_b[2], arm_b[1], arm_b[2]
     B[1, 11], B[2, 9], B[2, 10] = -arm_b[0], -arm_b[1], arm_b[0]
+
+
+def assembled(pairs, stiffness, size):
+    """Sparse matrix (size, size) of the 12 x 12 blocks of pairs of bodies."""
+    entries = (6 * pairs[:, :, None] + np.arange(6)).reshape(-1, 12)
+    row = np.repeat(entries, 12, axis=1).ravel()
+    column = np.tile(entries, (1, 12)).ravel()
+    return coo_array((stiffness.ravel(), (row, column)), shape=(size, size)).tocsr()
+
+
+def stable_time_step(pairs, stiffness, relaxation, bodies):
+    """Largest stable time step of the joints at the start [s]; infinite where nothing holds a body.
+
+    Parameters
+    ----------
+    pairs : int64 array, shape (n_pairs, 2)
+    stiffness : float64 array, shape (n_pairs, 12, 12)
+        Of the pairs' springs, as from `joint_stiffness`.
+    relaxation : float64 array, shape (n_pairs,)
+        Of the dashpots beside them [s].
+    bodies : Bodies
+
+    Notes
+    -----
+    With the fastest mode's angular frequency w and fraction of critical damping z, leapfrog whose dashpots see
+    ``3/2 v(n-1/2) - 1/2 v(n-3/2)`` is stable while ``w dt <= 2 (sqrt(1 + 4 z^2) - 2 z)``: there the root of its
+    characteristic polynomial reaches -1. Joints that close later may allow less.
+    """
+    free = np.flatnonzero(~bodies.driven)
+    chosen = (6 * free[:, None] + np.arange(6)).ravel()
+    K, C = (
+        assembled(pairs, part, 6 * len(bodies.mass))[chosen][:, chosen]
+        for part in (stiffness, stiffness * relaxation[:, None, None])
+    )
+    if len(free) == 0 or abs(K).max() == 0.0:
+        return np.inf
+    M = block_diag(
+        [block for body in free for block in (bodies.mass[body] * np.eye(3), bodies.inertia[body])],
+        format="csc",
+    )
+    # any vector that no mode is orthogonal to, always the same
+    start = np.cos(np.arange(1, len(chosen) + 1))
+    value, vector = eigsh(K, k=1, M=M, which="LM", v0=start, tol=1e-3, rng=0)
+    frequency, mode = np.sqrt(value[0]), vector[:, 0]
+    ratio = mode @ (C @ mode) / (2.0 * frequency * (mode @ (M @ mode)))
+    return float(2.0 * (np.sqrt(1.0 + 4.0 * ratio**2) - 2.0 * ratio) / frequency)

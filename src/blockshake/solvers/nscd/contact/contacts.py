@@ -1,13 +1,14 @@
-"""The contacts of one step: where they are, their Delassus operators, and what they remember."""
+"""The contacts of one step, of bodies and of stoppers: where they are, their operators, and what they remember."""
 
 from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.geometry.overlap import find_pairs
+from blockshake.geometry.vectors import cross, difference, dot, matrix_product, put_into, transposed_product
 from blockshake.jit import borrowing_kernel, kernel
-from blockshake.solvers.near_boxes import find_pairs
+from blockshake.solvers.external_forces import closure_into
 from blockshake.solvers.nscd.contact.detection import detect_pair_into
-from blockshake.solvers.vectors import cross, difference, dot, matrix_product, put_into, transposed_product
 
 # Contacts are looked for at least this far apart, since a body at rest may be pushed within a step [m].
 _LEAST_MARGIN = 1e-4
@@ -105,12 +106,12 @@ def _detect_into(
     for pair in range(pairs.shape[0]):
         a, b = pairs[pair, 0], pairs[pair, 1]
         layer = layers[a, b]
-        found = detect_pair_into(
+        n_points = detect_pair_into(
             polyhedra, placed, a, b, margin, shrink, layer, memory, normal, points, gaps, areas
         )
-        if found == 0:
+        if n_points == 0:
             memory[a, b] = -1
-        for point in range(found):
+        for point in range(n_points):
             compliance = layer / (admittance * areas[point])
             add_contact_into(
                 contacts, count, a, b, placed, rotations, normal, points[point], gaps[point], compliance
@@ -224,3 +225,49 @@ def delassus_into(bodies, inverse_inertia, contacts):
 def effective_mass(w):
     """Least mass that a contact with the Delassus operator ``w`` moves along its basis [kg]."""
     return 1.0 / max(w[W_NN], max(w[W_11], w[W_22]))
+
+
+@kernel
+def place_stoppers_into(bodies, stoppers, base, step, dt, theta, contacts):
+    """Write the stoppers, as contacts of the driven body ``base``, into the last rows.
+
+    The law of an implicit spring that only pushes, ``u_n + shift + p / s >= 0`` with ``s = theta dt^2 k``, times ``s
+    / (s + m)``, m the mass of the body: so a stop without stiffness has the law ``p / m >= 0``, and no impulse.
+    """
+    first = contacts.gap.size - stoppers.body.size
+    toward = np.empty(3)
+    for stopper in range(stoppers.body.size):
+        row, body = first + stopper, stoppers.body[stopper]
+        contacts.body_a[row], contacts.body_b[row] = base, body
+        contacts.stopper[row] = stopper
+        contacts.home[row] = stoppers.point[stopper]
+        contacts.friction[row] = 0.0
+        admittance = theta * dt * dt * stoppers.stiffness[stopper]
+        contacts.share[row] = admittance / (admittance + bodies.mass[body])
+        contacts.compliance[row] = 1.0 / (admittance + bodies.mass[body])
+        closed = closure_into(
+            bodies, stoppers, stopper, base, step.detection, contacts.arm_a[row], contacts.arm_b[row], toward
+        )
+        contacts.gap[row] = -closed
+        contacts.basis[row, 0] = -toward
+
+
+@borrowing_kernel
+def relative_velocity(contacts, contact, v):
+    """Velocity of b minus that of a at a contact, along its basis [m/s].
+
+    ``v`` (n_bodies, 6): velocity [m/s] and angular velocity [rad/s] of the bodies, world frame.
+    """
+    a, b = v[contacts.body_a[contact]], v[contacts.body_b[contact]]
+    r, s = contacts.arm_a[contact], contacts.arm_b[contact]
+    x = b[0] + b[4] * s[2] - b[5] * s[1] - a[0] - a[4] * r[2] + a[5] * r[1]
+    y = b[1] + b[5] * s[0] - b[3] * s[2] - a[1] - a[5] * r[0] + a[3] * r[2]
+    z = b[2] + b[3] * s[1] - b[4] * s[0] - a[2] - a[3] * r[1] + a[4] * r[0]
+    return matrix_product(contacts.basis[contact], (x, y, z))
+
+
+@borrowing_kernel
+def contact_velocities_into(contacts, v, u):
+    """Velocities of all contacts along their bases [m/s], into ``u`` (n_contacts, 3); ``v`` as there."""
+    for contact in range(contacts.gap.size):
+        u[contact, 0], u[contact, 1], u[contact, 2] = relative_velocity(contacts, contact, v)

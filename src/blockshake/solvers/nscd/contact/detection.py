@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from blockshake.geometry.vectors import cross, difference, dot, put_into
 from blockshake.jit import borrowing_kernel
 from blockshake.solvers.nscd.contact.overlap_polygon import (
     area_and_centroid_into,
@@ -9,7 +10,6 @@ from blockshake.solvers.nscd.contact.overlap_polygon import (
     clip_face_into,
     shrink_polygon_into,
 )
-from blockshake.solvers.vectors import cross, difference, dot, put_into
 
 # Relative to the smaller radius of the pair: an axis must separate this much better than the one of
 # the step before, or an edge axis than a face, to take its place; so resting contacts do not flip.
@@ -21,7 +21,7 @@ _PARALLEL = 1e-6
 # Share of a joint's area that a corner stands for where its middle stands for the rest: exact for the axial and the
 # rotational stiffness of a parallelogram, and of a triangle.
 _CORNER = 1.0 / 12.0
-_LEAST_AREA = 1e-12  # m2, of a joint that has none
+LEAST_AREA = 1e-12  # m2, of a joint that has none
 
 
 @borrowing_kernel
@@ -151,7 +151,7 @@ def _face_points_into(polyhedra, placed, other, face, margin, shrink, layer, poi
     if shrink > 0.0:
         shrink_polygon_into(shrink, polygon, n_corners, middle)
     n, offset = placed.normals[face], placed.offsets[face]
-    area = max(area_and_centroid_into(polygon, n_corners, middle), _LEAST_AREA)
+    area = max(area_and_centroid_into(polygon, n_corners, middle), LEAST_AREA)
     corners = min(n_corners, 4)
     count = 0
     for index in range(n_corners):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from blockshake.geometry.vectors import cross, difference, dot, put_into
 from blockshake.jit import borrowing_kernel
-from blockshake.solvers.vectors import cross, difference, dot, put_into
 
 # Points this far outside a side plane count as inside, so that flush faces do not flicker [m].
 _FLUSH = 1e-9

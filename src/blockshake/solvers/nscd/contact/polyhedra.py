@@ -6,8 +6,8 @@ import numpy as np
 
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_rows
+from blockshake.geometry.vectors import put_into, rows_product
 from blockshake.jit import borrowing_kernel, kernel
-from blockshake.solvers.vectors import put_into, rows_product
 
 # Edge directions closer than this are one separating axis: only rounding tells them apart.
 _SAME_DIRECTION = 1e-9

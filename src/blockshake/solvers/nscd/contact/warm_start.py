@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from blockshake.geometry.vectors import matrix_product, transposed_product
 from blockshake.jit import borrowing_kernel
-from blockshake.solvers.nscd.contact.friction import coefficient_along
-from blockshake.solvers.vectors import matrix_product, transposed_product
+from blockshake.solvers.nscd.contact.law import coefficient_along
 
 # A contact takes over the impulse of the nearest one of its pair within this share of the radius.
 _SAME_CONTACT = 0.1
@@ -42,22 +42,15 @@ def _block_of_pair(contacts, a, b, stopper, start):
 def warm_start_into(old, radius, share, contacts):
     """Give each contact the impulse of the nearest one of the same pair at the step before.
 
-    Parameters
-    ----------
-    old : Contacts
-        Of the step before, sorted by pair like ``contacts``.
-    radius : float64 array, shape (n_bodies,)
-        Of the bodies [m].
-    share : float
-        Length of this step over that of the step before [1]: what impulses of resting contacts go with.
-    contacts : Contacts
-        ``impulse`` is overwritten, inside Coulomb's cone; ``slip_ratio`` as well.
+    ``old`` (Contacts) are those of the step before, sorted by pair like ``contacts``, of which ``impulse``, inside
+    Coulomb's cone, and ``slip_ratio`` are overwritten. ``radius`` (n_bodies,) [m]. ``share``: length of this step over
+    that of the step before [1], with which the impulses of resting contacts go.
     """
     first, last = 0, 0
     for contact in range(contacts.gap.size):
         a, b, stopper = contacts.body_a[contact], contacts.body_b[contact], contacts.stopper[contact]
         limit = _SAME_CONTACT * min(radius[a], radius[b])
-        nearest, found = limit * limit, -1
+        nearest, match = limit * limit, -1
         first, last = _block_of_pair(old, a, b, stopper, first)
         for other in range(first, last):
             distance = 0.0
@@ -65,12 +58,12 @@ def warm_start_into(old, radius, share, contacts):
                 d = old.home[other, axis] - contacts.home[contact, axis]
                 distance += d * d
             if distance < nearest:
-                nearest, found = distance, other
+                nearest, match = distance, other
         contacts.impulse[contact] = 0.0
         contacts.slip_ratio[contact] = 0.0
-        if found < 0:
+        if match < 0:
             continue
-        world = transposed_product(old.basis[found], old.impulse[found])
+        world = transposed_product(old.basis[match], old.impulse[match])
         p = matrix_product(contacts.basis[contact], (share * world[0], share * world[1], share * world[2]))
         limit = coefficient_along(contacts, contact, p[1], p[2]) * max(p[0], 0.0)
         size = np.sqrt(p[1] * p[1] + p[2] * p[2])
@@ -78,4 +71,4 @@ def warm_start_into(old, radius, share, contacts):
         contacts.impulse[contact, 0] = max(p[0], 0.0)
         contacts.impulse[contact, 1] = scale * p[1]
         contacts.impulse[contact, 2] = scale * p[2]
-        contacts.slip_ratio[contact] = old.slip_ratio[found]
+        contacts.slip_ratio[contact] = old.slip_ratio[match]

@@ -58,26 +58,26 @@ def block_system(driven, body_a, body_b):
             touch[i, j] = touch[j, i] = True
             degree[i] += 1
             degree[j] += 1
-    rank, place = np.full(driven.size, -1, np.int64), np.full(n, -1, np.int64)
+    rank, position = np.full(driven.size, -1, np.int64), np.full(n, -1, np.int64)
     first, column, count = np.zeros(n + 1, np.int64), np.empty(4 * n + 4, np.int64), 0
     for k in range(n):
         least = -1
         for i in range(n):
-            if place[i] < 0 and (least < 0 or degree[i] < degree[least]):
+            if position[i] < 0 and (least < 0 or degree[i] < degree[least]):
                 least = i
-        place[least] = k
+        position[least] = k
         rank[body_of[least]] = k
         if count + n > column.size:
             column = np.concatenate((column, np.empty(column.size + n, np.int64)))
         for i in range(n):
-            if place[i] < 0 and touch[least, i]:
+            if position[i] < 0 and touch[least, i]:
                 column[count] = i
                 count += 1
         first[k + 1] = count
-        for one in range(first[k], count):
-            i = column[one]
+        for entry in range(first[k], count):
+            i = column[entry]
             degree[i] -= 1
-            for other in range(one + 1, count):
+            for other in range(entry + 1, count):
                 j = column[other]
                 if not touch[i, j]:
                     touch[i, j] = touch[j, i] = True
@@ -86,7 +86,7 @@ def block_system(driven, body_a, body_b):
     for k in range(n):
         for entry in range(first[k], first[k + 1]):
             # insertion: rows are short
-            here, at = place[column[entry]], entry
+            here, at = position[column[entry]], entry
             while at > first[k] and column[at - 1] > here:
                 column[at] = column[at - 1]
                 at -= 1
@@ -187,12 +187,8 @@ def solve_blocks_into(system):
     """
     n = system.x.shape[0]
     for k in range(n):
-        A, exchange, first, last = (
-            system.diagonal[k],
-            system.exchange[k],
-            system.first[k],
-            system.first[k + 1],
-        )
+        A, exchange = system.diagonal[k], system.exchange[k]
+        first, last = system.first[k], system.first[k + 1]
         if not _factor_into(A, exchange):
             return False
         y = system.x[k]

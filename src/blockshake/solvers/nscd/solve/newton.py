@@ -4,17 +4,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.geometry.vectors import add_impulse_into, cross, matrix_product, transposed_product
 from blockshake.jit import borrowing_kernel, kernel
-from blockshake.solvers.nscd.contact.contacts import effective_mass
-from blockshake.solvers.nscd.contact.friction import coefficient_along
+from blockshake.solvers.nscd.contact.contacts import effective_mass, relative_velocity
+from blockshake.solvers.nscd.contact.law import coefficient_along, law_velocity
 from blockshake.solvers.nscd.solve.block_elimination import (
     BlockSystem,
     block_system,
     find_block,
     solve_blocks_into,
 )
-from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into, law_velocity, relative_velocity
-from blockshake.solvers.vectors import add_impulse_into, cross, matrix_product, transposed_product
+from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into
 
 
 class NewtonSpace(NamedTuple):
@@ -39,9 +39,9 @@ def newton_space(driven, body_a, body_b):
     system = block_system(driven, body_a, body_b)
     entry = np.full(n_contacts, -1, np.int64)
     for contact in range(n_contacts):
-        one, other = system.rank[body_a[contact]], system.rank[body_b[contact]]
-        if one >= 0 and other >= 0:
-            entry[contact] = find_block(system, min(one, other), max(one, other))
+        rank, other = system.rank[body_a[contact]], system.rank[body_b[contact]]
+        if rank >= 0 and other >= 0:
+            entry[contact] = find_block(system, min(rank, other), max(rank, other))
     return NewtonSpace(
         system, entry, np.empty((n_contacts, 3, 3)), np.empty((n_contacts, 3)), np.empty((3, 6))
     )
@@ -189,15 +189,12 @@ def _assemble_into(bodies, inertia, contacts, stiffness, v, newton):
 
 @borrowing_kernel
 def newton_step_into(bodies, inertia, inverse_inertia, contacts, stiffness, v_free, v, newton):
-    """Replace the impulses by those of one Newton step, and the velocities with them.
+    """Replace impulses, and velocities with them, by those of one Newton step; False where the system is singular.
 
     Parameters
     ----------
-    bodies : Bodies
-    inertia, inverse_inertia : float64 arrays, shape (n_bodies, 3, 3)
-        World frame [kg m2, 1/(kg m2)].
-    contacts : Contacts
-        ``impulse`` is changed.
+    bodies, inertia, inverse_inertia, contacts : Bodies, float64 arrays, shape (n_bodies, 3, 3), Contacts
+        Inertia in the world frame [kg m2, 1/(kg m2)]. ``contacts.impulse`` is changed.
     stiffness : float
         As in `linear_law_into`.
     v_free, v : float64 arrays, shape (n_bodies, 6)
@@ -205,14 +202,10 @@ def newton_step_into(bodies, inertia, inverse_inertia, contacts, stiffness, v_fr
     newton : NewtonSpace
         Overwritten.
 
-    Returns
-    -------
-    bool
-        False, with nothing changed, where the linear system is singular.
-
     Notes
     -----
-    ``(M + J^T D J) dv = J^T (c - D u - p)`` with the linear laws of `linear_law_into`.
+    ``(M + J^T D J) dv = J^T (c - D u - p)`` with the linear laws of `linear_law_into`. Nothing but ``newton`` is
+    changed where the system is singular.
     """
     system = newton.system
     _assemble_into(bodies, inertia, contacts, stiffness, v, newton)

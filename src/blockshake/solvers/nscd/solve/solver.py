@@ -3,12 +3,8 @@
 import numpy as np
 
 from blockshake.jit import borrowing_kernel, kernel
-from blockshake.solvers.nscd.solve.gauss_seidel import (
-    apply_impulses_into,
-    contact_velocities_into,
-    relative_residual,
-    sweep_into,
-)
+from blockshake.solvers.nscd.contact.contacts import contact_velocities_into
+from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into, relative_residual, sweep_into
 from blockshake.solvers.nscd.solve.newton import newton_space, newton_step_into
 
 # Newton settles within a few steps, or wanders among states that do not fit together: the stiffer the

@@ -44,18 +44,10 @@ def factor_into(A, last):
 def _eliminate_below_into(A, first, end):
     """Take a panel's pivots, from ``first`` on, out of the columns behind them in the rows below them."""
     after = first + _PANEL
-    a0, a1, a2, a3 = (
-        A[first, after:end],
-        A[first + 1, after:end],
-        A[first + 2, after:end],
-        A[first + 3, after:end],
-    )
-    a4, a5, a6, a7 = (
-        A[first + 4, after:end],
-        A[first + 5, after:end],
-        A[first + 6, after:end],
-        A[first + 7, after:end],
-    )
+    a0, a1 = A[first, after:end], A[first + 1, after:end]
+    a2, a3 = A[first + 2, after:end], A[first + 3, after:end]
+    a4, a5 = A[first + 4, after:end], A[first + 5, after:end]
+    a6, a7 = A[first + 6, after:end], A[first + 7, after:end]
     for i in range(after, end):
         f0, f1, f2, f3 = A[i, first], A[i, first + 1], A[i, first + 2], A[i, first + 3]
         f4, f5, f6, f7 = A[i, first + 4], A[i, first + 5], A[i, first + 6], A[i, first + 7]

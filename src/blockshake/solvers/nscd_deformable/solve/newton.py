@@ -4,11 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.geometry.vectors import matrix_product
 from blockshake.jit import borrowing_kernel, kernel
 from blockshake.solvers.nscd.solve.newton import linear_law_into
 from blockshake.solvers.nscd_deformable.solve.band_elimination import factor_into, solve_into
 from blockshake.solvers.nscd_deformable.solve.operator import extend_into, velocities_into
-from blockshake.solvers.vectors import matrix_product
 
 OPEN, STUCK, SLIPPING = 0, 1, 2
 _SAME_PLACE = 0.01  # m; contacts that moved farther on their body have another operator
@@ -87,30 +87,30 @@ def _serves(factor, contacts, laws, setting):
 def _system_into(laws, operator, row, A, last):
     """The system of the closed contacts, whose places in it are ``row``, into the zeros of ``A``."""
     n = row.size
-    for one in range(n):
-        if row[one] < 0:
+    for contact in range(n):
+        if row[contact] < 0:
             continue
-        end = row[one]
-        D = laws.slope[one]
+        end = row[contact]
+        D = laws.slope[contact]
         for other in range(n):
             if row[other] < 0:
                 continue
-            if other > operator.last[one]:
+            if other > operator.last[contact]:
                 break
             end = max(end, row[other])
-            if operator.last[other] < one:
+            if operator.last[other] < contact:
                 continue
             for i in range(3):
-                below = A[3 * row[one] + i, 3 * row[other] : 3 * row[other] + 3]
-                if one == other:
+                below = A[3 * row[contact] + i, 3 * row[other] : 3 * row[other] + 3]
+                if contact == other:
                     below[i] = 1.0
                 for k in range(3):
                     slope = D[i, k]
                     if slope != 0.0:
-                        given = operator.matrix[3 * one + k, 3 * other : 3 * other + 3]
+                        given = operator.matrix[3 * contact + k, 3 * other : 3 * other + 3]
                         for j in range(3):
                             below[j] += slope * given[j]
-        last[3 * row[one] : 3 * row[one] + 3] = 3 * end + 2
+        last[3 * row[contact] : 3 * row[contact] + 3] = 3 * end + 2
 
 
 @kernel
@@ -182,28 +182,21 @@ def newton_step_into(problem, contacts, stiffness, fresh, operator, motion, laws
 
     Parameters
     ----------
-    problem : Problem
-    contacts : Contacts
-        ``impulse`` is changed.
+    problem, contacts : Problem, Contacts
+        ``contacts.impulse`` is changed.
     stiffness : float
         Of the proximal term, as in `linear_law_into`.
     fresh : bool
         Factor anew even where the kept factorisation belongs to these contacts.
-    operator : Operator
-        Of this step; extended where it is needed.
-    motion : ContactMotion
-        Of the impulses before, and after.
-    laws : Laws
-        Overwritten.
+    operator, motion, laws : Operator, ContactMotion, Laws
+        The operator of this step is extended where it is needed; motion and laws are overwritten.
     factor : Factor
 
     Returns
     -------
-    done : bool
-        False, with the impulses of open contacts gone at most, where the system is singular.
-    made : bool
-        Whether the factorisation was made in this step.
-    factor : Factor
+    done, made, factor : bool, bool, Factor
+        Not done, with the impulses of open contacts gone at most, where the system is singular; whether the
+        factorisation was made in this step.
 
     Notes
     -----

@@ -4,12 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.geometry.vectors import cross, dot, matrix_product, put_into, transposed_product
 from blockshake.jit import borrowing_kernel, kernel
-from blockshake.solvers.nscd.contact.contacts import W_11, W_22, W_N1, W_N2, W_NN
-from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into, relative_velocity
+from blockshake.solvers.nscd.contact.contacts import W_11, W_22, W_N1, W_N2, W_NN, relative_velocity
+from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into
 from blockshake.solvers.nscd_deformable.contact_points import anchored
 from blockshake.solvers.nscd_deformable.elastic_step import compliance_of
-from blockshake.solvers.vectors import cross, dot, matrix_product, put_into, transposed_product
 
 
 class Problem(NamedTuple):
@@ -86,18 +86,21 @@ def velocities_into(problem, contacts, motion):
     apply_impulses_into(bodies, problem.inverse_inertia, contacts, problem.v_free, motion.v)
     impulses_on_points_into(anchors, problem.rotations, contacts, motion.forces)
     for body in range(bodies.mass.size):
-        first, own = elastic.first_point[body], anchors.active[anchors.first[body] : anchors.first[body + 1]]
+        first, active = (
+            elastic.first_point[body],
+            anchors.active[anchors.first[body] : anchors.first[body + 1]],
+        )
         C = compliance_of(elastic, problem.response, body)
-        for point in own:
+        for point in active:
             for axis in range(3):
                 motion.points[point, axis] = problem.point_free[point, axis]
-        for source in own:
+        for source in active:
             for axis in range(3):
                 force = motion.forces[source, axis]
                 if force != 0.0:
                     # the compliance is symmetric: its rows are its columns
                     row = C[3 * (source - first) + axis]
-                    for point in own:
+                    for point in active:
                         at = 3 * (point - first)
                         motion.points[point, 0] += force * row[at]
                         motion.points[point, 1] += force * row[at + 1]
@@ -122,8 +125,8 @@ def _point_rows_into(problem, contacts, contact, side, G):
     body = contacts.body_b[contact] if side else contacts.body_a[contact]
     C, first = compliance_of(elastic, problem.response, body), elastic.first_point[body]
     basis, R = contacts.basis[contact], problem.rotations[body]
-    own = anchors.active[anchors.first[body] : anchors.first[body + 1]]
-    for point in own:
+    active = anchors.active[anchors.first[body] : anchors.first[body + 1]]
+    for point in active:
         at = 3 * (point - first)
         for i in range(3):
             G[i, at] = G[i, at + 1] = G[i, at + 2] = 0.0
@@ -137,7 +140,7 @@ def _point_rows_into(problem, contacts, contact, side, G):
             for axis in range(3):
                 factor, row = weight * direction[axis], C[source + axis]
                 if factor != 0.0:
-                    for point in own:
+                    for point in active:
                         at = 3 * (point - first)
                         G[i, at] += factor * row[at]
                         G[i, at + 1] += factor * row[at + 1]
@@ -153,11 +156,11 @@ def _levers_into(contacts, contact, side, lever):
 
 
 @borrowing_kernel
-def _add_block_into(problem, contacts, one, side, G, lever, other, other_side, block):
-    """Add the effect of contact ``other``'s impulse on contact ``one``'s velocity through a body of both."""
+def _add_block_into(problem, contacts, contact, side, G, lever, other, other_side, block):
+    """Add the effect of contact ``other``'s impulse on contact ``contact``'s velocity through a body of both."""
     sign = 1.0 if side == other_side else -1.0
     elastic, anchors = problem.elastic, problem.anchors
-    body = contacts.body_b[one] if side else contacts.body_a[one]
+    body = contacts.body_b[contact] if side else contacts.body_a[contact]
     arm = contacts.arm_b[other] if other_side else contacts.arm_a[other]
     inverse_mass = problem.bodies.inverse_mass[body]
     first, R, inertia = elastic.first_point[body], problem.rotations[body], problem.inverse_inertia[body]
@@ -166,7 +169,7 @@ def _add_block_into(problem, contacts, one, side, G, lever, other, other_side, b
         spin = matrix_product(inertia, cross(arm, along))
         inward = transposed_product(R, along)
         for i in range(3):
-            w = inverse_mass * dot(contacts.basis[one, i], along) + dot(lever[i], spin)
+            w = inverse_mass * dot(contacts.basis[contact, i], along) + dot(lever[i], spin)
             for corner in range(4):
                 weight = anchors.weights[other, other_side, corner]
                 if weight != 0.0:
@@ -247,28 +250,28 @@ def _extend_into(problem, contacts, wanted, operator, G_a, G_b, block, lever_a, 
     """`extend_into` with arrays to work in."""
     driven, n = problem.bodies.driven, contacts.gap.size
     known, W = operator.known, operator.matrix
-    for one in range(n):
-        if not wanted[one] or known[one]:
+    for contact in range(n):
+        if not wanted[contact] or known[contact]:
             continue
-        known[one] = True
-        a, b = contacts.body_a[one], contacts.body_b[one]
-        _point_rows_into(problem, contacts, one, 0, G_a)
-        _point_rows_into(problem, contacts, one, 1, G_b)
-        _levers_into(contacts, one, 0, lever_a)
-        _levers_into(contacts, one, 1, lever_b)
+        known[contact] = True
+        a, b = contacts.body_a[contact], contacts.body_b[contact]
+        _point_rows_into(problem, contacts, contact, 0, G_a)
+        _point_rows_into(problem, contacts, contact, 1, G_b)
+        _levers_into(contacts, contact, 0, lever_a)
+        _levers_into(contacts, contact, 1, lever_b)
         for other in range(n):
             c, d = contacts.body_a[other], contacts.body_b[other]
             if not known[other] or (a not in (c, d) and b not in (c, d)):
                 continue
             block[:] = 0.0
             if not driven[a] and a in (c, d):
-                _add_block_into(problem, contacts, one, 0, G_a, lever_a, other, 0 if a == c else 1, block)
+                _add_block_into(problem, contacts, contact, 0, G_a, lever_a, other, 0 if a == c else 1, block)
             if not driven[b] and b in (c, d):
-                _add_block_into(problem, contacts, one, 1, G_b, lever_b, other, 0 if b == c else 1, block)
+                _add_block_into(problem, contacts, contact, 1, G_b, lever_b, other, 0 if b == c else 1, block)
             for i in range(3):
                 for j in range(3):
-                    W[3 * one + i, 3 * other + j] = block[i, j]
-                    W[3 * other + j, 3 * one + i] = block[i, j]
+                    W[3 * contact + i, 3 * other + j] = block[i, j]
+                    W[3 * other + j, 3 * contact + i] = block[i, j]
 
 
 @kernel

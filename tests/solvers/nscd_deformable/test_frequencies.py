@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from ritz import ritz_frequencies
 
-from blockshake.solvers.nscd_deformable.block.shapes import elastic_shapes
+from blockshake.solvers.nscd_deformable.shapes import elastic_shapes
 
 ALL = 10**9
 BLOCK = (0.8, 2.4, 1.6)

@@ -3,10 +3,15 @@
 import numpy as np
 import pytest
 
-from blockshake.solvers.nscd_deformable.block.box_mesh import assemble, box_mesh, rigid_motions
-from blockshake.solvers.nscd_deformable.block.brick import corner_gradients, elasticity_matrix, strain_matrix
-from blockshake.solvers.nscd_deformable.block.lattice import surface_lattice
-from blockshake.solvers.nscd_deformable.block.shapes import elastic_shapes
+from blockshake.solvers.nscd_deformable.box_mesh import (
+    assemble,
+    box_mesh,
+    corner_gradients,
+    elasticity_matrix,
+    rigid_motions,
+    strain_matrix,
+)
+from blockshake.solvers.nscd_deformable.shapes import elastic_shapes, surface_lattice
 
 SIZE = (0.8, 2.4, 1.6)
 
