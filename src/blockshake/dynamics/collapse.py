@@ -31,14 +31,7 @@ def collapse_limits(structure):
 
 @borrowing_kernel
 def find_collapsed(bodies, state, supported, drop_limit):
-    """First body that has collapsed, or -1.
-
-    Parameters
-    ----------
-    bodies : Bodies
-    state : State
-    supported, drop_limit : arrays, shape (n_bodies,)
-        From `collapse_limits`.
+    """First body that has collapsed, or -1; ``supported``, ``drop_limit`` (n_bodies,) are those of `collapse_limits`.
 
     Notes
     -----

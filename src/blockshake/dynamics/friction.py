@@ -47,17 +47,9 @@ def assemble_friction(structure):
 
 @inline_kernel
 def friction_coefficient(laws, a, b, slip_rate, slip):
-    """Coulomb's coefficient of the joint of two bodies, before its direction is known [1].
+    """Coulomb's coefficient of the joint of two bodies ``a`` and ``b``, before its direction is known [1].
 
-    Parameters
-    ----------
-    laws : FrictionLaws
-    a, b : int
-        Bodies.
-    slip_rate : float
-        Of the joint, at the step before [m/s].
-    slip : float
-        That the joint has made so far, either way [m].
+    ``slip_rate`` at the step before [m/s]; ``slip`` that the joint has made so far, either way [m].
 
     Notes
     -----

@@ -169,17 +169,9 @@ def find_segment(breaks, t, segment):
 
 @borrowing_kernel
 def ground_state_into(table, segment, t, displacement, velocity):
-    """Ground displacement and velocity at one time, written into two arrays.
+    """Ground displacement and velocity at the time ``t`` [s] in a segment from `find_segment`, into two arrays (4,).
 
-    Parameters
-    ----------
-    table : MotionTable
-    segment : int
-        From `find_segment`.
-    t : float
-        [s]
-    displacement, velocity : float64 arrays, shape (4,)
-        Overwritten: x, y, z and pitch [m, rad] and their rates [m/s, rad/s].
+    They hold x, y, z and pitch [m, rad] and their rates [m/s, rad/s].
     """
     breaks, coefficients = table.breaks, table.coefficients
     at_rest = segment >= breaks.size - 1

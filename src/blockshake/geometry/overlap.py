@@ -36,15 +36,9 @@ def near_pairs(solids, position, orientation, clearance):
 def find_pairs(low, high, driven, margin):
     """Pairs whose bounding boxes come within ``margin`` [m]: int64 (n_pairs, 2), sorted; not of two driven bodies.
 
-    Sweep over the sorted lower ends along the axis on which the bodies are spread most, so that the
-    cost grows with the bodies and the neighbours of each.
-
-    Parameters
-    ----------
-    low, high : float64 arrays, shape (n_bodies, 3)
-        Corners of the boxes, world frame [m].
-    driven : bool array, shape (n_bodies,)
-    margin : float
+    ``low``, ``high`` (n_bodies, 3): corners of the boxes, world frame [m]; ``driven`` bool (n_bodies,). A sweep over
+    the sorted lower ends along the axis on which the bodies are spread most, so that the cost grows with the bodies and
+    the neighbours of each.
     """
     n_bodies = driven.size
     widest = np.argmax(np.array([np.ptp(low[:, axis]) for axis in range(3)]))
@@ -111,23 +105,10 @@ def penetration_depths(solid_a, positions_a, orientations_a, solid_b, positions_
 
 
 def depths_of_pairs(pairs, shapes, solids, position, orientation):
-    """`penetration_depths` of pairs of bodies, those of the same two shapes at once.
+    """`penetration_depths` of pairs of bodies, those of the same two shapes at once: float64 array (n_pairs,) [m].
 
-    Parameters
-    ----------
-    pairs : int64 array, shape (n_pairs, 2)
-        Bodies.
-    shapes : list of str
-        Shape of each body.
-    solids : dict of str to Solid
-        By shape.
-    position, orientation : float64 arrays, shape (n_bodies, 3) and (n_bodies, 4)
-        Of the solids' origins [m].
-
-    Returns
-    -------
-    float64 array, shape (n_pairs,)
-        [m]
+    ``pairs`` int64 (n_pairs, 2); ``shapes``: shape of each body; ``solids``: `Solid` by shape. ``position`` (n_bodies,
+    3) and ``orientation`` (n_bodies, 4) are those of the solids' origins [m].
     """
     depth, by_shapes = np.empty(len(pairs)), {}
     for index, (a, b) in enumerate(pairs):

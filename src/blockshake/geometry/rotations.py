@@ -18,15 +18,7 @@ def rotation_rows(q):
 
 @borrowing_kernel
 def rotation_matrix_into(q, R):
-    """Rotation matrix of a unit quaternion, written into ``R``.
-
-    Parameters
-    ----------
-    q : float64 array, shape (4,)
-        Unit quaternion (w, x, y, z), body to world.
-    R : float64 array, shape (3, 3)
-        Overwritten: ``R @ body_vector`` is the world vector.
-    """
+    """Rotation matrix of a unit quaternion (w, x, y, z), body to world, written into ``R`` (3, 3)."""
     first, second, third = rotation_rows(q)
     R[0, 0], R[0, 1], R[0, 2] = first
     R[1, 0], R[1, 1], R[1, 2] = second
@@ -54,16 +46,9 @@ def turned(w, x, y, z, rx, ry, rz):
 
 @borrowing_kernel
 def rotate_into(q, rotation, out):
-    """Quaternion ``q`` turned further by a world-frame rotation vector, written into ``out``.
+    """Quaternion ``q`` turned further by a world-frame rotation vector [rad], written into ``out``, which may be ``q``.
 
-    Parameters
-    ----------
-    q : float64 array, shape (4,)
-        Unit quaternion before.
-    rotation : float64 array, shape (3,)
-        Rotation vector in the world frame [rad], such as angular velocity times time step.
-    out : float64 array, shape (4,)
-        Overwritten with the unit quaternion after, same sign branch as ``q``; may be ``q``.
+    The vector is such as angular velocity times time step. The answer has the same sign branch as ``q``.
     """
     out[0], out[1], out[2], out[3] = turned(q[0], q[1], q[2], q[3], rotation[0], rotation[1], rotation[2])
 

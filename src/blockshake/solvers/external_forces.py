@@ -50,17 +50,8 @@ def assemble_external_forces(structure):
 def external_wrenches_into(bodies, forces, state, time, ahead, wrench):
     """External forces on all bodies, with their moments about the mass centres.
 
-    Parameters
-    ----------
-    bodies : Bodies
-    forces : ExternalForces
-    state : State
-    time : float
-        At which the forces are asked for [s].
-    ahead : float
-        Time from the state until then, over which every point keeps its velocity [s].
-    wrench : float64 array, shape (n_bodies, 6)
-        Overwritten: force and moment, world frame [N, N m].
+    ``time``: when the forces are asked for, ``ahead`` of the state, over which every point keeps its velocity [s].
+    ``wrench`` (n_bodies, 6) is overwritten with force and moment, world frame [N, N m].
 
     Notes
     -----
@@ -92,20 +83,9 @@ def external_wrenches_into(bodies, forces, state, time, ahead, wrench):
 def closure_into(bodies, stoppers, stopper, base, state, reach, arm, toward):
     """Closure of a stopper beyond its gap [m], negative while open.
 
-    A stopper is a plane across its signed axis, ``gap`` away from the body's point at the start, that travels
-    and turns with the driven body ``base``.
-
-    Parameters
-    ----------
-    bodies : Bodies
-    stoppers : Stoppers
-    stopper, base : int
-    state : State
-        Poses.
-    reach, arm : float64 arrays, shape (3,)
-        Overwritten: the point seen from the mass centres of the driven body and of its own, world frame [m].
-    toward : float64 array, shape (3,)
-        Overwritten: the signed axis as it has turned, world frame.
+    A stopper is a plane across its signed axis, ``gap`` away from the body's point at the start, that travels and turns
+    with the driven body ``base``. ``reach`` and ``arm`` (3,) are overwritten with the point seen from the mass centres
+    of the driven body and of its own [m], ``toward`` (3,) with the signed axis as it has turned; world frame.
     """
     body = stoppers.body[stopper]
     R, R_base, R_start = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))

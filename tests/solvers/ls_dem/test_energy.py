@@ -73,25 +73,6 @@ def _orders(runs):
     return errors, np.log2(np.divide(errors[:-1], errors[1:]))
 
 
-def test_without_damping_and_friction_the_audit_is_of_second_order(make_structure, run_ls_dem):
-    """Velocity Verlet on springs that stay closed: 2.3 mm/s would open them."""
-    structure = make_structure(
-        [
-            {
-                "name": "b", "shape": "block", "position": [0.0, 0.0, 0.8], "velocity": [0.01, 0.0, -1e-3],
-                "angular_velocity": [0.0, 1e-3, 0.0],
-            }
-        ],
-        friction=0.0, restitution=1.0,
-    )  # fmt: skip
-    errors, orders = _orders(
-        [run_ls_dem(structure, 0.1, time_step=dt, rate=1000) for dt in (8e-5, 4e-5, 2e-5)]
-    )
-    in_play = 0.5 * structure.mass[1] * 1e-6
-    assert errors[-1] < 1e-3 * in_play
-    np.testing.assert_allclose(orders, 2.0, atol=0.15)
-
-
 def _pitched(make_structure, run_ls_dem, dt):
     time = np.arange(0.0, 1.50001, 0.005)
     pitch = 0.05 * np.sin(2 * np.pi * time) * np.clip(time / 0.5, 0.0, 1.0) ** 2

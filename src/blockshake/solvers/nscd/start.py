@@ -58,21 +58,19 @@ def settle_stacks(scene, touching, soft, state, static_step, most_steps, at_rest
     Parameters
     ----------
     scene, touching, state : ContactScene, bool array, shape (n_bodies, n_bodies), State
-        As of `settled_state`.
+        Those of `settled_state`.
     soft : bool array, shape (n_bodies,)
-        A stack is settled where one of its free bodies is.
+        A stack is settled where one of its free bodies is soft.
     static_step : callable
-        Of the bodies that still move, a bool array, and the state, which it changes in place.
-    most_steps : int
-    at_rest : float
-        Largest motion in a step that ends the search [m].
+        It takes the bodies that still move, a bool array, and the state, which it changes in place.
+    most_steps, at_rest : int, float
+        Steps allowed; largest motion in a step that ends the search [m].
 
     Returns
     -------
-    state : State
-        Poses as given where a body of the stack would move by more than 0.1 mm; velocities as given.
-    moves : bool array, shape (n_bodies,)
-        Bodies of the settled stacks.
+    state, moves : State, bool array, shape (n_bodies,)
+        Poses as given where a body of the stack would move by more than 0.1 mm, velocities as given; bodies of the
+        settled stacks.
     """
     free, radius = ~scene.bodies.driven, scene.polyhedra.radius
     _, group = connected_components(touching & free[:, None] & free[None, :])

@@ -200,21 +200,17 @@ def turn_into(
 
     Parameters
     ----------
-    orientation : float64 array, shape (4,)
-        Unit quaternion at the start.
-    spin : float64 array, shape (3,)
-        Angular velocity at the start, world frame [rad/s].
+    orientation, spin : float64 arrays, shape (4,) and (3,)
+        Unit quaternion and angular velocity at the start, world frame [rad/s].
     inertia, inverse_inertia : float64 arrays, shape (3, 3)
         Body frame [kg m2, 1/(kg m2)].
     torque : float64 array, shape (3,)
         Impulse moment of the step about the mass centre, world frame [N m s].
     dt, theta : float
         Step [s] and weight of the end of the step.
-    new_orientation, new_spin : float64 arrays, shapes (4,) and (3,)
-        Overwritten; ``new_orientation`` must not be ``orientation``.
-    mean_spin : float64 array, shape (3,)
-        Overwritten: mean of the two angular velocities, taken in the body frame and turned into the
-        world by the orientation at the start [rad/s].
+    new_orientation, new_spin, mean_spin : float64 arrays, shape (4,), (3,), (3,)
+        Overwritten; ``new_orientation`` must not be ``orientation``. The last is the mean of the two angular
+        velocities, taken in the body frame and turned into the world by the orientation at the start [rad/s].
 
     Notes
     -----

@@ -29,12 +29,12 @@ _FRESH = -2  # no key begins so
 class Candidates(NamedTuple):
     """Near nodes, by side of a pair of bodies.
 
-    ``pairs`` int64 (n_pairs, 2), lower index first; ``joint`` int64 (n_pairs,): their rows in `NearPairs`, and
-    ``shift`` (n_pairs, 3) from there. Side ``2 p`` of pair ``p`` holds nodes of its first body against the level set of
-    its second, side ``2 p + 1`` the reverse. ``first`` int64 (2 n_pairs + 1,): first packet of each side. ``node``
-    int64 (n_packets * LANES,): index in `Surfaces`, -1 for filling. ``packets`` float64 (n_packets, PACKET): see
-    `packets`. ``located`` float64 (packets of the pair with most, LOCATED): workspace of the pair at hand. ``position``
-    and ``orientation``: poses for which the list was made.
+    ``pairs`` int64 (n_pairs, 2), lower index first; ``joint`` int64 (n_pairs,): their rows in `NearPairs`, whose
+    ``shift`` (n_pairs, 3) is repeated here. Side ``2 p`` of pair ``p`` holds nodes of its first body against the level
+    set of its second, side ``2 p + 1`` the reverse. ``first`` int64 (2 n_pairs + 1,): first packet of each side.
+    ``node`` int64 (n_packets * LANES,): index in `Surfaces`, -1 for filling. ``packets`` float64 (n_packets, PACKET):
+    see `packets`. ``located`` float64 (packets of the pair with most, LOCATED): workspace of the pair at hand.
+    ``position`` and ``orientation``: poses for which the list was made.
     """
 
     pairs: np.ndarray

@@ -153,18 +153,13 @@ def side_forces_into(packets, located, first, last, start, law, gamma_s, lanes, 
 
     Parameters
     ----------
-    packets : float64 array, shape (n_packets, PACKET)
-        The nodes' springs are updated.
-    located, first, last, start
-        As of `locate_nodes_into`; the forces are overwritten.
-    law : Law
-    gamma_s : float
+    packets, located, first, last, start
+        Those of `locate_nodes_into`: the nodes' springs are updated, their forces overwritten.
+    law, gamma_s : Law, float
         Dashpot beside the shear springs, per unit of a node's damping weight.
-    lanes : float64 array, shape (N_SUMS * LANES,)
-        Workspace.
-    sums : float64 array, shape (N_SUMS,)
-        Overwritten: force and moment about the centroid of the other's shape, on the owner, other's
-        frame [N, N m]; friction heat and dashpot heat of this step, and elastic energy held [J].
+    lanes, sums : float64 arrays, shape (N_SUMS * LANES,) and (N_SUMS,)
+        Workspace; overwritten with force and moment about the centroid of the other's shape, on the owner, other's
+        frame [N, N m], friction heat and dashpot heat of this step, and elastic energy held [J].
 
     Notes
     -----

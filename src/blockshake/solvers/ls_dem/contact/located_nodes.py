@@ -26,7 +26,7 @@ from blockshake.solvers.ls_dem.surfaces import INVERSE_SPACING, lattice_of
 
 @borrowing_kernel
 def locate_nodes_into(packets, located, first, last, start, surfaces, shape, R, d, side):
-    """Locate the nodes of one side.
+    """Locate the nodes of one side; the area of those that lie inside is returned [m2].
 
     Parameters
     ----------
@@ -35,19 +35,12 @@ def locate_nodes_into(packets, located, first, last, start, surfaces, shape, R, 
     located : float64 array, shape (packets of the pair with most, LOCATED)
         Change of place, level-set value, slope, area inside, normal and whether a packet is busy are
         overwritten; by a sampled level set the forces too.
-    first, last : int
-        Packets of this side.
-    start : int
-        First packet of the pair, whose row of ``located`` is the first.
+    first, last, start : int
+        Packets of this side; first packet of the pair, whose row of ``located`` is the first.
     surfaces, shape : Surfaces, int
         Shape whose level set is read.
     R, d, side : float64 arrays, shape (2, 3, 3) and (2, 3), int
         Pose of the owner in the other's frame, from `relative_pose_into`.
-
-    Returns
-    -------
-    float
-        Area of the nodes that lie inside [m2].
 
     Notes
     -----

@@ -145,12 +145,8 @@ def joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
 
     Parameters
     ----------
-    candidates : Candidates
-        The nodes are located anew.
-    interfaces : Interfaces
-    surfaces : Surfaces
-    poses : Poses
-        Those of the last force evaluation.
+    candidates, interfaces, surfaces, poses : Candidates, Interfaces, Surfaces, Poses
+        The nodes are located anew; poses of the last force evaluation.
     reach : float
         Nodes whose level-set value is below this are in touch [m], but those in the hollow of a face.
     down : float64 array, shape (3,)
@@ -163,10 +159,8 @@ def joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
     pull : float64 array, shape (n_bodies, 6)
         Force and moment that nodes in touch but not inside would have if springs could pull [N, N m], where the
         normal lies within 60 degrees of gravity: what the weight cannot close stays open.
-    touching : bool array, shape (n_pairs,)
-        Whether a pair has a node in touch.
-    relaxation : float64 array, shape (n_pairs,)
-        Coefficient of a pair's dashpots over the stiffness of its springs [s].
+    touching, relaxation : bool and float64 arrays, shape (n_pairs,)
+        Whether a pair has a node in touch; coefficient of its dashpots over the stiffness of its springs [s].
     """
     n_pairs = candidates.pairs.shape[0]
     stiffness, pull = np.zeros((n_pairs, 12, 12)), np.zeros((poses.position.shape[0], 6))
@@ -246,14 +240,8 @@ def assembled(pairs, stiffness, size):
 def stable_time_step(pairs, stiffness, relaxation, bodies):
     """Largest stable time step of the joints at the start [s]; infinite where nothing holds a body.
 
-    Parameters
-    ----------
-    pairs : int64 array, shape (n_pairs, 2)
-    stiffness : float64 array, shape (n_pairs, 12, 12)
-        Of the pairs' springs, as from `joint_stiffness`.
-    relaxation : float64 array, shape (n_pairs,)
-        Of the dashpots beside them [s].
-    bodies : Bodies
+    ``pairs`` int64 (n_pairs, 2); ``stiffness`` (n_pairs, 12, 12): of the pairs' springs, as `joint_stiffness` gives
+    them; ``relaxation`` (n_pairs,): of the dashpots beside them [s].
 
     Notes
     -----

@@ -124,28 +124,20 @@ def _detect_into(
 def detect_contacts(
     bodies, polyhedra, placed, rotations, margin, shrink, layers, admittance, memory, n_stoppers
 ):
-    """Contacts of all pairs of polyhedra, with room for the stoppers after them.
+    """Contacts of all pairs of polyhedra: geometry, gap and compliance; rows of the stoppers come last, still empty.
 
     Parameters
     ----------
-    bodies : Bodies
-    polyhedra, placed : Polyhedra, Placed
+    bodies, polyhedra, placed : Bodies, Polyhedra, Placed
     rotations : float64 array, shape (n_bodies, 3, 3)
         Body to world.
-    margin, shrink : float
-        As in `detect_pair_into`.
+    margin, shrink, memory
+        Those of `detect_pair_into`.
     layers : float64 array, shape (n_bodies, n_bodies)
         Compliance of the layers in the joints [m3/N].
     admittance : float
         Impulse over stiffness and velocity, ``theta h^2``, of an implicit spring [s2].
-    memory : int64 array, shape (n_bodies, n_bodies)
-        As in `detect_pair_into`.
     n_stoppers : int
-
-    Returns
-    -------
-    contacts : Contacts
-        Geometry, gap and compliance filled in; the rows of the stoppers are still empty.
     """
     pairs = find_pairs(placed.low, placed.high, bodies.driven, margin)
     contacts = empty_contacts(5 * pairs.shape[0] + n_stoppers)
@@ -189,16 +181,10 @@ def _tangents_into(basis):
 def delassus_into(bodies, inverse_inertia, contacts):
     """Fill in the tangents and the Delassus operators, ``W = J M^-1 J^T`` of each contact alone.
 
-    The velocity of a contact along its basis is ``u = W p + q``, q being that without its own impulse p.
-
-    Parameters
-    ----------
-    bodies : Bodies
-    inverse_inertia : float64 array, shape (n_bodies, 3, 3)
-        World frame [1/(kg m2)]; zero for driven bodies.
-    contacts : Contacts
-        ``basis`` needs its normals; the tangents are turned such that the tangential block of
-        the operator is diagonal. A contact's share and compliance are in its `W_NN`.
+    The velocity of a contact along its basis is ``u = W p + q``, q being that without its own impulse p. The bases need
+    their normals; the tangents are turned such that the tangential block of the operator is diagonal. A contact's share
+    and compliance are in its `W_NN`. ``inverse_inertia`` (n_bodies, 3, 3): world frame, zero for driven bodies
+    [1/(kg m2)].
     """
     for contact in range(contacts.gap.size):
         a, b = contacts.body_a[contact], contacts.body_b[contact]

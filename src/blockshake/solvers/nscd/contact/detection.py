@@ -30,27 +30,18 @@ def detect_pair_into(polyhedra, placed, a, b, margin, shrink, layer, memory, nor
 
     Parameters
     ----------
-    polyhedra : Polyhedra
-    placed : Placed
-        The outline is worked in.
-    a, b : int
-        Bodies.
-    margin : float
-        Points with a larger gap are left out [m].
-    shrink : float
-        As in `NscdParameters`.
+    polyhedra, placed, a, b : Polyhedra, Placed, int, int
+        The outline of ``placed`` is worked in.
+    margin, shrink : float
+        Points with a larger gap are left out [m]; `NscdParameters` has the shrinking [1].
     layer : float
         Compliance of the layer between them [m3/N]; without one the middle of a joint is no contact.
     memory : int64 array, shape (n_bodies, n_bodies)
         Row of the reference face of each pair at the step before, -1 for none; updated.
-    normal : float64 array, shape (3,)
-        Overwritten: unit normal from ``a`` to ``b``.
-    points : float64 array, shape (5, 3)
-        Overwritten: midway between the two surfaces, world frame [m].
-    gaps : float64 array, shape (5,)
-        Overwritten: clearance along the normal [m], negative in penetration.
-    areas : float64 array, shape (5,)
-        Overwritten: area of a layer that each stands for, infinite where edges meet and no layer is between [m2].
+    normal, points, gaps, areas : float64 arrays, shape (3,), (5, 3), (5,), (5,)
+        Overwritten: unit normal from ``a`` to ``b``; points midway between the two surfaces, world frame [m]; clearance
+        along the normal, negative in penetration [m]; area of a layer that each stands for, infinite where edges meet
+        and no layer is between [m2].
 
     Notes
     -----

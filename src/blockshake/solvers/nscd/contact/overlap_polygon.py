@@ -15,17 +15,8 @@ _SAME_POINT = 1e-7
 def clip_face_into(polyhedra, placed, reference, incident):
     """Part of the incident face inside the prism over the reference face; the number of its corners.
 
-    Parameters
-    ----------
-    polyhedra : Polyhedra
-    placed : Placed
-        Its outline's corners are overwritten: of a convex polygon in the plane of the incident face [m].
-    reference, incident : int
-        Rows of faces.
-
-    Notes
-    -----
-    Sutherland and Hodgman (1974).
+    The corners of the outline of ``placed`` are overwritten with a convex polygon in the plane of the incident face
+    [m], by Sutherland and Hodgman (1974). ``reference`` and ``incident`` are rows of faces.
     """
     first, last = polyhedra.first_corner[incident], polyhedra.first_corner[incident + 1]
     ref_first, ref_last = polyhedra.first_corner[reference], polyhedra.first_corner[reference + 1]
@@ -119,17 +110,8 @@ def shrink_polygon_into(shrink, polygon, count, center):
 def choose_four_into(points, gaps, count, normal, chosen):
     """Indices of at most four points that hold the deepest and keep the extent; their number.
 
-    Parameters
-    ----------
-    points : float64 array, shape (n, 3)
-        Corners of a polygon in order [m]; the first ``count`` are used.
-    gaps : float64 array, shape (n,)
-        Gap at each [m].
-    count : int
-    normal : float64 array, shape (3,)
-        Unit normal of the common plane.
-    chosen : int64 array, shape (4,)
-        Overwritten with increasing indices.
+    ``points`` (n, 3): corners of a polygon in order [m], with ``gaps`` (n,) [m], of which the first ``count`` are used;
+    ``normal`` (3,): of the common plane. ``chosen`` int64 (4,) is overwritten with increasing indices.
 
     Notes
     -----

@@ -163,18 +163,10 @@ def relative_residual(contacts, u, floor):
 
 @borrowing_kernel
 def sweep_into(bodies, inverse_inertia, contacts, upwards, v):
-    """One sweep of NLGS: the local problem of every contact in turn, first to last if ``upwards``, else back.
+    """Sweep of NLGS: the local problem of every contact in turn is solved, first to last if ``upwards``, else back.
 
-    Parameters
-    ----------
-    bodies : Bodies
-    inverse_inertia : float64 array, shape (n_bodies, 3, 3)
-        World frame [1/(kg m2)].
-    contacts : Contacts
-        ``impulse`` is changed.
-    upwards : bool
-    v : float64 array, shape (n_bodies, 6)
-        Velocities at the end of the step, kept in line with the impulses.
+    ``contacts.impulse`` is changed, and ``v`` (n_bodies, 6), the velocities at the end of the step, is kept in line
+    with it. ``inverse_inertia`` (n_bodies, 3, 3): world frame [1/(kg m2)].
     """
     n_contacts = contacts.gap.size
     for rank in range(n_contacts):

@@ -53,17 +53,13 @@ def linear_law_into(contacts, contact, u, stiffness, D, c):
 
     Parameters
     ----------
-    contacts : Contacts
-    contact : int
-    u : three floats
-        Velocity of the contact that belongs to its impulse, along its basis [m/s].
+    contacts, contact, u : Contacts, int, three floats
+        ``u``: velocity of the contact that belongs to its impulse, along its basis [m/s].
     stiffness : float
         Of the proximal term, in effective masses of the contact [1]: the error it leaves in the contact
         law is the change of the impulse divided by this.
-    D : float64 array, shape (3, 3)
-        Overwritten [kg], along the contact's basis.
-    c : float64 array, shape (3,)
-        Overwritten [N s].
+    D, c : float64 arrays, shape (3, 3) and (3,)
+        Overwritten, along the contact's basis [kg, N s].
 
     Notes
     -----

@@ -55,15 +55,10 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
 
     Parameters
     ----------
-    bodies : Bodies
-    inertia, inverse_inertia : float64 arrays, shape (n_bodies, 3, 3)
-        World frame [kg m2, 1/(kg m2)].
-    contacts : Contacts
-        ``impulse`` holds the start and, afterwards, the answer.
-    floor : float
-        As in `relative_residual` [N s].
-    tolerance : float
-        Relative residual that ends the search [1].
+    bodies, inertia, inverse_inertia, contacts : Bodies, float64 arrays, shape (n_bodies, 3, 3), Contacts
+        Inertia in the world frame [kg m2, 1/(kg m2)]. ``contacts.impulse`` holds the start and, afterwards, the answer.
+    floor, tolerance : float
+        Impulse of `relative_residual` below which impulses count as that [N s]; residual that ends the search [1].
     max_iterations : int
         Newton steps and sweeps allowed, together; then an answer that is not trusted is held against sweeps.
     v : float64 array, shape (n_bodies, 6)
@@ -71,10 +66,9 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
 
     Returns
     -------
-    iterations : int
-        Newton steps and sweeps made, at least one where there are contacts.
-    residual : float
-        Relative residual of the answer, the best met.
+    iterations, residual : int, float
+        Newton steps and sweeps made, at least one where there are contacts; relative residual of the answer, the best
+        met.
 
     Notes
     -----

@@ -23,15 +23,8 @@ _SLOW = 0.1
 def sweep_into(contacts, W, upwards, u):
     """Solve every contact once in turn, first to last if ``upwards`` and back otherwise (Jean 1999).
 
-    Parameters
-    ----------
-    contacts : Contacts
-        ``impulse`` is changed.
-    W : float64 array, shape (3 n_contacts, 3 n_contacts)
-        Of `Operator`, with all contacts in it [1/kg].
-    upwards : bool
-    u : float64 array, shape (n_contacts, 3)
-        Velocities of the contacts, kept in line with the impulses [m/s].
+    ``contacts.impulse`` is changed, and ``u`` (n_contacts, 3), the velocities of the contacts [m/s], is kept in line
+    with it. ``W`` (3 n_contacts, 3 n_contacts): matrix of an `Operator` with all contacts in it [1/kg].
     """
     n = contacts.gap.size
     for rank in range(n):
