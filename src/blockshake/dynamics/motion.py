@@ -32,7 +32,7 @@ class GroundMotion:
     Attributes
     ----------
     name : str
-        As in reports.
+        Name that reports use.
     table : MotionTable
         Displacement and pitch; the body rests after the last row.
     kind : str

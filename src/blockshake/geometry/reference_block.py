@@ -55,7 +55,7 @@ def reference_block(structure):
 def half_width(structure):
     """Half of the smaller width of the reference block [m]: a block that slid so far loses its support.
 
-    ``structure``: as of `load_structure`.
+    ``structure``: what `load_structure` takes.
     """
     return 0.5 * float(reference_block(load_structure(structure)).size[:2].min())
 

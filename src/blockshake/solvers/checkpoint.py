@@ -42,7 +42,7 @@ class Checkpoint:
             save_parts(self.path, self.key, {"parts": (*arrays, first)})
 
     def load(self):
-        """Parts of this very run, or None where there is no file of it that can be read."""
+        """Parts of the run that has this key, or None where no file of it can be read."""
         kept = load_parts(self.path, self.key) if self.path is not None else None
         if kept is None:
             return None
@@ -128,7 +128,7 @@ class KeptRows:
         self._firsts = []
 
     def begin(self, key):
-        """Forget what is there: a run starts."""
+        """Remove the rows of an earlier run: a new run starts."""
         self.remove()
         self._key, self._firsts = key, []
 
@@ -149,7 +149,7 @@ class KeptRows:
         return reached == first
 
     def put(self, first, rows):
-        """Keep rows, the first of which is row ``first`` of the run's."""
+        """Keep some rows of the run; ``first`` is the number of the first of them."""
         self._folder.mkdir(parents=True, exist_ok=True)
         parts = {"count": (len(rows.time),), **self._reduce(rows)}
         save_parts(self._file(first), self._key, parts)

@@ -25,7 +25,7 @@ class Ground(NamedTuple):
 
 @kernel
 def ground_at_start(table):
-    """Ground at time zero: its displacement counts from there, its pitch as it is."""
+    """Ground at time zero, from where its displacement counts; its pitch is absolute."""
     ground = Ground(table, np.zeros(4), np.empty(4), np.empty(4), np.zeros(1, np.int64))
     move_ground_into(ground, 0.0)
     ground.origin[:PITCH] = ground.displacement[:PITCH]

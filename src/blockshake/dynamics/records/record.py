@@ -85,10 +85,8 @@ def free_values(lines, first, count, where, count_key):
 
     Parameters
     ----------
-    lines : list of str
-        Of the whole file.
-    first : int
-        Index of the first line of values.
+    lines, first : list of str, int
+        The whole file; index of the first line of values.
     count : int
         How many values the header promises.
     where, count_key : str
@@ -110,30 +108,15 @@ def free_values(lines, first, count, where, count_key):
 
 
 def fixed_values(lines, first, count, layout, where, count_key):
-    """Series of values in columns of a fixed width, which may touch.
+    """Series of values in columns of a fixed width, which may touch: float64 array, shape (count,), in the file's unit.
 
-    Parameters
-    ----------
-    lines : list of str
-        Of the whole file.
-    first : int
-        Index of the first line of values.
-    count : int
-        How many values the header promises.
-    layout : (int, int)
-        Columns of a full line and their width.
-    where, count_key : str
-        File and header entry that a message names.
-
-    Returns
-    -------
-    float64 array, shape (count,)
-        In the file's unit.
+    ``layout``: columns of a full line and their width; ``lines``, ``first``, ``count``, ``where`` and ``count_key`` are
+    those of `free_values`.
 
     Raises
     ------
     InputError
-        As `free_values`; a line that holds another number of values than its columns.
+        The reasons of `free_values`; a line that holds another number of values than its columns.
     """
     columns, width = layout
     cells, behind = [], first + -(-count // columns)

@@ -187,7 +187,7 @@ def solid_fault(vertices, faces):
     Parameters
     ----------
     vertices, faces
-        As of `crossings`.
+        Those of `crossings`.
     """
     longest = np.ptp(vertices, axis=0).max()
     part = parts_of(faces)

@@ -55,7 +55,7 @@ def perimeter_points(vertices, normals, sides, area, spacing, inset):
     area : float
         Of the part [m2].
     spacing, inset : float
-        As in `mesh_nodes`.
+        Those of `mesh_nodes`.
 
     Returns
     -------

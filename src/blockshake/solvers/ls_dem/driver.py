@@ -45,28 +45,6 @@ class Assembly(NamedTuple):
     n_steps: int
 
 
-def assemble(structure, bodies, stoppers, motion, parameters, time_step, n_steps):
-    """`Assembly` of a structure under a motion, None for a ground at rest.
-
-    Raises
-    ------
-    InputError
-        A shape that LS-DEM cannot read.
-    """
-    return Assembly(
-        bodies,
-        assemble_surfaces(structure, parameters),
-        assemble_interfaces(structure, parameters),
-        stoppers,
-        assemble_external_forces(structure),
-        rest_table() if motion is None else motion.table,
-        *collapse_limits(structure),
-        parameters.skin,
-        time_step,
-        n_steps,
-    )
-
-
 def simulate_ls_dem(
     structure,
     motion,
@@ -112,7 +90,18 @@ def simulate_ls_dem(
     if rotations_blocked:
         bodies = bodies._replace(inverse_inertia=np.zeros_like(bodies.inverse_inertia))
     n_steps = int(np.ceil(record_times[-1] / time_step - 1e-9))
-    assembly = assemble(structure, bodies, stoppers, motion, parameters, time_step, n_steps)
+    assembly = Assembly(
+        bodies,
+        assemble_surfaces(structure, parameters),
+        assemble_interfaces(structure, parameters),
+        stoppers,
+        assemble_external_forces(structure),
+        rest_table() if motion is None else motion.table,
+        *collapse_limits(structure),
+        parameters.skin,
+        time_step,
+        n_steps,
+    )
 
     def start():
         # the stack settles on the slab as the motion starts, pitch included

@@ -43,7 +43,7 @@ def no_joints():
 
 @kernel
 def find_joint(joints, a, b):
-    """Row of a pair, -1 where it never came near."""
+    """Row of the joint of two bodies, -1 where they never came near each other."""
     for joint in range(joints.slip.size):
         if joints.pair[joint, 0] == a and joints.pair[joint, 1] == b:
             return joint
@@ -52,7 +52,7 @@ def find_joint(joints, a, b):
 
 @kernel
 def add_joints(joints, pairs):
-    """Joints with further pairs, which have no shift, force, slip or touch."""
+    """Joints, followed by those of further pairs, which have no shift, force, slip or touch yet."""
     n, more = joints.slip.size, pairs.shape[0]
     new = NearPairs(
         np.empty((n + more, 2), np.int64), np.zeros((n + more, 3)), np.zeros((n + more, 3)), np.zeros(n + more),

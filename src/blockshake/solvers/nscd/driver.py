@@ -104,9 +104,13 @@ def trajectory_of(structure, order, times, time_step, code, culprit, progress, j
 
     ``order`` int64 (n_bodies,) from `order_of_bodies`; ``times`` (n_times,) and ``time_step`` [s].
     """
-    end_time = min(int(progress.clock[STEP]) * time_step, float(times[-1]))
-    name = structure.body_names[order[culprit]]
-    status, reason = _status(code, name, end_time, progress.clock)
+    steps = int(progress.clock[STEP])
+    end_time = min(steps * time_step, float(times[-1]))
+    status, reason = status_at_end(code, structure.body_names[order[culprit]], end_time)
+    bad = progress.clock[BAD_STEPS] / max(steps, 1)
+    if code != DIVERGED and bad > _MOST_BAD_STEPS:
+        words = f"{100.0 * bad:.1f} % of the steps ended above a relative residual of 1e-4"
+        status, reason = Status.NOT_CONVERGED, "; ".join(part for part in (words, reason) if part)
     return Trajectory(
         **vars(rows_of(order, times, progress, joints, record)),
         status=status,
@@ -117,21 +121,12 @@ def trajectory_of(structure, order, times, time_step, code, culprit, progress, j
 
 
 def rows_of(order, times, progress, joints, record):
-    """`Rows` of a run's record, bodies in the order of the file; arguments as of `trajectory_of`."""
+    """`Rows` of a run's record, bodies in the order of the file, by the arguments of `trajectory_of`."""
     # a run that ends in its first step has found its joints and made no room for them
     joint_force = np.zeros((len(record.energy), len(joints.slip), 3))
     recorded = record.joint_force[:, : len(joints.slip)]
     joint_force[:, : recorded.shape[1]] = recorded
     return recorded_rows(times, progress, record, order[joints.pair], joint_force, np.argsort(order))
-
-
-def _status(code, name, end_time, clock):
-    status, reason = status_at_end(code, name, end_time)
-    bad = clock[BAD_STEPS] / max(clock[STEP], 1)
-    if code != DIVERGED and bad > _MOST_BAD_STEPS:
-        words = f"{100.0 * bad:.1f} % of the steps ended above a relative residual of 1e-4"
-        status, reason = Status.NOT_CONVERGED, "; ".join(part for part in (words, reason) if part)
-    return status, reason
 
 
 def _numerics(progress):

@@ -72,7 +72,7 @@ def no_joints(n_bodies):
 
 @borrowing_kernel
 def press_anew(joints, contacts, n_contacts):
-    """Whether a pair without a joint presses on each other; the first ``n_contacts`` of the contacts are of bodies."""
+    """Whether two bodies without a joint press on each other; the first ``n_contacts`` of the contacts are of bodies."""
     for contact in range(n_contacts):
         a, b = contacts.body_a[contact], contacts.body_b[contact]
         if joints.row[a, b] < 0 and contacts.impulse[contact, 0] > 0.0:
@@ -82,7 +82,7 @@ def press_anew(joints, contacts, n_contacts):
 
 @kernel
 def with_pressed(joints, contacts, n_contacts):
-    """Joints, and after them those of pairs that press on each other for the first time; they have not slipped yet.
+    """Joints, followed by those of bodies that press on each other for the first time, which have not slipped yet.
 
     The first ``n_contacts`` of the contacts are of bodies. ``row`` is changed in place.
     """

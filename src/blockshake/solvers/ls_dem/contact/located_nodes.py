@@ -106,7 +106,7 @@ def _follow(packets, packet, located, row, lane, pose):
 
 @inline_kernel
 def _find(packets, packet, located, row, lane, phi, nx, ny, nz, slope):
-    """Keep what was found at a node; whether it is inside or its spring is held."""
+    """Write value, slope, normal and area inside of a node; whether it is inside or its spring is stretched."""
     located[row, PHI + lane] = phi
     located[row, SLOPE + lane] = slope
     put_triple(located, row, NORMAL, lane, nx, ny, nz)

@@ -41,14 +41,14 @@ class Laws(NamedTuple):
 
 @kernel
 def no_factor():
-    """Nothing factored yet."""
+    """Factor of no contacts, before the first factorisation."""
     none = np.empty(0, np.int64)
     return Factor(none, none, none, np.empty((0, 3)), np.zeros(2), np.empty((0, 0)), none)
 
 
 @kernel
 def empty_laws(n_contacts):
-    """Work space."""
+    """Arrays for the laws of so many contacts."""
     return Laws(np.empty((n_contacts, 3, 3)), np.empty((n_contacts, 3)), np.empty(n_contacts, np.int64))
 
 

@@ -46,7 +46,7 @@ class ContactMotion(NamedTuple):
 
 @kernel
 def empty_motion(n_bodies, n_points, n_contacts):
-    """Work space."""
+    """Arrays for the velocities of so many bodies, lattice points and contacts."""
     return ContactMotion(
         np.empty((n_bodies, 6)), np.empty((n_points, 3)), np.empty((n_points, 3)), np.empty((n_contacts, 3))
     )
@@ -231,7 +231,7 @@ class Operator(NamedTuple):
 
 @kernel
 def empty_operator(problem, contacts):
-    """Nothing known but which contacts are coupled."""
+    """Operator that knows no contact yet, but which of them are coupled."""
     n, driven = contacts.gap.size, problem.bodies.driven
     of_body, last = np.full(driven.size, -1, np.int64), np.arange(n)
     for contact in range(n):
