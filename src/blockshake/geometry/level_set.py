@@ -15,12 +15,8 @@ def box_distance(x, y, z, a, b, c, chamfer):
 
     Parameters
     ----------
-    x, y, z : float
-        Point in the body frame [m].
-    a, b, c : float
-        Half edge lengths along body x, y, z [m].
-    chamfer : float
-        Leg of the 45-degree chamfer [m].
+    x, y, z, a, b, c, chamfer : float
+        Point in the body frame; half edge lengths along body x, y, z; leg of the 45-degree chamfer [m].
 
     Returns
     -------

@@ -228,27 +228,19 @@ def grid_distance(x, y, z, values, first, ox, oy, oz, n_x, n_y, n_z, inverse_spa
     ----------
     x, y, z : float
         Point in the body frame [m].
-    values : float64 array, shape (n_values,)
-        As in `GridTable` [m].
-    first : float
-        Index of the shape's first value, a whole number.
-    ox, oy, oz : float
-        Origin of its lattice [m].
-    n_x, n_y, n_z : float
-        Points along each axis, whole numbers.
-    inverse_spacing : float
-        Cells per metre.
+    values, first : float64 array, shape (n_values,), float
+        Values of `GridTable` [m]; index of the shape's first one, a whole number.
+    ox, oy, oz, n_x, n_y, n_z, inverse_spacing : float
+        Origin of its lattice [m]; points along each axis, whole numbers; cells per metre.
 
     Returns
     -------
     phi : float
         Trilinear value [m], negative inside. Beyond the grid a bound: positive, at most the
         true distance, at most what the level set can have fallen by since a point inside.
-    nx, ny, nz : float
+    nx, ny, nz, slope : float
         The gradient of the interpolation, made a unit vector; zero where it has none. Beyond
-        the grid, that of the nearest point of the grid.
-    slope : float
-        Length of the gradient [1]: 1 over a flat, less where a cell holds an edge.
+        the grid, that of the nearest point of the grid. Its length is 1 over a flat, less where a cell holds an edge.
 
     Notes
     -----

@@ -11,13 +11,7 @@ from blockshake.geometry.meshes.mesh_file import shown
 def check_offset(body, solid, source):
     """Refuse a mass centre where no distribution of mass within the shape can have it.
 
-    Parameters
-    ----------
-    body : Body
-        Of the structure file.
-    solid : Solid
-        Its shape about the centroid.
-    source : str
+    ``body`` (Body) is the structure file's, ``solid`` (Solid) its shape about the centroid.
 
     Raises
     ------
@@ -62,16 +56,9 @@ def offset_solid(solid, offset):
 
 
 def offset_inertia(mass, inertia, offset):
-    """Inertia about a mass centre that lies at ``offset`` from the centroid: float64 array, shape (3, 3) [kg m2].
+    """Inertia about a mass centre that lies at ``offset`` (3,) from the centroid: float64 array, shape (3, 3) [kg m2].
 
-    Parameters
-    ----------
-    mass : float
-        [kg]
-    inertia : float64 array, shape (3, 3)
-        About the centroid at uniform density, body axes [kg m2].
-    offset : float64 array, shape (3,)
-        Body frame [m].
+    ``mass`` [kg]; ``inertia`` (3, 3): about the centroid at uniform density, body axes [kg m2]; body frame [m].
 
     Notes
     -----

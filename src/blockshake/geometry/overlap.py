@@ -9,21 +9,10 @@ _MOST_AT_ONCE = 2**19  # pairs of edges, or of faces and corners, held at a time
 
 
 def near_pairs(solids, position, orientation, clearance):
-    """Pairs of bodies whose bounding boxes, along the world's axes, are nearer than ``clearance``.
+    """Pairs of bodies whose boxes along the world's axes come within ``clearance`` [m], as `find_pairs` gives them.
 
-    Parameters
-    ----------
-    solids : list of Solid
-        Shape of each body.
-    position, orientation : float64 arrays, shape (n_bodies, 3) and (n_bodies, 4)
-        Mass centres [m]; unit quaternions (w, x, y, z), body to world.
-    clearance : float
-        [m]
-
-    Returns
-    -------
-    int64 array, shape (n_pairs, 2)
-        First index below the second, sorted.
+    ``solids``: `Solid` of each body; ``position`` (n_bodies, 3): mass centres [m]; ``orientation`` (n_bodies, 4): unit
+    quaternions (w, x, y, z), body to world.
     """
     turned = rotation_matrices(orientation)
     corners = [solid.vertices @ rotation.T for solid, rotation in zip(solids, turned, strict=True)]

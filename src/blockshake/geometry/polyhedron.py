@@ -56,19 +56,10 @@ class Polyhedron:
 
 
 def box_vertices(size, chamfer):
-    """Vertices of a box whose twelve edges are cut at 45 degrees.
+    """Vertices of a box whose twelve edges are cut at 45 degrees: float64 array, shape (8, 3) or (32, 3).
 
-    Parameters
-    ----------
-    size : sequence of 3 floats
-        Full edge lengths along body x, y, z [m].
-    chamfer : float
-        Leg of the chamfer on each adjacent face [m]; 0 gives the sharp box.
-
-    Returns
-    -------
-    float64 array, shape (8, 3) or (32, 3)
-        With a chamfer: the 24 corners of the six flats, then the 8 points where three chamfers meet.
+    ``size``: full edge lengths along body x, y, z [m]; ``chamfer``: leg of the chamfer on each adjacent face, 0 for the
+    sharp box [m]. With a chamfer: the 24 corners of the six flats, then the 8 points where three chamfers meet.
     """
     half = np.asarray(size, dtype=float) / 2.0
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)

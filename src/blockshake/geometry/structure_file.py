@@ -119,12 +119,7 @@ def check_names(file, source):
 def check_transducers(file, orientation, source):
     """Refuse displacement transducers that read nothing, or whose name is another sensor's.
 
-    Parameters
-    ----------
-    file : StructureFile
-    orientation : float64 array, shape (n_bodies, 4)
-        Unit quaternions (w, x, y, z), body to world.
-    source : str
+    ``orientation`` (n_bodies, 4): unit quaternions (w, x, y, z), body to world.
 
     Raises
     ------
@@ -212,18 +207,9 @@ class _Point(NamedTuple):
 
 
 def check_points(file, solids, source):
-    """Refuse points farther off their bodies than three times these bodies' longest edge.
+    """Refuse points farther off their bodies than three times these bodies' longest edge, with `InputError`.
 
-    Parameters
-    ----------
-    file : StructureFile
-    solids : dict of str to Solid
-        By shape name.
-    source : str
-
-    Raises
-    ------
-    InputError
+    ``solids``: `Solid` by shape name.
     """
     for point in _points(file, solids):
         if point.away > _REFUSED * point.edge:

@@ -53,22 +53,12 @@ def box_nodes(size, chamfer, hollow, spacing, inset):
 
 
 def line_nodes(length, spacing, inset):
-    """Evenly spaced nodes on a centred line, with weights exact for cubic functions.
+    """Evenly spaced nodes on a centred line, with weights exact for cubic functions: float64 arrays (n,) each [m].
 
-    Parameters
-    ----------
-    length : float
-        [m]
-    spacing : float
-        Aimed distance [m]; at least two intervals.
-    inset : float
-        Distance of the end nodes from the line's ends [m].
-
-    Returns
-    -------
-    positions, weights : float64 arrays, shape (n,)
-        [m]; the trapezoidal weights, scaled to the whole length, with part of the end weights moved to their neighbours
-        so that the second moment is ``length**3 / 12``. With two intervals and no inset this is Simpson's rule.
+    ``length`` [m]; ``spacing``: aimed distance, at least two intervals [m]; ``inset``: distance of the end nodes from
+    the line's ends [m]. The weights are trapezoidal, scaled to the whole length, with part of the end weights moved to
+    their neighbours so that the second moment is ``length**3 / 12``. With two intervals and no inset this is Simpson's
+    rule.
     """
     n_intervals = max(2, round(length / spacing))
     positions = np.linspace(-0.5, 0.5, n_intervals + 1) * (length - 2.0 * inset)

@@ -60,23 +60,19 @@ def integrate(assembly, times, pause, progress, candidates, joints, record):
 
     Parameters
     ----------
-    assembly : Assembly
-    times : float64 array, shape (n_times,)
+    assembly, times : Assembly, float64 array, shape (n_times,)
         When to record, increasing from 0 [s].
     pause : int
         Step before which to pause.
-    progress : LeapfrogProgress
-        Changed in place.
-    candidates, joints : Candidates, NearPairs
-        Near nodes with the shear springs of the step before.
-    record : RunRecord
-        Filled from the next record on.
+    progress, candidates, joints, record : LeapfrogProgress, Candidates, NearPairs, RunRecord
+        The progress is changed in place; near nodes have the shear springs of the step before; the record is filled
+        from the next row on.
 
     Returns
     -------
     code, culprit : int
         Of `blockshake.solvers.record`; body that collapsed or ran away, else -1.
-    candidates, joints, record : Candidates, NearPairs, RunRecord
+    candidates, joints, record
         To go on with.
 
     Notes

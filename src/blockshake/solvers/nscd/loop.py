@@ -43,24 +43,19 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
 
     Parameters
     ----------
-    scene : ContactScene
-    times : float64 array, shape (n_times,)
+    scene, times : ContactScene, float64 array, shape (n_times,)
         When to record, increasing from 0 [s].
     pause : int
         Number of steps made after which to pause.
-    progress : Progress
-        Changed in place.
-    contacts : Contacts
-        Of the step before, to start the next one from.
-    joints : Joints
-    record : RunRecord
-        Filled from the next record on.
+    progress, contacts, joints, record : Progress, Contacts, Joints, RunRecord
+        The progress is changed in place; contacts of the step before, to start the next one from; the record is filled
+        from the next row on.
 
     Returns
     -------
     code, culprit : int
         Of `blockshake.solvers.record`; body that collapsed or ran away, else -1.
-    contacts, joints, record : Contacts, Joints, RunRecord
+    contacts, joints, record
         To go on with.
 
     Notes

@@ -72,7 +72,7 @@ def no_joints(n_bodies):
 
 @borrowing_kernel
 def press_anew(joints, contacts, n_contacts):
-    """Whether two bodies without a joint press on each other; the first ``n_contacts`` of the contacts are of bodies."""
+    """Whether two bodies without a joint press on each other; the first ``n_contacts`` contacts are those of bodies."""
     for contact in range(n_contacts):
         a, b = contacts.body_a[contact], contacts.body_b[contact]
         if joints.row[a, b] < 0 and contacts.impulse[contact, 0] > 0.0:

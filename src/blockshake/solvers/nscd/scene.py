@@ -63,19 +63,10 @@ def reordered(part, order):
 
 
 def assemble_scene(structure, bodies, stoppers, motion, parameters, time_step, order):
-    """Scene of a structure under a motion.
+    """Scene of a structure under a motion; ``order`` int64 (n_bodies,) is that of `order_of_bodies`.
 
-    Parameters
-    ----------
-    structure : Structure
-    bodies, stoppers : Bodies, Stoppers
-        Of `assemble_bodies`, in the order of the file.
-    motion : GroundMotion or None
-    parameters : NscdParameters
-    time_step : float
-        [s]
-    order : int64 array, shape (n_bodies,)
-        From `order_of_bodies`.
+    ``bodies`` and ``stoppers`` are those of `assemble_bodies`, in the order of the file; ``motion`` is None for a
+    ground at rest; ``parameters`` (NscdParameters); ``time_step`` [s].
 
     Raises
     ------

@@ -50,20 +50,9 @@ def corner_gradients(point, size):
 
 
 def brick_matrices(size, poisson_ratio):
-    """Stiffness and consistent mass of one brick.
+    """Stiffness for a Young's modulus of 1 [m] and consistent mass for a density of 1 [m3] of one brick, (24, 24) each.
 
-    Parameters
-    ----------
-    size : float64 array, shape (3,)
-        Edge lengths [m].
-    poisson_ratio : float
-
-    Returns
-    -------
-    stiffness : float64 array, shape (24, 24)
-        For a Young's modulus of 1 [m].
-    mass : float64 array, shape (24, 24)
-        For a density of 1 [m3].
+    ``size`` (3,): edge lengths [m].
 
     Notes
     -----

@@ -71,24 +71,15 @@ def _joint_points_into(P, g, n_s, n_t, area, points, clearance, areas):
 def joint_points(corners, gaps, count, spacing):
     """Points over a joint, from its corners.
 
-    Parameters
-    ----------
-    corners : float64 array, shape (4, 3)
-        In order around the joint [m]; the first ``count`` are used.
-    gaps : float64 array, shape (4,)
-        Clearance at each [m].
-    count : int
-        4 for a face, 3 for a triangle, 2 for an edge, 1 for a point.
-    spacing : float
-        Largest distance of neighbours [m].
+    ``corners`` (4, 3): in order around the joint [m], of which the first ``count`` are used: 4 of a face, 3 of a
+    triangle, 2 of an edge, 1 of a point; ``gaps`` (4,): clearance at each [m]; ``spacing``: largest distance of
+    neighbours [m].
 
     Returns
     -------
-    points : float64 array, shape (n, 3)
-    clearance : float64 array, shape (n,)
-        Bilinear between the corners, as the points are [m].
-    areas : float64 array, shape (n,)
-        Part of the joint that each stands for, by the trapezoidal rule, exact for a parallelogram [m2].
+    points, clearance, areas : float64 arrays, shape (n, 3), (n,), (n,)
+        Clearance bilinear between the corners, as the points are [m]; part of the joint that each stands for, by the
+        trapezoidal rule, exact for a parallelogram [m2].
     """
     P = np.empty((4, 3))
     g = np.empty(4)

@@ -48,15 +48,9 @@ class Deformation(NamedTuple):
 
 
 def pack_elastic(structure, order, parameters, viscous):
-    """Elastic shapes of a structure's bodies, in the order of the body indices ``order``.
+    """Elastic shapes of a structure's bodies, in the order of the body indices ``order``, int64 (n_bodies,).
 
-    Parameters
-    ----------
-    structure : Structure
-    order : int64 array, shape (n_bodies,)
-    parameters : DeformableParameters
-    viscous : bool
-        Whether the viscous moduli act.
+    ``parameters`` (DeformableParameters); ``viscous``: whether the viscous moduli act.
 
     Raises
     ------
@@ -161,20 +155,11 @@ def _cell(elastic, body, axis, x):
 
 @borrowing_kernel
 def anchor_into(elastic, body, x, outward, points, weights):
-    """Four points of a body's lattice around a place on its surface, and their weights.
+    """Four points of a body's lattice around a place on its surface, and their weights, overwritten.
 
-    Parameters
-    ----------
-    elastic : Elastic
-    body : int
-    x : three floats
-        Place seen from the mass centre, body frame [m].
-    outward : three floats
-        Direction out of the body there, body frame: says on which of the six faces the place is.
-    points : int64 array, shape (4,)
-        Overwritten: indices among the points of all bodies.
-    weights : float64 array, shape (4,)
-        Overwritten: bilinear, of sum 1 [1]; zero where the body is rigid.
+    ``x``: the place, seen from the mass centre [m]; ``outward``: direction out of the body there, which says on which
+    of the six faces the place is; body frame. ``points`` int64 (4,): indices among the points of all bodies;
+    ``weights`` (4,): bilinear, of sum 1 [1], zero where the body is rigid.
     """
     for corner in range(4):
         points[corner], weights[corner] = 0, 0.0

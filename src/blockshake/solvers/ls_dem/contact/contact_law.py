@@ -102,22 +102,17 @@ def node_force(phi, slope, nx, ny, nz, ux, uy, uz, ox, oy, oz, closed, area, wei
     ----------
     phi, slope, nx, ny, nz : float
         Level-set value [m], length of its gradient [1] and outward normal of the other body there.
-    ux, uy, uz : float
-        Change of place since the step before, other's frame [m].
-    ox, oy, oz : float
-        Stretch of the shear spring so far, other's frame [m].
+    ux, uy, uz, ox, oy, oz : float
+        Change of place since the step before, and stretch of the shear spring so far, other's frame [m].
     closed : float
         Change of place along the normal in the step before [m].
-    area, weight : float
+    area, weight, law : float, float, Law
         Of the node [m2]; what its dashpot goes with.
-    law : Law
 
     Returns
     -------
-    fx, fy, fz : float
-        On the owner, other's frame [N].
-    sx, sy, sz, closed : float
-        Stretch and change along the normal now [m].
+    fx, fy, fz, sx, sy, sz, closed : float
+        Force on the owner, other's frame [N]; stretch and change along the normal now [m].
     held, slid, damped : float
         Energy that the springs hold, friction heat and dashpot heat of the step [J].
 

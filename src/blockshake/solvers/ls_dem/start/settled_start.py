@@ -26,19 +26,13 @@ def settled_start(structure, assembly, state):
     """Put stacks at rest into their equilibrium, and find what is near and what touches there.
 
     Where a stack has no equilibrium near, or only one that squeezes it, what its bodies overlap by is taken up
-    (`joints_as_laid`), and its equilibrium sought once more.
-
-    Parameters
-    ----------
-    structure, assembly : Structure, Assembly
-    state : State
-        As given; the poses of bodies that have an equilibrium near are changed.
+    (`joints_as_laid`), and its equilibrium sought once more. Of ``state`` the poses of bodies that have an equilibrium
+    near are changed.
 
     Returns
     -------
-    candidates, joints : Candidates, NearPairs
-    started : float64 array, shape (3,)
-        Settling steps made, largest stable time step [s], and deepest overlap taken up [m].
+    candidates, joints, started : Candidates, NearPairs, float64 array, shape (3,)
+        The last: settling steps made, largest stable time step [s], and deepest overlap taken up [m].
 
     Raises
     ------

@@ -34,10 +34,7 @@ class BlockSystem(NamedTuple):
 def block_system(driven, body_a, body_b):
     """`BlockSystem` of bodies joined in pairs, its numbers not filled in.
 
-    Parameters
-    ----------
-    driven : bool array, shape (n_bodies,)
-    body_a, body_b : int64 arrays, shape (n_contacts,)
+    ``driven`` bool (n_bodies,); ``body_a``, ``body_b`` int64 (n_contacts,).
 
     Notes
     -----

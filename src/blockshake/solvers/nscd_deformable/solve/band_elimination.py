@@ -7,14 +7,10 @@ _PANEL = 8  # pivots eliminated at a time; `_eliminate_below_into` names each
 
 @borrowing_kernel
 def factor_into(A, last):
-    """Replace a matrix by its two triangular factors; False where a pivot is zero.
+    """Replace a matrix ``A`` (n, n) by its two triangular factors; False where a pivot is zero.
 
-    Parameters
-    ----------
-    A : float64 array, shape (n, n)
-        Overwritten: multipliers below the diagonal, the upper factor on and above it.
-    last : int64 array, shape (n,)
-        Last row and column that is not zero beyond the diagonal of each, not decreasing.
+    The multipliers stand below the diagonal, the upper factor on and above it. ``last`` int64 (n,): last row and column
+    that is not zero beyond the diagonal of each, not decreasing.
 
     Notes
     -----
