@@ -13,8 +13,8 @@ import yaml
 from blockshake.dynamics.motion import ground_motion
 from blockshake.files import load_yaml, shipped, write_dataset
 from blockshake.simulation.simulate import simulate, simulate_to_file
-from blockshake.solvers import kept_rows, pieces
-from blockshake.solvers.checkpoint import Checkpoint
+from blockshake.solvers import pieces
+from blockshake.solvers.checkpoint import Checkpoint, KeptRows
 
 TIME = np.linspace(0.0, 1.0, 201)
 # a pulse that overturns the stack within the second, and one that does not
@@ -87,7 +87,7 @@ def test_transducers_read_the_same_part_by_part(accelerometers, few_rows_at_hand
 @pytest.mark.parametrize("model", sorted(STEP))
 def test_a_run_that_was_cut_goes_on_to_the_same_bits(model, few_rows_at_hand, tmp_path, monkeypatch):
     arguments = "configuration-1", SHAKES["stands"], model
-    path, put, save = tmp_path / "run.nc", kept_rows.KeptRows.put, Checkpoint.save
+    path, put, save = tmp_path / "run.nc", KeptRows.put, Checkpoint.save
     saved, loaded = [], []
 
     def cut_after_some(kept, first, rows):
@@ -102,7 +102,7 @@ def test_a_run_that_was_cut_goes_on_to_the_same_bits(model, few_rows_at_hand, tm
     monkeypatch.setattr(Checkpoint, "save", often)
     monkeypatch.setattr(pieces.Due, "__call__", lambda due: len(saved) < 12)
     monkeypatch.setattr(pieces, "_next_piece", lambda steps, spent: 150)
-    monkeypatch.setattr(kept_rows.KeptRows, "put", cut_after_some)
+    monkeypatch.setattr(KeptRows, "put", cut_after_some)
     with pytest.raises(_CutError):
         simulate_to_file(path, *arguments, time_step=STEP[model], duration=DURATION)
     assert not path.exists()
@@ -111,7 +111,7 @@ def test_a_run_that_was_cut_goes_on_to_the_same_bits(model, few_rows_at_hand, tm
     shutil.copy(f"{path}.checkpoint", tmp_path / "copy.checkpoint")
     load = Checkpoint.load
     monkeypatch.setattr(Checkpoint, "load", lambda saving: loaded.append(load(saving)) or loaded[-1])
-    monkeypatch.setattr(kept_rows.KeptRows, "put", put)
+    monkeypatch.setattr(KeptRows, "put", put)
     simulate_to_file(path, *arguments, time_step=STEP[model], duration=DURATION)
     assert int(loaded[0][-1].first[0]) == reached  # it did go on, with rows from before
     # a run in memory has no such rows, and starts anew
@@ -125,7 +125,7 @@ def test_kept_rows_serve_their_own_run_alone_and_only_when_all_are_there(tmp_pat
     def rows(count):
         return type("Rows", (), {"time": np.zeros(count)})
 
-    kept = kept_rows.KeptRows(tmp_path / "rows", lambda rows: {"time": (rows.time,)})
+    kept = KeptRows(tmp_path / "rows", lambda rows: {"time": (rows.time,)})
     kept.begin("key")
     kept.put(0, rows(5))
     kept.put(5, rows(3))
