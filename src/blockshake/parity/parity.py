@@ -17,9 +17,8 @@ from blockshake.parity.correction import corrected
 from blockshake.parity.finding import Finding, Level
 from blockshake.parity.kinds.body_gain import body_gains
 from blockshake.parity.kinds.clock import clock_findings, clock_lag
-from blockshake.parity.kinds.drift import drift_findings
+from blockshake.parity.kinds.drift import drift_findings, frame_drift, short_lines
 from blockshake.parity.kinds.exchange import channel_exchanges, marker_exchanges
-from blockshake.parity.kinds.frame_drift import frame_drift, short_lines
 from blockshake.parity.kinds.gain import channel_gains, gain_findings
 from blockshake.parity.kinds.saturation import saturation
 from blockshake.parity.transducer_readings import held_readings
@@ -48,7 +47,8 @@ class Parity:
     channels : xarray.Dataset
         ``gain(channel)``, reading over truth less 1, with ``gain_error(channel)`` [1].
     transducers : xarray.Dataset
-        The same of displacement transducers; NaN where markers do not see the ends, or the bodies hardly moved apart.
+        ``gain(transducer)`` of displacement transducers, with ``gain_error(transducer)`` [1]; NaN where markers do not
+        see both ends, or the bodies hardly moved apart.
     looked_at : int
         Number of hypotheses.
     falls : dict of str to Fall
@@ -67,7 +67,7 @@ class Parity:
     gaps: dict
 
     def as_json(self):
-        """As JSON-like values, NaN as null; of transducers only where there are any."""
+        """JSON-like values, NaN as null; transducers are listed only where there are any."""
         tables = {name: _rows(getattr(self, name)) for name in _TABLES}
         return {
             "findings": [finding.as_json() for finding in self.findings],
@@ -88,7 +88,7 @@ class Parity:
 
     @classmethod
     def from_json(cls, values):
-        """The parity of such values."""
+        """Read the outcome from the values of `as_json`."""
         return cls(
             findings=tuple(map(Finding.from_json, values["findings"])),
             **{name: _table(name, values.get(name, {})) for name in _TABLES},
