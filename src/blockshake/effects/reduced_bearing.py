@@ -31,10 +31,6 @@ def _act(experiment, values, place):
     )
 
 
-def _seen_at(structure):
-    return [{}, *joints(structure)]
-
-
 def _columns(seen, place):
     """Edges further in alike at all rotations, edges that roll, and, of one joint, an inset of any shape over rotation.
 
@@ -78,7 +74,7 @@ EFFECT = Effect(
     places=nowhere,
     act=_act,
     columns=_columns,
-    seen_at=_seen_at,
+    seen_at=lambda structure: [{}, *joints(structure)],
     extends=lambda experiment, values, place: _act(experiment, values, {}),
     reads=lambda values, size, between: {"inset": np.maximum(size, 0.0)},
 )

@@ -83,13 +83,12 @@ def with_roles(tests):
     for fitting. A motion of one test only has it for fitting.
     """
     roles = ["fit"] * len(tests)
-    for place, test in enumerate(tests):
-        same = [other["motion"] == test["motion"] for other in tests]
-        last = max(index for index, is_same in enumerate(same) if is_same)
-        if sum(same) > 1 and place == last:
-            roles[place] = "sealed"
-        elif sum(same) > 2 and place == last - 1 and last == len(tests) - 1:
-            roles[place] = "select"
+    for index, test in enumerate(tests):
+        same = np.flatnonzero([other["motion"] == test["motion"] for other in tests])
+        if len(same) > 1 and index == same[-1]:
+            roles[index] = "sealed"
+        elif len(same) > 2 and index == len(tests) - 2:
+            roles[index] = "select"
     return [{**test, "role": role} for test, role in zip(tests, roles, strict=True)]
 
 

@@ -44,11 +44,9 @@ OF_END = Column(SLIP, 1, 5e-4, lambda held: held.misfit[:, None] * 0.0, by_test=
 
 def of_marker(noise):
     """Column of a marker's drift over the record, of which its stated noise [m] is tolerated."""
-    return Column(DRIFT, 3, noise, _signature, by_test=True)
-
-
-def _signature(seen):
-    return (seen.scale[:, None, None] * seen.back)[:, None]
+    return Column(
+        DRIFT, 3, noise, lambda seen: (seen.scale[:, None, None] * seen.back)[:, None], by_test=True
+    )
 
 
 def drift_findings(pairs_by_test, lags, noise, level):
