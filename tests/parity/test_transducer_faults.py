@@ -53,14 +53,6 @@ def _only(held, effect, quantity):
     return check.findings[0]
 
 
-@pytest.mark.parametrize("gain", [0.05, -0.04])
-def test_a_gain_is_named(gain):
-    finding = _only(held_readings(1, gain=gain), "sensor-gain", "gain")
-    # a sound one is within 0.5 % of the stated gain
-    assert abs(finding.estimate[0] - gain) < 4.0 * np.hypot(5e-3, finding.standard_error[0])
-    assert finding.tests == TESTS
-
-
 def test_an_end_elsewhere_is_named_with_its_place_along_what_is_seen():
     finding = _only(held_readings(2, place=(0.0, 0.0, 0.06)), "marker-offset", "place")
     assert abs(finding.estimate[2] - 0.06) < 4.0 * np.hypot(2.5e-3, finding.standard_error[2])
