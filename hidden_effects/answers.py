@@ -7,9 +7,8 @@ from outside_forces import OUTSIDE
 
 from blockshake.diagnosis.verdict.verdict import Verdict
 from blockshake.effects.registry import EFFECTS
-from blockshake.effects.sensors import clock_lag, marker_offset, sensor_gain
 
-SENSORS = {file.EFFECT.name for file in (clock_lag, marker_offset, sensor_gain)}
+SENSORS = {name for name, effect in EFFECTS.items() if effect.acts == "observation"}
 # forms from outside that make the forces of an effect of the registry, or nearly: said as one class, they are right
 ALIKE = {
     "stopper-contact": {"rope", "spring-once"},

@@ -24,7 +24,7 @@ def test_an_offset_is_known_where_the_table_moves_before_its_markers_show_it(nam
     test = readings(structure, lambda t: np.array([[_at_once(t), 0.0, 0.0]] * 2), noise=1e-4, noise_acc=0.02)
     test["accelerometer"] = test["accelerometer"] + OFFSET
     sensors = Sensors(marker_noise=1e-4, accelerometer_noise=0.02)
-    motion = smooth_motion(counted_from_rest(test, structure, sensors)[0], structure, sensors, 0.01)
+    motion = smooth_motion(counted_from_rest(test, structure, sensors)[0], structure, sensors)
     body = structure.body_names.index(name)
     step = 1e-3
     true = (

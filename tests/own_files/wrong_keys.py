@@ -67,7 +67,6 @@ VIRTUAL = {
     "name": "made", "seed": 1, "model": "nscd-rigid", "time_step": 1e-3, "numerics": {"nscd.impact_parts": 2},
     "duration": 1.0, "motions": ["push.csv"], "baseline": "auto",
     "intensities": {"first": 0.5, "increment": 0.25, "highest": 1.0, "largest_drift": 0.4},
-    "sine": {"frequency": 5.0, "acceleration": 0.1, "duration": 1.0},
     "table": {"gain": 1.0, "high": 0.0, "corner": 2.0, "pitch": 0.0}, "misplacement": 0.0,
     "survey_noise": 0.0,
     "instruments": {
@@ -383,9 +382,6 @@ ROWS = {
         ("intensities.increment", 1e-9, "at most 1000 scales"),
         ("intensities.highest", 0.1, "`highest` not below `first`"),
         ("intensities.largest_drift", 0.0, _LOWER),
-        ("sine.frequency", 0.0, _LOWER),
-        ("sine.acceleration", 0.0, _LOWER),
-        ("sine.duration", 0.0, _LOWER),
         ("table.gain", 0.0, _LOWER),
         ("table.high", "big", "valid number"),
         ("table.corner", 0.0, _LOWER),

@@ -1,4 +1,4 @@
-"""Every kind of sensor fault has a file of its own, a row in the registry and a row in the docs."""
+"""Every kind of sensor fault has a row in the registry and a row in the docs."""
 
 import pytest
 

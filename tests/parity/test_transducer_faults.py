@@ -29,10 +29,12 @@ def held_readings(seed, gain=0.0, place=(0.0, 0.0, 0.0), slip=None):
         places = np.zeros((len(time), 6))
         places[:, 0], places[:, 2] = -5e-4 * turn**2, 0.02 * turn
         late = np.gradient(expected, time)
-        left = gain * expected + places[:, :3] @ place + 2e-4 * late + generator.normal(0.0, NOISE, len(time))
+        misfit = (
+            gain * expected + places[:, :3] @ place + 2e-4 * late + generator.normal(0.0, NOISE, len(time))
+        )
         if slip and slip[0] == name:
-            left += slip[1] * (time > slip[2])
-        arrays = [one - one.mean(axis=0) for one in (left, expected, places, late)]
+            misfit += slip[1] * (time > slip[2])
+        arrays = [one - one.mean(axis=0) for one in (misfit, expected, places, late)]
         held[name] = HeldReading(time, *arrays, noise=NOISE)
     return held
 
@@ -49,14 +51,6 @@ def _only(held, effect, quantity):
         (effect, ("wire",), quantity)
     ]
     return check.findings[0]
-
-
-@pytest.mark.parametrize("gain", [0.05, -0.04])
-def test_a_gain_is_named(gain):
-    finding = _only(held_readings(1, gain=gain), "sensor-gain", "gain")
-    # a sound one is within 0.5 % of the stated gain
-    assert abs(finding.estimate[0] - gain) < 4.0 * np.hypot(5e-3, finding.standard_error[0])
-    assert finding.tests == TESTS
 
 
 def test_an_end_elsewhere_is_named_with_its_place_along_what_is_seen():
@@ -98,8 +92,8 @@ def test_bodies_that_do_not_move_apart_tell_no_gain_and_no_place(quieter):
     held = {}
     for name, one in held_readings(6).items():
         noise = generator.normal(0.0, NOISE, len(one.time))
-        left = quieter * generator.normal(0.0, NOISE, len(one.time)) - noise
-        held[name] = replace(one, expected=noise, left=left, places=0.0 * one.places + noise[:, None])
+        misfit = quieter * generator.normal(0.0, NOISE, len(one.time)) - noise
+        held[name] = replace(one, expected=noise, misfit=misfit, places=0.0 * one.places + noise[:, None])
     check = check_transducer("wire", held, LEVEL)
     assert np.isnan(check.gain)
     assert check.findings == ()

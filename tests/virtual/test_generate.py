@@ -131,16 +131,6 @@ def test_a_clock_that_is_ahead_reads_to_the_end(make):
     assert float(test["time"][-1]) == pytest.approx(SETTINGS["duration"] + 0.02, abs=2e-4)
 
 
-def test_low_amplitude_tests_come_before_and_between(make):
-    folder, _, said = make(sine={"frequency": 5.0, "acceleration": 0.3, "duration": 1.0})
-    order = [line.split(":")[0] for line in said]
-    assert order == ["sine-00", "motion-100", "sine-01", "motion-200", "sine-02", "motion-300"]
-    sine = load_test(load_campaign(folder), "sine-00")
-    slab = sine["marker_displacement"].sel(marker="slab-face", axis="x")
-    # amplitude of a displacement a / omega^2, and noise
-    assert float(np.abs(slab).max()) == pytest.approx(0.3 / (10.0 * np.pi) ** 2, abs=6e-4)
-
-
 def test_a_ladder_ends_where_a_block_drifts_too_far(make):
     folder, _, said = make(
         intensities={"first": 1.0, "increment": 1.0, "highest": 3.0, "largest_drift": 0.01}

@@ -8,7 +8,8 @@ from blockshake.dynamics.motion import ground_motion
 from blockshake.effects.effect import Experiment
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.instruments import Instruments
-from blockshake.virtual.table import TableErrors, followed
+from blockshake.virtual.settings import TableErrors
+from blockshake.virtual.shake_table import followed
 
 STRUCTURE = load_structure("configuration-1")
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
+from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import nowhere
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import DEEPEST_OVERLAP
@@ -58,7 +58,7 @@ def _bedded(experiment, index, compliance):
     mapping["shapes"][bed] = {"box": [width, float(size[1]), _THICKNESS]}
     mapping["bodies"][index]["driven"] = False
     mapping["bodies"].append(beneath)
-    friction = next((one for one in mapping["friction"] if set(one["pair"]) == {body.material}), None)
+    friction = next((entry for entry in mapping["friction"] if set(entry["pair"]) == {body.material}), None)
     if friction is None:
         friction = {"pair": [body.material, body.material], "coefficient": _GRIP}
         mapping["friction"].append(friction)
@@ -91,7 +91,6 @@ EFFECT = Effect(
     parameters=(
         EffectParameter("compliance", "rad/(N m)", "rotation of the base by moment", 0.0, 0.0, 6e-9, 2e-9),
     ),
-    signature=Signature("quiet", "symmetric"),
     confused_with=("table-pitch", "joint-compliance"),
     told_apart_by="vertical displacement of two markers on the slab, apart along x, under blocks of another mass",
     places=nowhere,

@@ -1,6 +1,6 @@
 """The mass centre of a block lies beside its middle."""
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
+from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import blocks
 from blockshake.forces.seen.wrench_histories import mass_centre_off
 
@@ -26,7 +26,6 @@ EFFECT = Effect(
     equation="mass centre at (e, 0, 0) of the shape's centroid: uplift at g (b - e) / h and g (b + e) / h",
     source="statics of a rigid block; inertia by the parallel-axis theorem",
     parameters=(EffectParameter("offset", "m", "of the mass centre along x", 0.0, -0.15, 0.15, 0.06),),
-    signature=Signature("onset", "one-sided"),
     confused_with=("stopper-contact", "marker-offset"),
     told_apart_by="weighing the block on two supports; a test with the block turned about",
     places=blocks,

@@ -1,4 +1,4 @@
-"""Definition of an effect: equation, parameters, place, signature in the data, and the effects it is mistaken for."""
+"""Definition of an effect: equation, parameters, place, rows, and the effects it is mistaken for."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -27,15 +27,15 @@ class Experiment:
     instruments: Instruments
 
     def with_parameters(self, **changed):
-        """The same test of a structure with other parameters; keys with dots are given as ``**{...}``."""
+        """Change parameters of the structure, by dotted name: ``**{"name.of.one": value}``."""
         return replace(self, structure=self.structure.with_parameters(changed))
 
     def with_instruments(self, **changed):
-        """The same test read with these faults too."""
+        """Add faults to the instruments, or replace those of the same name."""
         return replace(self, instruments=Instruments(**{**self.instruments.model_dump(), **changed}))
 
     def with_motion(self, channel, polynomials):
-        """The same test with polynomials added to one channel of the motion, as in `MotionTable`."""
+        """Add polynomials to one channel of the motion, with coefficients as in `MotionTable`."""
         coefficients = self.motion.table.coefficients.copy()
         coefficients[:, channel] += polynomials
         table = self.motion.table._replace(coefficients=coefficients)
@@ -66,25 +66,8 @@ class EffectParameter:
     visible: float
 
 
-@dataclass(frozen=True)
-class Signature:
-    """How what an effect adds to a test looks.
-
-    Attributes
-    ----------
-    phase : str
-        When it shows: in the ``quiet`` phase already and then in proportion to the motion, only after ``onset`` of
-        rocking or sliding, or only beyond a ``displacement``.
-    symmetry : str
-        ``symmetric``: the mirrored motion adds the mirror image; or ``one-sided``.
-    """
-
-    phase: Literal["quiet", "onset", "displacement"]
-    symmetry: Literal["symmetric", "one-sided"]
-
-
 class Columns(NamedTuple):
-    """Rows of the forces that an effect makes in a test, given the measured motion.
+    """Rows of the forces that one variant of an effect makes in a test, given the measured motion.
 
     Attributes
     ----------
@@ -120,7 +103,6 @@ class Effect:
         Law of the effect, and its literature.
     parameters : tuple of EffectParameter
         The first is the size: at its null value nothing is changed, whatever the others.
-    signature : Signature
     confused_with : tuple of str
         Names of effects that leave nearly the same.
     told_apart_by : str
@@ -153,7 +135,6 @@ class Effect:
     equation: str
     source: str
     parameters: tuple[EffectParameter, ...]
-    signature: Signature
     confused_with: tuple[str, ...]
     told_apart_by: str
     places: Callable
@@ -167,7 +148,7 @@ class Effect:
     extends: Callable | None = None
 
     def rows_of(self, seen, place, values):
-        """Rows of the variant that a fit found, (n_rows, n_amplitudes)."""
+        """Rows of the variant with the values of a fit, (n_rows, n_amplitudes)."""
         if self.variant:
             return self.variant(seen, place, values)
-        return next(one.rows for one in self.columns(seen, place) if one.values == values)
+        return next(variant.rows for variant in self.columns(seen, place) if variant.values == values)

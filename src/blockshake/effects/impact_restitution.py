@@ -1,6 +1,6 @@
 """Impacts lose less than the model has them lose."""
 
-from blockshake.effects.effect import Effect, EffectParameter, Signature
+from blockshake.effects.effect import Effect, EffectParameter
 from blockshake.effects.places import nowhere
 
 
@@ -19,7 +19,6 @@ EFFECT = Effect(
     equation="C_res + e in LS-DEM's dashpots, Newton's restitution e in NSCD, where it is 0 otherwise",
     source="Zhou et al. (2023), Eq. (3); Newton's law of impact",
     parameters=(EffectParameter("increase", "1", "of the restitution", 0.0, 0.0, 0.45, 0.3),),
-    signature=Signature("onset", "symmetric"),
     confused_with=("reduced-bearing", "vertical-motion"),
     told_apart_by="free rocking after a snap release: decay of successive peaks",
     places=nowhere,

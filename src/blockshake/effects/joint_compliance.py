@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
+from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import face_of, joints, stated_joint
 from blockshake.forces.seen.wrench_histories import edge_inward, normal_force
 
@@ -65,7 +65,6 @@ EFFECT = Effect(
     parameters=(
         EffectParameter("compliance", "m3/N", "closure of the joint by pressure", 0.0, 0.0, 6e-10, 3e-10),
     ),
-    signature=Signature("quiet", "symmetric"),
     confused_with=("table-pitch", "clock-lag"),
     told_apart_by="rotation of the joint in a test below uplift; vertical displacement of the slab's markers",
     places=joints,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
+from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import nowhere
 from blockshake.forces.seen.wrench_histories import friction_against_slip
 
@@ -51,7 +51,6 @@ EFFECT = Effect(
         EffectParameter("drop", "1", "share of the coefficient lost at high slip rate", 0.0, 0.0, 0.9, 0.7),
         EffectParameter("scale", "m/s", "slip rate at which 63 % of it is lost", 0.01, 0.001, 0.1, 0.01),
     ),
-    signature=Signature("onset", "symmetric"),
     confused_with=("weak-joint",),
     told_apart_by="sine tests of one acceleration and several frequencies, which slip at several rates",
     places=nowhere,

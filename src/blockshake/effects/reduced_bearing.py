@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
+from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import face_of, joints, nowhere
 from blockshake.forces.seen.wrench_histories import edge_inward
 
@@ -18,8 +18,8 @@ def _act(experiment, values, place):
     structure = experiment.structure
     file = structure.file
     mass = {}
-    for body, own, driven in zip(file.bodies, structure.mass, structure.driven, strict=True):
-        mass[body.material] = mass.get(body.material, 0.0) + (0.0 if driven else own)
+    for body, kilograms, driven in zip(file.bodies, structure.mass, structure.driven, strict=True):
+        mass[body.material] = mass.get(body.material, 0.0) + (0.0 if driven else kilograms)
     blocks = max(mass, key=mass.get)  # steel beams keep their edges
     worn = sorted({body.shape for body in file.bodies if not body.driven and body.material == blocks})
     return experiment.with_parameters(
@@ -29,10 +29,6 @@ def _act(experiment, values, place):
             if file.shapes[name].box is not None
         }
     )
-
-
-def _seen_at(structure):
-    return [{}, *joints(structure)]
 
 
 def _columns(seen, place):
@@ -48,21 +44,22 @@ def _columns(seen, place):
     rolled = [
         sum(inset * share**power for inset, share in zip(insets, shares, strict=True)) for power in (1, 2)
     ]
-    found = [
+    variants = [
         Columns({"inset": "alike"}, plain[:, None], (_SCALE,), True),
         Columns({"inset": "rolling"}, np.stack([plain, *rolled], axis=1), (_SCALE,) * 3, True),
     ]
     if place:
         shape = np.stack([plain, *(plain * ramp for ramp in _ramps(turns[0]))], axis=1)
-        found.append(Columns({"inset": "by rotation"}, shape, (_SCALE,) + (_STEP,) * (len(_KNOTS) - 1), True))
-    return found
+        variants.append(
+            Columns({"inset": "by rotation"}, shape, (_SCALE,) + (_STEP,) * (len(_KNOTS) - 1), True)
+        )
+    return variants
 
 
 def _ramps(turn):
     """From knot to knot of the rotation, even in its logarithm: 0 before, 1 after."""
-    place = np.log(np.maximum(turn, _SMALLEST))
-    knots = np.log(_KNOTS)
-    return [np.clip((place - a) / (b - a), 0.0, 1.0) for a, b in pairwise(knots)]
+    turn, knots = np.log(np.maximum(turn, _SMALLEST)), np.log(_KNOTS)
+    return [np.clip((turn - a) / (b - a), 0.0, 1.0) for a, b in pairwise(knots)]
 
 
 EFFECT = Effect(
@@ -72,13 +69,12 @@ EFFECT = Effect(
     equation="chamfer of every block + r: it rocks about edges r further in, above g (b - r) / h, and weighs less",
     source="Housner (1963) with the half width b - r",
     parameters=(EffectParameter("inset", "m", "of the edge", 0.0, 0.0, 0.15, 0.06),),
-    signature=Signature("onset", "symmetric"),
     confused_with=("impact-restitution",),
     told_apart_by="onset of rocking at several intensities; contact prints on the faces",
     places=nowhere,
     act=_act,
     columns=_columns,
-    seen_at=_seen_at,
+    seen_at=lambda structure: [{}, *joints(structure)],
     extends=lambda experiment, values, place: _act(experiment, values, {}),
     reads=lambda values, size, between: {"inset": np.maximum(size, 0.0)},
 )

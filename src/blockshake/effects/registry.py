@@ -12,25 +12,25 @@ from blockshake.effects import (
     vertical_motion,
     weak_joint,
 )
-from blockshake.effects.sensors import clock_lag, marker_offset, sensor_gain
+from blockshake.effects.sensor_faults import CLOCK_LAG, MARKER_OFFSET, SENSOR_GAIN
 from blockshake.errors import InputError
 
-_FILES = (
-    table_pitch,
-    vertical_motion,
-    clock_lag,
-    sensor_gain,
-    marker_offset,
-    stopper_contact,
-    impact_restitution,
-    reduced_bearing,
-    eccentricity,
-    weak_joint,
-    rate_weakening_friction,
-    joint_compliance,
-    base_compliance,
+_EFFECTS = (
+    table_pitch.EFFECT,
+    vertical_motion.EFFECT,
+    CLOCK_LAG,
+    SENSOR_GAIN,
+    MARKER_OFFSET,
+    stopper_contact.EFFECT,
+    impact_restitution.EFFECT,
+    reduced_bearing.EFFECT,
+    eccentricity.EFFECT,
+    weak_joint.EFFECT,
+    rate_weakening_friction.EFFECT,
+    joint_compliance.EFFECT,
+    base_compliance.EFFECT,
 )
-EFFECTS = {file.EFFECT.name: file.EFFECT for file in _FILES}
+EFFECTS = {effect.name: effect for effect in _EFFECTS}
 
 
 def title_of(name):

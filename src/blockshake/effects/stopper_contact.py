@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
+from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import blocks, stops
 from blockshake.forces.seen.point_rows import point_rows
 
@@ -84,7 +84,6 @@ EFFECT = Effect(
         EffectParameter("stiffness", "N/m", "of the stop", 0.0, 0.0, 3e7, 1e7),
         EffectParameter("gap", "m", "clearance at the start", 0.02, 0.002, 0.06, 0.015),
     ),
-    signature=Signature("displacement", "one-sided"),
     confused_with=("eccentricity",),
     told_apart_by="accelerometer on the block: spikes at the same displacement",
     places=stops,

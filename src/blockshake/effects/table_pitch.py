@@ -7,15 +7,13 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import cont2discrete, lfilter
 
 from blockshake.dynamics.motion import CHANNELS
-from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
+from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import nowhere
 from blockshake.errors import InputError
 
 _FEWEST_ROWS = 0.31  # of a period; the pitch then errs by less than 1 %
 _DAMPING = 0.05  # of critical; tables are lightly damped
 _PITCH = CHANNELS.index("pitch_y")
-
-
 _FREQUENCIES = np.geomspace(5.0, 30.0, 60)  # Hz, closer than the width of the resonance
 _DAMPINGS = (_DAMPING, 0.2, 1.0)  # of critical: the last two real poles
 _RATIO = _FREQUENCIES[1] / _FREQUENCIES[0]
@@ -24,13 +22,13 @@ _SCALE = 6e-4  # rad s2/m
 
 def _turns(slab):
     """Rotations of the slab by every frequency and damping; see `Effect`."""
-    found = []
+    variants = []
     for damping in _DAMPINGS:
         for frequency in _FREQUENCIES:
             turn = _response(slab.acceleration, slab.step, frequency, damping)[slab.at]
             values = {"frequency": float(frequency), "damping": damping}
-            found.append(Columns(values, turn[:, None], (_SCALE,), False))
-    return found
+            variants.append(Columns(values, turn[:, None], (_SCALE,), False))
+    return variants
 
 
 @cache
@@ -74,7 +72,6 @@ EFFECT = Effect(
         EffectParameter("coefficient", "rad s2/m", "static pitch by acceleration", 0.0, -1.5e-3, 1.5e-3, 6e-4),
         EffectParameter("frequency", "Hz", "of the table's pitching", 15.0, 5.0, 30.0, 15.0),
     ),
-    signature=Signature("quiet", "symmetric"),
     confused_with=("joint-compliance",),
     told_apart_by="vertical displacement of two markers on the slab, apart along x",
     places=nowhere,

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from blockshake.dynamics.motion import CHANNELS
-from blockshake.effects.effect import Effect, EffectParameter, Signature
+from blockshake.effects.effect import Effect, EffectParameter
 from blockshake.effects.places import nowhere
 
 _SIZES = (2e-4, 1e-3, 5e-3, 2e-2)  # m
@@ -35,7 +35,6 @@ EFFECT = Effect(
         EffectParameter("ratio", "1", "vertical over horizontal motion", 0.0, -0.8, 0.8, 0.5),
         EffectParameter("delay", "s", "of the vertical motion", 0.0, -0.2, 0.2, 0.0),
     ),
-    signature=Signature("quiet", "one-sided"),
     confused_with=("impact-restitution",),
     told_apart_by="vertical accelerometer on the slab",
     places=nowhere,

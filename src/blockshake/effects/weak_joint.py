@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
+from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import face_of, joints, stated_joint
 from blockshake.forces.seen.wrench_histories import friction_against_slip
 
@@ -28,7 +28,6 @@ EFFECT = Effect(
     equation="mu of the joint = r mu",
     source="Coulomb",
     parameters=(EffectParameter("factor", "1", "on the coefficient of friction", 1.0, 0.1, 1.0, 0.25),),
-    signature=Signature("onset", "symmetric"),
     confused_with=("rate-weakening-friction",),
     told_apart_by="slip of each joint in a test that exceeds r mu g",
     places=joints,

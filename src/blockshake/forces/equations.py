@@ -33,11 +33,11 @@ class AccelerationEquations:
             [m/s2, m2/s4]; a row with a value that is not finite is left out.
         """
         rows = np.concatenate([directions, np.cross(arm[:, None], directions)], axis=-1)
-        told = np.isfinite(values) & np.isfinite(variances) & np.isfinite(rows).all(axis=-1)
-        weight = np.where(told, 1.0 / np.where(told, variances, 1.0), 0.0)
-        rows = np.where(told[..., None], rows, 0.0)
+        known = np.isfinite(values) & np.isfinite(variances) & np.isfinite(rows).all(axis=-1)
+        weight = np.where(known, 1.0 / np.where(known, variances, 1.0), 0.0)
+        rows = np.where(known[..., None], rows, 0.0)
         self.information[:, body] += np.einsum("tri,tr,trj->tij", rows, weight, rows)
-        self.weighted[:, body] += np.einsum("tri,tr,tr->ti", rows, weight, np.where(told, values, 0.0))
+        self.weighted[:, body] += np.einsum("tri,tr,tr->ti", rows, weight, np.where(known, values, 0.0))
 
     def hold(self, bodies, entries):
         """Take entries of the six accelerations of bodies as none."""
@@ -62,9 +62,9 @@ class AccelerationEquations:
         values, vectors = np.linalg.eigh(np.where(free, self.information, 0.0))
         read = values > _UNREAD * values[..., -1:]
         inverse = np.where(read, 1.0 / np.where(read, values, 1.0), 0.0)
-        found = np.einsum("tbij,tbj,tbkj,tbk->tbi", vectors, inverse, vectors, self.weighted, optimize=True)
-        found[~read.any(axis=-1)] = np.nan
+        solved = np.einsum("tbij,tbj,tbkj,tbk->tbi", vectors, inverse, vectors, self.weighted, optimize=True)
+        solved[~read.any(axis=-1)] = np.nan
         information = np.einsum("tbij,tbj,tbkj->tbik", vectors, np.where(read, values, 0.0), vectors)
         body, entry = np.nonzero(self.held)
         information[:, body, entry, entry] = _HELD**-2
-        return found, information
+        return solved, information

@@ -77,7 +77,9 @@ def find_faces(structure):
     faces = []
     for (lower, upper), normal in zip(pairs, contact_normals(structure, pairs), strict=True):
         axes = _face_axes(normal)
-        corners = _common_corners(*(_outline(structure, *one, axes) for one in ((lower, 1.0), (upper, -1.0))))
+        corners = _common_corners(
+            _outline(structure, lower, 1.0, axes), _outline(structure, upper, -1.0, axes)
+        )
         if not len(corners):
             continue
         middle = axes @ (0.5 * (corners.min(axis=0) + corners.max(axis=0)))

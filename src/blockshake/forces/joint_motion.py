@@ -20,7 +20,7 @@ class JointMotion:
     rotation : float64 array, shape (n_times, n_joints)
         Of the upper body about the second tangent: positive leans its top along the first one [rad].
     roll : float64 array, shape (n_times, n_joints)
-        The same about the first tangent: positive leans its top against the second one [rad].
+        Of the upper body about the first tangent: positive leans its top against the second one [rad].
     rotation_error : float64 array, shape (n_joints,)
         [rad]
     slip_rate : float64 array, shape (n_times, n_joints)
@@ -55,15 +55,12 @@ def joint_motion(structure, faces, motion, still):
     -------
     JointMotion
     """
-    histories = [_one_joint(structure, face, motion, still) for face in faces]
-    one = {name: np.stack([own[name] for own in histories], axis=-1) for name in histories[0]}
-    side, across = (
-        sign * _bearing(one[name], one[f"{name}_bend"], one[f"{name}_error"], motion.width)
-        for name, sign in (("rotation", 1), ("roll", -1))
-    )
-    return JointMotion(
-        one["rotation"], one["roll"], one["rotation_error"], one["slip_rate"], one["slip_error"], side, across
-    )
+    by_joint = [_histories(structure, face, motion, still) for face in faces]
+    joints = {name: np.stack([joint[name] for joint in by_joint], axis=-1) for name in by_joint[0]}
+    bends = joints.pop("rotation_bend"), joints.pop("roll_bend")
+    side = _bearing(joints["rotation"], bends[0], joints["rotation_error"], motion.width)
+    across = -_bearing(joints["roll"], bends[1], joints.pop("roll_error"), motion.width)
+    return JointMotion(**joints, side=side, across=across)
 
 
 def _bearing(rotation, bend, error, width):
@@ -78,8 +75,8 @@ def _bearing(rotation, bend, error, width):
     return np.where(least > np.maximum(TURNED, SURE * error), side, 0.0).astype(np.int8)
 
 
-def _one_joint(structure, face, motion, still):
-    """Histories and errors of one joint by name, see `JointMotion`."""
+def _histories(structure, face, motion, still):
+    """Histories and errors of a joint by name, see `JointMotion`, and those that decide which edges bear."""
     lower, upper = face.lower, face.upper
     start = rotation_matrices(structure.orientation[[lower, upper]])
     axes = motion.rotation[:, lower] @ (start[0].T @ face.axes)
@@ -107,14 +104,11 @@ def _one_joint(structure, face, motion, still):
 
 
 def _turn_about(turns, axis, still):
-    """Component of the rotation vectors of some matrices along an axis, less its mean in the quiet start.
-
-    Where none is known there, rotations count from rest already.
-    """
-    found = np.full(len(turns), np.nan)
+    """Component of the rotation vectors of some matrices along an axis, counted from rest."""
+    component = np.full(len(turns), np.nan)
     known = np.isfinite(turns).all(axis=(-2, -1))
-    found[known] = Rotation.from_matrix(turns[known]).as_rotvec() @ axis
-    return from_rest(found, still)
+    component[known] = Rotation.from_matrix(turns[known]).as_rotvec() @ axis
+    return from_rest(component, still)
 
 
 def from_rest(values, still):

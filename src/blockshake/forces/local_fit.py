@@ -1,27 +1,9 @@
 """Local quadratic fits of readings: smoothed values and derivatives by a positive kernel, with their noise."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 REACH = 4.0  # of the kernel's standard deviation: what lies beyond has no weight
 _FEWEST = 6  # readings of a fit
-
-
-@dataclass(frozen=True)
-class LocalFit:
-    """Value and first two derivatives at some times.
-
-    Attributes
-    ----------
-    values : float64 array, shape (degree + 1, n_times, n_channels)
-        Value and derivatives; NaN where the readings do not tell.
-    variances : float64 array, shape (degree + 1, n_times, n_channels)
-        For readings with noise of variance 1, of the same memory throughout.
-    """
-
-    values: np.ndarray
-    variances: np.ndarray
 
 
 def fit_locally(times, readings, at, width, degree=2, memory=0.0):
@@ -44,7 +26,9 @@ def fit_locally(times, readings, at, width, degree=2, memory=0.0):
 
     Returns
     -------
-    LocalFit
+    values, variances : float64 arrays, shape (degree + 1, n_times, n_channels)
+        Value and derivatives, NaN where the readings do not show them; their variances for noise of variance 1 of the
+        same memory throughout.
 
     Notes
     -----
@@ -60,10 +44,10 @@ def fit_locally(times, readings, at, width, degree=2, memory=0.0):
     half = int(np.ceil(REACH * width * rate))
     offsets = np.arange(-half, half + 1)
     nearest = np.rint((at - times[0]) * rate).astype(int)
-    places = nearest[:, None] + offsets
-    inside = (places >= 0) & (places < len(times))
-    places = np.clip(places, 0, len(times) - 1)
-    u = (times[places] - at[:, None]) / width
+    indices = nearest[:, None] + offsets
+    inside = (indices >= 0) & (indices < len(times))
+    indices = np.clip(indices, 0, len(times) - 1)
+    u = (times[indices] - at[:, None]) / width
     weight = np.where(inside & (np.abs(u) <= REACH), np.exp(-0.5 * u**2), 0.0)
     powers = u[..., None] ** np.arange(degree + 1)
     read = np.isfinite(readings)
@@ -76,19 +60,19 @@ def fit_locally(times, readings, at, width, degree=2, memory=0.0):
     for channel in range(n_channels):
         pattern = read[:, channel].tobytes()
         if pattern not in shared:
-            shared[pattern] = _operators(weight * read[places, channel], powers, u, scale, memory)
-        rows, told, variance = shared[pattern]
-        found = np.einsum("dtw,tw->dt", rows, filled[places, channel])
-        values[:, told, channel] = found[:, told]
-        variances[:, told, channel] = variance[:, told]
-    return LocalFit(values, variances)
+            shared[pattern] = _operators(weight * read[indices, channel], powers, u, scale, memory)
+        rows, known, variance = shared[pattern]
+        fitted = np.einsum("dtw,tw->dt", rows, filled[indices, channel])
+        values[:, known, channel] = fitted[:, known]
+        variances[:, known, channel] = variance[:, known]
+    return values, variances
 
 
 def _operators(weight, powers, u, scale, memory):
-    """Weights of the readings in value and derivatives, where they tell, and the variances for unit noise."""
+    """Weights of the readings in value and derivatives, whether a fit is known, and the variances for unit noise."""
     moments = np.einsum("tw,twi,twj->tij", weight, powers, powers, optimize=True)
-    told = ((weight > 0.0).sum(axis=1) >= _FEWEST) & _surrounded(weight, u)
-    moments[~told] = np.eye(powers.shape[-1])
+    known = ((weight > 0.0).sum(axis=1) >= _FEWEST) & _surrounded(weight, u)
+    moments[~known] = np.eye(powers.shape[-1])
     rows = np.einsum("tij,twj,tw->itw", np.linalg.inv(moments), powers, weight, optimize=True)
     rows *= scale[:, None, None]
     variance = (rows**2).sum(axis=-1)
@@ -96,7 +80,7 @@ def _operators(weight, powers, u, scale, memory):
     for lag in range(1, rows.shape[-1] if memory > 0.0 else 1):
         variance = variance + 2.0 * together * (rows[..., lag:] * rows[..., :-lag]).sum(axis=-1)
         together *= memory
-    return rows, told, variance
+    return rows, known, variance
 
 
 def _surrounded(weight, u):

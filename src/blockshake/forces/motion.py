@@ -7,11 +7,13 @@ from scipy.spatial.transform import Rotation
 
 from blockshake.forces.equations import AccelerationEquations
 from blockshake.forces.local_fit import REACH, fit_locally
-from blockshake.forces.noise import noise_memory
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.motion.body_frame import frames_of_bodies
 from blockshake.measurement.motion.body_poses import NOTHING, PLANAR, TRANSLATION, body_poses
 
+_LONGEST_MEMORY = 0.95  # of the markers' noise
 WIDTH = 0.015  # s, standard deviation of the smoothing kernel
+_STEP = 0.01  # s, between instants: less than the kernel's width
 _COVERED = 2.5  # of it: an instant nearer to an end of the record is left out
 _SHORTEST = 0.5  # s of instants
 _FAR_OUT = 6.0  # median distances, four standard deviations
@@ -67,7 +69,7 @@ def is_short(test):
     return float(test["time"][-1] - test["time"][0]) < 2.0 * REACH * WIDTH + _SHORTEST
 
 
-def smooth_motion(test, structure, sensors, step, width=WIDTH):
+def smooth_motion(test, structure, sensors):
     """Motion of all bodies of a test.
 
     Parameters
@@ -76,10 +78,6 @@ def smooth_motion(test, structure, sensors, step, width=WIDTH):
         As in a campaign's test file, outliers left out; markers count from rest.
     structure : Structure
     sensors : Sensors
-    step : float
-        Between instants, at least one reading of the markers [s].
-    width : float
-        Standard deviation of the Gaussian kernel [s].
 
     Returns
     -------
@@ -94,43 +92,62 @@ def smooth_motion(test, structure, sensors, step, width=WIDTH):
     same positive kernel, see `fit_locally`.
     """
     read_at = test["time"].to_numpy()
-    time = _instants(read_at, step, width)
+    time = _instants(read_at)
     poses = body_poses(test, structure, sensors.marker_noise)
-    memory = noise_memory(test, structure)
+    memory = _noise_memory(test, structure)
     start = rotation_matrices(structure.orientation)
-    position, velocity, gains = _smooth_position(read_at, poses.position, time, width, memory)
-    rotation, spin = _smooth_rotation(read_at, poses.rotation, start, time, width)
+    position, velocity, gains = _smooth_position(read_at, poses.position, time, memory)
+    rotation, spin = _smooth_rotation(read_at, poses.rotation, start, time)
     equations = AccelerationEquations(len(time), len(structure.mass))
     turning = np.where(np.isfinite(rotation), rotation, start), np.where(np.isfinite(spin), spin, 0.0)
-    _add_markers(equations, test, structure, sensors, time, turning, width, memory)
+    _add_markers(equations, test, structure, sensors, time, turning, memory)
     _hold_unread(equations, structure, poses.known)
     if "accelerometer" in test:
         posed = np.array([known != NOTHING for known in poses.known])
         by_markers = np.where(posed[:, None], equations.solve()[0], np.nan)
-        _add_accelerometers(equations, test, structure, sensors, by_markers, time, turning, width)
+        _add_accelerometers(equations, test, structure, sensors, by_markers, time, turning)
     acceleration, information = equations.solve()
     return Motion(
         time, position, velocity, acceleration[..., :3], rotation, spin, acceleration[..., 3:], information,
-        gains[0] * poses.covariance, gains[1] * poses.covariance, poses.known, width,
+        gains[0] * poses.covariance, gains[1] * poses.covariance, poses.known, WIDTH,
     )  # fmt: skip
 
 
-def _instants(read_at, step, width):
+def _noise_memory(test, structure):
+    """Correlation of neighbouring readings' noise, 0 to 0.95: median over the bodies with a residual, 0 without one."""
+    known = [
+        _lag_one(frame.residual.reshape(len(test["time"]), -1))
+        for _, frame in frames_of_bodies(test, structure)
+    ]
+    return float(np.clip(np.median(known), 0.0, _LONGEST_MEMORY)) if known else 0.0
+
+
+def _lag_one(residual):
+    """Correlation of a residual with the next one, over all columns; 0 of none."""
+    residual = residual - np.nanmean(residual, axis=0)
+    first, second = residual[:-1], residual[1:]
+    both = np.isfinite(first) & np.isfinite(second)
+    first, second = np.where(both, first, 0.0), np.where(both, second, 0.0)
+    size = np.sqrt((first**2).sum() * (second**2).sum())
+    return (first * second).sum() / size if size > 0.0 else 0.0
+
+
+def _instants(read_at):
     """Times of every so-manieth reading, from where to where the kernel's weight lies within the record."""
-    every = max(1, round(step / float(np.median(np.diff(read_at)))))
+    every = max(1, round(_STEP / float(np.median(np.diff(read_at)))))
     chosen = read_at[::every]
-    return chosen[(chosen >= read_at[0] + _COVERED * width) & (chosen <= read_at[-1] - _COVERED * width)]
+    return chosen[(chosen >= read_at[0] + _COVERED * WIDTH) & (chosen <= read_at[-1] - _COVERED * WIDTH)]
 
 
-def _smooth_position(read_at, position, time, width, memory):
+def _smooth_position(read_at, position, time, memory):
     """Smoothed positions and velocities, and by how much less noise they have than one reading."""
-    fit = fit_locally(read_at, position.reshape(len(read_at), -1), time, width, memory=memory)
-    usual = np.where(np.isfinite(fit.variances), fit.variances, np.nan)
+    values, variances = fit_locally(read_at, position.reshape(len(read_at), -1), time, WIDTH, memory=memory)
+    usual = np.where(np.isfinite(variances), variances, np.nan)
     gains = np.nanmedian(usual.reshape(3, -1), axis=1)
-    return *fit.values[:2].reshape(2, len(time), *position.shape[1:]), gains
+    return *values[:2].reshape(2, len(time), *position.shape[1:]), gains
 
 
-def _smooth_rotation(read_at, rotation, start, time, width):
+def _smooth_rotation(read_at, rotation, start, time):
     """Smoothed rotations and angular velocities.
 
     Rotation vectors from the start are smoothed: those of blocks that rock stay far below a radian, and to second
@@ -140,31 +157,31 @@ def _smooth_rotation(read_at, rotation, start, time, width):
     vectors = np.full(rotation.shape[:-1], np.nan)
     known = np.isfinite(turned).all(axis=(-2, -1))
     vectors[known] = Rotation.from_matrix(turned[known]).as_rotvec()
-    fit = fit_locally(read_at, vectors.reshape(len(read_at), -1), time, width)
-    value, rate = fit.values[:2].reshape(2, len(time), *vectors.shape[1:])
-    told = np.isfinite(value).all(axis=-1)
+    values, _ = fit_locally(read_at, vectors.reshape(len(read_at), -1), time, WIDTH)
+    value, rate = values[:2].reshape(2, len(time), *vectors.shape[1:])
+    known = np.isfinite(value).all(axis=-1)
     smooth = np.full((len(time), *rotation.shape[1:]), np.nan)
-    smooth[told] = Rotation.from_rotvec(value[told]).as_matrix()
+    smooth[known] = Rotation.from_rotvec(value[known]).as_matrix()
     return smooth @ start, rate + 0.5 * np.cross(value, rate)
 
 
-def _add_markers(equations, test, structure, sensors, time, turning, width, memory):
+def _add_markers(equations, test, structure, sensors, time, turning, memory):
     """Equations of all markers: their second derivatives along the three axes."""
     read_at = test["time"].to_numpy()
     rotation, spin = turning
     displacement = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()
-    fit = fit_locally(read_at, displacement.reshape(len(read_at), -1), time, width, memory=memory)
-    shape = len(time), *displacement.shape[1:]
-    second, variance = fit.values[2].reshape(shape), sensors.marker_noise**2 * fit.variances[2].reshape(shape)
+    fit = fit_locally(read_at, displacement.reshape(len(read_at), -1), time, WIDTH, memory=memory)
+    second, variance = (part[2].reshape(len(time), *displacement.shape[1:]) for part in fit)
+    variance = sensors.marker_noise**2 * variance
     axes = np.broadcast_to(np.eye(3), (len(time), 3, 3))
-    for place, name in enumerate(map(str, test["marker"].values)):
-        (marker,) = (one for one in structure.file.markers if one.name == name)
+    for column, name in enumerate(map(str, test["marker"].values)):
+        (marker,) = (marker for marker in structure.file.markers if marker.name == name)
         body, arm = _carried(structure, marker, rotation)
         towards = _centripetal(spin[:, body], arm)
-        equations.add(body, axes, arm, second[:, place] - towards, variance[:, place])
+        equations.add(body, axes, arm, second[:, column] - towards, variance[:, column])
 
 
-def _add_accelerometers(equations, test, structure, sensors, by_markers, time, turning, width):
+def _add_accelerometers(equations, test, structure, sensors, by_markers, time, turning):
     """Equations of all channels: specific force along an axis of the body, less its offset.
 
     The offset is the mean distance from the accelerations that the markers give, (n_times, n_bodies, 6), but for
@@ -188,16 +205,14 @@ def _add_accelerometers(equations, test, structure, sensors, by_markers, time, t
             force = readings[:, channels.index(f"{sensor.name}-{axis}")] + np.interp(
                 read_at, time, weight - weight[0]
             )
-            fit = fit_locally(read_at, force[:, None], time, width, degree=0)
+            mean, variance = fit_locally(read_at, force[:, None], time, WIDTH, degree=0)
             towards = (direction * _centripetal(spin[:, body], arm)).sum(axis=-1)
-            values = fit.values[0, :, 0] - towards
+            values = mean[0, :, 0] - towards
             moved = by_markers[:, body, :3] + np.cross(by_markers[:, body, 3:], arm)
             away = values - (direction * moved).sum(axis=-1)
             values = values - _usual(away[np.isfinite(away)])
-            equations.add(
-                body, direction[:, None], arm, values[:, None],
-                sensors.accelerometer_noise**2 * fit.variances[0],
-            )  # fmt: skip
+            variance = sensors.accelerometer_noise**2 * variance[0]
+            equations.add(body, direction[:, None], arm, values[:, None], variance)
 
 
 def _usual(values):
@@ -220,6 +235,6 @@ def _centripetal(spin, arm):
 
 def _hold_unread(equations, structure, known):
     """Take as none the turns that too few markers leave open: of planar bodies, and of a table with one marker."""
-    equations.hold([body for body, one in enumerate(known) if one == PLANAR], [3, 5])
-    tables = [body for body, one in enumerate(known) if one == TRANSLATION and structure.driven[body]]
+    equations.hold([body for body, extent in enumerate(known) if extent == PLANAR], [3, 5])
+    tables = [body for body, extent in enumerate(known) if extent == TRANSLATION and structure.driven[body]]
     equations.hold(tables, [3, 4, 5])

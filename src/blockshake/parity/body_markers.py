@@ -42,7 +42,7 @@ class BodyMarkers:
 
     @classmethod
     def of(cls, structure, body, tests, names):
-        """Of a body, those of its markers that have one of the names; ``tests``: readings by name."""
+        """Markers of a body, where ``names`` has them, in ``tests`` (readings by name)."""
         markers = [
             marker for marker in structure.file.markers if marker.body == body and marker.name in names
         ]

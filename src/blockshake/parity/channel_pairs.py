@@ -60,7 +60,7 @@ class ChannelPair:
 
 
 def channel_pairs(structure, test, poses, accelerometer_noise):
-    """Pairs of a test, for every channel on a body with three markers.
+    """Pair every accelerometer channel on a body with three markers with the acceleration of the markers.
 
     Parameters
     ----------
@@ -136,13 +136,13 @@ def _gaussian(values, rate, spread, order=0):
 
 
 def _band(values, rate, done=0.0):
-    """Values, to which a Gaussian of width ``done`` was applied before, through the band."""
+    """Band-pass values to which a Gaussian of width ``done`` [s] was applied before."""
     short, long = (np.sqrt(spread**2 - done**2) for spread in (_SHORT_GAUSSIAN, _LONG_GAUSSIAN))
     return _gaussian(values, rate, short) - _gaussian(values, rate, long)
 
 
 def _low(values, rate, done=0.0):
-    """The same through the low pass."""
+    """Low-pass values to which a Gaussian of width ``done`` [s] was applied before."""
     return _gaussian(values, rate, np.sqrt(_SLOW_GAUSSIAN**2 - done**2))
 
 

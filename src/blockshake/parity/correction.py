@@ -7,7 +7,7 @@ from blockshake.parity.kinds.registry import KINDS
 
 
 def load_corrected_test(campaign, name, structure, findings):
-    """Load a test of a campaign as of `judged_readings`, until a block falls."""
+    """Load a test of a campaign, without the faults that were found, until a block falls; see `judged_readings`."""
     test = load_test(campaign, name, structure)
     test = until_fall(test, find_fall(test, structure, campaign.sensors))
     return judged_readings(test, name, structure, findings)

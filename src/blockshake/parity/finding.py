@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2, f
 
-LEFT_AT_MOST = 0.5  # of the misfit that taking an exchange back may leave
+MOST_MISFIT = 0.5  # of the misfit that taking an exchange back may leave
 
 
 class Level(NamedTuple):
@@ -55,13 +55,13 @@ class Finding:
         return np.sqrt(np.diagonal(self.covariance))
 
     def as_json(self):
-        """As JSON-like values."""
+        """JSON-like values of the finding."""
         arrays = {name: np.asarray(getattr(self, name)).tolist() for name in ("estimate", "covariance")}
         return vars(self) | arrays | {"p": float(self.p)}
 
     @classmethod
     def from_json(cls, values):
-        """The finding of such values."""
+        """Read a finding from the values of `as_json`."""
         tuples = {name: tuple(values[name]) for name in ("where", "tests")}
         rivals = tuple((effect, tuple(where), quantity) for effect, where, quantity in values["rivals"])
         arrays = {name: np.array(values[name], dtype=float) for name in ("estimate", "covariance")}
@@ -107,12 +107,12 @@ def chance_within(estimate, covariance, tolerance, freedom=np.inf):
 
 
 def chance_of_misfit(before, after, variance):
-    """Largest chance of a misfit as it is where nothing is exchanged, and of another one with an exchange taken back.
+    """Bound the chance that an exchange which did not happen lowers the misfit as much as this one does.
 
     Parameters
     ----------
     before, after : float
-        Sums of squares as read, and with the exchange taken back.
+        Sums of squared misfits as read, and with the exchange taken back.
     variance : float
         Of an independent value, times the number of values that depend on each other.
 
@@ -125,4 +125,4 @@ def chance_of_misfit(before, after, variance):
     -----
     A wrong hypothesis beats the true one by a ratio L of likelihoods with a chance of at most 1 / L.
     """
-    return 1.0 if after > LEFT_AT_MOST * before else float(np.exp(-(before - after) / (2.0 * variance)))
+    return 1.0 if after > MOST_MISFIT * before else float(np.exp(-(before - after) / (2.0 * variance)))

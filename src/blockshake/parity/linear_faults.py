@@ -49,7 +49,7 @@ class Unknowns:
         return self.numbers[fault.column][fault.test, fault.sensor]
 
     def of_test(self, test):
-        """Numbers of all unknowns that a test tells of, sensor by sensor, column by column."""
+        """Numbers of all unknowns in the equations of a test, column by column and sensor by sensor."""
         return np.concatenate(
             [numbers[test if len(numbers) > 1 else 0].ravel() for numbers in self.numbers.values()]
         )

@@ -16,10 +16,9 @@ from blockshake.parity.channel_pairs import channel_pairs
 from blockshake.parity.correction import corrected
 from blockshake.parity.finding import Finding, Level
 from blockshake.parity.kinds.body_gain import body_gains
-from blockshake.parity.kinds.clock import clock_findings, clock_lag
-from blockshake.parity.kinds.drift import drift_findings
+from blockshake.parity.kinds.clock import clock_findings, clock_lags
+from blockshake.parity.kinds.drift import drift_findings, frame_drift, short_lines
 from blockshake.parity.kinds.exchange import channel_exchanges, marker_exchanges
-from blockshake.parity.kinds.frame_drift import frame_drift, short_lines
 from blockshake.parity.kinds.gain import channel_gains, gain_findings
 from blockshake.parity.kinds.saturation import saturation
 from blockshake.parity.transducer_readings import held_readings
@@ -48,7 +47,8 @@ class Parity:
     channels : xarray.Dataset
         ``gain(channel)``, reading over truth less 1, with ``gain_error(channel)`` [1].
     transducers : xarray.Dataset
-        The same of displacement transducers; NaN where markers do not see the ends, or the bodies hardly moved apart.
+        ``gain(transducer)`` of displacement transducers, with ``gain_error(transducer)`` [1]; NaN where markers do not
+        see both ends, or the bodies hardly moved apart.
     looked_at : int
         Number of hypotheses.
     falls : dict of str to Fall
@@ -67,7 +67,7 @@ class Parity:
     gaps: dict
 
     def as_json(self):
-        """As JSON-like values, NaN as null; of transducers only where there are any."""
+        """JSON-like values, NaN as null; transducers are listed only where there are any."""
         tables = {name: _rows(getattr(self, name)) for name in _TABLES}
         return {
             "findings": [finding.as_json() for finding in self.findings],
@@ -88,7 +88,7 @@ class Parity:
 
     @classmethod
     def from_json(cls, values):
-        """The parity of such values."""
+        """Read the outcome from the values of `as_json`."""
         return cls(
             findings=tuple(map(Finding.from_json, values["findings"])),
             **{name: _table(name, values.get(name, {})) for name in _TABLES},
@@ -184,14 +184,14 @@ def check_parity(tests, structure, sensors, level=LEVEL):
         for name, test in tests.items()
         if "accelerometer" in test
     }
-    clock = clock_lag(pairs)
-    lags = {name: clock.by_test[name].estimate[0] if name in clock.by_test else 0.0 for name in tests}
+    clock, common = clock_lags(pairs)
+    lags = {name: clock[name].estimate[0] if name in clock else 0.0 for name in tests}
     gains, exchanges = channel_gains(pairs, lags), channel_exchanges(pairs, lags, share)
     exchanged = {name for finding in exchanges for name in finding.where}
     sound = {
         name: [pair for pair in of_test if pair.name not in exchanged] for name, of_test in pairs.items()
     }
-    findings += clock_findings(clock, share) + exchanges
+    findings += clock_findings(clock, common, share) + exchanges
     findings += gain_findings(
         {name: gain for name, gain in gains.items() if name not in exchanged}, pairs, share
     )
@@ -207,7 +207,7 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     return Parity(
         findings=tuple(findings),
         markers=_table("markers", markers),
-        clock=_table("clock", _sizes(clock.by_test)),
+        clock=_table("clock", _sizes(clock)),
         channels=_table("channels", _sizes(gains)),
         transducers=_table("transducers", {name: check[:2] for name, check in transducers.items()}),
         looked_at=share.hypotheses,

@@ -48,7 +48,7 @@ class Size:
 
 
 def regression(parts, segment, ridge=0.0):
-    """Regression of the values of all parts on their columns, `Size`; None where too few segments tell of it.
+    """Regress the values of all parts on their columns: `Size`, or None where there are too few segments.
 
     Parameters
     ----------

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.parity.finding import chance_of_misfit
-from blockshake.parity.kinds import gain, slip, wrong_place
-from blockshake.parity.kinds.polarity import POLARITY
+from blockshake.parity.kinds import drift, gain, wrong_place
+from blockshake.parity.kinds.channel_swap import POLARITY
 from blockshake.parity.linear_faults import (
     Equations,
     Unknowns,
@@ -23,7 +23,7 @@ _NOTHING = 1e-9  # m and m/s, as of readings without any noise
 
 
 class TransducerCheck(NamedTuple):
-    """Gain, reading over truth less 1, with its standard error [1], NaN where nothing tells it; and the findings."""
+    """Findings, and the gain: reading over truth less 1, with its standard error [1]; NaN where it is not known."""
 
     gain: float
     gain_error: float
@@ -36,14 +36,18 @@ def hypotheses(n_tests):
 
 
 def check_transducer(name, held, level):
-    """`TransducerCheck` of one transducer: the clearest fault first, until the rest is within the tolerances.
+    """Name the faults of one displacement transducer, the clearest first, until the rest is within the tolerances.
 
     Parameters
     ----------
     name : str
     held : dict of str to HeldReading
-        By test; empty where the markers see nothing of it.
+        By test; empty where the markers do not see the transducer's ends.
     level : Level
+
+    Returns
+    -------
+    TransducerCheck
 
     Notes
     -----
@@ -59,7 +63,7 @@ def check_transducer(name, held, level):
     if not held:
         return TransducerCheck(np.nan, np.nan, ())
     readings, turned = (
-        np.concatenate([_without_lag(means.left, means) for means in whole])
+        np.concatenate([_without_lag(means.misfit, means) for means in whole])
         for whole in (held.values(), [means.reversed() for means in held.values()])
     )
     after = (turned**2).sum()
@@ -67,10 +71,10 @@ def check_transducer(name, held, level):
     if level.hypotheses * chance < level.chance:
         findings.append(POLARITY.finding((name,), level.hypotheses * chance, tests))
         held = {test: means.reversed() for test, means in held.items()}
-    unknowns, rows = Unknowns((*_COLUMNS, slip.OF_END), 1, len(tests)), {}
+    unknowns, rows = Unknowns((*_COLUMNS, drift.OF_END), 1, len(tests)), {}
 
     def equations_of(named, spread):
-        fixed = {fault.test: rows[fault.test] for fault in named if fault.column is slip.OF_END}
+        fixed = {fault.test: rows[fault.test] for fault in named if fault.column is drift.OF_END}
         equations, likeliest = _equations(list(held.values()), unknowns, spread, fixed)
         rows.update(likeliest)
         return equations
@@ -84,7 +88,7 @@ def check_transducer(name, held, level):
         informed, _ = equations.faults[fault]
         at = informed - numbers[0]
         estimate[at], square[np.ix_(at, at)] = mean[informed], covariance[np.ix_(informed, informed)]
-        if fault.column is slip.OF_END:
+        if fault.column is drift.OF_END:
             where = (tests[fault.test],)
             before, after = held[where[0]].time[rows[fault.test] - 1 : rows[fault.test] + 1]
             estimate = np.array([estimate[0], 0.5 * (before + after)])
@@ -98,17 +102,17 @@ def check_transducer(name, held, level):
 
 
 def _without_lag(values, held):
-    """Means (n_means, ...) without what a lag of the clocks leaves in them."""
+    """Take out of means (n_means, ...) the part that a lag of the clocks explains."""
     late = held.late / max(np.linalg.norm(held.late), _NOTHING)
     return values - np.multiply.outer(late, late @ values)
 
 
 def _equations(held, unknowns, spread, fixed):
     """`Equations` from `HeldReading` by test, and the row of each test's likeliest slip; ``fixed``: of named ones."""
-    misfits = [_without_lag(means.left, means) for means in held]
-    steps = [_without_lag(_steps(len(means.left)), means) for means in held]
-    of_slips, rows = unknowns.numbers[slip.OF_END][:, 0, 0], dict(fixed)
-    blocks = [np.zeros((len(means.left), len(spread))) for means in held]
+    misfits = [_without_lag(means.misfit, means) for means in held]
+    steps = [_without_lag(_steps(len(means.misfit)), means) for means in held]
+    of_slips, rows = unknowns.numbers[drift.OF_END][:, 0, 0], dict(fixed)
+    blocks = [np.zeros((len(means.misfit), len(spread))) for means in held]
     for test, (block, means) in enumerate(zip(blocks, held, strict=True)):
         for column in _COLUMNS:
             block[:, unknowns.numbers[column][0, 0]] = _without_lag(column.signature(means), means)
@@ -131,7 +135,7 @@ def _equations(held, unknowns, spread, fixed):
         size = np.sqrt((columns[:, unknowns.of(fault)] ** 2).mean(axis=0))
         if (informed := unknowns.of(fault)[column.visible * size > visible]).size:
             faults[fault] = informed, 1
-    for fault in unknowns.faults(slip.OF_END):
+    for fault in unknowns.faults(drift.OF_END):
         faults[fault] = unknowns.of(fault), steps[fault.test].shape[1]
     segments = sum(len(means) // _SEGMENT for means in misfits)
     right, freedom = columns.T @ np.concatenate(misfits), max(segments - columns.shape[1], 4.0)

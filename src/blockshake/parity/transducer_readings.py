@@ -29,7 +29,7 @@ class HeldReading:
     ----------
     time : float64 array, shape (n_means,)
         Of the markers [s].
-    left : float64 array, shape (n_means,)
+    misfit : float64 array, shape (n_means,)
         Reading less expectation [m].
     expected : float64 array, shape (n_means,)
         From the poses of both bodies [m]: the column of a gain.
@@ -42,15 +42,15 @@ class HeldReading:
     """
 
     time: np.ndarray
-    left: np.ndarray
+    misfit: np.ndarray
     expected: np.ndarray
     places: np.ndarray
     late: np.ndarray
     noise: float
 
     def reversed(self):
-        """The same with the reading's sign turned."""
-        return replace(self, left=-self.left - 2.0 * self.expected, late=-self.late)
+        """The reading with its sign turned."""
+        return replace(self, misfit=-self.misfit - 2.0 * self.expected, late=-self.late)
 
 
 def held_readings(structure, tests, poses, lags):
@@ -119,7 +119,7 @@ def _expectation(structure, item, ends):
 
 
 def _held(time, expected, places, reading, lag):
-    """Means of all, at the lag that fits best; None where too little was read."""
+    """`HeldReading` at the lag of the clocks that fits best; None where too little was read."""
     usual = _SPAN / np.median(np.diff(time))
     noise = _noise(expected) * np.sqrt(COLOUR / usual)
     for _ in range(_SHIFTS):
@@ -134,7 +134,7 @@ def _held(time, expected, places, reading, lag):
         means[:, 1:] -= means[:, 1:].mean(axis=0)
         held = HeldReading(means[:, 0], means[:, 1], means[:, 2], means[:, 3:-1], means[:, -1], noise)
         # what remains of the lag, beside a gain of either sign
-        lag -= np.linalg.lstsq(np.column_stack([held.late, held.expected]), held.left, rcond=None)[0][0]
+        lag -= np.linalg.lstsq(np.column_stack([held.late, held.expected]), held.misfit, rcond=None)[0][0]
     return held
 
 

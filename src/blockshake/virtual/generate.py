@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 
 from blockshake.dynamics.load_motion import load_motion
-from blockshake.dynamics.records.contract_csv import write_motion_csv
 from blockshake.dynamics.system import Status
 from blockshake.files import content_digest, write_dataset, write_json
 from blockshake.geometry.structure import load_structure
@@ -17,7 +16,7 @@ from blockshake.measurement.campaigns.campaign_folder import (
 )
 from blockshake.measurement.sensors.markers import driven_marker
 from blockshake.study.ensembles.ensemble import relative_to_slab
-from blockshake.virtual.shake_table import shake, swelling_sine
+from blockshake.virtual.shake_table import shake
 from blockshake.virtual.truth import hidden_effect, true_parameters
 
 DECIMALS = {"m": 5, "m s-2": 3}  # digits kept of a reading: a tenth and a twentieth of its usual noise
@@ -50,26 +49,24 @@ def generate_campaign(settings, structure, folder, truth, source, progress):
     loaded = load_structure(structure)
     called_structure = structure_in_folder(structure, loaded, folder)
     table = _Table(settings, loaded, folder, truth, source, progress)
-    tests, gentle = [], []
+    tests = []
     for motion in settings.motions:
         called = motion_in_folder(motion, folder)
         for scale in settings.intensities.scales.tolist():
-            gentle += table.sine(len(tests))
             entry = {
                 "name": f"{Path(motion).stem}-{round(100 * scale):03d}", "motion": called, "scale": scale,
                 "baseline": settings.baseline,
             }  # fmt: skip
-            drift = table.test(entry, load_motion(motion, scale, settings.baseline), settings.duration)
+            drift = table.test(entry, load_motion(motion, scale, settings.baseline))
             if drift is not None:
                 tests.append(entry)
             if drift is None or drift > settings.intensities.largest_drift:
                 break
-    entries = [*({**entry, "role": "fit"} for entry in gentle), *with_roles(tests)]
     noise = settings.instruments
     sensors = {"marker_noise": noise.marker_noise, "accelerometer_noise": noise.accelerometer_noise}
     if loaded.file.displacement_transducers:
         sensors["transducer_noise"] = noise.transducer_noise
-    write_campaign_file(folder, _HEADER, settings.name, called_structure, sensors, entries)
+    write_campaign_file(folder, _HEADER, settings.name, called_structure, sensors, with_roles(tests))
     write_json(
         truth / "truth.json",
         {
@@ -86,13 +83,12 @@ def with_roles(tests):
     for fitting. A motion of one test only has it for fitting.
     """
     roles = ["fit"] * len(tests)
-    for place, test in enumerate(tests):
-        same = [other["motion"] == test["motion"] for other in tests]
-        last = max(index for index, is_same in enumerate(same) if is_same)
-        if sum(same) > 1 and place == last:
-            roles[place] = "sealed"
-        elif sum(same) > 2 and place == last - 1 and last == len(tests) - 1:
-            roles[place] = "select"
+    for index, test in enumerate(tests):
+        same = np.flatnonzero([other["motion"] == test["motion"] for other in tests])
+        if len(same) > 1 and index == same[-1]:
+            roles[index] = "sealed"
+        elif len(same) > 2 and index == len(tests) - 2:
+            roles[index] = "select"
     return [{**test, "role": role} for test, role in zip(tests, roles, strict=True)]
 
 
@@ -106,13 +102,13 @@ class _Table:
         self.parameters = true_parameters(structure, settings.seed)
         self.count = 0
 
-    def test(self, entry, motion, duration):
+    def test(self, entry, motion):
         """Largest drift read in a test [m], or None where a block fell or the run failed."""
         self.count += 1
         places = self._places()
         made_by = content_digest(
             self.source, self.settings.model_dump(mode="json"), self.parameters, self.effect, self.count,
-            places.tobytes(), *(part.tobytes() for part in motion.table), duration,
+            places.tobytes(), *(part.tobytes() for part in motion.table),
         )  # fmt: skip
         entry["file"] = f"{entry['name']}.nc"
         path, record = self.folder / entry["file"], self.truth / f"{entry['name']}.json"
@@ -120,25 +116,16 @@ class _Table:
         if happened.get("made_by") != made_by or (
             happened["status"] == Status.COMPLETED and not path.exists()
         ):
-            happened = {"made_by": made_by, **self._shake(path, entry, motion, duration, places)}
+            happened = {"made_by": made_by, **self._shake(path, entry, motion, places)}
             write_json(record, happened)
         self.progress(
             f"{entry['name']}: {happened['status']}, largest drift {1e3 * happened['drift']:.1f} mm"
         )
         return happened["drift"] if happened["status"] == Status.COMPLETED else None
 
-    def sine(self, after):
-        """Entry of the low-amplitude test after so many strong ones, in a list, or an empty one."""
-        if self.settings.sine is None:
-            return []
-        motion = swelling_sine(self.settings.sine)
-        write_motion_csv(motion, self.folder / "sine.csv")
-        entry = {"name": f"sine-{after:02d}", "motion": "sine.csv", "scale": 1.0}
-        return [entry] if self.test(entry, motion, self.settings.sine.duration) is not None else []
-
-    def _shake(self, path, entry, motion, duration, places):
+    def _shake(self, path, entry, motion, places):
         test, run = shake(
-            self.structure, self.parameters, self.effect, motion, self.settings, places, duration,
+            self.structure, self.parameters, self.effect, motion, self.settings, places, self.settings.duration,
             int(content_digest(self.settings.seed, self.count), 16),
         )  # fmt: skip
         test.attrs |= {"motion": entry["motion"], "motion_scale": entry["scale"]}

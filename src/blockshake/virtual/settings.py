@@ -20,7 +20,6 @@ from blockshake.simulation.models import ModelName, model_of, split_parameters
 from blockshake.simulation.simulate import check_run
 from blockshake.study.ensembles.rungs import Rungs
 from blockshake.validation import Count, Finite, NotNegative, Positive, Strict, validated
-from blockshake.virtual.table import TableErrors
 from blockshake.virtual.truth import hidden_effect
 
 _FEWEST_READINGS = 40  # of a test
@@ -34,12 +33,13 @@ class Intensities(Rungs):
     )
 
 
-class Sine(Strict):
-    """A test of low amplitude before the first strong one and after each: the slab's acceleration along x."""
+class TableErrors(Strict):
+    """How the table errs, as real ones do; the defaults follow the command exactly."""
 
-    frequency: Positive = Field(description="[Hz]")
-    acceleration: Positive = Field(description="amplitude [m/s2]")
-    duration: Positive = Field(4.0, description="of which the first and last fifth swell and fade [s]")
+    gain: Positive = Field(1.0, description="displacement along x over the command, far below the corner [1]")
+    high: Finite = Field(0.0, description="by how much more or less that is far above the corner [1]")
+    corner: Positive = Field(2.0, description="frequency between the two [Hz]")
+    pitch: Finite = Field(0.0, description="static pitch by acceleration along x [rad s2/m]")
 
 
 class Hidden(Strict):
@@ -68,7 +68,6 @@ class VirtualCampaign(Strict):
     motions: tuple[str, ...] = Field(("alkion", "basso-tirreno"), min_length=1)
     baseline: Baseline = AUTO
     intensities: Intensities = Intensities()
-    sine: Sine | None = None
     table: TableErrors = TableErrors()
     misplacement: NotNegative = Field(
         3e-4, description="standard deviation of where a block is put, along x and y [m]"
@@ -102,8 +101,6 @@ def load_settings(path, structure=None):
     stems = [Path(motion).stem for motion in settings.motions]
     if len(set(stems)) < len(stems):
         raise InputError(path, "motions", "expected motions of different names")
-    if settings.sine and "sine" in stems:
-        raise InputError(path, "motions", "expected no motion called sine beside `sine`")
     if settings.duration * RATE < _FEWEST_READINGS:
         raise InputError(path, "duration", f"expected at least {_FEWEST_READINGS / RATE:g} s")
     for motion in settings.motions:

@@ -1,8 +1,9 @@
 """One test on the virtual shake table: the stack put in place, surveyed, shaken and read."""
 
 import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.signal import lsim
 
-from blockshake.dynamics.motion import ground_motion
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
 from blockshake.measurement.sensors.instruments import observe
@@ -10,9 +11,6 @@ from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import part_parameters
 from blockshake.simulation.placement import placed
 from blockshake.simulation.simulate import simulate
-from blockshake.virtual.table import followed
-
-_SINE_ROWS = 1000  # a second
 
 
 def shake(structure, parameters, effect, motion, settings, places, duration, seed, surveyed=None):
@@ -64,18 +62,34 @@ def shake(structure, parameters, effect, motion, settings, places, duration, see
     return test, run
 
 
-def swelling_sine(sine):
-    """Ground motion of a low-amplitude test: a sine along x that swells, stays and fades, ending at rest.
+def followed(experiment, table):
+    """The experiment on a table that errs.
+
+    Parameters
+    ----------
+    experiment : Experiment
+    table : TableErrors
+
+    Returns
+    -------
+    Experiment
 
     Notes
     -----
-    The displacement is given, so that the table ends where it started.
+    ``H(f) = gain + high i f / (f_c + i f)`` on the displacement along x: the gain goes over from one value to the other
+    around the corner frequency, with the phase of a first-order filter. The pitch is that of the effect `table-pitch`.
     """
-    time = np.arange(round(sine.duration * _SINE_ROWS) + 1) / _SINE_ROWS
-    omega = 2.0 * np.pi * sine.frequency
-    swell = np.clip(np.minimum(time, time[-1] - time) / (0.2 * sine.duration), 0.0, 1.0)
-    displacement = -sine.acceleration / omega**2 * np.sin(omega * time) * swell**2 * (3.0 - 2.0 * swell)
-    return ground_motion("sine", time, {"x": displacement}, "displacement", {"synthetic": True})
+    breaks = experiment.motion.table.breaks
+    times = np.linspace(breaks[0], breaks[-1], round(np.ptp(breaks) / np.diff(breaks).min()) + 1)
+    command = experiment.motion.evaluate(times)[:, 0]
+    command = command - command[0]
+    omega = 2.0 * np.pi * table.corner
+    _, slow, _ = lsim(([omega], [1.0, omega]), command, times)
+    change = np.interp(breaks, times, (table.gain - 1.0) * command + table.high * (command - slow))
+    experiment = experiment.with_motion(0, CubicSpline(breaks, change).c[::-1].T)
+    if table.pitch == 0.0:
+        return experiment
+    return with_effect(experiment, "table-pitch", {"coefficient": table.pitch}, {})
 
 
 def _add_survey(test, structure, places, noise, seed):

@@ -21,8 +21,8 @@ def true_parameters(structure, seed):
     dict of str to float
         By dotted name: those of Table 2, with its scatter, that the structure has, and that are not 0 there.
     """
-    own = {name: value for name in TABLE_2 if (value := own_value(structure, name)) > 0.0}
-    drawn = sample_parameters(pd.Series(draw_true_parameters(seed, own)), structure, LINKED)
+    stated = {name: value for name in TABLE_2 if (value := own_value(structure, name)) > 0.0}
+    drawn = sample_parameters(pd.Series(draw_true_parameters(seed, stated)), structure, LINKED)
     return drawn | stiffness_parameters(calibrate_stiffness(structure, drawn))
 
 

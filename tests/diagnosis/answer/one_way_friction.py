@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter, Signature
+from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import nowhere
 from blockshake.forces.seen.wrench_histories import friction_against_slip
 
@@ -32,7 +32,6 @@ EFFECT = Effect(
     equation="mu (1 + a) for slip of the upper body towards +x, mu (1 - a) towards -x",
     source="Coulomb",
     parameters=(EffectParameter("asymmetry", "1", "of the coefficient", 0.0, -0.5, 0.5, 0.3),),
-    signature=Signature("onset", "one-sided"),
     confused_with=("eccentricity",),
     told_apart_by="a test with the motion reversed",
     places=nowhere,

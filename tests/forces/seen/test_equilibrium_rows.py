@@ -116,7 +116,7 @@ def test_a_block_that_slides_by_its_friction_leaves_rows_of_nothing(quiet):
     assert found == pytest.approx(-0.02, rel=0.1)
 
 
-def test_a_body_that_no_sensor_reads_leaves_the_rows_of_the_others(quiet):
+def test_a_point_of_a_stack_that_turns_as_one_moves_with_its_height(quiet):
     structure = stack(2)
 
     def poses(t):

@@ -18,7 +18,8 @@ from blockshake.study.ensembles.batch import CaseRuns, simulate_samples
 from blockshake.study.ensembles.case_input import driving_motions, measured_input, measured_on_clock
 from blockshake.study.ensembles.ensemble import join_batches
 from blockshake.study.ensembles.measured import compared_curves
-from blockshake.virtual.table import TableErrors, followed
+from blockshake.virtual.settings import TableErrors
+from blockshake.virtual.shake_table import followed
 
 FRICTION = "friction.stone.stone"
 STRUCTURE = """

@@ -81,12 +81,12 @@ def contact_forces(frames, required, free):
     wanted, information, read = _of_read_bodies(required, free)
     matrix = matrix * np.repeat(read, 6, axis=1)[..., None]
     inverse = np.linalg.pinv(matrix)
-    found = np.einsum("tij,tj->ti", inverse, wanted.reshape(n_times, -1)).reshape(n_times, n_faces, 6)
+    resultants = np.einsum("tij,tj->ti", inverse, wanted.reshape(n_times, -1)).reshape(n_times, n_faces, 6)
     resolved = np.einsum("tij,tji->ti", inverse, matrix).reshape(n_times, n_faces, 6) > _RESOLVED
-    found[~(resolved.all(axis=2) | read.all(axis=1, keepdims=True))] = np.nan
+    resultants[~(resolved.all(axis=2) | read.all(axis=1, keepdims=True))] = np.nan
     about = inverse.reshape(n_times, n_faces, 6, len(free), 6)[:, :, 4]
     errors = np.einsum("tfbi,tbij->tfbj", about, covariance_root(information))
-    return ContactForces(found[..., :3], found[..., 3:], np.sqrt((errors**2).sum(axis=(2, 3))))
+    return ContactForces(resultants[..., :3], resultants[..., 3:], np.sqrt((errors**2).sum(axis=(2, 3))))
 
 
 def _of_read_bodies(required, free):
@@ -165,15 +165,13 @@ def face_frames(structure, faces, motion):
     return FaceFrames(faces, np.stack(middle, axis=1), np.stack(axes, axis=1), position)
 
 
-def with_resultants(states, frames, forces, joints, tree):
+def with_resultants(states, frames, forces, joints):
     """States in which a closed face whose resultant lies surely beyond an edge bears on that edge.
 
-    It has to turn to that side as well. A joint of a tree alone has a resultant that is known.
+    The face has to turn to that side as well. The faces are a tree, whose resultants are known.
     """
     edge = states.edge.copy()
     for index, face in enumerate(frames.faces):
-        if not tree:
-            continue
         normal, moment = forces.force[:, index, 2], forces.moment[:, index, 1]
         over = np.abs(moment) - face.half_width * normal
         surely = over > _SURELY * forces.moment_error[:, index] + _BEYOND * normal
@@ -220,26 +218,31 @@ def equilibrium_rows(frames, states, motion, required, free):
     wrench, information, read = _of_read_bodies(required, free)
     chosen = np.flatnonzero(read.any(axis=1))
     chosen = chosen[chosen % max(1, round(_EVERY / step)) == 0]
+    bearing = bearing_points(frames, states)
     carried = np.concatenate(
-        [_carried(frames, states, face)[chosen][:, free] for face in range(len(frames.faces))], axis=-1
+        [
+            _carried(frames, states, bearing[:, face], face)[chosen][:, free]
+            for face in range(len(frames.faces))
+        ],
+        axis=-1,
     ).reshape(len(chosen), 6 * len(free), 6 * len(frames.faces))
     matrix = np.concatenate([carried, _unread(information[chosen])], axis=-1)
-    left, sizes, _ = np.linalg.svd(matrix, full_matrices=False)
-    place, column = np.nonzero(sizes <= _CARRIED * sizes[:, :1])
-    vectors = left[place, :, column]
-    direction = np.zeros((len(place), n_bodies, 6))
+    vectors, sizes, _ = np.linalg.svd(matrix, full_matrices=False)
+    row, column = np.nonzero(sizes <= _CARRIED * sizes[:, :1])
+    vectors = vectors[row, :, column]
+    direction = np.zeros((len(row), n_bodies, 6))
     direction[:, free] = vectors.reshape(-1, len(free), 6)
-    instant = chosen[place]
+    instant = chosen[row]
     value = np.einsum("rbk,rbk->r", direction[:, free], wrench[instant])
-    roots = covariance_root(information[chosen])[place]
-    noise = np.einsum("rbi,rbij->rbj", direction[:, free], roots).reshape(len(place), 6 * len(free))
+    roots = covariance_root(information[chosen])[row]
+    noise = np.einsum("rbi,rbij->rbj", direction[:, free], roots).reshape(len(row), 6 * len(free))
     return EquilibriumRows(instant, motion.time[instant], direction, value, noise)
 
 
-def _carried(frames, states, face):
+def _carried(frames, states, bearing, face):
     """Wrenches that a face may carry, (n_times, n_bodies, 6, 6); zero columns where it may carry less than six."""
     edge, slip = states.edge[:, face], states.slip[:, face]
-    columns = frames.unit_wrenches(face, bearing_points(frames, states)[:, face])
+    columns = frames.unit_wrenches(face, bearing)
     friction = frames.faces[face].friction * slip
     columns[..., 2] -= friction[:, None, None] * columns[..., 0]
     columns[slip != 0, ..., 0] = 0.0
@@ -253,7 +256,7 @@ def _unread(information):
     """Unit wrenches along the directions of bodies that no sensor reads, (n_chosen, 6 * n_free, 6 * n_free)."""
     n_chosen, n_free = information.shape[:2]
     vectors = unread_directions(information)
-    found = np.zeros((n_chosen, n_free, 6, n_free, 6))
+    columns = np.zeros((n_chosen, n_free, 6, n_free, 6))
     for body in range(n_free):
-        found[:, body, :, body] = vectors[:, body]
-    return found.reshape(n_chosen, 6 * n_free, 6 * n_free)
+        columns[:, body, :, body] = vectors[:, body]
+    return columns.reshape(n_chosen, 6 * n_free, 6 * n_free)

@@ -68,24 +68,24 @@ def find_impacts(seen):
     impact, beyond the reach of the kernel, and carried to the instant of the impact by that moment, which the
     positions give. About the other edge a plastic impact keeps the momentum, bounces at that edge or not.
     """
-    found = []
+    impacts = []
     for face in range(len(seen.faces)):
         above = _carried_alone(seen, face)
         if len(above):
             pairs = _closings(seen.joints.side[:, face], np.abs(seen.joints.rotation[:, face]))
-            found += [_impact(seen, face, above, *pair) for pair in pairs]
-    return [one for one in found if one is not None]
+            impacts += [_impact(seen, face, above, *pair) for pair in pairs]
+    return [impact for impact in impacts if impact is not None]
 
 
 def _carried_alone(seen, face):
     """Free bodies that stand on the driven ones by one face and by no other; empty if there are none."""
     driven, links = seen.structure.driven, np.zeros((len(seen.structure.mass),) * 2, dtype=bool)
-    for one in seen.faces:
-        links[one.lower, one.upper] = not (driven[one.lower] or driven[one.upper])
+    for joint in seen.faces:
+        links[joint.lower, joint.upper] = not (driven[joint.lower] or driven[joint.upper])
     _, group = connected_components(links, directed=False)
-    own = (group == group[seen.faces[face].upper]) & ~driven
-    feet = [one for one in seen.faces if driven[one.lower] and own[one.upper]]
-    return np.flatnonzero(own) if [one.name for one in feet] == [seen.faces[face].name] else np.zeros(0, int)
+    above = (group == group[seen.faces[face].upper]) & ~driven
+    feet = [joint.name for joint in seen.faces if driven[joint.lower] and above[joint.upper]]
+    return np.flatnonzero(above) if feet == [seen.faces[face].name] else np.zeros(0, int)
 
 
 def _closings(side, turn):
@@ -136,10 +136,10 @@ def _window(seen, side, near, at):
 
 def _closes(seen, face, near):
     """Time at which a joint is closed that goes on as at the instant ``near``, NaN where it turns back before [s]."""
-    motion, one = seen.motion, seen.faces[face]
+    motion, joint = seen.motion, seen.faces[face]
     axis, turn = seen.frames.axes[near, face, :, 1], seen.joints.rotation[near, face]
     rate, bend = (
-        (rates[near, one.upper] - rates[near, one.lower]) @ axis
+        (rates[near, joint.upper] - rates[near, joint.lower]) @ axis
         for rates in (motion.angular_velocity, motion.angular_acceleration)
     )
     root = np.sqrt(rate**2 - 2.0 * bend * turn) if rate**2 > 2.0 * bend * turn else np.nan
@@ -169,7 +169,7 @@ class _Bodies:
         return seen.frames.middle[self.now, face] + away * along, axis
 
     @cached_property
-    def own_inertia(self):
+    def inertia_of_each(self):
         """Of every body about its mass centre, world frame, (n_above, 3, 3) [kg m2]."""
         turn = self.seen.motion.rotation[self.now, self.above]
         return turn @ self.seen.structure.inertia[self.above] @ np.swapaxes(turn, -1, -2)
@@ -179,7 +179,7 @@ class _Bodies:
         (point, axis), position = line, self.seen.motion.position[self.now, self.above]
         arm, further = np.cross(axis, position - point), np.cross(axis, position - other[0])
         mass = self.seen.structure.mass[self.above]
-        return float((axis @ self.own_inertia @ axis).sum() + np.einsum("b,bi,bi->", mass, arm, further))
+        return float((axis @ self.inertia_of_each @ axis).sum() + np.einsum("b,bi,bi->", mass, arm, further))
 
     def momentum(self, line, window):
         """Angular momentum about a line, carried from a window to the impact, and its error, (2,) [kg m2/s]."""
@@ -193,12 +193,12 @@ class _Bodies:
         moment = np.einsum("b,tbi,i->t", mass, np.cross(arm, felt[:, None]), axis)
         carried = cumulative_trapezoid(moment, time, initial=0.0)
         rate = motion.velocity[span][:, above] - motion.velocity[span, self.table][:, None]
-        own = self.own_inertia @ axis
+        about_axis = self.inertia_of_each @ axis
         history = np.einsum("b,tbi,i->t", mass, np.cross(arm, rate), axis)
-        history += np.einsum("tbi,bi->t", motion.angular_velocity[span][:, above], own)
+        history += np.einsum("tbi,bi->t", motion.angular_velocity[span][:, above], about_axis)
         history += np.interp(self.at, time, carried) - carried
         by_rates = np.concatenate(
-            [mass[:, None] * np.cross(axis, motion.position[self.now, above] - point), own], axis=1
+            [mass[:, None] * np.cross(axis, motion.position[self.now, above] - point), about_axis], axis=1
         )
         variance = np.einsum("bi,bij,bj->", by_rates, motion.rate_covariance[above], by_rates)
         # smoothed noise forgets itself over 2 sqrt(pi) widths

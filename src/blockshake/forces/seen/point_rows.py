@@ -69,7 +69,6 @@ def point_rows(seen, body, height):
     if known.sum() >= _FEWEST:
         fine = CubicSpline(time[known], displacement[known, 0])(time[0] + step * np.arange(len(fine)))
     return PointRows(
-        unit, rows.time, *(np.nan_to_num(one[rows.instant, 0]) for one in (displacement, velocity)), fine,
-        np.gradient(fine, step), rows.instant,
-        seen.motion.width / step,
+        unit, rows.time, np.nan_to_num(displacement[rows.instant, 0]), np.nan_to_num(velocity[rows.instant, 0]),
+        fine, np.gradient(fine, step), rows.instant, seen.motion.width / step,
     )  # fmt: skip

@@ -24,7 +24,6 @@ from blockshake.forces.seen.equilibrium_rows import (
 from blockshake.forces.seen.states import FaceStates, face_states
 from blockshake.geometry.structure import Structure
 
-_STEP = 0.01  # s, between instants: less than the kernel's width
 _LEAST_STILL = 0.1  # s of rest before the table moves, from whose mean the readings count
 _DRIFT, _SURE_DRIFT = 1e-3, 5.0  # m, standard deviations: between the halves of a rest
 _MOTION = (
@@ -113,7 +112,7 @@ def see_test(name, readings, structure, sensors):
     """
     sensors = sensors.not_noiseless()
     readings, until = counted_from_rest(readings, structure, sensors)
-    motion = smooth_motion(readings, structure, sensors, _STEP)
+    motion = smooth_motion(readings, structure, sensors)
     still = motion.time <= until
     if not _rests(readings, until, sensors.marker_noise):
         still[:] = False
@@ -128,7 +127,8 @@ def see_test(name, readings, structure, sensors):
     frames, free = face_frames(structure, faces, motion), np.flatnonzero(~structure.driven)
     forces = contact_forces(frames, required, free)
     states = face_states(structure, faces, motion, joints, still)
-    states = with_resultants(states, frames, forces, joints, len(faces) == len(free))
+    if len(faces) == len(free):
+        states = with_resultants(states, frames, forces, joints)
     joints = replace(
         joints, **{name: np.nan_to_num(getattr(joints, name)) for name in ("rotation", "roll", "slip_rate")}
     )

@@ -8,10 +8,8 @@ from scipy.ndimage import minimum_filter1d, uniform_filter1d
 from blockshake.forces.joint_motion import SURE, from_rest
 from blockshake.geometry.rotations import rotation_matrices
 
-_LIFTED, _FLIES = (
-    1e-3,
-    4e-3,
-)  # m, between the edges that should bear; within the first a bounce may have touched
+# m, between the edges that should bear; within the first a bounce may have touched
+_LIFTED, _FLIES = 1e-3, 4e-3
 _SLIPS = 0.01  # m/s, mean over `_OVER`
 _OVER = 0.1  # s; a creep drowns in the rate's own noise and shows in the displacement over this time
 _STILL = 0.5  # of the mean, that a slip that goes on has at least
@@ -80,7 +78,7 @@ def face_states(structure, faces, motion, joints, still):
 def openings(structure, faces, motion, joints, still):
     """Distance between the edges that should bear, less its mean in the quiet start, (n_times, n_faces) [m]."""
     start = rotation_matrices(structure.orientation)
-    found = np.empty((len(motion.time), len(faces)))
+    distance = np.empty((len(motion.time), len(faces)))
     for index, face in enumerate(faces):
         lower, upper = face.lower, face.upper
         apart = structure.position[upper] + start[upper] @ face.on_upper - structure.position[lower]
@@ -88,10 +86,9 @@ def openings(structure, faces, motion, joints, still):
         beneath = motion.position[:, lower] + motion.rotation[:, lower] @ (start[lower].T @ apart)
         normal = motion.rotation[:, lower] @ (start[lower].T @ face.axes[:, 2])
         opening = np.einsum("ti,ti->t", normal, middle - beneath)
-        found[:, index] = from_rest(
-            opening - face.half_width * np.abs(np.sin(joints.rotation[:, index])), still
-        )
-    return found
+        lowered = face.half_width * np.abs(np.sin(joints.rotation[:, index]))
+        distance[:, index] = from_rest(opening - lowered, still)
+    return distance
 
 
 def _unchanged(states, near):

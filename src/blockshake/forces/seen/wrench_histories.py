@@ -1,7 +1,7 @@
-"""Histories of wrenches that things nobody modelled would put on the bodies of a seen test: columns of its rows.
+"""Wrenches that causes outside the model would put on the bodies of a test, at every instant.
 
-Each is a float64 array (n_times, n_bodies, 6), force [N] and moment about the mass centre [N m] in the world frame, per
-unit of its amplitude. Where a motion is not known it is zero: no row is there.
+Each history is a float64 array (n_times, n_bodies, 6), force [N] and moment about the mass centre [N m] in the world
+frame, per unit of its amplitude. It is zero where a motion is not known: no row is there.
 """
 
 import numpy as np

@@ -16,7 +16,7 @@ from blockshake.parity.regression import Size, regression
 
 _EVERY = 0.05  # s, between readings that are compared
 _TOLERANCE = 0.002  # of a gain
-_LEFT = 0.4  # share of every joint's slip that the gain may leave
+_MOST_SLIP = 0.4  # share of every joint's slip that the gain may leave
 _SEEN = 3.0  # standard deviations: of a slip worth a look
 _FEWEST_JOINTS = 2  # a slip of one joint alone may be one
 _FLAT = 1e-4  # m2: markers that are nearly level, or nearly upright, show no turn by one axis
@@ -103,7 +103,7 @@ def _gain(pairs, body, seen):
         slip = np.concatenate([slip for _, slip, _ in known])
         rest = np.concatenate([slip - ratio * moved[:, 0] for moved, slip, _ in known])
         size = (slip**2).mean()
-        if not size > (_SEEN * noise) ** 2 or (rest**2).mean() > _LEFT * size:
+        if not size > (_SEEN * noise) ** 2 or (rest**2).mean() > _MOST_SLIP * size:
             return None
     return Size(share.estimate / (1.0 - ratio), share.covariance / (1.0 - ratio) ** 4, share.freedom)
 

@@ -1,12 +1,10 @@
 """The optical clock is behind the recorder's, or slow: its reading at t is of t - lag - skew (t - middle)."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from blockshake.parity.kinds.gain import SEGMENT
 from blockshake.parity.kinds.kind import Kind
-from blockshake.parity.regression import Size, regression
+from blockshake.parity.regression import regression
 from blockshake.parity.transducer_readings import STEP
 
 _LAG_TOLERANCE = 5e-4  # s; half a millisecond of trigger jitter is no fault
@@ -35,17 +33,15 @@ LAG = Kind("lag", "clock-lag", "marker read at t shows t - lag", _correct_lag, u
 SKEW = Kind("skew", "clock-lag", "lag = skew (t - middle)", _correct_skew, size=None)
 
 
-class ClockLag(NamedTuple):
-    """Lag of each test [s]; lag at the middle of a record and skew of all tests together [s, 1], or None."""
+def clock_lags(pairs_by_test):
+    """Lag of the optical clock behind the accelerometers', from the pairs by test.
 
-    by_test: dict
-    common: Size | None
-
-
-def clock_lag(pairs_by_test):
-    """`ClockLag` of the optical clock against the accelerometers, test by test and over time, from the pairs by test.
-
-    Tests that tell nothing are missing.
+    Returns
+    -------
+    lags : dict of str to Size
+        Of each test [s]; a test that does not show it is missing.
+    common : Size or None
+        Lag at the middle of a record and skew, of all tests together [s, 1].
     """
     lags, parts = {}, []
     for name, pairs in pairs_by_test.items():
@@ -60,12 +56,11 @@ def clock_lag(pairs_by_test):
         if alone is not None:
             lags[name] = alone
             parts.append(part)
-    return ClockLag(lags, regression(parts, SEGMENT) if parts else None)
+    return lags, regression(parts, SEGMENT) if parts else None
 
 
-def clock_findings(clock, level):
+def clock_findings(lags, common, level):
     """One lag and skew of all tests; the lag of single tests only where there is no common one: list of Finding."""
-    lags, common = clock
     if common is None:
         return []
     where = ("optical clock",)

@@ -3,10 +3,8 @@
 import numpy as np
 
 from blockshake.parity.body_markers import BodyMarkers, bodies_with_markers
-from blockshake.parity.finding import LEFT_AT_MOST, chance_of_misfit
-from blockshake.parity.kinds.axes import AXES, ORDERS
-from blockshake.parity.kinds.polarity import POLARITY
-from blockshake.parity.kinds.swap import SWAP
+from blockshake.parity.finding import MOST_MISFIT, chance_of_misfit
+from blockshake.parity.kinds.channel_swap import AXES, ORDERS, POLARITY, SWAP
 from blockshake.parity.marker_faults import check_body
 
 _SUSPECT_VARIANCE = 2.0  # times the stated variance that calls for a search
@@ -43,7 +41,7 @@ def marker_exchanges(structure, tests, marker_noise, level):
                 trial = _taken_out(kind, where, structure, tests, bodies)
                 before = sum(squares[key][0] for key in trial[1])
                 after, values = np.sum([_squares(body) for body in trial[1].values()], axis=0)
-                if after < LEFT_AT_MOST * before and before - after > most:
+                if after < MOST_MISFIT * before and before - after > most:
                     most, best = before - after, (kind, where, *trial, before, after, after / values)
         if best is None:
             break
@@ -112,7 +110,7 @@ def channel_exchanges(pairs_by_test, lags, level):
 
 
 def _chance_of_sound(name, other, pairs_by_test, lags):
-    """Chance of a misfit as it is, if the channel ``name`` is not ``other``, or itself reversed."""
+    """Chance of the misfit of a channel that is neither exchanged with ``other`` nor, of the same name, reversed."""
     before = after = noise = count = 0.0
     for test, pairs in pairs_by_test.items():
         by_name = {pair.name: pair for pair in pairs}

@@ -1,12 +1,12 @@
 """The registry of kinds of sensor faults, in the order in which they are taken out of readings."""
 
-from blockshake.parity.kinds import axes, clock, drift, gain, polarity, saturation, slip, swap, wrong_place
+from blockshake.parity.kinds import channel_swap, clock, drift, gain, saturation, wrong_place
 
 _KINDS = (
-    swap.SWAP,
-    axes.AXES,
-    polarity.POLARITY,
-    slip.SLIP,
+    channel_swap.SWAP,
+    channel_swap.AXES,
+    channel_swap.POLARITY,
+    drift.SLIP,
     drift.DRIFT,
     gain.GAIN,
     wrong_place.PLACE,

@@ -1,1 +1,0 @@
-"""Effects that only the sensors have: the blocks move as the model says."""
