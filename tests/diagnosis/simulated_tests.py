@@ -1,7 +1,7 @@
 """Seen tests of two blocks that contact dynamics made, with a cause or without one."""
 
 from blockshake.diagnosis.answer.decision import Cause
-from blockshake.diagnosis.answer.extension import extended_experiment
+from blockshake.diagnosis.gain.extended_model import extended_experiment
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
 from blockshake.files import PACKAGE

@@ -88,9 +88,8 @@ def describe_misfit(folder, effort, files):
     xarray.Dataset
         From `misfit`.
     """
-    from blockshake.diagnosis.misfit.judged_test import judged_test
+    from blockshake.diagnosis.misfit.judged_test import judged_test, measured_histories
     from blockshake.diagnosis.misfit.misfit import misfit
-    from blockshake.diagnosis.nominal.measured import measured_histories
     from blockshake.diagnosis.nominal.plan import plan_diagnosis
     from blockshake.parity.parity import load_parity
 
@@ -123,11 +122,10 @@ def extend_model(folder, effort, solver, files, store):
     xarray.Dataset
         From `extended_runs`.
     """
-    from blockshake.diagnosis.answer.decision import load_decision
+    from blockshake.diagnosis.answer.decision import check_frozen, load_decision
     from blockshake.diagnosis.gain.extended_model import acting_causes, extended_runs
-    from blockshake.diagnosis.nominal.measured import measured_histories
+    from blockshake.diagnosis.misfit.judged_test import measured_histories
     from blockshake.diagnosis.nominal.plan import plan_diagnosis
-    from blockshake.diagnosis.verdict.frozen import check_frozen
     from blockshake.parity.parity import load_parity
 
     check_frozen(files.frozen, files.decision)
@@ -151,14 +149,13 @@ def measure_gain(folder, effort, files):
     -------
     CampaignGain
     """
-    from blockshake.diagnosis.answer.decision import load_decision
+    from blockshake.diagnosis.answer.decision import check_frozen, load_decision
     from blockshake.diagnosis.evidence.seen_campaign import see_campaign, see_sealed
     from blockshake.diagnosis.gain.campaign_gain import campaign_gain, with_rows
     from blockshake.diagnosis.gain.row_gain import row_gain
-    from blockshake.diagnosis.gain.sensor_gain import sensors_gain
-    from blockshake.diagnosis.nominal.measured import measured_histories
+    from blockshake.diagnosis.gain.sensor_gain import sensor_gain
+    from blockshake.diagnosis.misfit.judged_test import measured_histories
     from blockshake.diagnosis.nominal.plan import plan_diagnosis
-    from blockshake.diagnosis.verdict.frozen import check_frozen
     from blockshake.measurement.campaigns.campaign import load_campaign
     from blockshake.parity.parity import load_parity
 
@@ -166,7 +163,7 @@ def measure_gain(folder, effort, files):
     campaign, decision = load_campaign(folder), load_decision(files.decision)
     findings = load_parity(files.parity).findings
     if not decision.parts:
-        return sensors_gain(campaign, decision.tests, list(campaign.sealed), findings)
+        return sensor_gain(campaign, decision.tests, findings)
     sealed = see_sealed(campaign)
     rows = row_gain(decision, see_campaign(campaign).tests, sealed.tests)
     if not files.extended:
@@ -198,19 +195,19 @@ def conclude(folder, runs, files):
     Verdict
     """
     from blockshake.diagnosis.answer.decision import load_decision
-    from blockshake.diagnosis.verdict.conclusion import conclude, no_gain
+    from blockshake.diagnosis.verdict.conclusion import conclude
     from blockshake.diagnosis.verdict.verdict import load_gain
     from blockshake.measurement.campaigns.campaign import load_campaign
     from blockshake.parity.parity import load_parity
 
     parity, decision = load_parity(files.parity), load_decision(files.decision)
-    campaign = load_campaign(folder)
     measured = load_gain(files.gain[0]) if files.gain else None
     caveats = [
-        f"{test} is judged until {one.body} falls, at {one.time:.2f} s" for test, one in parity.falls.items()
+        f"{test} is judged until {fall.body} falls, at {fall.time:.2f} s"
+        for test, fall in parity.falls.items()
     ]
     caveats += [f"{test}: {line}" for test, lines in parity.gaps.items() for line in lines]
-    if not files.gain:
-        caveats += no_gain(campaign, [*decision.parts, *parity.findings])
+    if (decision.parts or parity.findings) and not (files.gain or load_campaign(folder).sealed):
+        caveats.append("no gain was measured: there is no sealed test")
     verdict = conclude(decision, parity.findings, parity.recorder_sensors, caveats, measured)
     return verdict.model_copy(update={"runs": runs + verdict.runs})

@@ -4,8 +4,8 @@ import pytest
 from simulated_tests import cause_of, seen_tests
 
 from blockshake.diagnosis.answer.decide import decide
-from blockshake.diagnosis.answer.extension import can_extend
 from blockshake.diagnosis.answer.places import place_name
+from blockshake.diagnosis.gain.extended_model import can_extend
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS
 

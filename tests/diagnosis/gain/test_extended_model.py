@@ -1,12 +1,8 @@
 """Where a placebo acts, and what an extension is in the store."""
 
-import pytest
-
-from blockshake.geometry.structure import load_structure
-
-pytest.importorskip("blockshake.diagnosis.answer.extension", reason="the answer is on another branch")
 from blockshake.diagnosis.answer.decision import Cause
 from blockshake.diagnosis.gain.extended_model import Extension, placebo_of
+from blockshake.geometry.structure import load_structure
 
 STRUCTURE = load_structure("configuration-1")
 OFFSETS = ({"offset": 0.03}, {"offset": 0.04})

@@ -3,11 +3,11 @@ import pytest
 from fake_findings import ECCENTRIC, OPEN, SEALED, departures, misfit, responses
 
 from blockshake.diagnosis.answer.decision import Cause
-from blockshake.diagnosis.gain.figure import plot_drift
+from blockshake.diagnosis.gain.section import plot_drift
 from blockshake.diagnosis.misfit.figure import plot_misfit
-from blockshake.diagnosis.report.figures.forces import plot_forces, plot_slab, shown_bodies, shown_tests
-from blockshake.diagnosis.report.figures.odds import plot_odds
-from blockshake.diagnosis.report.figures.sizes import plot_sizes
+from blockshake.diagnosis.report.answer_section import plot_forces, plot_slab, shown_bodies, shown_tests
+from blockshake.diagnosis.report.odds_section import plot_odds
+from blockshake.diagnosis.report.size_section import plot_sizes
 from blockshake.effects.registry import EFFECTS
 
 BODIES = ("block-1", "block-2", "block-3")

@@ -1,6 +1,6 @@
 import pytest
 
-from blockshake.diagnosis.verdict.frozen import check_frozen, freeze
+from blockshake.diagnosis.answer.decision import check_frozen, freeze
 from blockshake.errors import InputError
 
 

@@ -5,7 +5,7 @@ import pytest
 from known_blocks import GRAVITY, kicked, readings, rocking, stack
 
 from blockshake.diagnosis.answer.explain import gather_evidence
-from blockshake.diagnosis.answer.sight import cannot_see
+from blockshake.diagnosis.answer.limits import cannot_see
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
 from blockshake.diagnosis.evidence.spin_kept import restitution_gain
 from blockshake.forces.seen.seen_test import see_test

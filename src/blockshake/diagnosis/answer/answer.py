@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from blockshake.diagnosis.answer.odds import ODDS, coarsened
 from blockshake.diagnosis.evidence.explanation import mean_evidence
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
@@ -22,6 +21,8 @@ _NEEDED_OF_SLAB = {"turns": 8.0, "lifts": 20.0}  # outliers of one marker lift t
 _BESIDE_SLAB = 10.0  # nats more of a cause in the joints of a slab that has one of its own
 _BESIDE = 5.0  # nats more of a second cause in the joints
 _BESIDE_SHARE = 0.1  # of the first one's gain, beside that
+ODDS = float(np.log(20.0))  # within which causes are not told apart
+COARSENING = 0.05  # share of what it explains that the form of a cause may leave unexplained
 
 
 @dataclass(frozen=True)
@@ -185,3 +186,12 @@ def slab_groups(explained):
             near = tuple(one for one in ranked if odds[one.cause] < ODDS)
             found.append((readings, Group(near, odds, gains)))
     return found
+
+
+def coarsened(difference, gain):
+    """Logarithm of the odds of two causes whose scores differ, the better one gaining ``gain``.
+
+    The likelihood is raised to ``1 / (1 + delta gain / ln 20)``: a form may leave a share delta of what it explains
+    (Miller and Dunson 2019, coarsened posteriors).
+    """
+    return difference / (1.0 + COARSENING * max(gain, 0.0) / ODDS)

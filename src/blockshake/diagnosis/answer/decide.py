@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.diagnosis.answer.answer import (
+    coarsened,
     group_of,
     needed_beside,
     needed_of,
@@ -14,14 +15,11 @@ from blockshake.diagnosis.answer.answer import (
     soft_gains,
 )
 from blockshake.diagnosis.answer.decision import Cause, Decision, Part
-from blockshake.diagnosis.answer.departures import departures, largest
+from blockshake.diagnosis.answer.departures import departures, largest, slab_departures
 from blockshake.diagnosis.answer.explain import gather_evidence
-from blockshake.diagnosis.answer.limits import excluded_above, limits_of
-from blockshake.diagnosis.answer.odds import coarsened
+from blockshake.diagnosis.answer.limits import cannot_see, excluded_above, limits_of
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_of
-from blockshake.diagnosis.answer.sight import cannot_see
 from blockshake.diagnosis.answer.size import members_of, size_of
-from blockshake.diagnosis.answer.slab_departures import slab_departures
 from blockshake.diagnosis.evidence.closed_joints import closed_joint_gains
 from blockshake.diagnosis.evidence.explanation import Fit, mean_evidence
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion

@@ -8,6 +8,7 @@ from blockshake.forces.seen.wrench_histories import force_at
 
 _NAMES = ("measured", "deviation", "explained")
 _LEAST = 1e-3  # of a virtual displacement along x, squared: below it a force on the block makes no row
+_MOVES = {"turn": ("rotation of the slab", "rad"), "lift": ("vertical motion of the slab", "m")}
 
 
 def departures(seen, evidence, explained):
@@ -71,4 +72,36 @@ def largest(shown):
     return (
         f"{shown['body'].values[body]} in {shown['test'].values[instant]} at {float(shown['time'][instant]):.2f} s: "
         f"{force[instant, body] / 1e3:+.3g} kN that the model does not have"
+    )
+
+
+def slab_departures(seen, slabs, explained, parts):
+    """Rotation and vertical displacement of the slab, measured and by the causes.
+
+    Parameters
+    ----------
+    seen : list of SeenTest
+    slabs : list of SlabMotion
+    explained : dict of str to Explanation
+        From `explain_slab`.
+    parts : sequence of Part
+        Of the decision.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``reading``, of all tests one after the other: ``slab_test`` and ``slab_time`` [s]; ``turn`` [rad] and
+        ``lift`` [m], from rest; ``turn_explained`` and ``lift_explained``, those of the likeliest cause at its best.
+    """
+    found = {}
+    for name, (readings, unit) in _MOVES.items():
+        causes = [part.causes[0].name for part in parts if part.readings == readings]
+        measured = [getattr(slab, name)[slab.at] for slab in slabs]
+        made = explained[causes[0]].rows if causes else [np.zeros(len(one)) for one in measured]
+        for key, values in ((name, measured), (f"{name}_explained", made)):
+            found[key] = ("reading", np.concatenate(values), {"units": unit})
+    names = [test.name for test, slab in zip(seen, slabs, strict=True) for _ in slab.at]
+    time = np.concatenate([slab.time[slab.at] for slab in slabs])
+    return xr.Dataset(
+        found, {"slab_test": ("reading", names), "slab_time": ("reading", time, {"units": "s"})}
     )

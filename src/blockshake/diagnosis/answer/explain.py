@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from blockshake.diagnosis.answer.odds import coarsened
+from blockshake.diagnosis.answer.answer import coarsened
 from blockshake.diagnosis.answer.places import place_name
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.evidence.joint_rows import JointRows
@@ -18,18 +18,19 @@ from blockshake.diagnosis.outside.changed_edge import explain_changed_edge
 from blockshake.diagnosis.outside.following import explain_following
 from blockshake.diagnosis.outside.free_force import explain_free_force
 from blockshake.diagnosis.outside.loose_weight import explain_loose_weight
-from blockshake.diagnosis.outside.points import force_points
 from blockshake.diagnosis.outside.push import explain_push
 from blockshake.diagnosis.outside.spring_once import explain_spring_once
 from blockshake.diagnosis.outside.unmodelled_mass import explain_unmodelled_mass
 from blockshake.effects.registry import EFFECTS
 from blockshake.effects.stopper_contact import EFFECT as STOPPER_CONTACT
+from blockshake.forces.seen.point_rows import point_rows
 
 NOISES = (0.75, 1.0, 1.3)  # standard deviation of the sensors over the stated one
 _UNHEARD = 20.0  # nats: a likelihood that says so much less for the first cause adds nothing
 _LOOKED_AT = 4  # causes
 _FIRST_LOOK = (1.0,), ((4.0, 0.0),)
 DISCREPANCIES = ((1.0, 0.0), (4.0, -3.0), (16.0, -10.0))  # multiple, logarithm of its prior
+_HEIGHTS = (0.0, 0.42)  # above the mass centre, over the block's height
 
 
 @dataclass(frozen=True)
@@ -224,3 +225,37 @@ def gather_evidence(seen, without=()):
         return None
     tried = all_tried(tests, without)
     return Evidence(tried, [explain(one, tried) for one in heard(tried)])
+
+
+@dataclass(frozen=True)
+class Points:
+    """A point of one body in all tests.
+
+    Attributes
+    ----------
+    place : str
+        Body, and height above its centre over its own height.
+    body : int
+    by_test : list of PointRows
+    tests : list of str
+    """
+
+    place: str
+    body: int
+    by_test: list
+    tests: list
+
+
+def force_points(tests):
+    """`Points` of all free bodies on which a force makes rows."""
+    seen = tests[0].seen
+    found = []
+    for body in seen.free:
+        name = seen.structure.body_names[body]
+        for height in _HEIGHTS:
+            rows = [point_rows(test.seen, name, height) for test in tests]
+            if any(one.unit.any() for one in rows):
+                found.append(
+                    Points(f"{name}@{height:g}", int(body), rows, [test.seen.name for test in tests])
+                )
+    return found

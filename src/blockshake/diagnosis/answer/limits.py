@@ -4,10 +4,11 @@ import numpy as np
 
 from blockshake.diagnosis.answer.answer import needed_of, needed_of_slab
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_name
-from blockshake.diagnosis.evidence.limits import detection_limit
 from blockshake.effects.registry import EFFECTS
+from blockshake.measurement.motion.body_poses import PLANAR, POSE
 
 _USUAL_GAP = 0.02  # m, at which a stop's limit is told
+_LOST = 0.1  # of a test, for which a motion may be unknown without a word
 
 
 def limits_of(evidence, slab):
@@ -83,3 +84,91 @@ def _parameter(name, values, size):
         return float(size)
     read = EFFECTS[name].reads(values, np.array([size]), 0.0)
     return float(np.broadcast_to(read[EFFECTS[name].parameters[0].name], 1)[0])
+
+
+def detection_limit(likelihood, columns, scale, needed):
+    """Amplitude at which the expected gain of a cause reaches what is needed.
+
+    Parameters
+    ----------
+    likelihood : Likelihood
+        Without a cause.
+    columns : list of float64 array, shape (n_rows,)
+        By test, per unit of the amplitude.
+    scale : float
+        Standard deviation of the amplitude's prior.
+    needed : float
+        Gain that is no chance, the average over places included.
+
+    Returns
+    -------
+    float
+        Infinite where the rows do not tell the amplitude.
+
+    Notes
+    -----
+    With the standard deviation s of the amplitude, nuisances free, an amplitude a gains
+    ``a^2 / (2 s^2) - ln(1 + scale^2 / s^2) / 2`` in the mean.
+    """
+    whitened = likelihood.whiten([rows[:, None] for rows in columns])
+    gram = float(likelihood.normal_equations(whitened)[1][0, 0])
+    if not gram > 0.0:
+        return np.inf
+    return float(np.sqrt((2.0 * needed + np.log1p(gram * scale**2)) / gram))
+
+
+def cannot_see(seen_tests):
+    """Lines about what the sensors of a campaign do not show.
+
+    Parameters
+    ----------
+    seen_tests : list of SeenTest
+
+    Returns
+    -------
+    list of str
+        Empty where every motion of every body is read in every test, and every joint has moved in some test.
+    """
+    if not seen_tests:
+        return ["no open test: nothing is judged"]
+    resting = [seen for seen in seen_tests if seen.still.any()]
+    lines = [
+        f"{seen.name}: no quiet start, from which its readings would count; nothing of it is judged"
+        for seen in seen_tests
+        if not seen.still.any()
+    ]
+    if not resting:
+        return lines
+    lines += [line for body in range(len(resting[0].structure.mass)) for line in _of_body(resting, body)]
+    if len(resting) == 1:
+        lines.append(f"{resting[0].name} alone: a cause that acts once is not told from one that lasts")
+    if not resting[0].tree:
+        lines.append("bodies that stand on several joints: the force of each joint is known in part")
+    return [*lines, *_of_joints(resting)]
+
+
+def _of_body(tests, body):
+    name, driven = tests[0].structure.body_names[body], tests[0].structure.driven[body]
+    known = {seen.motion.known[body] for seen in tests}
+    if not known <= {POSE, PLANAR}:
+        lost = "a pitch of the table and a soft base are" if driven else "forces of the joints at it are"
+        yield f"{name}: its rotation is not read; {lost} not judged"
+        return
+    if PLANAR in known and not driven:
+        yield f"{name}: turns out of the plane of shaking are not read, and taken as none"
+    lost = max(float(np.mean(~np.isfinite(seen.required.wrench[:, body]).all(axis=1))) for seen in tests)
+    if lost > _LOST:
+        yield f"{name}: its motion is unknown for up to {100.0 * lost:.0f} % of a test"
+
+
+def _of_joints(tests):
+    for index, face in enumerate(tests[0].faces):
+        read = [seen for seen in tests if np.isfinite(seen.forces.force[:, index]).any()]
+        moved = any(
+            seen.states.edge[:, index].any()
+            or seen.states.slip[:, index].any()
+            or seen.states.lifted[:, index].any()
+            for seen in read
+        )
+        if read and not moved:
+            yield f"{face.name}: turned, slipped and lifted in no test; of its causes a soft layer alone would show"

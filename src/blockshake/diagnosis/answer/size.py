@@ -5,10 +5,10 @@ import zlib
 import numpy as np
 
 from blockshake.diagnosis.answer.decision import MEMBERS, Estimate
-from blockshake.diagnosis.answer.odds import FORM
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS
 
+FORM = 0.1  # of a size, by which a cause of another form than the registry's has another one
 _DRAWS = 2000
 _INTERVAL = (0.05, 0.5, 0.95)
 

@@ -1,9 +1,11 @@
 """Fourth section of a diagnosis: what the cause means for the structure, on tests that nothing was fitted to."""
 
-from blockshake.diagnosis.gain.figure import plot_drift
+import numpy as np
+
+from blockshake.diagnosis.misfit.figure import add_legend, draw_history
 from blockshake.diagnosis.wording import percent_words
 from blockshake.pages.blocks import Figure, Section, Table, Text
-from blockshake.pages.drawing import svg_of
+from blockshake.pages.drawing import BLUE, ORANGE, new_figure, svg_of
 from blockshake.pages.wording import MISSING, model_label, number, sentence_case
 
 _RIVALS = {
@@ -20,6 +22,8 @@ _KINDS = {
 }
 _MOST_TESTS = 3
 OF_GAIN = ("gain was measured", "nothing to gain")  # by which caveats on the gain are known
+_COLORS = {"recalibrated": ORANGE, "extended": BLUE}
+_TITLES = {"recalibrated": "without the cause, recalibrated", "extended": "with the cause"}
 
 
 def gain_section(found):
@@ -43,7 +47,7 @@ def gain_section(found):
     ]
     if gain is not None and "where" in gain.attrs:
         blocks.append(_of_sensor(gain))
-    elif gain is not None and "largest" in gain:
+    elif gain is not None:
         blocks += [_solvers(gain), _largest(found), _drift(found)]
     return Section(title, "gain", tuple(blocks))
 
@@ -143,3 +147,22 @@ def _of_sensor(scores):
         tuple(rows),
         "lrrrr",
     )
+
+
+def plot_drift(gain, tests, kinds, measured_word):
+    """Figure of the drift of the top by two models side by side, one row a sealed test."""
+    figure = new_figure(0.02 + 0.034 * len(tests))
+    panels = figure.subplots(len(tests), len(kinds), sharey="row", squeeze=False)
+    top = gain.isel(cell=np.flatnonzero(gain["quantity"].to_numpy() == "drift")[-1])
+    for row, test in zip(panels, tests, strict=True):
+        own = top.sel(test=test)
+        for axes, kind in zip(row, kinds, strict=True):
+            draw_history(axes, own.assign(band=own["band"].sel(kind=kind)), _COLORS[kind])
+        row[0].set_ylabel(f"{test}\ndrift [mm]")
+    for axes, kind in zip(panels[0], kinds, strict=True):
+        axes.set_title(_TITLES[kind])
+    for axes in panels[-1]:
+        axes.set_xlabel("time [s]")
+    figure.align_ylabels(panels[:, 0])
+    add_legend(figure, [_COLORS[kind] for kind in kinds], measured_word)
+    return figure

@@ -76,22 +76,14 @@ def _rows(test, place, when):
     return point.unit * _rise(point.time, np.array([when["starts"][test.seen.name]]))[:, 0]
 
 
-def start_of_push(place, size, test, left):
-    """Start of a push of a known size in a further test: that which leaves the least.
-
-    Parameters
-    ----------
-    place : dict
-    size : float
-        [N]
-    test : JointRows
-    left : callable
-        Of rows that are taken off: their squared distance.
-    """
+def start_of_push(place, size, test, likelihood, number):
+    """Start of a push of a known size [N] in a further test that leaves least of its rows; ``number``: of the test."""
     point = point_rows(test.seen, place["body"], place["height"])
     tried = _starts(point.time)
     shapes = size * point.unit[:, None] * _rise(point.time, tried)
-    return float(tried[int(np.argmin([left(rows) for rows in shapes.T]))])
+    value = likelihood.value[likelihood.ends[number] : likelihood.ends[number + 1]]
+    left = value[:, None] - likelihood.whiten_one(number, shapes)
+    return float(tried[np.argmin((left**2).sum(axis=0))])
 
 
 def _starts(time):

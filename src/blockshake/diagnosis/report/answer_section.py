@@ -2,17 +2,29 @@
 
 import numpy as np
 
-from blockshake.diagnosis.report.figures.forces import plot_forces, plot_slab, shown_bodies, shown_tests
 from blockshake.diagnosis.report.statement import not_told, sensor_causes, statement
 from blockshake.diagnosis.wording import chance_words, estimate_words, percent_words
 from blockshake.effects.registry import title_of
 from blockshake.pages.blocks import Figure, Items, Section, Text
 from blockshake.pages.box import Box
-from blockshake.pages.drawing import svg_of
+from blockshake.pages.drawing import BLACK, BLUE, LIGHT_GREY, new_figure, svg_of
+from blockshake.pages.units import printed
 from blockshake.pages.wording import sentence_case
 
 _OF_SLAB = {"rotation of the slab": "turn", "vertical motion of the slab": "lift"}
 _ABOUT = 0.5  # s, of a blow, that are drawn before and after it
+_MOST_TESTS, _MOST_BODIES = 5, 2
+_FEWEST_INSTANTS = 10  # instants of a test that is drawn
+_GAP = 0.05  # s, between instants of one curve
+_SPREADS = 2.0  # standard deviations of the sensors, to either side
+_TO_KILO = 1e-3
+_FITTING = 99.5  # percent of all instants that an axis has room for
+_MARGIN = 1.15
+_ALIKE = 0.98  # of two curves' product over their lengths, from which they are one but for a factor
+_POINTS = {"color": BLACK, "linestyle": "none", "marker": "o", "markeredgewidth": 0.0}
+_EXPLAINED = {"color": BLUE, "linewidth": 1.0, "marker": "o", "markersize": 1.2}
+_SIZES = 1.3, 3.0  # of points, smallest and largest
+_MANY = 200  # points, from which on they are small
 
 
 def answer_section(found):
@@ -127,3 +139,114 @@ def _slab(found, part):
         f"likeliest size{share}. A sound table makes none: the line at 0."
     )
     return Figure(words, svg_of(plot_slab, found.departures, name, title, found.measured_word))
+
+
+def shown_tests(departures):
+    """Names of the tests of `departures` with the largest forces, by name."""
+    names, counts = np.unique(departures["test"], return_counts=True)
+    names = [str(name) for name in names[counts >= min(_FEWEST_INSTANTS, counts.max())]]
+    square = [float((_of(departures, name)["measured"] ** 2).sum()) for name in names]
+    chosen = np.sort(np.argsort(square)[::-1][:_MOST_TESTS])
+    return [names[place] for place in chosen]
+
+
+def shown_bodies(departures, first):
+    """Names of the bodies whose forces are known best, ``first`` ones before all others.
+
+    Of bodies whose forces are the same but for a factor, as where one joint turns, the first alone.
+    """
+    sure = np.nan_to_num((departures["measured"] / departures["deviation"]).to_numpy())
+    length = np.linalg.norm(sure, axis=0)
+    names = departures["body"].values.tolist()
+    ranked = sorted(
+        np.flatnonzero(length > 0.0), key=lambda place: (names[place] not in first, -length[place])
+    )
+    chosen = []
+    for place in ranked:
+        alike = (abs(sure[:, place] @ sure[:, other]) / (length[place] * length[other]) for other in chosen)
+        if not any(one > _ALIKE for one in alike):
+            chosen.append(place)
+    return [names[place] for place in chosen[:_MOST_BODIES]]
+
+
+def plot_forces(departures, tests, bodies, explained, measured_word):
+    """Figure of forces [kN] over time, a row a body, a column a test; ``explained``: titles of the causes, or empty."""
+    figure, panels = _panels(tests, len(bodies))
+    for row, body in zip(panels, bodies, strict=True):
+        for axes, test in zip(row, tests, strict=True):
+            one = _with_gaps(_of(departures, test).sel(body=body))
+            noise = _SPREADS * one["deviation"]
+            axes.fill_between(
+                one["time"], -noise, noise, color=LIGHT_GREY, linewidth=0.0, label="noise of the sensors"
+            )
+            _draw_points(axes, one["time"], one["measured"], measured_word)
+            if explained:
+                axes.plot(one["time"], one["explained"], **_EXPLAINED, label=explained)
+        _limit(
+            row,
+            *(_TO_KILO * departures[name].sel(body=body).to_numpy() for name in ("measured", "explained")),
+        )
+        row[0].set_ylabel(f"{body}\nforce [kN]")
+    return _finished(figure, panels)
+
+
+def plot_slab(departures, name, explained, measured_word):
+    """Figure of the ``turn`` or ``lift`` of the slab over time, a column a test."""
+    of_test = departures["slab_test"].to_numpy()
+    tests = list(dict.fromkeys(of_test))[:_MOST_TESTS]
+    figure, (row,) = _panels(tests, 1)
+    factor, unit = printed(departures[name].attrs["units"])
+    for axes, test in zip(row, tests, strict=True):
+        own = departures.isel(reading=np.flatnonzero(of_test == test))
+        _draw_points(axes, own["slab_time"], factor * own[name], measured_word)
+        axes.plot(
+            own["slab_time"], factor * own[f"{name}_explained"], color=BLUE, linewidth=0.9, label=explained
+        )
+    _limit(row, *(factor * departures[one].to_numpy() for one in (name, f"{name}_explained")))
+    row[0].set_ylabel(f"{'rotation' if name == 'turn' else 'displacement'} [{unit}]")
+    return _finished(figure, [row])
+
+
+def _panels(tests, rows):
+    """Empty figure with a column a test."""
+    figure = new_figure(0.017 + (0.052 if rows == 1 else 0.028 * rows))
+    panels = figure.subplots(rows, len(tests), sharex="col", sharey="row", squeeze=False)
+    for axes, test in zip(panels[0], tests, strict=True):
+        axes.set_title(test)
+    return figure, panels
+
+
+def _draw_points(axes, time, values, label):
+    size = float(np.clip(_MANY / len(time), *_SIZES))
+    axes.plot(time, values, **_POINTS, markersize=size, label=label)
+
+
+def _limit(row, measured, explained):
+    """Room for all that is explained, and for nearly all that was measured."""
+    end = _MARGIN * max(np.nanpercentile(np.abs(measured), _FITTING), np.nanmax(np.abs(explained)))
+    row[0].set_ylim(-end, end)
+    for axes in row:
+        axes.axhline(0.0, color=BLACK, linewidth=0.6)
+
+
+def _finished(figure, panels):
+    """The figure with its axes of time, and a legend."""
+    for axes in panels[-1]:
+        axes.set_xlabel("time [s]")
+    figure.align_ylabels([row[0] for row in panels])
+    handles = panels[0][0].get_legend_handles_labels()
+    figure.legend(*handles, loc="outside upper center", ncols=len(handles[0]), markerscale=2.0)
+    return figure
+
+
+def _of(departures, test):
+    return departures.isel(instant=np.flatnonzero(departures["test"].to_numpy() == test))
+
+
+def _with_gaps(one):
+    """Forces in kN by name, NaN between instants that are far apart, so that no line is drawn there."""
+    time = one["time"].to_numpy()
+    gaps = np.flatnonzero(np.diff(time) > _GAP) + 1
+    names = ("measured", "deviation", "explained")
+    found = {name: np.insert(_TO_KILO * one[name].to_numpy(), gaps, np.nan) for name in names}
+    return {"time": np.insert(time, gaps, time[gaps - 1]), **found}
