@@ -186,6 +186,6 @@ def check_frozen(path, decided):
     InputError
     """
     frozen = load_made_json(path, lambda value: str(value["digest"]))
-    found = file_digest(decided)
-    if found != frozen:
-        raise InputError(decided, "", f"expected the file that was frozen as {frozen}, found {found}")
+    digest = file_digest(decided)
+    if digest != frozen:
+        raise InputError(decided, "", f"expected the file that was frozen as {frozen}, found {digest}")

@@ -32,7 +32,7 @@ def departures(seen, evidence, explained):
     parts = []
     for number, test in enumerate(evidence.tests if evidence else ()):
         rows = test.rows
-        forces = sum((one.rows[number] for one in explained), np.zeros(len(rows.value)))
+        forces = sum((explanation.rows[number] for explanation in explained), np.zeros(len(rows.value)))
         measured = rows.value - expected_rows(test)
         instants, index = np.unique(rows.instant, return_inverse=True)
         found = np.full((3, len(instants), len(names)), np.nan)
@@ -40,13 +40,13 @@ def departures(seen, evidence, explained):
             unit = rows.along(force_at(test.seen, int(body), np.array([1.0, 0.0, 0.0])))
             square = np.bincount(index, unit**2)
             known = square > _LEAST
-            noise = np.stack([np.bincount(index, unit * one) for one in rows.noise.T])
-            for place, value in enumerate((np.bincount(index, unit * measured), np.sqrt((noise**2).sum(axis=0)),
+            noise = np.stack([np.bincount(index, unit * explanation) for explanation in rows.noise.T])
+            for row, value in enumerate((np.bincount(index, unit * measured), np.sqrt((noise**2).sum(axis=0)),
                                            np.bincount(index, unit * forces))):  # fmt: skip
-                found[place, known, column] = value[known] / square[known]
+                found[row, known, column] = value[known] / square[known]
         parts.append(
             xr.Dataset(
-                {name: (("instant", "body"), found[place]) for place, name in enumerate(_NAMES)},
+                {name: (("instant", "body"), found[row]) for row, name in enumerate(_NAMES)},
                 {
                     "test": ("instant", [test.seen.name] * len(instants)),
                     "time": ("instant", test.seen.motion.time[instants], {"units": "s"}),
@@ -59,7 +59,7 @@ def departures(seen, evidence, explained):
         return xr.Dataset(
             none, {"test": ("instant", np.zeros(0, "U1")), "time": ("instant", []), "body": names}
         )
-    return xr.concat(parts, dim="instant").map(lambda one: one.assign_attrs(units="N"))
+    return xr.concat(parts, dim="instant").map(lambda explanation: explanation.assign_attrs(units="N"))
 
 
 def largest(shown):

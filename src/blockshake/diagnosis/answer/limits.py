@@ -1,4 +1,4 @@
-"""Sizes from which causes would be seen: known from the rows before any cause is looked for."""
+"""Sizes from which causes would be seen, before any cause is looked for; and motions that the sensors do not show."""
 
 import numpy as np
 
@@ -24,7 +24,7 @@ def limits_of(evidence, slab):
     dict of str to dict of str to float
         Of the effect's first parameter, in its unit; only places where the tests tell it.
     """
-    found = {}
+    limits_by_name = {}
     for name, explained in slab.items():
         fit = explained.best
         error = float(np.sqrt(fit.covariance[0, 0]))
@@ -33,16 +33,18 @@ def limits_of(evidence, slab):
             name, fit.values, error * np.sqrt(2.0 * needed + 2.0 * np.log(fit.scales[0] / error + 1.0))
         )
         if _possible(name, limit):
-            found[name] = {EVERYWHERE: limit}
+            limits_by_name[name] = {EVERYWHERE: limit}
     if evidence is None:
-        return found
-    none = max(evidence.explained, key=lambda one: one.likelihood.log_evidence).likelihood
-    for name in {name: None for name, _ in evidence.tried.variants}:
-        variants = {place: own for (effect, place), own in evidence.tried.variants.items() if effect == name}
-        needed = needed_of(name, evidence.tests[0].seen.tree) + np.log(len(variants))
-        limits = {place: _limit(name, none, own, needed) for place, own in variants.items()}
-        found[name] = {place: one for place, one in limits.items() if _possible(name, one)}
-    return found
+        return limits_by_name
+    loudest = max(evidence.explained, key=lambda one: one.likelihood.log_evidence).likelihood
+    tried = {}
+    for (name, place), variants in evidence.tried.variants.items():
+        tried.setdefault(name, {})[place] = variants
+    for name, by_place in tried.items():
+        needed = needed_of(name, evidence.tests[0].seen.tree) + np.log(len(by_place))
+        limits = {place: _limit(name, loudest, variants, needed) for place, variants in by_place.items()}
+        limits_by_name[name] = {place: limit for place, limit in limits.items() if _possible(name, limit)}
+    return limits_by_name
 
 
 def _possible(name, limit):
@@ -52,31 +54,42 @@ def _possible(name, limit):
 
 def excluded_above(limits, structure):
     """Sizes above which an effect would have been seen wherever it may be, by name; of effects that have one alone."""
-    found = {}
+    sizes = {}
     for name, by_place in limits.items():
         effect = EFFECTS[name]
         needed = {place_name(place) for place in effect.places(structure)}
         stated = {place.partition("@")[0] for place in by_place}
         if stated and (needed <= stated or needed == {EVERYWHERE}):
             size = effect.parameters[0]
-            found[name] = max(by_place.values(), key=lambda value: abs(value - size.null))
-    return found
+            sizes[name] = max(by_place.values(), key=lambda value: abs(value - size.null))
+    return sizes
 
 
 def _limit(name, likelihood, variants, needed):
-    """The smallest of the usual variant, in the effect's own unit; infinite where the rows do not tell it."""
-    if variants[0][0].scales is None:  # no amplitude: the smallest variant that would be seen
+    """The size, in the effect's own unit, at which the gain reaches what is needed; infinite where no row tells it.
+
+    With the standard deviation s of the amplitude, nuisances free, an amplitude a gains
+    ``a^2 / (2 s^2) - ln(1 + scale^2 / s^2) / 2`` in the mean. It is that of the usual variant; of an effect without an
+    amplitude the smallest variant that would be seen.
+    """
+    if variants[0][0].scales is None:
         for variant in variants:
-            whitened = likelihood.whiten([one.rows for one in variant])
-            if likelihood.normal_equations(whitened)[1][0, 0] >= 2.0 * needed:
+            if _gram(likelihood, variant) >= 2.0 * needed:
                 return _parameter(name, variant[0].values, 1.0)
         return np.inf
     usual = min(variants, key=lambda variant: abs(variant[0].values.get("gap", _USUAL_GAP) - _USUAL_GAP))
-    columns = [one.rows[:, 0] for one in usual]
-    if not any(rows.any() for rows in columns):
+    gram = _gram(likelihood, usual)
+    if not gram > 0.0:
         return np.inf
-    size = detection_limit(likelihood, columns, usual[0].scales[0], needed)
-    return _parameter(name, usual[0].values, size) if np.isfinite(size) else np.inf
+    size = float(np.sqrt((2.0 * needed + np.log1p(gram * usual[0].scales[0] ** 2)) / gram))
+    return _parameter(name, usual[0].values, size)
+
+
+def _gram(likelihood, variant):
+    """One over the variance of a variant's first amplitude, nuisances free."""
+    return float(
+        likelihood.normal_equations(likelihood.whiten([columns.rows[:, :1] for columns in variant]))[1][0, 0]
+    )
 
 
 def _parameter(name, values, size):
@@ -86,51 +99,11 @@ def _parameter(name, values, size):
     return float(np.broadcast_to(read[EFFECTS[name].parameters[0].name], 1)[0])
 
 
-def detection_limit(likelihood, columns, scale, needed):
-    """Amplitude at which the expected gain of a cause reaches what is needed.
-
-    Parameters
-    ----------
-    likelihood : Likelihood
-        Without a cause.
-    columns : list of float64 array, shape (n_rows,)
-        By test, per unit of the amplitude.
-    scale : float
-        Standard deviation of the amplitude's prior.
-    needed : float
-        Gain that is no chance, the average over places included.
-
-    Returns
-    -------
-    float
-        Infinite where the rows do not tell the amplitude.
-
-    Notes
-    -----
-    With the standard deviation s of the amplitude, nuisances free, an amplitude a gains
-    ``a^2 / (2 s^2) - ln(1 + scale^2 / s^2) / 2`` in the mean.
-    """
-    whitened = likelihood.whiten([rows[:, None] for rows in columns])
-    gram = float(likelihood.normal_equations(whitened)[1][0, 0])
-    if not gram > 0.0:
-        return np.inf
-    return float(np.sqrt((2.0 * needed + np.log1p(gram * scale**2)) / gram))
-
-
 def cannot_see(seen_tests):
-    """Lines about what the sensors of a campaign do not show.
+    """Lines on motions and joints of seen tests that the sensors do not show.
 
-    Parameters
-    ----------
-    seen_tests : list of SeenTest
-
-    Returns
-    -------
-    list of str
-        Empty where every motion of every body is read in every test, and every joint has moved in some test.
+    There is none where every motion of every body is read in every test, and every joint has moved in some test.
     """
-    if not seen_tests:
-        return ["no open test: nothing is judged"]
     resting = [seen for seen in seen_tests if seen.still.any()]
     lines = [
         f"{seen.name}: no quiet start, from which its readings would count; nothing of it is judged"

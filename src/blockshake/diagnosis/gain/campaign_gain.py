@@ -49,15 +49,15 @@ def campaign_gain(plan, opened, sealed, nominal, runs):
     """
     planned = plan.tests | plan.sealed
     motions = {name: plan.campaign.tests[name].motion for name in planned}
-    peaks = {name: one.peak_acceleration for name, one in planned.items()}
+    peaks = {name: solver_runs.peak_acceleration for name, solver_runs in planned.items()}
     known = [judged_test(name, opened[name], nominal[name]) for name in nominal]
     kinds = [kind for kind in (NOMINAL, RECALIBRATED, EXTENDED, PLACEBO) if (runs[0]["kind"] == kind).any()]
     tests = []
     for name, histories in sealed.items():
-        test = judged_test(name, histories, [runs_of(one, test=name) for one in runs], kinds)
+        test = judged_test(name, histories, [runs_of(solver_runs, test=name) for solver_runs in runs], kinds)
         drawn = test.members[NOMINAL].copy(data=members_with_discrepancy(test, known, motions, peaks))
         tests.append(replace(test, members=test.members | {DISCREPANCY: drawn}))
-    count = plan.runs + sum(int(one.attrs["simulated"]) for one in runs)
+    count = plan.runs + sum(int(solver_runs.attrs["simulated"]) for solver_runs in runs)
     tests = [test for test in tests if test.judged.any()]
     if not tests:
         return CampaignGain(MeasuredGain(gain=None, caveats=[_STILL], runs=count), xr.Dataset())
@@ -100,7 +100,7 @@ def members_with_discrepancy(test, opened, motions, peaks):
     of their own by cell.
     """
     time, names = test.measured["time"].to_numpy(), list(test.measured["cell"].values)
-    missed = {one.name: _missed(one, names, time) / peaks[one.name] for one in opened}
+    missed = {known.name: _missed(known, names, time) / peaks[known.name] for known in opened}
 
     def carried(name):
         same = [miss for other, miss in missed.items() if other != name and motions[other] == motions[name]]
@@ -119,6 +119,6 @@ def members_with_discrepancy(test, opened, motions, peaks):
 
 def _missed(test, names, time):
     """Measured less nominal mean until the horizon, at other times and cells, NaN where it is not known."""
-    left = test.measured - test.members[NOMINAL].mean("run")
-    left = left.copy(data=test.until_horizon(left.to_numpy()))
-    return left.reindex(cell=names).interp(time=time).to_numpy()
+    missed = test.measured - test.members[NOMINAL].mean("run")
+    missed = missed.copy(data=test.until_horizon(missed.to_numpy()))
+    return missed.reindex(cell=names).interp(time=time).to_numpy()

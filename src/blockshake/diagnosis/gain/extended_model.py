@@ -33,7 +33,7 @@ class Extension:
 
     @property
     def digest(self):
-        """Of all that the change follows from."""
+        """Digest of all that the change follows from."""
         acting = [
             [cause.name, cause.place, cause.members[self.number % len(cause.members)], cause.when]
             for cause in self.causes
@@ -63,10 +63,10 @@ def placebo_of(causes, structure):
         key = next((name for name in ("joint", "body") if name in cause.place), None)
         if key is None:
             return ()
-        every = [one[key] for one in (joints if key == "joint" else blocks)(structure)]
+        every = [entry[key] for entry in (joints if key == "joint" else blocks)(structure)]
         near = {name.partition("@")[0] for name in cause.places}
-        here = [sorted(one) for one in every].index(sorted(cause.place[key]))
-        others = [number for number, one in enumerate(every) if not near & _names(one)]
+        here = [sorted(entry) for entry in every].index(sorted(cause.place[key]))
+        others = [number for number, entry in enumerate(every) if not near & _names(entry)]
         if not others:
             return ()
         farthest = max(others, key=lambda number: abs(number - here))
@@ -124,8 +124,8 @@ def extended_runs(plan, model, causes, nominal, measured, store):
     for test, planned in plan.sealed.items():
         count = plan.effort.members
         members += nominal_members(test, planned, model, count, plan.effort.twins)
-        for kind, (own, acting) in drawn.items():
-            members += _members(kind, test, planned, own[:count], acting)
+        for kind, (conditioned, acting) in drawn.items():
+            members += _members(kind, test, planned, conditioned[:count], acting)
     runs = simulate_members(members, store)
     return runs.assign_attrs(simulated=len(members) + len(plan.tests) * plan.effort.draws)
 
@@ -148,7 +148,7 @@ def _beside_twins(members, nominal, store):
 
 def _conditioned(draws, ensembles, measured, kind):
     """Draws conditioned on open tests, whose ensembles are of one kind."""
-    tests = [judged_test(name, measured[name], [one], (kind,)) for name, one in ensembles.items()]
+    tests = [judged_test(name, measured[name], [ensemble], (kind,)) for name, ensemble in ensembles.items()]
     return posterior_draws(draws, *features_of(tests))
 
 

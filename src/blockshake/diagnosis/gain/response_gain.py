@@ -96,7 +96,7 @@ def response_gain(tests):
     of_solver = {kind: [cells.score_of(kind, models == solver) for solver in solvers] for kind in kinds}
     fall = score[RECALIBRATED][0] - score[EXTENDED][0]
     falls = np.subtract(of_solver[RECALIBRATED], of_solver[EXTENDED])
-    found = xr.Dataset(
+    scores = xr.Dataset(
         {
             "score": ("kind", [score[kind][0] for kind in kinds]),
             "score_of_solver": (("kind", "model"), [of_solver[kind] for kind in kinds]),
@@ -109,7 +109,7 @@ def response_gain(tests):
         {"kind": kinds, "rival": rivals, "model": solvers},
     )
     shown = xr.concat([test.bands().merge(_largest(test)) for test in tests], dim="test", join="outer")
-    return found.merge(shown.assign_coords(test=[test.name for test in tests]))
+    return scores.merge(shown.assign_coords(test=[test.name for test in tests]))
 
 
 def gain_of_verdict(gained, runs):

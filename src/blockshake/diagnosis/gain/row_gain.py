@@ -149,18 +149,18 @@ def _fitted(value, nuisances):
 
 def _says(value, nuisances):
     """Logarithm of the density of whitened rows, up to a constant."""
-    left = value @ value - (nuisances.T @ value) @ _fitted(value, nuisances)
-    return -0.5 * left - 0.5 * np.linalg.slogdet(np.eye(nuisances.shape[1]) + nuisances.T @ nuisances)[1]
+    misfit = value @ value - (nuisances.T @ value) @ _fitted(value, nuisances)
+    return -0.5 * misfit - 0.5 * np.linalg.slogdet(np.eye(nuisances.shape[1]) + nuisances.T @ nuisances)[1]
 
 
 def _blocks(times):
     """Numbers of the blocks of rows, test by test."""
-    found, first = [], 0
+    blocks, first = [], 0
     for time in times:
-        own = ((time - time.min()) / _BLOCK).astype(int)
-        found.append(first + own)
-        first += own.max() + 1
-    return np.unique(np.concatenate(found), return_inverse=True)[1]
+        numbers = ((time - time.min()) / _BLOCK).astype(int)
+        blocks.append(first + numbers)
+        first += numbers.max() + 1
+    return np.unique(np.concatenate(blocks), return_inverse=True)[1]
 
 
 def _of_slab(decision, opened, sealed):
@@ -169,9 +169,12 @@ def _of_slab(decision, opened, sealed):
     if not causes or not sealed:
         return []
     (cause,) = causes
-    slabs = [slab_motion(one) for one in [*opened, *sealed]]
+    slabs = [slab_motion(test) for test in [*opened, *sealed]]
     variants = [EFFECTS[cause.name].turns(slab) for slab in slabs]
-    rows = [next(one.rows for one in own if one.values == cause.when) @ cause.amplitudes for own in variants]
+    rows = [
+        next(variant.rows for variant in of_test if variant.values == cause.when) @ cause.amplitudes
+        for of_test in variants
+    ]
     times = [slab.time[slab.at] for slab in slabs[len(opened) :]]
     return [_squares(slab_turns(slabs), rows, len(opened), times)]
 

@@ -87,18 +87,24 @@ def gaining(findings, structure):
     """
     markers = {marker.name for marker in structure.file.markers}
     able = [
-        one
-        for one in findings
-        if one.quantity == "lag" or (one.quantity in OF_MARKERS and one.where[0] in markers)
+        finding
+        for finding in findings
+        if finding.quantity == "lag" or (finding.quantity in OF_MARKERS and finding.where[0] in markers)
     ]
-    return min(able, key=lambda one: (one.p, one.where), default=None)
+    return min(able, key=lambda finding: (finding.p, finding.where), default=None)
 
 
 def _contrast(rival, extended, floor):
     """Gain over all tests, and the span of the single ones; cut off at -1 and 1."""
 
-    def gained(score, own, least):
-        return float(np.clip((score - own) / max(score - least, 1e-12 + abs(own - least)), -1.0, 1.0))
+    def gained(score, corrected_score, lowest):
+        return float(
+            np.clip(
+                (score - corrected_score) / max(score - lowest, 1e-12 + abs(corrected_score - lowest)),
+                -1.0,
+                1.0,
+            )
+        )
 
     single = [gained(*one) for one in zip(rival, extended, floor, strict=True)]
     whole = gained(rival.mean(), extended.mean(), floor.mean())
@@ -106,14 +112,17 @@ def _contrast(rival, extended, floor):
 
 
 def _distance(test, finding, structure):
-    """Of a marker from where its body's others put it, and the same while nothing moves."""
+    """Distance of a marker from where the others of its body put it, and its distance while nothing moves."""
     distance = _residual(test, finding.where[0], structure)
     start = test["time"].to_numpy() <= test["time"].to_numpy()[0] + _REST
     return _rms(distance), _rms(distance[start])
 
 
 def _distance_less_mean(test, opened, finding, structure):
-    means = [np.nanmean(_residual(one, finding.where[0], structure), axis=0) for one in opened.values()]
+    means = [
+        np.nanmean(_residual(opened_test, finding.where[0], structure), axis=0)
+        for opened_test in opened.values()
+    ]
     return _rms(_residual(test, finding.where[0], structure) - np.mean(means, axis=0))
 
 

@@ -85,24 +85,31 @@ def judged_test(name, histories, ensembles, kinds=(NOMINAL,)):
     kinds : sequence of str
     """
     measured = as_cells(histories)
-    own = [[as_cells(runs_of(one, kind=kind)) for kind in (*kinds, TWIN)] for one in ensembles]
-    everywhere = [one for by_kind in own for one in by_kind]
+    by_solver = [[as_cells(runs_of(cells, kind=kind)) for kind in (*kinds, TWIN)] for cells in ensembles]
+    everywhere = [cells for by_kind in by_solver for cells in by_kind]
     names = [
-        cell for cell in measured["cell"].values if all(cell in one["cell"].values for one in everywhere)
+        cell for cell in measured["cell"].values if all(cell in cells["cell"].values for cells in everywhere)
     ]
     time = common_times(measured, *everywhere)
     measured = measured.sel(cell=names, time=time)
     noise = as_cells(histories, "_noise").sel(cell=names)
-    limits = [horizons(by_kind[-1].sel(cell=names), noise) for by_kind in own]
+    limits = [horizons(by_kind[-1].sel(cell=names), noise) for by_kind in by_solver]
     members = {
-        kind: xr.concat([at_readings(by_kind[place].sel(cell=names), time) for by_kind in own], dim="run")
-        for place, kind in enumerate(kinds)
+        kind: xr.concat(
+            [at_readings(by_kind[index].sel(cell=names), time) for by_kind in by_solver], dim="run"
+        )
+        for index, kind in enumerate(kinds)
     }
     models = np.concatenate(
-        [[one.attrs["model"]] * by_kind[0].sizes["run"] for one, by_kind in zip(ensembles, own, strict=True)]
+        [
+            [cells.attrs["model"]] * by_kind[0].sizes["run"]
+            for cells, by_kind in zip(ensembles, by_solver, strict=True)
+        ]
     )
-    horizon = np.minimum(np.min(limits, axis=0), min(_last_standing(one) for one in members.values()))
-    moves = np.max([_moved(one) for one in (measured, *members.values())], axis=0) > _MOVES * noise.to_numpy()
+    horizon = np.minimum(np.min(limits, axis=0), min(_last_standing(cells) for cells in members.values()))
+    moves = (
+        np.max([_moved(cells) for cells in (measured, *members.values())], axis=0) > _MOVES * noise.to_numpy()
+    )
     horizon = np.where(moves, horizon, -np.inf)
     return JudgedTest(name, measured, members, models, horizon)
 

@@ -100,13 +100,12 @@ def plan_diagnosis(folder, effort):
     """
     if effort not in EFFORTS:
         raise InputError("effort", str(effort), f"expected one of {', '.join(EFFORTS)}")
-    campaign = load_campaign(folder)
+    campaign, effort = load_campaign(folder), EFFORTS[effort]
     names = open_tests(campaign)
-    chosen = simulated_tests(campaign, names, EFFORTS[effort].tests)
+    chosen = simulated_tests(campaign, names, effort.tests)
     structure = load_structure(campaign.structure) if chosen else None
-    return Plan(
-        campaign, EFFORTS[effort], names, {name: planned_test(campaign, name, structure) for name in chosen}
-    )
+    tests = {name: planned_test(campaign, name, structure) for name in chosen}
+    return Plan(campaign, effort, names, tests)
 
 
 def open_tests(campaign):

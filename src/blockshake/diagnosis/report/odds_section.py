@@ -17,9 +17,9 @@ _APART = 0.13  # of an axis, between two labels
 _TICKS = (-10, -5, 0, 5, *(first * 10**power for power in range(1, 6) for first in (1, 2, 5)))
 
 
-def odds_section(found):
+def odds_section(diagnosed):
     """Odds and gains of all rivals, one figure a part of the readings."""
-    parts = found.decision.parts
+    parts = diagnosed.decision.parts
     blocks = [
         Text(
             "Every cause states the forces that it would make under the measured motion. One likelihood of all "
@@ -49,13 +49,13 @@ def odds_section(found):
                 f"of the likeliest {number(first.gain)}). Shaded: within {RATIO} times, dashed, so that the tests "
                 "do not tell them apart. Blue: effects of the registry; orange, in italics: forms from outside, "
                 "which none of them is.",
-                svg_of(plot_odds, rows, [name in FORMS for name in names], nothing, ODDS),
+                svg_of(plot_odds, rows, [name in FORMS for name in names], nothing),
             )
         )
     return Section("Odds of all causes", "odds", tuple(blocks))
 
 
-def plot_odds(rows, outside, nothing, within):
+def plot_odds(rows, outside, nothing):
     """Figure of the odds of the likeliest over every cause, and of the gains.
 
     Parameters
@@ -66,31 +66,29 @@ def plot_odds(rows, outside, nothing, within):
         Of each, whether it is a form from outside.
     nothing : float
         Logarithm of the odds of the likeliest over none.
-    within : float
-        Logarithm of the odds within which causes are not told apart.
     """
     rows = [*rows, ("nothing", nothing, 0.0)]
     figure = new_figure(0.018 + 0.0048 * len(rows))
     odds, gains = figure.subplots(1, 2, sharey=True, width_ratios=(3, 2))
-    places = np.arange(len(rows))[::-1]
+    heights = np.arange(len(rows))[::-1]
     decades = np.array([one for _, one, _ in rows]) / np.log(10.0)
     end = min(_MOST_DECADES, float(decades.max()) + 1.0)
     colors = [*(ORANGE if one else BLUE for one in outside), DARK_GREY]
     for axes in (odds, gains):
-        for place, decade in zip(places, decades, strict=True):
-            if decade * np.log(10.0) < within:
-                axes.axhspan(place - 0.5, place + 0.5, color=LIGHT_GREY, linewidth=0.0, zorder=0)
-    for place, decade, color in zip(places, decades, colors, strict=True):
+        for height, decade in zip(heights, decades, strict=True):
+            if decade * np.log(10.0) < ODDS:
+                axes.axhspan(height - 0.5, height + 0.5, color=LIGHT_GREY, linewidth=0.0, zorder=0)
+    for height, decade, color in zip(heights, decades, colors, strict=True):
         marker = ">" if decade > end else "o"
-        odds.plot([0.0, min(decade, end)], [place, place], color=color, linewidth=0.8)
-        odds.plot(min(decade, end), place, marker, color=color, markersize=4.0, clip_on=False)
-    odds.axvline(within / np.log(10.0), color=RED, linestyle="--", linewidth=0.7)
+        odds.plot([0.0, min(decade, end)], [height, height], color=color, linewidth=0.8)
+        odds.plot(min(decade, end), height, marker, color=color, markersize=4.0, clip_on=False)
+    odds.axvline(ODDS / np.log(10.0), color=RED, linestyle="--", linewidth=0.7)
     ticks = [tick for tick in range(int(end) + 1) if tick % max(1, int(end) // 5) == 0]
     odds.set_xticks(ticks, [_power(tick) for tick in ticks])
     odds.set_xlim(-0.02 * end, 1.03 * end)
     odds.set_xlabel("times less likely than the likeliest [1]")
     values = np.array([one for _, _, one in rows])
-    gains.plot(np.maximum(values, -_LINEAR), places, "s", color=BLACK, markersize=3.5)
+    gains.plot(np.maximum(values, -_LINEAR), heights, "s", color=BLACK, markersize=3.5)
     gains.axvline(0.0, color=BLACK, linewidth=0.7)
     gains.set_xscale("symlog", linthresh=_LINEAR)
     gains.set_xlim(
@@ -100,7 +98,7 @@ def plot_odds(rows, outside, nothing, within):
     gains.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     gains.set_xticks([], minor=True)
     gains.set_xlabel("gain over nothing [nats]")
-    odds.set_yticks(places, [name for name, *_ in rows])
+    odds.set_yticks(heights, [name for name, *_ in rows])
     for label, one in zip(odds.get_yticklabels(), [*outside, False], strict=True):
         label.set_style("italic" if one else "normal")
     odds.set_ylim(-0.6, len(rows) - 0.4)

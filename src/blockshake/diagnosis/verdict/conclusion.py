@@ -78,7 +78,7 @@ def conclude(decision, findings, kinds, caveats=(), measured=None):
 def _caveats(decision):
     """Lines on rivals, on forms beside the causes, and on tests that tell nothing."""
     for part in decision.parts:
-        names = [one.title for one in part.causes]
+        names = [cause.title for cause in part.causes]
         if len(names) > 1:
             yield f"{' or '.join(names)}: the tests do not tell these apart"
         elif part.forms and decision.causes:
