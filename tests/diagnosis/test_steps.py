@@ -2,11 +2,11 @@
 
 import pytest
 import xarray as xr
+from made_up_decision import made_up_cause, made_up_decision, part_of
 from tiny_campaign import write_campaign
 from tiny_diagnosis import SOLVERS, TINY, a_formula, gain_of, simulate_open_tests
 
 from blockshake.diagnosis import steps
-from blockshake.diagnosis.answer.decision import Cause, Decision, Estimate, Part
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, write_text
 from blockshake.store import load_made
@@ -19,16 +19,8 @@ WEAK = {"name": "weak-joint", "values": {"factor": 0.5}, "place": {"joint": JOIN
 def _decision(factor, places=("block-1-block-2",)):
     """That the joint is weak, by a factor and a little about it."""
     members = [{"factor": factor + 0.01 * (number % 3 - 1)} for number in range(10)]
-    cause = Cause(
-        name="weak-joint", place={"joint": JOINT}, places=places, gain=50.0, odds=0.0,
-        parameters={"factor": Estimate(estimate=factor, lower=factor - 0.02, upper=factor + 0.02, unit="1")},
-        members=members,
-    )  # fmt: skip
-    part = Part(readings="joints", causes=[cause], odds={}, gains={})
-    return Decision(
-        decision="named", parts=[part], probabilities={}, limits={}, excluded_above={}, p=0.0, where="",
-        tests=["one-100", "two-100"], silent=[], n_rows=1,
-    )  # fmt: skip
+    cause = made_up_cause("weak-joint", {"joint": JOINT}, places=places, members=members)
+    return made_up_decision("named", parts=[part_of(cause)], tests=["one-100", "two-100"])
 
 
 @pytest.fixture(scope="module")

@@ -1,10 +1,10 @@
 """Gain on the rows of a sealed test: a cause that is there explains them, one that is not explains nothing."""
 
 import pytest
+from made_up_decision import part_of
 from simulated_tests import cause_of, seen_tests
 
 from blockshake.diagnosis.answer.decide import decide
-from blockshake.diagnosis.answer.decision import Part
 from blockshake.diagnosis.gain.row_gain import NO_ROWS, row_gain
 
 OPEN = {"first": ("alkion", 2.5), "second": ("basso-tirreno", 2.0)}
@@ -27,8 +27,7 @@ def sound():
 
 
 def _with(decision, cause):
-    part = Part(readings="joints", causes=(cause,), odds={cause.name: 0.0}, gains={cause.name: 1.0})
-    return decision.model_copy(update={"parts": (part,)})
+    return decision.model_copy(update={"parts": (part_of(cause),)})
 
 
 def test_a_cause_that_is_not_there_gains_nothing(sound):
