@@ -149,7 +149,7 @@ def misfit(joints, top):
         chance=(("test", "cell"), np.full(shape, 0.04)),
         worst_time=(("test", "cell"), np.full(shape, 3.1)),
         p=0.04,
-    ).assign_attrs(where=f"drift of {top} in {OPEN[2]}", members=24)
+    ).assign_attrs(where=f"drift of {top} in {OPEN[2]}")
 
 
 def responses(joints, top):

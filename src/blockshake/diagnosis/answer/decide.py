@@ -61,10 +61,10 @@ def decide(seen, without=(), unseen=()):
     slabs = [slab_motion(test) for test in seen]
     slab = explain_slab(slabs, without)
     of_slab, tree = slab_groups(slab), seen[0].tree
-    parts_found, explained = [], []
+    acting, explained = [], []
     first = group_of(rank(evidence, closed), needed_beside(bool(of_slab)), tree)
     if first:
-        parts_found.append(_part("joints", first, seen, evidence, closed))
+        acting.append(_part("joints", first, seen, evidence, closed))
         key = _key(first)
         if evidence and key in evidence.keys:
             explained.append(evidence.best(key))
@@ -72,14 +72,14 @@ def decide(seen, without=(), unseen=()):
             needed = needed_beside(bool(of_slab), first.rivals[0].gain)
             second = group_of(rank(beside), needed, tree)
             if second:
-                parts_found.append(_part("joints, beside the first", second, seen, beside, {}))
+                acting.append(_part("joints, beside the first", second, seen, beside, {}))
                 explained.append(beside.best(_key(second)))
     for readings, group in of_slab:
-        parts_found.append(_part(readings, group, seen, None, {}, slab))
+        acting.append(_part(readings, group, seen, None, {}, slab))
     impacts = restitution_gain(seen)
     if impacts.gain > needed_of(RESTITUTION.name) and RESTITUTION.name not in without:
-        parts_found.append(_of_impacts(impacts))
-    parts = tuple(sorted(parts_found, key=lambda part: -part.causes[0].gain))
+        acting.append(_of_impacts(impacts))
+    parts = tuple(sorted(acting, key=lambda part: -part.causes[0].gain))
     shown = departures(seen, evidence, explained)
     limits = limits_of(evidence, slab)
     decision = Decision(

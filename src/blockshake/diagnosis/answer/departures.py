@@ -40,7 +40,7 @@ def departures(seen, evidence, explained):
             unit = rows.along(force_at(test.seen, int(body), np.array([1.0, 0.0, 0.0])))
             square = np.bincount(index, unit**2)
             known = square > _LEAST
-            noise = np.stack([np.bincount(index, unit * explanation) for explanation in rows.noise.T])
+            noise = np.stack([np.bincount(index, unit * sensor) for sensor in rows.noise.T])
             for row, value in enumerate((np.bincount(index, unit * measured), np.sqrt((noise**2).sum(axis=0)),
                                            np.bincount(index, unit * forces))):  # fmt: skip
                 found[row, known, column] = value[known] / square[known]
@@ -59,7 +59,7 @@ def departures(seen, evidence, explained):
         return xr.Dataset(
             none, {"test": ("instant", np.zeros(0, "U1")), "time": ("instant", []), "body": names}
         )
-    return xr.concat(parts, dim="instant").map(lambda explanation: explanation.assign_attrs(units="N"))
+    return xr.concat(parts, dim="instant").map(lambda forces: forces.assign_attrs(units="N"))
 
 
 def largest(shown):

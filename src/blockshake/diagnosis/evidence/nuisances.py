@@ -38,9 +38,11 @@ def _of_edges(tests):
         yield _by_test(tests, key, lambda h: _ALONG * h.along)
         yield _by_test(tests, key, lambda h: _GROWTH * h.inward * h.turn / _GROWTH_AT)
         yield _by_test(tests, key, lambda h: _CLOSING * h.inward * _closing(h.turn))
-        for set_up in tests:
+        for placed_anew in tests:
             moved = _by_test(tests, key, lambda h: _ALONG_OF_TEST * h.along)
-            yield [rows if test is set_up else _zero(test) for test, rows in zip(tests, moved, strict=True)]
+            yield [
+                rows if test is placed_anew else _zero(test) for test, rows in zip(tests, moved, strict=True)
+            ]
 
 
 def _closing(turn):

@@ -49,7 +49,7 @@ def campaign_gain(plan, opened, sealed, nominal, runs):
     """
     planned = plan.tests | plan.sealed
     motions = {name: plan.campaign.tests[name].motion for name in planned}
-    peaks = {name: solver_runs.peak_acceleration for name, solver_runs in planned.items()}
+    peaks = {name: test.peak_acceleration for name, test in planned.items()}
     known = [judged_test(name, opened[name], nominal[name]) for name in nominal]
     kinds = [kind for kind in (NOMINAL, RECALIBRATED, EXTENDED, PLACEBO) if (runs[0]["kind"] == kind).any()]
     tests = []

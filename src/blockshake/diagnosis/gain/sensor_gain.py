@@ -75,7 +75,7 @@ def sensor_gain(campaign, opened, findings):
     scores = xr.Dataset(
         {"score": (("test", "kind"), scores, {"units": unit}), "floor": ("test", floors, {"units": unit})},
         {"test": list(sealed), "kind": ["nominal", "extended", "discrepancy"]},
-        {"effect": finding.effect, "where": finding.where[0]},
+        {"where": finding.where[0]},
     )
     return CampaignGain(MeasuredGain(gain=gain, caveats=[_NO_SIMULATION]), scores)
 

@@ -85,7 +85,9 @@ def judged_test(name, histories, ensembles, kinds=(NOMINAL,)):
     kinds : sequence of str
     """
     measured = as_cells(histories)
-    by_solver = [[as_cells(runs_of(cells, kind=kind)) for kind in (*kinds, TWIN)] for cells in ensembles]
+    by_solver = [
+        [as_cells(runs_of(ensemble, kind=kind)) for kind in (*kinds, TWIN)] for ensemble in ensembles
+    ]
     everywhere = [cells for by_kind in by_solver for cells in by_kind]
     names = [
         cell for cell in measured["cell"].values if all(cell in cells["cell"].values for cells in everywhere)
@@ -102,8 +104,8 @@ def judged_test(name, histories, ensembles, kinds=(NOMINAL,)):
     }
     models = np.concatenate(
         [
-            [cells.attrs["model"]] * by_kind[0].sizes["run"]
-            for cells, by_kind in zip(ensembles, by_solver, strict=True)
+            [ensemble.attrs["model"]] * by_kind[0].sizes["run"]
+            for ensemble, by_kind in zip(ensembles, by_solver, strict=True)
         ]
     )
     horizon = np.minimum(np.min(limits, axis=0), min(_last_standing(cells) for cells in members.values()))

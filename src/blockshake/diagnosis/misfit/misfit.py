@@ -24,7 +24,7 @@ def misfit(tests):
         ``usual``, the median of the members' own, each by the others; ``chance``, the share of the members, the
         measured test counted with them, whose score is as large [1]; ``worst_time``, at which the measured curve
         is farthest from the median in units of the spread [s]; and ``p``, chance of the largest score over its usual
-        one in all tests and cells. Attributes ``where``, the place of the largest in words, and ``members``.
+        one in all tests and cells. Attribute ``where``: the place of the largest in words.
 
     Notes
     -----
@@ -54,7 +54,7 @@ def misfit(tests):
     return (
         whole.assign_coords(test=[test.name for test in tests])
         .assign(p=rank_chance(excess[worst][index], largest))
-        .assign_attrs(where=where, members=len(largest))
+        .assign_attrs(where=where)
     )
 
 

@@ -108,7 +108,7 @@ def common_times(measured, *simulated):
     """Times of a measured test's cells that all simulated ones span."""
     time = measured["time"].to_numpy()
     ends = [cells["time"].to_numpy()[[0, -1]] for cells in simulated]
-    first, last = max(cells[0] for cells in ends), min(cells[1] for cells in ends)
+    first, last = max(start for start, _ in ends), min(end for _, end in ends)
     return time[(time >= first - 1e-6) & (time <= last + 1e-6)]
 
 
