@@ -37,7 +37,8 @@ def hold_ensemble(draws, duration):
     structure, model = load_structure("configuration-1"), "nscd-rigid"
     motion, markers = load_motion("basso-tirreno", 2.0), tuple(one.name for one in structure.file.markers)
     planned = PlannedTest(structure, motion, duration, Sensors(), markers)
-    simulated, status = simulated_test(planned, draw_nominal(structure, model, 0))
+    simulated = simulated_test(planned, draw_nominal(structure, model, 0))
+    status = simulated.attrs["status"]
     first = read_histories(simulated, structure, planned.sensors).assign_attrs(status=status)
     generator = np.random.default_rng(0)
 

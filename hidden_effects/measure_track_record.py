@@ -21,8 +21,7 @@ from case_files import ROOT, SEEDS, campaign_of, load_plan, truth_of, verdict_of
 from make_case import made_by, make_case
 
 from blockshake.diagnosis import steps
-from blockshake.diagnosis.answer.decision import write_decision
-from blockshake.diagnosis.verdict.frozen import freeze
+from blockshake.diagnosis.answer.decision import freeze, write_decision
 from blockshake.diagnosis.verdict.verdict import write_verdict
 from blockshake.files import write_json
 

@@ -12,9 +12,7 @@ from blockshake.errors import INTERRUPTED, InputError
 from blockshake.files import HOME, PACKAGE, check_output
 from blockshake.working_folder import hold, this_command
 
-_KEPT = ("verdict.json", "decision.json", "parity.json", "evidence.nc")
-_OF_MISFIT = "misfit.nc"  # at an effort that simulates anything
-_OF_GAIN = "gain.nc"  # where a cause was found and there are sealed tests
+_ALWAYS_MADE = ("verdict.json", "decision.json", "parity.json", "evidence.nc")
 _GRACE = 15.0  # s; for a workflow that is interrupted to end
 
 
@@ -76,18 +74,18 @@ def diagnose(campaign, output, effort="standard", cores=None):
     exit_code = run_workflow(command, {**os.environ, **this_command(), "PATH": path})
     if exit_code:
         raise WorkflowError(exit_code)
-    name = result_name(campaign)
+    name, output = result_name(campaign), Path(output)
     results = work / "results" / "diagnosis" / name
-    made = {_OF_MISFIT: bool(plan.tests), _OF_GAIN: load_verdict(results / "verdict.json").gain is not None}
-    kept = [*_KEPT, *(name for name, there in made.items() if there)]
-    found = [results / file for file in kept]
-    found += [work / "reports" / f"diagnosis-{name}.{kind}" for kind in ("html", "pdf")]
-    Path(output).mkdir(parents=True, exist_ok=True)
-    for file in made:  # of an earlier diagnosis, where this one has none
-        (Path(output) / file).unlink(missing_ok=True)
-    for path in found:
-        shutil.copyfile(path, Path(output) / path.name.replace(f"diagnosis-{name}", "report"))
-    return load_verdict(Path(output) / "verdict.json")
+    verdict = load_verdict(results / "verdict.json")
+    copied = {file: results / file for file in _ALWAYS_MADE}
+    copied |= {f"report.{kind}": work / "reports" / f"diagnosis-{name}.{kind}" for kind in ("html", "pdf")}
+    output.mkdir(parents=True, exist_ok=True)
+    for file, made in {"misfit.nc": bool(plan.tests), "gain.nc": verdict.gain is not None}.items():
+        (output / file).unlink(missing_ok=True)  # of an earlier diagnosis
+        copied |= {file: results / file} if made else {}
+    for file, path in copied.items():
+        shutil.copyfile(path, output / file)
+    return verdict
 
 
 def run_workflow(command, environment):

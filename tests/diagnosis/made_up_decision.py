@@ -9,19 +9,28 @@ _PARAMETERS = {
 _PLACES = {"weak-joint": {"joint": ["slab", "block-1"]}, "push": {"body": "block-2", "height": 0.42}}
 
 
+def made_up_cause(name, place, **changed):
+    """A cause at a place, without sizes but for those of its one member."""
+    values = {"places": ("there",), "gain": 30.0, "odds": 0.0, "parameters": {}, "members": ({},)}
+    return Cause(name=name, place=place, **values | changed)
+
+
 def made_up_part(*names):
     """One part of the readings, and the causes that cannot be told apart in it."""
     causes = [
-        Cause(
-            name=name, place=_PLACES.get(name, {}), places=("there",), gain=30.0 - number, odds=float(number),
-            parameters=_PARAMETERS.get(name, {}), members=({},), when={"starts": {"t1": 2.5}} if name == "push" else {},
+        made_up_cause(
+            name, _PLACES.get(name, {}), gain=30.0 - number, odds=float(number),
+            parameters=_PARAMETERS.get(name, {}), when={"starts": {"t1": 2.5}} if name == "push" else {},
         )
         for number, name in enumerate(names)
     ]  # fmt: skip
-    return Part(
-        readings="joints", causes=causes, odds={one.name: one.odds for one in causes},
-        gains={one.name: one.gain for one in causes},
-    )  # fmt: skip
+    return part_of(*causes)
+
+
+def part_of(*causes):
+    """One part of the readings of causes."""
+    odds, gains = ({cause.name: getattr(cause, of) for cause in causes} for of in ("odds", "gain"))
+    return Part(readings="joints", causes=causes, odds=odds, gains=gains)
 
 
 def made_up_decision(kind="none", *parts, **changed):

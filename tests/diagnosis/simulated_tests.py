@@ -1,7 +1,8 @@
 """Seen tests of two blocks that contact dynamics made, with a cause or without one."""
 
-from blockshake.diagnosis.answer.decision import Cause
-from blockshake.diagnosis.answer.extension import extended_experiment
+from made_up_decision import made_up_cause
+
+from blockshake.diagnosis.gain.extended_model import extended_experiment
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
 from blockshake.files import PACKAGE
@@ -18,16 +19,7 @@ DURATION = 6.0  # s
 
 def cause_of(name, place, values, when=None):
     """A cause with one member."""
-    return Cause(
-        name=name,
-        place=place,
-        places=("there",),
-        gain=1.0,
-        odds=0.0,
-        parameters={},
-        members=(values,),
-        when=when or {},
-    )
+    return made_up_cause(name, place, members=(values,), when=when or {})
 
 
 def seen_tests(structure, motions, cause=None):

@@ -7,7 +7,7 @@ from tiny_campaign import write_campaign
 from tiny_diagnosis import a_formula, simulate_open_tests
 
 from blockshake.diagnosis import steps
-from blockshake.diagnosis.nominal.measured import measured_histories
+from blockshake.diagnosis.misfit.judged_test import measured_histories
 from blockshake.diagnosis.nominal.plan import plan_diagnosis
 from blockshake.files import PACKAGE, write_dataset
 from blockshake.measurement.campaigns.campaign import load_campaign

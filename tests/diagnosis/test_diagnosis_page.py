@@ -6,7 +6,7 @@ import re
 import pytest
 
 from blockshake.diagnosis.answer.answer import _NEEDED_OF_SLAB, needed_of
-from blockshake.diagnosis.nominal.efforts import EFFORTS as AMOUNTS
+from blockshake.diagnosis.nominal.plan import EFFORTS as AMOUNTS
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.diagnosis.verdict.verdict import Verdict
 from blockshake.effects.registry import EFFECTS

@@ -2,6 +2,7 @@
 
 import pytest
 import xarray as xr
+from made_up_decision import made_up_cause, made_up_decision, part_of
 from tiny_campaign import write_campaign
 from tiny_diagnosis import SOLVERS, TINY, a_formula, gain_of, simulate_open_tests
 
@@ -17,20 +18,9 @@ WEAK = {"name": "weak-joint", "values": {"factor": 0.5}, "place": {"joint": JOIN
 
 def _decision(factor, places=("block-1-block-2",)):
     """That the joint is weak, by a factor and a little about it."""
-    answer = pytest.importorskip(
-        "blockshake.diagnosis.answer.decision", reason="the answer is on another branch"
-    )
     members = [{"factor": factor + 0.01 * (number % 3 - 1)} for number in range(10)]
-    cause = answer.Cause(
-        name="weak-joint", place={"joint": JOINT}, places=places, gain=50.0, odds=0.0,
-        parameters={"factor": answer.Estimate(estimate=factor, lower=factor - 0.02, upper=factor + 0.02, unit="1")},
-        members=members,
-    )  # fmt: skip
-    part = answer.Part(readings="joints", causes=[cause], odds={}, gains={})
-    return answer.Decision(
-        decision="named", parts=[part], probabilities={}, limits={}, excluded_above={}, p=0.0, where="",
-        tests=["one-100", "two-100"], silent=[], n_rows=1,
-    )  # fmt: skip
+    cause = made_up_cause("weak-joint", {"joint": JOINT}, places=places, members=members)
+    return made_up_decision("named", parts=[part_of(cause)], tests=["one-100", "two-100"])
 
 
 @pytest.fixture(scope="module")

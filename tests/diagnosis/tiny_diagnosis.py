@@ -7,15 +7,15 @@ import pytest
 from tiny_campaign import prescribed_run
 
 from blockshake.diagnosis import steps
-from blockshake.diagnosis.nominal import efforts, plan, simulated_test
-from blockshake.diagnosis.verdict.frozen import freeze
+from blockshake.diagnosis.answer.decision import freeze
+from blockshake.diagnosis.nominal import plan, simulated_test
 from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
 from blockshake.parity.parity import check_parity
 from blockshake.store import Store
 
-TINY = efforts.Effort(tests=2, draws=10, members=6, twins=2)
+TINY = plan.Effort(tests=2, draws=10, members=6, twins=2)
 SOLVERS = ("ls-dem", "nscd-rigid")
 
 
@@ -23,7 +23,7 @@ SOLVERS = ("ls-dem", "nscd-rigid")
 def a_formula():
     """The tiny effort, and a solver that is a formula."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(efforts.EFFORTS, "tiny", TINY)
+        patch.setitem(plan.EFFORTS, "tiny", TINY)
         patch.setattr(simulated_test, "simulate", prescribed_run)
         yield
 

@@ -111,7 +111,7 @@ def test_comments_and_explanations_rerun_nothing(work, copied):
 def test_an_edit_of_an_effort_reruns_what_takes_the_number(copied):
     checkout = copied("diagnosis")
     more = exchanged("tests=0, draws=0, members=0, twins=0", "tests=1, draws=4, members=4, twins=1")
-    with edited(checkout, **{"diagnosis/nominal/efforts.py": more}):
+    with edited(checkout, **{"diagnosis/nominal/plan.py": more}):
         due = checkout.due(*WORKS["diagnosis"])
     DONE["diagnosis: numbers of an effort edited"] += 1
     own = [job for job in due if "Params have changed" in job.reason or "Missing output" in job.reason]

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 from made_up_decision import made_up_decision
 from mutations import FEW, MANY, mutated_bytes, mutated_mappings, mutated_texts, mutations, nested
 
-from blockshake.diagnosis.answer.decision import load_decision
-from blockshake.diagnosis.verdict.frozen import check_frozen
+from blockshake.diagnosis.answer.decision import check_frozen, load_decision
 from blockshake.diagnosis.verdict.track_record import load_track_record
 from blockshake.diagnosis.verdict.verdict import load_verdict
 from blockshake.errors import InputError

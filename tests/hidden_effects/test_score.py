@@ -18,7 +18,6 @@ from case_files import (
     verdict_of,
 )
 from case_truth import true_causes
-from compare_decisions import read_verdict, table
 from make_case import name_of_test, structure_file
 from outside_forces import OUTSIDE
 from score import make_track_record
@@ -359,16 +358,6 @@ def test_a_track_record_that_contradicts_itself_is_refused(perfect, tmp_path, ch
 def test_a_missing_track_record_is_one_line(tmp_path):
     with pytest.raises(InputError):
         load_track_record(tmp_path / "none.json")
-
-
-def test_two_decisions_stand_beside_each_other(tmp_path):
-    write_json(
-        tmp_path / "verdict.json", {"version": 1, "decision": "named", "causes": ["table-pitch"], "old": 1}
-    )
-    old, new = read_verdict(tmp_path / "verdict.json"), _verdict("named", ["eccentricity"])
-    rows = table({"old": [_case(old)], "new": [_case(new)]}).splitlines()
-    assert rows[0] == "| figure | old | new |"
-    assert "| the truth is named or in the set | 0 of 1 | 1 of 1 |" in rows
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import dataclasses
 import pytest
 from watched import EDITS, SCRIPTS, modules_of
 
-from blockshake.diagnosis.nominal.efforts import EFFORTS
+from blockshake.diagnosis.nominal.plan import EFFORTS
 from blockshake.files import PACKAGE
 from blockshake.simulation.models import MODELS
 from blockshake.sources import kernel_sources, script_sources

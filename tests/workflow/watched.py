@@ -9,7 +9,7 @@ from blockshake.simulation.models import MODELS
 
 SCRIPTS = PACKAGE.parents[1] / "workflow" / "scripts"
 # their numbers are in parameters of rules, see `effort` in workflow/rules/diagnosed.smk
-PLANS = {f"diagnosis/nominal/{name}.py" for name in ("efforts", "plan")}
+PLANS = {"diagnosis/nominal/plan.py"}
 BESIDE = {"caches.py", "log.py", "sources.py"}  # what these compute is in no result
 # modules that the tests of faults edit, by the work whose jobs are then due
 EDITS = {
@@ -20,7 +20,7 @@ EDITS = {
     ),
     "diagnosis": (
         "solvers/ls_dem/driver.py", "diagnosis/evidence/likelihood.py", "diagnosis/answer/decide.py",
-        "diagnosis/misfit/predictability.py", "diagnosis/verdict/ladder.py", "parity/marker_faults.py",
+        "diagnosis/misfit/judged_test.py", "diagnosis/verdict/ladder.py", "parity/marker_faults.py",
         "diagnosis/report/odds_section.py",
     ),
 }  # fmt: skip

@@ -68,7 +68,7 @@ def misfit_files(wildcards):
 
 def effort():
     """Amounts of simulation. The plan is no source of a rule: its numbers are in parameters."""
-    from blockshake.diagnosis.nominal.efforts import EFFORTS
+    from blockshake.diagnosis.nominal.plan import EFFORTS
 
     return EFFORTS[EFFORT]
 

@@ -1,6 +1,5 @@
-from blockshake.diagnosis.answer.decision import write_decision
+from blockshake.diagnosis.answer.decision import freeze, write_decision
 from blockshake.diagnosis.steps import decide
-from blockshake.diagnosis.verdict.frozen import freeze
 from blockshake.files import write_dataset, write_json
 from blockshake.log import logging_to
 

@@ -66,5 +66,5 @@ def _seconds_of_draws(planned, model):
 
 def _seconds_of_draw(planned, draw):
     started = time.process_time()
-    read_histories(simulated_test(planned, draw).test, planned.structure, planned.sensors)
+    read_histories(simulated_test(planned, draw), planned.structure, planned.sensors)
     return time.process_time() - started

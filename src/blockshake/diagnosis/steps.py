@@ -1,9 +1,15 @@
 """The way of a diagnosis from readings to verdict, a function a step, in the order of the workflow.
 
+In every step ``folder`` is that of the campaign, ``effort`` a key of `EFFORTS` (in `simulate_nominal`,
+`describe_misfit` and `extend_model` one at which something is simulated), and ``files`` an object whose attributes are
+the files of the earlier steps, as the rule of the step has them: ``ensembles`` by test and solver, ``extended`` by
+solver, others one file each.
+
 Each function imports what it runs inside its own body. `blockshake.sources` watches this file function by function,
 so that a step is rerun by an edit of what that step runs, and by no other: an edit of the gain simulates nothing anew.
 """
 
+from itertools import islice
 from typing import NamedTuple
 
 import xarray as xr
@@ -21,18 +27,12 @@ class DecidedCampaign(NamedTuple):
 
 
 def decide(folder, without):
-    """Read the open tests of a campaign, take the faults of sensors out, and decide what acts.
+    """`DecidedCampaign`: the open tests read, the faults of sensors taken out, and what acts decided.
 
-    Parameters
-    ----------
-    folder : str
-        Of the campaign.
-    without : sequence of str
-        Effects that are left out, as if nobody had thought of them.
-
-    Returns
-    -------
-    DecidedCampaign
+    Raises
+    ------
+    InputError
+        No open test shows any forces.
     """
     from blockshake.diagnosis.answer.decide import decide
     from blockshake.diagnosis.evidence.seen_campaign import see_campaign
@@ -41,28 +41,15 @@ def decide(folder, without):
     seen = see_campaign(load_campaign(folder), without)
     unseen = [f"{name} is not judged: {reason}" for name, reason in seen.unseen.items()]
     if not seen.tests:
-        raise InputError(
-            folder, "tests", f"expected an open test whose forces can be read; {'; '.join(unseen)}"
-        )
+        expected = f"expected an open test whose forces can be read; {'; '.join(unseen)}"
+        raise InputError(folder, "tests", expected)
     return DecidedCampaign(seen.parity, *decide(seen.tests, without, unseen))
 
 
 def simulate_nominal(folder, effort, number, solver, store):
-    """Simulate one open test by one solver: the ensemble of nominal models, and twins.
+    """One open test by one solver, from `simulate_members`: the ensemble of nominal models, and twins.
 
-    Parameters
-    ----------
-    folder, effort : str
-        Of the campaign; one at which something is simulated.
-    number : int
-        Of the test among those that are simulated.
-    solver : str
-    store : Store
-
-    Returns
-    -------
-    xarray.Dataset
-        From `simulate_members`.
+    ``number`` is that of the test among those that are simulated.
     """
     from blockshake.diagnosis.nominal.ensemble import nominal_members, simulate_members
     from blockshake.diagnosis.nominal.plan import plan_diagnosis
@@ -74,23 +61,9 @@ def simulate_nominal(folder, effort, number, solver, store):
 
 
 def describe_misfit(folder, effort, files):
-    """Hold the nominal ensembles of both solvers beside the measured histories of the open tests.
-
-    Parameters
-    ----------
-    folder, effort : str
-        Of the campaign; one at which something is simulated.
-    files : object
-        Attributes ``parity`` and ``ensembles`` (by test and solver): files of the earlier steps.
-
-    Returns
-    -------
-    xarray.Dataset
-        From `misfit`.
-    """
-    from blockshake.diagnosis.misfit.judged_test import judged_test
+    """`misfit` of the nominal ensembles of both solvers beside the measured histories of the open tests."""
+    from blockshake.diagnosis.misfit.judged_test import judged_test, measured_histories
     from blockshake.diagnosis.misfit.misfit import misfit
-    from blockshake.diagnosis.nominal.measured import measured_histories
     from blockshake.diagnosis.nominal.plan import plan_diagnosis
     from blockshake.parity.parity import load_parity
 
@@ -102,32 +75,17 @@ def describe_misfit(folder, effort, files):
 
 def _by_test(plan, files):
     """Ensembles of files that are listed by test and solver, or by test of one solver, a list for each test."""
-    runs = [load_made(path) for path in files]
-    count = len(runs) // len(plan.tests)
-    return {name: runs[place * count : (place + 1) * count] for place, name in enumerate(plan.tests)}
+    count = len(files) // len(plan.tests)
+    runs = map(load_made, files)
+    return {name: list(islice(runs, count)) for name in plan.tests}
 
 
 def extend_model(folder, effort, solver, files, store):
-    """Simulate sealed tests by one solver: the nominal, the recalibrated, the extended and the placebo model.
-
-    Parameters
-    ----------
-    folder, effort, solver : str
-    files : object
-        Attributes ``frozen``, ``decision``, ``parity`` and ``ensembles`` (by test, of this solver): files of the
-        earlier steps.
-    store : Store
-
-    Returns
-    -------
-    xarray.Dataset
-        From `extended_runs`.
-    """
-    from blockshake.diagnosis.answer.decision import load_decision
+    """Sealed tests by one solver, from `extended_runs`; ``files.ensembles`` are of this solver."""
+    from blockshake.diagnosis.answer.decision import check_frozen, load_decision
     from blockshake.diagnosis.gain.extended_model import acting_causes, extended_runs
-    from blockshake.diagnosis.nominal.measured import measured_histories
+    from blockshake.diagnosis.misfit.judged_test import measured_histories
     from blockshake.diagnosis.nominal.plan import plan_diagnosis
-    from blockshake.diagnosis.verdict.frozen import check_frozen
     from blockshake.parity.parity import load_parity
 
     check_frozen(files.frozen, files.decision)
@@ -138,27 +96,17 @@ def extend_model(folder, effort, solver, files, store):
 
 
 def measure_gain(folder, effort, files):
-    """Measure on the sealed tests what naming the causes gains: the one step that reads them.
+    """`CampaignGain`, on the sealed tests, of naming the causes: the one step that reads these tests.
 
-    Parameters
-    ----------
-    folder, effort : str
-    files : object
-        Attributes ``frozen``, ``decision``, ``parity``, and ``ensembles`` (by test and solver) and ``extended`` (by
-        solver), both empty where nothing is simulated: files of the earlier steps.
-
-    Returns
-    -------
-    CampaignGain
+    ``files.ensembles`` and ``files.extended`` are empty where nothing is simulated.
     """
-    from blockshake.diagnosis.answer.decision import load_decision
+    from blockshake.diagnosis.answer.decision import check_frozen, load_decision
     from blockshake.diagnosis.evidence.seen_campaign import see_campaign, see_sealed
     from blockshake.diagnosis.gain.campaign_gain import campaign_gain, with_rows
     from blockshake.diagnosis.gain.row_gain import row_gain
-    from blockshake.diagnosis.gain.sensor_gain import sensors_gain
-    from blockshake.diagnosis.nominal.measured import measured_histories
+    from blockshake.diagnosis.gain.sensor_gain import sensor_gain
+    from blockshake.diagnosis.misfit.judged_test import measured_histories
     from blockshake.diagnosis.nominal.plan import plan_diagnosis
-    from blockshake.diagnosis.verdict.frozen import check_frozen
     from blockshake.measurement.campaigns.campaign import load_campaign
     from blockshake.parity.parity import load_parity
 
@@ -166,7 +114,7 @@ def measure_gain(folder, effort, files):
     campaign, decision = load_campaign(folder), load_decision(files.decision)
     findings = load_parity(files.parity).findings
     if not decision.parts:
-        return sensors_gain(campaign, decision.tests, list(campaign.sealed), findings)
+        return sensor_gain(campaign, decision.tests, findings)
     sealed = see_sealed(campaign)
     rows = row_gain(decision, see_campaign(campaign).tests, sealed.tests)
     if not files.extended:
@@ -183,34 +131,25 @@ def measure_gain(folder, effort, files):
 
 
 def conclude(folder, runs, files):
-    """Put sensors, decision and gain together to the verdict.
+    """`Verdict` of sensors, decision and gain.
 
-    Parameters
-    ----------
-    folder : str
-    runs : int
-        Simulated tests in all nominal ensembles, as of `Plan`.
-    files : object
-        Attributes ``parity``, ``decision`` and ``gain`` (the summary, or empty): files of the earlier steps.
-
-    Returns
-    -------
-    Verdict
+    ``runs`` is the number of simulated tests in all nominal ensembles, as of `Plan`, and ``files.gain`` the summary
+    alone, or empty.
     """
     from blockshake.diagnosis.answer.decision import load_decision
-    from blockshake.diagnosis.verdict.conclusion import conclude, no_gain
+    from blockshake.diagnosis.verdict.conclusion import conclude
     from blockshake.diagnosis.verdict.verdict import load_gain
     from blockshake.measurement.campaigns.campaign import load_campaign
     from blockshake.parity.parity import load_parity
 
     parity, decision = load_parity(files.parity), load_decision(files.decision)
-    campaign = load_campaign(folder)
     measured = load_gain(files.gain[0]) if files.gain else None
     caveats = [
-        f"{test} is judged until {one.body} falls, at {one.time:.2f} s" for test, one in parity.falls.items()
+        f"{test} is judged until {fall.body} falls, at {fall.time:.2f} s"
+        for test, fall in parity.falls.items()
     ]
     caveats += [f"{test}: {line}" for test, lines in parity.gaps.items() for line in lines]
-    if not files.gain:
-        caveats += no_gain(campaign, [*decision.parts, *parity.findings])
+    if (decision.parts or parity.findings) and not (files.gain or load_campaign(folder).sealed):
+        caveats.append("no gain was measured: there is no sealed test")
     verdict = conclude(decision, parity.findings, parity.recorder_sensors, caveats, measured)
     return verdict.model_copy(update={"runs": runs + verdict.runs})

@@ -69,7 +69,9 @@ def _level(height):
 
 def sizes_of(cause):
     """Parameters of a `Cause` in words: ``offset 37.7 mm (30.4 to 44.8) towards +x``."""
-    return ", ".join(f"{name} {estimate_words(name, own)}" for name, own in cause.parameters.items())
+    return ", ".join(
+        f"{name} {estimate_words(name, estimate)}" for name, estimate in cause.parameters.items()
+    )
 
 
 def cause_words(cause, place):

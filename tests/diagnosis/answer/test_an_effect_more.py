@@ -4,7 +4,7 @@ import pytest
 from one_way_friction import EFFECT
 
 from blockshake.diagnosis.answer.decide import decide
-from blockshake.diagnosis.answer.extension import can_extend, extended_experiment
+from blockshake.diagnosis.gain.extended_model import can_extend, extended_experiment
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import EFFECTS, with_effect

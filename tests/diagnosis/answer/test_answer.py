@@ -5,8 +5,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from blockshake.diagnosis.answer.answer import Rival, group_of, needed_beside, slab_groups
-from blockshake.diagnosis.answer.odds import COARSENING, ODDS, coarsened
+from blockshake.diagnosis.answer.answer import (
+    COARSENING,
+    ODDS,
+    Rival,
+    coarsened,
+    group_of,
+    needed_beside,
+    slab_groups,
+)
 
 
 def rivals(**scores):

@@ -4,8 +4,8 @@ import pytest
 from simulated_tests import cause_of, seen_tests
 
 from blockshake.diagnosis.answer.decide import decide
-from blockshake.diagnosis.answer.extension import can_extend
 from blockshake.diagnosis.answer.places import place_name
+from blockshake.diagnosis.gain.extended_model import can_extend
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS
 
@@ -18,13 +18,7 @@ BASE = {"joint": ["slab", "block-1"]}
 # cause, place, size, what else it is, structure; the first of the sizes is the one that is asked for
 CAUSES = [
     ("eccentricity", {"body": "block-2"}, {"offset": 0.06}, {}, "two-blocks"),
-    (
-        "push",
-        TOP,
-        {"force": 4000.0},
-        {"starts": STARTS},
-        "two-blocks",
-    ),
+    ("push", TOP, {"force": 4000.0}, {"starts": STARTS}, "two-blocks"),
     ("rope", TOP, {"stiffness": 2e5}, {}, "two-blocks"),
 ]
 SLOW = [
@@ -60,7 +54,9 @@ def _arm(place):
     return 1.6 * (int(place["body"][-1]) - 0.5 + place.get("height", 0.0))
 
 
-def _assert_found(name, place, values, when, structure):
+@pytest.mark.parametrize("case", [*CAUSES, *(pytest.param(case, marks=pytest.mark.slow) for case in SLOW)])
+def test_a_cause_is_found_with_its_size(case):
+    name, place, values, when, structure = case
     decision = decide(seen_tests(structure, MOTIONS, cause_of(name, place, values, when))).decision
     found = {one.name: one for part in decision.parts for one in part.causes}
     assert name in found, decision.parts
@@ -71,17 +67,6 @@ def _assert_found(name, place, values, when, structure):
     estimate = found[name].parameters[size]
     near = estimate.estimate == pytest.approx(true, rel=WITHIN)
     assert near or estimate.lower <= true <= estimate.upper
-
-
-@pytest.mark.parametrize(("name", "place", "values", "when", "structure"), CAUSES)
-def test_a_cause_is_found_with_its_size(name, place, values, when, structure):
-    _assert_found(name, place, values, when, structure)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("name", "place", "values", "when", "structure"), SLOW)
-def test_every_other_cause_is_found_with_its_size(name, place, values, when, structure):
-    _assert_found(name, place, values, when, structure)
 
 
 def test_sound_blocks_are_called_nothing():

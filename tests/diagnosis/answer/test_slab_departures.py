@@ -2,7 +2,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from blockshake.diagnosis.answer.slab_departures import slab_departures
+from blockshake.diagnosis.answer.departures import slab_departures
 
 
 def test_the_slab_s_motion_stands_beside_that_of_the_likeliest_cause():

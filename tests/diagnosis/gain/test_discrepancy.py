@@ -3,7 +3,7 @@
 import numpy as np
 from judged_tests import CELLS, TIME, judged
 
-from blockshake.diagnosis.gain.discrepancy import members_with_discrepancy
+from blockshake.diagnosis.gain.campaign_gain import members_with_discrepancy
 
 SHAPE = np.sin(5.0 * TIME)[:, None] * np.ones(len(CELLS))
 MEMBERS = np.random.default_rng(0).normal(0.0, 0.1, (20, len(TIME), len(CELLS)))

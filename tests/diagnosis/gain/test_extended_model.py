@@ -1,21 +1,16 @@
 """Where a placebo acts, and what an extension is in the store."""
 
-import pytest
+from made_up_decision import made_up_cause
 
-from blockshake.geometry.structure import load_structure
-
-pytest.importorskip("blockshake.diagnosis.answer.extension", reason="the answer is on another branch")
-from blockshake.diagnosis.answer.decision import Cause
 from blockshake.diagnosis.gain.extended_model import Extension, placebo_of
+from blockshake.geometry.structure import load_structure
 
 STRUCTURE = load_structure("configuration-1")
 OFFSETS = ({"offset": 0.03}, {"offset": 0.04})
 
 
-def _cause(place, places, name="eccentricity", members=OFFSETS, when=None):
-    return Cause(
-        name=name, place=place, places=places, gain=30.0, odds=0.0, parameters={}, members=members, when=when or {}
-    )  # fmt: skip
+def _cause(place, places, name="eccentricity", members=OFFSETS, **when):
+    return made_up_cause(name, place, places=places, members=members, **when)
 
 
 def test_a_placebo_acts_where_the_readings_say_that_the_cause_is_not():
@@ -49,5 +44,5 @@ def test_the_store_tells_extensions_apart_by_what_acts():
     # an effect of the registry acts alike in all tests; the third member is the first again
     assert Extension((here,), 2, "t2").digest == digests[0]
     place, when = {"body": "block-1", "height": 0.0}, {"starts": {"t1": 1.0}}
-    push = _cause(place, ["block-1@0"], "push", ({"force": 1e3},), when)
+    push = _cause(place, ["block-1@0"], "push", ({"force": 1e3},), when=when)
     assert Extension((push,), 0, "t1").digest != Extension((push,), 0, "t2").digest

@@ -47,6 +47,15 @@ def scores_of(draws):
     )
 
 
+def informed(draws, conditioned):
+    """Whether each parameter is another one after the conditioning in any draw."""
+    before, after = (
+        np.array([[*(draw.parameters[name] for name in NAMES[:3]), draw.amplitude] for draw in own])
+        for own in (draws, conditioned)
+    )
+    return (before != after).any(axis=0).tolist()
+
+
 class World:
     """Features = mixing @ scores + noise; the first three scores tell in them, the amplitude does not."""
 
@@ -70,8 +79,9 @@ def test_many_draws_give_the_posterior_of_theory():
     world, count = World(1, 8, noise=2.0), 250
     scores = generator.normal(size=(count, 4))
     measured = world.features(np.array([[1.0, -0.8, 0.5, 0.0]]), generator)[0]
-    result = posterior_draws(draws_of(scores), world.features(scores, generator), measured)
-    found = scores_of(result.draws)
+    draws = draws_of(scores)
+    conditioned = posterior_draws(draws, world.features(scores, generator), measured)
+    found = scores_of(conditioned)
     mean, covariance = world.posterior(measured)
     deviation = np.sqrt(np.diag(covariance))
     # a gain learnt from n draws in n_features directions adds about sqrt((n_features + 1) / n) of the deviation
@@ -80,9 +90,7 @@ def test_many_draws_give_the_posterior_of_theory():
     np.testing.assert_allclose(
         found.std(axis=0, ddof=1), deviation, rtol=4.0 / np.sqrt(2 * count) + 9 / count
     )
-    narrow = result.informed["narrowing"].sel(parameter=list(NAMES)).to_numpy()
-    np.testing.assert_allclose(narrow, deviation, atol=0.12)
-    assert result.informed["informed"].sel(parameter=list(NAMES)).values.tolist() == [True, True, True, False]
+    assert informed(draws, conditioned) == [True, True, True, False]
 
 
 def test_few_draws_and_many_features_are_neither_too_sure_nor_useless():
@@ -92,9 +100,7 @@ def test_few_draws_and_many_features_are_neither_too_sure_nor_useless():
         world = World(case, 150, noise=6.0)
         scores, truth = generator.normal(size=(40, 4)), generator.normal(size=(1, 4))
         measured = world.features(truth, generator)[0]
-        found = scores_of(
-            posterior_draws(draws_of(scores), world.features(scores, generator), measured).draws
-        )
+        found = scores_of(posterior_draws(draws_of(scores), world.features(scores, generator), measured))
         z.append((truth[0] - found.mean(axis=0)) / found.std(axis=0, ddof=1))
         errors.append(truth[0] - found.mean(axis=0))
         theory.append(np.diag(world.posterior(measured)[1]))
@@ -112,12 +118,10 @@ def test_features_that_tell_nothing_leave_the_prior():
     moved = []
     for _ in range(25):
         draws = draws_of(generator.normal(size=(40, 4)))
-        result = posterior_draws(draws, generator.normal(size=(40, 200)), generator.normal(3.0, 1.0, 200))
-        moved.append(int(result.informed["informed"].sum()))
-        if not moved[-1]:
-            assert [draw.parameters for draw in result.draws] == [draw.parameters for draw in draws]
-            assert [draw.amplitude for draw in result.draws] == [draw.amplitude for draw in draws]
-            np.testing.assert_array_equal(result.informed["narrowing"], 1.0)
+        conditioned = posterior_draws(
+            draws, generator.normal(size=(40, 200)), generator.normal(3.0, 1.0, 200)
+        )
+        moved += informed(draws, conditioned)
     # 100 parameters at a chance of 1 %: more than 5 are seen in 3 of 10 000 such tests
     assert sum(moved) <= 5
 
@@ -131,7 +135,7 @@ def test_an_absurd_feature_counts_as_one_at_the_edge_of_the_draws():
     edge, far = usual.copy(), usual.copy()
     edge[3] = features[:, 3].mean() + 3.0 * features[:, 3].std(ddof=1)
     far[3] = 16000.0
-    at_edge, beyond = (posterior_draws(draws, features, measured).draws for measured in (edge, far))
+    at_edge, beyond = (posterior_draws(draws, features, measured) for measured in (edge, far))
     np.testing.assert_allclose(scores_of(beyond), scores_of(at_edge), rtol=1e-9)
 
 
@@ -139,10 +143,12 @@ def test_a_misfit_of_all_features_does_not_move_parameters_out_of_their_prior():
     generator = np.random.default_rng(5)
     world = World(5, 30)
     scores = generator.normal(size=(40, 4))
-    result = posterior_draws(draws_of(scores), world.features(scores, generator), 300.0 * world.mixing[:, 0])
-    friction = result.informed.sel(parameter=NAMES[0])
-    assert float(friction["held"]) > 0.5
-    for draw in result.draws:
+    draws = draws_of(scores)
+    conditioned = posterior_draws(draws, world.features(scores, generator), 300.0 * world.mixing[:, 0])
+    prior, friction = scores_of(draws)[:, 0], scores_of(conditioned)[:, 0]
+    stop = prior.mean() + 3.0 * prior.std(ddof=1)
+    assert np.isclose(friction, stop).mean() > 0.5
+    for draw in conditioned:
         assert 0.75 < draw.parameters[NAMES[0]] < 0.75 * np.exp(4.0 * FRICTION)
         assert SPACING[0] * 0.9 < draw.parameters[NAMES[2]] < SPACING[1] * 1.1
 
@@ -155,9 +161,8 @@ def test_what_is_drawn_evenly_in_its_logarithm_stays_between_its_ends():
         for draw, one in zip(draws_of(np.zeros((40, 4))), share, strict=True)
     ]
     features = ndtri(share)[:, None] + generator.normal(0.0, 0.3, (40, 1))
-    result = posterior_draws(draws, features, np.array([2.5]))
-    assert result.informed["informed"].sel(parameter="shapes.block.hollow")
-    found = np.array([draw.parameters["shapes.block.hollow"] for draw in result.draws])
+    conditioned = posterior_draws(draws, features, np.array([2.5]))
+    found = np.array([draw.parameters["shapes.block.hollow"] for draw in conditioned])
     reach = 300.0 ** ((share.max() - share.min()) / 39)  # the ends as 40 draws tell them
     assert found.max() < 1e-5 * 300.0 ** share.max() * reach
     # theory: a score of 2.5 / (1 + 0.3^2), 0.989 of the way up

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from blockshake.diagnosis.misfit.predictability import horizons
+from blockshake.diagnosis.misfit.judged_test import horizons
 
 TIME = np.arange(501) / 50.0
 NOISE = xr.DataArray([1e-4, 1e-4], dims="cell")

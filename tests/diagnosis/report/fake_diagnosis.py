@@ -13,6 +13,7 @@ from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
 
 STRUCTURE = "configuration-1"
+SIMULATED = "named"  # the fake with a misfit, a gain on the responses, and a track record
 _TIME = np.arange(151) / 25.0
 
 

@@ -23,15 +23,10 @@ def gain_finding():
 
 def cause(name, place, places, sizes, odds=0.0, when=None):
     """A cause as in ``decision.json``; ``sizes``: (estimate, unit) by parameter, intervals a tenth to either side."""
-    parameters = {
-        key: {
-            "estimate": value,
-            "lower": min(0.9 * value, 1.1 * value),
-            "upper": max(0.9 * value, 1.1 * value),
-            "unit": unit,
-        }
-        for key, (value, unit) in sizes.items()
-    }
+    parameters = {}
+    for key, (value, unit) in sizes.items():
+        lower, upper = sorted((0.9 * value, 1.1 * value))
+        parameters[key] = {"estimate": value, "lower": lower, "upper": upper, "unit": unit}
     members = [
         {key: value * (1.0 + 0.02 * number) for key, (value, _) in sizes.items()} for number in range(-3, 4)
     ]
@@ -45,29 +40,17 @@ ECCENTRIC = cause("eccentricity", {"body": "block-2"}, ["block-2"], {"offset": (
 PITCH = cause("table-pitch", {}, ["all"], {"coefficient": (5e-4, "rad s2/m"), "frequency": (11.0, "Hz")})
 WEAK = cause("weak-joint", {"joint": ["slab", "block-1"]}, ["slab-block-1"], {"factor": (0.41, "1")})
 RATE = cause("rate-weakening-friction", {}, ["all"], {"drop": (0.61, "1"), "scale": (0.012, "m/s")}, 1.5)
-PUSHED = cause(
-    "push",
-    {"body": "block-2", "height": 0.42},
-    ["block-2@0.42", "block-1@0"],
-    {"force": (-2e3, "N")},
-    when=PUSH,
-)
+TOP = {"body": "block-2", "height": 0.42}
+PUSHED = cause("push", TOP, ["block-2@0.42", "block-1@0"], {"force": (-2e3, "N")}, when=PUSH)
 
 
 def part(readings, *causes):
     """A part of the readings with its causes, among rivals that are far less likely."""
-    others = (
-        {"table-pitch": 40.0}
-        if readings.startswith("rotation")
-        else {"changed-edge": 12.0, "eccentricity": 55.0}
-    )
+    of_joints = {"changed-edge": 12.0, "eccentricity": 55.0}
+    others = {"table-pitch": 40.0} if readings.startswith("rotation") else of_joints
     odds = {**others, **{one["name"]: one["odds"] for one in causes}}
-    return {
-        "readings": readings,
-        "causes": causes,
-        "odds": odds,
-        "gains": {key: 60.0 - one for key, one in odds.items()},
-    }
+    gains = {key: 60.0 - value for key, value in odds.items()}
+    return {"readings": readings, "causes": causes, "odds": odds, "gains": gains}
 
 
 PARTS = {
@@ -112,12 +95,8 @@ def departures(kind, bodies):
     turn = np.tile(5e-4 * np.sin(6.0 * slab), len(OPEN))
     made = turn if kind == "combination" else 0.0 * turn
     values = {"measured": explained + noise, "deviation": np.full_like(noise, 300.0), "explained": explained}
-    moves = {
-        "turn": (made, "rad"),
-        "turn_explained": (made, "rad"),
-        "lift": (0.0 * turn, "m"),
-        "lift_explained": (0.0 * turn, "m"),
-    }
+    turns, lifts = (made, "rad"), (0.0 * turn, "m")
+    moves = {"turn": turns, "turn_explained": turns, "lift": lifts, "lift_explained": lifts}
     return xr.Dataset(
         {
             **{name: (("instant", "body"), one, {"units": "N"}) for name, one in values.items()},
@@ -170,7 +149,7 @@ def misfit(joints, top):
         chance=(("test", "cell"), np.full(shape, 0.04)),
         worst_time=(("test", "cell"), np.full(shape, 3.1)),
         p=0.04,
-    ).assign_attrs(where=f"drift of {top} in {OPEN[2]}", members=24)
+    ).assign_attrs(where=f"drift of {top} in {OPEN[2]}")
 
 
 def responses(joints, top):
@@ -216,26 +195,15 @@ def track_record():
     """A track record with a goal that is met and one that is missed, and a share without a goal."""
 
     def share(meaning, hits, n, goal, side):
-        return {
-            "meaning": meaning,
-            "hits": hits,
-            "n": n,
-            "lower": 0.01,
-            "upper": 0.9,
-            "goal": goal,
-            "side": side,
-        }
+        bounds = {"lower": 0.01, "upper": 0.9}
+        return {"meaning": meaning, "hits": hits, "n": n, "goal": goal, "side": side, **bounds}
 
+    empty = {"efforts": {}, "medians": {}, "confusion": [], "cases": []}
+    origin = {"date": "2026-11-20", "commit": "0123456789ab", "machine": "made up", "seeds": "none"}
     return {
-        "date": "2026-11-20",
-        "commit": "0123456789ab",
+        **origin,
+        **empty,
         "procedure": "ba9876543210",
-        "machine": "made up",
-        "efforts": {},
-        "seeds": "none",
-        "medians": {},
-        "confusion": [],
-        "cases": [],
         "shares": {
             "false-alarm": share("clean campaigns called an effect", 1, 60, 0.05, "at most"),
             "covered": share("truth named or in the set", 4, 6, 0.88, "at least"),

@@ -1,12 +1,10 @@
 from types import SimpleNamespace
 
 import pytest
-from fake_diagnosis import FakeDiagnosis
 from fake_findings import ECCENTRIC, KINDS, part
 
 from blockshake.diagnosis.answer.decision import Cause, Estimate, Part
 from blockshake.diagnosis.report.answer_section import percent_words
-from blockshake.diagnosis.report.content import load_diagnosed
 from blockshake.diagnosis.report.statement import not_told, statement
 from blockshake.diagnosis.verdict.verdict import Contrast
 from blockshake.diagnosis.wording import (
@@ -39,14 +37,6 @@ NOT_TOLD = {
     "than an edge that changed, the nearest of them. Its place, block-2 or block-1, is not told; likeliest is top of "
     "block-2.",
 }
-
-
-@pytest.fixture(scope="module")
-def found(tmp_path_factory):
-    return {
-        kind: load_diagnosed(*FakeDiagnosis(tmp_path_factory.mktemp(kind), kind).arguments())
-        for kind in KINDS
-    }
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -3,12 +3,11 @@ import pytest
 from fake_findings import ECCENTRIC, OPEN, SEALED, departures, misfit, responses
 
 from blockshake.diagnosis.answer.decision import Cause
-from blockshake.diagnosis.gain.figure import plot_drift
+from blockshake.diagnosis.gain.section import plot_drift
 from blockshake.diagnosis.misfit.figure import plot_misfit
-from blockshake.diagnosis.report.figures.forces import plot_forces, plot_slab, shown_bodies, shown_tests
-from blockshake.diagnosis.report.figures.odds import plot_odds
-from blockshake.diagnosis.report.figures.sizes import plot_sizes
-from blockshake.effects.registry import EFFECTS
+from blockshake.diagnosis.report.answer_section import plot_forces, plot_slab, shown_bodies, shown_tests
+from blockshake.diagnosis.report.odds_section import plot_odds
+from blockshake.diagnosis.report.size_section import plot_sizes
 
 BODIES = ("block-1", "block-2", "block-3")
 
@@ -70,7 +69,7 @@ def test_the_slab_s_rotation_is_drawn_in_milliradians():
 
 def test_odds_are_shaded_within_twenty_times_and_end_in_arrows_beyond_the_axis():
     rows = [("a push", 0.0, 300.0), ("an eccentric mass", 2.0, 285.0), ("a soft joint", 60.0, -1.0)]
-    odds, gains = plot_odds(rows, [True, False, False], 40.0, np.log(20.0)).axes
+    odds, gains = plot_odds(rows, [True, False, False], 40.0).axes
     assert [label.get_text() for label in odds.get_yticklabels()] == [one[0] for one in rows] + ["nothing"]
     assert len(odds.patches) == 2
     markers = [line for line in odds.get_lines() if line.get_marker() in (">", "o")]
@@ -84,7 +83,7 @@ def test_odds_are_shaded_within_twenty_times_and_end_in_arrows_beyond_the_axis()
 
 def test_a_size_stands_on_its_range_with_its_members():
     cause = Cause.model_validate(ECCENTRIC)
-    (axes,) = plot_sizes([cause], [EFFECTS["eccentricity"].parameters]).axes
+    (axes,) = plot_sizes([cause]).axes
     members, size = (line for line in axes.get_lines() if line.get_marker() in ("|", "o"))
     np.testing.assert_allclose(members.get_xdata(), [1e3 * one["offset"] for one in cause.members])
     assert size.get_xdata()[0] == 50.0
@@ -93,7 +92,7 @@ def test_a_size_stands_on_its_range_with_its_members():
 
 def test_drift_with_and_without_the_cause_ends_where_it_can_be_predicted():
     gain = responses(["slab-block-1"], "block-3")
-    panels = plot_drift(gain, [SEALED[0]], ("recalibrated", "extended"), "measured").axes
+    panels = plot_drift(gain, [SEALED[0]], "measured").axes
     assert [axes.get_title() for axes in panels] == ["without the cause, recalibrated", "with the cause"]
     without, with_it = (max(axes.get_lines()[0].get_ydata()) for axes in panels)
     assert with_it == pytest.approx(1.3 * without)

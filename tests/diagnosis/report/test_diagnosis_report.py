@@ -2,7 +2,7 @@ import re
 from dataclasses import replace
 
 import pytest
-from fake_diagnosis import FakeDiagnosis
+from fake_diagnosis import SIMULATED, FakeDiagnosis
 from fake_findings import KINDS, OPEN, PUSHED, SEALED, gain_finding, part, track_record
 from page import CLAIMS, Page
 
@@ -16,28 +16,10 @@ from blockshake.errors import InputError
 from blockshake.files import write_json
 from blockshake.pages.html import write_html
 
-SIMULATED = "named"  # the fake with a misfit, a gain on the responses, and a track record
 ALWAYS = [
     "Answer", "Odds of all causes", "Gain on sealed tests", "Sensors", "Limits: what would have been seen",
     "Track record of the procedure", "Tests, assumptions, origin",
 ]  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def fakes(tmp_path_factory):
-    """Results of every kind of decision."""
-    made = {
-        kind: FakeDiagnosis(tmp_path_factory.mktemp(kind), kind, simulated=kind == SIMULATED)
-        for kind in KINDS
-    }
-    write_json(made[SIMULATED].track_record, track_record())
-    return made
-
-
-@pytest.fixture(scope="module")
-def found(fakes):
-    """Content of the report, by decision; sealed tests' files hold no test, so that opening one would fail."""
-    return {kind: load_diagnosed(*fake.arguments()) for kind, fake in fakes.items()}
 
 
 @pytest.fixture(scope="module")

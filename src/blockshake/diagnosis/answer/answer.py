@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from blockshake.diagnosis.answer.odds import ODDS, coarsened
 from blockshake.diagnosis.evidence.explanation import mean_evidence
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
@@ -22,6 +21,8 @@ _NEEDED_OF_SLAB = {"turns": 8.0, "lifts": 20.0}  # outliers of one marker lift t
 _BESIDE_SLAB = 10.0  # nats more of a cause in the joints of a slab that has one of its own
 _BESIDE = 5.0  # nats more of a second cause in the joints
 _BESIDE_SHARE = 0.1  # of the first one's gain, beside that
+ODDS = float(np.log(20.0))  # within which causes are not told apart
+COARSENING = 0.05  # share of what it explains that the form of a cause may leave unexplained
 
 
 @dataclass(frozen=True)
@@ -64,13 +65,9 @@ class Group:
 
 
 def rank(evidence, closed=None):
-    """`Rival` by falling score.
+    """`Rival` by falling score, from `Evidence` or None.
 
-    Parameters
-    ----------
-    evidence : Evidence or None
-    closed : dict of str to float64 array, optional
-        Gain of every compliance by joint, from closed joints.
+    ``closed`` has by joint the gain of every compliance, from closed joints.
     """
     gains = {}
     for cause, place in evidence.keys if evidence else ():
@@ -119,33 +116,24 @@ def _rival(cause, places):
 def group_of(ranked, needed=0.0, tree=True):
     """`Group` of the strongest cause and all that cannot be told from it; None where nothing is strong.
 
-    Parameters
-    ----------
-    ranked : list of Rival
-        By falling score.
-    needed : float
-        Gain that is needed beyond the usual one.
-    tree : bool
-        The joints make no loop.
+    ``needed`` is a gain beyond the usual one, and ``tree`` says that the joints make no loop.
     """
-    strong = [one for one in ranked if one.gain > needed_of(one.cause, tree) + needed]
+    strong = [rival for rival in ranked if rival.gain > needed_of(rival.cause, tree) + needed]
     if not strong:
         return None
-    first = strong[0]
-    odds = {one.cause: coarsened(first.score - one.score, first.score) for one in ranked}
-    near = tuple(one for one in ranked if odds[one.cause] < ODDS)
-    return Group(near, odds, {one.cause: one.gain for one in ranked})
+    return _group(strong[0], ranked)
+
+
+def _group(first, ranked):
+    odds = {rival.cause: coarsened(first.score - rival.score, first.score) for rival in ranked}
+    near = tuple(rival for rival in ranked if odds[rival.cause] < ODDS)
+    return Group(near, odds, {rival.cause: rival.gain for rival in ranked})
 
 
 def needed_beside(slab, first=None):
-    """Gain that is needed beyond the usual one, beside causes of the slab, and of a first cause in the joints.
+    """Gain that is needed beyond the usual one.
 
-    Parameters
-    ----------
-    slab : bool
-        Whether the slab's own motion has a cause.
-    first : float, optional
-        Gain of the first cause.
+    ``slab`` says whether the slab's own motion has a cause, and ``first`` is the gain of a first cause in the joints.
     """
     more = _BESIDE_SLAB if slab else 0.0
     return more if first is None else more + _BESIDE + _BESIDE_SHARE * first
@@ -159,29 +147,32 @@ def needed_of(cause, tree=True):
 
 
 def needed_of_slab(name):
-    """The same of an effect that moves the slab."""
+    """Gain over none from which an effect that moves the slab is no chance."""
     return _NEEDED_OF_SLAB["turns" if EFFECTS[name].turns else "lifts"]
 
 
 def slab_groups(explained):
-    """Groups of the slab's rotation and of its vertical motion, with the name of these readings.
+    """Pairs of the name of readings and their `Group`: of the slab's rotation and of its vertical motion.
 
-    Parameters
-    ----------
-    explained : dict of str to Explanation
-        By effect.
-
-    Returns
-    -------
-    list of (str, Group)
+    ``explained`` are `Explanation` by effect.
     """
-    found = []
+    groups = []
     for readings, moves in (("rotation of the slab", "turns"), ("vertical motion of the slab", "lifts")):
-        gains = {name: one.gain for name, one in explained.items() if getattr(EFFECTS[name], moves)}
-        rivals = [Rival(name, "all", gain, gain, ("all",)) for name, gain in gains.items()]
+        rivals = [
+            Rival(name, "all", one.gain, one.gain, ("all",))
+            for name, one in explained.items()
+            if getattr(EFFECTS[name], moves)
+        ]
         ranked = sorted(rivals, key=lambda one: -one.gain)
         if ranked and ranked[0].gain > _NEEDED_OF_SLAB[moves]:
-            odds = {one.cause: coarsened(ranked[0].gain - one.gain, ranked[0].gain) for one in ranked}
-            near = tuple(one for one in ranked if odds[one.cause] < ODDS)
-            found.append((readings, Group(near, odds, gains)))
-    return found
+            groups.append((readings, _group(ranked[0], ranked)))
+    return groups
+
+
+def coarsened(difference, gain):
+    """Logarithm of the odds of two causes whose scores differ, the better one gaining ``gain``.
+
+    The likelihood is raised to ``1 / (1 + delta gain / ln 20)``: a form may leave a share delta of what it explains
+    (Miller and Dunson 2019, coarsened posteriors).
+    """
+    return difference / (1.0 + COARSENING * max(gain, 0.0) / ODDS)

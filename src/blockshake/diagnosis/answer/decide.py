@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.diagnosis.answer.answer import (
+    coarsened,
     group_of,
     needed_beside,
     needed_of,
@@ -14,14 +15,11 @@ from blockshake.diagnosis.answer.answer import (
     soft_gains,
 )
 from blockshake.diagnosis.answer.decision import Cause, Decision, Part
-from blockshake.diagnosis.answer.departures import departures, largest
+from blockshake.diagnosis.answer.departures import departures, largest, slab_departures
 from blockshake.diagnosis.answer.explain import gather_evidence
-from blockshake.diagnosis.answer.limits import excluded_above, limits_of
-from blockshake.diagnosis.answer.odds import coarsened
+from blockshake.diagnosis.answer.limits import cannot_see, excluded_above, limits_of
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_of
-from blockshake.diagnosis.answer.sight import cannot_see
 from blockshake.diagnosis.answer.size import members_of, size_of
-from blockshake.diagnosis.answer.slab_departures import slab_departures
 from blockshake.diagnosis.evidence.closed_joints import closed_joint_gains
 from blockshake.diagnosis.evidence.explanation import Fit, mean_evidence
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
@@ -59,16 +57,14 @@ def decide(seen, without=(), unseen=()):
     Decided
     """
     evidence = gather_evidence(seen, without)
-    closed = {seen[0].faces[face].name: gains for face, gains in closed_joint_gains(seen).items()}
-    if JOINT_COMPLIANCE.name in without:
-        closed = {}
+    closed = {} if JOINT_COMPLIANCE.name in without else closed_joint_gains(seen)
     slabs = [slab_motion(test) for test in seen]
     slab = explain_slab(slabs, without)
     of_slab, tree = slab_groups(slab), seen[0].tree
-    found, explained = [], []
+    acting, explained = [], []
     first = group_of(rank(evidence, closed), needed_beside(bool(of_slab)), tree)
     if first:
-        found.append(_part("joints", first, seen, evidence, closed))
+        acting.append(_part("joints", first, seen, evidence, closed))
         key = _key(first)
         if evidence and key in evidence.keys:
             explained.append(evidence.best(key))
@@ -76,14 +72,14 @@ def decide(seen, without=(), unseen=()):
             needed = needed_beside(bool(of_slab), first.rivals[0].gain)
             second = group_of(rank(beside), needed, tree)
             if second:
-                found.append(_part("joints, beside the first", second, seen, beside, {}))
+                acting.append(_part("joints, beside the first", second, seen, beside, {}))
                 explained.append(beside.best(_key(second)))
     for readings, group in of_slab:
-        found.append(_part(readings, group, seen, None, {}, slab))
+        acting.append(_part(readings, group, seen, None, {}, slab))
     impacts = restitution_gain(seen)
     if impacts.gain > needed_of(RESTITUTION.name) and RESTITUTION.name not in without:
-        found.append(_of_impacts(impacts))
-    parts = tuple(sorted(found, key=lambda part: -part.causes[0].gain))
+        acting.append(_of_impacts(impacts))
+    parts = tuple(sorted(acting, key=lambda part: -part.causes[0].gain))
     shown = departures(seen, evidence, explained)
     limits = limits_of(evidence, slab)
     decision = Decision(
@@ -105,16 +101,9 @@ def decide(seen, without=(), unseen=()):
 
 def _of_impacts(impacts):
     """`Part` of impacts that lose less than any sound model; by how much the solvers' restitution is not told."""
-    cause = Cause(
-        name=RESTITUTION.name,
-        place={},
-        places=(EVERYWHERE,),
-        gain=impacts.gain,
-        odds=0.0,
-        parameters={},
-        members=(),
-    )
-    return Part(readings="impacts", causes=(cause,), odds={cause.name: 0.0}, gains={cause.name: impacts.gain})
+    name, gain = RESTITUTION.name, impacts.gain
+    cause = Cause(name=name, place={}, places=(EVERYWHERE,), gain=gain, odds=0.0, parameters={}, members=())
+    return Part(readings="impacts", causes=(cause,), odds={name: 0.0}, gains={name: gain})
 
 
 def _key(group):
@@ -131,26 +120,26 @@ def _kind(parts):
     """Kind of the answer: an outside form alone is unknown; beside an effect it keeps the effect from being alone."""
     if not parts:
         return "none"
-    effects = {one.name for part in parts for one in part.effects}
+    effects = {cause.name for part in parts for cause in part.effects}
     if not effects:
         return "unknown"
-    if any(len(part.causes) > 1 and part.effects for part in parts):
-        return (
-            "ambiguous" if len(effects) > 1 or any(part.effects and part.forms for part in parts) else "named"
-        )
-    return "combination" if len(effects) > 1 else "named"
+    if any(part.effects and part.forms for part in parts):
+        return "ambiguous"
+    if len(effects) == 1:
+        return "named"
+    return "ambiguous" if any(len(part.causes) > 1 and part.effects for part in parts) else "combination"
 
 
 def _probabilities(parts, without):
-    found = {name: 0.0 for name in EFFECTS if name not in without}
+    probabilities = {name: 0.0 for name in EFFECTS if name not in without}
     for part in parts:
         best = part.causes[0].gain
         none = coarsened(best, best)
         total = float(np.exp(-none)) + sum(float(np.exp(-odds)) for odds in part.odds.values())
         for name, odds in part.odds.items():
-            if name in found:
-                found[name] = max(found[name], float(np.exp(-odds)) / total)
-    return found
+            if name in probabilities:
+                probabilities[name] = max(probabilities[name], float(np.exp(-odds)) / total)
+    return probabilities
 
 
 def _part(readings, group, seen, evidence, closed, slab=None):
@@ -169,7 +158,7 @@ def _part(readings, group, seen, evidence, closed, slab=None):
                 odds=group.odds[rival.cause],
                 parameters=size_of(rival.cause, rival.place, *alike),
                 members=members_of(rival.cause, rival.place, fits, logs),
-                when={key: value for key, value in best.values.items() if key != "history"},
+                when=best.values,
                 amplitudes=best.mean.tolist(),
             )
         )

@@ -6,7 +6,8 @@ from pydantic import Field, JsonValue, model_validator
 
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import title_of
-from blockshake.files import load_json, write_json
+from blockshake.errors import InputError
+from blockshake.files import file_digest, load_json, load_made_json, write_json
 from blockshake.validation import Count, Finite, Fraction, Strict, validated
 
 MEMBERS = 40  # sets of parameters by which a model is extended
@@ -170,3 +171,21 @@ def write_decision(path, decision):
 def load_decision(path):
     """`Decision` of a file."""
     return validated(Decision, load_json(path), path)
+
+
+def freeze(path, decided, tests):
+    """Write the digest of a file that was decided, a decision or a size, and the tests that it rests on."""
+    write_json(path, {"digest": file_digest(decided), "tests": list(tests)})
+
+
+def check_frozen(path, decided):
+    """Refuse a file that is another than the frozen one.
+
+    Raises
+    ------
+    InputError
+    """
+    frozen = load_made_json(path, lambda value: str(value["digest"]))
+    digest = file_digest(decided)
+    if digest != frozen:
+        raise InputError(decided, "", f"expected the file that was frozen as {frozen}, found {digest}")

@@ -8,6 +8,7 @@ from blockshake.forces.seen.wrench_histories import force_at
 
 _NAMES = ("measured", "deviation", "explained")
 _LEAST = 1e-3  # of a virtual displacement along x, squared: below it a force on the block makes no row
+_MOVES = {"turn": ("rotation of the slab", "rad"), "lift": ("vertical motion of the slab", "m")}
 
 
 def departures(seen, evidence, explained):
@@ -31,7 +32,7 @@ def departures(seen, evidence, explained):
     parts = []
     for number, test in enumerate(evidence.tests if evidence else ()):
         rows = test.rows
-        forces = sum((one.rows[number] for one in explained), np.zeros(len(rows.value)))
+        forces = sum((explanation.rows[number] for explanation in explained), np.zeros(len(rows.value)))
         measured = rows.value - expected_rows(test)
         instants, index = np.unique(rows.instant, return_inverse=True)
         found = np.full((3, len(instants), len(names)), np.nan)
@@ -39,13 +40,13 @@ def departures(seen, evidence, explained):
             unit = rows.along(force_at(test.seen, int(body), np.array([1.0, 0.0, 0.0])))
             square = np.bincount(index, unit**2)
             known = square > _LEAST
-            noise = np.stack([np.bincount(index, unit * one) for one in rows.noise.T])
-            for place, value in enumerate((np.bincount(index, unit * measured), np.sqrt((noise**2).sum(axis=0)),
+            noise = np.stack([np.bincount(index, unit * sensor) for sensor in rows.noise.T])
+            for row, value in enumerate((np.bincount(index, unit * measured), np.sqrt((noise**2).sum(axis=0)),
                                            np.bincount(index, unit * forces))):  # fmt: skip
-                found[place, known, column] = value[known] / square[known]
+                found[row, known, column] = value[known] / square[known]
         parts.append(
             xr.Dataset(
-                {name: (("instant", "body"), found[place]) for place, name in enumerate(_NAMES)},
+                {name: (("instant", "body"), found[row]) for row, name in enumerate(_NAMES)},
                 {
                     "test": ("instant", [test.seen.name] * len(instants)),
                     "time": ("instant", test.seen.motion.time[instants], {"units": "s"}),
@@ -58,7 +59,7 @@ def departures(seen, evidence, explained):
         return xr.Dataset(
             none, {"test": ("instant", np.zeros(0, "U1")), "time": ("instant", []), "body": names}
         )
-    return xr.concat(parts, dim="instant").map(lambda one: one.assign_attrs(units="N"))
+    return xr.concat(parts, dim="instant").map(lambda forces: forces.assign_attrs(units="N"))
 
 
 def largest(shown):
@@ -71,4 +72,36 @@ def largest(shown):
     return (
         f"{shown['body'].values[body]} in {shown['test'].values[instant]} at {float(shown['time'][instant]):.2f} s: "
         f"{force[instant, body] / 1e3:+.3g} kN that the model does not have"
+    )
+
+
+def slab_departures(seen, slabs, explained, parts):
+    """Rotation and vertical displacement of the slab, measured and by the causes.
+
+    Parameters
+    ----------
+    seen : list of SeenTest
+    slabs : list of SlabMotion
+    explained : dict of str to Explanation
+        From `explain_slab`.
+    parts : sequence of Part
+        Of the decision.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``reading``, of all tests one after the other: ``slab_test`` and ``slab_time`` [s]; ``turn`` [rad] and
+        ``lift`` [m], from rest; ``turn_explained`` and ``lift_explained``, those of the likeliest cause at its best.
+    """
+    found = {}
+    for name, (readings, unit) in _MOVES.items():
+        causes = [part.causes[0].name for part in parts if part.readings == readings]
+        measured = [getattr(slab, name)[slab.at] for slab in slabs]
+        made = explained[causes[0]].rows if causes else [np.zeros(len(one)) for one in measured]
+        for key, values in ((name, measured), (f"{name}_explained", made)):
+            found[key] = ("reading", np.concatenate(values), {"units": unit})
+    names = [test.name for test, slab in zip(seen, slabs, strict=True) for _ in slab.at]
+    time = np.concatenate([slab.time[slab.at] for slab in slabs])
+    return xr.Dataset(
+        found, {"slab_test": ("reading", names), "slab_time": ("reading", time, {"units": "s"})}
     )

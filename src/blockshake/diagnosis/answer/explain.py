@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from blockshake.diagnosis.answer.odds import coarsened
+from blockshake.diagnosis.answer.answer import coarsened
 from blockshake.diagnosis.answer.places import place_name
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.evidence.joint_rows import JointRows
@@ -18,18 +18,19 @@ from blockshake.diagnosis.outside.changed_edge import explain_changed_edge
 from blockshake.diagnosis.outside.following import explain_following
 from blockshake.diagnosis.outside.free_force import explain_free_force
 from blockshake.diagnosis.outside.loose_weight import explain_loose_weight
-from blockshake.diagnosis.outside.points import force_points
 from blockshake.diagnosis.outside.push import explain_push
 from blockshake.diagnosis.outside.spring_once import explain_spring_once
 from blockshake.diagnosis.outside.unmodelled_mass import explain_unmodelled_mass
 from blockshake.effects.registry import EFFECTS
 from blockshake.effects.stopper_contact import EFFECT as STOPPER_CONTACT
+from blockshake.forces.seen.point_rows import point_rows
 
 NOISES = (0.75, 1.0, 1.3)  # standard deviation of the sensors over the stated one
 _UNHEARD = 20.0  # nats: a likelihood that says so much less for the first cause adds nothing
 _LOOKED_AT = 4  # causes
 _FIRST_LOOK = (1.0,), ((4.0, 0.0),)
 DISCREPANCIES = ((1.0, 0.0), (4.0, -3.0), (16.0, -10.0))  # multiple, logarithm of its prior
+_HEIGHTS = (0.0, 0.42)  # above the mass centre, over the block's height
 
 
 @dataclass(frozen=True)
@@ -76,9 +77,9 @@ def all_tried(tests, without):
         if effect.columns is None or name in without:
             continue
         for place in (effect.seen_at or effect.places)(structure):
-            own = list(zip(*(effect.columns(test.seen, place) for test in tests), strict=True))
-            if any(one.rows.any() for variant in own for one in variant):
-                variants[name, place_name(place)] = own
+            by_variant = list(zip(*(effect.columns(test.seen, place) for test in tests), strict=True))
+            if any(columns.rows.any() for variant in by_variant for columns in variant):
+                variants[name, place_name(place)] = by_variant
     return Tried(tests, force_points(tests), variants)
 
 
@@ -89,41 +90,41 @@ def heard(tried):
     """
     (first,) = likelihoods(tried.tests, *_FIRST_LOOK)
     best = {}
-    for one in explain(first, tried).by_key.values():
-        if one.cause not in best or one.gain > best[one.cause].gain:
-            best[one.cause] = one
+    for explanation in explain(first, tried).by_key.values():
+        if explanation.cause not in best or explanation.gain > best[explanation.cause].gain:
+            best[explanation.cause] = explanation
     among, kept = likelihoods(tried.tests), set()
-    for cause in sorted(best.values(), key=lambda one: -one.gain)[:_LOOKED_AT]:
-        logs = np.array([_with_cause(one, cause, tried.tests).log_evidence for one in among])
+    for cause in sorted(best.values(), key=lambda explanation: -explanation.gain)[:_LOOKED_AT]:
+        logs = np.array([_with_cause(likelihood, cause, tried.tests).log_evidence for likelihood in among])
         kept |= set(np.flatnonzero(logs > logs.max() - _UNHEARD))
     return [among[index] for index in sorted(kept)]
 
 
 def explain(likelihood, tried):
     """`Explained` by all causes at all places."""
-    found = [
+    explanations = [
         explain_stops(likelihood, place, variants)
         if name == STOPPER_CONTACT.name
         else best_of(likelihood, name, place, variants)
         for (name, place), variants in tried.variants.items()
     ]
-    found += _from_outside(likelihood, tried.tests, tried.points)
-    return Explained(likelihood, {(one.cause, one.place): one for one in found})
+    explanations += _from_outside(likelihood, tried.tests, tried.points)
+    by_key = {(explanation.cause, explanation.place): explanation for explanation in explanations}
+    return Explained(likelihood, by_key)
 
 
 def _from_outside(likelihood, tests, points):
     structure = tests[0].seen.structure
     gravity = float(np.linalg.norm(structure.file.gravity))
-    for one in points:
-        weight = structure.mass[one.body] * gravity
-        yield from explain_following(likelihood, one, weight)
+    for point in points:
+        weight = structure.mass[point.body] * gravity
+        yield from explain_following(likelihood, point, weight)
         for search in (explain_push, explain_blow, explain_spring_once):
-            yield search(likelihood, one, weight)
-        yield explain_unmodelled_mass(likelihood, tests, one)
-    for one in {
-        one.body: one for one in points
-    }.values():  # the height hardly matters to a force of any history
-        yield explain_free_force(likelihood, one)
+            yield search(likelihood, point, weight)
+        yield explain_unmodelled_mass(likelihood, tests, point)
+    # the height hardly matters to a force of any history
+    highest = {point.body: point for point in points}
+    yield from (explain_free_force(likelihood, point) for point in highest.values())
     for key in sorted({key for test in tests for key in test.hinges}):
         yield from explain_changed_edge(likelihood, tests, tests[0].seen.faces[key[0]].name, key)
     top = int(tests[0].seen.free[np.argmax(structure.position[tests[0].seen.free, 2])])
@@ -151,15 +152,17 @@ class Evidence:
 
     def gain(self, key):
         """Gain of a cause at a place over none, summed over the likelihoods."""
-        return float(self._log_sum([one.by_key[key].gain for one in self.explained]))
+        return float(self._log_sum([explained.by_key[key].gain for explained in self.explained]))
 
     def gains_of_variants(self, key):
-        """The same of every variant of the cause there, before their average."""
-        return self._log_sum([one.by_key[key].gains for one in self.explained])
+        """Gains over none of all variants of a cause at a place, before their average."""
+        return self._log_sum([explained.by_key[key].gains for explained in self.explained])
 
     def best(self, key):
         """Explanation by a cause at a place beside the likelihood that speaks loudest for it."""
-        speaks = [one.by_key[key].gain + one.likelihood.log_evidence for one in self.explained]
+        speaks = [
+            explained.by_key[key].gain + explained.likelihood.log_evidence for explained in self.explained
+        ]
         return self.explained[int(np.argmax(speaks))].by_key[key]
 
     def fits(self, cause, places):
@@ -171,16 +174,16 @@ class Evidence:
             Over all likelihoods; from place to place coarsened, see `coarsened`.
         """
         gains = [self.gain((cause, place)) for place in places]
-        found, logs = [], []
+        fits, logs = [], []
         for place, gain in zip(places, gains, strict=True):
-            own, weights = [], []
-            for one in self.explained:
-                for fit in one.by_key[cause, place].fits:
-                    own.append(fit)
-                    weights.append(fit.gain + one.likelihood.log_evidence)
-            found += own
+            here, weights = [], []
+            for explained in self.explained:
+                for fit in explained.by_key[cause, place].fits:
+                    here.append(fit)
+                    weights.append(fit.gain + explained.likelihood.log_evidence)
+            fits += here
             logs += list(np.array(weights) - logsumexp(weights) - coarsened(max(gains) - gain, max(gains)))
-        return found, np.array(logs)
+        return fits, np.array(logs)
 
     @property
     def keys(self):
@@ -188,19 +191,26 @@ class Evidence:
         return list(self.explained[0].by_key)
 
     def _log_sum(self, gains):
-        logs = np.array([one.likelihood.log_evidence for one in self.explained])
+        logs = np.array([explained.likelihood.log_evidence for explained in self.explained])
         gains = np.array(gains)
         return logsumexp(gains + logs.reshape(-1, *[1] * (gains.ndim - 1)), axis=0) - logsumexp(logs)
 
     def beside(self, key):
         """`Evidence` of the causes beside that of a cause at a place, whose columns are nuisances now."""
-        speaks = np.array([one.by_key[key].gain + one.likelihood.log_evidence for one in self.explained])
+        speaks = np.array(
+            [explained.by_key[key].gain + explained.likelihood.log_evidence for explained in self.explained]
+        )
         heard = [
-            one for one, says in zip(self.explained, speaks, strict=True) if says > speaks.max() - _UNHEARD
+            explained
+            for explained, says in zip(self.explained, speaks, strict=True)
+            if says > speaks.max() - _UNHEARD
         ]
         return Evidence(
             self.tried,
-            [explain(_with_cause(one.likelihood, one.by_key[key], self.tests), self.tried) for one in heard],
+            [
+                explain(_with_cause(explained.likelihood, explained.by_key[key], self.tests), self.tried)
+                for explained in heard
+            ],
         )
 
 
@@ -211,16 +221,43 @@ def _with_cause(likelihood, cause, tests):
 
 
 def gather_evidence(seen, without=()):
-    """`Evidence` of seen tests; None where no test has rows: no joint turned, slipped or lifted.
-
-    Parameters
-    ----------
-    seen : list of SeenTest
-    without : sequence of str
-        Effects that are left out.
-    """
-    tests = [JointRows(one) for one in seen if len(one.rows.value)]
+    """`Evidence` of seen tests without some effects; None where no joint turned, slipped or lifted in any test."""
+    tests = [JointRows(test) for test in seen if len(test.rows.value)]
     if not tests:
         return None
     tried = all_tried(tests, without)
-    return Evidence(tried, [explain(one, tried) for one in heard(tried)])
+    return Evidence(tried, [explain(likelihood, tried) for likelihood in heard(tried)])
+
+
+@dataclass(frozen=True)
+class Points:
+    """A point of one body in all tests.
+
+    Attributes
+    ----------
+    place : str
+        Body, and height above its centre over its own height.
+    body : int
+    by_test : list of PointRows
+    tests : list of str
+    """
+
+    place: str
+    body: int
+    by_test: list
+    tests: list
+
+
+def force_points(tests):
+    """`Points` of all free bodies on which a force makes rows."""
+    seen = tests[0].seen
+    points = []
+    for body in seen.free:
+        name = seen.structure.body_names[body]
+        for height in _HEIGHTS:
+            rows = [point_rows(test.seen, name, height) for test in tests]
+            if any(point.unit.any() for point in rows):
+                points.append(
+                    Points(f"{name}@{height:g}", int(body), rows, [test.seen.name for test in tests])
+                )
+    return points

@@ -14,16 +14,7 @@ def place_name(place):
 
 
 def place_of(cause, name, seen):
-    """The place of a name, as files have it.
-
-    Parameters
-    ----------
-    cause : str
-        Effect or form.
-    name : str
-        From `place_name`.
-    seen : SeenTest
-    """
+    """The place of an effect or a form, as files have it, from its name in words as of `place_name`."""
     structure = seen.structure
     if cause in FORMS:
         joints = {

@@ -5,16 +5,16 @@ import zlib
 import numpy as np
 
 from blockshake.diagnosis.answer.decision import MEMBERS, Estimate
-from blockshake.diagnosis.answer.odds import FORM
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS
 
+FORM = 0.1  # of a size, by which a cause of another form than the registry's has another one
 _DRAWS = 2000
 _INTERVAL = (0.05, 0.5, 0.95)
 
 
 def members_of(name, place, fits, logs):
-    """Sets of parameters of a cause at one place, tuple of `MEMBERS` dict; arguments as of `size_of`."""
+    """Sets of parameters of a cause at one place, tuple of `MEMBERS` dict; the arguments are those of `size_of`."""
     drawn, order = _drawn(name, place, fits, logs)
     return tuple({key: float(values[draw]) for key, values in drawn.items()} for draw in order[:MEMBERS])
 
@@ -75,7 +75,7 @@ def _read(name, values, amplitudes, between):
 def _units(name):
     if name in FORMS:
         return {FORMS[name].size: FORMS[name].unit}
-    return {one.name: one.unit for one in EFFECTS[name].parameters}
+    return {parameter.name: parameter.unit for parameter in EFFECTS[name].parameters}
 
 
 def _estimate(values, unit):

@@ -22,22 +22,22 @@ def closed_joint_gains(tests):
 
     Returns
     -------
-    dict of int to float64 array, shape (n_compliances,)
-        By face; only of structures whose joints are a tree, and of joints that are closed for long enough.
+    dict of str to float64 array, shape (n_compliances,)
+        By joint; only of structures whose joints are a tree, and of joints that are closed for long enough.
     """
     if not tests[0].tree:
         return {}
-    found = {}
+    gains = {}
     for face in range(len(tests[0].faces)):
-        rows = [one for one in (_rows(test, face) for test in tests) if one is not None]
+        rows = [read for read in (_rows(test, face) for test in tests) if read is not None]
         if not rows:
             continue
         covariances, turns, slopes = zip(*rows, strict=True)
         values = [turn - _NOMINAL * slope for turn, slope in zip(turns, slopes, strict=True)]
         likelihood = from_rows(covariances, values, [[_SPREAD * slope for slope in slopes]])
         target, gram = likelihood.normal_equations(likelihood.whiten([slope[:, None] for slope in slopes]))
-        found[face] = COMPLIANCES * target[0] - 0.5 * COMPLIANCES**2 * gram[0, 0]
-    return found
+        gains[tests[0].faces[face].name] = COMPLIANCES * target[0] - 0.5 * COMPLIANCES**2 * gram[0, 0]
+    return gains
 
 
 def _rows(test, face):

@@ -1,6 +1,6 @@
 """The explanation of the rows by a cause at a place: its evidence, and the forces that it would have made."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -69,12 +69,12 @@ class Explanation:
     place: str
     gain: float
     fits: tuple
-    gains: np.ndarray
+    gains: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
     @cached_property
     def best(self):
         """The likeliest `Fit`."""
-        return max(self.fits, key=lambda one: one.gain)
+        return max(self.fits, key=lambda fit: fit.gain)
 
     @property
     def rows(self):
@@ -90,54 +90,36 @@ def mean_evidence(gains, axis=None):
 
 
 def best_of(likelihood, cause, place, variants):
-    """`Explanation` by variants of the same prior, whose evidences are averaged.
-
-    Parameters
-    ----------
-    likelihood : Likelihood
-    cause, place : str
-    variants : list of list of Columns
-        By variant and test.
-    """
+    """`Explanation` by variants of the same prior, `Columns` by variant and test, whose evidences are averaged."""
     widths = [variant[0].rows.shape[1] for variant in variants]
     stacked = [
         np.concatenate([variant[test].rows for variant in variants], axis=1)
         for test in range(len(variants[0]))
     ]
     whitened = np.split(likelihood.whiten(stacked), np.cumsum(widths)[:-1], axis=1)
-    found = [
+    fitted = [
         likelihood.amplitudes(rows, variant[0].scales, variant[0].positive)
         for rows, variant in zip(whitened, variants, strict=True)
     ]
-    gains = np.array([one.gain for one in found])
-    fits = tuple(
-        Fit(
-            variant[0].values, one.gain, [test.rows for test in variant], np.atleast_1d(variant[0].scales or 1.0),
-            one.mean, one.covariance, variant[0].positive,
-        )
-        for variant, one in zip(variants, found, strict=True)
-        if one.gain > gains.max() - _NEGLIGIBLE
-    )  # fmt: skip
-    return Explanation(cause, place, float(mean_evidence(gains)), fits, gains)
+    gains = np.array([amplitudes.gain for amplitudes in fitted])
+    fits = []
+    for variant, amplitudes in zip(variants, fitted, strict=True):
+        if amplitudes.gain > gains.max() - _NEGLIGIBLE:
+            first, columns = variant[0], [test.rows for test in variant]
+            scales = np.atleast_1d(first.scales or 1.0)
+            posterior = amplitudes.mean, amplitudes.covariance
+            fits.append(Fit(first.values, amplitudes.gain, columns, scales, *posterior, first.positive))
+    return Explanation(cause, place, float(mean_evidence(gains)), tuple(fits), gains)
 
 
 def single(cause, place, gain, columns, scale, fitted, values):
-    """`Explanation` by one amplitude.
+    """`Explanation` by one amplitude, its best value and standard deviation ``fitted``.
 
-    Parameters
-    ----------
-    gain : float
-        Averaged over what was searched.
-    columns : list of float64 array, shape (n_rows,)
-        By test, per unit of the amplitude.
-    scale : float
-    fitted : (float, float)
-        Best amplitude and its standard deviation.
-    values : dict
+    ``columns`` are by test, (n_rows,) each, per unit of the amplitude, and ``gain`` is averaged over what was searched.
     """
     mean, deviation = fitted
     fit = Fit(
         values, float(gain), [column[:, None] for column in columns], np.array([scale]), np.array([mean]),
         np.array([[deviation**2]]),
     )  # fmt: skip
-    return Explanation(cause, place, float(gain), (fit,), np.zeros(0))
+    return Explanation(cause, place, float(gain), (fit,))

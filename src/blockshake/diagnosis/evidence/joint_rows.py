@@ -17,12 +17,10 @@ from blockshake.forces.seen.wrench_histories import (
 
 @dataclass(frozen=True)
 class Hinge:
-    """A face that turns about an edge along one of its tangents.
+    """A face that turns about an edge, which lies off its middle along one of its tangents.
 
     Attributes
     ----------
-    face, tangent : int
-        The edge lies off the middle along the tangent.
     inward, along : float64 arrays, shape (n_rows,)
         In the rows: edges 1 m further in, and edges 1 m further along the tangent [N m/m].
     edge : int8 array, shape (n_rows,)
@@ -31,8 +29,6 @@ class Hinge:
         Rotation without its sign [rad], and normal force [N].
     """
 
-    face: int
-    tangent: int
     inward: np.ndarray
     along: np.ndarray
     edge: np.ndarray
@@ -46,14 +42,12 @@ class Slide:
 
     Attributes
     ----------
-    face : int
     friction : float64 array, shape (n_rows,)
         In the rows: a coefficient of friction of 1 against the slip [N, N m].
     rate : float64 array, shape (n_rows,)
         Slip rate without its sign [m/s].
     """
 
-    face: int
     friction: np.ndarray
     rate: np.ndarray
 
@@ -79,8 +73,6 @@ class JointRows:
                 inward = self.rows.along(edge_inward(self.seen, face, tangent))
                 if inward.any():
                     found[face, tangent] = Hinge(
-                        face,
-                        tangent,
                         inward,
                         self.rows.along(edges_along(self.seen, face, tangent)),
                         self.seen.states.edge[instant, face, tangent],
@@ -97,7 +89,7 @@ class JointRows:
             friction = self.rows.along(friction_against_slip(self.seen, face))
             if friction.any():
                 rate = np.abs(self.seen.joints.slip_rate[self.rows.instant, face])
-                found[face] = Slide(face, friction, rate)
+                found[face] = Slide(friction, rate)
         return found
 
     @cached_property

@@ -62,18 +62,13 @@ class Likelihood:
         return self.value - self.nuisances @ (self._inner @ (self.nuisances.T @ self.value))
 
     @cached_property
-    def misfit(self):
-        """Squared distance of the rows from zero, nuisances free."""
-        return float(self.value @ self._weighted)
-
-    @cached_property
     def log_evidence_of_rows(self):
         """Logarithm of the whitened rows' density without any cause, up to a constant."""
-        return -0.5 * self.misfit + 0.5 * np.linalg.slogdet(self._inner)[1]
+        return -0.5 * float(self.value @ self._weighted) + 0.5 * np.linalg.slogdet(self._inner)[1]
 
     @cached_property
     def log_evidence(self):
-        """The same of the rows themselves, with the prior of this likelihood."""
+        """Logarithm of the evidence of the rows themselves without any cause, with the prior of this likelihood."""
         spread = sum(np.log(np.diag(root)).sum() for root in self.roots)
         return self.log_evidence_of_rows - spread + self.prior
 
@@ -84,7 +79,7 @@ class Likelihood:
         )
 
     def whiten_one(self, test, columns):
-        """The same of one test."""
+        """Columns of one test, (n_rows, n_columns), in units of its covariance."""
         return solve_triangular(self.roots[test], columns, lower=True, check_finite=False)
 
     def amplitudes(self, whitened, scales, positive=False):
@@ -123,20 +118,20 @@ class Likelihood:
 
     def single(self, whitened, scale, positive=False, test=None):
         """`gain_of_one` of every column alone, each (n_columns,); of columns of one test alone if it is given."""
-        own = slice(None) if test is None else slice(self.ends[test], self.ends[test + 1])
-        target = whitened.T @ self._weighted[own]
-        crossed = self.nuisances[own].T @ whitened
+        rows = slice(None) if test is None else slice(self.ends[test], self.ends[test + 1])
+        target = whitened.T @ self._weighted[rows]
+        crossed = self.nuisances[rows].T @ whitened
         gram = np.einsum("ij,ij->j", whitened, whitened)
         gram = np.maximum(gram - np.einsum("ij,ij->j", crossed, self._inner @ crossed), 0.0)
         return gain_of_one(target, gram, scale, positive)
 
     def parts(self, whitened, test):
-        """Of columns of one test: ``H' Q y``, the diagonal of ``H' H``, and ``N' H``, to be summed over tests."""
-        own = slice(self.ends[test], self.ends[test + 1])
+        """Projections of columns of one test, to be summed over tests: ``H' Q y``, diagonal of ``H' H``, ``N' H``."""
+        rows = slice(self.ends[test], self.ends[test + 1])
         return (
-            whitened.T @ self._weighted[own],
+            whitened.T @ self._weighted[rows],
             np.einsum("ij,ij->j", whitened, whitened),
-            self.nuisances[own].T @ whitened,
+            self.nuisances[rows].T @ whitened,
         )
 
     def gain_of_sum(self, target, square, crossed, scale):
@@ -159,16 +154,16 @@ class Likelihood:
         """
         cut = [slice(a, b) for a, b in pairwise(self.ends)]
         roots = [
-            np.linalg.cholesky(root @ root.T + own) for root, own in zip(self.roots, errors, strict=True)
+            np.linalg.cholesky(root @ root.T + rows) for root, rows in zip(self.roots, errors, strict=True)
         ]
         bare = Likelihood(roots, np.zeros(0), np.zeros((0, 0)), self.prior)
         raw = [
-            root @ np.column_stack([self.value[own], self.nuisances[own]])
-            for root, own in zip(self.roots, cut, strict=True)
+            root @ np.column_stack([self.value[rows], self.nuisances[rows]])
+            for root, rows in zip(self.roots, cut, strict=True)
         ]
         again = bare.whiten([
-            np.concatenate([own, column * np.atleast_1d(scales)], axis=1)
-            for own, column in zip(raw, columns, strict=True)
+            np.concatenate([rows, column * np.atleast_1d(scales)], axis=1)
+            for rows, column in zip(raw, columns, strict=True)
         ])  # fmt: skip
         return Likelihood(roots, again[:, 0], again[:, 1:], self.prior)
 

@@ -17,16 +17,9 @@ _SMALLEST_TURN, _MOST_RISE = 1e-5, 2.0
 
 
 def nuisance_columns(tests):
-    """Columns of all nuisances, each times its standard deviation.
+    """Columns of all nuisances by test, (n_rows,) each, times their standard deviations.
 
-    Parameters
-    ----------
-    tests : list of JointRows
-
-    Returns
-    -------
-    list of list of float64 array
-        By nuisance and test, (n_rows,); those that are zero in all rows are left out.
+    Those that are zero in all rows are left out.
     """
     columns = [*_of_edges(tests), *_of_friction(tests), *_of_masses(tests)]
     return [column for column in columns if any(rows.any() for rows in column)]
@@ -45,9 +38,11 @@ def _of_edges(tests):
         yield _by_test(tests, key, lambda h: _ALONG * h.along)
         yield _by_test(tests, key, lambda h: _GROWTH * h.inward * h.turn / _GROWTH_AT)
         yield _by_test(tests, key, lambda h: _CLOSING * h.inward * _closing(h.turn))
-        for own in tests:
+        for placed_anew in tests:
             moved = _by_test(tests, key, lambda h: _ALONG_OF_TEST * h.along)
-            yield [rows if test is own else _zero(test) for test, rows in zip(tests, moved, strict=True)]
+            yield [
+                rows if test is placed_anew else _zero(test) for test, rows in zip(tests, moved, strict=True)
+            ]
 
 
 def _closing(turn):

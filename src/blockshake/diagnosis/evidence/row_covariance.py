@@ -35,20 +35,17 @@ def row_covariance(test, noise, discrepancy):
     friction = (discrepancy * _FRICTION) ** 2 * (coloured + same)
     for hinge in test.hinges.values():
         covariance += np.outer(hinge.inward, hinge.inward) * lever
-    for slide in test.slides.values():
-        usual = test.seen.faces[slide.face].friction * slide.friction
+    for face, slide in test.slides.items():
+        usual = test.seen.faces[face].friction * slide.friction
         covariance += np.outer(usual, usual) * friction
     covariance[np.diag_indices(len(covariance))] *= 1.0 + _RIDGE
     return covariance
 
 
 def form_error(time, force):
-    """Covariance of what a cause's form leaves of the rows that it explains, (n_rows, n_rows).
+    """Covariance of the part of rows that a cause's form leaves unexplained, (n_rows, n_rows).
 
-    Parameters
-    ----------
-    time, force : float64 arrays, shape (n_rows,)
-        Of the rows, and of the cause in them at its best.
+    ``time`` and ``force`` (n_rows,) are those of the rows, and of the cause in them at its best.
     """
     apart = np.abs(time[:, None] - time)
     return (_FORM * np.outer(force, force)) * _FORM * (np.exp(-apart / _LEVER_MEMORY) + (apart < 1e-9))

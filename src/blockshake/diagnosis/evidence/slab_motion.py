@@ -110,31 +110,19 @@ def _from_rest(values, still):
 
 
 def explain_slab(slabs, without=()):
-    """`Explanation` by every effect that moves the slab.
-
-    Parameters
-    ----------
-    slabs : list of SlabMotion
-        By test.
-    without : sequence of str
-        Effects that are left out.
-
-    Returns
-    -------
-    dict of str to Explanation
-    """
-    found = {}
+    """`Explanation` by every effect that moves the slab but for some, by name; ``slabs`` are `SlabMotion` by test."""
+    explanations = {}
     likelihoods = [_turn_likelihood(slabs, multiple, prior) for multiple, prior in _MULTIPLES]
     for name, effect in EFFECTS.items():
         if effect.turns and name not in without:
-            found[name] = _turning(effect, slabs, likelihoods)
+            explanations[name] = _turning(effect, slabs, likelihoods)
         if effect.lifts and name not in without:
-            found[name] = _lifting(effect, slabs)
-    return found
+            explanations[name] = _lifting(effect, slabs)
+    return explanations
 
 
 def slab_turns(slabs):
-    """`Likelihood` of the slab's rotation with the usual errors."""
+    """`Likelihood` of the rotation of the slab with the usual errors."""
     return _turn_likelihood(slabs, *_MULTIPLES[0])
 
 
@@ -155,17 +143,19 @@ def _turn_likelihood(slabs, multiple, prior):
 
 
 def _turning(effect, slabs, likelihoods):
-    none = logsumexp([one.log_evidence for one in likelihoods])
+    none = logsumexp([likelihood.log_evidence for likelihood in likelihoods])
     fits, gains = [], []
     for variant in zip(*(effect.turns(slab) for slab in slabs), strict=True):
-        columns = [one.rows for one in variant]
-        own = []
+        columns = [of_test.rows for of_test in variant]
+        over_none = []
         for likelihood in likelihoods:
-            found = likelihood.amplitudes(likelihood.whiten(columns), variant[0].scales)
-            own.append(found.gain + likelihood.log_evidence - none)
+            amplitudes = likelihood.amplitudes(likelihood.whiten(columns), variant[0].scales)
+            over_none.append(amplitudes.gain + likelihood.log_evidence - none)
             scales = np.array(variant[0].scales)
-            fits.append(Fit(variant[0].values, own[-1], columns, scales, found.mean, found.covariance))
-        gains.append(logsumexp(own))
+            fits.append(
+                Fit(variant[0].values, over_none[-1], columns, scales, amplitudes.mean, amplitudes.covariance)
+            )
+        gains.append(logsumexp(over_none))
     return Explanation(effect.name, "all", float(mean_evidence(gains)), tuple(fits), np.array(gains))
 
 
@@ -183,7 +173,7 @@ def _lifting(effect, slabs):
     prior = np.array([0.0, -1.0])[:, None]
     moved = logsumexp(logs[:, 1:] + prior) - np.log(2 * (logs.shape[1] - 1))
     gain = float(moved - logsumexp(logs[:, :1] + prior))
-    return Explanation(effect.name, "all", gain, _ratios(effect, slabs), np.zeros(0))
+    return Explanation(effect.name, "all", gain, _ratios(effect, slabs))
 
 
 def _ratios(effect, slabs):
@@ -197,10 +187,15 @@ def _ratios(effect, slabs):
     fits = []
     for delay in _DELAYS:
         columns = [np.interp(slab.time[slab.at] - delay, slab.time, slab.travel)[:, None] for slab in slabs]
-        found = likelihood.amplitudes(likelihood.whiten(columns), (_RATIO,))
+        amplitudes = likelihood.amplitudes(likelihood.whiten(columns), (_RATIO,))
         fits.append(
             Fit(
-                {"delay": float(delay)}, found.gain, columns, np.array([_RATIO]), found.mean, found.covariance
+                {"delay": float(delay)},
+                amplitudes.gain,
+                columns,
+                np.array([_RATIO]),
+                amplitudes.mean,
+                amplitudes.covariance,
             )
         )
     return tuple(fits)

@@ -54,27 +54,27 @@ def restitution_gain(seen_tests):
     nominal: no cause is a uniform prior of the loss over that range, the effect one from there down to no loss. Bounces
     at the other edge (Lipscombe and Pellegrino 1993) change no angular momentum about it.
     """
-    found = [impact for seen in seen_tests for impact in find_impacts(seen)]
-    changes = [one for one in found if not one.returned]
-    back = len(found) - len(changes)
+    impacts = [impact for seen in seen_tests for impact in find_impacts(seen)]
+    changes = [impact for impact in impacts if not impact.returned]
+    back = len(impacts) - len(changes)
     again = f"; {back} more returned to the same edge" if back else ""
     if not changes:
         return SpinKept(0.0, np.nan, (np.nan, np.nan), f"no impact tells of restitution{again}")
-    plastic = float(np.median([one.plastic for one in changes]))
+    plastic = float(np.median([change.plastic for change in changes]))
     # impacts of other joints are brought to the same range from plastic to nothing lost
-    scale = [(1.0 - plastic) / (1.0 - one.plastic) for one in changes]
-    kept = np.array([1.0 - by * (1.0 - one.kept) for by, one in zip(scale, changes, strict=True)])
-    error = np.array([by * one.error for by, one in zip(scale, changes, strict=True)])
-    law = _OF_ONE if all(one.blocks == 1 for one in changes) else _OF_STACKS
+    scale = [(1.0 - plastic) / (1.0 - change.plastic) for change in changes]
+    kept = np.array([1.0 - by * (1.0 - change.kept) for by, change in zip(scale, changes, strict=True)])
+    error = np.array([by * change.error for by, change in zip(scale, changes, strict=True)])
+    law = _OF_ONE if all(change.blocks == 1 for change in changes) else _OF_STACKS
     logs = _log_likelihood(kept, error)
     weights = np.exp(logs - logsumexp(logs))
     lower, middle, upper = (float(value) for value in np.interp(_TAILS, np.cumsum(weights), _SHARES))
     nothing_lost = np.where(np.isclose(_SHARES, 1.0), 0.0, -np.inf)
     unsure = f"; no verdict: sound models differ by as much as that from 1{again}"
-    told = again if _gain(nothing_lost, plastic, law) > _TELLING else unsure
+    verdict = again if _gain(nothing_lost, plastic, law) > _TELLING else unsure
     statement = (
         f"{len(changes)} impacts kept {middle:.3f} +- {0.5 * (upper - lower):.3f} of the spin (90 %), "
-        f"Housner's plastic {plastic:.3f}{told}"
+        f"Housner's plastic {plastic:.3f}{verdict}"
     )
     return SpinKept(_gain(logs, plastic, law), middle, (lower, upper), statement)
 

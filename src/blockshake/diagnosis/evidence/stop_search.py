@@ -12,12 +12,7 @@ _NEGLIGIBLE = 8.0  # nats below the best gaps
 def explain_stops(likelihood, place, variants):
     """`Explanation` of springs beyond gaps at one point.
 
-    Parameters
-    ----------
-    likelihood : Likelihood
-    place : str
-    variants : list of list of Columns
-        By gap and test, all of the side of +x first.
+    ``variants`` are `Columns` by gap and test, all of the side of +x first.
     """
     half = len(variants) // 2
     rows = [np.concatenate([one[test].rows for one in variants], axis=1) for test in range(len(variants[0]))]
@@ -33,7 +28,7 @@ def explain_stops(likelihood, place, variants):
         for first, second in np.argwhere(both > best - _NEGLIGIBLE)
     ]
     fits = tuple(_fit(index, gain, target, gram, scale, rows, variants) for index, gain in chosen)
-    return Explanation("stopper-contact", place, float(mean_evidence(sides)), fits, np.zeros(0))
+    return Explanation("stopper-contact", place, float(mean_evidence(sides)), fits)
 
 
 def _fit(index, gain, target, gram, scale, rows, variants):
@@ -54,10 +49,12 @@ def _gains_of_pairs(target, gram, half, scale):
         np.diag(gram)[None, second] + scale**-2.0,
         gram[first, second],
     )
-    left, right = target[first, None], target[None, second]
+    of_first, of_second = target[first, None], target[None, second]
     determinant = a * d - b * b
-    means = np.stack([(d * left - b * right) / determinant, (a * right - b * left) / determinant])
-    gain = 0.5 * (left * means[0] + right * means[1]) - 0.5 * np.log(determinant * scale**4)
+    means = np.stack(
+        [(d * of_first - b * of_second) / determinant, (a * of_second - b * of_first) / determinant]
+    )
+    gain = 0.5 * (of_first * means[0] + of_second * means[1]) - 0.5 * np.log(determinant * scale**4)
     gain += (
         np.log(4.0)
         + log_ndtr(means[0] * np.sqrt(determinant / d))

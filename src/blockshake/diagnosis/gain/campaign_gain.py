@@ -3,9 +3,10 @@
 from dataclasses import replace
 from typing import NamedTuple
 
+import numpy as np
 import xarray as xr
+from scipy.special import ndtri
 
-from blockshake.diagnosis.gain.discrepancy import members_with_discrepancy
 from blockshake.diagnosis.gain.response_gain import gain_of_verdict, response_gain
 from blockshake.diagnosis.misfit.judged_test import judged_test
 from blockshake.diagnosis.nominal.ensemble import (
@@ -19,7 +20,6 @@ from blockshake.diagnosis.nominal.ensemble import (
 from blockshake.diagnosis.verdict.verdict import MeasuredGain
 
 _STILL = "no gain was measured on the responses: no joint moves in the sealed tests"
-_OF_PARAMETERS = ("prior", "posterior", "narrowing", "skill", "chance", "informed", "held")
 
 
 class CampaignGain(NamedTuple):
@@ -45,48 +45,80 @@ def campaign_gain(plan, opened, sealed, nominal, runs):
     Returns
     -------
     CampaignGain
-        ``scores`` from `response_gain`; and along ``model`` and ``parameter`` what the open tests tell of the nominal
-        parameters, as of `Recalibration.informed`, NaN and false of a parameter that a solver has not.
+        ``scores`` from `response_gain`.
     """
     planned = plan.tests | plan.sealed
     motions = {name: plan.campaign.tests[name].motion for name in planned}
-    peaks = {name: one.peak_acceleration for name, one in planned.items()}
+    peaks = {name: test.peak_acceleration for name, test in planned.items()}
     known = [judged_test(name, opened[name], nominal[name]) for name in nominal]
     kinds = [kind for kind in (NOMINAL, RECALIBRATED, EXTENDED, PLACEBO) if (runs[0]["kind"] == kind).any()]
     tests = []
     for name, histories in sealed.items():
-        test = judged_test(name, histories, [runs_of(one, test=name) for one in runs], kinds)
+        test = judged_test(name, histories, [runs_of(solver_runs, test=name) for solver_runs in runs], kinds)
         drawn = test.members[NOMINAL].copy(data=members_with_discrepancy(test, known, motions, peaks))
         tests.append(replace(test, members=test.members | {DISCREPANCY: drawn}))
-    count = plan.runs + sum(int(one.attrs["simulated"]) for one in runs)
+    count = plan.runs + sum(int(solver_runs.attrs["simulated"]) for solver_runs in runs)
     tests = [test for test in tests if test.judged.any()]
     if not tests:
         return CampaignGain(MeasuredGain(gain=None, caveats=[_STILL], runs=count), xr.Dataset())
     scores = response_gain(tests)
-    return CampaignGain(gain_of_verdict(scores, count), scores.merge(_parameters(runs), compat="override"))
+    return CampaignGain(gain_of_verdict(scores, count), scores)
 
 
-def with_rows(responses, rows, table, caveats):
-    """`CampaignGain` on rows and, where they were simulated, on responses.
+def with_rows(responses, rows, caveats):
+    """`CampaignGain` on rows, from `row_gain`, and on responses; None of these where nothing was simulated."""
+    responses = responses or CampaignGain(MeasuredGain(), xr.Dataset())
+    caveats = (*responses.summary.caveats, *caveats)
+    return responses._replace(summary=responses.summary.model_copy(update={"rows": rows, "caveats": caveats}))
+
+
+def members_with_discrepancy(test, opened, motions, peaks):
+    """Nominal members of a sealed test with a draw of the discrepancy each.
 
     Parameters
     ----------
-    responses : CampaignGain or None
-    rows, table, caveats
-        From `row_gain`.
+    test : JudgedTest
+        Sealed.
+    opened : list of JudgedTest
+        Open ones.
+    motions : dict of str to str
+        By test, the name of its motion.
+    peaks : dict of str to float
+        By test, the peak acceleration that was commanded [m/s2].
+
+    Returns
+    -------
+    float64 array, shape (n_members, n_times, n_cells)
+
+    Notes
+    -----
+    Measured = model + discrepancy + noise (Kennedy and O'Hagan 2001, J. R. Stat. Soc. B 63), with a discrepancy that
+    grows with the intensity and is known of the same motion alone: its mean is what the nominal mean missed under this
+    motion, over the peak acceleration, mean over those open tests, instant by instant; under a motion that no open
+    test had it is nothing. Its spread is what this rule misses in the open tests, each predicted from the others, root
+    mean square over tests and times by cell. Members are the medians of as many strata of the normal law, in an order
+    of their own by cell.
     """
-    table = table.rename({name: f"row_{name}" for name in [*table.data_vars, *table.dims]})
-    if responses is None:
-        return CampaignGain(MeasuredGain(rows=rows, caveats=tuple(caveats)), table)
-    own = responses.summary
-    summary = own.model_copy(update={"rows": rows, "caveats": (*own.caveats, *caveats)})
-    return CampaignGain(summary, responses.scores.merge(table))
+    time, names = test.measured["time"].to_numpy(), list(test.measured["cell"].values)
+    missed = {known.name: _missed(known, names, time) / peaks[known.name] for known in opened}
+
+    def carried(name):
+        same = [miss for other, miss in missed.items() if other != name and motions[other] == motions[name]]
+        same = np.array(same).reshape(-1, len(time), len(names))
+        return np.nansum(same, axis=0) / np.maximum(np.isfinite(same).sum(axis=0), 1)
+
+    errors = np.array([miss - carried(name) for name, miss in missed.items()])
+    known = np.isfinite(errors).sum(axis=(0, 1))
+    spread = np.sqrt(np.nansum(errors**2, axis=(0, 1)) / np.maximum(known, 1))
+    members = test.members[NOMINAL].to_numpy()
+    strata = ndtri((np.arange(len(members)) + 0.5) / len(members))
+    orders = [np.random.default_rng([len(members), *name.encode()]).permutation(strata) for name in names]
+    drawn = np.array(orders).T[:, None] * spread
+    return members + peaks[test.name] * (carried(test.name) + drawn)
 
 
-def _parameters(runs):
-    """Information of the open tests on the nominal parameters, by solver."""
-    parts = [one[list(_OF_PARAMETERS)] for one in runs]
-    whole = xr.concat(
-        parts, dim="model", join="outer", coords="minimal", compat="override", fill_value={"informed": False}
-    )
-    return whole.assign_coords(model=[one.attrs["model"] for one in runs]).rename(quantile="bound")
+def _missed(test, names, time):
+    """Measured less nominal mean until the horizon, at other times and cells, NaN where it is not known."""
+    missed = test.measured - test.members[NOMINAL].mean("run")
+    missed = missed.copy(data=test.until_horizon(missed.to_numpy()))
+    return missed.reindex(cell=names).interp(time=time).to_numpy()

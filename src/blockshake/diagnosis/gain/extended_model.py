@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import xarray as xr
 
-from blockshake.diagnosis.answer.extension import can_extend, extended_experiment
 from blockshake.diagnosis.gain.recalibration import features_of, posterior_draws
 from blockshake.diagnosis.misfit.judged_test import judged_test
 from blockshake.diagnosis.nominal.ensemble import (
@@ -18,7 +17,9 @@ from blockshake.diagnosis.nominal.ensemble import (
     simulate_members,
 )
 from blockshake.diagnosis.nominal.nominal_model import draw_nominal
+from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.places import blocks, joints
+from blockshake.effects.registry import EFFECTS
 from blockshake.files import content_digest
 
 
@@ -32,7 +33,7 @@ class Extension:
 
     @property
     def digest(self):
-        """Of all that the change follows from."""
+        """Digest of all that the change follows from."""
         acting = [
             [cause.name, cause.place, cause.members[self.number % len(cause.members)], cause.when]
             for cause in self.causes
@@ -62,10 +63,10 @@ def placebo_of(causes, structure):
         key = next((name for name in ("joint", "body") if name in cause.place), None)
         if key is None:
             return ()
-        every = [one[key] for one in (joints if key == "joint" else blocks)(structure)]
+        every = [entry[key] for entry in (joints if key == "joint" else blocks)(structure)]
         near = {name.partition("@")[0] for name in cause.places}
-        here = [sorted(one) for one in every].index(sorted(cause.place[key]))
-        others = [number for number, one in enumerate(every) if not near & _names(one)]
+        here = [sorted(entry) for entry in every].index(sorted(cause.place[key]))
+        others = [number for number, entry in enumerate(every) if not near & _names(entry)]
         if not others:
             return ()
         farthest = max(others, key=lambda number: abs(number - here))
@@ -87,7 +88,7 @@ def extended_runs(plan, model, causes, nominal, measured, store):
     model : str
         Solver.
     causes : tuple of Cause
-        From `acting_causes`.
+        From `acting_causes`, at least one.
     nominal : dict of str to xarray.Dataset
         By open test: its nominal ensemble by this solver.
     measured : dict of str to xarray.Dataset
@@ -97,9 +98,8 @@ def extended_runs(plan, model, causes, nominal, measured, store):
     Returns
     -------
     xarray.Dataset
-        As from `simulate_members`, with twins. Along ``parameter``: what the open tests tell of the nominal
-        parameters without the cause, as of `Recalibration.informed`. Attribute ``simulated``: number of tests, the
-        open ones with the cause among them.
+        As from `simulate_members`, with twins. Attribute ``simulated``: number of tests, the open ones with the cause
+        among them.
 
     Notes
     -----
@@ -109,26 +109,25 @@ def extended_runs(plan, model, causes, nominal, measured, store):
     """
     structure = next(iter(plan.tests.values())).structure
     draws = [draw_nominal(structure, model, number) for number in range(plan.effort.draws)]
-    recalibration = _conditioned(draws, nominal, measured, NOMINAL)
-    drawn = {RECALIBRATED: (recalibration.draws, ())}
-    if causes:
-        ensembles = {
-            test: _beside_twins(_members(EXTENDED, test, planned, draws, causes), nominal[test], store)
-            for test, planned in plan.tests.items()
-        }
-        extended = _conditioned(draws, ensembles, measured, EXTENDED).draws
-        drawn[EXTENDED] = extended, causes
-        placebo = placebo_of(causes, structure)
-        drawn |= {PLACEBO: (extended, placebo)} if placebo else {}
+    ensembles = {
+        test: _beside_twins(_members(EXTENDED, test, planned, draws, causes), nominal[test], store)
+        for test, planned in plan.tests.items()
+    }
+    extended = _conditioned(draws, ensembles, measured, EXTENDED)
+    drawn = {
+        RECALIBRATED: (_conditioned(draws, nominal, measured, NOMINAL), ()),
+        EXTENDED: (extended, causes),
+    }
+    if placebo := placebo_of(causes, structure):
+        drawn[PLACEBO] = extended, placebo
     members = []
     for test, planned in plan.sealed.items():
         count = plan.effort.members
         members += nominal_members(test, planned, model, count, plan.effort.twins)
-        for kind, (own, acting) in drawn.items():
-            members += _members(kind, test, planned, own[:count], acting)
+        for kind, (conditioned, acting) in drawn.items():
+            members += _members(kind, test, planned, conditioned[:count], acting)
     runs = simulate_members(members, store)
-    count = len(members) + (len(plan.tests) * plan.effort.draws if causes else 0)
-    return runs.merge(recalibration.informed, combine_attrs="override").assign_attrs(simulated=count)
+    return runs.assign_attrs(simulated=len(members) + len(plan.tests) * plan.effort.draws)
 
 
 def _members(kind, test, planned, draws, causes):
@@ -148,6 +147,41 @@ def _beside_twins(members, nominal, store):
 
 
 def _conditioned(draws, ensembles, measured, kind):
-    """`Recalibration` of draws whose ensembles of open tests are of one kind."""
-    tests = [judged_test(name, measured[name], [one], (kind,)) for name, one in ensembles.items()]
+    """Draws conditioned on open tests, whose ensembles are of one kind."""
+    tests = [judged_test(name, measured[name], [ensemble], (kind,)) for name, ensemble in ensembles.items()]
     return posterior_draws(draws, *features_of(tests))
+
+
+def can_extend(cause):
+    """Whether a model can hold a `Cause`, and whether the cause acts in tests that are still to come."""
+    if not cause.members:
+        return False
+    if not cause.outside:
+        return True
+    form = FORMS[cause.name]
+    return form.act is not None and form.lasts(cause.when)
+
+
+def extended_experiment(experiment, cause, number, test):
+    """An experiment with one member of a cause in it.
+
+    Parameters
+    ----------
+    experiment : Experiment
+    cause : Cause
+    number : int
+        Of the member; counted from the start again where there are fewer.
+    test : str
+        Name: a form from outside may act in some tests alone.
+
+    Returns
+    -------
+    Experiment
+    """
+    values = cause.members[number % len(cause.members)]
+    if cause.outside:
+        form = FORMS[cause.name]
+        return form.act(experiment, values[form.size], cause.place, cause.when, test)
+    effect = EFFECTS[cause.name]
+    extend = effect.extends or effect.act
+    return extend(experiment, values, cause.place)

@@ -1,9 +1,8 @@
 """Recalibration: uncertain parameters of nominal models, conditioned on the open tests."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-import xarray as xr
 from scipy.special import ndtr, ndtri
 
 from blockshake.diagnosis.nominal.nominal_model import MODELS
@@ -16,26 +15,6 @@ _SHUFFLES = 199
 _INFORMED_CHANCE = 0.01  # below which a parameter is held to be informed
 _INTERVAL = 0.1  # s, between instants that parameters are conditioned on
 _REACH = 3.0  # standard deviations of the draws within which a parameter stays and a feature counts
-QUANTILES = (0.05, 0.5, 0.95)
-
-
-@dataclass(frozen=True)
-class Recalibration:
-    """Nominal models, conditioned on the open tests.
-
-    Attributes
-    ----------
-    draws : list of Draw
-    informed : xarray.Dataset
-        Along ``parameter``: ``prior`` and ``posterior(quantile)`` in the parameter's own unit; ``narrowing``, posterior
-        over prior standard deviation on the Gaussian scale [1]; ``skill``, share of its variance that features of a
-        left-out draw predict [1]; ``chance`` of as much skill without any connection [1]; ``informed``, where that
-        is small: the others are not informed by the data and keep their prior; ``held``, share of draws that were
-        stopped three prior standard deviations from the mean [1].
-    """
-
-    draws: list
-    informed: xr.Dataset
 
 
 def features_of(tests):
@@ -70,7 +49,7 @@ def features_of(tests):
 
 
 def posterior_draws(draws, features, measured):
-    """`Recalibration`: draws of one solver, conditioned on the open tests.
+    """Draws of one solver, conditioned on the open tests.
 
     Parameters
     ----------
@@ -79,6 +58,11 @@ def posterior_draws(draws, features, measured):
     features : float64 array, shape (n_draws, n_features)
         That they gave, noise of the sensors in them, from `features_of`.
     measured : float64 array, shape (n_features,)
+
+    Returns
+    -------
+    list of Draw
+        A parameter that the tests do not inform keeps its values.
 
     Notes
     -----
@@ -105,37 +89,23 @@ def posterior_draws(draws, features, measured):
     scores = np.column_stack(
         [_score(name, column, end) for name, column, end in zip(names, values.T, ends, strict=True)]
     )
-    strength, skill, chance = _regularisation(scores, features)
+    strength, chance = _regularisation(scores, features)
     informed = chance <= _INFORMED_CHANCE
 
-    moved = scores.copy()
     reach = features.mean(axis=0) + _REACH * features.std(axis=0, ddof=1) * [[-1.0], [1.0]]
     innovations = np.clip(measured, *reach) - features
+    moved = scores.copy()
     moved[:, informed] += _shifts(scores[:, informed], features, innovations, strength[informed])
     mean, deviation = scores.mean(axis=0), scores.std(axis=0, ddof=1)
-    kept = np.where(informed, np.clip(moved, mean - _REACH * deviation, mean + _REACH * deviation), moved)
+    moved = np.clip(moved, mean - _REACH * deviation, mean + _REACH * deviation)
     posterior = np.column_stack(
-        [_unscore(name, column, end) for name, column, end in zip(names, kept.T, ends, strict=True)]
+        [_unscore(name, column, end) for name, column, end in zip(names, moved.T, ends, strict=True)]
     )
     posterior = np.where(informed, posterior, values)
-    return Recalibration(
-        draws=[
-            _with_values(draw, dict(zip(names, row.tolist(), strict=True)))
-            for draw, row in zip(draws, posterior, strict=True)
-        ],
-        informed=xr.Dataset(
-            {
-                "prior": (("quantile", "parameter"), np.quantile(values, QUANTILES, axis=0)),
-                "posterior": (("quantile", "parameter"), np.quantile(posterior, QUANTILES, axis=0)),
-                "narrowing": ("parameter", kept.std(axis=0, ddof=1) / scores.std(axis=0, ddof=1)),
-                "skill": ("parameter", skill),
-                "chance": ("parameter", chance),
-                "informed": ("parameter", informed),
-                "held": ("parameter", (kept != moved).mean(axis=0)),
-            },
-            {"parameter": names, "quantile": list(QUANTILES)},
-        ),
-    )
+    return [
+        _with_values(draw, dict(zip(names, row.tolist(), strict=True)))
+        for draw, row in zip(draws, posterior, strict=True)
+    ]
 
 
 def _varied(draws):
@@ -184,7 +154,7 @@ def _unscore(name, scores, ends):
 
 
 def _regularisation(scores, features):
-    """By parameter: the best regularisation, its skill on left-out draws, and the chance of that skill by shuffling."""
+    """By parameter: the regularisation with most skill on left-out draws, and the chance of that skill by shuffling."""
     count = len(scores)
     centred = features - features.mean(axis=0)
     gram = centred @ centred.T
@@ -202,7 +172,7 @@ def _regularisation(scores, features):
     skills = np.array(skills).reshape(len(strengths), len(orders), -1)
     best = skills.max(axis=0)
     chance = (best >= best[0] - 1e-12).mean(axis=0)  # the draws as they are among them
-    return strengths[skills[:, 0].argmax(axis=0)], best[0], chance
+    return strengths[skills[:, 0].argmax(axis=0)], chance
 
 
 def _shifts(scores, features, innovations, strengths):

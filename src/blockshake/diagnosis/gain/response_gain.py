@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 
 from blockshake.diagnosis.nominal.ensemble import EXTENDED, NOMINAL, RECALIBRATED
-from blockshake.diagnosis.verdict.verdict import OF_A_GAIN, Contrast, Gain, MeasuredGain
+from blockshake.diagnosis.verdict.verdict import NOTHING_TO_GAIN, OF_A_GAIN, Contrast, Gain, MeasuredGain
 from blockshake.statistics.resampling import limits_of, resampled_weights
 from blockshake.statistics.scores import ensemble_score, mean_differences, mean_width, member_scores
 
@@ -21,9 +20,6 @@ class _Cells:
 
     Attributes
     ----------
-    test : int array, shape (n_cells,)
-        Number of each cell's test.
-    names : str array, shape (n_cells,)
     away : dict of str to float64 array, shape (n_members, n_cells)
         By kind: mean differences of the members from the record, in units of the cell's spread.
     pairs : dict of str to float64 array, shape (n_members, n_members, n_cells)
@@ -34,19 +30,20 @@ class _Cells:
         How often each is drawn.
     """
 
-    test: np.ndarray
-    names: np.ndarray
     away: dict
     pairs: dict
     weights: np.ndarray
     members: np.ndarray
 
-    def by_cell(self, kind, chosen=None):
-        """Score of every cell, (n_draws, n_cells); of some members alone in one row."""
-        if chosen is None:
-            return ensemble_score(self.away[kind], self.pairs[kind], self.members)
+    def score(self, kind):
+        """Score of an ensemble, (n_draws,)."""
+        return self.whole(ensemble_score(self.away[kind], self.pairs[kind], self.members))
+
+    def score_of(self, kind, chosen):
+        """Score of some members of an ensemble, `chosen` (n_members,) bool."""
         pairs = self.pairs[kind][np.ix_(chosen, chosen)]
-        return ensemble_score(self.away[kind][chosen], pairs, np.ones((1, chosen.sum())))
+        by_cell = ensemble_score(self.away[kind][chosen], pairs, np.ones((1, chosen.sum())))
+        return self.whole(by_cell)[0]
 
     def whole(self, by_cell):
         """Mean over tests of the mean over cells, (n_draws,)."""
@@ -64,8 +61,7 @@ def response_gain(tests):
     Returns
     -------
     xarray.Dataset
-        In units of a cell's spread ``score(kind)``, ``score_of_cell(kind, test, cell)``, ``score_of_solver(kind,
-        model)``; ``floor``, and ``highest``, which 95 % of the extended members score less than; ``gain``,
+        In units of a cell's spread ``score(kind)``, ``score_of_solver(kind, model)`` and ``floor``; ``gain``,
         ``gain_lower`` and ``gain_upper(rival)`` [1], NaN where nothing is there to gain; ``confirmed``, whether each
         solver by itself shows half of the fall against the recalibrated model or more; and along ``test`` what
         `JudgedTest.bands` gives, with ``largest(kind, test)``, ``largest_lower`` and ``largest_upper``, median of the
@@ -91,27 +87,20 @@ def response_gain(tests):
     rivals = [kind for kind in kinds if kind != EXTENDED]
     solvers = list(dict.fromkeys(models.tolist()))
     cells = _cells(tests)
-    by_cell = {kind: cells.by_cell(kind) for kind in kinds}
-    score = {kind: cells.whole(values) for kind, values in by_cell.items()}
+    score = {kind: cells.score(kind) for kind in kinds}
     floor = cells.whole(0.5 * mean_width(cells.pairs[EXTENDED], cells.members))
     highest = np.quantile(member_scores(cells.pairs[EXTENDED]) @ cells.weights[0], _FLOOR_QUANTILE)
     gain = np.array([_ratio(score[kind] - score[EXTENDED], score[kind] - floor) for kind in rivals])
     able = np.array([score[kind][0] > highest for kind in rivals])
     limits = np.where(able, limits_of(gain.T, OF_A_GAIN), np.nan)
-    of_solver = {
-        kind: [cells.whole(cells.by_cell(kind, models == solver))[0] for solver in solvers] for kind in kinds
-    }
+    of_solver = {kind: [cells.score_of(kind, models == solver) for solver in solvers] for kind in kinds}
     fall = score[RECALIBRATED][0] - score[EXTENDED][0]
     falls = np.subtract(of_solver[RECALIBRATED], of_solver[EXTENDED])
-    index = pd.MultiIndex.from_arrays([cells.test, cells.names], names=["test", "cell"])
-    table = pd.DataFrame({kind: values[0] for kind, values in by_cell.items()}, index)
-    found = xr.Dataset(
+    scores = xr.Dataset(
         {
             "score": ("kind", [score[kind][0] for kind in kinds]),
-            "score_of_cell": table.to_xarray().to_array("kind"),
             "score_of_solver": (("kind", "model"), [of_solver[kind] for kind in kinds]),
             "floor": floor[0],
-            "highest": highest,
             "gain": ("rival", np.where(able, gain[:, 0], np.nan)),
             "gain_lower": ("rival", limits[0]),
             "gain_upper": ("rival", limits[1]),
@@ -120,9 +109,7 @@ def response_gain(tests):
         {"kind": kinds, "rival": rivals, "model": solvers},
     )
     shown = xr.concat([test.bands().merge(_largest(test)) for test in tests], dim="test", join="outer")
-    return found.merge(shown.assign_coords(test=range(len(tests))), join="outer").assign_coords(
-        test=[test.name for test in tests]
-    )
+    return scores.merge(shown.assign_coords(test=[test.name for test in tests]))
 
 
 def gain_of_verdict(gained, runs):
@@ -136,23 +123,17 @@ def gain_of_verdict(gained, runs):
             float(gained[name].sel(rival=rival)) for name in ("gain_lower", "gain", "gain_upper")
         )
         if np.isnan(estimate):
-            contrasts[rival] = Contrast(estimate=0.0, lower=-1.0, upper=1.0)
+            contrasts[rival] = NOTHING_TO_GAIN
             caveats.append(
                 f"nothing to gain on the sealed tests against the {rival} model: it scores within noise"
             )
         else:
-            contrasts[rival] = contrast(estimate, lower, upper)
+            contrasts[rival] = Contrast.cut_off(estimate, lower, upper)
     if gained.sizes["test"] == 1:
         caveats.append("one sealed test: the gain's interval holds no scatter from test to test")
     if not gained["confirmed"] and contrasts[RECALIBRATED].estimate > 0.0:
         caveats.append("solver-dependent: one solver by itself shows less than half of the gain")
     return MeasuredGain(gain=Gain(**contrasts), caveats=caveats, runs=runs)
-
-
-def contrast(estimate, lower, upper):
-    """Gain with its interval, cut off at -1 and 1; an interval of few draws may miss its estimate."""
-    values = {"estimate": estimate, "lower": min(lower, estimate), "upper": max(upper, estimate)}
-    return Contrast(**{name: float(np.clip(value, -1.0, 1.0)) for name, value in values.items()})
 
 
 def _cells(tests):
@@ -173,10 +154,6 @@ def _cells(tests):
     of_cells = [resampled_weights(int(judged.sum()), generator) for judged in known]
     of_members = [resampled_weights(int((models == one).sum()), generator) for one in dict.fromkeys(models)]
     return _Cells(
-        test=np.repeat(np.arange(len(tests)), [judged.sum() for judged in known]),
-        names=np.concatenate(
-            [test.measured["cell"][judged] for test, judged in zip(tests, known, strict=True)]
-        ),
         away=away,
         pairs=pairs,
         weights=np.concatenate(

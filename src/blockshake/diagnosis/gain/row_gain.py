@@ -3,14 +3,14 @@
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
-from blockshake.diagnosis.answer.cause_rows import cause_rows
 from blockshake.diagnosis.answer.explain import likelihoods
 from blockshake.diagnosis.evidence.joint_rows import JointRows
 from blockshake.diagnosis.evidence.slab_motion import slab_motion, slab_turns
 from blockshake.diagnosis.nominal.ensemble import DISCREPANCY, EXTENDED, NOMINAL, RECALIBRATED
-from blockshake.diagnosis.verdict.verdict import OF_A_GAIN, Contrast, Gain
+from blockshake.diagnosis.outside.push import start_of_push
+from blockshake.diagnosis.outside.registry import FORMS
+from blockshake.diagnosis.verdict.verdict import NOTHING_TO_GAIN, OF_A_GAIN, Contrast, Gain
 from blockshake.effects.registry import EFFECTS
 from blockshake.statistics.resampling import limits_of, resampled_weights
 
@@ -18,8 +18,7 @@ _WIDER = (1.0, 3.0, 10.0)  # times the priors of the joints' own errors: a discr
 _BLOCK = 0.5  # s, of rows that are drawn together
 _DRAWS = 1000
 _NOTHING = 1.645  # standard deviations of the floor, within which nothing is to gain
-NOTHING = Contrast(estimate=0.0, lower=-1.0, upper=1.0)
-NOTHING_TO_GAIN = "nothing to gain on the sealed tests' forces against the {} model: it is within its errors"
+_IDLE = "nothing to gain on the sealed tests' forces against the {} model: it is within its errors"
 NO_ROWS = "no gain was measured on forces: the cause says nothing of those of the sealed tests"
 
 
@@ -45,44 +44,38 @@ def row_gain(decision, opened, sealed):
 
     Returns
     -------
-    Gain or None, xarray.Dataset, list of str
-        ``distance(kind)``: mean squared distance of the rows, with ``floor`` and number of rows; and caveats.
+    Gain or None, list of str
+        And caveats.
 
     Notes
     -----
     The models predict the rows of a sealed test: nominal with the edges and coefficients of sound blocks, recalibrated
     with those that fit the open tests without the cause, extended with those that fit beside it, and a discrepancy
     without a name whose edges and coefficients lie once, three or ten times as far off, as the open tests say. The gain
-    is ``(D_rival - D_extended) / (D_rival - D_floor)``; intervals of 90 % by a bootstrap of blocks of 0.5 s. A push
-    starts in a sealed test when it fits best: its size is frozen, its start cannot be.
+    is ``(D_rival - D_extended) / (D_rival - D_floor)``, of mean squared distances D; intervals of 90 % by a bootstrap
+    of blocks of 0.5 s. A push starts in a sealed test when it fits best: its size is frozen, its start cannot be.
     """
     parts = [*_of_joints(decision, opened, sealed), *_of_slab(decision, opened, sealed)]
     if not parts:
-        return None, xr.Dataset(), [NO_ROWS]
+        return None, [NO_ROWS]
     shift = np.cumsum([0, *(part.block.max() + 1 for part in parts[:-1])])
     whole = Squares(
         np.concatenate([part.block + start for part, start in zip(parts, shift, strict=True)]),
         {kind: np.concatenate([part.by_kind[kind] for part in parts]) for kind in parts[0].by_kind},
         np.concatenate([part.floor for part in parts]),
     )
-    means = {kind: float(values.mean()) for kind, values in whole.by_kind.items()}
-    table = xr.Dataset(
-        {"distance": ("kind", list(means.values())), "floor": whole.floor.mean(), "rows": len(whole.block)},
-        {"kind": list(means)},
-    )
     drawn, least = _drawn(whole), whole.floor.mean() * (1.0 + _NOTHING * np.sqrt(2.0 / len(whole.block)))
-    rivals = (RECALIBRATED, NOMINAL, DISCREPANCY)
-    idle = [rival for rival in rivals if means[rival] < least]
-    contrasts = {rival: NOTHING if rival in idle else _contrast(means, drawn, rival) for rival in rivals}
-    return Gain(**contrasts), table, [NOTHING_TO_GAIN.format(rival) for rival in idle]
-
-
-def _contrast(means, drawn, rival):
-    floor = drawn["floor"][0]
-    whole = _ratio(means[rival], means[EXTENDED], floor)
-    values = _ratio(drawn[rival][1:], drawn[EXTENDED][1:], drawn["floor"][1:])
-    lower, upper = limits_of(values, OF_A_GAIN)
-    return Contrast(estimate=float(whole), lower=float(min(lower, whole)), upper=float(max(upper, whole)))
+    contrasts, caveats = {}, []
+    for rival in (RECALIBRATED, NOMINAL, DISCREPANCY):
+        mean = float(whole.by_kind[rival].mean())
+        if mean < least:
+            contrasts[rival] = NOTHING_TO_GAIN
+            caveats.append(_IDLE.format(rival))
+        else:
+            gains = _ratio(drawn[rival][1:], drawn[EXTENDED][1:], drawn["floor"][1:])
+            gain = _ratio(mean, float(whole.by_kind[EXTENDED].mean()), drawn["floor"][0])
+            contrasts[rival] = Contrast.cut_off(gain, *limits_of(gains, OF_A_GAIN))
+    return Gain(**contrasts), caveats
 
 
 def _ratio(rival, extended, floor):
@@ -111,10 +104,12 @@ def _of_joints(decision, opened, sealed):
         return []
     models = likelihoods(tests)
     explained = [cause_rows(cause, before, after, models[0]) for cause in causes]
-    if not any(one.says for one in explained):
+    explained = [rows for rows in explained if rows is not None]
+    if not explained:
         return []
-    rows = [sum(one.rows[number] for one in explained) for number in range(len(tests))]
-    return [_squares(_loudest(models, rows, len(before)), rows, len(before), tests)]
+    rows = [sum(of_test) for of_test in zip(*explained, strict=True)]
+    times = [test.rows.time for test in after]
+    return [_squares(_loudest(models, rows, len(before)), rows, len(before), times)]
 
 
 def _loudest(models, rows, n_open):
@@ -129,7 +124,8 @@ def _loudest(models, rows, n_open):
     return max(models, key=says)
 
 
-def _squares(model, rows, n_open, tests):
+def _squares(model, rows, n_open, times):
+    """`Squares` of the sealed tests, whose rows are at some times."""
     stop = model.ends[n_open]
     off = model.whiten([one[:, None] for one in rows])[:, 0]
     seen, further = model.nuisances[:stop], model.nuisances[stop:]
@@ -143,7 +139,6 @@ def _squares(model, rows, n_open, tests):
         by_kind[kind] = (value[stop:] - further @ (wider * fitted)) ** 2
     inner = np.linalg.inv(np.eye(seen.shape[1]) + seen.T @ seen)
     floor = 1.0 + np.einsum("ri,ij,rj->r", further, inner, further)
-    times = [test.rows.time for test in tests[n_open:]]
     return Squares(_blocks(times), by_kind, floor)
 
 
@@ -154,18 +149,18 @@ def _fitted(value, nuisances):
 
 def _says(value, nuisances):
     """Logarithm of the density of whitened rows, up to a constant."""
-    left = value @ value - (nuisances.T @ value) @ _fitted(value, nuisances)
-    return -0.5 * left - 0.5 * np.linalg.slogdet(np.eye(nuisances.shape[1]) + nuisances.T @ nuisances)[1]
+    misfit = value @ value - (nuisances.T @ value) @ _fitted(value, nuisances)
+    return -0.5 * misfit - 0.5 * np.linalg.slogdet(np.eye(nuisances.shape[1]) + nuisances.T @ nuisances)[1]
 
 
 def _blocks(times):
     """Numbers of the blocks of rows, test by test."""
-    found, first = [], 0
+    blocks, first = [], 0
     for time in times:
-        own = ((time - time.min()) / _BLOCK).astype(int)
-        found.append(first + own)
-        first += own.max() + 1
-    return np.unique(np.concatenate(found), return_inverse=True)[1]
+        numbers = ((time - time.min()) / _BLOCK).astype(int)
+        blocks.append(first + numbers)
+        first += numbers.max() + 1
+    return np.unique(np.concatenate(blocks), return_inverse=True)[1]
 
 
 def _of_slab(decision, opened, sealed):
@@ -174,22 +169,41 @@ def _of_slab(decision, opened, sealed):
     if not causes or not sealed:
         return []
     (cause,) = causes
-    slabs = [slab_motion(one) for one in [*opened, *sealed]]
+    slabs = [slab_motion(test) for test in [*opened, *sealed]]
     variants = [EFFECTS[cause.name].turns(slab) for slab in slabs]
-    rows = [next(one.rows for one in own if one.values == cause.when) @ cause.amplitudes for own in variants]
-    model = slab_turns(slabs)
-    return [_squares(model, rows, len(opened), [_Timed(slab) for slab in slabs])]
+    rows = [
+        next(variant.rows for variant in of_test if variant.values == cause.when) @ cause.amplitudes
+        for of_test in variants
+    ]
+    times = [slab.time[slab.at] for slab in slabs[len(opened) :]]
+    return [_squares(slab_turns(slabs), rows, len(opened), times)]
 
 
-class _Timed(NamedTuple):
-    """The slab's instants as the rows of a test."""
+def cause_rows(cause, opened, sealed, likelihood):
+    """Rows of a cause by test at its frozen size, (n_rows,) each; None of a cause that says nothing of tests to come.
 
-    slab: object
-
-    @property
-    def rows(self):
-        return self
-
-    @property
-    def time(self):
-        return self.slab.time[self.slab.at]
+    Parameters
+    ----------
+    cause : Cause
+    opened, sealed : list of JointRows
+    likelihood : Likelihood
+        Of all of these, by which the start of a push in a sealed test is found.
+    """
+    tests = [*opened, *sealed]
+    amplitudes = np.array(cause.amplitudes)
+    if not cause.outside:
+        effect = EFFECTS[cause.name]
+        if effect.columns is None or not len(amplitudes):
+            return None
+        return [effect.rows_of(test.seen, cause.place, cause.when) @ amplitudes for test in tests]
+    form = FORMS[cause.name]
+    if form.rows is None or not form.lasts(cause.when):
+        return None
+    size, when = float(amplitudes[0]), cause.when
+    if "starts" in when:
+        starts = {
+            test.seen.name: start_of_push(cause.place, size, test, likelihood, number)
+            for number, test in enumerate(sealed, start=len(opened))
+        }
+        when = {**when, "starts": {**when["starts"], **starts}}
+    return [size * form.rows(test, cause.place, when) for test in tests]

@@ -1,9 +1,11 @@
 """Fourth section of a diagnosis: what the cause means for the structure, on tests that nothing was fitted to."""
 
-from blockshake.diagnosis.gain.figure import plot_drift
+import numpy as np
+
+from blockshake.diagnosis.misfit.figure import add_legend, draw_history
 from blockshake.diagnosis.wording import percent_words
 from blockshake.pages.blocks import Figure, Section, Table, Text
-from blockshake.pages.drawing import svg_of
+from blockshake.pages.drawing import BLUE, ORANGE, new_figure, svg_of
 from blockshake.pages.wording import MISSING, model_label, number, sentence_case
 
 _RIVALS = {
@@ -20,14 +22,16 @@ _KINDS = {
 }
 _MOST_TESTS = 3
 OF_GAIN = ("gain was measured", "nothing to gain")  # by which caveats on the gain are known
+# drift by these kinds of members, with their titles and colours
+_SHOWN = {"recalibrated": ("without the cause, recalibrated", ORANGE), "extended": ("with the cause", BLUE)}
 
 
-def gain_section(found):
+def gain_section(diagnosed):
     """Gain on forces and responses against each rival, largest drift with and without the cause."""
-    verdict, gain = found.verdict, found.gain
+    verdict, gain = diagnosed.verdict, diagnosed.gain
     title = "Gain on sealed tests"
     if verdict.gain is None and verdict.row_gain is None:
-        reasons = [one for one in verdict.caveats if OF_GAIN[0] in one]
+        reasons = [caveat for caveat in verdict.caveats if OF_GAIN[0] in caveat]
         words = (
             "; ".join(reasons) or "no gain was measured: nothing acts by which the model could be extended"
         )
@@ -39,22 +43,30 @@ def gain_section(found):
             "below 0 the cause makes the prediction worse."
         ),
         _gains(verdict),
-        *(Text(sentence_case(one)) for one in verdict.caveats if any(words in one for words in OF_GAIN)),
+        *(
+            Text(sentence_case(caveat))
+            for caveat in verdict.caveats
+            if any(words in caveat for words in OF_GAIN)
+        ),
     ]
     if gain is not None and "where" in gain.attrs:
         blocks.append(_of_sensor(gain))
-    elif gain is not None and "largest" in gain:
-        blocks += [_solvers(gain), _largest(found), _drift(found)]
+    elif gain is not None:
+        blocks += [_solvers(gain), _largest(diagnosed), _drift(diagnosed)]
     return Section(title, "gain", tuple(blocks))
 
 
 def _gains(verdict):
-    columns = [one for one in ((verdict.row_gain, "Forces"), (verdict.gain, "Responses")) if one[0]]
+    columns = [
+        contrast for contrast in ((verdict.row_gain, "Forces"), (verdict.gain, "Responses")) if contrast[0]
+    ]
     rows = []
     for rival, words in _RIVALS.items():
-        own = [getattr(gain, rival, None) for gain, _ in columns]
-        if any(own):
-            rows.append((words, *(percent_words(one) if one else MISSING for one in own)))
+        contrasts = [getattr(gain, rival, None) for gain, _ in columns]
+        if any(contrasts):
+            rows.append(
+                (words, *(percent_words(contrast) if contrast else MISSING for contrast in contrasts))
+            )
     return Table(
         "Gain against each rival with its interval of 90 %. Forces: those that sound blocks do not make, or the "
         "motion of the slab that a sound table does not make, at the frozen sizes. Responses: simulated rotations "
@@ -89,19 +101,18 @@ def _kind(kind):
     return _KINDS.get(kind, kind.capitalize())
 
 
-def _largest(found):
-    gain = found.gain
+def _largest(diagnosed):
+    gain = diagnosed.gain
     kinds = [kind for kind in _KINDS if kind in gain["kind"].values]
     rows = []
     for test in gain["test"].values:
-        own = gain.sel(test=test)
-        rows.append((
-            str(test), *(_with_band(own.sel(kind=kind)) for kind in kinds), number(1e3 * own["largest_measured"]),
-        ))  # fmt: skip
+        of_test = gain.sel(test=test)
+        drifts = [_with_band(of_test.sel(kind=kind)) for kind in kinds]
+        rows.append((str(test), *drifts, number(1e3 * of_test["largest_measured"])))
     return Table(
         "What it means for the structure: largest drift of the top against the table [mm], median of the members "
-        f"and their 5 to 95 %, and {'of the virtual test' if found.synthetic else 'measured'}.",
-        ("Test", *(_KINDS[kind] for kind in kinds), "Virtual test" if found.synthetic else "Measured"),
+        f"and their 5 to 95 %, and {'of the virtual test' if diagnosed.synthetic else 'measured'}.",
+        ("Test", *(_KINDS[kind] for kind in kinds), "Virtual test" if diagnosed.synthetic else "Measured"),
         tuple(rows),
         "l" + "r" * (len(kinds) + 1),
     )
@@ -112,18 +123,18 @@ def _with_band(own):
     return f"{median} ({lower} to {upper})"
 
 
-def _drift(found):
-    tests = [str(name) for name in found.gain["test"].values][:_MOST_TESTS]
+def _drift(diagnosed):
+    tests = [str(name) for name in diagnosed.gain["test"].values][:_MOST_TESTS]
     return Figure(
         "Drift of the top against the table on sealed tests, without and with the cause: 5 to 95 % and median of the "
-        f"members of all solvers, and {found.measured_word}. Shaded: beyond the time for which it can be predicted.",
-        svg_of(plot_drift, found.gain, tests, ("recalibrated", "extended"), found.measured_word),
+        f"members of all solvers, and {diagnosed.measured_word}. Shaded: beyond the time for which it can be "
+        "predicted.",
+        svg_of(plot_drift, diagnosed.gain, tests, diagnosed.measured_word),
     )
 
 
 def _of_sensor(scores):
     """Gain of taking a sensor's fault out: its readings against those of the other sensors."""
-    factor, unit = (1e3, "mm") if scores["score"].attrs["units"] == "m" else (1e3, "ms")
     words = {
         "nominal": "As read",
         "extended": "Fault taken out",
@@ -131,15 +142,34 @@ def _of_sensor(scores):
     }
     rows = [
         (
-            str(name), *(number(factor * float(scores["score"].sel(test=name, kind=kind))) for kind in words),
-            number(factor * float(scores["floor"].sel(test=name))),
+            str(name), *(number(1e3 * float(scores["score"].sel(test=name, kind=kind))) for kind in words),
+            number(1e3 * float(scores["floor"].sel(test=name))),
         )
         for name in scores["test"].values
     ]  # fmt: skip
     return Table(
         f"Root mean square distance of the readings of {scores.attrs['where']} from where the other sensors put them "
-        f"[{unit}]; the floor is that while nothing moves.",
+        f"[m{scores['score'].attrs['units']}]; the floor is that while nothing moves.",
         ("Test", *words.values(), "Floor"),
         tuple(rows),
         "lrrrr",
     )
+
+
+def plot_drift(gain, tests, measured_word):
+    """Figure of the drift of the top without and with the cause side by side, one row a sealed test."""
+    figure = new_figure(0.02 + 0.034 * len(tests))
+    panels = figure.subplots(len(tests), len(_SHOWN), sharey="row", squeeze=False)
+    top = gain.isel(cell=np.flatnonzero(gain["quantity"].to_numpy() == "drift")[-1])
+    for row, test in zip(panels, tests, strict=True):
+        of_test = top.sel(test=test)
+        for axes, (kind, (_, color)) in zip(row, _SHOWN.items(), strict=True):
+            draw_history(axes, of_test.assign(band=of_test["band"].sel(kind=kind)), color)
+        row[0].set_ylabel(f"{test}\ndrift [mm]")
+    for axes, (title, _) in zip(panels[0], _SHOWN.values(), strict=True):
+        axes.set_title(title)
+    for axes in panels[-1]:
+        axes.set_xlabel("time [s]")
+    figure.align_ylabels(panels[:, 0])
+    add_legend(figure, [color for _, color in _SHOWN.values()], measured_word)
+    return figure

@@ -20,24 +20,28 @@ def plot_misfit(misfit, chosen, measured_word):
     for axes in panels.flat[len(chosen) :]:
         axes.set_axis_off()
     for axes, (test, cell) in zip(panels.flat, chosen, strict=False):
-        own = misfit.isel(test=test, cell=cell)
-        draw_history(axes, own, SKY)
-        axes.set_title(f"{own['test'].item()}, {own['where'].item()}")
-        axes.set_ylabel(f"{own['quantity'].item()} [{printed(str(own['unit'].item())).name}]")
+        history = misfit.isel(test=test, cell=cell)
+        draw_history(axes, history, SKY)
+        axes.set_title(f"{history['test'].item()}, {history['where'].item()}")
+        axes.set_ylabel(f"{history['quantity'].item()} [{printed(str(history['unit'].item())).name}]")
     for axes in panels.flat[max(len(chosen) - _COLUMNS, 0) : len(chosen)]:
         axes.set_xlabel("time [s]")
     add_legend(figure, [SKY], measured_word)
     return figure
 
 
-def draw_history(axes, own, color):
+def draw_history(axes, history, color):
     """Band and median of one history, its measured curve, and shade beyond its horizon."""
-    own = own.dropna("time", subset=["measured"])
-    factor, time, end = printed(str(own["unit"].item())).factor, own["time"].to_numpy(), float(own["horizon"])
-    low, middle, high = (factor * own["band"].sel(quantile=one) for one in (0.05, 0.5, 0.95))
+    history = history.dropna("time", subset=["measured"])
+    factor, time, end = (
+        printed(str(history["unit"].item())).factor,
+        history["time"].to_numpy(),
+        float(history["horizon"]),
+    )
+    low, middle, high = (factor * history["band"].sel(quantile=quantile) for quantile in (0.05, 0.5, 0.95))
     axes.fill_between(time, low, high, color=color, alpha=0.35, linewidth=0.0)
     axes.plot(time, middle, color=darker(color), linewidth=0.7)
-    axes.plot(time, factor * own["measured"], **MEASURED)
+    axes.plot(time, factor * history["measured"], **MEASURED)
     if end < time[-1]:
         axes.axvspan(max(end, time[0]), time[-1], color=LIGHT_GREY, alpha=0.45, linewidth=0.0, zorder=0)
     axes.set_xlim(time[0], time[-1])
@@ -45,7 +49,7 @@ def draw_history(axes, own, color):
 
 def darker(color):
     """The colour of a median in a band of a colour."""
-    rgb = [int(color[place : place + 2], 16) / 255.0 for place in (1, 3, 5)]
+    rgb = [int(color[start : start + 2], 16) / 255.0 for start in (1, 3, 5)]
     return tuple(0.75 * np.array(rgb))
 
 

@@ -5,15 +5,18 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from blockshake.diagnosis.misfit.predictability import horizons
 from blockshake.diagnosis.nominal.ensemble import NOMINAL, TWIN, runs_of
-from blockshake.diagnosis.nominal.histories import as_cells, at_readings, common_times
+from blockshake.diagnosis.nominal.histories import as_cells, at_readings, common_times, read_histories
+from blockshake.geometry.structure import load_structure
+from blockshake.parity.correction import load_corrected_test
 from blockshake.statistics.intervals import sample_quantiles
 
 BAND = (0.05, 0.5, 0.95)
 _MOVES = 5.0  # standard deviations of a reading, beyond which a cell moves
 _OFTEN = 0.99  # of the time that a cell is nearer
 _ENDED = 0.5  # share of an ensemble's members that have ended, from which on a test is not judged
+_TOLD_APART_BY = 3.0  # standard deviations of a reading that twins must be apart to be told apart
+_SHARE_OF_MOTION = 0.3  # of the farthest that a cell has moved until then
 
 
 @dataclass(frozen=True)
@@ -82,24 +85,33 @@ def judged_test(name, histories, ensembles, kinds=(NOMINAL,)):
     kinds : sequence of str
     """
     measured = as_cells(histories)
-    own = [[as_cells(runs_of(one, kind=kind)) for kind in (*kinds, TWIN)] for one in ensembles]
-    everywhere = [one for by_kind in own for one in by_kind]
+    by_solver = [
+        [as_cells(runs_of(ensemble, kind=kind)) for kind in (*kinds, TWIN)] for ensemble in ensembles
+    ]
+    everywhere = [cells for by_kind in by_solver for cells in by_kind]
     names = [
-        cell for cell in measured["cell"].values if all(cell in one["cell"].values for one in everywhere)
+        cell for cell in measured["cell"].values if all(cell in cells["cell"].values for cells in everywhere)
     ]
     time = common_times(measured, *everywhere)
     measured = measured.sel(cell=names, time=time)
     noise = as_cells(histories, "_noise").sel(cell=names)
-    limits = [horizons(by_kind[-1].sel(cell=names), noise) for by_kind in own]
+    limits = [horizons(by_kind[-1].sel(cell=names), noise) for by_kind in by_solver]
     members = {
-        kind: xr.concat([at_readings(by_kind[place].sel(cell=names), time) for by_kind in own], dim="run")
-        for place, kind in enumerate(kinds)
+        kind: xr.concat(
+            [at_readings(by_kind[index].sel(cell=names), time) for by_kind in by_solver], dim="run"
+        )
+        for index, kind in enumerate(kinds)
     }
     models = np.concatenate(
-        [[one.attrs["model"]] * by_kind[0].sizes["run"] for one, by_kind in zip(ensembles, own, strict=True)]
+        [
+            [ensemble.attrs["model"]] * by_kind[0].sizes["run"]
+            for ensemble, by_kind in zip(ensembles, by_solver, strict=True)
+        ]
     )
-    horizon = np.minimum(np.min(limits, axis=0), min(_last_standing(one) for one in members.values()))
-    moves = np.max([_moved(one) for one in (measured, *members.values())], axis=0) > _MOVES * noise.to_numpy()
+    horizon = np.minimum(np.min(limits, axis=0), min(_last_standing(cells) for cells in members.values()))
+    moves = (
+        np.max([_moved(cells) for cells in (measured, *members.values())], axis=0) > _MOVES * noise.to_numpy()
+    )
     horizon = np.where(moves, horizon, -np.inf)
     return JudgedTest(name, measured, members, models, horizon)
 
@@ -116,3 +128,57 @@ def _last_standing(cells):
     going = np.logical_or.accumulate(known[:, ::-1], axis=1)[:, ::-1]
     standing = np.flatnonzero(going.mean(axis=0) > _ENDED)
     return cells["time"].to_numpy()[standing[-1]] if len(standing) else -np.inf
+
+
+def horizons(twins, noise):
+    """Time until which each cell of a test can be predicted.
+
+    Parameters
+    ----------
+    twins : xarray.DataArray, (run, time, cell)
+        Cells of nominal draw 0 and of its twins, from `as_cells`; all with the same noise of the sensors.
+    noise : xarray.DataArray, (cell,)
+        Standard deviation of a reading.
+
+    Returns
+    -------
+    float64 array, shape (n_cells,)
+        [s]; the end of the twins where they stay together.
+
+    Notes
+    -----
+    The horizon is the first time at which the standard deviation over the twins is above three standard deviations of
+    a reading, so that they can be told apart, and above 0.3 of the farthest that draw 0 has moved until then, so that
+    it matters. Twins of which one has ended are told apart.
+    """
+    time, values = twins["time"].to_numpy(), twins.transpose("run", "time", "cell").to_numpy()
+    moved = np.maximum.accumulate(np.nan_to_num(np.abs(values[0])), axis=0)
+    limit = np.maximum(_SHARE_OF_MOTION * moved, _TOLD_APART_BY * noise.to_numpy())
+    known = np.isfinite(values)
+    started, going = np.logical_or.accumulate(known, axis=1), known[:, ::-1]
+    going = np.logical_or.accumulate(going, axis=1)[:, ::-1]
+    parted = (started & ~going).any(axis=0)
+    whole = known.all(axis=0)
+    spread = np.where(whole, values, 0.0).std(axis=0, ddof=1)
+    parted |= whole & (spread > limit)
+    return np.where(parted.any(axis=0), time[parted.argmax(axis=0)], time[-1])
+
+
+def measured_histories(campaign, names, findings):
+    """Histories of tests by name, from `read_histories`.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    names : iterable of str
+        A sealed test is read only where the gain is measured.
+    findings : sequence of Finding
+        Sensor faults that are taken out first.
+    """
+    structure = load_structure(campaign.structure)
+    return {
+        name: read_histories(
+            load_corrected_test(campaign, name, structure, findings), structure, campaign.sensors
+        )
+        for name in names
+    }

@@ -24,19 +24,21 @@ def misfit(tests):
         ``usual``, the median of the members' own, each by the others; ``chance``, the share of the members, the
         measured test counted with them, whose score is as large [1]; ``worst_time``, at which the measured curve
         is farthest from the median in units of the spread [s]; and ``p``, chance of the largest score over its usual
-        one in all tests and cells. Attributes ``where``, the place of the largest in words, and ``members``.
+        one in all tests and cells. Attribute ``where``: the place of the largest in words.
 
     Notes
     -----
     Members hold the noise of the sensors, so that a nominal test is one more member and ``chance`` is a rank
     (1 / (n + 1) at least). The scale of ``p`` is the members' own, so that it needs no correction for many cells.
     """
-    scores, own = zip(*(_scores(test) for test in tests), strict=True)
-    usual = [np.median(one, axis=0) for one in own]
-    largest = np.max([_excess(one, by).max(axis=-1) for one, by in zip(own, usual, strict=True)], axis=0)
-    excess = [_excess(one, by) for one, by in zip(scores, usual, strict=True)]
+    scores, of_members = zip(*(_scores(test) for test in tests), strict=True)
+    usual = [np.median(values, axis=0) for values in of_members]
+    largest = np.max(
+        [_excess(values, by).max(axis=-1) for values, by in zip(of_members, usual, strict=True)], axis=0
+    )
+    excess = [_excess(values, by) for values, by in zip(scores, usual, strict=True)]
     parts = []
-    for test, score, members, by in zip(tests, scores, own, usual, strict=True):
+    for test, score, members, by in zip(tests, scores, of_members, usual, strict=True):
         parts.append(
             test.bands().sel(kind=NOMINAL, drop=True).assign(
                 score=("cell", score),
@@ -45,14 +47,14 @@ def misfit(tests):
                 worst_time=("cell", _worst_times(test), {"units": "s"}),
             )
         )  # fmt: skip
-    worst = int(np.argmax([one.max() for one in excess]))
-    place = int(excess[worst].argmax())
+    worst = int(np.argmax([values.max() for values in excess]))
+    index = int(excess[worst].argmax())
     whole = xr.concat(parts, dim="test", join="outer", coords="minimal", compat="override")
-    where = _where(tests[worst], parts[worst].isel(cell=place), excess[worst][place])
+    where = _where(tests[worst], parts[worst].isel(cell=index), excess[worst][index])
     return (
         whole.assign_coords(test=[test.name for test in tests])
-        .assign(p=rank_chance(excess[worst][place], largest))
-        .assign_attrs(where=where, members=len(largest))
+        .assign(p=rank_chance(excess[worst][index], largest))
+        .assign_attrs(where=where)
     )
 
 

@@ -13,9 +13,9 @@ _MOST_ROWS = 12
 _MOST_PANELS = 6
 
 
-def misfit_section(found):
+def misfit_section(diagnosed):
     """Worst histories beside the nominal ensemble; None where nothing was simulated."""
-    misfit = found.misfit
+    misfit = diagnosed.misfit
     if misfit is None:
         return None
     ranked = _ranked(misfit)
@@ -28,9 +28,9 @@ def misfit_section(found):
         ),
         Figure(
             f"The {min(len(ranked), _MOST_PANELS)} histories that the nominal simulation predicts worst: 5 to 95 % "
-            f"and median of the members of all solvers, and {found.measured_word}. Shaded: beyond the time for "
+            f"and median of the members of all solvers, and {diagnosed.measured_word}. Shaded: beyond the time for "
             "which it can be predicted.",
-            svg_of(plot_misfit, misfit, ranked[:_MOST_PANELS], found.measured_word),
+            svg_of(plot_misfit, misfit, ranked[:_MOST_PANELS], diagnosed.measured_word),
         ),
         Table(
             f"Histories that are predicted worst, {len(rows)} of {len(ranked)}. Score: continuous ranked "
@@ -59,14 +59,20 @@ def _ranked(misfit):
     excess = (misfit["score"] / misfit["usual"]).transpose("test", "cell").to_numpy()
     excess = np.nan_to_num(np.where(np.isfinite(excess), excess, 0.0))
     order = np.argsort(-excess, axis=None, kind="stable")[: np.count_nonzero(excess)]
-    return [tuple(map(int, np.unravel_index(place, excess.shape))) for place in order]
+    return [tuple(map(int, np.unravel_index(index, excess.shape))) for index in order]
 
 
 def _row(misfit, test, cell):
-    one = misfit.isel(test=test, cell=cell)
-    factor, unit = printed(str(one["unit"].item()))
-    score, usual = factor * float(one["score"]), factor * float(one["usual"])
+    history = misfit.isel(test=test, cell=cell)
+    factor, unit = printed(str(history["unit"].item()))
+    score, usual = factor * float(history["score"]), factor * float(history["usual"])
+    shown = (score, usual, score / usual)
     return (
-        str(one["test"].item()), f"{one['quantity'].item()}, {one['where'].item()}", unit, number(score), number(usual),
-        number(score / usual), percent(one["chance"]), number(one["worst_time"]), number(one["horizon"]),
-    )  # fmt: skip
+        str(history["test"].item()),
+        f"{history['quantity'].item()}, {history['where'].item()}",
+        unit,
+        *map(number, shown),
+        percent(history["chance"]),
+        number(history["worst_time"]),
+        number(history["horizon"]),
+    )

@@ -47,15 +47,15 @@ def read_histories(test, structure, sensors):
         "opening": ("opening", {}),
         "drift": ("body_displacement", {"axis": "x"}),
     }
-    found = {}
+    histories = {}
     for name, (source, part) in along.items():
         values = read[source].sel(part, drop=True).transpose("time", ...)
         bridged = np.apply_along_axis(_bridged, 0, values.to_numpy(), round(_LONGEST_GAP / step))
-        found[name] = values.copy(data=bridged).isel(time=kept).astype(np.float32)
-        found[f"{name}_noise"] = read[f"{source}_noise"].sel(part, drop=True).astype(np.float32)
+        histories[name] = values.copy(data=bridged).isel(time=kept).astype(np.float32)
+        histories[f"{name}_noise"] = read[f"{source}_noise"].sel(part, drop=True).astype(np.float32)
     top = structure.body_names[int(np.argmax(structure.position[:, 2]))]
-    found = xr.Dataset(found).drop_vars(["lower", "upper", "known"])
-    return found.assign_attrs(top=top)
+    histories = xr.Dataset(histories).drop_vars(["lower", "upper", "known"])
+    return histories.assign_attrs(top=top)
 
 
 def as_cells(histories, of=""):
@@ -107,8 +107,8 @@ def at_readings(cells, time):
 def common_times(measured, *simulated):
     """Times of a measured test's cells that all simulated ones span."""
     time = measured["time"].to_numpy()
-    ends = [one["time"].to_numpy()[[0, -1]] for one in simulated]
-    first, last = max(one[0] for one in ends), min(one[1] for one in ends)
+    ends = [cells["time"].to_numpy()[[0, -1]] for cells in simulated]
+    first, last = max(start for start, _ in ends), min(end for _, end in ends)
     return time[(time >= first - 1e-6) & (time <= last + 1e-6)]
 
 

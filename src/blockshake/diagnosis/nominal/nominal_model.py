@@ -162,8 +162,8 @@ def _perturbed(generator, model, softer, structure):
     usual = {name: default for name, (default, *_) in model.numerical_parameters().items()}
     usual |= {"restitution": structure.file.restitution, **model.stiffness_of(structure)}
     numerics = {name: usual[name] * softer for name in model.stiffness} | model.perturbation.fixed
-    for one in model.perturbation.uncertain:
-        drawn = float(generator.uniform(one.lower, one.upper))
-        numerics[one.name] = usual[one.name] * drawn if one.relative else drawn
+    for parameter in model.perturbation.uncertain:
+        drawn = float(generator.uniform(parameter.lower, parameter.upper))
+        numerics[parameter.name] = usual[parameter.name] * drawn if parameter.relative else drawn
     steps = model.perturbation.time_steps
     return numerics, steps[0] if len(steps) == 1 else float(generator.choice(steps))

@@ -4,7 +4,6 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from blockshake.diagnosis.nominal.efforts import EFFORTS, ENSEMBLES_OF_SEALED_TEST, Effort
 from blockshake.diagnosis.nominal.nominal_model import MODELS
 from blockshake.diagnosis.nominal.planned_test import planned_sealed, planned_test
 from blockshake.effects.registry import EFFECTS
@@ -15,6 +14,36 @@ from blockshake.measurement.campaigns.campaign import Campaign, load_campaign
 from blockshake.measurement.campaigns.open_readings import read_open_tests
 
 _CHECKOUT = PACKAGE.parents[1].resolve()
+ENSEMBLES_OF_SEALED_TEST = 4  # nominal, recalibrated, extended, placebo
+
+
+@dataclass(frozen=True)
+class Effort:
+    """Amounts of simulation.
+
+    Attributes
+    ----------
+    tests : int
+        Open tests at most that are simulated.
+    draws : int
+        Nominal models of each open test, by each solver.
+    members : int
+        Of every ensemble that predicts a sealed test, by each solver.
+    twins : int
+        By which it is measured how long a test can be predicted, by each solver.
+    """
+
+    tests: int
+    draws: int
+    members: int
+    twins: int
+
+
+EFFORTS = {
+    "quick": Effort(tests=0, draws=0, members=0, twins=0),
+    "standard": Effort(tests=3, draws=40, members=12, twins=4),
+    "deep": Effort(tests=12, draws=80, members=40, twins=8),
+}
 
 
 @dataclass(frozen=True)
@@ -71,13 +100,12 @@ def plan_diagnosis(folder, effort):
     """
     if effort not in EFFORTS:
         raise InputError("effort", str(effort), f"expected one of {', '.join(EFFORTS)}")
-    campaign = load_campaign(folder)
+    campaign, effort = load_campaign(folder), EFFORTS[effort]
     names = open_tests(campaign)
-    chosen = simulated_tests(campaign, names, EFFORTS[effort].tests)
+    chosen = simulated_tests(campaign, names, effort.tests)
     structure = load_structure(campaign.structure) if chosen else None
-    return Plan(
-        campaign, EFFORTS[effort], names, {name: planned_test(campaign, name, structure) for name in chosen}
-    )
+    tests = {name: planned_test(campaign, name, structure) for name in chosen}
+    return Plan(campaign, effort, names, tests)
 
 
 def open_tests(campaign):

@@ -70,11 +70,11 @@ class PlannedTest:
 
     @property
     def peak_acceleration(self):
-        """Of the commanded motion along x [m/s2]."""
+        """Peak acceleration of the commanded motion along x [m/s2]."""
         return float(np.abs(self.motion.evaluate(self.motion.table.breaks, derivative=2)[:, 0]).max())
 
     def digest(self):
-        """Of the content: equal for equal tests, whatever their files are called."""
+        """Digest of the content: equal for equal tests, whatever their files are called."""
         return content_digest(
             structure_digest(self.structure),
             *(part.tobytes() for part in self.motion.table),

@@ -1,9 +1,6 @@
 """Synthetic readings that one sampled model gives for a planned test, and the histories that they show."""
 
-from typing import NamedTuple
-
 import numpy as np
-import xarray as xr
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 
@@ -19,15 +16,8 @@ from blockshake.store import load_made
 _SLOW = 0.04  # s, standard deviation of a Gaussian that is some 0.1 s wide at half its height
 
 
-class SimulatedTest(NamedTuple):
-    """Synthetic readings as in a campaign's test file, and the outcome of the run."""
-
-    test: xr.Dataset
-    status: str
-
-
 def simulated_test(planned, draw, extension=None):
-    """`SimulatedTest`: synthetic readings that a sampled model gives for a planned test.
+    """Synthetic readings that a sampled model gives for a planned test, as in a campaign's test file.
 
     Parameters
     ----------
@@ -36,6 +26,11 @@ def simulated_test(planned, draw, extension=None):
     draw : Draw
     extension : callable, optional
         Of an `Experiment`: the experiment with what the extended model has beside the nominal one.
+
+    Returns
+    -------
+    xarray.Dataset
+        With the run's ``status`` as an attribute.
     """
     physical, numerics = part_parameters(draw.parameters)
     readings = {name: value for name, value in draw.noise.items() if name != "louder"}
@@ -62,7 +57,7 @@ def simulated_test(planned, draw, extension=None):
         moved = test["marker_displacement"].transpose("time", "marker", "axis")
         first = np.isfinite(moved.to_numpy()).argmax(axis=0)
         test["marker_displacement"] = moved - np.take_along_axis(moved.to_numpy(), first[None], axis=0)[0]
-    return SimulatedTest(test, run.attrs["status"])
+    return test.assign_attrs(status=run.attrs["status"])
 
 
 def faster_part(motion):
@@ -95,8 +90,9 @@ def simulated_histories(words, planned, draw, store, extension=None):
     """
 
     def simulated(_):
-        test, status = simulated_test(planned, draw, extension)
-        return read_histories(test, planned.structure, planned.sensors).assign_attrs(status=status)
+        test = simulated_test(planned, draw, extension)
+        read = read_histories(test, planned.structure, planned.sensors)
+        return read.assign_attrs(status=test.attrs["status"])
 
     given = (
         planned.digest(), draw.model, draw.time_step, draw.parameters, draw.amplitude, draw.fast, draw.noise,

@@ -1,5 +1,7 @@
 """A blow: a short pulse at one time of some tests."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from blockshake.diagnosis.evidence.explanation import Explanation, Fit, mean_evidence
@@ -12,41 +14,46 @@ _SCALE = 0.5  # of the block's weight
 _CLEAR = 3.0  # nats, from which a test counts as struck
 
 
-def explain_blow(likelihood, points, weight):
-    """`Explanation` of at most one blow a test at one point, of any size and sign in each.
+class _Struck(NamedTuple):
+    """A test that counts as struck: its evidence, rows of 1 N s, impulse with its error [N s], time and width [s]."""
 
-    Parameters
-    ----------
-    likelihood : Likelihood
-    points : Points
-    weight : float
-        Of the block [N].
-    """
+    evidence: float
+    test: int
+    rows: np.ndarray
+    impulse: float
+    deviation: float
+    time: float
+    width: float
+
+
+def explain_blow(likelihood, points, weight):
+    """`Explanation` of at most one blow a test at one point, of any size and sign in each."""
     scale, total, struck = _SCALE * weight, 0.0, []
-    for test, one in enumerate(points.by_test):
-        shapes, tried = _pulses(one)
+    for test, point in enumerate(points.by_test):
+        shapes, tried = _pulses(point)
         gain, mean, deviation = likelihood.single(likelihood.whiten_one(test, shapes), scale, test=test)
         evidence = mean_evidence(gain)
         total += np.logaddexp(0.0, evidence) - np.log(2.0)  # struck or not, alike likely
         if evidence > _CLEAR:
             best = int(np.argmax(gain))
-            at, width = tried[best]
+            time, width = tried[best]
             area = np.sqrt(2.0 * np.pi) * np.hypot(0.5 * width, WIDTH)  # of a pulse of 1 N, N s
-            struck.append(
-                (evidence, test, shapes[:, best] / area, mean[best] * area, deviation[best] * area, at, width)
-            )
-    struck.sort(key=lambda one: -one[0])
-    columns = [
-        np.stack([one[2] if test == one[1] else np.zeros(len(point.unit)) for one in struck], axis=1)
-        if struck
-        else np.zeros((len(point.unit), 0))
-        for test, point in enumerate(points.by_test)
-    ]
-    impulses, deviations = np.array([one[3] for one in struck]), np.array([one[4] for one in struck])
-    blows = {points.tests[one[1]]: {"time": one[5], "width": one[6]} for one in struck}
+            rows, impulse, error = shapes[:, best] / area, mean[best] * area, deviation[best] * area
+            struck.append(_Struck(evidence, test, rows, impulse, error, time, width))
+    struck.sort(key=lambda blow: -blow.evidence)
+    columns = []
+    for test, point in enumerate(points.by_test):
+        rows = np.zeros((len(point.unit), len(struck)))
+        for column, blow in enumerate(struck):
+            if blow.test == test:
+                rows[:, column] = blow.rows
+        columns.append(rows)
+    impulses = np.array([blow.impulse for blow in struck])
+    covariance = np.diag(np.array([blow.deviation for blow in struck]) ** 2)
+    blows = {points.tests[blow.test]: {"time": blow.time, "width": blow.width} for blow in struck}
     scales = np.maximum(np.abs(impulses), 1.0)  # of what stands beside another cause: free
-    fit = Fit({"blows": blows}, float(total), columns, scales, impulses, np.diag(deviations**2))
-    return Explanation("blow", points.place, float(total), (fit,), np.zeros(0))
+    fit = Fit({"blows": blows}, float(total), columns, scales, impulses, covariance)
+    return Explanation("blow", points.place, float(total), (fit,))
 
 
 def _pulses(point):

@@ -11,26 +11,20 @@ _NEVER = -1e3  # nats
 
 
 def explain_changed_edge(likelihood, tests, place, key):
-    """`Explanation` of an inset of one edge, or of both, of one hinge; none where the tests leave nothing to change.
+    """`Explanation` of an inset of one edge, or of both, of a hinge; none where the tests leave nothing to change.
 
-    Parameters
-    ----------
-    likelihood : Likelihood
-    tests : list of JointRows
-    place : str
-    key : tuple of int
-        Face and tangent.
+    ``key`` is the face and the tangent of the hinge.
     """
     tried, columns = [], [[] for _ in tests]
-    for own, test in enumerate(tests):
+    for changed, test in enumerate(tests):
         for start in np.arange(test.rows.time[0], test.rows.time[-1], _STARTS_EVERY):
             for lasts in (False, True):
-                if lasts and own == 0 and start == test.rows.time[0]:
+                if lasts and changed == 0 and start == test.rows.time[0]:
                     continue  # in all tests: no change
                 for edge in (0, 1, -1):
-                    tried.append((own, float(start), lasts, edge))
-                    for number, one in enumerate(tests):
-                        columns[number].append(_rows(one, key, edge, number, own, start, lasts))
+                    tried.append((changed, float(start), lasts, edge))
+                    for number, other in enumerate(tests):
+                        columns[number].append(_rows(other, key, edge, number, changed, start, lasts))
     if not tried:
         return
     whitened = likelihood.whiten([np.stack(rows, axis=1) for rows in columns])
@@ -38,24 +32,27 @@ def explain_changed_edge(likelihood, tests, place, key):
     widest = 0.5 * float(np.ptp(tests[0].seen.faces[key[0]].corners[:, key[1]]))
     gain = np.where(mean < widest, gain, _NEVER)  # an edge lies on its face
     best = int(np.argmax(gain))
-    own, start, lasts, edge = tried[best]
+    changed, start, lasts, edge = tried[best]
     yield single(
         "changed-edge", place, mean_evidence(gain), [rows[best] for rows in columns], _INSET_SCALE,
         (float(mean[best]), float(deviation[best])),
         {
-            "test": tests[own].seen.name, "start": start, "lasts": lasts, "edge": edge,
-            "before": [one.seen.name for one in tests[:own]], "tangent": key[1],
+            "test": tests[changed].seen.name, "start": start, "lasts": lasts, "edge": edge,
+            "before": [other.seen.name for other in tests[:changed]], "tangent": key[1],
         },
     )  # fmt: skip
 
 
-def _rows(test, key, edge, number, own, start, lasts):
+def _rows(test, key, edge, number, changed, start, lasts):
     """Rows of the inset in one test, where it is there."""
-    if key not in test.hinges or number < own or (number > own and not lasts):
+    if key not in test.hinges or number < changed or (number > changed and not lasts):
         return np.zeros(len(test.rows.value))
-    hinge = test.hinges[key]
-    there = hinge.edge == edge if edge else np.ones(len(hinge.edge), dtype=bool)
-    return hinge.inward * (there & ((number > own) | (test.rows.time >= start)))
+    return _inset(test.hinges[key], edge) * ((number > changed) | (test.rows.time >= start))
+
+
+def _inset(hinge, edge):
+    """Rows of an inset of 1 m of one edge, or of both (0)."""
+    return hinge.inward * (hinge.edge == edge) if edge else hinge.inward
 
 
 def _act(experiment, size, place, when, test):
@@ -76,13 +73,9 @@ def _of_test(test, place, when):
     """Rows of a test to come: the change is there from its start on."""
     names = test.seen.structure.body_names
     pair = [names.index(name) for name in place["joint"]]
-    face = next(index for index, one in enumerate(test.seen.faces) if [one.lower, one.upper] == pair)
-    found = np.zeros(len(test.rows.value))
-    for key, hinge in test.hinges.items():
-        if key == (face, when["tangent"]):
-            there = hinge.edge == when["edge"] if when["edge"] else np.ones(len(hinge.edge), dtype=bool)
-            found += hinge.inward * there
-    return found
+    face = next(index for index, joint in enumerate(test.seen.faces) if [joint.lower, joint.upper] == pair)
+    key = face, when["tangent"]
+    return _inset(test.hinges[key], when["edge"]) if key in test.hinges else np.zeros(len(test.rows.value))
 
 
 FORM = Form(

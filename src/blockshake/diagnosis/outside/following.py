@@ -12,15 +12,7 @@ _ROPE, _DRAG, _DRY = 3e5, 3e4, 0.05  # N/m, N s/m, of the block's weight
 
 
 def explain_following(likelihood, points, weight):
-    """`Explanation` of a rope, a drag and a dry drag at one point.
-
-    Parameters
-    ----------
-    likelihood : Likelihood
-    points : Points
-    weight : float
-        Of the block [N].
-    """
+    """`Explanation` of a rope, a drag and a dry drag at one point."""
     scales = {"rope": _ROPE, "drag": _DRAG, "dry-drag": _DRY * weight}
     for name, scale in scales.items():
         rows = [Columns({}, _against(name, one)[:, None], (scale,), True) for one in points.by_test]

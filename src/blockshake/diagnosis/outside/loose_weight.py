@@ -15,15 +15,7 @@ _SHARE_SCALE = 0.2  # of the block's mass
 
 
 def explain_loose_weight(likelihood, tests, place, body):
-    """`Explanation` of a weight on the top of a body.
-
-    Parameters
-    ----------
-    likelihood : Likelihood
-    tests : list of JointRows
-    place : str
-    body : int
-    """
+    """`Explanation` of a weight on the top of a body."""
     scale = _SHARE_SCALE * tests[0].seen.structure.mass[body]
     variants = [
         [Columns({"grip": grip}, _rows(test.seen, body, grip)[:, None], (scale,), True) for test in tests]

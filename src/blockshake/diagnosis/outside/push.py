@@ -12,33 +12,21 @@ _SWEEPS = 3
 
 
 def explain_push(likelihood, points, weight):
-    """`Explanation` of a push at one point; the starts are searched test by test, those of the others kept.
-
-    Parameters
-    ----------
-    likelihood : Likelihood
-    points : Points
-    weight : float
-        Of the block [N].
-    """
+    """`Explanation` of a push at one point; the starts are searched test by test, those of the others kept."""
     scale = _SCALE * weight
     starts, columns, parts = [], [], []
-    for test, one in enumerate(points.by_test):
-        tried = _starts(one.time)
-        shapes = one.unit[:, None] * _rise(one.time, tried)
+    for test, point in enumerate(points.by_test):
+        tried = _starts(point.time)
+        shapes = point.unit[:, None] * _rise(point.time, tried)
         starts.append(tried)
         columns.append(shapes)
         parts.append(likelihood.parts(likelihood.whiten_one(test, shapes), test))
-    found = [_climb(likelihood, parts, scale, sign) for sign in (1.0, -1.0)]
-    evidence, chosen, fitted = max(found, key=lambda one: one[0])
-    return single(
-        "push", points.place, evidence,
-        [shapes[:, place] for shapes, place in zip(columns, chosen, strict=True)], scale, fitted,
-        {"starts": {
-            name: float(tried[place])
-            for name, tried, place in zip(points.tests, starts, chosen, strict=True)
-        }},
-    )  # fmt: skip
+    climbed = [_climb(likelihood, parts, scale, sign) for sign in (1.0, -1.0)]
+    evidence, chosen, fitted = max(climbed, key=lambda result: result[0])
+    rows = [shapes[:, index] for shapes, index in zip(columns, chosen, strict=True)]
+    begins = [float(tried[index]) for tried, index in zip(starts, chosen, strict=True)]
+    values = {"starts": dict(zip(points.tests, begins, strict=True))}
+    return single("push", points.place, evidence, rows, scale, fitted, values)
 
 
 def _climb(likelihood, parts, scale, sign):
@@ -48,8 +36,8 @@ def _climb(likelihood, parts, scale, sign):
         logs = []
         for test, part in enumerate(parts):
             others = [
-                [own[..., place] for own in other]
-                for number, (other, place) in enumerate(zip(parts, chosen, strict=True))
+                [values[..., index] for values in other]
+                for number, (other, index) in enumerate(zip(parts, chosen, strict=True))
                 if number != test
             ]
             target, square = (part[key] + sum(other[key] for other in others) for key in range(2))
@@ -76,22 +64,14 @@ def _rows(test, place, when):
     return point.unit * _rise(point.time, np.array([when["starts"][test.seen.name]]))[:, 0]
 
 
-def start_of_push(place, size, test, left):
-    """Start of a push of a known size in a further test: that which leaves the least.
-
-    Parameters
-    ----------
-    place : dict
-    size : float
-        [N]
-    test : JointRows
-    left : callable
-        Of rows that are taken off: their squared distance.
-    """
+def start_of_push(place, size, test, likelihood, number):
+    """Start of a push of a known size [N] in a further test that leaves least of its rows; ``number``: of the test."""
     point = point_rows(test.seen, place["body"], place["height"])
     tried = _starts(point.time)
     shapes = size * point.unit[:, None] * _rise(point.time, tried)
-    return float(tried[int(np.argmin([left(rows) for rows in shapes.T]))])
+    value = likelihood.value[likelihood.ends[number] : likelihood.ends[number + 1]]
+    unexplained = value[:, None] - likelihood.whiten_one(number, shapes)
+    return float(tried[np.argmin((unexplained**2).sum(axis=0))])
 
 
 def _starts(time):

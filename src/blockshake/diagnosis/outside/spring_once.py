@@ -12,29 +12,23 @@ _STIFFNESS_SCALE = 1e7  # N/m
 
 def explain_spring_once(likelihood, points, weight):
     """`Explanation` of a spring beyond a gap to one side in one test, at one point."""
-    found = []
-    for test, one in enumerate(points.by_test):
+    springs = []
+    for test, point in enumerate(points.by_test):
         for side in (1, -1):
-            rows = np.stack([spring_rows(one, side, gap) for gap in _GAPS], axis=1)
+            rows = np.stack([spring_rows(point, side, gap) for gap in _GAPS], axis=1)
             gain, mean, deviation = likelihood.single(
                 likelihood.whiten_one(test, rows), _STIFFNESS_SCALE, positive=True, test=test
             )
             best = int(np.argmax(gain))
             fitted = float(mean[best]), float(deviation[best])
-            found.append((float(mean_evidence(gain)), test, rows[:, best], fitted, side, _GAPS[best]))
-    best = max(found, key=lambda one: one[0])
-    _, own, rows, fitted, side, gap = best
-    columns = [rows if test == own else np.zeros(len(one.unit)) for test, one in enumerate(points.by_test)]
-    values = {"test": points.tests[own], "side": side, "gap": float(gap)}
-    return single(
-        "spring-once",
-        points.place,
-        mean_evidence([one[0] for one in found]),
-        columns,
-        _STIFFNESS_SCALE,
-        fitted,
-        values,
-    )
+            springs.append((float(mean_evidence(gain)), test, rows[:, best], fitted, side, _GAPS[best]))
+    _, struck, rows, fitted, side, gap = max(springs, key=lambda spring: spring[0])
+    columns = [
+        rows if test == struck else np.zeros(len(point.unit)) for test, point in enumerate(points.by_test)
+    ]
+    values = {"test": points.tests[struck], "side": side, "gap": float(gap)}
+    evidence = mean_evidence([spring[0] for spring in springs])
+    return single("spring-once", points.place, evidence, columns, _STIFFNESS_SCALE, fitted, values)
 
 
 def _act(experiment, size, place, when, test):

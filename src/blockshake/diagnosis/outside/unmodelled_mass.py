@@ -11,14 +11,7 @@ _SCALE = 0.2  # of the body's mass
 
 
 def explain_unmodelled_mass(likelihood, tests, point):
-    """`Explanation` of a mass at one point, which weighs and is shaken with the body.
-
-    Parameters
-    ----------
-    likelihood : Likelihood
-    tests : list of JointRows
-    point : Points
-    """
+    """`Explanation` of a mass at one point, which weighs and is shaken with the body."""
     height = float(point.place.rpartition("@")[2])
     scale = _SCALE * tests[0].seen.structure.mass[point.body]
     rows = [Columns({}, _rows(test.seen, point.body, height)[:, None], (scale,), True) for test in tests]

@@ -27,13 +27,8 @@ class Diagnosed:
 
     Attributes
     ----------
-    campaign : Campaign
-    effort : str
     synthetic : bool
         Any test that was judged by is a virtual one.
-    verdict : Verdict
-    decision : Decision
-    parity : Parity
     departures : xarray.Dataset
         From `departures`.
     gain : xarray.Dataset or None
@@ -42,7 +37,6 @@ class Diagnosed:
         From `misfit`; None where nothing was simulated.
     structure : str
         Its name.
-    bodies : tuple of str
     motions : dict of str to dict
         By name of a commanded motion: its provenance.
     track_record : TrackRecord or None
@@ -76,20 +70,7 @@ class Diagnosed:
 def load_diagnosed(campaign, results, effort, track_record):
     """Read a `Diagnosed` campaign from its results; no sealed test's file is opened.
 
-    Parameters
-    ----------
-    campaign : str or path
-        Its folder.
-    results : str or path
-        Folder with ``verdict.json`` and what it rests on.
-    effort : str
-    track_record : str or path
-        The procedure's track record, or where it will be.
-
-    Raises
-    ------
-    InputError
-        A file is missing or holds something else.
+    Arguments and errors are those of `make_diagnosis_report`.
     """
     results, campaign, track_record = Path(results), load_campaign(campaign), Path(track_record)
     verdict = load_verdict(results / "verdict.json")
@@ -129,5 +110,5 @@ def _synthetic(attributes):
 def _motions(campaign):
     """Provenance of the motions that were commanded; nothing of one that is not at hand."""
     tests = {test.motion: test for test in campaign.tests.values()}
-    found = {name: commanded_motion(campaign, test) for name, test in tests.items()}
-    return {name: motion.attributes for name, motion in found.items() if motion is not None}
+    motions = {name: commanded_motion(campaign, test) for name, test in tests.items()}
+    return {name: motion.attributes for name, motion in motions.items() if motion is not None}

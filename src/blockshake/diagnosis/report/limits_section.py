@@ -9,12 +9,12 @@ from blockshake.pages.blocks import Items, Section, Table, Text
 from blockshake.pages.wording import sentence_case
 
 
-def limits_section(found):
+def limits_section(diagnosed):
     """Table of detection limits, what the sensors do not show, caveats."""
-    decision = found.decision
+    decision = diagnosed.decision
     elsewhere = (*OF_GAIN, "do not tell these apart")  # in sections of their own
     caveats = [
-        one for one in dict.fromkeys(found.verdict.caveats)
+        one for one in dict.fromkeys(diagnosed.verdict.caveats)
         if one not in decision.cannot_see and not any(words in one for words in elsewhere)
     ]  # fmt: skip
     blocks = [
@@ -22,7 +22,7 @@ def limits_section(found):
             "A cause that is as large as its limit would have been seen beyond chance. The limits follow from "
             "the forces and the noise of these tests, before any cause is looked for."
         ),
-        _table(found),
+        _table(diagnosed),
     ]
     if decision.cannot_see:
         blocks += [Text("The sensors do not show:"), Items(tuple(map(sentence_case, decision.cannot_see)))]
@@ -31,21 +31,21 @@ def limits_section(found):
     return Section("Limits: what would have been seen", "limits", tuple(blocks))
 
 
-def _table(found):
+def _table(diagnosed):
     rows = []
     for name, effect in EFFECTS.items():
-        if effect.acts == "observation" or name not in found.decision.probabilities:
+        if effect.acts == "observation" or name not in diagnosed.decision.probabilities:
             continue
         first = effect.parameters[0]
-        limits = found.decision.limits.get(name, {})
+        limits = diagnosed.decision.limits.get(name, {})
         ranked = sorted(limits, key=lambda place: abs(limits[place] - first.null))
-        ends = [_seen(found, name, limits, place) for place in ranked[:: max(len(ranked) - 1, 1)]]
-        wherever = found.decision.excluded_above.get(name)
+        ends = [_seen(diagnosed, name, limits, place) for place in ranked[:: max(len(ranked) - 1, 1)]]
+        wherever = diagnosed.decision.excluded_above.get(name)
         rows.append((
             title_of(name), meaning_words(first), *(ends or ["not seen"]), *[""] * (2 - max(len(ends), 1)),
             beyond(name, wherever) if wherever is not None else "not everywhere",
         ))  # fmt: skip
-    removed = [title_of(name) for name in EFFECTS if name not in found.decision.probabilities]
+    removed = [title_of(name) for name in EFFECTS if name not in diagnosed.decision.probabilities]
     return Table(
         "Sizes from which each effect would have been seen: where these tests tell most of it and where they tell "
         "least; and wherever it may be, unless there are places at which they tell nothing of it."
@@ -57,8 +57,8 @@ def _table(found):
     )
 
 
-def _seen(found, name, limits, place):
-    where = named_place(place, found.bodies)
+def _seen(diagnosed, name, limits, place):
+    where = named_place(place, diagnosed.bodies)
     words = beyond(name, limits[place])
     if place == EVERYWHERE:
         return words if len(limits) == 1 else f"{words}, everywhere alike"

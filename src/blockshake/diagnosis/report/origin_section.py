@@ -6,54 +6,54 @@ from blockshake.pages.origin import command_blocks, digests_table, versions_tabl
 from blockshake.pages.wording import given
 
 
-def origin_section(found):
+def origin_section(diagnosed):
     """Tests of the campaign, motions, digests, versions."""
     blocks = [
-        Items(_assumed(found)),
-        _tests_table(found),
-        *command_blocks(f"snakemake -c2 diagnose --config campaign=FOLDER effort={found.effort}"),
-        digests_table(found.digests),
-        versions_table(found.versions),
+        Items(_assumed(diagnosed)),
+        _tests_table(diagnosed),
+        *command_blocks(f"snakemake -c2 diagnose --config campaign=FOLDER effort={diagnosed.effort}"),
+        digests_table(diagnosed.digests),
+        versions_table(diagnosed.versions),
     ]
     return Section("Tests, assumptions, origin", "origin", tuple(blocks))
 
 
-def _assumed(found):
+def _assumed(diagnosed):
     motions = [
         f"{name}{' (SYNTHETIC)' if one.get('synthetic') else ''}"
         + (f": {provenance(one)}" if one["source"] != name or one["format"] != "csv" else "")
-        for name, one in found.motions.items()
+        for name, one in diagnosed.motions.items()
     ]
     items = [
         "Assumed: rigid blocks of the stated sizes and masses, of which edges, faces, mass centres and friction "
         "scatter as sound blocks do; markers and accelerometers with the stated noise.",
         "Forces are read off the measured motion; the decision rests on no simulation.",
     ]
-    if found.verdict.runs:
+    if diagnosed.verdict.runs:
         items.append(
-            f"{found.verdict.runs} simulated tests, for the gain on the responses and the misfit alone."
+            f"{diagnosed.verdict.runs} simulated tests, for the gain on the responses and the misfit alone."
         )
     if motions:
         items.append(f"Commanded motions: {'; '.join(motions)}.")
     items += [
         f"{test} is judged until {one.body} falls, at {one.time:.2f} s."
-        for test, one in found.parity.falls.items()
+        for test, one in diagnosed.parity.falls.items()
     ]
     return tuple(items)
 
 
-def _tests_table(found):
+def _tests_table(diagnosed):
     rows = []
-    for test in found.campaign.tests.values():
-        use = "judged by" if test.name in found.decision.tests else "left out"
-        if test.name in found.decision.silent:
+    for test in diagnosed.campaign.tests.values():
+        use = "judged by" if test.name in diagnosed.decision.tests else "left out"
+        if test.name in diagnosed.decision.silent:
             use += ", no joint moved"
         if test.role == "sealed":
-            read = found.verdict.gain or found.verdict.row_gain
+            read = diagnosed.verdict.gain or diagnosed.verdict.row_gain
             use = "sealed: read for the gain alone" if read else "sealed: not read"
         rows.append((test.name, test.motion, given(test.scale), test.role, use))
     words = (
-        f"Tests of the campaign {found.campaign.name}. Role, as the campaign says: fit and select are open, to "
+        f"Tests of the campaign {diagnosed.campaign.name}. Role, as the campaign says: fit and select are open, to "
         "find the cause by; sealed is kept for the gain."
     )
     return Table(words, ("Test", "Motion", "Scale", "Role", "Use"), tuple(rows), "llrll")

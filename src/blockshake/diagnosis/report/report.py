@@ -53,16 +53,16 @@ def make_diagnosis_report(campaign, results, effort, track_record, html, pdf):
     write_pdf(pdf, document)
 
 
-def compose_diagnosis(found):
+def compose_diagnosis(diagnosed):
     """The report's document from what was found; a section that has nothing to say is left out."""
-    tests = found.decision.tests
-    sections = (section(found) for section in _SECTIONS)
+    tests = diagnosed.decision.tests
+    sections = (section(diagnosed) for section in _SECTIONS)
     return numbered(
         Document(
-            title=f"blockshake: diagnosis of {found.campaign.name}",
+            title=f"blockshake: diagnosis of {diagnosed.campaign.name}",
             subtitle=(
-                f"{found.structure}, judged by {count_words(len(tests), 'test')} ({', '.join(tests)})"
-                f", effort {found.effort}"
+                f"{diagnosed.structure}, judged by {count_words(len(tests), 'test')} ({', '.join(tests)})"
+                f", effort {diagnosed.effort}"
             ),
             sections=tuple(section for section in sections if section),
         )

@@ -10,9 +10,9 @@ from blockshake.parity.kinds.registry import KINDS
 from blockshake.parity.parity import LEVEL
 
 
-def sensors_section(found):
+def sensors_section(diagnosed):
     """Checks that were made, and the faults with their estimates."""
-    return Section("Sensors", "sensors", (Text(_sensors(found.parity)), *_findings(found)))
+    return Section("Sensors", "sensors", (Text(_sensors(diagnosed.parity)), *_findings(diagnosed)))
 
 
 def _sensors(parity):
@@ -52,14 +52,14 @@ def _estimate(finding, channels):
     )
 
 
-def _findings(found):
+def _findings(diagnosed):
     rows = [
         (
             title_of(one.effect), ", ".join(one.where), one.quantity,
-            _estimate(one, found.parity.channels["channel"].values),
+            _estimate(one, diagnosed.parity.channels["channel"].values),
             chance_words(one.p).removeprefix("p = ").removeprefix("p "), ", ".join(one.tests),
         )
-        for one in found.parity.findings
+        for one in diagnosed.parity.findings
     ]  # fmt: skip
     if not rows:
         return []

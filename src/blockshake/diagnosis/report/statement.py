@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.diagnosis.answer.odds import ODDS
+from blockshake.diagnosis.answer.answer import ODDS
 from blockshake.diagnosis.verdict.ladder import NOTHING, ONE_OF, UNKNOWN
 from blockshake.diagnosis.wording import (
     beyond,
@@ -21,12 +21,12 @@ _MOST_PLACES = 4
 RATIO = round(np.exp(ODDS))  # of odds, within which causes are not told apart
 
 
-def statement(found):
+def statement(diagnosed):
     """The answer in one sentence: what acts, where, and how large."""
-    verdict, decision = found.verdict, found.decision
+    verdict, decision = diagnosed.verdict, diagnosed.decision
     word = verdict.word[0].upper() + verdict.word[1:]
-    acting = [_of_part(found, part) for part in decision.parts]
-    sensors = sensor_causes(found)
+    acting = [_of_part(diagnosed, part) for part in decision.parts]
+    sensors = sensor_causes(diagnosed)
     if verdict.word == NOTHING:
         return f"{word}: {_looked_at(decision)} hold no force that sound blocks would not make."
     if verdict.word == UNKNOWN:
@@ -47,30 +47,30 @@ def _looked_at(decision):
     return f"{count_words(decision.n_rows, 'equation')} of motion in {tests}"
 
 
-def _of_part(found, part):
+def _of_part(diagnosed, part):
     """Causes of one part of the readings that are not told apart."""
-    return "; or ".join(cause_words(one, _places(found, one)) for one in part.causes)
+    return "; or ".join(cause_words(one, _places(diagnosed, one)) for one in part.causes)
 
 
-def _places(found, cause):
+def _places(diagnosed, cause):
     """Bodies or joints that the tests do not tell apart, in words."""
     if len(cause.places) == 1:
         return place_words(cause.place)
     names = list(dict.fromkeys(name.partition("@")[0] for name in cause.places))
-    words = [named_place(name, found.bodies) for name in names]
+    words = [named_place(name, diagnosed.bodies) for name in names]
     if len(words) > _MOST_PLACES:
         words = [*words[: _MOST_PLACES - 1], f"{len(words) - _MOST_PLACES + 1} other places"]
     return listed(words, "or")
 
 
-def sensor_causes(found):
+def sensor_causes(diagnosed):
     """Faults of sensors among the causes of the verdict, in words with their sizes."""
-    physical = [one.name for one in found.decision.causes]
-    where = {name: [] for name in found.verdict.causes if name not in physical}
-    for one in found.parity.findings:
+    physical = [one.name for one in diagnosed.decision.causes]
+    where = {name: [] for name in diagnosed.verdict.causes if name not in physical}
+    for one in diagnosed.parity.findings:
         if one.effect in where:
             where[one.effect] += one.where
-    known = found.verdict.parameters
+    known = diagnosed.verdict.parameters
     return [
         ", ".join([
             f"{title_of(name)} ({', '.join(dict.fromkeys(own))})",
@@ -80,17 +80,17 @@ def sensor_causes(found):
     ]  # fmt: skip
 
 
-def not_told(found):
+def not_told(diagnosed):
     """Sentences on what the tests do not tell from the answer, one a part of the readings."""
-    decision = found.decision
+    decision = diagnosed.decision
     if not decision.parts:
         limits = [f"{title_of(name)} {beyond(name, size)}" for name, size in decision.excluded_above.items()]
         seen = f"These would have been seen wherever they act: {listed(limits)}. " if limits else ""
         return [f"{seen}Smaller ones, and what has no limit in the table of limits, may act all the same."]
-    return [_not_told_from(found, part) for part in decision.parts]
+    return [_not_told_from(diagnosed, part) for part in decision.parts]
 
 
-def _not_told_from(found, part):
+def _not_told_from(diagnosed, part):
     first, *others = part.causes
     rivals = {name: odds for name, odds in part.odds.items() if odds >= ODDS}
     if others:
@@ -104,9 +104,9 @@ def _not_told_from(found, part):
         )
     else:
         words = "no other cause was tried on these readings."
-    if len(found.decision.parts) > 1:
+    if len(diagnosed.decision.parts) > 1:
         words = f"{part.readings}: {words}"
     if len(first.places) > 1:
-        best, among = named_place(first.places[0], found.bodies), _places(found, first)
+        best, among = named_place(first.places[0], diagnosed.bodies), _places(diagnosed, first)
         words += f" Its {'height' if among in best else f'place, {among},'} is not told; likeliest is {best}."
     return words[0].upper() + words[1:]

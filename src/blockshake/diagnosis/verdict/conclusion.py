@@ -1,16 +1,18 @@
 """The verdict of a campaign, from the sensors, the decision and the sealed tests."""
 
+from typing import NamedTuple
+
+import numpy as np
+
+from blockshake.diagnosis.answer.decision import Estimate
 from blockshake.diagnosis.verdict.ladder import rung
-from blockshake.diagnosis.verdict.sensor_causes import sensor_causes
 from blockshake.diagnosis.verdict.verdict import MeasuredGain, Misfit, Outside, Verdict
 from blockshake.effects.registry import EFFECTS, title_of
+from blockshake.parity.kinds.registry import KINDS
 
 _WHERE = ("joint", "body")
-
-
-def no_gain(campaign, acting):
-    """Reason why no gain was measured, where something acts."""
-    return ["no gain was measured: there is no sealed test"] if acting and not campaign.sealed else []
+_SIGMAS = 1.645  # of a Gaussian, within which nine tenths lie
+_FORM = 0.05  # share of a fault's size by which it may vary with the reading, as that of a real sensor does
 
 
 def conclude(decision, findings, kinds, caveats=(), measured=None):
@@ -34,7 +36,7 @@ def conclude(decision, findings, kinds, caveats=(), measured=None):
     """
     sensors, measured = sensor_causes(findings, kinds), measured or MeasuredGain()
     kind, causes = decision.decision, [*sensors, *(one.name for one in decision.causes)]
-    caveats = [*caveats, *measured.caveats, *decision.cannot_see, *_told(decision)]
+    caveats = [*caveats, *measured.caveats, *decision.cannot_see, *_caveats(decision)]
     caveats += [decision.impacts] if decision.impacts else []
     if sensors and kind == "unknown":
         causes = []
@@ -45,16 +47,18 @@ def conclude(decision, findings, kinds, caveats=(), measured=None):
     word, missing = rung(kind, decision, bool(sensors), measured)
     named = {one.name: one for one in decision.causes}
     faults = {name: one for name, one in sensors.items() if name in causes}
-    shown = [one for part in decision.parts for one in part.causes][
-        ::-1
-    ]  # of one name the stronger part's last
+    places = {name: one.location for name, one in faults.items()}
+    places |= {
+        name: {key: one.place[key] for key in _WHERE if key in one.place} for name, one in named.items()
+    }
+    # of one name the cause of the stronger part, which stands first, is the last and stays
+    shown = [cause for part in reversed(decision.parts) for cause in reversed(part.causes)]
     return Verdict(
         decision=kind,
         causes=causes,
         probabilities=decision.probabilities | {name: 1.0 - one.p for name, one in faults.items()},
         parameters={name: one.parameters for name, one in (faults | named).items() if one.parameters},
-        location={name: one.location for name, one in faults.items() if one.location}
-        | {name: place for name, one in named.items() if (place := _location(one.place))},
+        location={name: place for name, place in places.items() if place},
         misfit=_misfit(decision, sensors),
         excluded_above={name: size for name, size in decision.excluded_above.items() if name not in causes},
         next_test=_next_test(causes),
@@ -71,14 +75,10 @@ def conclude(decision, findings, kinds, caveats=(), measured=None):
     )
 
 
-def _location(place):
-    return {key: tuple(value) if key == "joint" else value for key, value in place.items() if key in _WHERE}
-
-
-def _told(decision):
+def _caveats(decision):
     """Lines on rivals, on forms beside the causes, and on tests that tell nothing."""
     for part in decision.parts:
-        names = [one.title for one in part.causes]
+        names = [cause.title for cause in part.causes]
         if len(names) > 1:
             yield f"{' or '.join(names)}: the tests do not tell these apart"
         elif part.forms and decision.causes:
@@ -118,3 +118,35 @@ def _next_test(causes):
     """The measurement that would decide between what is left."""
     known = dict.fromkeys(EFFECTS[name].told_apart_by for name in causes[:2] if name in EFFECTS)
     return "; ".join(known) or None
+
+
+class SensorCause(NamedTuple):
+    """A sensor fault: its parameters with 90 % intervals, its sensor (empty for the optical system), its chance."""
+
+    parameters: dict
+    location: dict
+    p: float
+
+
+def sensor_causes(findings, kinds):
+    """`SensorCause` by registry name: of several findings of one name that with the smallest chance."""
+    causes = {}
+    for finding in sorted(findings, key=lambda finding: (finding.p, finding.where, finding.tests)):
+        sensor = finding.where[0]
+        location = {} if sensor.startswith("optical ") else {kinds.get(sensor, "marker"): sensor}
+        causes.setdefault(finding.effect, SensorCause(_estimates(finding), location, finding.p))
+    return causes
+
+
+def _estimates(finding):
+    """Size of a fault by the name of the registry's parameter; empty where its quantity is not that parameter."""
+    effect, component = EFFECTS.get(finding.effect), KINDS[finding.quantity].size
+    if effect is None or component is None or not len(finding.estimate):
+        return {}
+    size = effect.parameters[0]
+    component = component if len(finding.estimate) == 3 else 0
+    estimate = float(finding.estimate[component])
+    reach = _SIGMAS * float(np.hypot(finding.standard_error[component], _FORM * estimate))
+    return {
+        size.name: Estimate(estimate=estimate, lower=estimate - reach, upper=estimate + reach, unit=size.unit)
+    }

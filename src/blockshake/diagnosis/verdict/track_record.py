@@ -129,11 +129,6 @@ class TrackRecord(Strict):
         """Numbers of diagnoses and of campaigns in words: some are diagnosed again without their effect on the list."""
         return f"{len(self.cases)} diagnoses of {len({case.name for case in self.cases})} campaigns"
 
-    @property
-    def effort(self):
-        """Efforts by structure in words."""
-        return ", ".join(f"{effort} of {structure}" for structure, effort in self.efforts.items())
-
     @model_validator(mode="after")
     def _consistent(self):
         counted = sum(row.answers.n for row in self.confusion)

@@ -7,9 +7,9 @@ from blockshake.pages.wording import MISSING, percent
 _MET = {True: "met", False: "missed"}
 
 
-def track_record_section(found):
+def track_record_section(diagnosed):
     """Shares of the campaigns in which an effect was hidden."""
-    record = found.track_record
+    record = diagnosed.track_record
     if record is None:
         text = (
             "This procedure has no track record yet: it has not been run on campaigns in which an effect was hidden, "

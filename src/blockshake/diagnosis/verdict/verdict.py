@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
 from pydantic import Field, JsonValue, model_validator
 
 from blockshake.diagnosis.answer.decision import Estimate
@@ -20,6 +21,15 @@ class Contrast(Strict):
     estimate: Finite
     lower: Finite
     upper: Finite
+
+    @classmethod
+    def cut_off(cls, estimate, lower, upper):
+        """The gain from -1 to 1; an interval of few draws that misses its estimate is widened to it."""
+        ends = {"estimate": estimate, "lower": min(lower, estimate), "upper": max(upper, estimate)}
+        return cls(**{name: float(np.clip(value, -1.0, 1.0)) for name, value in ends.items()})
+
+
+NOTHING_TO_GAIN = Contrast(estimate=0.0, lower=-1.0, upper=1.0)
 
 
 class Gain(Strict):
@@ -53,7 +63,7 @@ class Outside(Strict):
     form: str
     title: str = Field(description="in words")
     place: dict[str, JsonValue] = Field(
-        description="{body: name, height: over the body's own} or {joint: [lower, upper]}"
+        description="{body: name, height: share of its own} or {joint: [lower, upper]}"
     )
     places: tuple[str, ...] = Field(description="in words, all that cannot be told from it")
     size: dict[str, Estimate] = Field(description="by name of the size")
@@ -61,44 +71,27 @@ class Outside(Strict):
 
 
 class Verdict(Strict):
-    """The whole file."""
+    """The whole file; `Verdict` in docs/guide/contracts.md says what each field holds."""
 
     version: Literal[VERSION] = VERSION
     decision: Literal["none", "named", "ambiguous", "combination", "unknown"]
-    causes: tuple[str, ...] = Field(description="names of the registry: the set that is not excluded")
-    probabilities: dict[str, Fraction] = Field(description="by name, among all rivals and none, coarsened")
-    parameters: dict[str, dict[str, Estimate]] = Field({}, description="by cause and parameter")
-    location: dict[str, dict[str, str | tuple[str, str]]] = Field(
-        {},
-        description="by cause, {joint: [lower body, upper body]}, {body: name}, {marker: name} or {channel: name}",
-    )
+    causes: tuple[str, ...]
+    probabilities: dict[str, Fraction]
+    parameters: dict[str, dict[str, Estimate]] = Field(default_factory=dict)
+    location: dict[str, dict[str, str | tuple[str, str]]] = Field(default_factory=dict)
     misfit: Misfit
-    excluded_above: dict[str, Finite] = Field(
-        {}, description="by name, size above which the tests would have shown it, in its own unit"
-    )
-    next_test: str | None = Field(None, description="the measurement that would decide")
-    gain: Gain | None = Field(None, description="none before the sealed tests are opened")
-    runs: Count = Field(description="simulated tests")
+    excluded_above: dict[str, Finite] = Field(default_factory=dict)
+    next_test: str | None = None
+    gain: Gain | None = None
+    runs: Count
     caveats: tuple[str, ...] = ()
-    outside: Outside | None = Field(
-        None, description="form from outside that is not excluded, beside the causes or where there are none"
-    )
-    odds: dict[str, Finite] = Field(
-        {},
-        description="by cause or form: logarithm of the odds of the likeliest in its part of the readings over it",
-    )
-    places: dict[str, tuple[str, ...]] = Field({}, description="by cause: places that cannot be told apart")
-    limits: dict[str, dict[str, Finite]] = Field(
-        {}, description="by effect and place: size from which it would have been seen, in its own unit"
-    )
-    word: Literal[ESTABLISHED, PROBABLE, ONE_OF, UNKNOWN, NOTHING] = Field(
-        description="rung of the ladder of words: how strong a statement is made"
-    )
-    missing: tuple[str, ...] = Field((), description="what a probable cause lacks to be called established")
-    row_gain: Gain | None = Field(
-        None,
-        description="share of the sealed tests' unexplained forces that the causes explain at their frozen sizes",
-    )
+    outside: Outside | None = None
+    odds: dict[str, Finite] = Field(default_factory=dict)
+    places: dict[str, tuple[str, ...]] = Field(default_factory=dict)
+    limits: dict[str, dict[str, Finite]] = Field(default_factory=dict)
+    word: Literal[ESTABLISHED, PROBABLE, ONE_OF, UNKNOWN, NOTHING]
+    missing: tuple[str, ...] = ()
+    row_gain: Gain | None = None
 
     @model_validator(mode="after")
     def _consistent(self):
