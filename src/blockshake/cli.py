@@ -234,8 +234,8 @@ def _simulate(options):
     from blockshake.dynamics.system import FINISHED
     from blockshake.geometry.structure import load_structure
     from blockshake.jit import CACHE_FOLDER
+    from blockshake.simulation.ending import ending
     from blockshake.simulation.models import part_parameters
-    from blockshake.simulation.outcome.ending import ending
     from blockshake.simulation.simulate import simulate_to_file
     from blockshake.study.motion_remarks import motion_remarks
     from blockshake.study.structure_remarks import unusual_values

@@ -123,3 +123,9 @@ def _keep(path, write):
 
 def _seal(path, content):
     return hashlib.sha256(Path(path).name.encode() + b"\0" + content).hexdigest().encode()
+
+
+def structure_digest(structure):
+    """Twelve hexadecimal digits of a structure's content, solids of meshes included."""
+    solids = (solid.vertices.tobytes() for solid in structure.solids.values())
+    return content_digest(structure.file.model_dump(mode="json"), *solids)

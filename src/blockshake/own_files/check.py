@@ -17,8 +17,8 @@ from blockshake.geometry.schema import StructureFile
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import CampaignFile, load_campaign, load_test
 from blockshake.measurement.checks.campaign_check import campaign_lines
-from blockshake.measurement.imports.import_campaign import import_campaign
-from blockshake.measurement.imports.import_map import ImportMap, load_map
+from blockshake.own_files.import_campaign import import_campaign
+from blockshake.own_files.import_map import ImportMap, load_map
 from blockshake.study.config import StudyConfig, load_config
 from blockshake.study.config_checks import typical_structure
 from blockshake.study.ensembles.case_input import measured_input

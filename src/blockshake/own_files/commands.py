@@ -7,6 +7,7 @@ from blockshake.errors import InputError
 from blockshake.files import check_output, write_text
 
 KINDS = ("structure", "study", "campaign")
+_DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def add_data_commands(commands):
@@ -151,8 +152,8 @@ def _times(options, columns):
 
 
 def _import_campaign(options):
-    from blockshake.measurement.imports.import_campaign import import_campaign
-    from blockshake.measurement.imports.import_map import load_map
+    from blockshake.own_files.import_campaign import import_campaign
+    from blockshake.own_files.import_map import load_map
 
     given = _given(
         options, ("structure", "motion", "scale", "baseline", "role", "displacement_unit", "acceleration_unit", "rest",
@@ -172,7 +173,7 @@ def _import_campaign(options):
 def _map_of_options(options, given, columns):
     """`ImportMap` of a call without a map."""
     from blockshake.files import parse_yaml
-    from blockshake.measurement.imports.import_map import ImportMap
+    from blockshake.own_files.import_map import ImportMap
     from blockshake.validation import validated
 
     for name in ("structure", "motion", "displacement_unit"):
@@ -213,11 +214,37 @@ def _new(options):
 
 
 def _schema(options):
-    from blockshake.own_files.json_schemas import file_schema
-
     text = json.dumps(file_schema(options.kind), indent=2)
     if options.output:
         write_text(options.output, text + "\n")
         print(options.output)
     else:
         print(text)
+
+
+def file_schema(kind):
+    """JSON schema of a kind of file, for editors that complete and check YAML.
+
+    Parameters
+    ----------
+    kind : str
+        ``structure``, ``study``, ``campaign`` or ``import`` (the map of an import).
+
+    Returns
+    -------
+    dict
+        Types, limits and meaning of every key. Rules between keys, such as a friction for every pair of materials, are
+        those of ``blockshake check`` alone.
+    """
+    from blockshake.geometry.schema import StructureFile
+    from blockshake.measurement.campaigns.campaign import CampaignFile
+    from blockshake.own_files.import_map import ImportMap
+    from blockshake.study.config import StudyConfig
+
+    schemas = {
+        "structure": StructureFile,
+        "study": StudyConfig,
+        "campaign": CampaignFile,
+        "import": ImportMap,
+    }
+    return {"$schema": _DRAFT, **schemas[kind].model_json_schema()}

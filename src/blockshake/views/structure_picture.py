@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.path import Path
 
-from blockshake.measurement.motion.joint_coordinates import find_joints
+from blockshake.measurement.motion.joints import find_joints
 from blockshake.pages.drawing import DARK_GREY, RED, new_figure
 from blockshake.pages.scene.colors import body_colors
 from blockshake.pages.scene.projection import Scene

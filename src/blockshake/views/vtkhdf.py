@@ -12,12 +12,8 @@ from blockshake.simulation.run_histories import JOINT_HISTORIES
 from blockshake.views.local_origin import local_origin
 
 _VERSION = np.array([2, 2], dtype=np.int64)  # of the file format
-_KINDS = (
-    "Vertices",
-    "Lines",
-    "Polygons",
-    "Strips",
-)  # of the cells of polygonal data, in the order of their numbers
+# of the cells of polygonal data, in the order of their numbers
+_KINDS = ("Vertices", "Lines", "Polygons", "Strips")
 _INT, _REAL = "i8", "f4"
 
 

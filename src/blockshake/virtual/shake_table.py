@@ -8,8 +8,7 @@ from blockshake.effects.registry import with_effect
 from blockshake.measurement.sensors.instruments import observe
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import part_parameters
-from blockshake.simulation.placement import placed
-from blockshake.simulation.simulate import simulate
+from blockshake.simulation.simulate import placed, simulate
 from blockshake.virtual.table import followed
 
 _SINE_ROWS = 1000  # a second

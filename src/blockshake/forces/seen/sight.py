@@ -6,8 +6,8 @@ from blockshake.forces.seen.seen_test import see_test, why_unseen
 from blockshake.geometry.schema import AXES
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
+from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.body_poses import PLANAR, POSE, body_poses
-from blockshake.measurement.motion.outliers import without_outliers
 
 _LONGEST = 2.0  # s of a test that are read: errors of levers hardly change along it
 

@@ -9,7 +9,7 @@ import numpy as np
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import shipped_names
-from blockshake.measurement.campaigns.command_clock import command_start
+from blockshake.measurement.campaigns.clocks import command_start
 
 _FOLLOWED = (0.8, 1.25)  # of the command, by which a table may move without a word
 _SEEN = 2.0  # times the slab's noise, that the command's standard deviation must be to be judged

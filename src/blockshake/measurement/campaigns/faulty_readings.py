@@ -8,9 +8,8 @@ from blockshake.measurement.sensors.markers import marker_bodies
 
 _LEVEL = 1e-3  # chance of any such column in a test of sound sensors
 _SHORTEST = 10  # steps without a change, below which nothing is called frozen
-_LEAST_REPEATED = (
-    0.1  # chance that a sound reading repeats the one before: a motion turns, and digits are few
-)
+# chance that a sound reading repeats the one before: a motion turns, and digits are few
+_LEAST_REPEATED = 0.1
 _SAME = 1e-6  # of a column's range: readings this near its end are at it
 _FEWEST_AT_END = 4
 _NOISY = 0.3  # third over first differences: noise has 3, a motion of 10 Hz without noise 0.1 at 200 Hz

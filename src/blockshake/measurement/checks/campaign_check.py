@@ -15,7 +15,7 @@ from blockshake.measurement.campaigns.commanded_motion import (
     length_remarks,
 )
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines
-from blockshake.measurement.checks.carried_blocks import carried_remarks
+from blockshake.measurement.checks.against_slab import carried_remarks, clock_remarks
 from blockshake.measurement.checks.quiet_noise import (
     accelerometer_noise,
     accelerometer_remarks,
@@ -23,7 +23,6 @@ from blockshake.measurement.checks.quiet_noise import (
     displacement_remarks,
     marker_noise,
 )
-from blockshake.measurement.checks.slab_accelerometer import clock_remarks
 from blockshake.measurement.motion.fall import find_fall
 from blockshake.measurement.sensors.markers import (
     directions_read,

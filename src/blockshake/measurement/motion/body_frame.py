@@ -155,3 +155,24 @@ def outlying(residual):
         spread = 1.4826 * np.median(away, axis=0)
         score[read, marker] = (away / np.maximum(spread, 1e-2 * spread.max() + 1e-12)).max(axis=1)
     return (score == score.max(axis=1, keepdims=True)) & (score > _OUTLIER)
+
+
+def without_outliers(test, structure):
+    """The test with lone wrong readings of markers as gaps, on bodies with three markers that measure all directions.
+
+    Parameters
+    ----------
+    test : xarray.Dataset
+        As in a campaign's test file.
+    structure : Structure
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    displacement = test["marker_displacement"].transpose("time", "marker", "axis")
+    values = displacement.to_numpy().copy()
+    for columns, frame in frames_of_bodies(test, structure):
+        for column, wrong in zip(columns, outlying(frame.residual).T, strict=True):
+            values[wrong, column] = float("nan")
+    return test.assign(marker_displacement=displacement.copy(data=values))

@@ -6,8 +6,8 @@ import numpy as np
 
 from blockshake.dynamics.collapse import COSINE_OF_TILT, collapse_limits
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.body_poses import body_poses, driven_body
-from blockshake.measurement.motion.outliers import without_outliers
 
 _SCREEN = 0.5  # of the smallest drop that counts: markers that stay as near to each other need no poses
 

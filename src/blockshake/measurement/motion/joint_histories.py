@@ -5,7 +5,7 @@ import numpy as np
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.body_frame import rigid_jacobian
 from blockshake.measurement.motion.body_poses import POSE, body_poses, driven_body
-from blockshake.measurement.motion.joint_coordinates import find_joints, joint_coordinates
+from blockshake.measurement.motion.joints import find_joints, joint_coordinates
 
 
 def joint_histories(test, structure, sensors):

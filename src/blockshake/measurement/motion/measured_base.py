@@ -16,8 +16,8 @@ from blockshake.measurement.motion.base_motion import (
     smooth_readings,
     together,
 )
+from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.kalman import ACCELERATION, DISPLACEMENT, OFFSET, VELOCITY, walk_into
-from blockshake.measurement.motion.outliers import without_outliers
 
 _LARGEST_CLOCK_LAG = 0.05  # s, between the clocks of the two systems
 _LAG_STEP = 0.005  # s, of the lags that are tried first

@@ -9,12 +9,33 @@ from scipy.signal import lfilter
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import AXES, Vector
+from blockshake.measurement.sensors import accelerometers, markers, transducers
 from blockshake.measurement.sensors.markers import marker_position
-from blockshake.measurement.sensors.stated_noise import Sensors
-from blockshake.validation import Finite, NotNegative, ProperFraction
+from blockshake.validation import Finite, NotNegative, ProperFraction, Strict
 
 _BURST = 10  # readings that a dropout loses in the mean
 _OUTLIER = 10.0  # standard deviations of the noise
+_LEAST_NOISE = {"marker_noise": 1e-6, "accelerometer_noise": 1e-4, "transducer_noise": 1e-6}  # m, m/s2, m
+
+
+class Sensors(Strict):
+    """Standard deviations of the readings."""
+
+    marker_noise: NotNegative = Field(markers.NOISE, description="of a marker's reading [m]")
+    accelerometer_noise: NotNegative = Field(
+        accelerometers.NOISE, description="of a channel's reading [m/s2]"
+    )
+    transducer_noise: NotNegative = Field(
+        transducers.NOISE,
+        description="of a displacement transducer's reading [m]",
+        exclude_if=lambda noise: noise == transducers.NOISE,  # sensors without it keep their digest
+    )
+
+    def not_noiseless(self):
+        """The same with at least the noise of the best instruments: a stated 0 says that there is none to speak of."""
+        return self.model_copy(
+            update={name: max(getattr(self, name), least) for name, least in _LEAST_NOISE.items()}
+        )
 
 
 class Instruments(Sensors):

@@ -12,7 +12,7 @@ from blockshake.dynamics.system import State, assemble_bodies
 from blockshake.geometry.overlap import near_pairs
 from blockshake.geometry.polyhedron import convex_polyhedron
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.measurement.motion.contact_normals import parting_normal
+from blockshake.measurement.motion.joints import parting_normal
 from blockshake.solvers.stoppers import closure_into
 
 _TOUCH = 1e-3  # m, below which two surfaces touch: rattling blocks hop by less

@@ -11,7 +11,7 @@ from blockshake.cli import main
 from blockshake.files import PACKAGE
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
-from blockshake.measurement.campaigns.command_clock import from_first_reading
+from blockshake.measurement.campaigns.clocks import from_first_reading
 from blockshake.measurement.campaigns.recorded_test import read_test
 
 SHIPPED = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-1"
