@@ -48,14 +48,14 @@ ROOMS_OF_STUDY = [
 MOST_MODULES = 15
 WITH_ROOMS = ("diagnosis", "study")  # whose folders have a budget each
 MOST_LINES = {
-    ".": 2170, "tables": 630, "statistics": 400, "geometry": 2500, "dynamics": 2900, "solvers": 9300,
-    "measurement": 3835, "simulation": 1670, "parity": 2300, "forces": 1800, "effects": 1150, "pages": 1250,
+    ".": 2135, "tables": 610, "statistics": 400, "geometry": 2500, "dynamics": 2900, "solvers": 9300,
+    "measurement": 3705, "simulation": 1595, "parity": 2300, "forces": 1800, "effects": 1150, "pages": 1250,
     "study": 900, "study/sampling": 1000, "study/ensembles": 1400, "study/stiffness": 600,
     "study/comparison": 900, "study/fragility": 550, "study/sensitivity": 950, "study/calibration": 1100,
-    "study/statements": 1300, "study/report": 2200, "views": 850, "diagnosis": 350,
+    "study/statements": 1300, "study/report": 2200, "views": 820, "diagnosis": 350,
     "diagnosis/evidence": 1200, "diagnosis/outside": 750, "diagnosis/answer": 1300,
     "diagnosis/nominal": 850, "diagnosis/misfit": 400, "diagnosis/verdict": 650, "diagnosis/gain": 1250,
-    "diagnosis/report": 1050, "virtual": 550, "own_files": 820, "cost": 350,
+    "diagnosis/report": 1050, "virtual": 550, "own_files": 795, "cost": 350,
 }  # fmt: skip
 MOST_LINES_TOGETHER = 50_800
 

@@ -13,8 +13,6 @@ from blockshake.files import HOME, PACKAGE, check_output
 from blockshake.working_folder import hold, this_command
 
 _KEPT = ("verdict.json", "decision.json", "parity.json", "evidence.nc")
-_OF_MISFIT = "misfit.nc"  # at an effort that simulates anything
-_OF_GAIN = "gain.nc"  # where a cause was found and there are sealed tests
 _GRACE = 15.0  # s; for a workflow that is interrupted to end
 
 
@@ -78,14 +76,15 @@ def diagnose(campaign, output, effort="standard", cores=None):
         raise WorkflowError(exit_code)
     name = result_name(campaign)
     results = work / "results" / "diagnosis" / name
-    made = {_OF_MISFIT: bool(plan.tests), _OF_GAIN: load_verdict(results / "verdict.json").gain is not None}
+    # where the effort simulates anything; where a cause was found and there are sealed tests
+    made = {"misfit.nc": bool(plan.tests), "gain.nc": load_verdict(results / "verdict.json").gain is not None}
     kept = [*_KEPT, *(name for name, there in made.items() if there)]
-    found = [results / file for file in kept]
-    found += [work / "reports" / f"diagnosis-{name}.{kind}" for kind in ("html", "pdf")]
+    files = [results / file for file in kept]
+    files += [work / "reports" / f"diagnosis-{name}.{kind}" for kind in ("html", "pdf")]
     Path(output).mkdir(parents=True, exist_ok=True)
     for file in made:  # of an earlier diagnosis, where this one has none
         (Path(output) / file).unlink(missing_ok=True)
-    for path in found:
+    for path in files:
         shutil.copyfile(path, Path(output) / path.name.replace(f"diagnosis-{name}", "report"))
     return load_verdict(Path(output) / "verdict.json")
 
@@ -110,7 +109,7 @@ def working_place():
 def diagnosis_command(campaign, effort, cores):
     """Command that starts the workflow of a campaign's diagnosis, as a list of its words.
 
-    The folder is told in a list: Snakemake takes the quotes off a single text.
+    The folder is given in a list, because Snakemake takes the quotes off a single text.
     """
     folders = json.dumps([str(Path(campaign).resolve())], ensure_ascii=False)
     return [

@@ -44,8 +44,8 @@ def hold(folder):
         fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         os.close(held)
-        said = "expected a folder in which no other study or diagnosis runs; wait for its end, then type this again"
-        raise InputError(Path(folder).resolve(), "", said) from None
+        wrong = "expected a folder in which no other study or diagnosis runs; wait for its end, then type this again"
+        raise InputError(Path(folder).resolve(), "", wrong) from None
     os.ftruncate(held, 0)
     os.write(held, this_command()[COMMAND].encode())
     return held

@@ -16,7 +16,7 @@ from blockshake.measurement.sensors.accelerometers import (
 )
 from blockshake.measurement.sensors.transducers import transducer_lengths, transducer_names
 from blockshake.simulation.energy_residual import energy_extremes, residual_of
-from blockshake.simulation.run_dataset import add_accelerometers, add_transducers, run_dataset
+from blockshake.simulation.run_dataset import add_readings, run_dataset
 
 _AT_HAND = 2**12  # rows beyond the end of a run that are written at a time
 _CHUNK = 2**12  # times that are compressed together
@@ -79,7 +79,7 @@ class RunParts:
         yield self._last
 
     def energy_residual(self):
-        """As of the whole run."""
+        """`residual_of` the whole run."""
         return residual_of([part["energy"][0] for part in self._read("energy")])
 
     def histories(self):
@@ -98,9 +98,9 @@ class RunParts:
 
     def _with_all_joints(self, rows):
         """Rows with all joints of the run; one that was not touched yet carried nothing."""
-        places = {pair: place for place, pair in enumerate(map(tuple, self._joints.tolist()))}
-        force = np.zeros((len(rows.time), len(places), 3))
-        force[:, [places[pair] for pair in map(tuple, rows.joints.tolist())]] = rows.joint_force
+        columns = {pair: column for column, pair in enumerate(map(tuple, self._joints.tolist()))}
+        force = np.zeros((len(rows.time), len(columns), 3))
+        force[:, [columns[pair] for pair in map(tuple, rows.joints.tolist())]] = rows.joint_force
         return dataclasses.replace(rows, joints=self._joints, joint_force=force)
 
     def reading_times(self):
@@ -165,10 +165,9 @@ def write_run(path, parts, attributes):
     """
     pieces, times = parts.histories(), parts.reading_times()
     empty = next(pieces).assign_attrs(attributes)
-    if parts.channels:
-        add_accelerometers(empty, parts.structure, times[:0], np.empty((0, len(parts.channels))))
-    if parts.transducers:
-        add_transducers(empty, parts.structure, times[:0], np.empty((0, len(parts.transducers))))
+    for name, sensors in (("accelerometer", parts.channels), ("transducer_displacement", parts.transducers)):
+        if sensors:
+            add_readings(empty, name, times[:0], np.empty((0, len(sensors))), sensors)
     grows = [name for name in ("time", "time_acc") if name in empty.dims]
     encoding = _encoding(empty, grows)
     with replacing(path) as temporary:

@@ -24,11 +24,7 @@ from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.falling import still_falling
 from blockshake.simulation.limits import check_limits, has_fine_record
 from blockshake.simulation.models import model_of, split_parameters
-from blockshake.simulation.run_dataset import (
-    add_accelerometers,
-    add_transducers,
-    effective_parameters,
-)
+from blockshake.simulation.run_dataset import add_readings, effective_parameters
 from blockshake.simulation.run_parts import RunParts, reduced, write_run
 from blockshake.solvers.kept_rows import KeptRows
 from blockshake.sources import module_sources, source_digest
@@ -85,10 +81,12 @@ def simulate(
     trajectory = of.solve(checkpoint=checkpoint)
     parts = RunParts(of.structure, of.coarse, of.fine, trajectory)
     _, run = parts.histories()
-    if of.fine.size and parts.channels:
-        add_accelerometers(run, of.structure, parts.reading_times(), np.column_stack([*parts.readings()]))
-    if of.fine.size and parts.transducers:
-        add_transducers(run, of.structure, parts.reading_times(), np.concatenate([*parts.lengthenings()]))
+    times = parts.reading_times()
+    if times.size and parts.channels:
+        add_readings(run, "accelerometer", times, np.column_stack([*parts.readings()]), parts.channels)
+    if times.size and parts.transducers:
+        lengthened = np.concatenate([*parts.lengthenings()])
+        add_readings(run, "transducer_displacement", times, lengthened, parts.transducers)
     run.attrs = of.attributes(trajectory, parts.energy_residual())
     return run
 
@@ -106,12 +104,12 @@ def simulate_to_file(
     path : str or path
         To write, whole or not at all: what `simulate` returns, to the bit.
     structure, motion, model, parameters, time_step, duration, output_rate
-        As of `simulate`.
+        The same arguments as those of `simulate`.
 
     Raises
     ------
     InputError
-        As `simulate`; or the file cannot be written.
+        Errors of `simulate`; or the file cannot be written.
     """
     of = _set_up(
         structure, motion, model, parameters, time_step, duration, output_rate, accelerometers=True, in_memory=False

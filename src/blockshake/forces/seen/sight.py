@@ -54,8 +54,8 @@ def _unread(test, structure, noise):
     ]
     if turning:
         return f"the rotation of {', '.join(turning)} is not read"
-    if poses.told.all():
+    if poses.axes_read.all():
         return None
-    body = int(np.argmin(poses.told.all(axis=1)))
-    axes = " and ".join(axis for axis, read in zip(AXES, poses.told[body], strict=True) if not read)
+    body = int(np.argmin(poses.axes_read.all(axis=1)))
+    axes = " and ".join(axis for axis, read in zip(AXES, poses.axes_read[body], strict=True) if not read)
     return f"the displacement of {structure.body_names[body]} along {axes} is not read"

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.signal import butter, correlate, sosfiltfilt
 
+from blockshake.measurement.sensors.accelerometers import shaken_channels
 from blockshake.measurement.sensors.markers import slab_displacement
 
 _FOLLOWS = 0.8  # correlation; of 150 pairs of other motions 3 % reach it at some start
@@ -30,7 +31,7 @@ class Start(NamedTuple):
 
     @property
     def related(self):
-        """Whether one is the other's motion, or its opposite."""
+        """Whether the motion is that of the command, or its opposite."""
         return abs(self.correlation) > _FOLLOWS
 
 
@@ -182,37 +183,28 @@ def _even(time):
 def on_one_clock(test, structure):
     """The test with the recorder's times moved to where the slab's accelerometer reads what its markers do.
 
-    Parameters
-    ----------
-    test : xarray.Dataset
-        As read.
-    structure : Structure
-
-    Returns
-    -------
-    xarray.Dataset
-        Attribute ``recorder_late``: by how much the recorder's times were too late [s], where they were moved. As it is
-        where the slab has no accelerometer along x, where both agree within 0.1 s already, or at no lag.
+    The attribute ``recorder_late`` says by how much the times were too late [s], where they were moved. The test stays
+    as it was read where the slab has no accelerometer along x, and where both agree within 0.1 s already, or at no lag.
 
     Notes
     -----
     Second differences of the slab's displacement and the channel are compared in 1 to 8 Hz at all lags that leave 3 s
     of both, by their correlation in size.
     """
-    driven = {body.name for body in structure.file.bodies if body.driven}
-    own = [f"{item.name}-x" for item in structure.file.accelerometers if item.body in driven]
-    if "accelerometer" not in test or not set(own) & set(test["channel"].values):
+    channels = shaken_channels(test, structure)
+    if not channels:
         return test
-    own = [name for name in own if name in test["channel"].values]
     time, time_acc = test["time"].to_numpy(), test["time_acc"].to_numpy()
-    read = test["accelerometer"].sel(channel=own).transpose("time_acc", "channel").to_numpy().mean(axis=1)
+    read = (
+        test["accelerometer"].sel(channel=channels).transpose("time_acc", "channel").to_numpy().mean(axis=1)
+    )
     moved = _band(time, slab_displacement(test, structure)[:, 0])
     felt = _band(time_acc, read)
     if moved is None or felt is None:
         return test
     moved = np.gradient(np.gradient(moved))
-    lag, found, near = _best_lag(moved, felt, time[0] - time_acc[0])
-    if found < RELATED or near >= RELATED:
+    lag, correlation, near = _best_lag(moved, felt, time[0] - time_acc[0])
+    if correlation < RELATED or near >= RELATED:
         return test
     late = test["time_acc"] - lag
     return test.assign_coords(time_acc=late).assign_attrs(recorder_late=float(lag))

@@ -102,16 +102,16 @@ def carried_remarks(time, readings, names, slab, noise):
     low = np.arange(len(time)) < np.argmax(size > _LOW_PART * largest)
     wrong = []
     if low.sum() >= _FEWEST and _LOW_PART * largest > _SEEN_READING * noise:
-        for place, name in enumerate(names):
-            read = np.isfinite(readings[:, place]).any(axis=0)
-            known = low & np.isfinite(readings[:, place, read]).all(axis=1) & np.isfinite(slab[:, 0])
+        for index, name in enumerate(names):
+            read = np.isfinite(readings[:, index]).any(axis=0)
+            known = low & np.isfinite(readings[:, index, read]).all(axis=1) & np.isfinite(slab[:, 0])
             base = slab[known, 0] - slab[known, 0].mean() if known.sum() >= _FEWEST else np.zeros(1)
             if not base.any() or not read[0]:
                 continue
-            share = base @ readings[known, place] / (base @ base)
+            share = base @ readings[known, index] / (base @ base)
             if not _CARRIED[0] < share[0] < _CARRIED[1]:
                 along = ", ".join(
-                    f"{one:.2f}" if told else "unknown" for one, told in zip(share, read, strict=True)
+                    f"{part:.2f}" if is_read else "unknown" for part, is_read in zip(share, read, strict=True)
                 )
                 wrong.append(f"{name} moves by {along}")
     remarks = []

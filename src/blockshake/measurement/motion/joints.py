@@ -8,6 +8,13 @@ from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import AXES
 
+# dimensions, unit and name of the coordinates of a joint
+_COORDINATES = {
+    "slip": ("time joint tangent", "m", "slip of the upper body at the joint's centre, lower body's frame"),
+    "opening": ("time joint", "m", "opening at the joint's centre, lower body's frame"),
+    "rotation": ("time joint axis", "rad", "rotation of the upper body against the lower one, its frame"),
+}
+
 
 def find_joints(structure):
     """Joints of a structure at its start.
@@ -74,26 +81,11 @@ def joint_coordinates(structure, position, rotation):
     turned = np.einsum("tjki,tjkl->tjil", rotation[:, lower], rotation[:, upper])
     turned = np.einsum("tjik,jlk->tjil", turned, turned[0])
     names = structure.body_names
+    values = {"slip": moved[..., :2], "opening": moved[..., 2], "rotation": _rotation_vectors(turned)}
     return xr.Dataset(
         {
-            "slip": (
-                ("time", "joint", "tangent"),
-                moved[..., :2],
-                {
-                    "long_name": "slip of the upper body at the joint's centre, lower body's frame",
-                    "units": "m",
-                },
-            ),
-            "opening": (
-                ("time", "joint"),
-                moved[..., 2],
-                {"long_name": "opening at the joint's centre, lower body's frame", "units": "m"},
-            ),
-            "rotation": (
-                ("time", "joint", "axis"),
-                _rotation_vectors(turned),
-                {"long_name": "rotation of the upper body against the lower one, its frame", "units": "rad"},
-            ),
+            name: (dims.split(), values[name], {"long_name": long_name, "units": unit})
+            for name, (dims, unit, long_name) in _COORDINATES.items()
         },
         coords={
             "joint": [f"{names[a]}-{names[b]}" for a, b in pairs],
@@ -131,13 +123,13 @@ def contact_normals(structure, pairs):
     turns = rotation_matrices(structure.orientation)
     solids = [structure.solid(body) for body in range(len(structure.mass))]
     corners = [
-        place + solid.vertices @ turn.T
-        for solid, place, turn in zip(solids, structure.position, turns, strict=True)
+        centre + solid.vertices @ turn.T
+        for solid, centre, turn in zip(solids, structure.position, turns, strict=True)
     ]
-    found = [
+    normals = [
         parting_normal(solids[a], corners[a], turns[a], solids[b], corners[b], turns[b]) for a, b in pairs
     ]
-    return np.array(found).reshape(-1, 3)
+    return np.array(normals).reshape(-1, 3)
 
 
 def parting_normal(solid_a, corners_a, turn_a, solid_b, corners_b, turn_b):

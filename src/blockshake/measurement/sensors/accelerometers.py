@@ -6,6 +6,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.sensors.markers import driven_names
 
 RATE = 512.0  # Hz, of the readings
 NOISE = 0.02  # m/s2, standard deviation of the readings where nothing else is stated
@@ -19,9 +20,27 @@ LONGEST_GAP = 10  # readings; across more a spline no longer knows what the bloc
 EVEN = 0.01  # of the step, by which times may be uneven
 
 
+def channel_carriers(structure):
+    """Body and axis of every channel by its name ``NAME-axis``, in file order."""
+    return {
+        f"{sensor.name}-{axis}": (sensor.body, axis)
+        for sensor in structure.file.accelerometers
+        for axis in sensor.axes
+    }
+
+
 def accelerometer_channels(structure):
     """Channel names ``NAME-axis`` in file order."""
-    return [f"{sensor.name}-{axis}" for sensor in structure.file.accelerometers for axis in sensor.axes]
+    return list(channel_carriers(structure))
+
+
+def shaken_channels(test, structure):
+    """Channels of a test that read a driven body along x, in file order, list of str."""
+    if "accelerometer" not in test:
+        return []
+    driven, read = driven_names(structure), set(test["channel"].values)
+    carriers = channel_carriers(structure).items()
+    return [name for name, (body, axis) in carriers if name in read and body in driven and axis == "x"]
 
 
 def reading_times(time):
@@ -99,13 +118,7 @@ def readings_of(forces, times):
 
 
 def low_pass(values):
-    """The 50 Hz low-pass of the readings, at `FINE_RATE`, along the first axis, without lag.
-
-    Parameters
-    ----------
-    values : float64 array, shape (n_fine, n_channels)
-        Finite.
-    """
+    """The 50 Hz low-pass of finite values (n_fine, n_channels) at `FINE_RATE`, along the first axis, without lag."""
     # imported here: a second of the start of each job that reads no accelerometer
     from scipy.signal import butter, sosfiltfilt
 
@@ -143,16 +156,7 @@ def _at_states(middles):
 
 
 class WholeChannels(NamedTuple):
-    """Readings of channels.
-
-    Attributes
-    ----------
-    time : float64 array, shape (n_times,)
-        Even [s].
-    values : float64 array, shape (n_times, n_channels)
-        No gaps [m/s2].
-    names : list of str, length n_channels
-    """
+    """Readings of channels, ``names``, at even times: float64 (n_times,) [s] and (n_times, n_channels) without gaps."""
 
     time: np.ndarray
     values: np.ndarray
@@ -162,35 +166,23 @@ class WholeChannels(NamedTuple):
 def whole_channels(test, structure):
     """`WholeChannels` of the accelerometers on blocks; None where no channel is whole.
 
-    Short gaps are bridged by a cubic spline. Channels with a gap of more than ten readings are left out, and what
-    follows the last reading of all channels, as the end of a run after an abort, is cut off.
-
-    Parameters
-    ----------
-    test : xarray.Dataset
-        As in a campaign's test file.
-    structure : Structure
-        Whose accelerometers they are.
+    The test is as in a campaign's file. Short gaps are bridged by a cubic spline. Channels with a gap of more than ten
+    readings are left out. Times after the last reading of all channels, as after an abort, are cut off.
     """
     if "accelerometer" not in test:
         return None
-    driven = {body.name for body in structure.file.bodies if body.driven}
-    on_blocks = {
-        f"{sensor.name}-{axis}"
-        for sensor in structure.file.accelerometers
-        if sensor.body not in driven
-        for axis in sensor.axes
-    }
     readings = test["accelerometer"].transpose("time_acc", "channel")
     read = np.flatnonzero(readings.notnull().any("channel"))
     if not len(read):
         return None
     readings = readings[read[0] : read[-1] + 1]
-    names = [str(name) for name in readings["channel"].values]
+    carriers, driven = channel_carriers(structure), driven_names(structure)
     names = [
         name
-        for name in names
-        if name in on_blocks and _longest_gap(readings.sel(channel=name).to_numpy()) <= LONGEST_GAP
+        for name in map(str, readings["channel"].values)
+        if name in carriers
+        and carriers[name][0] not in driven
+        and _longest_gap(readings.sel(channel=name).to_numpy()) <= LONGEST_GAP
     ]
     if not names:
         return None
