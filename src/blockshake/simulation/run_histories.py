@@ -106,9 +106,8 @@ def _joint_states(run, structure, pairs, position, turns):
         if row is None:
             continue
         lower, upper = known[row]
-        face_normal = (
-            rotation_matrices(structure.orientation[lower]).T @ normals[row]
-        )  # in the lower body's frame
+        # in the lower body's frame
+        face_normal = rotation_matrices(structure.orientation[lower]).T @ normals[row]
         across = turns[:, lower] @ face_normal
         force = run["joint_force"].to_numpy()[:, joint] * (1.0 if pair == [lower, upper] else -1.0)
         normal = np.einsum("ti,ti->t", force, across)

@@ -125,12 +125,8 @@ def _best_fit(points, readings, measured, start, driven, noise):
         planar = arms[enough][:, [0, 2]]
         planar = planar - planar.mean(axis=0) if enough.any() else planar
         if (planar[:, 2 - len(axes) :] ** 2).sum() > 1e-4:
-            axes_read = measured[enough].all(axis=0)
-            return (
-                PLANAR,
-                axes_read,
-                _planar_fit(arms[enough], planar, readings[:, enough], start, noise, turned),
-            )
+            read = measured[enough].all(axis=0)
+            return PLANAR, read, _planar_fit(arms[enough], planar, readings[:, enough], start, noise, turned)
     return TRANSLATION, measured.any(axis=0), _displacement(arms, readings, measured, start, driven, noise)
 
 
