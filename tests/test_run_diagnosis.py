@@ -30,7 +30,7 @@ BAD = {
         "expected a test with the role fit or select",
     ),
     "a motion nobody has": (
-        lambda text: text.replace("motion: alkion,", "motion: no,"),
+        lambda text: text.replace("motion: alkion,", "motion: nothing,"),
         "expected a shipped motion",
     ),
 }
