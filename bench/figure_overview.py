@@ -16,7 +16,7 @@ from blockshake.effects.registry import with_effect
 from blockshake.forces.seen.seen_test import see_test
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Sensors
-from blockshake.measurement.motion.outliers import without_outliers
+from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.pages.drawing import BLACK, DARK_GREY, RED, SKY, new_figure, save_picture
 from blockshake.pages.scene.colors import body_colors

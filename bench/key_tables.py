@@ -2,7 +2,7 @@
 
 import re
 
-from blockshake.own_files.json_schemas import file_schema
+from blockshake.own_files.commands import file_schema
 
 HEADER = ("key", "value", "unit", "default", "meaning")
 _UNIT = re.compile(r"\s*\[([^\]]*)\]$")

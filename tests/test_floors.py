@@ -52,7 +52,7 @@ MOST_LINES = {
     "measurement": 4200, "simulation": 1700, "parity": 2300, "forces": 1800, "effects": 1150, "pages": 1250,
     "study": 900, "study/sampling": 1000, "study/ensembles": 1400, "study/stiffness": 600,
     "study/comparison": 900, "study/fragility": 550, "study/sensitivity": 950, "study/calibration": 1100,
-    "study/statements": 1300, "study/report": 2200, "views": 850, "diagnosis": 350,
+    "study/statements": 1300, "study/report": 2200, "views": 820, "diagnosis": 350,
     "diagnosis/evidence": 1200, "diagnosis/outside": 750, "diagnosis/answer": 1300,
     "diagnosis/nominal": 850, "diagnosis/misfit": 400, "diagnosis/verdict": 650, "diagnosis/gain": 1250,
     "diagnosis/report": 1050, "virtual": 490, "own_files": 500, "cost": 350,

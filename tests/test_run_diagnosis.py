@@ -29,10 +29,6 @@ BAD = {
         lambda text: text.replace("role: fit", "role: sealed").replace("role: select", "role: sealed"),
         "expected a test with the role fit or select",
     ),
-    "a structure without these bodies": (
-        lambda text: text.replace("structure: configuration-1", "structure: configuration-3"),
-        "expected markers of the structure",
-    ),
     "a motion nobody has": (
         lambda text: text.replace("motion: alkion,", "motion: nothing,"),
         "expected a shipped motion",
@@ -57,19 +53,6 @@ def test_a_number_of_cores_that_is_none(tmp_path, capsys, cores):
     assert main(["diagnose", str(CAMPAIGN), "--output", str(output), "--cores", str(cores)]) == 2
     assert capsys.readouterr().err.count(f"expected a whole number from 1, not {cores}") == 1
     assert not output.exists()
-
-
-def test_no_marker_on_the_slab(tmp_path, capsys):
-    import xarray as xr
-
-    folder = _changed(tmp_path, lambda text: text)
-    for path in folder.glob("*.nc"):
-        test = xr.load_dataset(path)
-        kept = [name for name in test["marker"].values if not str(name).startswith("slab")]
-        path.unlink()
-        test.sel(marker=kept).to_netcdf(path)
-    assert main(["diagnose", str(folder), "--output", str(tmp_path / "output")]) == 2
-    assert "expected a marker of the driven body" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

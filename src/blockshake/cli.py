@@ -53,7 +53,7 @@ def main(arguments=None):
             return _run(arguments)
         finally:
             print(end="", flush=True)
-    except OSError as error:  # of the output: those of files are told in one line where they are written
+    except OSError as error:  # of the output; errors of files are caught where they are written
         unread = not (_is_read(1) and _is_read(2))
         if not unread and error.errno != errno.ENOSPC:
             raise
@@ -87,7 +87,12 @@ def _parser():
     parser.add_argument("--version", action="version", version=f"blockshake {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND", parser_class=_Parser)
 
-    command = commands.add_parser("simulate", help="one structure under one motion, to a run file")
+    def add(name, run, words):
+        command = commands.add_parser(name, help=words)
+        command.set_defaults(run=run)
+        return command
+
+    command = add("simulate", _simulate, "one structure under one motion, to a run file")
     command.add_argument("--structure", required=True, metavar="NAME|FILE")
     command.add_argument("--motion", required=True, metavar="NAME|FILE")
     command.add_argument("--scale", type=float, default=1.0, help="multiplies the motion (default 1)")
@@ -100,16 +105,12 @@ def _parser():
     command.add_argument("--time-step", type=float, metavar="S", help=f"default {_default_steps()}")
     command.add_argument("--output-rate", type=float, metavar="HZ", help="default: the optical system's")
     command.add_argument("--output", required=True, metavar="RUN.nc")
-    command.set_defaults(run=_simulate)
 
-    command = commands.add_parser(
-        "plot", help="drift, joint forces, uplift and energy of a run, as a picture"
-    )
+    command = add("plot", _plot, "drift, joint forces, uplift and energy of a run, as a picture")
     _add_run(command)
     command.add_argument("--output", metavar="FILE", help=".png, .pdf or .svg (default RUN.png)")
-    command.set_defaults(run=_plot)
 
-    command = commands.add_parser("animate", help="the blocks of a run in motion, as GIF or MP4")
+    command = add("animate", _animate, "the blocks of a run in motion, as GIF or MP4")
     _add_run(command)
     command.add_argument("--output", metavar="FILE", help=".gif, or .mp4 with ffmpeg (default RUN.gif)")
     command.add_argument("--view", default="front", metavar="front|side|3d", help="default front")
@@ -123,34 +124,30 @@ def _parser():
     command.add_argument(
         "--speed", type=float, default=1.0, metavar="N", help="1 is real time (default), 0.1 ten times slower"
     )
-    command.set_defaults(run=_animate)
 
-    command = commands.add_parser("export", help="a run as CSV tables, for ParaView, or as glTF with motion")
+    command = add("export", _export, "a run as CSV tables, for ParaView, or as glTF with motion")
     _add_run(command)
     command.add_argument(
         "--output", required=True, metavar="FILE", help=".csv, .vtkhdf or .glb: the suffix is the format"
     )
-    command.set_defaults(run=_export)
 
-    command = commands.add_parser("sample", help="a Latin hypercube of Table 2, to a CSV")
+    command = add("sample", _sample, "a Latin hypercube of Table 2, to a CSV")
     command.add_argument("--size", type=int, default=50)
     command.add_argument("--seed", type=int, default=1)
     command.add_argument(
         "--correlation", metavar="FILE", help="square CSV, names in the header and first column"
     )
     command.add_argument("--output", required=True, metavar="DESIGN.csv")
-    command.set_defaults(run=_sample)
 
-    command = commands.add_parser("calibrate-stiffness", help="contact stiffness from wave speed, to a JSON")
+    command = add("calibrate-stiffness", _calibrate_stiffness, "contact stiffness from wave speed, to a JSON")
     command.add_argument("--structure", required=True, metavar="NAME|FILE", help="whose blocks are tested")
     _add_settings(command)
     command.add_argument("--output", required=True, metavar="STIFFNESS.json")
-    command.set_defaults(run=_calibrate_stiffness)
 
-    add_data_commands(commands)
+    add_data_commands(add)
 
-    command = commands.add_parser(
-        "generate-campaign", help="synthetic tests on a virtual shake table, to a folder"
+    command = add(
+        "generate-campaign", _generate_campaign, "synthetic tests on a virtual shake table, to a folder"
     )
     command.add_argument("settings", metavar="SETTINGS.yaml", help="such as config/virtual-campaign.yaml")
     command.add_argument("--structure", required=True, metavar="NAME|FILE")
@@ -158,38 +155,35 @@ def _parser():
     command.add_argument(
         "--truth", required=True, metavar="DIR", help="of what is true, outside the campaign"
     )
-    command.set_defaults(run=_generate_campaign)
 
-    command = commands.add_parser(
-        "diagnose", help="what simulations of measured tests get wrong, the cause, and what naming it gains"
+    command = add(
+        "diagnose",
+        _diagnose,
+        "what simulations of measured tests get wrong, the cause, and what naming it gains",
     )
     command.add_argument("campaign", metavar="CAMPAIGN_DIR")
     command.add_argument("--output", required=True, metavar="DIR", help="of the verdict and the report")
     command.add_argument("--effort", default="standard", metavar="quick|standard|deep")
     command.add_argument("--cores", type=int, metavar="N", help="default: all")
-    command.set_defaults(run=_diagnose)
 
-    command = commands.add_parser("check", help="say what is wrong with structure, motion or study files")
+    command = add("check", _check, "say what is wrong with structure, motion or study files")
     command.add_argument("files", nargs="+", metavar="FILE")
     command.add_argument("--picture", metavar="PICTURE", help="of one structure: .png, .pdf or .svg")
     add_baseline(command)
-    command.set_defaults(run=_check)
 
-    command = commands.add_parser(
-        "estimate", help="how long a study or a diagnosis takes here, by trying its simulations"
+    command = add(
+        "estimate", _estimate, "how long a study or a diagnosis takes here, by trying its simulations"
     )
     command.add_argument("file", metavar="STUDY.yaml|CAMPAIGN")
     command.add_argument("--cores", type=int, default=os.cpu_count())
     command.add_argument(
         "--effort", default="standard", metavar="quick|standard|deep", help="of a campaign's diagnosis"
     )
-    command.set_defaults(run=_estimate)
 
-    command = commands.add_parser("parameters", help="every parameter with unit, default and source")
+    command = add("parameters", _parameters, "every parameter with unit, default and source")
     command.add_argument(
         "--structure", metavar="NAME|FILE", help="whose names to list (default configuration-1)"
     )
-    command.set_defaults(run=_parameters)
     return parser
 
 
@@ -233,8 +227,8 @@ def _simulate(options):
     from blockshake.dynamics.system import FINISHED
     from blockshake.geometry.structure import load_structure
     from blockshake.jit import CACHE_FOLDER
+    from blockshake.simulation.ending import ending
     from blockshake.simulation.models import part_parameters
-    from blockshake.simulation.outcome.ending import ending
     from blockshake.simulation.simulate import simulate_to_file
     from blockshake.study.motion_remarks import motion_remarks
     from blockshake.study.structure_remarks import unusual_values
@@ -255,18 +249,12 @@ def _simulate(options):
     if not CACHE_FOLDER.exists():
         log.info("compiles the solver first, once, for one to three minutes")
     simulate_to_file(
-        options.output,
-        structure,
-        motion,
-        options.model,
-        settings,
-        time_step=options.time_step,
-        duration=options.duration,
-        output_rate=options.output_rate,
-    )
+        options.output, structure, motion, options.model, settings, options.time_step, options.duration,
+        options.output_rate,
+    )  # fmt: skip
     with xr.open_dataset(options.output, decode_times=False) as run:
-        told, status, reason = ending(run, structure), run.attrs["status"], run.attrs["reason"]
-    print(f"{options.output}: {told}; took {time.monotonic() - begin:.3g} s", flush=True)
+        words, status, reason = ending(run, structure), run.attrs["status"], run.attrs["reason"]
+    print(f"{options.output}: {words}; took {time.monotonic() - begin:.3g} s", flush=True)
     if status in FINISHED:
         return 0
     print(f"blockshake: {status}: {reason}", file=sys.stderr)
@@ -315,9 +303,8 @@ def _export(options):
         print(file)
     origin = local_origin(run)
     if origin.any() and Path(options.output).suffix.lower() != ".csv":
-        print(
-            f"  remark: places count from {origin.tolist()} m, as 32 bits are too coarse so far from the origin"
-        )
+        words = "m, as 32 bits are too coarse so far from the origin"
+        print(f"  remark: places count from {origin.tolist()} {words}")
 
 
 def _sample(options):
@@ -333,9 +320,9 @@ def _calibrate_stiffness(options):
     check_output(options.output)
     from blockshake.study.stiffness.wave_speed import calibrate_stiffness
 
-    found = calibrate_stiffness(options.structure, _settings(options))
-    write_json(options.output, found)
-    stiffness = ", ".join(f"{kind} {found[f'{kind}_stiffness']:.3g}" for kind in ("normal", "shear"))
+    calibrated = calibrate_stiffness(options.structure, _settings(options))
+    write_json(options.output, calibrated)
+    stiffness = ", ".join(f"{kind} {calibrated[f'{kind}_stiffness']:.3g}" for kind in ("normal", "shear"))
     print(f"{options.output}: stiffness {stiffness} N/m3")
 
 
@@ -347,10 +334,7 @@ def _generate_campaign(options):
     settings = load_settings(options.settings, options.structure)
     for folder in (options.output, options.truth):
         check_output(f"{folder}/campaign.yaml")
-    if Path(options.output).resolve() in (
-        Path(options.truth).resolve(),
-        *Path(options.truth).resolve().parents,
-    ):
+    if Path(options.truth).resolve().is_relative_to(Path(options.output).resolve()):
         raise InputError("--truth", options.truth, "expected a folder outside the campaign's")
     source = source_digest(*module_sources("virtual/generate.py", *MODELS))
     generate_campaign(settings, options.structure, options.output, options.truth, source, print)
@@ -407,13 +391,9 @@ def _estimate(options):
         parts = campaign_cost(options.file, options.effort)
     else:
         parts = study_cost(options.file)
-    _print_table(
-        [
-            ("part", "runs", "CPU min"),
-            *((one.name, str(one.count), f"{one.seconds / 60.0:.1f}") for one in parts),
-        ]
-    )
-    minutes = sum(one.seconds for one in parts) / 60.0
+    rows = [(part.name, str(part.count), f"{part.seconds / 60.0:.1f}") for part in parts]
+    _print_table([("part", "runs", "CPU min"), *rows])
+    minutes = sum(part.seconds for part in parts) / 60.0
     print(
         f"{options.file}: about {minutes:.0f} CPU minutes on this machine, "
         f"{minutes / options.cores:.0f} min on {options.cores} cores"

@@ -32,7 +32,7 @@ class InputError(ValueError):
 
 @contextlib.contextmanager
 def faults_of(where, key):
-    """Faults of what a key of a file names, told with that file and key."""
+    """Raise the faults of what a key of a file names with that file and key."""
     try:
         yield
     except InputError as error:

@@ -19,8 +19,6 @@ from blockshake.working_folder import end_with_command, interrupt_jobs
 _VERSIONS = ("numpy", "numba", "scipy", "xarray")
 _COST = re.compile(r"^Took ([\d.]+) s, ([\d.]+) CPU s\.$", re.MULTILINE)
 _REASON = re.compile(r"^Ended with exit code (\d+): (.*)$", re.MULTILINE)
-
-
 _JOB_FAILED = "job_error"  # Snakemake's event
 _GRACE = 10.0  # s; for running jobs to keep their checkpoints
 _SHOWN = 5  # failed jobs in the last lines
@@ -94,23 +92,23 @@ def read_cost(path):
     The CPU time is that of the job's process and of the programs that the process started and waited for. Snakemake's
     own benchmarks look every 30 s at a job of more than 15 s, and lose the CPU time after the last look.
     """
-    found = _last(_COST, path)
-    return Cost(*map(float, found)) if found else None
+    numbers = _last(_COST, path)
+    return Cost(*map(float, numbers)) if numbers else None
 
 
 def read_reason(path):
     """`Reason` in the log of a job that failed; None where the job did not, was killed or has no log."""
-    found = _last(_REASON, path)
-    return Reason(int(found[0]), found[1]) if found else None
+    groups = _last(_REASON, path)
+    return Reason(int(groups[0]), groups[1]) if groups else None
 
 
 def _last(pattern, path):
     """Groups of the last line of a pattern in a log, or None."""
     try:
-        found = pattern.findall(Path(path).read_text(encoding="utf-8"))
+        matches = pattern.findall(Path(path).read_text(encoding="utf-8"))
     except FileNotFoundError:
         return None
-    return found[-1] if found else None
+    return matches[-1] if matches else None
 
 
 def _cost_since(before):

@@ -1,4 +1,4 @@
-"""Every parameter by its dotted name: symbol, unit, meaning and source."""
+"""Every parameter by its dotted name: unit, meaning and source."""
 
 from typing import NamedTuple
 
@@ -6,12 +6,11 @@ from typing import NamedTuple
 class Quantity(NamedTuple):
     """Definition of a parameter.
 
-    ``name`` may hold capitals for the part that a structure names (MATERIAL, BODY); ``symbol`` is
-    the source's; ``unit`` SI; ``source`` where the default or the definition comes from.
+    ``name`` may hold capitals for the part that a structure names (MATERIAL, BODY); ``unit`` is SI; ``source`` is
+    where the default or the definition comes from.
     """
 
     name: str
-    symbol: str
     unit: str
     meaning: str
     source: str
@@ -19,45 +18,39 @@ class Quantity(NamedTuple):
 
 _PAPER = "Zhou et al. (2023)"
 PHYSICAL = (
-    Quantity("friction.MATERIAL.MATERIAL", "mu", "1", "Coulomb's coefficient of a pair", f"{_PAPER}, Table 2"),
+    Quantity("friction.MATERIAL.MATERIAL", "1", "Coulomb's coefficient of a pair", f"{_PAPER}, Table 2"),
+    Quantity("friction.MATERIAL.MATERIAL.rate_drop", "1", "share of mu lost at high slip rate", "docs/method.md"),
+    Quantity("friction.MATERIAL.MATERIAL.rate_scale", "m/s", "slip rate at which 63 % is lost", "docs/method.md"),
+    Quantity("friction.MATERIAL.MATERIAL.slip_drop", "1", "share of mu lost after long slip", "docs/method.md"),
+    Quantity("friction.MATERIAL.MATERIAL.slip_scale", "m", "slip after which 63 % is lost", "docs/method.md"),
     Quantity(
-        "friction.MATERIAL.MATERIAL.rate_drop", "D_v", "1", "share of mu lost at high slip rate", "docs/method.md"
-    ),
-    Quantity(
-        "friction.MATERIAL.MATERIAL.rate_scale", "v_c", "m/s", "slip rate at which 63 % is lost", "docs/method.md"
-    ),
-    Quantity("friction.MATERIAL.MATERIAL.slip_drop", "D_S", "1", "share of mu lost after long slip", "docs/method.md"),
-    Quantity("friction.MATERIAL.MATERIAL.slip_scale", "S_c", "m", "slip after which 63 % is lost", "docs/method.md"),
-    Quantity(
-        "friction.MATERIAL.MATERIAL.asymmetry", "a", "1",
+        "friction.MATERIAL.MATERIAL.asymmetry", "1",
         "share by which mu is larger for slip of a joint's second body along its first's +x", "docs/method.md",
     ),
-    Quantity("joints.BODY.BODY.friction_factor", "f", "1", "factor on mu of one joint", "docs/method.md"),
-    Quantity("joints.BODY.BODY.compliance", "c", "m3/N", "normal compliance of a joint's soft layer", "docs/method.md"),
-    Quantity("materials.MATERIAL.density", "rho", "kg/m3", "mass density", f"{_PAPER}, Table 2"),
-    Quantity("materials.MATERIAL.youngs_modulus", "E", "Pa", "Young's modulus", f"{_PAPER}, Table 2"),
-    Quantity("materials.MATERIAL.poisson_ratio", "nu", "1", "Poisson's ratio; G = E / (2 (1 + nu))", "structure file"),
+    Quantity("joints.BODY.BODY.friction_factor", "1", "factor on mu of one joint", "docs/method.md"),
+    Quantity("joints.BODY.BODY.compliance", "m3/N", "normal compliance of a joint's soft layer", "docs/method.md"),
+    Quantity("materials.MATERIAL.density", "kg/m3", "mass density", f"{_PAPER}, Table 2"),
+    Quantity("materials.MATERIAL.youngs_modulus", "Pa", "Young's modulus", f"{_PAPER}, Table 2"),
+    Quantity("materials.MATERIAL.poisson_ratio", "1", "Poisson's ratio; G = E / (2 (1 + nu))", "structure file"),
     Quantity(
-        "materials.MATERIAL.viscous_modulus", "eta", "Pa s", "viscous modulus; the rigid solvers do not use it",
+        "materials.MATERIAL.viscous_modulus", "Pa s", "viscous modulus; the rigid solvers do not use it",
         f"{_PAPER}, Table 2; unit by assumption",
     ),
-    Quantity("restitution", "C_res", "1", "restitution of LS-DEM's dashpot, 0 for critical", f"{_PAPER}, Eq. (3)"),
-    Quantity("nscd_restitution", "e", "1", "Newton's restitution of NSCD", f"{_PAPER}, section LMGC90"),
-    Quantity("gravity", "g", "m/s2", "gravity vector", "structure file"),
-    Quantity("bodies.BODY.density", "rho", "kg/m3", "density of one body instead of its material's", "structure file"),
+    Quantity("restitution", "1", "restitution of LS-DEM's dashpot, 0 for critical", f"{_PAPER}, Eq. (3)"),
+    Quantity("nscd_restitution", "1", "Newton's restitution of NSCD", f"{_PAPER}, section LMGC90"),
+    Quantity("gravity", "m/s2", "gravity vector", "structure file"),
+    Quantity("bodies.BODY.density", "kg/m3", "density of one body instead of its material's", "structure file"),
     Quantity(
-        "bodies.BODY.mass_offset", "e", "m", "mass centre seen from the shape's centroid, body frame", "docs/method.md"
+        "bodies.BODY.mass_offset", "m", "mass centre seen from the shape's centroid, body frame", "docs/method.md"
     ),
-    Quantity("bodies.BODY.position", "x", "m", "shape's centroid at the start", "structure file"),
-    Quantity("bodies.BODY.orientation", "q", "1", "unit quaternion w, x, y, z at the start", "structure file"),
-    Quantity("bodies.BODY.velocity", "v", "m/s", "velocity at the start", "structure file"),
-    Quantity("bodies.BODY.angular_velocity", "omega", "rad/s", "angular velocity at the start", "structure file"),
-    Quantity("shapes.SHAPE.chamfer", "c", "m", "leg of the 45-degree chamfer of a box", f"{_PAPER}, section LS-DEM"),
-    Quantity(
-        "shapes.SHAPE.hollow", "h", "m", "depth of the middle of each face below its rim", "docs/theory/rocking.md"
-    ),
-    Quantity("stoppers.INDEX.gap", "g", "m", "clearance of a stopper, counted from 0", "structure file"),
-    Quantity("stoppers.INDEX.stiffness", "k", "N/m", "stiffness of a stopper", "structure file"),
+    Quantity("bodies.BODY.position", "m", "shape's centroid at the start", "structure file"),
+    Quantity("bodies.BODY.orientation", "1", "unit quaternion w, x, y, z at the start", "structure file"),
+    Quantity("bodies.BODY.velocity", "m/s", "velocity at the start", "structure file"),
+    Quantity("bodies.BODY.angular_velocity", "rad/s", "angular velocity at the start", "structure file"),
+    Quantity("shapes.SHAPE.chamfer", "m", "leg of the 45-degree chamfer of a box", f"{_PAPER}, section LS-DEM"),
+    Quantity("shapes.SHAPE.hollow", "m", "depth of the middle of each face below its rim", "docs/theory/rocking.md"),
+    Quantity("stoppers.INDEX.gap", "m", "clearance of a stopper, counted from 0", "structure file"),
+    Quantity("stoppers.INDEX.stiffness", "N/m", "stiffness of a stopper", "structure file"),
 )  # fmt: skip
 _DENSITIES = (100.0, 25000.0)
 # Ends between which values of dry-stacked blocks lie, in a vector those of its parts: wide, and by judgement.

@@ -108,7 +108,7 @@ def working_place():
 def diagnosis_command(campaign, effort, cores):
     """Command that starts the workflow of a campaign's diagnosis, as a list of its words.
 
-    The folder is told in a list: Snakemake takes the quotes off a single text.
+    The folder is given in a list, because Snakemake takes the quotes off a single text.
     """
     folders = json.dumps([str(Path(campaign).resolve())], ensure_ascii=False)
     return [

@@ -100,15 +100,15 @@ def _modules_of(models):
 
 def _closure(sources):
     """Sources that these import, directly or not, and these themselves, sorted."""
-    found, left = set(), list(sources)
-    while left:
-        source = left.pop()
-        if source in found or source in _COMPUTE_NOTHING:
+    taken, waiting = set(), list(sources)
+    while waiting:
+        source = waiting.pop()
+        if source in taken or source in _COMPUTE_NOTHING:
             continue
-        found.add(source)
+        taken.add(source)
         name, _, function = source.partition(":")
-        left += _read(PACKAGE / name, function).imported
-    return tuple(sorted(source for source in found if not source.endswith("__init__.py")))
+        waiting += _read(PACKAGE / name, function).imported
+    return tuple(sorted(source for source in taken if not source.endswith("__init__.py")))
 
 
 @functools.cache
@@ -127,11 +127,11 @@ def _read(path, function=""):
 
 def _statements(tree):
     """Statements of a tree at any depth, and what holds them; expressions hold none."""
-    left = [tree]
-    while left:
-        node = left.pop()
+    waiting = [tree]
+    while waiting:
+        node = waiting.pop()
         yield node
-        left += [one for one in ast.iter_child_nodes(node) if isinstance(one, _HOLD_STATEMENTS)]
+        waiting += [child for child in ast.iter_child_nodes(node) if isinstance(child, _HOLD_STATEMENTS)]
 
 
 def _drop_docstring(node):

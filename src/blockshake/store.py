@@ -21,13 +21,7 @@ class Store(NamedTuple):
 
     A unit is named by the digest of the sources and of all that it follows from beside them: another source makes it
     anew. It goes to the folder at once, whole or not at all; a run that was cut short goes on from a checkpoint there.
-
-    Attributes
-    ----------
-    folder : str or path
-    source : str
-    say : callable
-        Of a line of text.
+    ``say`` is called with a line of text.
     """
 
     folder: str | Path
@@ -63,7 +57,7 @@ class Store(NamedTuple):
             Of the path of a checkpoint: the Dataset, with the run's ``status`` and, where there is one, ``reason`` as
             attributes.
         decimals : dict, optional
-            As of `write_dataset`.
+            Decimal digits kept of each unit, see `write_dataset`.
         """
         path, how = self._path(given, ".nc"), "kept"
         if not kept(path):
@@ -104,9 +98,9 @@ def load_made(path, without=(), chosen=None):
         The file cannot be read as such.
     """
     try:
-        with delayed_interrupts(), xr.open_dataset(path, drop_variables=list(without)) as found:
-            return found.sel(
-                {name: labels for name, labels in (chosen or {}).items() if name in found.dims}
+        with delayed_interrupts(), xr.open_dataset(path, drop_variables=list(without)) as dataset:
+            return dataset.sel(
+                {name: labels for name, labels in (chosen or {}).items() if name in dataset.dims}
             ).load()
     except (KeyError, OSError, RuntimeError, ValueError):
         raise InputError(path, "", MADE_ANEW.format("netCDF")) from None
@@ -123,3 +117,9 @@ def _keep(path, write):
 
 def _seal(path, content):
     return hashlib.sha256(Path(path).name.encode() + b"\0" + content).hexdigest().encode()
+
+
+def structure_digest(structure):
+    """Twelve hexadecimal digits of a structure's content, solids of meshes included."""
+    solids = (solid.vertices.tobytes() for solid in structure.solids.values())
+    return content_digest(structure.file.model_dump(mode="json"), *solids)

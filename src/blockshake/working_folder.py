@@ -15,9 +15,8 @@ from pathlib import Path
 
 from blockshake.errors import InputError
 
-COMMAND = (
-    "BLOCKSHAKE_COMMAND"  # environment variable of jobs: machine and process of the command that started them
-)
+# environment variable of jobs: machine and process of the command that started them
+COMMAND = "BLOCKSHAKE_COMMAND"
 _BOOT = Path("/proc/sys/kernel/random/boot_id")  # of this machine since it was switched on
 _LOCK = Path(".snakemake") / "command.lock"  # holds the name of the command that took the folder last
 _WRITTEN = ("results", "reports", "logs")  # folders of a workflow in it
@@ -45,8 +44,8 @@ def hold(folder):
         fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         os.close(held)
-        said = "expected a folder in which no other study or diagnosis runs; wait for its end, then type this again"
-        raise InputError(Path(folder).resolve(), "", said) from None
+        wrong = "expected a folder in which no other study or diagnosis runs; wait for its end, then type this again"
+        raise InputError(Path(folder).resolve(), "", wrong) from None
     os.ftruncate(held, 0)
     os.write(held, this_command()[COMMAND].encode())
     return held

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from blockshake.files import load_yaml, shipped
 from blockshake.geometry.structure import build_structure
 from blockshake.measurement.campaigns.campaign import Sensors
-from blockshake.measurement.motion.joint_coordinates import find_joints
+from blockshake.measurement.motion.joints import find_joints
 from blockshake.measurement.sensors.instruments import Instruments, observe
 
 

@@ -9,7 +9,7 @@ from blockshake.files import PACKAGE
 from blockshake.forces.seen.seen_test import see_test
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Sensors
-from blockshake.measurement.motion.outliers import without_outliers
+from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.simulation.simulate import simulate
 

@@ -7,7 +7,7 @@ import pytest
 from checkout import Checkout
 from work import WORKS, checkout_with_campaign
 
-from blockshake.simulation.compile import compile_kernels
+from blockshake.simulation.simulate import compile_kernels
 
 _BEGUN = time.time()
 

@@ -23,7 +23,7 @@ from blockshake.forces.seen.seen_test import see_test
 from blockshake.geometry.structure import build_structure, load_structure
 from blockshake.measurement.campaigns.campaign import Sensors, load_campaign
 from blockshake.measurement.campaigns.open_readings import read_open_tests
-from blockshake.measurement.motion.outliers import without_outliers
+from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.parity.parity import check_parity
 from blockshake.simulation.simulate import simulate

@@ -18,8 +18,8 @@ from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.geometry.schema import StructureFile
 from blockshake.measurement.campaigns.campaign import CampaignFile
-from blockshake.measurement.imports.import_map import ImportMap
 from blockshake.own_files.check import check_file
+from blockshake.own_files.import_map import ImportMap
 from blockshake.study.config import StudyConfig, load_config
 from blockshake.study.sampling.latin_hypercube import draw_design
 from blockshake.virtual.settings import VirtualCampaign, load_settings

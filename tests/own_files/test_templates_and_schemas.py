@@ -9,7 +9,7 @@ import pytest
 
 from blockshake.cli import main
 from blockshake.files import HOME, load_yaml
-from blockshake.own_files.json_schemas import file_schema
+from blockshake.own_files.commands import file_schema
 
 SHIPPED = {
     "structure": [*HOME.glob("config/structures/*.yaml"), HOME / "config/templates/structure.yaml"],

@@ -9,7 +9,7 @@ from fake_inputs import calibrated, motion, waves
 
 from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.motion.joint_coordinates import find_joints
+from blockshake.measurement.motion.joints import find_joints
 from blockshake.measurement.sensors.markers import noisy_reading
 from blockshake.statistics.scores import FEWEST
 from blockshake.study.comparison.comparison import compare_models

@@ -69,14 +69,5 @@ def test_a_unit_in_a_column_s_name():
         assert unit_of_name(name, kind)[0] == kind
     for name in ("EW_S", "peak_m", "a 3 g", "PGA = 0.35 g", "PGA: .35 g", "Peak 0.35e0 g"):
         assert unit_of_name(name, "acceleration") is None
-    for name in (
-        "EW/NS",
-        "in phase",
-        "time_s",
-        "wall_m",
-        "acc (filtered)",
-        "a[3]",
-        "U1",
-        "peak_min",
-    ):
+    for name in ("EW/NS", "in phase", "time_s", "wall_m", "acc (filtered)", "a[3]", "U1", "peak_min"):
         assert unit_of_name(name) is None

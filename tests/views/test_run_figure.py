@@ -64,13 +64,8 @@ def test_a_peak_of_an_impact_is_cut_off_and_said(leaning_run):
 
 
 def test_a_title_says_how_a_run_ended_and_breaks_long_lines(leaning_run):
-    attributes = {
-        "status": "collapsed",
-        "reason": "upper tipped over",
-        "motion_scale": 1.0,
-        "motion_synthetic": 0,
-    }
-    run = leaning_run[0].assign_attrs(attributes)
+    attributes = {"status": "collapsed", "reason": "upper tipped over", "motion_scale": 1.0}
+    run = leaning_run[0].assign_attrs(attributes, motion_synthetic=0)
     assert run_title(run, 80) == "test under push, LS-DEM\ncollapsed: upper tipped over"
     assert max(map(len, run_title(run, 20).splitlines())) <= 20
 

@@ -47,30 +47,24 @@ def test_joints_markers_and_energy_have_their_units_in_their_names(tables, leani
     np.testing.assert_array_equal(energy["kinetic_J"], leaning_run[0]["energy"].sel(term="kinetic"))
 
 
-def test_accelerometers_have_times_of_their_own(leaning_run, tmp_path):
-    run, structure = leaning_run
-    run = run.assign(
-        accelerometer=(("time_acc", "channel"), np.arange(6.0).reshape(3, 2), {"units": "m s-2"})
-    )
-    run = run.assign_coords(time_acc=[0.0, 0.1, 0.2], channel=["a-x", "a-z"])
-    *_, file = write_tables(tmp_path / "run.csv", run, run_histories(run, structure))
-    table = pd.read_csv(file)
-    assert table.columns.tolist() == ["time_s", "channel", "acceleration_m_s2"]
-    assert table["acceleration_m_s2"].tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
-
-
-def test_displacement_transducers_have_those_times_and_no_row_after_the_end(leaning_run, tmp_path):
+@pytest.mark.parametrize(
+    ("variable", "dimension", "unit", "file", "column"),
+    [
+        ("accelerometer", "channel", "m s-2", "run-accelerometers.csv", "acceleration_m_s2"),
+        ("transducer_displacement", "transducer", "m", "run-transducers.csv", "displacement_m"),
+    ],
+)
+def test_sensors_have_times_of_their_own_and_no_row_after_the_end(
+    leaning_run, tmp_path, variable, dimension, unit, file, column
+):
     run, structure = leaning_run
     read = np.array([[0.0, 0.0], [1e-3, -2e-3], [np.nan, np.nan]])
-    run = run.assign(transducer_displacement=(("time_acc", "transducer"), read, {"units": "m"}))
-    run = run.assign_coords(time_acc=[0.0, 0.1, 0.2], transducer=["wire", "rod"])
-    *_, file = write_tables(tmp_path / "run.csv", run, run_histories(run, structure))
-    table = pd.read_csv(file)
-    assert (file.name, table.columns.tolist()) == (
-        "run-transducers.csv",
-        ["time_s", "transducer", "displacement_m"],
-    )
-    assert table["displacement_m"].tolist() == [0.0, 0.0, 1e-3, -2e-3]
+    run = run.assign({variable: (("time_acc", dimension), read, {"units": unit})})
+    run = run.assign_coords({"time_acc": [0.0, 0.1, 0.2], dimension: ["a", "b"]})
+    *_, written = write_tables(tmp_path / "run.csv", run, run_histories(run, structure))
+    table = pd.read_csv(written)
+    assert (written.name, table.columns.tolist()) == (file, ["time_s", dimension, column])
+    assert table[column].tolist() == [0.0, 0.0, 1e-3, -2e-3]
 
 
 def test_a_suffix_that_is_no_format_is_refused(leaning_run, tmp_path):

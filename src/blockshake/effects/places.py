@@ -1,7 +1,7 @@
 """Where an effect may be in a structure: nowhere in particular, a joint, a block or a marker."""
 
 from blockshake.geometry.schema import Joint
-from blockshake.measurement.motion.joint_coordinates import find_joints
+from blockshake.measurement.motion.joints import find_joints
 
 
 def stated_joint(experiment, place):

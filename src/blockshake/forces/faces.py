@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.measurement.motion.contact_normals import contact_normals
+from blockshake.measurement.motion.joints import contact_normals
 
 _MARGIN = 2e-4  # m, between surfaces that touch at the start: twice the contract's 0.1 mm
 

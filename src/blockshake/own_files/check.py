@@ -16,8 +16,8 @@ from blockshake.geometry.schema import StructureFile
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import CampaignFile, load_campaign, load_test
 from blockshake.measurement.checks.campaign_check import campaign_lines
-from blockshake.measurement.imports.import_campaign import import_campaign
-from blockshake.measurement.imports.import_map import ImportMap, load_map
+from blockshake.own_files.import_campaign import import_campaign
+from blockshake.own_files.import_map import ImportMap, load_map
 from blockshake.study.config import StudyConfig, load_config
 from blockshake.study.config_checks import typical_structure
 from blockshake.study.ensembles.case_input import measured_input
@@ -40,7 +40,7 @@ def check_file(source, baseline=AUTO):
         A structure, a motion, a campaign, a study's configuration, the map of an import or the settings of a virtual
         campaign, by file, folder or shipped name.
     baseline : str or float
-        Of a motion, as of `load_motion`; the other files name their own.
+        Baseline correction of a motion, see `load_motion`; the other files name their own.
 
     Raises
     ------
@@ -56,12 +56,11 @@ def check_file(source, baseline=AUTO):
     keys = load_yaml(source).keys()
     known = {schema: len(keys & schema.model_fields.keys()) for schema in _LINES}
     if not any(known.values()):
-        raise InputError(
-            source,
-            "",
+        wrong = (
             "expected a structure (bodies), a study (cases), a campaign (tests), the map of an import (columns), a "
-            "virtual campaign (intensities) or a synthetic motion (synthetic)",
+            "virtual campaign (intensities) or a synthetic motion (synthetic)"
         )
+        raise InputError(source, "", wrong)
     kind = max(known, key=known.get)
     return _motion_line(source, baseline) if kind is SyntheticMotion else _LINES[kind](source)
 
@@ -84,7 +83,7 @@ def _campaign_line(folder):
     campaign = load_campaign(folder)
     lines = [*campaign_lines(folder), *sight_lines(campaign)]
     remarks = structure_remarks(load_structure(campaign.structure))
-    return _with_remarks(lines, [one for one in remarks if not any(one in line for line in lines)])
+    return _with_remarks(lines, [remark for remark in remarks if not any(remark in line for line in lines)])
 
 
 def _import_line(source):
@@ -102,14 +101,14 @@ def _virtual_line(source):
 def _study_line(source):
     config = load_config(source)
     _read_measured(config, source)
-    told = []
+    models = []
     for model in config.models:
         counts = sorted({config.samples(model, case.name) for case in config.cases})
-        told.append(f"{model} ({' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))} samples)")
+        models.append(f"{model} ({' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))} samples)")
     count = f"{len(config.cases)} case{'s' * (len(config.cases) != 1)}"
     motions = {name: load_motion(name, baseline=baseline) for _, name, baseline in config.named_motions()}
     records = [f"  {name}: {provenance(motion.attributes)}" for name, motion in motions.items()]
-    lines = [f"a study of {count} by {', '.join(told)}", *records]
+    lines = [f"a study of {count} by {', '.join(models)}", *records]
     return _with_remarks(lines, _study_remarks(config, motions))
 
 

@@ -7,12 +7,13 @@ from blockshake.errors import InputError
 from blockshake.files import check_output, write_text
 
 KINDS = ("structure", "study", "campaign")
+_DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
 
-def add_data_commands(commands):
-    """Add the commands to the parser's."""
-    command = commands.add_parser(
-        "convert-motion", help="a record or a table of another format, to the project's CSV"
+def add_data_commands(add):
+    """Add the commands to the parser's, by a function of a command's name, what it runs and its help."""
+    command = add(
+        "convert-motion", _convert_motion, "a record or a table of another format, to the project's CSV"
     )
     command.add_argument("file", metavar="FILE", help="a record, or a table (then with --unit)")
     command.add_argument(
@@ -29,10 +30,11 @@ def add_data_commands(commands):
     _add_layout(command)
     add_baseline(command)
     command.add_argument("--output", required=True, metavar="MOTION.csv")
-    command.set_defaults(run=_convert_motion)
 
-    command = commands.add_parser(
-        "import-campaign", help="measured tests in spreadsheets or CSV files, to a campaign's folder"
+    command = add(
+        "import-campaign",
+        _import_campaign,
+        "measured tests in spreadsheets or CSV files, to a campaign's folder",
     )
     command.add_argument(
         "sources", nargs="+", metavar="MAP.yaml|FILE", help="a map, or one table a test; FILE.xlsx#SHEET"
@@ -55,19 +57,16 @@ def add_data_commands(commands):
     )  # fmt: skip
     command.add_argument("--fill-gaps", action="store_true", help="rows that the clock lacks become gaps")
     _add_layout(command)
-    command.set_defaults(run=_import_campaign)
 
-    command = commands.add_parser("new", help="a commented template to start an own file from")
+    command = add("new", _new, "a commented template to start an own file from")
     command.add_argument("kind", choices=KINDS)
     command.add_argument(
         "path", metavar="PATH", help="file to write, or folder of a campaign; never overwritten"
     )
-    command.set_defaults(run=_new)
 
-    command = commands.add_parser("schema", help="JSON schema of a file, for editors")
+    command = add("schema", _schema, "JSON schema of a file, for editors")
     command.add_argument("kind", choices=(*KINDS, "import"))
     command.add_argument("--output", metavar="SCHEMA.json", help="default: printed")
-    command.set_defaults(run=_schema)
 
 
 def add_baseline(command):
@@ -151,8 +150,8 @@ def _times(options, columns):
 
 
 def _import_campaign(options):
-    from blockshake.measurement.imports.import_campaign import import_campaign
-    from blockshake.measurement.imports.import_map import load_map
+    from blockshake.own_files.import_campaign import import_campaign
+    from blockshake.own_files.import_map import load_map
 
     given = _given(
         options, ("structure", "motion", "scale", "baseline", "role", "displacement_unit", "acceleration_unit", "rest",
@@ -172,36 +171,30 @@ def _import_campaign(options):
 def _map_of_options(options, given, columns):
     """`ImportMap` of a call without a map."""
     from blockshake.files import parse_yaml
-    from blockshake.measurement.imports.import_map import ImportMap
+    from blockshake.own_files.import_map import ImportMap
     from blockshake.validation import validated
 
     for name in ("structure", "motion", "displacement_unit"):
         if name not in given:
-            raise InputError(
-                f"--{name.replace('_', '-')}", "", "expected, or a map MAP.yaml as the only source"
-            )
-    numbers = {name: parse_yaml(given[name], f"--{name}") for name in ("scale", "rest") if name in given}
-    tests = [
-        {
-            "name": Path(source.replace("#", "-")).stem, "file": source, "motion": given["motion"],
-            "scale": numbers.get("scale", 1.0), "role": given.get("role", "fit"),
-            **{name: given[name] for name in ("baseline",) if name in given},
-        }
-        for source in options.sources
-    ]  # fmt: skip
+            option = f"--{name.replace('_', '-')}"
+            raise InputError(option, "", "expected, or a map MAP.yaml as the only source")
+    given |= {name: parse_yaml(given[name], f"--{name}") for name in ("scale", "rest") if name in given}
+
+    def chosen(*names):
+        return {name: given[name] for name in names if name in given}
+
+    of_all = {"scale": 1.0, "role": "fit"} | chosen("motion", "scale", "role", "baseline")
     mapping = {
         "name": Path(options.output).name,
         "layout": _given(options, _LAYOUT),
         "time": {"column": given.get("time", "time_s"), "unit": given.get("time_unit", "s")},
         "columns": columns,
         "fill_gaps": options.fill_gaps,
-        "tests": tests,
-        **{
-            name: given[name]
-            for name in ("structure", "displacement_unit", "acceleration_unit")
-            if name in given
-        },
-        **({"rest": numbers["rest"]} if "rest" in numbers else {}),
+        "tests": [
+            {"name": Path(source.replace("#", "-")).stem, "file": source, **of_all}
+            for source in options.sources
+        ],
+        **chosen("structure", "displacement_unit", "acceleration_unit", "rest"),
     }
     return validated(ImportMap, mapping, "options")
 
@@ -213,11 +206,29 @@ def _new(options):
 
 
 def _schema(options):
-    from blockshake.own_files.json_schemas import file_schema
-
     text = json.dumps(file_schema(options.kind), indent=2)
     if options.output:
         write_text(options.output, text + "\n")
         print(options.output)
     else:
         print(text)
+
+
+def file_schema(kind):
+    """JSON schema of a kind of file, for editors that complete and check YAML: types, limits and meaning of every key.
+
+    ``kind``: ``structure``, ``study``, ``campaign`` or ``import`` (the map of an import). Rules between keys, such as a
+    friction for every pair of materials, are those of ``blockshake check`` alone.
+    """
+    from blockshake.geometry.schema import StructureFile
+    from blockshake.measurement.campaigns.campaign import CampaignFile
+    from blockshake.own_files.import_map import ImportMap
+    from blockshake.study.config import StudyConfig
+
+    schemas = {
+        "structure": StructureFile,
+        "study": StudyConfig,
+        "campaign": CampaignFile,
+        "import": ImportMap,
+    }
+    return {"$schema": _DRAFT, **schemas[kind].model_json_schema()}

@@ -65,6 +65,7 @@ def _synthetic_test():
     readings = moved - moved[0] + np.random.default_rng(1).normal(0.0, _NOISE, (len(time), len(_MARKERS)))
     lines = [",".join(["time_s", *(f"{name}.x" for name in _MARKERS)])]
     lines += [
-        f"{at:.2f}," + ",".join(f"{one:.5f}" for one in row) for at, row in zip(time, readings, strict=True)
+        f"{at:.2f}," + ",".join(f"{reading:.5f}" for reading in row)
+        for at, row in zip(time, readings, strict=True)
     ]
     return "\n".join(lines) + "\n"

@@ -1,7 +1,7 @@
 """Readings without the faults that were found."""
 
 from blockshake.measurement.campaigns.campaign import load_test
-from blockshake.measurement.campaigns.command_clock import simulation_start, since
+from blockshake.measurement.campaigns.clocks import simulation_start, since
 from blockshake.measurement.motion.fall import find_fall, until_fall
 from blockshake.parity.kinds.registry import KINDS
 

@@ -8,8 +8,8 @@ import xarray as xr
 
 from blockshake.files import load_made_json
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines
+from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.fall import Fall
-from blockshake.measurement.motion.outliers import without_outliers
 from blockshake.parity import marker_faults, transducer_faults
 from blockshake.parity.body_markers import bodies_with_markers, measured_pose
 from blockshake.parity.channel_pairs import channel_pairs

@@ -33,24 +33,12 @@ def _balance(energy):
 
 
 def energy_residual(energy):
-    """Energy that the audit does not explain, relative to the energy in play.
-
-    Parameters
-    ----------
-    energy : float64 array, shape (n_times, 7)
-        `ENERGY_TERMS` [J].
-
-    Returns
-    -------
-    float
-        Largest magnitude of `unexplained_energy` over the largest of the work done on the bodies, their kinetic and
-        their elastic energy and a millionth of their potential energy [1].
-    """
+    """`residual_of` a run from its energy over time, float64 array, shape (n_times, 7), `ENERGY_TERMS` [J]."""
     return residual_of([energy_extremes(energy)])
 
 
 def energy_extremes(energy):
-    """All that `energy_residual` needs of a part of a run, float64 array, shape (7,); NaN where nothing is finite."""
+    """All that `residual_of` needs of a part of a run, float64 array, shape (7,); NaN where nothing is finite."""
     energy = energy[np.isfinite(energy).all(axis=1)]
     if not len(energy):
         return np.full(7, np.nan)
@@ -61,12 +49,17 @@ def energy_extremes(energy):
 
 
 def residual_of(extremes):
-    """`energy_residual` of a run from the `energy_extremes` of its parts, in their order."""
-    found = np.array(extremes)
-    found = found[np.isfinite(found).all(axis=1)]
-    if not len(found):
+    """Energy that the audit of a run does not explain, relative to the energy in play.
+
+    Largest magnitude of `unexplained_energy` over the largest of the work done on the bodies, their kinetic and their
+    elastic energy and a millionth of their potential energy [1]. ``extremes``: `energy_extremes` of the run's parts, in
+    their order.
+    """
+    known = np.array(extremes)
+    known = known[np.isfinite(known).all(axis=1)]
+    if not len(known):
         return float("nan")
-    start, largest = found[0, _START], found.max(axis=0)
-    missing = max(abs(found[:, _LEAST].min() - start), abs(largest[_MOST] - start))
+    start, largest = known[0, _START], known.max(axis=0)
+    missing = max(abs(known[:, _LEAST].min() - start), abs(largest[_MOST] - start))
     in_play = max(largest[_INPUT], largest[_KINETIC], largest[_ELASTIC], 1e-6 * largest[_POTENTIAL])
     return float(missing / in_play) if in_play > 0.0 else 0.0

@@ -44,37 +44,25 @@ def check_limits(structure, model, time_step, duration, output_rate, fine, in_me
         if not (np.isfinite(value) and value > 0.0):
             raise InputError(f"--{name}", "", f"expected a positive number, not {value}")
     if duration * output_rate < 1.0 - 1e-9:
-        raise InputError(
-            "--output-rate", "", f"expected at least {1.0 / duration:g} Hz of {duration:g} s, not {output_rate:g}: "
-            "a run ends at its last row",
-        )  # fmt: skip
+        wrong = f"expected at least {1.0 / duration:g} Hz of {duration:g} s, not {output_rate:g}"
+        raise InputError("--output-rate", "", f"{wrong}: a run ends at its last row")
     if time_step > LONGEST_STEP:
-        raise InputError(
-            "--time-step", "", f"expected at most {LONGEST_STEP:g} s, not {time_step:g}: impacts last less"
-        )
+        wrong = f"expected at most {LONGEST_STEP:g} s, not {time_step:g}: impacts last less"
+        raise InputError("--time-step", "", wrong)
     if duration / time_step > MOST_STEPS:
-        raise InputError(
-            "--time-step", "",
-            f"expected at most {MOST_STEPS:.0e} steps, not {duration / time_step:.2g}: {duration:g} s in steps of "
-            f"{time_step:g} s",
-        )  # fmt: skip
+        wrong = f"expected at most {MOST_STEPS:.0e} steps, not {duration / time_step:.2g}"
+        raise InputError("--time-step", "", f"{wrong}: {duration:g} s in steps of {time_step:g} s")
     rows = duration * output_rate, duration * FINE_RATE * fine
     size = run_bytes(structure, *rows, in_memory)
     if size > LARGEST_RUN:
         rate, option = (FINE_RATE, "--duration") if rows[1] > rows[0] else (output_rate, "--output-rate")
-        raise InputError(
-            option, "",
-            f"expected a run of at most {LARGEST_RUN / 1e9:.2g} GB, not {size / 1e9:.2g} GB: {duration:g} s at "
-            f"{rate:g} Hz",
-        )  # fmt: skip
+        wrong = f"expected a run of at most {LARGEST_RUN / 1e9:.2g} GB, not {size / 1e9:.2g} GB"
+        raise InputError(option, "", f"{wrong}: {duration:g} s at {rate:g} Hz")
     for name in model_of(model).needed:
         for body in structure.file.bodies:
             if not (body.driven or getattr(structure.file.materials[body.material], name)):
-                raise InputError(
-                    structure.source,
-                    f"materials.{body.material}.{name}",
-                    f"expected above 0 for {model}, not 0",
-                )
+                key = f"materials.{body.material}.{name}"
+                raise InputError(structure.source, key, f"expected above 0 for {model}, not 0")
 
 
 def run_bytes(structure, rows, fine_rows, in_memory):

@@ -12,7 +12,7 @@ from blockshake.geometry.schema import AXES, QUATERNION
 from blockshake.geometry.structure import build_structure
 from blockshake.interrupts import delayed_interrupts
 from blockshake.simulation.run_dataset import RUN_HISTORIES
-from blockshake.tables.damaged_hdf5 import has_endless_heap
+from blockshake.tables.damaged_hdf5 import DAMAGE, has_endless_heap
 
 _JOINTS = ("lower", "upper")
 _ATTRIBUTES = ("structure_file", "structure", "motion", "motion_scale", "motion_synthetic", "model")
@@ -47,14 +47,7 @@ def load_run(path, meshes=None):
             raise ValueError("it is damaged")
         with delayed_interrupts():
             run = xr.load_dataset(path, engine="netcdf4", decode_times=False)
-    except (
-        OSError,
-        ValueError,
-        RuntimeError,
-        LookupError,
-        TypeError,
-        MemoryError,
-    ) as error:  # of a damaged file
+    except DAMAGE as error:
         reason = getattr(error, "strerror", None) or error
         raise InputError(path, "", f"expected a readable netCDF file; {reason}") from None
     known = {name: tuple(dims.split()) for name, (dims, _, _) in RUN_HISTORIES.items()}
@@ -77,9 +70,8 @@ def load_run(path, meshes=None):
             raise InputError(path, name, f"expected {', '.join(order)}")
     for name in _JOINTS:
         if not set(run[name].values.tolist()) <= set(structure.body_names):
-            raise InputError(
-                path, name, f"expected bodies of the structure: {', '.join(structure.body_names)}"
-            )
+            wrong = f"expected bodies of the structure: {', '.join(structure.body_names)}"
+            raise InputError(path, name, wrong)
     if not (np.isfinite(run["time"]).all() and (np.diff(run["time"]) > 0.0).all()):
         raise InputError(path, "time", "expected times that increase")
     reached = np.isfinite(run["position"]).all(("body", "axis"))

@@ -3,22 +3,15 @@
 import importlib
 import re
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from blockshake.errors import InputError
 
 
-@dataclass(frozen=True)
-class Uncertain:
-    """A parameter that stands for what is not known of a model's numerics, drawn evenly between two ends.
+class Uncertain(NamedTuple):
+    """A parameter, by its dotted name, that stands for what is not known of a model's numerics.
 
-    Attributes
-    ----------
-    name : str
-        Dotted.
-    lower, upper : float
-        Ends, in the parameter's unit or, where ``relative``, over its usual value [1].
-    relative : bool
+    It is drawn evenly between two ends, in its unit or, where ``relative``, over its usual value [1].
     """
 
     name: str
@@ -27,20 +20,12 @@ class Uncertain:
     relative: bool = False
 
 
-@dataclass(frozen=True)
-class Perturbation:
+class Perturbation(NamedTuple):
     """How the numerics of a model differ between the nominal models of a diagnosis.
 
-    Attributes
-    ----------
-    stream : int
-        Of the seeds; no two models have the same, and none ever gets another.
-    uncertain : tuple of Uncertain
-        In the order in which they are drawn.
-    time_steps : tuple of float
-        One of them is taken [s].
-    fixed : dict of str to value
-        Parameters that differ from their defaults in all of them, by dotted name.
+    ``stream`` of the seeds: no two models have the same, and none ever gets another. ``uncertain``: in the order in
+    which they are drawn. ``time_steps``: one of them is taken [s]. ``fixed``: values of the parameters that differ from
+    their defaults in all of the nominal models, by dotted name.
     """
 
     stream: int
@@ -62,7 +47,7 @@ class Model:
     prefix : str
         Of the dotted names of its numerical parameters.
     time_step : float
-        When nothing is said [s].
+        Default [s].
     driver : str
         ``module:function`` that runs it: ``(structure, motion, parameters, record_times, time_step, checkpoint=)``
         to a `Trajectory`.
@@ -73,7 +58,7 @@ class Model:
     calibrated : tuple of str
         Those of them that a wave test gives from the material, as its contact stiffness.
     own_stiffness : str or None
-        ``module:function`` that gives them for a structure about which nothing is said: ``(structure)`` to a dict.
+        ``module:function`` that gives their defaults for a structure: ``(structure)`` to a dict.
     without_effect : tuple of str
         Last parts of the names of parameters that the model has no use for.
     needed : tuple of str
@@ -121,9 +106,9 @@ class Model:
         return tuple(f"{self.prefix}.{name}" for name in self.calibrated)
 
     def stiffness_of(self, structure):
-        """Contact stiffness of a structure about which nothing is said, by dotted name; empty without any."""
-        own = _named(self.own_stiffness)(structure) if self.own_stiffness else {}
-        return {f"{self.prefix}.{name}": value for name, value in own.items()}
+        """Default contact stiffness for a structure, by dotted name; empty where the model has none."""
+        values = _named(self.own_stiffness)(structure) if self.own_stiffness else {}
+        return {f"{self.prefix}.{name}": value for name, value in values.items()}
 
     @property
     def modules(self):
@@ -244,7 +229,7 @@ def split_parameters(parameters, name):
     """
     from blockshake.validation import validated  # here, so that the help of the command line stays quick
 
-    own = model_of(name)
+    asked = model_of(name)
     physical, numerical = part_parameters(parameters)
     for key in numerical:
         prefix, _, parameter = key.partition(".")
@@ -252,9 +237,9 @@ def split_parameters(parameters, name):
             fields = model.schema.model_fields if model.prefix == prefix else [parameter]
             if parameter not in fields:
                 raise InputError("--set", key, f"expected one of {prefix}.{{{', '.join(fields)}}}")
-    prefix = f"{own.prefix}."
+    prefix = f"{asked.prefix}."
     values = {key.removeprefix(prefix): value for key, value in numerical.items() if key.startswith(prefix)}
-    return physical, validated(own.schema, values, "--set", own.prefix)
+    return physical, validated(asked.schema, values, "--set", asked.prefix)
 
 
 def _named(path):

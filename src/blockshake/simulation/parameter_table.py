@@ -25,13 +25,13 @@ def parameter_table(structure=None):
     for quantity in PHYSICAL:
         for name, value in instances(quantity.name, file):
             rows.append((name, quantity.unit, _shown(value), quantity.meaning, quantity.source))
-    numerical, own = {}, {}
+    numerical, stiffness = {}, {}
     for model in MODELS.values():
         # some models share their parameters
         numerical |= model.numerical_parameters()
-        own |= model.stiffness_of(loaded)
+        stiffness |= model.stiffness_of(loaded)
     for name, (default, unit, meaning, source) in numerical.items():
-        rows.append((name, unit, _shown(own.get(name, default)), meaning, source))
+        rows.append((name, unit, _shown(stiffness.get(name, default)), meaning, source))
     return rows
 
 
@@ -42,28 +42,18 @@ def instances(pattern, file):
         suffix, key = (f".{parts[3]}", parts[3]) if len(parts) == 4 else ("", "coefficient")
         return [(f"friction.{'.'.join(entry.pair)}{suffix}", getattr(entry, key)) for entry in file.friction]
     if parts[0] == "joints":
-        named = [
-            (f"joints.{'.'.join(joint.bodies)}.{parts[3]}", getattr(joint, parts[3])) for joint in file.joints
-        ]
-        return named or [(pattern, Joint.model_fields[parts[3]].default)]
+        key = parts[3]
+        named = [(f"joints.{'.'.join(joint.bodies)}.{key}", getattr(joint, key)) for joint in file.joints]
+        return named or [(pattern, Joint.model_fields[key].default)]
     if len(parts) == 1:
         return [(pattern, getattr(file, pattern))]
-    held = getattr(file, parts[0])
-    named = (
-        held.items()
-        if isinstance(held, dict)
-        else [(getattr(item, "name", n), item) for n, item in enumerate(held)]
-    )
-    return [(f"{parts[0]}.{name}.{parts[2]}", getattr(item, parts[2])) for name, item in named]
+    named = held = getattr(file, parts[0])
+    if not isinstance(held, dict):
+        named = {getattr(item, "name", number): item for number, item in enumerate(held)}
+    return [(f"{parts[0]}.{name}.{parts[2]}", getattr(item, parts[2])) for name, item in named.items()]
 
 
 def _shown(value):
-    if value is None:
-        return "-"
-    return (
-        f"{value:g}"
-        if isinstance(value, float)
-        else str(list(value))
-        if isinstance(value, tuple)
-        else str(value)
-    )
+    if isinstance(value, float):
+        return f"{value:g}"
+    return "-" if value is None else str(list(value) if isinstance(value, tuple) else value)

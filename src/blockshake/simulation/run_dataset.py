@@ -5,9 +5,7 @@ import xarray as xr
 
 from blockshake.dynamics.system import ENERGY_TERMS
 from blockshake.geometry.schema import AXES, QUATERNION
-from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.markers import marker_position
-from blockshake.measurement.sensors.transducers import transducer_names
 from blockshake.simulation.models import model_of
 
 _TIME = {"units": "s", "long_name": "time since the start of the motion"}
@@ -24,6 +22,15 @@ RUN_HISTORIES = {
     ),
     "energy": ("time term", "J", "energy audit of the free bodies"),
     "joint_force": ("time joint axis", "N", "resultant contact force on the upper body"),
+}
+# dimension, unit and name of the readings of a run file
+READINGS = {
+    "accelerometer": ("channel", "m s-2", "specific force along the body's axis, 50 Hz low-pass"),
+    "transducer_displacement": (
+        "transducer",
+        "m",
+        "lengthening of the displacement transducer since the start",
+    ),
 }
 
 
@@ -61,43 +68,29 @@ def run_dataset(structure, rows, start):
     )
 
 
-def add_accelerometers(run, structure, times, values):
-    """Add readings ``accelerometer(time_acc, channel)`` [m/s2] to a run, at their times [s]."""
-    described = {"units": "m s-2", "long_name": "specific force along the body's axis, 50 Hz low-pass"}
-    run["accelerometer"] = ("time_acc", "channel"), values, described
+def add_readings(run, name, times, values, sensors):
+    """Add the readings ``name(time_acc, sensor)`` of `READINGS`, by the names of their sensors, at their times [s]."""
+    dimension, unit, long_name = READINGS[name]
+    run[name] = ("time_acc", dimension), values, {"units": unit, "long_name": long_name}
     run["time_acc"] = "time_acc", times, _TIME
-    run["channel"] = accelerometer_channels(structure)
-
-
-def add_transducers(run, structure, times, values):
-    """Add readings ``transducer_displacement(time_acc, transducer)`` [m] to a run, at their times [s]."""
-    described = {"units": "m", "long_name": "lengthening of the displacement transducer since the start"}
-    run["transducer_displacement"] = ("time_acc", "transducer"), values, described
-    run["time_acc"] = "time_acc", times, _TIME
-    run["transducer"] = transducer_names(structure)
+    run[dimension] = sensors
 
 
 def effective_parameters(structure, model, numerical):
     """Every parameter that acted in a run, by dotted name."""
     file = structure.file
-    acted = {
-        "gravity": list(file.gravity),
-        "restitution": file.restitution,
-        "nscd_restitution": file.nscd_restitution,
-    }
-    for name, material in file.materials.items():
-        acted |= {f"materials.{name}.{key}": value for key, value in material.model_dump().items()}
-    for entry in file.friction:
-        pair = f"friction.{'.'.join(entry.pair)}"
-        acted[pair] = entry.coefficient
-        acted |= {
-            f"{pair}.{key}": value for key, value in entry.model_dump(exclude={"pair", "coefficient"}).items()
-        }
+    acted = {"gravity": list(file.gravity)}
+    acted |= {name: getattr(file, name) for name in ("restitution", "nscd_restitution")}
+    acted |= {f"friction.{'.'.join(entry.pair)}": entry.coefficient for entry in file.friction}
     acted |= {
         f"bodies.{body.name}.mass_offset": list(body.mass_offset) for body in file.bodies if not body.driven
     }
+    groups = {f"materials.{name}": material.model_dump() for name, material in file.materials.items()}
+    for entry in file.friction:
+        groups[f"friction.{'.'.join(entry.pair)}"] = entry.model_dump(exclude={"pair", "coefficient"})
     for joint in file.joints:
-        own = joint.model_dump(exclude={"bodies"})
-        acted |= {f"joints.{'.'.join(joint.bodies)}.{key}": value for key, value in own.items()}
-    prefix = model_of(model).prefix
-    return acted | {f"{prefix}.{key}": value for key, value in numerical.model_dump().items()}
+        groups[f"joints.{'.'.join(joint.bodies)}"] = joint.model_dump(exclude={"bodies"})
+    groups[model_of(model).prefix] = numerical.model_dump()
+    return acted | {
+        f"{group}.{key}": value for group, values in groups.items() for key, value in values.items()
+    }

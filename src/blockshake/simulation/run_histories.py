@@ -4,8 +4,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.measurement.motion.contact_normals import contact_normals
-from blockshake.measurement.motion.joint_coordinates import find_joints, joint_coordinates
+from blockshake.measurement.motion.joints import contact_normals, find_joints, joint_coordinates
 from blockshake.simulation.energy_residual import unexplained_energy
 from blockshake.simulation.run_dataset import histories
 
@@ -24,17 +23,11 @@ _HISTORIES = {
     "residual": ("time", "J", "unexplained energy"),
 }
 _LEAST_LOAD = 0.01  # of the upper body's weight: below it the ratio of two small forces tells nothing
+RARELY = 0.01  # share of the time for which a joint is pressed harder; the peaks of impacts are briefer
 
 
 def run_histories(run, structure):
-    """Histories of a run.
-
-    Parameters
-    ----------
-    run : xarray.Dataset
-        A run file.
-    structure : Structure
-        The run's.
+    """Histories of a run, from its run file and its structure.
 
     Returns
     -------
@@ -58,10 +51,8 @@ def run_histories(run, structure):
     """
     position, turns = run["position"].to_numpy(), rotation_matrices(run["orientation"])
     names = structure.body_names
-    pairs = np.array(
-        [[names.index(name) for name in run[side].values] for side in ("lower", "upper")], dtype=int
-    ).T
-
+    sides = [[names.index(name) for name in run[side].values] for side in ("lower", "upper")]
+    pairs = np.array(sides, dtype=int).T
     joints = _joint_states(run, structure, pairs, position, turns)
     return xr.Dataset(
         histories(
@@ -101,10 +92,10 @@ def drift_histories(structure, position, turns):
 
 def _joint_states(run, structure, pairs, position, turns):
     """Forces along the faces of the joints and motion across them, by name, float64 arrays (n_times, n_joints)."""
-    found = {name: np.full((len(position), len(pairs)), np.nan) for name in JOINT_HISTORIES}
+    states = {name: np.full((len(position), len(pairs)), np.nan) for name in JOINT_HISTORIES}
     known = find_joints(structure)[0]
     if not len(known):
-        return found
+        return states
     seen = joint_coordinates(structure, position, turns)
     moved = np.concatenate([seen["slip"], seen["opening"].to_numpy()[..., None]], axis=-1)
     normals = contact_normals(structure, known)
@@ -115,19 +106,20 @@ def _joint_states(run, structure, pairs, position, turns):
         if row is None:
             continue
         lower, upper = known[row]
-        own = rotation_matrices(structure.orientation[lower]).T @ normals[row]  # in the lower body's frame
-        across = turns[:, lower] @ own
+        # in the lower body's frame
+        face_normal = rotation_matrices(structure.orientation[lower]).T @ normals[row]
+        across = turns[:, lower] @ face_normal
         force = run["joint_force"].to_numpy()[:, joint] * (1.0 if pair == [lower, upper] else -1.0)
         normal = np.einsum("ti,ti->t", force, across)
         shear = np.linalg.norm(force - normal[:, None] * across, axis=1)
         limit = structure.friction[lower, upper] * normal
-        told = (normal > _LEAST_LOAD * structure.mass[upper] * gravity) & (limit > 0.0)
-        uplift = moved[:, row] @ own
-        found["normal_force"][:, joint], found["shear_force"][:, joint] = normal, shear
-        found["friction_ratio"][told, joint] = shear[told] / limit[told]
-        found["uplift"][:, joint] = uplift
-        found["slip"][:, joint] = np.linalg.norm(moved[:, row] - uplift[:, None] * own, axis=1)
-    return found
+        loaded = (normal > _LEAST_LOAD * structure.mass[upper] * gravity) & (limit > 0.0)
+        uplift = moved[:, row] @ face_normal
+        states["normal_force"][:, joint], states["shear_force"][:, joint] = normal, shear
+        states["friction_ratio"][loaded, joint] = shear[loaded] / limit[loaded]
+        states["uplift"][:, joint] = uplift
+        states["slip"][:, joint] = np.linalg.norm(moved[:, row] - uplift[:, None] * face_normal, axis=1)
+    return states
 
 
 def _middles(structure, pairs, position, turns):
@@ -139,3 +131,57 @@ def _middles(structure, pairs, position, turns):
         high[:, body] = position[:, body] + corners.max(axis=1)
     first, second = pairs.T
     return 0.5 * (np.maximum(low[:, first], low[:, second]) + np.minimum(high[:, first], high[:, second]))
+
+
+def joint_figures(run, structure):
+    """Largest compression, uplift and slip, in a run, of every joint that its structure has at the start.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``joint_compression(joint)``: normal force that is exceeded for 1 % of the time [N]; ``joint_uplift`` and
+        ``joint_slip(joint)``: largest opening and slip at the middle of the face, see `run_histories` [m]. NaN where
+        a joint is not known there. Coordinate ``joint``, ``lower-upper``, from the foundation up.
+
+    Notes
+    -----
+    The largest normal force of all is that of an impact: it lasts a few milliseconds, and depends on the stiffness of
+    the contact and on the instants at which a run is written.
+    """
+    histories = run_histories(run, structure)
+    pairs, _ = find_joints(structure)
+    names = structure.body_names
+    # a run names a pair in the order in which its bodies met
+    touched = zip(histories["lower"].values, histories["upper"].values, strict=True)
+    columns = {frozenset(pair): column for column, pair in enumerate(touched)}
+    columns = [columns.get(frozenset((names[lower], names[upper]))) for lower, upper in pairs]
+
+    def figure(name, statistic):
+        """Statistic over the finite values of every joint; NaN where there are none."""
+        values = histories[name].to_numpy()
+        known = [column is not None and np.isfinite(values[:, column]).any() for column in columns]
+        return [
+            float(statistic(values[:, c])) if there else np.nan
+            for c, there in zip(columns, known, strict=True)
+        ]
+
+    return xr.Dataset(
+        {
+            name: ("joint", figure(history, statistic), {"units": units, "long_name": long_name})
+            for name, (history, statistic, units, long_name) in _FIGURES.items()
+        },
+        coords={"joint": np.array([f"{names[lower]}-{names[upper]}" for lower, upper in pairs], dtype=str)},
+    )
+
+
+def _rarely_exceeded(values):
+    return np.nanquantile(values, 1.0 - RARELY)
+
+
+# history of `run_histories`, statistic over time, unit and name of every figure
+_FIGURES = {
+    "joint_compression": ("normal_force", _rarely_exceeded, "N", "normal force exceeded for 1 % of the time"),
+    "joint_uplift": ("uplift", np.nanmax, "m", "largest opening at the middle of the face"),
+    "joint_slip": ("slip", np.nanmax, "m", "largest slip at the middle of the face"),
+}
+JOINT_FIGURES = tuple(_FIGURES)

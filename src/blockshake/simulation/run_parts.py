@@ -2,9 +2,11 @@
 
 import dataclasses
 
+import netCDF4
 import numpy as np
 
 from blockshake.dynamics.system import Rows
+from blockshake.files import replacing
 from blockshake.measurement.sensors.accelerometers import (
     SKIP,
     accelerometer_channels,
@@ -14,9 +16,11 @@ from blockshake.measurement.sensors.accelerometers import (
 )
 from blockshake.measurement.sensors.transducers import transducer_lengths, transducer_names
 from blockshake.simulation.energy_residual import energy_extremes, residual_of
-from blockshake.simulation.run_dataset import run_dataset
+from blockshake.simulation.run_dataset import add_readings, run_dataset
 
 _AT_HAND = 2**12  # rows beyond the end of a run that are written at a time
+_CHUNK = 2**12  # times that are compressed together
+_CACHE = 2**22  # bytes of a variable that wait for more to be compressed with
 
 
 def reduced(structure, rows, coarse, fine):
@@ -75,7 +79,7 @@ class RunParts:
         yield self._last
 
     def energy_residual(self):
-        """As of the whole run."""
+        """`residual_of` the whole run."""
         return residual_of([part["energy"][0] for part in self._read("energy")])
 
     def histories(self):
@@ -94,9 +98,9 @@ class RunParts:
 
     def _with_all_joints(self, rows):
         """Rows with all joints of the run; one that was not touched yet carried nothing."""
-        places = {pair: place for place, pair in enumerate(map(tuple, self._joints.tolist()))}
-        force = np.zeros((len(rows.time), len(places), 3))
-        force[:, [places[pair] for pair in map(tuple, rows.joints.tolist())]] = rows.joint_force
+        columns = {pair: column for column, pair in enumerate(map(tuple, self._joints.tolist()))}
+        force = np.zeros((len(rows.time), len(columns), 3))
+        force[:, [columns[pair] for pair in map(tuple, rows.joints.tolist())]] = rows.joint_force
         return dataclasses.replace(rows, joints=self._joints, joint_force=force)
 
     def reading_times(self):
@@ -142,3 +146,66 @@ def _lost(like, times):
         if name not in ("time", "joints")
     }
     return Rows(time=times, joints=like.joints, **fields)
+
+
+def write_run(path, parts, attributes):
+    """Write a run file, whole or not at all.
+
+    Parameters
+    ----------
+    path : str or path
+    parts : RunParts
+    attributes : dict
+        Of the file.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written.
+    """
+    pieces, times = parts.histories(), parts.reading_times()
+    empty = next(pieces).assign_attrs(attributes)
+    for name, sensors in (("accelerometer", parts.channels), ("transducer_displacement", parts.transducers)):
+        if sensors:
+            add_readings(empty, name, times[:0], np.empty((0, len(sensors))), sensors)
+    grows = [name for name in ("time", "time_acc") if name in empty.dims]
+    encoding = _encoding(empty, grows)
+    with replacing(path) as temporary:
+        empty.to_netcdf(
+            temporary, engine="netcdf4", format="NETCDF4", encoding=encoding, unlimited_dims=grows
+        )
+        with netCDF4.Dataset(temporary, "a") as file:
+            file.set_auto_maskandscale(False)
+            for name in encoding:
+                file[name].set_var_chunk_cache(size=_CACHE)
+            done = 0
+            for piece in pieces:
+                _append(file, piece, done)
+                done += piece.sizes["time"]
+            if times.size:
+                file["time_acc"][: len(times)] = times
+                for channel, readings in enumerate(parts.readings()):
+                    file["accelerometer"][: len(times), channel] = readings
+            if parts.transducers:
+                done = 0
+                for lengthened in parts.lengthenings():
+                    file["transducer_displacement"][done : done + len(lengthened)] = lengthened
+                    done += len(lengthened)
+
+
+def _encoding(empty, grows):
+    """Compression of the variables that grow; a channel of the accelerometers is written, and so compressed, alone."""
+    encoding = {}
+    for name, variable in empty.variables.items():
+        if not set(grows) & set(variable.dims) or 0 in variable.shape[1:]:
+            continue
+        others = (1,) if name == "accelerometer" else variable.shape[1:]
+        encoding[name] = {"zlib": True, "complevel": 2, "shuffle": True, "chunksizes": (_CHUNK, *others)}
+    return encoding
+
+
+def _append(file, piece, done):
+    """Write the histories of a piece behind the ``done`` times that are there."""
+    for name, variable in piece.variables.items():
+        if "time" in variable.dims:
+            file[name][done : done + piece.sizes["time"]] = variable.to_numpy()

@@ -4,12 +4,15 @@ import json
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numba
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 import blockshake
+from blockshake import jit
 from blockshake.dynamics.baseline import check_window
 from blockshake.dynamics.load_motion import load_motion, plain_attributes
-from blockshake.dynamics.motion import PITCH, GroundMotion
+from blockshake.dynamics.motion import PITCH, GroundMotion, ground_motion
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.errors import InputError
 from blockshake.geometry.overlap import depths_of_pairs
@@ -17,16 +20,11 @@ from blockshake.geometry.rotations import rotate_into
 from blockshake.geometry.structure import START_TOLERANCE, Structure, load_structure
 from blockshake.measurement.sensors.accelerometers import FINE_RATE
 from blockshake.measurement.sensors.markers import RATE
+from blockshake.simulation.falling import still_falling
 from blockshake.simulation.limits import check_limits, has_fine_record
 from blockshake.simulation.models import model_of, split_parameters
-from blockshake.simulation.outcome.falling import still_falling
-from blockshake.simulation.run_dataset import (
-    add_accelerometers,
-    add_transducers,
-    effective_parameters,
-)
-from blockshake.simulation.run_parts import RunParts, reduced
-from blockshake.simulation.write_run import write_run
+from blockshake.simulation.run_dataset import add_readings, effective_parameters
+from blockshake.simulation.run_parts import RunParts, reduced, write_run
 from blockshake.solvers.checkpoint import KeptRows
 from blockshake.sources import module_sources, source_digest
 
@@ -82,10 +80,12 @@ def simulate(
     trajectory = of.solve(checkpoint=checkpoint)
     parts = RunParts(of.structure, of.coarse, of.fine, trajectory)
     _, run = parts.histories()
-    if of.fine.size and parts.channels:
-        add_accelerometers(run, of.structure, parts.reading_times(), np.column_stack([*parts.readings()]))
-    if of.fine.size and parts.transducers:
-        add_transducers(run, of.structure, parts.reading_times(), np.concatenate([*parts.lengthenings()]))
+    times = parts.reading_times()
+    if times.size and parts.channels:
+        add_readings(run, "accelerometer", times, np.column_stack([*parts.readings()]), parts.channels)
+    if times.size and parts.transducers:
+        lengthened = np.concatenate([*parts.lengthenings()])
+        add_readings(run, "transducer_displacement", times, lengthened, parts.transducers)
     run.attrs = of.attributes(trajectory, parts.energy_residual())
     return run
 
@@ -103,12 +103,12 @@ def simulate_to_file(
     path : str or path
         To write, whole or not at all: what `simulate` returns, to the bit.
     structure, motion, model, parameters, time_step, duration, output_rate
-        As of `simulate`.
+        The same arguments as those of `simulate`.
 
     Raises
     ------
     InputError
-        As `simulate`; or the file cannot be written.
+        Errors of `simulate`; or the file cannot be written.
     """
     of = _set_up(
         structure, motion, model, parameters, time_step, duration, output_rate, accelerometers=True, in_memory=False
@@ -234,3 +234,29 @@ def _check_start(structure, motion):
         raise InputError(
             motion.name, "pitch_y", f"its first value pushes the slab {1e3 * depths[pair]:.2g} mm into {name}"
         )
+
+
+def compile_kernels(model):
+    """Run a solver for a moment; the model and the digests of its compiled kernels are returned, JSON-like."""
+    still = ground_motion("rest", np.array([0.0, 0.1]), {"x": np.zeros(2)}, "acceleration")
+    simulate("configuration-1", still, model, duration=0.01)
+    return {"model": model, "kernels": jit.SOURCE_DIGEST, "numba": numba.__version__}
+
+
+def placed(structure, places):
+    """Start poses of the free bodies: ``bodies.NAME.position`` and ``bodies.NAME.orientation`` of the structure.
+
+    ``places`` (n_bodies, 3): off the structure file, along x and y [m], turned about z [rad]. Driven bodies stay, and
+    so do those behind the last place, which an effect has added.
+    """
+    poses = {}
+    for body, (along_x, along_y, turn) in zip(structure.file.bodies, places, strict=False):
+        if body.driven:
+            continue
+        x, y, z = body.position
+        turned = Rotation.from_rotvec([0.0, 0.0, turn]) * Rotation.from_quat(
+            body.orientation, scalar_first=True
+        )
+        poses[f"bodies.{body.name}.position"] = [x + float(along_x), y + float(along_y), z]
+        poses[f"bodies.{body.name}.orientation"] = turned.as_quat(scalar_first=True).tolist()
+    return poses

@@ -1,8 +1,10 @@
-"""Damage of an HDF5 file on which its library never comes back."""
+"""Damage of an HDF5 file: errors of its readers, and a fault on which its library never comes back."""
 
 import mmap
 import struct
 
+# errors that the reader of a damaged file may raise
+DAMAGE = (OSError, ValueError, RuntimeError, LookupError, TypeError, AttributeError, MemoryError)
 _HEAP = b"GCOL\x01\x00\x00\x00"  # of a global heap: signature, version, three reserved bytes
 _BYTES = 8  # in a length; the library can write others, netCDF's never does
 _HEADER = 16  # bytes, of a heap and of an object in it
@@ -43,11 +45,11 @@ def _is_endless(content, start):
     if start + _HEADER > len(content):
         return False
     end = min(start + struct.unpack_from("<Q", content, start + 8)[0], len(content))
-    place = start + _HEADER
-    while place + _HEADER <= end:
-        index, length = struct.unpack_from("<H6xQ", content, place)
+    position = start + _HEADER
+    while position + _HEADER <= end:
+        index, length = struct.unpack_from("<H6xQ", content, position)
         way = length if index == 0 else (_HEADER + (length + 7) // 8 * 8) % 2**64
         if way == 0:
             return True
-        place += way
+        position += way
     return False

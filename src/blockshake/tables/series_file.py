@@ -19,7 +19,7 @@ def read_series(source, layout):
     Parameters
     ----------
     source : str or path
-        As of `read_table`.
+        A file, or ``FILE#SHEET`` of a workbook with several sheets.
     layout : TableLayout
         ``data`` is the first line of values; by default the first one that holds numbers alone.
 
@@ -47,9 +47,8 @@ def read_series(source, layout):
             continue
         numbers = _numbers(cells, layout.decimal)
         if numbers is None:
-            raise InputError(
-                source, f"line {line}", f"expected {expected}, not '{' '.join(map(str, cells))}'"
-            )
+            wrong = f"expected {expected}, not '{' '.join(map(str, cells))}'"
+            raise InputError(source, f"line {line}", wrong)
         lines.append(line)
         lengths.append(len(numbers))
         values += numbers
@@ -76,12 +75,10 @@ def _rows(source, layout):
         source, rows = sheet_rows(path, sheet)
     else:
         blank = (layout.separator or "").isspace()
-        table = str.maketrans(
-            dict.fromkeys("\t;|" if blank or not layout.separator else layout.separator, " ")
-        )
-        rows = enumerate(
-            (line.translate(table).split() for line in read_foreign_text(path).split("\n")), start=1
-        )
+        signs = "\t;|" if blank or not layout.separator else layout.separator
+        table = str.maketrans(dict.fromkeys(signs, " "))
+        lines = read_foreign_text(path).split("\n")
+        rows = enumerate((line.translate(table).split() for line in lines), start=1)
     filled = ((number, [cell for cell in row if cell not in (None, "")]) for number, row in rows)
     return source, [(number, cells) for number, cells in filled if cells]
 
@@ -89,17 +86,13 @@ def _rows(source, layout):
 def _check_rows(source, lines, values, lengths):
     """Refuse rows of different lengths but for the last, a number of values before them, and times among them."""
     width = lengths[0]
-    uneven = [place for place in range(1, len(lines)) if lengths[place] != width]
+    uneven = [row for row in range(1, len(lines)) if lengths[row] != width]
     if uneven and (uneven[0] < len(lines) - 1 or lengths[-1] > width):
-        raise InputError(
-            source, f"line {lines[uneven[0]]}",
-            f"expected {width} values as in line {lines[0]}, found {lengths[uneven[0]]}; --data says where they begin",
-        )  # fmt: skip
+        wrong = f"expected {width} values as in line {lines[0]}, found {lengths[uneven[0]]}"
+        raise InputError(source, f"line {lines[uneven[0]]}", f"{wrong}; --data says where they begin")
     if len(values) - values[0] in (1, 2):
-        raise InputError(
-            source, f"line {lines[0]}",
-            f"expected a value; {values[0]:g} is the number of those that follow: --data says where they begin",
-        )  # fmt: skip
+        wrong = f"expected a value; {values[0]:g} is the number of those that follow"
+        raise InputError(source, f"line {lines[0]}", f"{wrong}: --data says where they begin")
     for column in range(width if width > 1 else 0):
         steps = np.diff(values[column::width])
         if len(steps) >= _TIMES and steps.min() > 0.0:

@@ -76,40 +76,35 @@ class CellTable(NamedTuple):
         The product is of decimals, so that each number is the nearest one to its written digits.
         """
         if self.names.count(name) != 1:
-            found = (
-                "it stands twice"
-                if name in self.names
-                else f"there are {', '.join(self.names[:_MOST_NAMES])}"
-            )
-            raise InputError(self.source, f"column '{name}'", f"expected this column once; {found}")
-        place = self.names.index(name)
+            others = f"there are {', '.join(self.names[:_MOST_NAMES])}"
+            wrong = f"expected this column once; {'it stands twice' if name in self.names else others}"
+            raise InputError(self.source, f"column '{name}'", wrong)
+        column = self.names.index(name)
         if kind is not None:
-            self._check_unit(place, kind, size)
-        cells = [row[place] if place < len(row) else None for row in self.rows]
+            self._check_unit(column, kind, size)
+        cells = [row[column] if column < len(row) else None for row in self.rows]
         keys = [f"line {line}, {name}" for line in self.lines]
         numbers = [self._number(cell, key) for cell, key in zip(cells, keys, strict=True)]
         written = np.array([np.nan if number is None else number for number in numbers], dtype=float)
         coded = None if kind == "time" else missing_code(written)
         if coded is not None:
-            raise InputError(
-                self.source, keys[coded],
-                f"expected a reading; '{cells[coded]}' looks like a code for a missing one, which an empty cell says",
-            )  # fmt: skip
+            wrong = f"'{cells[coded]}' looks like a code for a missing one, which an empty cell says"
+            raise InputError(self.source, keys[coded], f"expected a reading; {wrong}")
         try:
             return np.array([np.nan if number is None else float(number * size) for number in numbers])
         except ArithmeticError:
             raise InputError(self.source, f"column '{name}'", "expected numbers of usual size") from None
 
-    def _check_unit(self, place, kind, size):
-        stated = [unit_of_name(self.names[place], kind)]
-        noted = (str(row[place]) for row in self.notes if place < len(row) and row[place])
+    def _check_unit(self, column, kind, size):
+        stated = [unit_of_name(self.names[column], kind)]
+        noted = (str(row[column]) for row in self.notes if column < len(row) and row[column])
         stated += [known_unit(note) for note in noted if note != "min"]  # of rows of min, max and mean
         for unit in filter(None, stated):
             if unit != (kind, abs(size)):
-                raise InputError(
-                    self.source, f"column '{self.names[place]}'",
-                    f"expected the unit of {kind} that was given; the header has another one, of {unit[0]}",
-                )  # fmt: skip
+                wrong = (
+                    f"expected the unit of {kind} that was given; the header has another one, of {unit[0]}"
+                )
+                raise InputError(self.source, f"column '{self.names[column]}'", wrong)
 
     def _number(self, cell, key):
         """A cell as a decimal, or None for a gap."""
@@ -123,11 +118,9 @@ class CellTable(NamedTuple):
         except ArithmeticError:
             raise InputError(self.source, key, f"expected a number of usual size, not '{text}'") from None
         except TypeError:
+            wrong = f"expected a number with a decimal {SIGNS[self.decimal]}, or nothing, not '{text}'"
             hint = "; thousands have no sign between them" if {".", ","} & set(text) else ""
-            expected = (
-                f"expected a number with a decimal {SIGNS[self.decimal]}, or nothing, not '{text}'{hint}"
-            )
-            raise InputError(self.source, key, expected) from None
+            raise InputError(self.source, key, wrong + hint) from None
 
 
 def cell_number(text, decimal):
@@ -160,12 +153,10 @@ def read_table(source, layout):
     else:
         rows = _text_rows(path, layout)
     rows = [(line, row) for line, row in rows if any(cell not in (None, "") for cell in row)]
-    header = next((row for line, row in rows if line >= layout.header), None)
+    first, header = next(((line, row) for line, row in rows if line >= layout.header), (None, None))
     if header is None:
-        raise InputError(
-            source, "", f"expected names of columns in line {layout.header}, and rows; it is empty"
-        )
-    first = next(line for line, _ in rows if line >= layout.header)
+        wrong = f"expected names of columns in line {layout.header}, and rows; it is empty"
+        raise InputError(source, "", wrong)
     names = ["" if cell is None else str(cell).strip() for cell in header]
     decimal = layout.decimal
     if all(cell_number(name, decimal) for name in names):
@@ -173,13 +164,11 @@ def read_table(source, layout):
     start = layout.data or first + 1
     below = [(line, row) for line, row in rows if line >= start]
     if not below:
-        raise InputError(
-            source, "", f"expected rows of numbers below the names in line {first}; there is none"
-        )
+        wrong = f"expected rows of numbers below the names in line {first}; there is none"
+        raise InputError(source, "", wrong)
     notes = [row for line, row in rows if first < line < start]
-    return CellTable(
-        str(source), names, notes, [line for line, _ in below], [row for _, row in below], decimal
-    )
+    lines, cells = zip(*below, strict=True)
+    return CellTable(str(source), names, notes, list(lines), list(cells), decimal)
 
 
 def path_and_sheet(source):
@@ -193,7 +182,7 @@ def _text_rows(path, layout):
     lines = read_foreign_text(path).splitlines()
     header = lines[layout.header - 1] if layout.header <= len(lines) else ""
     known = _SEPARATORS.replace(layout.decimal, "")
-    separator = layout.separator or next((one for one in known if one in header), " ")
+    separator = layout.separator or next((sign for sign in known if sign in header), " ")
     if separator.isspace() and separator != "\t":
         return _blank_rows(lines, layout, path)
     if len(separator) != 1:
@@ -202,14 +191,12 @@ def _text_rows(path, layout):
     try:
         rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
     except csv.Error as error:
-        raise InputError(
-            path, f"line {reader.line_num}", f"expected cells between '{separator}'; {error}"
-        ) from None
+        wrong = f"expected cells between '{separator}'; {error}"
+        raise InputError(path, f"line {reader.line_num}", wrong) from None
     width = next((len(row) for number, row in rows if number >= layout.header and any(row)), 0)
     for number, row in rows:
-        if number >= (layout.data or layout.header) and any(
-            row[width:]
-        ):  # such as a decimal sign that separates
+        # such as a decimal sign that separates
+        if number >= (layout.data or layout.header) and any(row[width:]):
             raise InputError(path, f"line {number}", f"expected at most {width} cells, found {len(row)}")
     return rows
 
@@ -220,11 +207,9 @@ def _blank_rows(lines, layout, path):
     filled = [(number, row) for number, row in rows if row and number >= layout.header]
     for number, row in filled:
         if number >= (layout.data or 0) and len(row) != len(filled[0][1]):
-            raise InputError(
-                path, f"line {number}",
-                f"expected {len(filled[0][1])} cells between blanks as in line {filled[0][0]}, found {len(row)}; "
-                "--header of a line of numbers counts the columns",
-            )  # fmt: skip
+            wrong = f"expected {len(filled[0][1])} cells between blanks as in line {filled[0][0]}, found {len(row)}"
+            hint = "--header of a line of numbers counts the columns"
+            raise InputError(path, f"line {number}", f"{wrong}; {hint}")
     return rows
 
 
@@ -239,7 +224,7 @@ def sheet_rows(path, sheet):
         if unpacked > _MOST_BYTES:
             raise InputError(path, "", f"expected a workbook of at most {_MOST_BYTES:g} bytes, unpacked")
         book = openpyxl.load_workbook(content, read_only=True, data_only=True)
-        names = [one.title for one in book.worksheets]
+        names = [worksheet.title for worksheet in book.worksheets]
         if sheet not in names and (sheet or len(names) != 1):
             raise InputError(path, sheet, f"expected FILE#SHEET with one of the sheets {', '.join(names)}")
         return (f"{path}#{sheet}" if sheet else str(path)), _filled_rows(book[sheet or names[0]], path)

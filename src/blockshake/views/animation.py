@@ -37,9 +37,8 @@ def check_animation(path):
     if suffix not in (".gif", ".mp4"):
         raise InputError(path, "", "expected a suffix of moving pictures: .gif or .mp4")
     if suffix == ".mp4" and not FFMpegWriter.isAvailable():
-        raise InputError(
-            path, "", "an MP4 needs the program ffmpeg, which is not installed; GIF needs nothing"
-        )
+        wrong = "an MP4 needs the program ffmpeg, which is not installed; GIF needs nothing"
+        raise InputError(path, "", wrong)
 
 
 def animate_run(path, run, structure, view="front", magnification=1.0, speed=1.0):
@@ -113,9 +112,9 @@ def magnified(run, structure, magnification):
     at_start = Rotation.from_quat(structure.orientation, scalar_first=True)
     rest = (start_turn.inv() * at_start).as_quat()
     rest = Rotation.from_quat(np.tile(rest, (len(position), 1)))
-    place = start_turn.inv().apply(structure.position - start)
+    at_rest = start_turn.inv().apply(structure.position - start)
     seen = back.apply((position - origin[:, None]).reshape(-1, 3)).reshape(position.shape)
-    seen = place + magnification * (seen - place)
+    seen = at_rest + magnification * (seen - at_rest)
     turned = Rotation.from_rotvec(magnification * (back * turn * rest.inv()).as_rotvec()) * rest
     forth = _repeated(base, len(bodies))
     moved = forth.apply(seen.reshape(-1, 3)).reshape(position.shape) + origin[:, None]
@@ -164,11 +163,8 @@ class _Film:
         self.canvas = FigureCanvasAgg(self.figure)
         axes = self.figure.add_axes((0.0, 0.0, 1.0, height / (height + top)))
         reach = np.maximum(half, 0.5 * np.array([width, height]) / scale)
-        axes.set(
-            xlim=(middle[0] - reach[0], middle[0] + reach[0]),
-            ylim=(middle[1] - reach[1], middle[1] + reach[1]),
-            aspect="equal",
-        )
+        (left, bottom), (right, top) = middle - reach, middle + reach
+        axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
         axes.set_axis_off()
         self._blocks = axes.add_collection(PolyCollection([], linewidths=0.6, edgecolors=DARK_GREY))
         self.figure.text(0.5, 0.99, title, ha="center", va="top", fontsize=7.5)

@@ -55,22 +55,11 @@ class _Panel(NamedTuple):
 
 
 def plot_run(run, histories):
-    """Figure of a run, one panel a quantity over the same time.
+    """Figure of a run, from `load_run` and `run_histories`: one panel a quantity over the same time.
 
-    Parameters
-    ----------
-    run : xarray.Dataset
-        A run file, from `load_run`.
-    histories : xarray.Dataset
-        From `run_histories`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Drift of every block that is not driven, along y only where it is a tenth of that along x; displacement
-        transducers, where there are any; joints that had a face at the start, without the peaks of their impacts;
-        energy, the potential one since the start. More than seven blocks, transducers or joints are a map: one row
-        each, the value a colour.
+    Drift of every block that is not driven, along y only where it is a tenth of that along x; displacement transducers,
+    where there are any; joints that had a face at the start, without the peaks of their impacts; energy, the potential
+    one since the start. More than seven blocks, transducers or joints are a map: one row each, the value a colour.
     """
     panels = [
         *_drift_panels(histories),
@@ -127,8 +116,8 @@ def _transducer_panels(run):
 
 
 def _joint_panels(histories):
-    told = np.isfinite(histories["normal_force"]).any("time")
-    joints = histories.isel(joint=np.flatnonzero(told))
+    known = np.isfinite(histories["normal_force"]).any("time")
+    joints = histories.isel(joint=np.flatnonzero(known))
     if not joints.sizes["joint"]:
         return
     normal, uplift = _KILO * joints["normal_force"], _MILLI * joints["uplift"]
@@ -165,7 +154,7 @@ def _draw_lines(axes, panel):
 
 
 def _draw_map(figure, axes, key, panel):
-    """A row a line from below, in the order of the file, the value a colour; grey where it is not told."""
+    """A row for each line from below, in the order of the file; the value is a colour, grey where it is unknown."""
     values = panel.values.transpose(panel.kind, "time")
     names = values[panel.kind].values.tolist()
     largest = float(np.abs(values).max())
@@ -178,7 +167,7 @@ def _draw_map(figure, axes, key, panel):
     )  # fmt: skip
     axes.grid(visible=False)
     places = np.arange(0, len(names), -(-len(names) // _MOST_NAMES))
-    axes.set_yticks(places + 0.5, labels=[names[place] for place in places], fontsize=5.0)
+    axes.set_yticks(places + 0.5, labels=[names[row] for row in places], fontsize=5.0)
     bar = figure.colorbar(image, cax=key.inset_axes([0.0, 0.0, 0.1, 1.0]))
     bar.set_label(panel.label.replace("\n", " "))
 

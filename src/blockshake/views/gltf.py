@@ -58,9 +58,9 @@ def _add_animation(buffers, tree, run, origin):
     times = _accessor(buffers, tree, "time", run["time"].to_numpy(), bounds=True)
     channels, samplers = [], []
     for body in run["body"].values.tolist():
-        one = run.sel(body=body)
-        turns = np.roll(one["orientation"].to_numpy(), -1, axis=1)  # glTF's order is x, y, z, w
-        paths = {"translation": one["position"].to_numpy() - origin, "rotation": turns}
+        of_body = run.sel(body=body)
+        turns = np.roll(of_body["orientation"].to_numpy(), -1, axis=1)  # glTF's order is x, y, z, w
+        paths = {"translation": of_body["position"].to_numpy() - origin, "rotation": turns}
         node = tree["nodes"][nodes[body]]
         node.pop("matrix", None)  # an animated node has none
         for path, values in paths.items():

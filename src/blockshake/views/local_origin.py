@@ -2,22 +2,14 @@
 
 import numpy as np
 
-_FARTHEST = 100.0  # m: coordinates of 32 bits within this are told to 4 micrometres
+_FARTHEST = 100.0  # m: coordinates of 32 bits within this are exact to 4 micrometres
 
 
 def local_origin(run):
-    """Place that exports in 32 bits count from.
+    """Place that exports of a run in 32 bits count from, float64 (3,) [m].
 
-    Parameters
-    ----------
-    run : xarray.Dataset
-        From `load_run`.
-
-    Returns
-    -------
-    float64 array, shape (3,)
-        Middle of the mass centres at the start, in whole metres, along every axis on which one of them lies more than
-        100 m from the origin; else 0 [m].
+    It is the middle of the mass centres at the start, in whole metres, along every axis on which one of them lies more
+    than 100 m from the origin; else 0.
     """
     start = run["position"].isel(time=0).to_numpy()
     middle = np.round(0.5 * (start.min(axis=0) + start.max(axis=0)))

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.path import Path
 
-from blockshake.measurement.motion.joint_coordinates import find_joints
+from blockshake.measurement.motion.joints import find_joints
 from blockshake.pages.drawing import DARK_GREY, RED, new_figure
 from blockshake.pages.scene.colors import body_colors
 from blockshake.pages.scene.projection import Scene
@@ -34,14 +34,9 @@ def plot_understood(structure):
     for axes, (view, scene), (low, up) in zip(panels, scenes.items(), ends, strict=True):
         _draw_blocks(axes, scene, structure, scale if _VIEWS[view][0] else None)
         room = 0.03 * (up - low).max()
-        axes.set(
-            xlim=(low[0] - room, up[0] + room),
-            ylim=(low[1] - room, up[1] + room),
-            aspect="equal",
-            title=_VIEWS[view][0],
-            xlabel=_VIEWS[view][1],
-            anchor="S",
-        )
+        (left, bottom), (right, top) = low - room, up + room
+        axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal", anchor="S")
+        axes.set(title=_VIEWS[view][0], xlabel=_VIEWS[view][1])
         axes.grid(visible=False)
         axes.spines[["top", "right"]].set_visible(False)
     for axes, scene in list(zip(panels, scenes.values(), strict=True))[:2]:
@@ -63,16 +58,14 @@ def _draw_blocks(axes, scene, structure, scale):
     if scale is None:
         return
     middles = scene.seen(structure.position)[:, :2]
+    sizes = [np.prod(np.ptp(outline, axis=0)) for outline in outlines]
     largest = {}
-    for place, (outline, body) in enumerate(zip(outlines, bodies, strict=True)):
-        if (
-            np.prod(np.ptp(outline, axis=0))
-            > np.prod(np.ptp(outlines[largest.get(body, place)], axis=0)) - 1e-9
-        ):
-            largest[body] = place
-    for body, place in largest.items():
-        hidden = any(Path(nearer).contains_point(middles[body]) for nearer in outlines[place + 1 :])
-        width, height = scale * np.ptp(outlines[place], axis=0) / _POINT
+    for face, body in enumerate(bodies):
+        if sizes[face] > sizes[largest.get(body, face)] - 1e-9:
+            largest[body] = face
+    for body, face in largest.items():
+        hidden = any(Path(nearer).contains_point(middles[body]) for nearer in outlines[face + 1 :])
+        width, height = scale * np.ptp(outlines[face], axis=0) / _POINT
         name = structure.body_names[body]
         size = min(_LARGEST_TYPE, 0.95 * width / (_LETTER * len(name)), 0.8 * height)
         if not hidden and size >= _SMALLEST_TYPE:

@@ -40,7 +40,7 @@ def write_tables(path, run, histories):
 
 
 def _tables(run, histories):
-    """Names and tables; digits are those of the file, a value that is not told is an empty cell."""
+    """Names and tables; digits are those of the file, and NaN is an empty cell."""
     bodies = ("position", "orientation", "velocity", "angular_velocity")
     yield "bodies", _table("body", [*(run[name] for name in bodies), histories["drift"]])
     states = ("normal_force", "shear_force", "friction_ratio", "uplift", "slip", "joint_position")
@@ -68,5 +68,5 @@ def _table(thing, variables, also=()):
         inner = [name for name in variable.dims if name not in ("time", thing)]
         values = variable.transpose("time", thing, *inner).to_numpy().reshape(len(times) * len(names), -1)
         parts = [f"_{part}" for part in variable[inner[0]].values] if inner else [""]
-        columns |= {f"{variable.name}{part}{unit}": values[:, place] for place, part in enumerate(parts)}
+        columns |= {f"{variable.name}{part}{unit}": values[:, column] for column, part in enumerate(parts)}
     return pd.DataFrame(columns)

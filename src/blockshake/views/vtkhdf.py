@@ -12,12 +12,8 @@ from blockshake.simulation.run_histories import JOINT_HISTORIES
 from blockshake.views.local_origin import local_origin
 
 _VERSION = np.array([2, 2], dtype=np.int64)  # of the file format
-_KINDS = (
-    "Vertices",
-    "Lines",
-    "Polygons",
-    "Strips",
-)  # of the cells of polygonal data, in the order of their numbers
+# of the cells of polygonal data, in the order of their numbers
+_KINDS = ("Vertices", "Lines", "Polygons", "Strips")
 _INT, _REAL = "i8", "f4"
 
 
@@ -41,7 +37,7 @@ def write_vtkhdf(path, run, histories, structure):
     Polygonal data over time, inertial frame, SI. The cells of the first file are the faces of the bodies, each with
     its body's number in the file of the run (``body``), ``velocity`` of the mass centre, ``angular_velocity`` and
     ``drift``. Those of the second are points, one a joint, with ``force`` on the upper body, ``normal_force``,
-    ``shear_force``, ``friction_ratio``, ``uplift`` and ``slip``, which are NaN where they are not told. Points count
+    ``shear_force``, ``friction_ratio``, ``uplift`` and ``slip``, which are NaN where they are unknown. Points count
     from `local_origin`, which is the attribute ``LocalOrigin`` [m] where it is another than 0.
     """
     base, origin = Path(path), local_origin(run)
@@ -97,12 +93,12 @@ def _write(path, times, origin, points, kind, cells, values, steady):
         _put(file, root, "NumberOfPoints", np.array([n_points]))
         _put(file, root, "Points", points.reshape(-1, 3).astype(_REAL))
         for name in _KINDS:
-            own = cells if name == kind else []
+            mine = cells if name == kind else []
             group = root.createGroup(name)
-            corners = np.concatenate(own) if own else np.empty(0, dtype=np.int64)
-            _put(file, group, "NumberOfCells", np.array([len(own)]))
+            corners = np.concatenate(mine) if mine else np.empty(0, dtype=np.int64)
+            _put(file, group, "NumberOfCells", np.array([len(mine)]))
             _put(file, group, "NumberOfConnectivityIds", np.array([len(corners)]))
-            _put(file, group, "Offsets", np.cumsum([0, *(len(cell) for cell in own)]))
+            _put(file, group, "Offsets", np.cumsum([0, *(len(cell) for cell in mine)]))
             _put(file, group, "Connectivity", corners)
         _put(file, steps, "Values", times)
         _put(file, steps, "PartOffsets", zero)

@@ -9,8 +9,7 @@ from blockshake.effects.registry import with_effect
 from blockshake.measurement.sensors.instruments import observe
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import part_parameters
-from blockshake.simulation.placement import placed
-from blockshake.simulation.simulate import simulate
+from blockshake.simulation.simulate import placed, simulate
 
 
 def shake(structure, parameters, effect, motion, settings, places, duration, seed, surveyed=None):

@@ -151,12 +151,11 @@ def _reverse(test):
     test["marker_displacement"][..., 0] *= -1.0
 
 
-def _millimetres(test):
-    test["marker_displacement"][:] *= 1000.0
+def _scaled(factor):
+    def spoil(test):
+        test["marker_displacement"][:] *= factor
 
-
-def _centimetres(test):
-    test["marker_displacement"][:] *= 100.0
+    return spoil
 
 
 def _one_in_millimetres(test):
@@ -171,7 +170,7 @@ def _rest(test):
 
 def _resting_millimetres(test):
     _rest(test)
-    test["marker_displacement"][:] *= 1000.0
+    _scaled(1000.0)(test)
 
 
 def _in_g(test):
@@ -184,9 +183,9 @@ REFUSED = {
     "swapped axes, sealed": (_swap, {"role": "sealed"}, "axis: expected the table to move along x"),
     "x reversed": (_reverse, {}, "axis: expected the table to move along x as commanded; it moves by -1.00"),
     "x reversed, sealed": (_reverse, {"role": "sealed"}, "axis: expected the table to move along x as"),
-    "millimetres": (_millimetres, {}, "marker_displacement: expected metres; a displacement of"),
-    "centimetres": (_centimetres, {}, "marker_displacement: expected metres; the table moves by 100 times what"),
-    "centimetres, sealed": (_centimetres, {"role": "sealed"}, "marker_displacement: expected metres; the table moves"),
+    "millimetres": (_scaled(1000.0), {}, "marker_displacement: expected metres; a displacement of"),
+    "centimetres": (_scaled(100.0), {}, "marker_displacement: expected metres; the table moves by 100 times what"),
+    "centimetres, sealed": (_scaled(100.0), {"role": "sealed"}, "marker_displacement: expected metres; the table"),
     "millimetres, no command": (_resting_millimetres, LATER, r"\S+: expected metres; its noise at rest, 0\.\d+, is"),
     "one marker in millimetres": (_one_in_millimetres, LATER, f"{MARKERS[7]}: expected metres; its noise"),
     "accelerometers in g": (_in_g, {}, r"accelerometer: expected m/s2; the slab's reads 0\.1\d* of"),

@@ -9,7 +9,7 @@ from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Sensors
-from blockshake.measurement.campaigns.command_clock import from_command, from_first_reading, since
+from blockshake.measurement.campaigns.clocks import from_command, from_first_reading, since
 from blockshake.measurement.motion.measured_base import (
     base_as_motion,
     draw_base,

@@ -16,13 +16,13 @@ def _structure(markers):
             "shapes": {"slab": {"box": [3.0, 3.0, 0.2]}, "block": {"box": [0.8, 2.4, 1.6]}},
             "bodies": [
                 {
-                    "name": "slab",
-                    "shape": "slab",
+                    "name": name,
+                    "shape": name,
                     "material": "concrete",
-                    "position": [0, 0, -0.1],
-                    "driven": True,
-                },
-                {"name": "block", "shape": "block", "material": "concrete", "position": [0, 0, 0.8]},
+                    "position": [0, 0, height],
+                    "driven": driven,
+                }
+                for name, height, driven in (("slab", -0.1, True), ("block", 0.8, False))
             ],
             "friction": [{"pair": ["concrete", "concrete"], "coefficient": 0.75}],
             "markers": markers,

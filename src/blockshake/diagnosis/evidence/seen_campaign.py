@@ -5,7 +5,7 @@ from typing import NamedTuple
 from blockshake.errors import InputError
 from blockshake.forces.seen.seen_test import see_test, why_unseen
 from blockshake.measurement.campaigns.open_readings import read_open_tests, read_sealed_tests
-from blockshake.measurement.motion.outliers import without_outliers
+from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.parity.correction import judged_readings
 from blockshake.parity.parity import Parity, campaign_parity
 

@@ -4,10 +4,10 @@ import numpy as np
 import xarray as xr
 
 from blockshake.forces.quiet_start import counted_from_rest
+from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.compared_curves import at_times
 from blockshake.measurement.motion.fall import find_fall, until_fall
 from blockshake.measurement.motion.joint_histories import joint_histories
-from blockshake.measurement.motion.outliers import without_outliers
 
 _RATE = 50.0  # Hz, of what is kept
 _LONGEST_GAP = 0.2  # s, that is bridged by a straight line: dropouts of markers

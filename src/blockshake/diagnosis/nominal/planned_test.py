@@ -10,11 +10,11 @@ from blockshake.errors import InputError
 from blockshake.files import content_digest
 from blockshake.geometry.structure import Structure
 from blockshake.measurement.campaigns.campaign import Sensors, load_test
-from blockshake.measurement.campaigns.command_clock import reading_rate, simulation_start, since
+from blockshake.measurement.campaigns.clocks import reading_rate, simulation_start, since
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 from blockshake.measurement.motion.fall import find_fall, until_fall
 from blockshake.measurement.sensors.markers import RATE, unread_directions
-from blockshake.simulation.structure_digest import structure_digest
+from blockshake.store import structure_digest
 
 _SAME_READING = 1e-3  # steps, within which two readings are at one time
 

@@ -6,8 +6,8 @@ from blockshake.forces.seen.seen_test import see_test, why_unseen
 from blockshake.geometry.schema import AXES
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
+from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.body_poses import PLANAR, POSE, body_poses
-from blockshake.measurement.motion.outliers import without_outliers
 
 _LONGEST = 2.0  # s of a test that are read: errors of levers hardly change along it
 
@@ -54,8 +54,8 @@ def _unread(test, structure, noise):
     ]
     if turning:
         return f"the rotation of {', '.join(turning)} is not read"
-    if poses.told.all():
+    if poses.axes_read.all():
         return None
-    body = int(np.argmin(poses.told.all(axis=1)))
-    axes = " and ".join(axis for axis, read in zip(AXES, poses.told[body], strict=True) if not read)
+    body = int(np.argmin(poses.axes_read.all(axis=1)))
+    axes = " and ".join(axis for axis, read in zip(AXES, poses.axes_read[body], strict=True) if not read)
     return f"the displacement of {structure.body_names[body]} along {axes} is not read"

@@ -11,11 +11,10 @@ from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.errors import InputError
 from blockshake.files import load_yaml, shipped_names
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaigns.command_clock import from_command
+from blockshake.measurement.campaigns.clocks import from_command, on_one_clock
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 from blockshake.measurement.campaigns.recorded_test import read_test
-from blockshake.measurement.campaigns.recorder_clock import on_one_clock
-from blockshake.measurement.sensors.stated_noise import Sensors
+from blockshake.measurement.sensors.instruments import Sensors
 from blockshake.paths import check_plain, file_below
 from blockshake.validation import Finite, Strict, validated
 

@@ -1,15 +1,15 @@
-"""The slab's markers, which are the input, held against what the table was told."""
+"""The slab's markers, which are the input, held against the motion that was commanded."""
 
-from dataclasses import dataclass
 from functools import lru_cache
 from os.path import isfile
+from typing import NamedTuple
 
 import numpy as np
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import shipped_names
-from blockshake.measurement.campaigns.command_clock import command_start
+from blockshake.measurement.campaigns.clocks import command_start
 
 _FOLLOWED = (0.8, 1.25)  # of the command, by which a table may move without a word
 _SEEN = 2.0  # times the slab's noise, that the command's standard deviation must be to be judged
@@ -18,14 +18,10 @@ _UNIT = 20.0  # times the command, by which no table moves; centimetres are a hu
 _ONE_AXIS = 3.0  # times the motion along another axis
 
 
-@dataclass(frozen=True)
-class Followed:
-    """Regression of the slab's displacement on the command.
+class Followed(NamedTuple):
+    """Regression of the slab's displacement along x, y and z on the command along x.
 
-    Attributes
-    ----------
-    share, correlation : float64 arrays, shape (3,)
-        Slope and correlation of x, y and z against the command along x [1]; NaN along an axis that is not measured.
+    ``share`` and ``correlation``: slope and correlation, float64 (3,) [1]; NaN along an axis that is not measured.
     """
 
     share: np.ndarray
@@ -68,28 +64,21 @@ def check_followed(followed, path):
     share, correlation = np.nan_to_num(followed.share), np.nan_to_num(followed.correlation)
     other = 1 + int(np.abs(correlation[1:]).argmax())
     if abs(correlation[0]) < _RELATED < abs(correlation[other]) and abs(share[other]) > _FOLLOWED[0] / 2.0:
-        raise InputError(
-            path, "axis",
-            f"expected the table to move along x; what was commanded is along {'xyz'[other]}, axes are swapped",
-        )  # fmt: skip
+        wrong = f"expected the table to move along x; what was commanded is along {'xyz'[other]}, axes are swapped"
+        raise InputError(path, "axis", wrong)
     if abs(correlation[0]) > _RELATED and abs(share[0]) > _UNIT:
-        raise InputError(
-            path, "marker_displacement",
-            f"expected metres; the table moves by {abs(share[0]):.3g} times what was commanded",
-        )  # fmt: skip
+        wrong = f"expected metres; the table moves by {abs(share[0]):.3g} times what was commanded"
+        raise InputError(path, "marker_displacement", wrong)
     if correlation[0] < -_RELATED:
-        raise InputError(
-            path, "axis",
-            f"expected the table to move along x as commanded; it moves by {share[0]:.2f} of it, x is reversed",
-        )  # fmt: skip
+        wrong = f"expected the table to move along x as commanded; it moves by {share[0]:.2f} of it, x is reversed"
+        raise InputError(path, "axis", wrong)
 
 
 def followed_remarks(followed, role):
     """Remarks on a slab that moves otherwise, or by another size, than commanded; of a sealed test no size."""
     if followed.correlation[0] < _RELATED:
-        return [
-            "the table does not follow the commanded motion: another motion, another start or another time scale"
-        ]
+        others = "another motion, another start or another time scale"
+        return [f"the table does not follow the commanded motion: {others}"]
     share = followed.share[0]
     if role != "sealed" and not _FOLLOWED[0] < share < _FOLLOWED[1]:
         return [f"the table moved by {share:.2f} of what was commanded"]
@@ -102,14 +91,14 @@ def command_target(test, slab, commanded):
     Parameters
     ----------
     test : xarray.Dataset
-        As of `from_command`: its clock counts from the start of the command where the slab follows along x.
+        A test from `from_command`, whose clock counts from the start of the command where the slab follows along x.
     slab : float64 array, shape (n_times, 3)
         Mean displacement of the slab's markers [m].
     commanded : GroundMotion
 
     Notes
     -----
-    A slab that moves backwards or along another axis has its start there, so that this can be said of it.
+    Of a slab that moves backwards or along another axis, the start is searched for along that axis.
     """
     time, zero = test["time"].to_numpy(), 0.0
     if not test.attrs["follows"]:

@@ -4,13 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.measurement.sensors.accelerometers import channel_carriers
 from blockshake.measurement.sensors.markers import marker_bodies
 
 _LEVEL = 1e-3  # chance of any such column in a test of sound sensors
 _SHORTEST = 10  # steps without a change, below which nothing is called frozen
-_LEAST_REPEATED = (
-    0.1  # chance that a sound reading repeats the one before: a motion turns, and digits are few
-)
+# chance that a sound reading repeats the one before: a motion turns, and digits are few
+_LEAST_REPEATED = 0.1
 _SAME = 1e-6  # of a column's range: readings this near its end are at it
 _FEWEST_AT_END = 4
 _NOISY = 0.3  # third over first differences: noise has 3, a motion of 10 Hz without noise 0.1 at 200 Hz
@@ -97,7 +97,7 @@ def without_faulty(test, structure):
 
 
 def faulty_lines(test):
-    """Lines for a reader on the readings of a test, as of `without_faulty`, that are taken as gaps."""
+    """Lines for a reader that name the columns of a test whose readings `without_faulty` took as gaps."""
     columns = {}
     for fault in test.attrs.get("faulty", ()):
         columns.setdefault(fault.words, []).append(fault.column)
@@ -112,11 +112,7 @@ def _groups(names, axes, dimension, structure):
     """Body and axis of every column; a transducer has no other like it."""
     if dimension == "marker":
         return [(body, axis) for body in marker_bodies(structure, names) for axis in axes]
-    carriers = {
-        f"{item.name}-{axis}": (item.body, axis)
-        for item in structure.file.accelerometers
-        for axis in item.axes
-    }
+    carriers = channel_carriers(structure)
     return [carriers.get(name, name) for name in names]
 
 
@@ -130,7 +126,7 @@ def _faults(values, groups):
     noisy = _is_noisy(steps[~hung][:, varying], changed[~hung][:, varying])
     faults, copies = [], {}
     for column, group in enumerate(groups):
-        others = np.array([one == group for one in groups]) & varying
+        others = np.array([other == group for other in groups]) & varying
         others[column] = False
         if not others.any():
             others = varying & noisy
@@ -161,10 +157,10 @@ def _faults(values, groups):
 def _long_enough(still):
     """Steps, a mask, of the stretches of still ones that are long enough to be looked at."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]]))).reshape(-1, 2)
-    found = np.zeros(len(still), dtype=bool)
+    taken = np.zeros(len(still), dtype=bool)
     for begin, end in edges[np.diff(edges, axis=1)[:, 0] >= _SHORTEST]:
-        found[begin:end] = True
-    return found
+        taken[begin:end] = True
+    return taken
 
 
 def _is_noisy(steps, changed):

@@ -11,15 +11,9 @@ from blockshake.measurement.motion.fall import find_fall, until_fall
 
 
 class OpenReadings(NamedTuple):
-    """Open tests of a campaign as their files have them.
+    """Tests of a campaign by name as their files have them, until a block falls, and each `Fall` by the test's name.
 
-    Attributes
-    ----------
-    structure : Structure
-    tests : dict of str to xarray.Dataset
-        By name, until a block falls; of tests with the same readings the first alone.
-    falls : dict of str to Fall
-        By name, of those in which a block falls.
+    Of tests with the same readings only the first is here.
     """
 
     structure: Structure

@@ -11,7 +11,7 @@ from blockshake.files import read_text
 from blockshake.geometry.schema import AXES
 from blockshake.interrupts import delayed_interrupts
 from blockshake.paths import file_below
-from blockshake.tables.damaged_hdf5 import has_endless_heap
+from blockshake.tables.damaged_hdf5 import DAMAGE, has_endless_heap
 from blockshake.tables.numbers import missing_code, plain_number
 
 _METRES = ("m", "metre", "metres", "meter", "meters")
@@ -28,8 +28,6 @@ _VARIABLES = {
     "initial_rotation": (("body", "axis"), _RADIANS),
 }
 _CLASSIC = (b"CDF\x01", b"CDF\x02")  # whose missing end the netCDF library reads as zeros, and scipy refuses
-# what the reader of a damaged file may raise
-_DAMAGE = (OSError, ValueError, RuntimeError, LookupError, TypeError, AttributeError, MemoryError)
 
 
 def read_netcdf(path):
@@ -65,7 +63,7 @@ def _dataset(path):
             raise ValueError
         with delayed_interrupts():
             return xr.load_dataset(path, decode_times=False)
-    except _DAMAGE:
+    except DAMAGE:
         raise InputError(path, "", "expected a netCDF file; this is cut, damaged or something else") from None
 
 
@@ -91,7 +89,7 @@ def _check_numbers(variable, path, units):
 
 
 def read_tables(path, transducers):
-    """The same from ``NAME.csv`` and, where it lies beside, ``NAME-acc.csv``.
+    """Variables of a test, as by `read_netcdf`, from ``NAME.csv`` and, where it lies beside, ``NAME-acc.csv``.
 
     Parameters
     ----------
@@ -120,14 +118,14 @@ def read_tables(path, transducers):
     for beside in sorted(item for item in path.parent.iterdir() if item.name.lower() == wanted)[:1]:
         time_acc, read = _table(file_below(path.parent, beside.name, path, "accelerometers"))
         coordinates["time_acc"] = time_acc
-        for variable, dimension, own, unit in (
+        for variable, dimension, sensors, unit in (
             ("accelerometer", "channel", [name for name in read if name not in transducers], "m s-2"),
             ("transducer_displacement", "transducer", [name for name in read if name in transducers], "m"),
         ):
-            if own:
-                values = np.column_stack([read[name] for name in own])
+            if sensors:
+                values = np.column_stack([read[name] for name in sensors])
                 variables[variable] = (("time_acc", dimension), values, {"units": unit})
-                coordinates[dimension] = own
+                coordinates[dimension] = sensors
     return xr.Dataset(variables, coordinates)
 
 
@@ -140,26 +138,23 @@ def _table(path):
         raise InputError(path, f"line {reader.line_num}", f"expected cells between commas; {error}") from None
     names = [name.strip() for name in rows[0][1]] if rows else []
     if "time_s" not in names or len(names) < 2 or len(rows) < 2 or len(set(names)) < len(names):
-        raise InputError(
-            path,
-            "time_s",
-            "expected a header with time_s, other columns and every name once, and rows below it",
-        )
+        wrong = "expected a header with time_s, other columns and every name once, and rows below it"
+        raise InputError(path, "time_s", wrong)
     values = np.empty((len(rows) - 1, len(names)))
-    for place, (line, row) in enumerate(rows[1:]):
+    for row_number, (line, row) in enumerate(rows[1:]):
         if len(row) != len(names):
             raise InputError(path, f"line {line}", f"expected {len(names)} cells, not {len(row)}")
         for column, cell in enumerate(row):
-            values[place, column] = _number(cell.strip(), path, f"line {line}, {names[column]}")
+            values[row_number, column] = _number(cell.strip(), path, f"line {line}, {names[column]}")
     for name, column in zip(names, values.T, strict=True):
         coded = None if name == "time_s" else missing_code(column)
         if coded is not None:
-            expected = (
+            wrong = (
                 f"expected a reading; {column[coded]:g} looks like a code for none, which an empty cell says"
             )
-            raise InputError(path, f"line {rows[coded + 1][0]}, {name}", expected)
-    time = values[:, names.index("time_s")]
-    return time, {name: values[:, place] for place, name in enumerate(names) if name != "time_s"}
+            raise InputError(path, f"line {rows[coded + 1][0]}, {name}", wrong)
+    columns = dict(zip(names, values.T, strict=True))
+    return columns.pop("time_s"), columns
 
 
 def _number(cell, path, key):

@@ -6,11 +6,11 @@ import numpy as np
 
 from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES
-from blockshake.measurement.campaigns.command_clock import from_first_reading, missing_rows
+from blockshake.measurement.campaigns.clocks import from_first_reading, missing_rows
 from blockshake.measurement.campaigns.faulty_readings import without_faulty
-from blockshake.measurement.campaigns.initial_places import check_initial_places
 from blockshake.measurement.campaigns.reading_files import read_netcdf, read_tables
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
+from blockshake.measurement.sensors.markers import driven_names, marker_position
 from blockshake.measurement.sensors.transducers import transducer_names
 from blockshake.tables.numbers import missing_code
 
@@ -19,13 +19,14 @@ _FARTHEST = 20.0  # m; no table moves so far, a file in millimetres does
 # 200 readings in the shortest period; times in milliseconds (200 Hz become 0.2) and in minutes (12 000) lie outside.
 _RATES = (20.0, 1e4)
 _START = 0.1  # s
-_FIRST = (
-    5  # readings, whose median is the start; shaking with 10 m/s2 from the first has moved by 0.5 mm in 10 ms
-)
+# readings, whose median is the start; shaking with 10 m/s2 from the first has moved by 0.5 mm in 10 ms
+_FIRST = 5
 _START_LIMIT = 0.01  # m; far beyond noise, far less than a marker's distance from the origin
 _START_NOISE = 5.0  # times the channel's own noise
 _OVERLAP = 0.5  # of the shorter record, that both clocks must share
-_ON_THE_RECORDER = {"accelerometer": "channel", "transducer_displacement": "transducer"}
+_SENSORS = {
+    "marker_displacement": "marker", "accelerometer": "channel", "transducer_displacement": "transducer",
+}  # fmt: skip
 # by dimension: what its names are names of, in singular and plural, and those of a structure
 _NAMES = {
     "marker": ("marker", "markers", lambda structure: [marker.name for marker in structure.file.markers]),
@@ -33,6 +34,10 @@ _NAMES = {
     "transducer": ("displacement transducer", "displacement transducers", transducer_names),
     "body": ("body", "bodies", lambda structure: structure.body_names),
 }
+_PLACE = 0.1  # m, of a marker off the structure's
+# A block more than some 1 m off hangs over the edge of a slab 3 m wide; one twice as high as thick falls when it is
+# tilted by atan(1/2) = 0.46 rad. Degrees lie beyond in all but small cases.
+_LIMITS = {"initial_offset": (1.0, "m"), "initial_rotation": (0.5, "rad")}
 
 
 def read_test(path, structure):
@@ -51,7 +56,7 @@ def read_test(path, structure):
     -------
     xarray.Dataset
         Variables of docs/guide/campaigns.md, float64; NaN along a direction that was not measured, and where a column
-        holds no readings, as of `without_faulty`. All times count from the markers' first reading. The file
+        holds no readings, see `without_faulty`. All times count from the markers' first reading. The file
         is never changed.
 
     Raises
@@ -59,8 +64,7 @@ def read_test(path, structure):
     InputError
         Not readable; times that do not increase or are not in seconds; unknown or doubled markers, channels,
         transducers or bodies; no marker on the driven body that measures x; a sensor without any reading; axes that are
-        swapped; another unit;
-        readings that are infinite or not since the first.
+        swapped; another unit; readings that are infinite or not since the first.
     """
     path = Path(path)
     table = path.suffix.lower() == ".csv"
@@ -91,24 +95,17 @@ def _check_times(time, path, name):
         raise InputError(path, name, "expected at least two times, all finite")
     steps = np.diff(time)
     if not (steps > 0.0).all():
-        place = int(np.argmin(steps > 0.0))
-        raise InputError(
-            path, name, f"expected times that increase; {time[place + 1]:g} s follows {time[place]:g} s"
-        )
+        row = int(np.argmin(steps > 0.0))
+        wrong = f"expected times that increase; {time[row + 1]:g} s follows {time[row]:g} s"
+        raise InputError(path, name, wrong)
     rate = 1.0 / np.median(steps)
     if not _RATES[0] <= rate <= _RATES[1]:
-        raise InputError(
-            path,
-            name,
-            f"expected seconds, with {_RATES[0]:g} to {_RATES[1]:g} readings in each, not {rate:.3g}",
-        )
+        wrong = f"expected seconds, with {_RATES[0]:g} to {_RATES[1]:g} readings in each, not {rate:.3g}"
+        raise InputError(path, name, wrong)
     if missing_rows(time).sum() > len(time):
-        place = int(steps.argmax())
-        raise InputError(
-            path,
-            name,
-            f"expected one record; more rows are missing than there are, {steps[place]:.4g} s after {time[place]:g} s",
-        )
+        row = int(steps.argmax())
+        lost = f"more rows are missing than there are, {steps[row]:.4g} s after {time[row]:g} s"
+        raise InputError(path, name, f"expected one record; {lost}")
 
 
 def _ordered_axes(test, path):
@@ -134,7 +131,7 @@ def _check_names(test, structure, path):
 
 def _check_driven(test, structure, path):
     """A marker of the driven body reads it along x."""
-    driven = {body.name for body in structure.file.bodies if body.driven}
+    driven = driven_names(structure)
     wanted = [marker.name for marker in structure.file.markers if marker.body in driven]
     read = [name for name in map(str, test["marker"].values) if name in wanted]
     if not read:
@@ -155,11 +152,8 @@ def _check_clocks(test, path):
     shared = min(end for _, end in clocks) - max(begin for begin, _ in clocks)
     if shared < _OVERLAP * min(end - begin for begin, end in clocks):
         (begin, end), (begin_acc, end_acc) = clocks
-        raise InputError(
-            path,
-            "time_acc",
-            f"expected the clock of time, {begin:g} to {end:g} s, not {begin_acc:g} to {end_acc:g} s",
-        )
+        wrong = f"expected the clock of time, {begin:g} to {end:g} s, not {begin_acc:g} to {end_acc:g} s"
+        raise InputError(path, "time_acc", wrong)
 
 
 def _check_readings(test, path):
@@ -172,25 +166,15 @@ def _check_readings(test, path):
             if coded is not None:
                 wrong = f"expected readings, and NaN in a gap; {column[coded]:g} looks like a code for none"
                 raise InputError(path, name, wrong)
-    displacement = test["marker_displacement"]
-    silent = displacement.isnull().all(("time", "axis")).to_numpy()
-    if silent.any():
-        raise InputError(
-            path, str(displacement["marker"].values[np.argmax(silent)]), "expected readings; all are missing"
-        )
-    for variable, dimension in _ON_THE_RECORDER.items():
-        if variable in test and (silent := test[variable].isnull().all("time_acc").to_numpy()).any():
-            raise InputError(
-                path, str(test[dimension].values[np.argmax(silent)]), "expected readings; all are missing"
-            )
+    for variable, dimension in _SENSORS.items():
+        for name in test[dimension].values if variable in test else ():
+            if test[variable].sel({dimension: name}).isnull().all():
+                raise InputError(path, str(name), "expected readings; all are missing")
     for variable in ("marker_displacement", "transducer_displacement"):
         farthest = float(np.abs(test[variable]).max()) if variable in test else 0.0
         if farthest > _FARTHEST:
-            raise InputError(
-                path,
-                variable,
-                f"expected metres; a displacement of {farthest:g} looks like millimetres",
-            )
+            wrong = f"expected metres; a displacement of {farthest:g} looks like millimetres"
+            raise InputError(path, variable, wrong)
 
 
 def _check_start(test, path):
@@ -216,3 +200,46 @@ def _check_start(test, path):
             raise InputError(
                 path, name, f"expected displacements since the first reading; it starts at {start:.3g} m"
             )
+
+
+def check_initial_places(test, structure, path):
+    """Refuse markers that start elsewhere than in the structure, and offsets that no standing body has.
+
+    Raises
+    ------
+    InputError
+        Places off by more than 0.1 m, or in another order of the axes; an offset beyond 1 m; a rotation beyond
+        0.5 rad.
+    """
+    _check_marker_places(test, structure, path)
+    for name, (limit, unit) in _LIMITS.items():
+        if name in test:
+            size = np.abs(test[name].transpose("body", "axis").to_numpy())
+            size = np.where(np.isfinite(size), size, 0.0).max(axis=1, initial=0.0)
+            if size.max(initial=0.0) > limit:
+                body, wrong = (
+                    test["body"].values[int(size.argmax())],
+                    f"{limit:g} {unit}, not {size.max():.3g}",
+                )
+                raise InputError(path, f"{name}.{body}", f"expected at most {wrong}")
+
+
+def _check_marker_places(test, structure, path):
+    if "marker_initial_position" not in test:
+        return
+    places = marker_position(structure, structure.position, structure.orientation)
+    by_name = {marker.name: position for marker, position in zip(structure.file.markers, places, strict=True)}
+    nominal = np.array([by_name[str(name)] for name in test["marker"].values])
+    read = test["marker_initial_position"].transpose("marker", "axis").to_numpy()
+    known = np.isfinite(read).any(axis=1)
+    away = np.linalg.norm(np.nan_to_num(read - nominal), axis=1)[known]
+    if not len(away) or away.max() < _PLACE:
+        return
+    for order in ((1, 0, 2), (2, 1, 0), (0, 2, 1), (1, 2, 0), (2, 0, 1)):
+        if np.linalg.norm(read[:, order] - nominal, axis=1)[known].max() < _PLACE:
+            swapped = ", ".join(AXES[axis] for axis in order)
+            wrong = f"expected x, y, z; the markers start where the structure has them in the order {swapped}"
+            raise InputError(path, "axis", wrong)
+    name = test["marker"].values[known][int(away.argmax())]
+    wrong = f"expected it within {_PLACE:g} m of the structure's, not {away.max():.3g} m off"
+    raise InputError(path, f"marker_initial_position.{name}", wrong)

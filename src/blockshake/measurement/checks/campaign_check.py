@@ -15,7 +15,7 @@ from blockshake.measurement.campaigns.commanded_motion import (
     length_remarks,
 )
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines
-from blockshake.measurement.checks.carried_blocks import carried_remarks
+from blockshake.measurement.checks.against_slab import carried_remarks, clock_remarks
 from blockshake.measurement.checks.quiet_noise import (
     accelerometer_noise,
     accelerometer_remarks,
@@ -23,11 +23,13 @@ from blockshake.measurement.checks.quiet_noise import (
     displacement_remarks,
     marker_noise,
 )
-from blockshake.measurement.checks.slab_accelerometer import clock_remarks
 from blockshake.measurement.motion.fall import find_fall
+from blockshake.measurement.sensors.accelerometers import shaken_channels
 from blockshake.measurement.sensors.markers import (
     directions_read,
     marker_bodies,
+    mean_read,
+    on_driven,
     slab_displacement,
     unread_directions,
 )
@@ -41,15 +43,7 @@ _START = 10.0  # times the noise, within which displacements start: the first re
 
 
 def campaign_lines(folder):
-    """Lines that say what is there, and then every inconsistency.
-
-    Parameters
-    ----------
-    folder : str or path
-
-    Returns
-    -------
-    list of str
+    """List of the lines that say what is in a campaign's folder, and then every inconsistency.
 
     Raises
     ------
@@ -65,15 +59,14 @@ def campaign_lines(folder):
     ]
     if structure.file.displacement_transducers:
         lines[0] += f", of displacement transducers {campaign.sensors.transducer_noise:g} m"
-    remarks, read = [f"  {remark}" for remark in point_remarks(structure)], set()
+    remarks, read = (
+        [f"  {remark}" for remark in point_remarks(structure)],
+        {"marker": set(), "transducer": set()},
+    )
     for entry in campaign.tests.values():
         test = load_test(campaign, entry.name)
-        read.update(
-            str(name)
-            for kind in ("marker", "transducer")
-            if kind in test.coords
-            for name in test[kind].values
-        )
+        for kind, names in read.items():
+            names.update(test[kind].values if kind in test.coords else ())
         described = _Described(campaign, structure, entry, test)
         lines.append(f"  {entry.name} ({entry.role}): {', '.join(described.facts)}")
         remarks += [f"  {entry.name}: {remark}" for remark in described.remarks]
@@ -82,12 +75,11 @@ def campaign_lines(folder):
             remarks.append(
                 f"  {entry.name}: {fall.body} falls at {fall.time:.2f} s; a diagnosis reads the test until then"
             )
-    for marker in structure.file.markers:
-        if marker.name not in read:
-            remarks.append(f"  marker {marker.name} of the structure is in no test")
-    for name in transducer_names(structure):
-        if name not in read:
-            remarks.append(f"  displacement transducer {name} of the structure is in no test")
+    markers = [marker.name for marker in structure.file.markers]
+    unread = [f"marker {name}" for name in markers if name not in read["marker"]]
+    transducers = [name for name in transducer_names(structure) if name not in read["transducer"]]
+    unread += [f"displacement transducer {name}" for name in transducers]
+    remarks += [f"  {name} of the structure is in no test" for name in unread]
     return lines + (["remarks:", *remarks] if remarks else ["no inconsistency found"])
 
 
@@ -99,8 +91,7 @@ class _Described:
         self.path = campaign.folder / entry.file
         self.time = test["time"].to_numpy()
         self.readings = test["marker_displacement"].to_numpy()
-        driven = {body.name for body in structure.file.bodies if body.driven}
-        self.on_slab = np.array([body in driven for body in marker_bodies(structure, test["marker"].values)])
+        self.on_slab = on_driven(structure, test["marker"].values)
         self.slab = slab_displacement(test, structure)
         self.slab_noise = self.sensors.marker_noise / np.sqrt(self.on_slab.sum())
         self.facts, self.remarks = [], faulty_lines(test)
@@ -125,21 +116,21 @@ class _Described:
         if unread:
             self.facts.append(_unread_words(unread, test.sizes["marker"]))
         if "accelerometer" in test:
-            rate_acc = 1.0 / np.median(np.diff(test["time_acc"].to_numpy()))
+            rate_acc = 1.0 / np.median(np.diff(test["time_acc"]))
             self.facts.append(f"{test.sizes['channel']} accelerometer channels at {rate_acc:.4g} Hz")
         else:
             self.facts.append("no accelerometers")
         if "transducer_displacement" in test:
-            read, clock = test["transducer_displacement"], test["time_acc"].to_numpy()
+            read, rate_acc = test["transducer_displacement"], 1.0 / np.median(np.diff(test["time_acc"]))
             self.facts.append(
-                f"{read.sizes['transducer']} displacement transducers at {1.0 / np.median(np.diff(clock)):.4g} Hz with "
+                f"{read.sizes['transducer']} displacement transducers at {rate_acc:.4g} Hz with "
                 f"{100.0 * float(read.isnull().mean()):.2g} % gaps"
             )
         if np.ptp(np.diff(time)) > 0.01 * np.median(np.diff(time)):
             self.remarks.append("the marker times are not even")
-        for name, own in (("slab", self.on_slab), ("block", ~self.on_slab)):
+        for name, mine in (("slab", self.on_slab), ("block", ~self.on_slab)):
             self.remarks += _silence(
-                f"marker of a {name}", time, self.readings[:, own].reshape(len(time), -1)
+                f"marker of a {name}", time, self.readings[:, mine].reshape(len(time), -1)
             )
         if "accelerometer" in test:
             read = test["accelerometer"].transpose("time_acc", "channel").to_numpy()
@@ -187,7 +178,7 @@ class _Described:
             )
 
     def _hold_start(self, quiet):
-        start = np.abs(_mean(self.readings[quiet][:_AT_START].swapaxes(0, 1)))
+        start = np.abs(mean_read(self.readings[quiet][:_AT_START].swapaxes(0, 1)))
         start = np.where(np.isfinite(start), start, 0.0).max(axis=1)
         far = int(start.argmax())
         if start[far] > _START * self.sensors.marker_noise:
@@ -223,27 +214,18 @@ class _Described:
         self.remarks += carried_remarks(
             self.time, self.readings[:, ~self.on_slab], names, self.slab, self.sensors.marker_noise
         )
-        driven = {body.name for body in self.structure.file.bodies if body.driven}
-        along_x = {f"{item.name}-x" for item in self.structure.file.accelerometers if item.body in driven}
-        if "accelerometer" not in self.test:
-            return
-        own = [str(name) in along_x for name in self.test["channel"].values]
         if "recorder_late" in self.test.attrs:
             late = self.test.attrs["recorder_late"]
             words = "late" if late > 0.0 else "early"
             self.remarks.append(
                 f"the accelerometers' clock is {abs(late):.3g} s {words} and was set by the slab's motion"
             )
-        if any(own):
-            readings = self.test["accelerometer"].to_numpy()[:, own].mean(axis=1)
-            self.remarks += clock_remarks(
-                self.time,
-                self.slab[:, 0],
-                self.test["time_acc"].to_numpy(),
-                readings,
-                self.slab_noise,
-                self.path,
-            )
+        channels = shaken_channels(self.test, self.structure)
+        if channels:
+            readings = self.test["accelerometer"].to_numpy()
+            readings = readings[:, np.isin(self.test["channel"], channels)].mean(axis=1)
+            time_acc, slab = self.test["time_acc"].to_numpy(), self.slab[:, 0]
+            self.remarks += clock_remarks(self.time, slab, time_acc, readings, self.slab_noise, self.path)
 
 
 def _silence(name, time, readings):
@@ -261,17 +243,10 @@ def _unread_words(unread, n_markers):
     """Directions that are not measured, by markers in words."""
     by_axes = {}
     for marker in dict.fromkeys(marker for marker, _ in unread):
-        axes = " and ".join(axis for one, axis in unread if one == marker)
+        axes = " and ".join(axis for other, axis in unread if other == marker)
         by_axes.setdefault(axes, []).append(marker)
     words = [
         f"{axes} of {'all markers' if len(names) == n_markers else ', '.join(names)}"
         for axes, names in by_axes.items()
     ]
     return f"not measured: {'; '.join(words)}"
-
-
-def _mean(readings):
-    """Mean of what was read along the second axis; NaN where nothing was."""
-    known = np.isfinite(readings)
-    with np.errstate(invalid="ignore"):
-        return np.where(known, readings, 0.0).sum(axis=1) / known.sum(axis=1)

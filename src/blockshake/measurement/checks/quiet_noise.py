@@ -36,13 +36,10 @@ def check_unit(names, noise, stated, path):
     InputError
         A noise beyond 1 mm and beyond a hundred times the stated one.
     """
-    for name, found in zip(names, noise, strict=True):
-        if found > max(_WORST_MARKER, _OTHER_UNIT * stated):
-            raise InputError(
-                path,
-                str(name),
-                f"expected metres; its noise at rest, {found:.3g}, is far beyond the stated {stated:g} m",
-            )
+    for name, size in zip(names, noise, strict=True):
+        if size > max(_WORST_MARKER, _OTHER_UNIT * stated):
+            wrong = f"expected metres; its noise at rest, {size:.3g}, is far beyond the stated {stated:g} m"
+            raise InputError(path, str(name), wrong)
 
 
 def displacement_remarks(what, names, noise, stated):
@@ -85,10 +82,10 @@ def _remark(what, names, noise, wrong, factor, unit, stated):
     """One remark that names the channels, unless all are meant; none where nothing is wrong."""
     if not wrong.any():
         return []
-    found = f"{factor * noise[wrong].min():.3g}"
+    size = f"{factor * noise[wrong].min():.3g}"
     if wrong.sum() > 1 and factor * noise[wrong].max() > factor * noise[wrong].min():
-        found += f" to {factor * noise[wrong].max():.3g}"
-    own = [str(name) for name in np.asarray(names)[wrong]]
-    of = "" if len(own) == len(noise) else f" of {', '.join(own[:_MANY])}"
-    of += f" and {len(own) - _MANY} more" if of and len(own) > _MANY else ""
-    return [f"{what} noise{of} found {found} {unit}, stated {factor * stated:.3g} {unit}"]
+        size += f" to {factor * noise[wrong].max():.3g}"
+    shown = [str(name) for name in np.asarray(names)[wrong]]
+    of = "" if len(shown) == len(noise) else f" of {', '.join(shown[:_MANY])}"
+    of += f" and {len(shown) - _MANY} more" if of and len(shown) > _MANY else ""
+    return [f"{what} noise{of} found {size} {unit}, stated {factor * stated:.3g} {unit}"]

@@ -1,1 +1,1 @@
-"""From readings to the motion of the base, the blocks and the joints."""
+"""Motion of the base, the blocks and the joints, computed from readings."""

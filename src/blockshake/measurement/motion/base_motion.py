@@ -62,15 +62,22 @@ def smooth_readings(readings, density):
 def likeliest_density(readings):
     """Density of the white jerk at which `BaseReadings` are likeliest [m2/s5].
 
-    Searched about the best of a coarse row: a weak pitch has a second, lower summit at rest.
+    A weak pitch has a second, lower summit at rest.
     """
+    return 10.0 ** likeliest(
+        lambda exponent: smooth_readings(readings, 10.0**exponent), _DENSITIES, 2.0, 0.05
+    )
 
-    def unlikely(exponent):
-        return -smooth_readings(readings, 10.0**exponent).likelihood
 
-    best = _DENSITIES[int(np.argmin([unlikely(exponent) for exponent in _DENSITIES]))]
-    bounds = best - 2.0, best + 2.0
-    return 10.0 ** minimize_scalar(unlikely, bounds=bounds, method="bounded", options={"xatol": 0.05}).x
+def likeliest(smoothed, tried, step, tolerance):
+    """Value at which a function gives the likeliest `Smoothed`: the best of those tried, closer within a step of it."""
+
+    def unlikely(value):
+        return -smoothed(value).likelihood
+
+    best = tried[int(np.argmin([unlikely(value) for value in tried]))]
+    bounds = best - step, best + step
+    return minimize_scalar(unlikely, bounds=bounds, method="bounded", options={"xatol": tolerance}).x
 
 
 def together(time, marker, marker_noise, time_acc, accelerometer, accelerometer_noise):
@@ -78,18 +85,11 @@ def together(time, marker, marker_noise, time_acc, accelerometer, accelerometer_
     every = np.unique(np.concatenate([time, time_acc]))
     every = every[np.concatenate([[True], np.diff(every) > SAME_TIME])]
     read = []
-    for own, values in ((time, marker), (time_acc, accelerometer)):
+    for times, values in ((time, marker), (time_acc, accelerometer)):
         row = np.full(len(every), np.nan)
-        row[np.searchsorted(every, own - SAME_TIME)] = values
+        row[np.searchsorted(every, times - SAME_TIME)] = values
         read.append(row)
     return BaseReadings(every, read[0], marker_noise, read[1], accelerometer_noise)
-
-
-class ChannelReadings(NamedTuple):
-    """Readings of one accelerometer channel, float64 (n_readings,), NaN for a gap [s, m/s2]."""
-
-    time: np.ndarray
-    values: np.ndarray
 
 
 def base_coordinates(test, structure, sensors):
@@ -108,7 +108,7 @@ def base_coordinates(test, structure, sensors):
         x, y, z [m] and pitch [rad]; NaN is a gap, or a direction that is not measured; a pitch that the markers do
         not tell is 0.
     noise : float64 array, shape (4,)
-        Standard deviations [m, rad]; 0 of what is not told.
+        Standard deviations [m, rad]; 0 of a coordinate that is not read.
     """
     poses = body_poses(test, structure, sensors.marker_noise, asked=structure.driven)
     body = driven_body(structure, poses)
@@ -120,17 +120,6 @@ def base_coordinates(test, structure, sensors):
     noise = np.sqrt(np.diag(poses.covariance[body])[[0, 1, 2, 4]])
     if poses.known[body] == TRANSLATION:
         pitch, noise[3] = np.zeros(len(pitch)), 0.0
-    untold = ~poses.told[body]
-    moved[:, untold], noise[:3][untold] = np.nan, 0.0
+    unread = ~poses.axes_read[body]
+    moved[:, unread], noise[:3][unread] = np.nan, 0.0
     return np.column_stack([moved, pitch]), noise
-
-
-def base_accelerometer(test, structure):
-    """`ChannelReadings` of the first accelerometer on a driven body along x; None where there is none."""
-    driven = {body.name for body in structure.file.bodies if body.driven}
-    for sensor in structure.file.accelerometers:
-        channel = f"{sensor.name}-x"
-        if sensor.body in driven and "accelerometer" in test and channel in test["channel"].values:
-            readings = test["accelerometer"].sel(channel=channel).to_numpy()
-            return ChannelReadings(test["time_acc"].to_numpy(), readings)
-    return None

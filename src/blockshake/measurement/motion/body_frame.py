@@ -27,7 +27,7 @@ class BodyFrame:
     rotation : float64 array, shape (n_times, 3, 3)
         Body to world.
     residual : float64 array, shape (n_times, n_markers, 3)
-        Where the marker is read less where it is said to be, body frame [m]; free of rigid motion; NaN if not read.
+        Where the marker is read less where the structure has it, body frame [m]; free of rigid motion; NaN if not read.
     projector : float64 array, shape (n_times, 3 n_markers, 3 n_markers)
         Takes an error of the readings (body frame) to the residual; zero where nothing is to be checked.
     """
@@ -39,14 +39,7 @@ class BodyFrame:
 
 
 def frames_of_bodies(test, structure):
-    """Columns among the markers, and `BodyFrame`, of every body with three markers that measure all directions.
-
-    Parameters
-    ----------
-    test : xarray.Dataset
-        As in a campaign's test file.
-    structure : Structure
-    """
+    """Columns among the markers of a campaign's test, and `BodyFrame`, of every body with three whole markers."""
     read, whole = [str(name) for name in test["marker"].values], whole_markers(test)
     displacement = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()
     starts = rotation_matrices(structure.orientation)
@@ -92,23 +85,23 @@ def see_from_body(points, readings, start_position, start_rotation):
     for pattern in np.unique(read, axis=0):
         if pattern.sum() < _FEWEST:
             continue
-        times, own = np.flatnonzero((read == pattern).all(axis=1)), np.flatnonzero(pattern)
-        middle = points[own].mean(axis=0)
-        arms = points[own] - middle
+        times, markers = np.flatnonzero((read == pattern).all(axis=1)), np.flatnonzero(pattern)
+        middle = points[markers].mean(axis=0)
+        arms = points[markers] - middle
         jacobian = rigid_jacobian(arms)
         inverse = np.linalg.pinv(jacobian, rcond=ON_LINE)
         x = np.tile(start_position + start_rotation @ middle, (len(times), 1))
         turn = np.tile(start_rotation, (len(times), 1, 1))
-        seen = readings[np.ix_(times, own)]
+        seen = readings[np.ix_(times, markers)]
         for step in range(_ITERATIONS + 1):
-            left = (seen - x[:, None]) @ turn - arms
+            rest = (seen - x[:, None]) @ turn - arms
             if step < _ITERATIONS:
-                change = left.reshape(len(times), -1) @ inverse.T
+                change = rest.reshape(len(times), -1) @ inverse.T
                 x = x + (turn @ change[:, :3, None])[..., 0]
                 turn = turn @ Rotation.from_rotvec(change[:, 3:]).as_matrix()
         position[times], rotation[times] = x - turn @ middle, turn
-        residual[np.ix_(times, own)] = left
-        rows = (3 * own[:, None] + np.arange(3)).ravel()
+        residual[np.ix_(times, markers)] = rest
+        rows = (3 * markers[:, None] + np.arange(3)).ravel()
         projector[np.ix_(times, rows, rows)] = _projector(jacobian)
     return BodyFrame(position, rotation, residual, projector)
 
@@ -138,7 +131,7 @@ def outlying(residual):
     Parameters
     ----------
     residual : float64 array, shape (n_times, n_markers, 3)
-        Of a `BodyFrame`.
+        Residuals of a `BodyFrame`.
 
     Returns
     -------
@@ -150,8 +143,18 @@ def outlying(residual):
         read = np.isfinite(residual[:, marker]).all(axis=1)
         if not read.any():
             continue
-        own = residual[read, marker]  # neighbours are the readings before and after, over any gap
-        away = np.abs(own - median_filter(own, size=(_WINDOW, 1)))
+        known = residual[read, marker]  # neighbours are the readings before and after, over any gap
+        away = np.abs(known - median_filter(known, size=(_WINDOW, 1)))
         spread = 1.4826 * np.median(away, axis=0)
         score[read, marker] = (away / np.maximum(spread, 1e-2 * spread.max() + 1e-12)).max(axis=1)
     return (score == score.max(axis=1, keepdims=True)) & (score > _OUTLIER)
+
+
+def without_outliers(test, structure):
+    """A campaign's test with lone wrong readings as gaps, on bodies with three markers that measure all directions."""
+    displacement = test["marker_displacement"].transpose("time", "marker", "axis")
+    values = displacement.to_numpy().copy()
+    for columns, frame in frames_of_bodies(test, structure):
+        for column, wrong in zip(columns, outlying(frame.residual).T, strict=True):
+            values[wrong, column] = float("nan")
+    return test.assign(marker_displacement=displacement.copy(data=values))

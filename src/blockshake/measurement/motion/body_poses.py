@@ -7,12 +7,15 @@ from scipy.spatial.transform import Rotation
 
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.measurement.motion.rigid_pose import COLLINEAR, fit_poses, spread
+from blockshake.measurement.motion.body_frame import rigid_jacobian
 from blockshake.measurement.sensors.markers import directions_read, marker_position
 
 _TABLE_ROLL = 1e-4  # rad, standard deviation of a driven body's rotation about x before anything is read
 _ROUNDS = 6  # of a turn by its sine: the error falls by the turn itself in each
 POSE, PLANAR, TRANSLATION, NOTHING = "pose", "planar", "translation", "nothing"
+_FEWEST_POINTS = 3
+# Two markers' spread over the largest below which they lie on a line.
+COLLINEAR = 1e-3
 
 
 @dataclass(frozen=True)
@@ -22,7 +25,7 @@ class BodyPoses:
     Attributes
     ----------
     position : float64 array, shape (n_times, n_bodies, 3)
-        Of the mass centres, inertial frame [m]; NaN where unknown. Along a direction that is not told, that of the
+        Of the mass centres, inertial frame [m]; NaN where unknown. Along a direction that is not read, that of the
         structure file, so that the other directions can be computed with.
     rotation : float64 array, shape (n_times, n_bodies, 3, 3)
         Body to world; NaN where unknown.
@@ -33,7 +36,7 @@ class BodyPoses:
         ``pose``; ``planar``: two markers, or several on a line or without readings along y, roll and yaw taken as none;
         ``translation``: one marker, or several whose readings do not tell a turn, rotation unknown, of a driven body
         taken as none; ``nothing``: no marker.
-    told : bool array, shape (n_bodies, 3)
+    axes_read : bool array, shape (n_bodies, 3)
         Whether the position along x, y and z is read.
     """
 
@@ -41,7 +44,7 @@ class BodyPoses:
     rotation: np.ndarray
     covariance: np.ndarray
     known: list
-    told: np.ndarray
+    axes_read: np.ndarray
 
 
 def body_poses(test, structure, marker_noise, asked=None):
@@ -59,7 +62,7 @@ def body_poses(test, structure, marker_noise, asked=None):
 
     Notes
     -----
-    Markers start where the structure file has them: a marker that sits elsewhere, which nobody told, errs by its
+    Markers start where the structure file has them: a marker that sits elsewhere without a word in the file errs by its
     offset times the rotation, in simulated readings as in measured ones. A driven body's rotation about x, the axis of
     shaking, is taken as none within 0.1 mrad: where its markers are nearly on a line along x, as on one
     face of the slab, their noise would else turn it by milliradians and open every joint on it.
@@ -75,28 +78,28 @@ def body_poses(test, structure, marker_noise, asked=None):
         if name not in names:
             raise InputError("body poses", name, f"expected a marker of {structure.source}")
     places = marker_position(structure, structure.position, structure.orientation)
-    own = np.array([names.index(name) for name in read])
-    arms = structure.arms(structure.file.markers)[own]
+    index = np.array([names.index(name) for name in read])
+    arms = structure.arms(structure.file.markers)[index]
     moved = displacement.to_numpy()
     measured = directions_read(moved)
-    readings = places[own] + np.where(measured, moved, 0.0)
-    bodies = structure.carriers(structure.file.markers)[own]
+    readings = places[index] + np.where(measured, moved, 0.0)
+    bodies = structure.carriers(structure.file.markers)[index]
     start = rotation_matrices(structure.orientation)
     n_times, n_bodies = len(readings), len(structure.mass)
     position = np.full((n_times, n_bodies, 3), np.nan)
     rotation = np.full((n_times, n_bodies, 3, 3), np.nan)
     covariance = np.full((n_bodies, 6, 6), np.nan)
-    known, told = [NOTHING] * n_bodies, np.zeros((n_bodies, 3), dtype=bool)
+    known, axes_read = [NOTHING] * n_bodies, np.zeros((n_bodies, 3), dtype=bool)
     for body in np.unique(bodies if asked is None else bodies[asked[bodies]]):
         mine = np.flatnonzero(bodies == body)
-        known[body], told[body], fit = _best_fit(
+        known[body], axes_read[body], fit = _best_fit(
             arms[mine], readings[:, mine], measured[mine], start[body], structure.driven[body], marker_noise
         )
         if structure.driven[body] and known[body] == POSE:
             fit = _hardly_rolling(*fit, start[body])
         position[:, body], rotation[:, body], covariance[body] = fit
-        position[:, body, ~told[body]] = structure.position[body, ~told[body]]
-    return BodyPoses(position, rotation, covariance, known, told)
+        position[:, body, ~axes_read[body]] = structure.position[body, ~axes_read[body]]
+    return BodyPoses(position, rotation, covariance, known, axes_read)
 
 
 def driven_body(structure, poses):
@@ -108,7 +111,7 @@ def driven_body(structure, poses):
 
 
 def _best_fit(points, readings, measured, start, driven, noise):
-    """The fullest pose that the markers allow: what is known, told directions, and position, rotation, covariance."""
+    """Fullest pose that the markers allow: what is known, which axes are read, and position, rotation, covariance."""
     whole = measured.all(axis=1)
     arms = points @ start.T
     size = spread(points[whole]) if whole.sum() > 2 else np.zeros(3)
@@ -118,12 +121,12 @@ def _best_fit(points, readings, measured, start, driven, noise):
         mean = covariance[fitted].mean(axis=0) if fitted.any() else np.full((6, 6), np.nan)
         return POSE, True, (position, rotation, mean)
     for axes, turned in (((0, 2), _turn_in_plane), ((0,), _turn_of_upright)):
-        own = measured[:, axes].all(axis=1)
-        planar = arms[own][:, [0, 2]]
-        planar = planar - planar.mean(axis=0) if own.any() else planar
+        enough = measured[:, axes].all(axis=1)
+        planar = arms[enough][:, [0, 2]]
+        planar = planar - planar.mean(axis=0) if enough.any() else planar
         if (planar[:, 2 - len(axes) :] ** 2).sum() > 1e-4:
-            told = measured[own].all(axis=0)
-            return PLANAR, told, _planar_fit(arms[own], planar, readings[:, own], start, noise, turned)
+            read = measured[enough].all(axis=0)
+            return PLANAR, read, _planar_fit(arms[enough], planar, readings[:, enough], start, noise, turned)
     return TRANSLATION, measured.any(axis=0), _displacement(arms, readings, measured, start, driven, noise)
 
 
@@ -131,10 +134,10 @@ def _displacement(arms, readings, measured, start, driven, noise):
     """Displacement along each direction by the markers that read it; the rotation is that of a driven body alone."""
     position, covariance = np.zeros((len(readings), 3)), np.zeros((6, 6))
     for axis in range(3):
-        own = measured[:, axis]
-        if own.any():
-            position[:, axis] = readings[:, own, axis].mean(axis=1) - arms[own, axis].mean()
-            covariance[axis, axis] = noise**2 / own.sum()
+        reading = measured[:, axis]
+        if reading.any():
+            position[:, axis] = readings[:, reading, axis].mean(axis=1) - arms[reading, axis].mean()
+            covariance[axis, axis] = noise**2 / reading.sum()
     turn = start if driven else np.full((3, 3), np.nan)
     return position, np.tile(turn, (len(readings), 1, 1)), covariance
 
@@ -183,7 +186,7 @@ def _turn_in_plane(planar, away, noise):
 
 
 def _turn_of_upright(planar, away, noise):
-    """The same from readings along x alone, of markers at several heights."""
+    """Turn about y and its variance, as by `_turn_in_plane`, from readings along x of markers at several heights."""
     x, z = planar.T
     sine = np.zeros(len(away))
     for _ in range(_ROUNDS):
@@ -191,3 +194,58 @@ def _turn_of_upright(planar, away, noise):
         cosine = np.sqrt(1.0 - sine**2)
         sine = np.clip(((away[..., 0] - cosine[:, None] * x) * z).sum(axis=1) / (z**2).sum(), -1.0, 1.0)
     return np.arcsin(sine), noise**2 / (z**2).sum()
+
+
+def fit_poses(points, readings, marker_noise):
+    """Fit a rigid body to its markers at every time.
+
+    Parameters
+    ----------
+    points : float64 array, shape (n_markers, 3)
+        Markers in the body frame, three or more that are not on a line [m].
+    readings : float64 array, shape (n_times, n_markers, 3)
+        Their positions, inertial frame [m]; a marker with a NaN is not used at that time.
+    marker_noise : float
+        Standard deviation of a position along an axis, the same for all [m].
+
+    Returns
+    -------
+    position : float64 array, shape (n_times, 3)
+        Of the mass centre, inertial frame [m]; NaN, as all else, where fewer than three markers were read, or markers
+        on a line alone.
+    rotation : float64 array, shape (n_times, 3, 3)
+        Body to world.
+    covariance : float64 array, shape (n_times, 6, 6)
+        Of position [m] and small rotation, world frame [rad].
+
+    Notes
+    -----
+    Rotation from the singular vectors of the cross-covariance (Arun, Huang and Blostein 1987; Umeyama 1991).
+    To first order the covariance is ``noise^2 (J^T J)^-1`` with J the change of the markers' positions by a
+    displacement and a small rotation.
+    """
+    n_times = len(readings)
+    position, rotation = np.full((n_times, 3), np.nan), np.full((n_times, 3, 3), np.nan)
+    covariance = np.full((n_times, 6, 6), np.nan)
+    read = np.isfinite(readings).all(axis=2)
+    # times that read the same markers are fitted at once
+    for pattern in np.unique(read, axis=0):
+        if pattern.sum() < _FEWEST_POINTS or spread(points[pattern])[1] < COLLINEAR * spread(points)[0]:
+            continue
+        times = np.flatnonzero((read == pattern).all(axis=1))
+        known = points[pattern]
+        seen = readings[np.ix_(times, np.flatnonzero(pattern))]
+        middle, centre = known.mean(axis=0), seen.mean(axis=1)
+        u, _, v = np.linalg.svd(np.einsum("tmi,mj->tij", seen - centre[:, None], known - middle))
+        u[:, :, 2] *= np.sign(np.linalg.det(u @ v))[:, None]
+        rotation[times] = u @ v
+        position[times] = centre - rotation[times] @ middle
+        jacobian = rigid_jacobian(np.einsum("tij,mj->tmi", rotation[times], known))
+        normal = np.einsum("tmj,tmk->tjk", jacobian, jacobian)
+        covariance[times] = marker_noise**2 * np.linalg.inv(normal)
+    return position, rotation, covariance
+
+
+def spread(points):
+    """Singular values of the points about their middle, largest first [m]."""
+    return np.linalg.svd(points - points.mean(axis=0), compute_uv=False)

@@ -38,7 +38,7 @@ def curves_along_x(measured, members):
         raise InputError("curves", "time", "expected measured times within the ensemble's")
     read, curves = _along_x(measured, markers).isel(time=inside), _along_x(members, markers)
     values = at_times(curves.to_numpy(), time, asked[inside])
-    other = {name: one for name, one in curves.coords.items() if "time" not in one.dims}
+    other = {name: coordinate for name, coordinate in curves.coords.items() if "time" not in coordinate.dims}
     return read, read.expand_dims(sample=members.sizes["sample"]).copy(data=values).assign_coords(other)
 
 
@@ -54,19 +54,19 @@ def at_times(curves, time, asked):
     asked : float64 array, shape (n_asked,)
         Within ``time`` [s].
     """
-    place = (asked - time[0]) / (time[1] - time[0])
-    nearest = np.rint(place).astype(int)
-    if np.abs(place - nearest).max() * (time[1] - time[0]) < SAME_TIME:
+    step = (asked - time[0]) / (time[1] - time[0])
+    nearest = np.rint(step).astype(int)
+    if np.abs(step - nearest).max() * (time[1] - time[0]) < SAME_TIME:
         return curves[..., nearest, :]
-    first = np.clip(np.floor(place).astype(int) - 1, 0, len(time) - 4)
-    found = np.zeros((*curves.shape[:-2], len(asked), curves.shape[-1]))
+    first = np.clip(np.floor(step).astype(int) - 1, 0, len(time) - 4)
+    values = np.zeros((*curves.shape[:-2], len(asked), curves.shape[-1]))
     for node in range(4):
         weight = np.ones(len(asked))
         for other in range(4):
             if other != node:
-                weight *= (place - first - other) / (node - other)
-        found += weight[:, None] * curves[..., first + node, :]
-    return found
+                weight *= (step - first - other) / (node - other)
+        values += weight[:, None] * curves[..., first + node, :]
+    return values
 
 
 def _along_x(dataset, markers):

@@ -6,8 +6,8 @@ import numpy as np
 
 from blockshake.dynamics.collapse import COSINE_OF_TILT, collapse_limits
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.body_poses import body_poses, driven_body
-from blockshake.measurement.motion.outliers import without_outliers
 
 _SCREEN = 0.5  # of the smallest drop that counts: markers that stay as near to each other need no poses
 
@@ -22,14 +22,8 @@ class Fall(NamedTuple):
 def find_fall(test, structure, sensors):
     """`Fall` in a test, or None: by the criterion of `find_collapsed`, from an instant to the end of the record.
 
-    A block that touches nothing at the start, as one that is dropped, has nothing to fall from.
-
-    Parameters
-    ----------
-    test : xarray.Dataset
-        As in a campaign.
-    structure : Structure
-    sensors : Sensors
+    The test is as in a campaign. A block that touches nothing at the start, as one that is dropped, has nothing to fall
+    from.
     """
     supported, drop_limit = collapse_limits(structure)
     if not supported.any():
@@ -44,13 +38,13 @@ def find_fall(test, structure, sensors):
     upright = np.einsum("tbi,bi->tb", poses.rotation[:, :, 2], upward)
     lies = (drop > drop_limit) | (upright < COSINE_OF_TILT)
     stands = ~lies & np.isfinite(drop)
-    found = []
+    falls = []
     for body in np.flatnonzero(supported & lies.any(axis=0)):
         last = np.flatnonzero(stands[:, body])[-1] if stands[:, body].any() else -1
         after = np.flatnonzero(lies[last + 1 :, body])
         if after.size:
-            found.append((float(test["time"][last + 1 + after[0]]), structure.body_names[body]))
-    return Fall(*min(found)[::-1]) if found else None
+            falls.append((float(test["time"][last + 1 + after[0]]), structure.body_names[body]))
+    return Fall(*min(falls)[::-1]) if falls else None
 
 
 def until_fall(test, fall):

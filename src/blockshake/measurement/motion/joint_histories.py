@@ -5,7 +5,7 @@ import numpy as np
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.body_frame import rigid_jacobian
 from blockshake.measurement.motion.body_poses import POSE, body_poses, driven_body
-from blockshake.measurement.motion.joint_coordinates import find_joints, joint_coordinates
+from blockshake.measurement.motion.joints import find_joints, joint_coordinates
 
 
 def joint_histories(test, structure, sensors):
@@ -33,7 +33,7 @@ def joint_histories(test, structure, sensors):
     NaN where a body was not read; a joint of a body whose rotation nobody can know is NaN throughout, and of a planar
     one the rotations about x and z. A direction that the markers of a body do not measure is NaN, of that body and of
     its joints; the others are found as if nothing moved along it, which errs by the products of small motions. With
-    markers on a line a yaw of the table shows as a slip: it cannot be told from one.
+    markers on a line a yaw of the table shows as a slip, and nothing distinguishes the two.
     """
     poses = body_poses(test, structure, sensors.marker_noise)
     driven = driven_body(structure, poses)
@@ -48,11 +48,11 @@ def joint_histories(test, structure, sensors):
     # what a planar pose takes as none is not known
     planar = ~whole[pairs].all(axis=1)
     histories["rotation"][:, planar, [0, 2]] = np.nan
-    of_joints = poses.told[pairs].all(axis=1)
+    of_joints = poses.axes_read[pairs].all(axis=1)
     for name, known in (
         ("slip", of_joints[:, :2]),
         ("opening", of_joints[:, 2]),
-        ("body_displacement", poses.told & poses.told[driven]),
+        ("body_displacement", poses.axes_read & poses.axes_read[driven]),
     ):
         histories[name][:] = np.where(known, histories[name], np.nan)
     return histories.assign(_noise(structure, poses, driven)).assign_coords(
@@ -70,13 +70,15 @@ def _noise(structure, poses, driven):
     def relative(lower, upper, point):
         if lower == upper:  # of one body against itself: nothing
             return np.zeros(6)
-        own = _at_point(poses.covariance[upper], point - structure.position[upper])
-        other = _at_point(poses.covariance[lower], point - structure.position[lower])
+        of_upper = _at_point(poses.covariance[upper], point - structure.position[upper])
+        of_lower = _at_point(poses.covariance[lower], point - structure.position[lower])
         turn = np.kron(np.eye(2), turns[lower].T)
-        return np.sqrt(np.diag(turn @ (own + other) @ turn.T))
+        return np.sqrt(np.diag(turn @ (of_upper + of_lower) @ turn.T))
 
     of_joints = np.array([relative(*pair, centre) for pair, centre in zip(pairs, centres, strict=True)])
-    of_bodies = np.array([relative(driven, body, place) for body, place in enumerate(structure.position)])
+    of_bodies = np.array(
+        [relative(driven, body, centroid) for body, centroid in enumerate(structure.position)]
+    )
     return {
         "slip_noise": (("joint", "tangent"), of_joints[:, :2]),
         "opening_noise": ("joint", of_joints[:, 2]),

@@ -3,21 +3,21 @@
 import numpy as np
 import xarray as xr
 from scipy.interpolate import CubicSpline
-from scipy.optimize import minimize_scalar
 
 from blockshake.dynamics.motion import CHANNELS, PITCH, ground_motion
 from blockshake.measurement.motion.base_motion import (
     SAME_TIME,
     BaseReadings,
-    base_accelerometer,
     base_coordinates,
     first_variances,
+    likeliest,
     likeliest_density,
     smooth_readings,
     together,
 )
+from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.kalman import ACCELERATION, DISPLACEMENT, OFFSET, VELOCITY, walk_into
-from blockshake.measurement.motion.outliers import without_outliers
+from blockshake.measurement.sensors.accelerometers import shaken_channels
 
 _LARGEST_CLOCK_LAG = 0.05  # s, between the clocks of the two systems
 _LAG_STEP = 0.005  # s, of the lags that are tried first
@@ -37,11 +37,11 @@ def measure_base(test, structure, sensors, command):
     Parameters
     ----------
     test : xarray.Dataset
-        As of `from_command`.
+        A test whose times count from the start of the command, see `from_command`.
     structure : Structure
     sensors : Sensors
     command : GroundMotion
-        That the table was told.
+        Commanded motion of the table.
 
     Returns
     -------
@@ -70,18 +70,15 @@ def measure_base(test, structure, sensors, command):
     ]
     densities = [likeliest_density(part) if part.marker_noise > 0.0 else 0.0 for part in parts]
     lag = 0.0
-    channel = base_accelerometer(test, structure)
-    if channel is not None:
-        pitch = (
-            smooth_readings(parts[PITCH], densities[PITCH]).mean
-            if densities[PITCH]
-            else np.zeros((len(time), 4))
-        )
-        weight = -structure.file.gravity[2] * np.interp(channel.time, time, pitch[:, DISPLACEMENT])
+    for channel in shaken_channels(test, structure)[:1]:
+        time_acc, pitch = test["time_acc"].to_numpy(), np.zeros(len(time))
+        if densities[PITCH]:
+            pitch = smooth_readings(parts[PITCH], densities[PITCH]).mean[:, DISPLACEMENT]
+        weight = -structure.file.gravity[2] * np.interp(time_acc, time, pitch)
         read = time, values[:, 0], noise[0]
-        level = channel.values + weight, sensors.accelerometer_noise
-        lag = _accelerometer_lag(read, channel.time, level, densities[0])
-        parts[0] = together(*read, channel.time + lag, *level)
+        level = test["accelerometer"].sel(channel=channel).to_numpy() + weight, sensors.accelerometer_noise
+        lag = _accelerometer_lag(read, time_acc, level, densities[0])
+        parts[0] = together(*read, time_acc + lag, *level)
         densities[0] = likeliest_density(parts[0])
     base = _gathered(time, parts, densities)
     unread = [CHANNELS[axis] for axis in np.flatnonzero(np.isnan(values[:, :3]).all(axis=0))]
@@ -102,7 +99,7 @@ def measure_base(test, structure, sensors, command):
 def record_start(time):
     """Time from which a test's record drives a simulation: the start of the command, or the first reading after it [s].
 
-    ``time`` (n_times,): of the test's markers, as of `from_command` [s].
+    ``time`` (n_times,): times of the markers, counted from the start of the command [s].
     """
     return max(float(time[0]), 0.0)
 
@@ -112,9 +109,9 @@ def _move_as_told(base, axis, command):
     at = {"channel": axis}
     for derivative, name in enumerate(("displacement", "velocity")):
         if base.attrs["follows"]:
-            told = command.evaluate(base["time"].to_numpy(), derivative)
-            told = told - command.evaluate(np.full(1, base.attrs["start"])) * (derivative == 0)
-            base[name].loc[at] = told[:, CHANNELS.index(axis)]
+            commanded = command.evaluate(base["time"].to_numpy(), derivative)
+            commanded = commanded - command.evaluate(np.full(1, base.attrs["start"])) * (derivative == 0)
+            base[name].loc[at] = commanded[:, CHANNELS.index(axis)]
         base[f"{name}_error"].loc[at] = np.nan
 
 
@@ -138,9 +135,9 @@ def draw_base(base, generator):
     drawn = np.zeros((there.sum(), len(CHANNELS)))
     for index, readings in enumerate(_readings(base)):
         density = float(base["jerk_density"][index])
-        own = base.isel(channel=index)
+        coordinate = base.isel(channel=index)
         if density == 0.0:
-            drawn[:, index] = own["displacement"].to_numpy()[there]
+            drawn[:, index] = coordinate["displacement"].to_numpy()[there]
             continue
         count = len(readings.time)
         states = np.empty((count, 4))
@@ -155,7 +152,7 @@ def draw_base(base, generator):
         )
         error = (states - smooth_readings(seen, density).mean)[:, DISPLACEMENT]
         at = np.searchsorted(readings.time, base["time"].to_numpy()[there] - SAME_TIME)
-        drawn[:, index] = own["displacement"].to_numpy()[there] + error[at]
+        drawn[:, index] = coordinate["displacement"].to_numpy()[there] + error[at]
     return drawn
 
 
@@ -170,15 +167,13 @@ def base_as_motion(base, displacement, name, attributes):
 
 def _accelerometer_lag(read, time_acc, level, density):
     """By how much the accelerometer's times are moved onto the markers' clock: the likeliest lag [s]."""
-
-    def unlikely(lag):
-        return -smooth_readings(together(*read, time_acc + lag, *level), density).likelihood
-
     count = round(_LARGEST_CLOCK_LAG / _LAG_STEP)
     lags = _LAG_STEP * np.arange(-count, count + 1)
-    best = lags[int(np.argmin([unlikely(lag) for lag in lags]))]
-    ends = best - _LAG_STEP, best + _LAG_STEP
-    return minimize_scalar(unlikely, bounds=ends, method="bounded", options={"xatol": 1e-5}).x
+
+    def smoothed(lag):
+        return smooth_readings(together(*read, time_acc + lag, *level), density)
+
+    return likeliest(smoothed, lags, _LAG_STEP, 1e-5)
 
 
 def _gathered(marker_time, parts, densities):
@@ -214,9 +209,9 @@ def _gathered(marker_time, parts, densities):
 def _readings(base):
     """`BaseReadings` of every coordinate, those of coordinates without accelerometer at the markers' times alone."""
     for index in range(base.sizes["channel"]):
-        own = base.isel(channel=index)
-        kept = (own["of_markers"].to_numpy() == 1) | np.isfinite(own["reading"].to_numpy())
+        coordinate = base.isel(channel=index)
+        kept = (coordinate["of_markers"].to_numpy() == 1) | np.isfinite(coordinate["reading"].to_numpy())
         yield BaseReadings(
-            *(own[name].to_numpy()[kept] for name in ("time", "marker")), float(own["marker_noise"]),
-            own["reading"].to_numpy()[kept], float(own["reading_noise"]),
+            *(coordinate[name].to_numpy()[kept] for name in ("time", "marker")), float(coordinate["marker_noise"]),
+            coordinate["reading"].to_numpy()[kept], float(coordinate["reading_noise"]),
         )  # fmt: skip

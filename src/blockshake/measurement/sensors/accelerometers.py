@@ -1,8 +1,12 @@
 """Readings of an accelerometer on a block: specific force along the block's own axes."""
 
+from typing import NamedTuple
+
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.sensors.markers import driven_names
 
 RATE = 512.0  # Hz, of the readings
 NOISE = 0.02  # m/s2, standard deviation of the readings where nothing else is stated
@@ -12,11 +16,31 @@ ORDER = 4
 
 SKIP = round(FINE_RATE / RATE)  # states from one reading to the next
 _PAD = round(0.25 * FINE_RATE)  # a quarter second: the filter has forgotten its start after 0.1 s
+LONGEST_GAP = 10  # readings; across more a spline no longer knows what the blocks did
+EVEN = 0.01  # of the step, by which times may be uneven
+
+
+def channel_carriers(structure):
+    """Body and axis of every channel by its name ``NAME-axis``, in file order."""
+    return {
+        f"{sensor.name}-{axis}": (sensor.body, axis)
+        for sensor in structure.file.accelerometers
+        for axis in sensor.axes
+    }
 
 
 def accelerometer_channels(structure):
     """Channel names ``NAME-axis`` in file order."""
-    return [f"{sensor.name}-{axis}" for sensor in structure.file.accelerometers for axis in sensor.axes]
+    return list(channel_carriers(structure))
+
+
+def shaken_channels(test, structure):
+    """Channels of a test that read a driven body along x, in file order, list of str."""
+    if "accelerometer" not in test:
+        return []
+    driven, read = driven_names(structure), set(test["channel"].values)
+    carriers = channel_carriers(structure).items()
+    return [name for name, (body, axis) in carriers if name in read and body in driven and axis == "x"]
 
 
 def reading_times(time):
@@ -94,13 +118,7 @@ def readings_of(forces, times):
 
 
 def low_pass(values):
-    """The 50 Hz low-pass of the readings, at `FINE_RATE`, along the first axis, without lag.
-
-    Parameters
-    ----------
-    values : float64 array, shape (n_fine, n_channels)
-        Finite.
-    """
+    """The 50 Hz low-pass of finite values (n_fine, n_channels) at `FINE_RATE`, along the first axis, without lag."""
     # imported here: a second of the start of each job that reads no accelerometer
     from scipy.signal import butter, sosfiltfilt
 
@@ -135,3 +153,53 @@ def _at_states(middles):
     values -= padded[3:]
     values /= 16.0
     return values
+
+
+class WholeChannels(NamedTuple):
+    """Readings of channels, ``names``, at even times: float64 (n_times,) [s] and (n_times, n_channels) without gaps."""
+
+    time: np.ndarray
+    values: np.ndarray
+    names: list
+
+
+def whole_channels(test, structure):
+    """`WholeChannels` of the accelerometers on blocks; None where no channel is whole.
+
+    The test is as in a campaign's file. Short gaps are bridged by a cubic spline. Channels with a gap of more than ten
+    readings are left out. Times after the last reading of all channels, as after an abort, are cut off.
+    """
+    if "accelerometer" not in test:
+        return None
+    readings = test["accelerometer"].transpose("time_acc", "channel")
+    read = np.flatnonzero(readings.notnull().any("channel"))
+    if not len(read):
+        return None
+    readings = readings[read[0] : read[-1] + 1]
+    carriers, driven = channel_carriers(structure), driven_names(structure)
+    names = [
+        name
+        for name in map(str, readings["channel"].values)
+        if name in carriers
+        and carriers[name][0] not in driven
+        and _longest_gap(readings.sel(channel=name).to_numpy()) <= LONGEST_GAP
+    ]
+    if not names:
+        return None
+    time, values = readings["time_acc"].to_numpy(), readings.sel(channel=names).to_numpy()
+    steps = np.diff(time)
+    even = np.linspace(time[0], time[-1], len(time))
+    uneven = np.ptp(steps) > EVEN * np.median(steps)
+    for column in range(len(names)):
+        known = np.isfinite(values[:, column])
+        if uneven or not known.all():
+            values[:, column] = CubicSpline(time[known], values[known, column])(even)
+    return WholeChannels(even, values, names)
+
+
+def _longest_gap(values):
+    """Largest number of missing readings in a row; more than any length where an end is missing."""
+    known = np.flatnonzero(np.isfinite(values))
+    if len(known) < 4 or known[0] > 0 or known[-1] < len(values) - 1:
+        return len(values)
+    return int(np.diff(known).max()) - 1

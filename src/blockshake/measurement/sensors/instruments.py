@@ -9,12 +9,33 @@ from scipy.signal import lfilter
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import AXES, Vector
+from blockshake.measurement.sensors import accelerometers, markers, transducers
 from blockshake.measurement.sensors.markers import marker_position
-from blockshake.measurement.sensors.stated_noise import Sensors
-from blockshake.validation import Finite, NotNegative, ProperFraction
+from blockshake.validation import Finite, NotNegative, ProperFraction, Strict
 
 _BURST = 10  # readings that a dropout loses in the mean
 _OUTLIER = 10.0  # standard deviations of the noise
+_LEAST_NOISE = {"marker_noise": 1e-6, "accelerometer_noise": 1e-4, "transducer_noise": 1e-6}  # m, m/s2, m
+
+
+class Sensors(Strict):
+    """Standard deviations of the readings."""
+
+    marker_noise: NotNegative = Field(markers.NOISE, description="of a marker's reading [m]")
+    accelerometer_noise: NotNegative = Field(
+        accelerometers.NOISE, description="of a channel's reading [m/s2]"
+    )
+    transducer_noise: NotNegative = Field(
+        transducers.NOISE,
+        description="of a displacement transducer's reading [m]",
+        exclude_if=lambda noise: noise == transducers.NOISE,  # sensors without it keep their digest
+    )
+
+    def not_noiseless(self):
+        """These sensors with at least the noise of the best instruments: a stated 0 is taken as negligible noise."""
+        return self.model_copy(
+            update={name: max(getattr(self, name), least) for name, least in _LEAST_NOISE.items()}
+        )
 
 
 class Instruments(Sensors):
@@ -108,27 +129,22 @@ def observe(run, structure, instruments, seed):
             "source": "one simulated run seen through its instruments",
         },
     )  # fmt: skip
-    if "accelerometer" in run:
-        channels = [str(name) for name in run["channel"].values]
-        values = run["accelerometer"].to_numpy() * [
-            instruments.channel_gain.get(name, 1.0) for name in channels
-        ]
-        values = values + offsets.normal(0.0, 1.0, len(channels)) * instruments.accelerometer_offset
-        values = values + _noise(noise, values.shape, memory) * instruments.accelerometer_noise
-        test["accelerometer"] = (("time_acc", "channel"), values, dict(run["accelerometer"].attrs))
-        test = test.assign_coords(
-            time_acc=("time_acc", run["time_acc"].to_numpy(), {"units": "s"}), channel=channels
-        )
-    if "transducer_displacement" in run:
-        values = run["transducer_displacement"].to_numpy()
-        values = values + _noise(noise, values.shape, memory) * instruments.transducer_noise
-        test["transducer_displacement"] = (
-            ("time_acc", "transducer"), values - values[:1], dict(run["transducer_displacement"].attrs),
-        )  # fmt: skip
-        test = test.assign_coords(
-            time_acc=("time_acc", run["time_acc"].to_numpy(), {"units": "s"}),
-            transducer=[str(name) for name in run["transducer"].values],
-        )
+    for name, dimension, sigma in (
+        ("accelerometer", "channel", instruments.accelerometer_noise),
+        ("transducer_displacement", "transducer", instruments.transducer_noise),
+    ):
+        if name not in run:
+            continue
+        values, sensors = run[name].to_numpy(), [str(sensor) for sensor in run[dimension].values]
+        if name == "accelerometer":
+            values = values * [instruments.channel_gain.get(channel, 1.0) for channel in sensors]
+            values = values + offsets.normal(0.0, 1.0, len(sensors)) * instruments.accelerometer_offset
+        values = values + _noise(noise, values.shape, memory) * sigma
+        if name == "transducer_displacement":
+            values = values - values[:1]
+        test[name] = ("time_acc", dimension), values, dict(run[name].attrs)
+        times = "time_acc", run["time_acc"].to_numpy(), {"units": "s"}
+        test = test.assign_coords({"time_acc": times, dimension: sensors})
     return test
 
 

@@ -29,7 +29,7 @@ def marker_position(structure, position, orientation):
 
 
 def point_position(structure, points, position, orientation):
-    """The same of any points of bodies: entries of the structure file with ``body`` and ``position``."""
+    """Positions, as by `marker_position`, of entries of the structure file that have a ``body`` and a ``position``."""
     bodies = structure.carriers(points)
     turn = rotation_matrices(orientation[..., bodies, :])
     return position[..., bodies, :] + np.einsum("...mij,mj->...mi", turn, structure.arms(points))
@@ -62,8 +62,8 @@ def directions_read(displacement):
     Parameters
     ----------
     displacement : float64 array, shape (n_times, n_markers, 3)
-        Of a test or a part of one [m]; NaN is a gap. A direction without any reading was not measured; a marker without
-        any reading is lost for the moment, and counts as measured.
+        Readings of a test or of a part of it [m]; NaN is a gap. A direction without any reading was not measured. A
+        marker without any reading is lost for the moment, and counts as measured.
     """
     read = np.isfinite(displacement).any(axis=0)
     return read | ~read.any(axis=1, keepdims=True)
@@ -89,10 +89,20 @@ def marker_bodies(structure, names):
     return [bodies[str(name)] for name in names]
 
 
+def driven_names(structure):
+    """Names of the driven bodies, set of str."""
+    return {body.name for body in structure.file.bodies if body.driven}
+
+
+def on_driven(structure, names):
+    """Whether each of these markers sits on a driven body, bool (n_markers,)."""
+    return np.isin(marker_bodies(structure, names), list(driven_names(structure)))
+
+
 def block_markers(structure):
     """One marker a block, body to marker: the one named ``BODY-face``, or the first where no block has such a one."""
-    free = {body.name for body in structure.file.bodies if not body.driven}
-    markers = [marker for marker in structure.file.markers if marker.body in free]
+    driven = driven_names(structure)
+    markers = [marker for marker in structure.file.markers if marker.body not in driven]
     faces = [marker for marker in markers if marker.name.endswith("-face")]
     chosen = {}
     for marker in faces or markers:
@@ -108,7 +118,7 @@ def driven_marker(structure, names=None):
     InputError
         No driven body carries a marker.
     """
-    driven = {body.name for body in structure.file.bodies if body.driven}
+    driven = driven_names(structure)
     for marker in structure.file.markers:
         if marker.body in driven and (names is None or marker.name in names):
             return marker.name
@@ -117,9 +127,12 @@ def driven_marker(structure, names=None):
 
 def slab_displacement(test, structure):
     """Mean displacement of the driven body's markers, as far as they were read, (n_times, 3) [m]; NaN is a gap."""
-    driven = {body.name for body in structure.file.bodies if body.driven}
-    mine = [body in driven for body in marker_bodies(structure, test["marker"].values)]
-    readings = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()[:, mine]
+    readings = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()
+    return mean_read(readings[:, on_driven(structure, test["marker"].values)])
+
+
+def mean_read(readings):
+    """Mean along the second axis of the readings that are there; NaN where there is none."""
     known = np.isfinite(readings)
     with np.errstate(invalid="ignore"):
         return np.where(known, readings, 0.0).sum(axis=1) / known.sum(axis=1)

@@ -15,13 +15,8 @@ _LOST = 0.5  # cosine of the angle between rod and face's normal below which the
 class Reach(NamedTuple):
     """How far a transducer reaches, and how that grows with the motion of its end at the body.
 
-    Attributes
-    ----------
-    length : float64 array, shape (n_times,)
-        [m]
-    pull : float64 array, shape (n_times, 3)
-        Derivative of the length with respect to the end's position, inertial frame [1]; with respect to the anchor's
-        it is the opposite.
+    ``length``: float64 (n_times,) [m]. ``pull``: its derivative with respect to the end's position, inertial frame,
+    float64 (n_times, 3) [1]; that with respect to the anchor's position is the opposite.
     """
 
     length: np.ndarray
@@ -55,7 +50,7 @@ def transducer_lengths(structure, position, orientation):
     readings = np.empty(ends.shape[:2])
     for index, item in enumerate(items):
         body, carrier = (structure.body_names.index(name) for name in (item.body, item.reference))
-        turn, carrier_turn = (rotation_matrices(orientation[:, one]) for one in (body, carrier))
+        turn, carrier_turn = (rotation_matrices(orientation[:, number]) for number in (body, carrier))
         readings[:, index] = reach(
             structure, item, ends[:, index] - anchors[:, index], turn, carrier_turn
         ).length

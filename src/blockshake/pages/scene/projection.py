@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.measurement.motion.contact_normals import parting_normal
+from blockshake.measurement.motion.joints import parting_normal
 
 
 def _turned(azimuth, elevation):

@@ -9,7 +9,7 @@ import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.body_poses import PLANAR, POSE, body_poses
-from blockshake.measurement.motion.joint_coordinates import find_joints, joint_coordinates
+from blockshake.measurement.motion.joints import find_joints, joint_coordinates
 from blockshake.parity.finding import chance_within
 from blockshake.parity.kinds.gain import GAIN, SEGMENT
 from blockshake.parity.regression import Size, regression

@@ -11,13 +11,11 @@ from blockshake.files import content_digest, shipped_names
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.motion.compared_curves import curves_along_x
-from blockshake.measurement.sensors.accelerometers import CUTOFF
+from blockshake.measurement.sensors.accelerometers import CUTOFF, whole_channels
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.measurement.sensors.markers import driven_marker
-from blockshake.measurement.sensors.whole_channels import whole_channels
 from blockshake.simulation.simulate import simulate
-from blockshake.simulation.structure_digest import structure_digest
-from blockshake.store import load_made
+from blockshake.store import load_made, structure_digest
 from blockshake.study.ensembles.case_input import (
     MEASURED,
     check_known,

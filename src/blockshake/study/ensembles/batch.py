@@ -7,9 +7,9 @@ import pandas as pd
 from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.markers import driven_marker
-from blockshake.simulation.joint_figures import joint_figures
+from blockshake.simulation.run_histories import joint_figures
 from blockshake.simulation.simulate import simulate
-from blockshake.simulation.structure_digest import structure_digest
+from blockshake.store import structure_digest
 from blockshake.study.ensembles.ensemble import gather_ensemble
 from blockshake.study.sampling.latin_hypercube import load_design
 from blockshake.study.sampling.sample_parameters import sample_parameters

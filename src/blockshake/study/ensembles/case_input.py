@@ -10,7 +10,7 @@ from blockshake.errors import InputError
 from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
-from blockshake.measurement.campaigns.command_clock import since
+from blockshake.measurement.campaigns.clocks import since
 from blockshake.measurement.campaigns.commanded_motion import follow
 from blockshake.measurement.motion.measured_base import base_as_motion, draw_base, measure_base
 from blockshake.measurement.sensors.markers import driven_marker, unread_directions

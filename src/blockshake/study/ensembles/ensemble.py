@@ -5,7 +5,7 @@ import xarray as xr
 
 from blockshake.dynamics.system import Status
 from blockshake.errors import InputError
-from blockshake.simulation.joint_figures import JOINT_FIGURES
+from blockshake.simulation.run_histories import JOINT_FIGURES
 from blockshake.store import load_made
 from blockshake.study.sampling.distributions import parameter_unit
 

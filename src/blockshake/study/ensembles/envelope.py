@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.dynamics.system import FALLEN, FINISHED
-from blockshake.simulation.joint_figures import JOINT_FIGURES
+from blockshake.simulation.run_histories import JOINT_FIGURES
 from blockshake.statistics.intervals import (
     CONFIDENCE,
     quantile_interval,

@@ -7,7 +7,7 @@ from blockshake.dynamics.system import Status
 from blockshake.geometry.reference_block import half_width
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.simulate import simulate
-from blockshake.simulation.structure_digest import structure_digest
+from blockshake.store import structure_digest
 from blockshake.study.ensembles.batch import CaseRuns
 
 

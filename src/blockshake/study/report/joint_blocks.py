@@ -5,7 +5,7 @@ import numpy as np
 from blockshake.pages.blocks import Figure, Table
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.wording import MISSING, model_label, number, quantile_percent
-from blockshake.simulation.joint_figures import RARELY
+from blockshake.simulation.run_histories import RARELY
 from blockshake.study.report.figures.joints import plot_joints
 
 _SHOWN = 0.95

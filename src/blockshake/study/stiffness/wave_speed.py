@@ -8,8 +8,8 @@ import xarray as xr
 
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import model_of
-from blockshake.simulation.structure_digest import structure_digest
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
+from blockshake.store import structure_digest
 from blockshake.study.sampling.sample_parameters import sample_parameters
 from blockshake.study.stiffness.tower import tower_of
 from blockshake.study.stiffness.wave_step import (

@@ -12,7 +12,7 @@ from blockshake.dynamics.system import State, assemble_bodies
 from blockshake.geometry.overlap import near_pairs
 from blockshake.geometry.polyhedron import convex_polyhedron
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.measurement.motion.contact_normals import parting_normal
+from blockshake.measurement.motion.joints import parting_normal
 from blockshake.solvers.external_forces import closure_into
 
 _TOUCH = 1e-3  # m, below which two surfaces touch: rattling blocks hop by less
@@ -95,8 +95,10 @@ def still_falling(structure, position, orientation, angular_velocity):
         return points + period * (speed[body] + np.cross(turning[body], points - position[body]))
 
     ahead = [
-        one._replace(corners=moved(one.corners, one.upper), limits=moved(one.limits, one.lower))
-        for one in supports
+        support._replace(
+            corners=moved(support.corners, support.upper), limits=moved(support.limits, support.lower)
+        )
+        for support in supports
     ]
     body = _uncarried(structure, ahead, position + period * speed, up, watched)
     return None if body is None else structure.body_names[body]
@@ -107,8 +109,8 @@ def _supports(structure, position, orientation, up, watched, most_gap):
     taken = np.flatnonzero(watched | structure.driven)
     hulls, turns = [_hull(structure.solid(body)) for body in taken], rotation_matrices(orientation)[taken]
     corners = [
-        place + hull.vertices @ turn.T
-        for place, hull, turn in zip(position[taken], hulls, turns, strict=True)
+        centre + hull.vertices @ turn.T
+        for centre, hull, turn in zip(position[taken], hulls, turns, strict=True)
     ]
     supports = []
     reach = max(_TOUCH, most_gap[watched].max())
@@ -175,13 +177,13 @@ def _carried_along(supports, position, turning, up):
     """Velocity and centripetal acceleration of the mass centres, were all blocks pinned where they stand, (n, 3)."""
     speed, bend = np.zeros((2, *position.shape))
     for body in np.argsort(position @ up, kind="stable"):
-        below = [one for one in supports if one.upper == body and one.carries]
-        for one in below:
-            speed[body] += speed[one.lower] / len(below)
-            bend[body] += bend[one.lower] / len(below)
+        below = [support for support in supports if support.upper == body and support.carries]
+        for support in below:
+            speed[body] += speed[support.lower] / len(below)
+            bend[body] += bend[support.lower] / len(below)
             for carrier, arm in (
-                (one.lower, one.pivot - position[one.lower]),
-                (body, position[body] - one.pivot),
+                (support.lower, support.pivot - position[support.lower]),
+                (body, position[body] - support.pivot),
             ):
                 around = np.cross(turning[carrier], arm)
                 speed[body] += around / len(below)
@@ -199,25 +201,29 @@ def _uncarried(structure, supports, ahead, up, watched):
     size = [np.ptp(structure.solid(body).vertices, axis=0).max() for body in bodies]
     unit = structure.mass[bodies].min()  # of forces; the rows of a body are over its weight and its size
     columns = []
-    for place, one in enumerate(supports):
-        tangents = np.linalg.svd(one.normal[None])[2][1:]
+    for index, support in enumerate(supports):
+        tangents = np.linalg.svd(support.normal[None])[2][1:]
         # a force within friction is a sum of forces along the edges of a pyramid
-        edges = [one.normal + sign * one.friction * tangent for tangent in tangents for sign in (1.0, -1.0)]
-        force = np.repeat(edges, len(one.corners), axis=0)
-        corners = np.tile(one.corners, (len(edges), 1))
-        column = np.zeros((6 * len(bodies) + 3 * len(supports), len(corners) + len(one.limits)))
+        edges = [
+            support.normal + sign * support.friction * tangent for tangent in tangents for sign in (1.0, -1.0)
+        ]
+        force = np.repeat(edges, len(support.corners), axis=0)
+        corners = np.tile(support.corners, (len(edges), 1))
+        column = np.zeros((6 * len(bodies) + 3 * len(supports), len(corners) + len(support.limits)))
         for row, body in enumerate(bodies):
-            if body in (one.lower, one.upper):
+            if body in (support.lower, support.upper):
                 wrench = np.hstack([force, np.cross(corners - ahead[body], force) / size[row]])
-                sign = 1.0 if body == one.upper else -1.0
+                sign = 1.0 if body == support.upper else -1.0
                 column[6 * row : 6 * row + 6, : len(corners)] = sign * unit / structure.mass[body] * wrench.T
         # the resultant acts on both areas
-        rows = slice(6 * len(bodies) + 3 * place, 6 * len(bodies) + 3 * place + 3)
+        rows = slice(6 * len(bodies) + 3 * index, 6 * len(bodies) + 3 * index + 3)
         for points, sign, within in (
             (corners, 1.0, slice(0, len(corners))),
-            (one.limits, -1.0, slice(len(corners), None)),
+            (support.limits, -1.0, slice(len(corners), None)),
         ):
-            column[rows, within] = sign * np.vstack([tangents @ (points - one.pivot).T, np.ones(len(points))])
+            column[rows, within] = sign * np.vstack(
+                [tangents @ (points - support.pivot).T, np.ones(len(points))]
+            )
         columns.append(csc_array(column))
     slack = eye_array(6 * len(bodies))
     slack = vstack([slack, csc_array((3 * len(supports), 6 * len(bodies)))])
@@ -227,8 +233,8 @@ def _uncarried(structure, supports, ahead, up, watched):
     wanted = np.concatenate([weights.ravel(), np.zeros(3 * len(supports))])
     cost = np.zeros(matrix.shape[1])
     cost[: 2 * slack.shape[1]] = 1.0
-    found = linprog(cost, A_eq=matrix, b_eq=wanted, method="highs")
-    if found.fun < _UNCARRIED:
+    program = linprog(cost, A_eq=matrix, b_eq=wanted, method="highs")
+    if program.fun < _UNCARRIED:
         return None
-    motion = found.eqlin.marginals[: weights.size].reshape(weights.shape)
+    motion = program.eqlin.marginals[: weights.size].reshape(weights.shape)
     return int(bodies[(motion * weights).sum(axis=1).argmax()])

@@ -1,7 +1,7 @@
 import numpy as np
 from known_motion import STRUCTURE, TIME, base_motion, bump, moved_run, seen
 
-from blockshake.measurement.motion.outliers import without_outliers
+from blockshake.measurement.motion.body_frame import without_outliers
 
 
 def test_a_lone_wrong_reading_becomes_a_gap_and_no_other_does():

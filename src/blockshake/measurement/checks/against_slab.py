@@ -1,11 +1,11 @@
-"""The slab's accelerometer against its markers: the clocks, and the accelerometer's unit and sign."""
+"""Accelerometers and blocks against the slab's markers: clocks, units, signs and axes that the readings betray."""
 
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from blockshake.errors import InputError
-from blockshake.measurement.campaigns.recorder_clock import BAND, RELATED, SHORTEST
-from blockshake.measurement.sensors.whole_channels import EVEN
+from blockshake.measurement.campaigns.clocks import BAND, RELATED, SHORTEST
+from blockshake.measurement.sensors.accelerometers import EVEN
 
 _END = 0.5  # s at both ends, where the filter is not yet itself
 _GAPS = 0.05  # of the readings, which may be lost
@@ -14,6 +14,11 @@ _LARGEST_LAG = 0.05  # s searched: less than half a period of 8 Hz, so that a si
 _LAG = 0.01  # s without a word; the campaigns of data/ are found within 0.0012 s
 _GAIN = (0.5, 2.0)  # accelerometer over marker, without a word; those of data/ are within 0.97 to 1.01
 _GRAVITY = 9.81  # m/s2
+_LOW_PART = 0.2  # of the slab's largest displacement along x: till then blocks have hardly slipped or rocked
+_CARRIED = (0.2, 2.0)  # of the slab's displacement, by which blocks move in the low part; 0.4 to 1.1 in data/
+_SEEN_READING = 10.0  # times the noise of a reading, that a displacement must reach to be judged
+_FEWEST = 20  # readings
+_SIDEWAYS = 3.0  # times the motion along z, that blocks shaken along x do not move along y
 
 
 def clock_remarks(time, marker, time_acc, acceleration, noise, path):
@@ -74,6 +79,57 @@ def clock_remarks(time, marker, time_acc, acceleration, noise, path):
     if abs(lag) > _LAG:
         late = "behind" if lag > 0.0 else "ahead of"
         remarks.append(f"the markers' clock is {1e3 * abs(lag):.3g} ms {late} the accelerometers'")
+    return remarks
+
+
+def carried_remarks(time, readings, names, slab, noise):
+    """Remarks on markers of blocks that do not move with the slab while it moves little.
+
+    Parameters
+    ----------
+    time : float64 array, shape (n_times,)
+        [s]
+    readings : float64 array, shape (n_times, n_markers, 3)
+        Of markers on blocks [m]; gaps are NaN, as is a direction that a marker does not measure.
+    names : list of str, length n_markers
+    slab : float64 array, shape (n_times, 3)
+        Mean displacement of the slab's markers [m].
+    noise : float
+        Standard deviation of a reading [m].
+    """
+    size = np.abs(slab[:, 0])
+    largest = np.nanmax(size)
+    low = np.arange(len(time)) < np.argmax(size > _LOW_PART * largest)
+    wrong = []
+    if low.sum() >= _FEWEST and _LOW_PART * largest > _SEEN_READING * noise:
+        for index, name in enumerate(names):
+            read = np.isfinite(readings[:, index]).any(axis=0)
+            known = low & np.isfinite(readings[:, index, read]).all(axis=1) & np.isfinite(slab[:, 0])
+            base = slab[known, 0] - slab[known, 0].mean() if known.sum() >= _FEWEST else np.zeros(1)
+            if not base.any() or not read[0]:
+                continue
+            share = base @ readings[known, index] / (base @ base)
+            if not _CARRIED[0] < share[0] < _CARRIED[1]:
+                along = ", ".join(
+                    f"{part:.2f}" if is_read else "unknown" for part, is_read in zip(share, read, strict=True)
+                )
+                wrong.append(f"{name} moves by {along}")
+    remarks = []
+    if wrong:
+        more = f", and {len(wrong) - 1} more markers likewise" if len(wrong) > 1 else ""
+        remarks.append(
+            f"{wrong[0]} (x, y, z) of the slab's x while that is below {1e3 * _LOW_PART * largest:.2g} mm, "
+            f"expected near 1, 0, 0{more}"
+        )
+    spread = [
+        np.sqrt(np.mean(part[np.isfinite(part)] ** 2 if np.isfinite(part).any() else 0.0))
+        for part in np.moveaxis(readings, -1, 0)
+    ]
+    if np.isfinite(readings[..., 2]).any() and spread[1] > max(_SIDEWAYS * spread[2], _SEEN_READING * noise):
+        remarks.append(
+            f"the blocks move by {1e3 * spread[1]:.2g} mm along y and {1e3 * spread[2]:.2g} mm along z (rms): "
+            "are y and z swapped?"
+        )
     return remarks
 
 

@@ -12,17 +12,8 @@ _AT_HAND = 2**14  # times that are read at once
 def ending(run, structure):
     """Status of a run, the time that it reached, and its largest drift, in words.
 
-    Parameters
-    ----------
-    run : xarray.Dataset
-        A run file, open or loaded.
-    structure : Structure
-        The run's.
-
-    Returns
-    -------
-    str
-        The drift is that of the mass centre that moved farthest along x, y and z against the first driven body.
+    The run file is open or loaded. The drift is that of the mass centre that moved farthest along x, y and z against
+    the first driven body.
     """
     words = f"{run.attrs['status']} at {run.attrs['end_time']:.4g} s"
     if run.attrs["status"] in FINISHED and run.attrs["reason"]:
@@ -33,9 +24,9 @@ def ending(run, structure):
     largest = None
     for begin in range(0, 0 if structure.driven.all() else run.sizes["time"], _AT_HAND):
         rows = np.append(0, np.arange(begin, min(begin + _AT_HAND, run.sizes["time"])))
-        found = _largest_drift(run[["position", "orientation"]].isel(time=rows).load(), structure)
-        if found is not None and (largest is None or found[0] > largest[0]):
-            largest = found
+        drift = _largest_drift(run[["position", "orientation"]].isel(time=rows).load(), structure)
+        if drift is not None and (largest is None or drift[0] > largest[0]):
+            largest = drift
     if largest is None:
         return words
     size, body, when = largest

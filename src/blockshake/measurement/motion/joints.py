@@ -1,4 +1,4 @@
-"""Motion of a joint: slip, opening and rotation of the upper block in the frame of the lower one."""
+"""Joints of a structure: where they are, their normals, and the motion of the upper block against the lower one."""
 
 import numpy as np
 import xarray as xr
@@ -7,6 +7,13 @@ from scipy.spatial.transform import Rotation
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import AXES
+
+# dimensions, unit and name of the coordinates of a joint
+_COORDINATES = {
+    "slip": ("time joint tangent", "m", "slip of the upper body at the joint's centre, lower body's frame"),
+    "opening": ("time joint", "m", "opening at the joint's centre, lower body's frame"),
+    "rotation": ("time joint axis", "rad", "rotation of the upper body against the lower one, its frame"),
+}
 
 
 def find_joints(structure):
@@ -74,26 +81,11 @@ def joint_coordinates(structure, position, rotation):
     turned = np.einsum("tjki,tjkl->tjil", rotation[:, lower], rotation[:, upper])
     turned = np.einsum("tjik,jlk->tjil", turned, turned[0])
     names = structure.body_names
+    values = {"slip": moved[..., :2], "opening": moved[..., 2], "rotation": _rotation_vectors(turned)}
     return xr.Dataset(
         {
-            "slip": (
-                ("time", "joint", "tangent"),
-                moved[..., :2],
-                {
-                    "long_name": "slip of the upper body at the joint's centre, lower body's frame",
-                    "units": "m",
-                },
-            ),
-            "opening": (
-                ("time", "joint"),
-                moved[..., 2],
-                {"long_name": "opening at the joint's centre, lower body's frame", "units": "m"},
-            ),
-            "rotation": (
-                ("time", "joint", "axis"),
-                _rotation_vectors(turned),
-                {"long_name": "rotation of the upper body against the lower one, its frame", "units": "rad"},
-            ),
+            name: (dims.split(), values[name], {"long_name": long_name, "units": unit})
+            for name, (dims, unit, long_name) in _COORDINATES.items()
         },
         coords={
             "joint": [f"{names[a]}-{names[b]}" for a, b in pairs],
@@ -112,3 +104,52 @@ def _rotation_vectors(matrices):
     if known.any():
         vectors[known] = Rotation.from_matrix(matrices[known]).as_rotvec()
     return vectors
+
+
+def contact_normals(structure, pairs):
+    """Unit normals of the contacts of pairs of bodies at the start.
+
+    Parameters
+    ----------
+    structure : Structure
+    pairs : int array, shape (n_pairs, 2)
+        Bodies that touch.
+
+    Returns
+    -------
+    float64 array, shape (n_pairs, 3)
+        From the first body to the second, world frame [1]; NaN where a shape is not convex.
+    """
+    turns = rotation_matrices(structure.orientation)
+    solids = [structure.solid(body) for body in range(len(structure.mass))]
+    corners = [
+        centre + solid.vertices @ turn.T
+        for solid, centre, turn in zip(solids, structure.position, turns, strict=True)
+    ]
+    normals = [
+        parting_normal(solids[a], corners[a], turns[a], solids[b], corners[b], turns[b]) for a, b in pairs
+    ]
+    return np.array(normals).reshape(-1, 3)
+
+
+def parting_normal(solid_a, corners_a, turn_a, solid_b, corners_b, turn_b):
+    """Normal, from a to b, of the face of either convex solid that parts the two farthest, or overlaps them least.
+
+    Parameters
+    ----------
+    solid_a, solid_b : Solid
+    corners_a, corners_b : float64 arrays, shape (n_corners, 3)
+        Their vertices in one frame [m].
+    turn_a, turn_b : float64 arrays, shape (3, 3)
+        From their body frames to that frame.
+
+    Returns
+    -------
+    float64 array, shape (3,)
+        In that frame [1]; NaN where a solid is not convex.
+    """
+    if solid_a.polyhedron is None or solid_b.polyhedron is None:
+        return np.full(3, np.nan)
+    normals = np.concatenate([solid_a.polyhedron.normals @ turn_a.T, -solid_b.polyhedron.normals @ turn_b.T])
+    gaps = (corners_b @ normals.T).min(axis=0) - (corners_a @ normals.T).max(axis=0)
+    return normals[gaps.argmax()]

@@ -1,20 +1,26 @@
-"""One clock for a test: all its times count from the start of the command, which is searched for here alone."""
+"""One clock for a test: the recorder's is set by the slab's motion, and all times count from the command's start."""
 
 from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize_scalar
+from scipy.signal import butter, correlate, sosfiltfilt
 
+from blockshake.measurement.sensors.accelerometers import shaken_channels
 from blockshake.measurement.sensors.markers import slab_displacement
 
 _FOLLOWS = 0.8  # correlation; of 150 pairs of other motions 3 % reach it at some start
 _COARSE = 0.02  # s, between the starts that are tried: a tenth of a period of 5 Hz
 _SPAN = 0.06  # s, over which velocities are means: half a period of 8 Hz, some 20 Hz and more hardly pass
-_EVEN = (
-    1e-5  # s, by which an even clock may err as written: in five digits, in 32 bits, or in seconds since 1970
-)
+# s, by which an even clock may err as written: in five digits, in 32 bits, or in seconds since 1970
+_EVEN = 1e-5
 _LACKING = 1.5  # usual steps, beyond which a clock lacks a row
 _DIGITS = 9  # of a time after the decimal point: nanoseconds
+_RATE = 100.0  # Hz, at which recorder and optical system are compared
+BAND = (1.0, 8.0)  # Hz, where a table's motion is well above the noise of both instruments
+SHORTEST = 3.0  # s, of both records together
+RELATED = 0.8  # correlation, that instruments of one slab have
+_NEAR = 0.1  # s: smaller lags are found by the parity checks, as the fault `clock-lag`
 
 
 class Start(NamedTuple):
@@ -25,7 +31,7 @@ class Start(NamedTuple):
 
     @property
     def related(self):
-        """Whether one is the other's motion, or its opposite."""
+        """Whether the motion is that of the command, or its opposite."""
         return abs(self.correlation) > _FOLLOWS
 
 
@@ -172,3 +178,63 @@ def _even(time):
         if np.abs(even - time).max() < _EVEN:
             return np.round(even, _DIGITS)
     return np.round(time, _DIGITS)
+
+
+def on_one_clock(test, structure):
+    """The test with the recorder's times moved to where the slab's accelerometer reads what its markers do.
+
+    The attribute ``recorder_late`` says by how much the times were too late [s], where they were moved. The test stays
+    as it was read where the slab has no accelerometer along x, and where both agree within 0.1 s already, or at no lag.
+
+    Notes
+    -----
+    Second differences of the slab's displacement and the channel are compared in 1 to 8 Hz at all lags that leave 3 s
+    of both, by their correlation in size.
+    """
+    channels = shaken_channels(test, structure)
+    if not channels:
+        return test
+    time, time_acc = test["time"].to_numpy(), test["time_acc"].to_numpy()
+    read = (
+        test["accelerometer"].sel(channel=channels).transpose("time_acc", "channel").to_numpy().mean(axis=1)
+    )
+    moved = _band(time, slab_displacement(test, structure)[:, 0])
+    felt = _band(time_acc, read)
+    if moved is None or felt is None:
+        return test
+    moved = np.gradient(np.gradient(moved))
+    lag, correlation, near = _best_lag(moved, felt, time[0] - time_acc[0])
+    if correlation < RELATED or near >= RELATED:
+        return test
+    late = test["time_acc"] - lag
+    return test.assign_coords(time_acc=late).assign_attrs(recorder_late=float(lag))
+
+
+def _best_lag(moved, felt, apart):
+    """Lag of the recorder's clock [s], the correlation there, and the largest one within 0.1 s."""
+    fewest = int(SHORTEST * _RATE)
+    products = np.abs(correlate(felt, moved, mode="full"))
+    ones = (
+        correlate(felt**2, np.ones(len(moved)), mode="full"),
+        correlate(np.ones(len(felt)), moved**2, mode="full"),
+    )
+    both = correlate(np.ones(len(felt)), np.ones(len(moved)), mode="full")
+    size = np.sqrt(np.maximum(ones[0] * ones[1], np.finfo(float).tiny))
+    # a few strong cycles may lie within a short overlap: the energy outside of it counts as unexplained
+    size = np.maximum(size, 0.5 * np.sqrt((felt @ felt) * (moved @ moved)))
+    correlation = np.where(np.rint(both) >= fewest, products / size, 0.0)
+    lags = (np.arange(len(products)) - (len(moved) - 1)) / _RATE - apart
+    best = int(correlation.argmax())
+    near = correlation[np.abs(lags) <= _NEAR].max(initial=0.0)
+    return lags[best], float(correlation[best]), float(near)
+
+
+def _band(time, values):
+    """Values at the common rate in the band; None of a record that is short or mostly lost."""
+    known = np.isfinite(values)
+    if known.mean() < 0.5 or time[-1] - time[0] < SHORTEST:
+        return None
+    grid = np.arange(time[0], time[-1], 1.0 / _RATE)
+    sections = butter(4, BAND, btype="bandpass", fs=_RATE, output="sos")
+    whole = np.interp(grid, time[known], values[known])
+    return sosfiltfilt(sections, whole - whole.mean())

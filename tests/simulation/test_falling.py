@@ -4,10 +4,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from blockshake.simulation.outcome.falling import still_falling
+from blockshake.dynamics.motion import ground_motion
+from blockshake.simulation.falling import still_falling
+from blockshake.simulation.simulate import simulate
 
 B, H = 0.4, 0.8  # m, half width and half height of the block
 SLENDER = np.arctan(B / H)
+TIME = np.linspace(0.0, 1.0, 201)
+AHEAD = 0.46  # s, from the end of the window to the ground
 
 
 class Ending:
@@ -239,3 +243,31 @@ def test_a_beam_is_not_carried_by_a_slab_that_it_never_touched(make_structure):
     for angle, falls in ((0.98 * balance, False), (1.02 * balance, True), (np.radians(33.0), True)):
         ending = Ending(structure).turn([1, 2], angle, np.array([B, 0.0, 0.0]))
         assert bool(ending.falls()) == falls
+
+
+def push(strength):
+    return ground_motion("push", TIME, {"x": strength * (TIME < 0.6)}, "acceleration")
+
+
+def run_until(duration, strength):
+    return simulate("configuration-2", push(strength), "nscd-rigid", duration=duration, accelerometers=False)
+
+
+def test_a_wall_that_leans_as_the_window_ends_is_falling():
+    whole = run_until(4.0, 1.3)
+    assert whole.attrs["status"] == "collapsed"
+    end = round(whole.attrs["end_time"] - AHEAD, 2)
+    cut = run_until(end, 1.3)
+    lean = np.degrees(2.0 * np.arcsin(abs(float(cut["orientation"].isel(time=-1, body=-1, quaternion=2)))))
+    assert 12.0 < lean < 25.0
+    assert cut.attrs["status"] == "falling"
+    assert cut.attrs["reason"] == f"block-4 still falls at {end:.3f} s, when the window ends"
+    assert cut.attrs["end_time"] == pytest.approx(end)
+    # the same run so far
+    np.testing.assert_array_equal(cut["position"], whole["position"].isel(time=slice(cut.sizes["time"])))
+
+
+def test_a_wall_that_rocks_as_the_window_ends_has_completed():
+    rocking = run_until(0.9, 1.2)
+    assert np.abs(rocking["angular_velocity"].isel(time=-1)).max() > 0.01
+    assert (rocking.attrs["status"], rocking.attrs["reason"]) == ("completed", "")

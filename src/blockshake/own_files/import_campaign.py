@@ -1,15 +1,81 @@
-"""Readings of one test from the tables of a user, in SI and as a campaign has them."""
+"""Spreadsheets of a laboratory to a campaign's folder, whole or not at all."""
+
+import re
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
+from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
+from blockshake.files import replacing_folder, write_dataset
 from blockshake.geometry.schema import AXES
-from blockshake.measurement.campaigns.command_clock import missing_rows
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign_folder import (
+    motion_in_folder,
+    structure_in_folder,
+    write_campaign_file,
+)
+from blockshake.measurement.campaigns.clocks import missing_rows
+from blockshake.measurement.campaigns.recorded_test import checked_test
+from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.transducers import transducer_names
 from blockshake.tables.table_file import read_table
 from blockshake.tables.units import unit_size
+
+
+def import_campaign(asked, folder, where):
+    """Make the folder of a campaign from tables.
+
+    Parameters
+    ----------
+    asked : ImportMap
+    folder : str or path
+        That is not there yet, or empty.
+    where : str
+        Map that an error names.
+
+    Returns
+    -------
+    list of str
+        What `campaign_lines` says of the campaign.
+
+    Raises
+    ------
+    InputError
+        A folder with content; faults of the map, of a table, or of the readings as `read_test` and `campaign_lines`
+        find them. Then nothing is left.
+    """
+    folder = Path(folder)
+    with replacing_folder(folder) as made:
+        try:
+            _fill(asked, made, where)
+            lines = campaign_lines(made)
+        except InputError as error:
+            raise InputError(error.where.replace(str(made), str(folder)), error.key, error.expected) from None
+    return [line.replace(str(made), str(folder)) for line in lines]
+
+
+def _fill(asked, folder, where):
+    """Write all files of the campaign."""
+    structure = load_structure(asked.structure)
+    tests, motions = [], {}
+    for test in asked.tests:
+        load_motion(test.motion, test.scale, test.baseline)
+        if motions.setdefault(Path(test.motion).name, test.motion) != test.motion:
+            key = f"tests.{test.name}.motion"
+            raise InputError(where, key, "expected motions in files of different names")
+        readings = checked_test(read_readings(test, asked, structure, where), structure, test.file)
+        name = re.sub(r"[^\w.-]+", "-", test.name)
+        title = f"measured test {test.name}"
+        readings.attrs = {"Conventions": "CF-1.11", "title": title, "source": Path(test.file).name}
+        write_dataset(folder / f"{name}.nc", readings)
+        motion = motion_in_folder(test.motion, folder)
+        tests.append({**test.model_dump(), "file": f"{name}.nc", "motion": motion})
+    header = f"# imported from {', '.join(dict.fromkeys(Path(test.file).name for test in asked.tests))}\n"
+    inside = structure_in_folder(asked.structure, structure, folder)
+    write_campaign_file(folder, header, asked.name, inside, asked.sensors.model_dump(), tests)
 
 
 def read_readings(test, asked, structure, where):
@@ -20,7 +86,7 @@ def read_readings(test, asked, structure, where):
     test : ImportedTest
     asked : ImportMap
     structure : Structure
-        Whose accelerometer channels and displacement transducers are told from markers.
+        Structure by which accelerometer channels and displacement transducers are distinguished from markers.
     where : str
         Map that an error names.
 
@@ -48,26 +114,26 @@ def read_readings(test, asked, structure, where):
     for key, column in zip(markers, readings.T, strict=True):
         name, _, axis = key.rpartition(".")
         if axis not in AXES or not name:
-            raise InputError(
-                where,
-                f"columns.{key}",
-                "expected MARKER.x, MARKER.y, MARKER.z, an accelerometer channel or a displacement transducer",
+            wrong = (
+                "expected MARKER.x, MARKER.y, MARKER.z, an accelerometer channel or a displacement transducer"
             )
-        values[:, names.index(name), AXES.index(axis)] = column - _rest(
-            time, column, asked.rest, test.file, key
-        )
+            raise InputError(where, f"columns.{key}", wrong)
+        start = _rest(time, column, asked.rest, test.file, key)
+        values[:, names.index(name), AXES.index(axis)] = column - start
     variables = {"marker_displacement": (("time", "marker", "axis"), values, {"units": "m"})}
     coordinates = {"time": ("time", time, {"units": "s"}), "marker": names, "axis": list(AXES)}
-    if channels:
-        time_acc, read = _readings(source, channels, asked, "acceleration", where)
-        variables["accelerometer"] = (("time_acc", "channel"), read, {"units": "m s-2"})
-        coordinates |= {"time_acc": ("time_acc", time_acc, {"units": "s"}), "channel": channels}
-    if transducers:
-        time_acc, read = _readings(source, transducers, asked, "displacement", where)
-        for column, key in zip(read.T, transducers, strict=True):
-            column -= _rest(time_acc, column, asked.rest, source, key)
-        variables["transducer_displacement"] = (("time_acc", "transducer"), read, {"units": "m"})
-        coordinates |= {"time_acc": ("time_acc", time_acc, {"units": "s"}), "transducer": transducers}
+    for variable, dimension, sensors, kind, unit in (
+        ("accelerometer", "channel", channels, "acceleration", "m s-2"),
+        ("transducer_displacement", "transducer", transducers, "displacement", "m"),
+    ):
+        if not sensors:
+            continue
+        time_acc, read = _readings(source, sensors, asked, kind, where)
+        if kind == "displacement":
+            for column, key in zip(read.T, sensors, strict=True):
+                column -= _rest(time_acc, column, asked.rest, source, key)
+        variables[variable] = (("time_acc", dimension), read, {"units": unit})
+        coordinates |= {"time_acc": ("time_acc", time_acc, {"units": "s"}), dimension: sensors}
     return xr.Dataset(variables, coordinates)
 
 
@@ -75,13 +141,10 @@ def _check_once(names, asked, where):
     """Refuse a column of one table that is mapped twice."""
     taken = {asked.time.column: "time"}
     for name in names:
-        other = taken.setdefault(asked.columns[name].column, name)
+        column = asked.columns[name].column
+        other = taken.setdefault(column, name)
         if other != name:
-            raise InputError(
-                where,
-                f"columns.{name}",
-                f"expected a column of its own; '{asked.columns[name].column}' is {other}",
-            )
+            raise InputError(where, f"columns.{name}", f"expected a column of its own; '{column}' is {other}")
 
 
 def _readings(source, names, asked, kind, where):
@@ -112,10 +175,8 @@ def _clock(table, asked, where):
     back = np.flatnonzero(np.diff(time) <= 0.0)
     if len(back):
         before, after = time[back[0] : back[0] + 2]
-        raise InputError(
-            table.source, f"line {table.lines[back[0] + 1]}, {name}",
-            f"expected times that increase; {after:g} s follows {before:g} s",
-        )  # fmt: skip
+        wrong = f"expected times that increase; {after:g} s follows {before:g} s"
+        raise InputError(table.source, f"line {table.lines[back[0] + 1]}, {name}", wrong)
     missing = missing_rows(time) if len(time) > 1 else np.zeros(0)
     if missing.any() and not asked.fill_gaps:
         row, steps = int(np.argmax(missing > 0)), np.diff(time)
@@ -132,7 +193,7 @@ def _rest(time, column, length, source, key):
     """Mean reading of the quiet start."""
     if length == 0.0:
         return 0.0
-    own = column[(time <= time[0] + length) & np.isfinite(column)]
-    if not len(own):
+    resting = column[(time <= time[0] + length) & np.isfinite(column)]
+    if not len(resting):
         raise InputError(source, key, f"expected a reading in the first {length:g} s of rest")
-    return own.mean()
+    return resting.mean()

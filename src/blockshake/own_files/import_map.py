@@ -77,7 +77,7 @@ def load_map(path):
     InputError
         Not YAML, an unknown or missing key, a path that leads out of the folder.
     """
-    found = validated(ImportMap, load_yaml(path), path)
+    asked = validated(ImportMap, load_yaml(path), path)
     folder = Path(path).parent
 
     def below(name, key, kind=None):
@@ -87,13 +87,13 @@ def load_map(path):
         return str(file_below(folder, name, path, key))
 
     tests = []
-    for one in found.tests:
-        key, beside = f"tests.{one.name}", one.accelerometers
+    for test in asked.tests:
+        key, beside = f"tests.{test.name}", test.accelerometers
         changes = {
-            "file": below(one.file, f"{key}.file"),
-            "motion": below(one.motion, f"{key}.motion", "motions"),
+            "file": below(test.file, f"{key}.file"),
+            "motion": below(test.motion, f"{key}.motion", "motions"),
             "accelerometers": None if beside is None else below(beside, f"{key}.accelerometers"),
         }
-        tests.append(one.model_copy(update=changes))
-    structure = below(found.structure, "structure", "structures")
-    return found.model_copy(update={"tests": tuple(tests), "structure": structure})
+        tests.append(test.model_copy(update=changes))
+    structure = below(asked.structure, "structure", "structures")
+    return asked.model_copy(update={"tests": tuple(tests), "structure": structure})

@@ -1,1 +1,0 @@
-"""Measured tests from spreadsheets and text files to campaigns."""

@@ -1,1 +1,0 @@
-"""How a run ended: fallen, still falling or standing, and the sentence that says so."""
