@@ -6,8 +6,7 @@ from blockshake.diagnosis.report.figures.forces import plot_forces, plot_slab, s
 from blockshake.diagnosis.report.statement import not_told, sensor_causes, statement
 from blockshake.diagnosis.wording import chance_words, estimate_words, percent_words
 from blockshake.effects.registry import title_of
-from blockshake.pages.blocks import Figure, Items, Section, Text
-from blockshake.pages.box import Box
+from blockshake.pages.blocks import Box, Figure, Items, Section, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.wording import sentence_case
 

@@ -2,8 +2,7 @@
 
 from blockshake.files import write_json
 from blockshake.pages.blocks import Document, numbered
-from blockshake.pages.html import write_html
-from blockshake.pages.pdf import write_pdf
+from blockshake.pages.writing import write_html, write_pdf
 from blockshake.study.calibration.section import calibration
 from blockshake.study.comparison.section import models
 from blockshake.study.fragility.section import fragility

@@ -80,6 +80,6 @@ def statements(content):
         key = heading.lower().replace(" ", "-").replace(",", "")
         blocks += [
             Heading(heading, f"paper-{key}"),
-            Table(f"{heading}: findings of this study.", HEADER, rows, "lllll", _WIDTHS),
+            Table(f"{heading}: findings of this study.", HEADER, rows, "llll", _WIDTHS),
         ]
     return Section("The paper, statement by statement", "paper", tuple(blocks))

@@ -9,8 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from blockshake.measurement.sensors.markers import marker_bodies
 from blockshake.pages.drawing import DARK_GREY, RED, new_figure
-from blockshake.pages.scene.colors import body_colors
-from blockshake.pages.scene.mesh import body_mesh
+from blockshake.pages.scene.bodies import body_colors, body_mesh
 from blockshake.pages.scene.projection import VIEWS, Scene
 from blockshake.pages.wording import given, millimetres, model_label
 from blockshake.study.ensembles.shown_samples import shown_markers
