@@ -6,8 +6,14 @@ from fair_score import crps
 from numpy.testing import assert_allclose
 from scipy.stats import binomtest
 
-from blockshake.study.calibration.answers import LEVEL, answer_questions
-from blockshake.study.calibration.scores import chance_of_test, distances, weighted_scores, weights_near
+from blockshake.study.calibration.answers import (
+    LEVEL,
+    answer_questions,
+    chance_of_test,
+    distances,
+    weighted_scores,
+    weights_near,
+)
 
 N_SAMPLES, N_TIMES = 30, 40
 
