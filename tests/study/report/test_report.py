@@ -107,6 +107,7 @@ def test_fewer_samples_of_a_model_are_said_first_and_their_cost_with_the_samples
     assert "NSCD rigid ran 6 of the 10 samples on configuration-4, where a sample cost 7.2 CPU s" in text
     assert "NSCD elastic ran 1 of the 10 samples on configuration-4" in text
     assert text.count("Bounds of fewer samples are narrower") == 1
+    assert "NSCD elastic: one sample, whose curve is drawn in place of a band." in text
 
 
 def test_figures_of_motion_computation_and_cost(text):
@@ -212,10 +213,6 @@ def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
     assert not {"statements"} & set(parsed.ids)
     before = said[: said.index("Configuration used")]
     assert "configuration-1" not in before
-
-
-def test_one_sample_is_a_curve_and_no_band(text):
-    assert "NSCD elastic: one sample, whose curve is drawn in place of a band." in text
 
 
 def test_missing_results_are_named(copied, tmp_path):

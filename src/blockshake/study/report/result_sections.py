@@ -21,7 +21,7 @@ from blockshake.study.report.joint_blocks import joint_blocks
 from blockshake.study.report.moving import moving_samples, plot_still, usual_magnification
 from blockshake.study.sensitivity.findings import quiet_markers
 
-_PAPER_FIGURES = {f"configuration-{place}": 10 + place for place in (1, 2, 3, 4)}
+_PAPER_FIGURES = {f"configuration-{index}": 10 + index for index in (1, 2, 3, 4)}
 
 
 def responses(content):
