@@ -63,7 +63,7 @@ def make_report(study, results, logs, html, pdf, paper):
 
 
 def make_case_report(study, case, results, logs, html, pdf):
-    """Write the report of one case of a study from the results of this case alone, with parameters as in `make_report`."""
+    """Write the report of one case of a study, from the results of this case alone; parameters as in `make_report`."""
     document = compose(load_content(study, results, logs, case))
     write_html(html, document)
     write_pdf(pdf, document)
