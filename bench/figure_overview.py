@@ -19,7 +19,7 @@ from blockshake.measurement.campaigns.campaign import Sensors
 from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.pages.drawing import BLACK, DARK_GREY, RED, SKY, new_figure, save_picture
-from blockshake.pages.scene.colors import body_colors
+from blockshake.pages.scene.bodies import body_colors
 from blockshake.pages.scene.projection import Scene
 from blockshake.simulation.simulate import simulate
 from blockshake.study.ensembles.case_input import driving_motions, measured_input, measured_on_clock

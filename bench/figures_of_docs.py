@@ -130,8 +130,7 @@ def _findings(path):
     )
     lines = textwrap.wrap(words, 100, break_on_hyphens=False)
     for heading, rows in found["findings"].items():
-        shown = [(*row[:-1], f"`{row[-1]}`") for row in rows]
-        lines += ["", f"### {heading}", "", markdown(HEADER, shown)]
+        lines += ["", f"### {heading}", "", markdown(HEADER, rows)]
     return "\n".join(lines)
 
 

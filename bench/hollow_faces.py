@@ -1,10 +1,10 @@
 """Impact and sway of configuration 1 with hollow faces, by LS-DEM, beside NSCD and Housner's edges."""
 
+from kicked_block import housner_ratio, rocking_block
 from shaken_stack import SHAKING, shaken_stack
 
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import MODELS
-from blockshake.study.comparison.kicked_block import housner_ratio, rocking_block
 
 HOLLOWS = (0.0, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3)  # m
 SPACINGS = (0.2, 0.1, 0.05)  # m

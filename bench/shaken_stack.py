@@ -1,12 +1,12 @@
 """A stack under one cycle of sine by LS-DEM, and its readings."""
 
 import numpy as np
+from kicked_block import RATE, leans, zeros
 
 from blockshake.dynamics.motion import ground_motion
 from blockshake.dynamics.system import Status
 from blockshake.simulation.energy_residual import energy_residual
 from blockshake.solvers.ls_dem.driver import simulate_ls_dem
-from blockshake.study.comparison.kicked_block import RATE, leans, zeros
 
 SHAKING = {
     "acceleration": 2.5,

@@ -373,7 +373,7 @@ def _check(options):
 def _draw_structure(files, picture):
     from blockshake.geometry.structure import load_structure
     from blockshake.pages.drawing import check_picture, save_picture
-    from blockshake.views.structure_picture import plot_understood
+    from blockshake.pages.scene.structure_picture import plot_understood
 
     check_picture(picture)
     if len(files) != 1:

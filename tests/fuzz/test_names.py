@@ -23,6 +23,7 @@ from blockshake.files import PACKAGE, write_dataset
 from blockshake.geometry.structure import build_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.pages.blocks import (
+    Box,
     Document,
     Figure,
     Heading,
@@ -33,10 +34,8 @@ from blockshake.pages.blocks import (
     Text,
     numbered,
 )
-from blockshake.pages.box import Box
 from blockshake.pages.drawing import new_figure, svg_of
-from blockshake.pages.html import write_html
-from blockshake.pages.pdf import write_pdf
+from blockshake.pages.writing import write_html, write_pdf
 from blockshake.simulation.simulate import simulate
 from blockshake.study.config import check_config
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from blockshake.pages.blocks import Document, Figure, Section, Table, Text, numbered
-from blockshake.pages.html import write_html
+from blockshake.pages.writing import write_html
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 

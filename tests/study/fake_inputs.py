@@ -3,8 +3,8 @@
 import numpy as np
 import xarray as xr
 
+from blockshake.study.calibration.answers import chance_of_test, distances
 from blockshake.study.calibration.calibration import calibrate
-from blockshake.study.calibration.scores import chance_of_test, distances
 
 PEAK_ACCELERATION = 1.234  # m/s2
 

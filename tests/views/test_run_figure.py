@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
+from blockshake.pages.scene.structure_picture import plot_understood
 from blockshake.simulation.run_histories import run_histories
 from blockshake.views.figure import plot_run, run_title
-from blockshake.views.structure_picture import plot_understood
 
 
 @pytest.fixture(scope="module")
@@ -96,7 +96,7 @@ def test_a_structure_is_shown_with_names_and_joints(tower):
     front, side, _ = figure.axes
     assert {text.get_text() for text in front.texts} == set(tower.body_names)
     assert (front.get_xlabel(), front.get_ylabel(), side.get_xlabel()) == ("x [m]", "z [m]", "y [m]")
-    (joints,) = front.lines
+    joints = front.lines[0]
     np.testing.assert_allclose(joints.get_ydata(), np.arange(12.0), atol=1e-9)
     assert joints.get_label() == "12 joints found"
     assert figure.get_suptitle() == "test: 12 blocks"

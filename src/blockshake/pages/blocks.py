@@ -74,6 +74,18 @@ class Listing:
 
 
 @dataclass(frozen=True)
+class Box:
+    """A sentence in a frame on the first page of a report, and three numbers under it.
+
+    ``facts`` has for each number its label, the number with its unit, and a note.
+    """
+
+    sentence: str
+    facts: tuple
+    kind: str = field(default="box", init=False)
+
+
+@dataclass(frozen=True)
 class Section:
     """Title, anchor and blocks."""
 

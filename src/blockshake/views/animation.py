@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from blockshake.errors import InputError
 from blockshake.files import replacing
 from blockshake.pages.drawing import DARK_GREY, STYLE
-from blockshake.pages.scene.colors import body_colors
+from blockshake.pages.scene.bodies import body_colors
 from blockshake.pages.scene.projection import VIEWS, Scene
 from blockshake.pages.wording import given
 from blockshake.solvers.pieces import Due

@@ -6,7 +6,7 @@ from trimesh.exchange.gltf import export_glb
 from trimesh.visual.material import PBRMaterial
 
 from blockshake.files import replacing
-from blockshake.pages.scene.colors import body_colors
+from blockshake.pages.scene.bodies import body_colors
 from blockshake.views.local_origin import local_origin
 
 _UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, 1.0, 0], [0, -1.0, 0, 0], [0, 0, 0, 1.0]])  # glTF's y is up

@@ -14,7 +14,7 @@ from blockshake.diagnosis.verdict.track_record import procedure_digest
 from blockshake.diagnosis.verdict.verdict import load_verdict
 from blockshake.errors import InputError
 from blockshake.files import write_json
-from blockshake.pages.html import write_html
+from blockshake.pages.writing import write_html
 
 ALWAYS = [
     "Answer", "Odds of all causes", "Gain on sealed tests", "Sensors", "Limits: what would have been seen",

@@ -6,8 +6,14 @@ from fair_score import crps
 from numpy.testing import assert_allclose
 from scipy.stats import binomtest
 
-from blockshake.study.calibration.answers import LEVEL, answer_questions
-from blockshake.study.calibration.scores import chance_of_test, distances, weighted_scores, weights_near
+from blockshake.study.calibration.answers import (
+    LEVEL,
+    answer_questions,
+    chance_of_test,
+    distances,
+    weighted_scores,
+    weights_near,
+)
 
 N_SAMPLES, N_TIMES = 30, 40
 
@@ -73,9 +79,9 @@ def test_samples_without_an_answer_and_gaps_have_no_part():
     )
 
 
-def test_the_truth_is_rarely_refused_and_a_parameter_that_acts_is_told():
+def test_the_truth_is_rarely_refused_and_the_parameter_that_acts_is_told_and_not_the_idle_one():
     generator = np.random.default_rng(4)
-    held, told, widths, n_trials = 0, 0, [], 100
+    held, told, wrong, widths, n_trials = 0, 0, 0, [], 100
     for trial in range(n_trials):
         truth = generator.uniform()
         acts, idle, tests = _campaign(generator, truth)
@@ -84,7 +90,11 @@ def test_the_truth_is_rarely_refused_and_a_parameter_that_acts_is_told():
         held += found.lower <= truth <= found.upper
         told += found.told
         widths.append(found.upper - found.lower)
+        wrong += answers["idle"].told
+        if not answers["idle"].told:
+            assert (answers["idle"].lower, answers["idle"].upper) == (0.0, 1.0)
     assert binomtest(held, n_trials, LEVEL, alternative="less").pvalue > 0.01
+    assert binomtest(wrong, n_trials, 1.0 - LEVEL, alternative="greater").pvalue > 0.01
     assert told > 0.9 * n_trials
     assert np.median(widths) < 0.6
 
@@ -98,18 +108,6 @@ def test_tests_that_do_not_depend_on_parameters_tell_of_none_of_them():
         questions = {"first": (first, tests), "second": (second, tests)}
         questions |= {("second", place): (second, [test]) for place, test in enumerate(tests)}
         wrong += any(one.told for one in answer_questions(questions, trial).values())
-    assert binomtest(wrong, n_trials, 1.0 - LEVEL, alternative="greater").pvalue > 0.01
-
-
-def test_an_idle_parameter_is_not_told_beside_one_that_acts():
-    generator = np.random.default_rng(6)
-    wrong, n_trials = 0, 60
-    for trial in range(n_trials):
-        acts, idle, tests = _campaign(generator, generator.uniform())
-        answers = answer_questions({"acts": (acts, tests), "idle": (idle, tests)}, trial)
-        wrong += answers["idle"].told
-        if not answers["idle"].told:
-            assert (answers["idle"].lower, answers["idle"].upper) == (0.0, 1.0)
     assert binomtest(wrong, n_trials, 1.0 - LEVEL, alternative="greater").pvalue > 0.01
 
 

@@ -1,15 +1,11 @@
 """The section that holds the models against each other says what its files say."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 
 from blockshake.simulation.models import MODELS
-from blockshake.study.comparison.figure import plot_differences
-from blockshake.study.comparison.section import models
+from blockshake.study.comparison.section import case_words, models
 from blockshake.study.comparison.tables import block_tables, numerics_table, pairs_table
-from blockshake.study.comparison.words import case_words, impact_words
 from blockshake.study.report.content import load_content
 
 FIRST, LAST = "configuration-1", "configuration-4"
@@ -82,13 +78,6 @@ def test_pairs_beyond_chance_are_counted(content):
     assert "x 2: too few samples to tell the ensembles of any two models apart." in case_words(case)
 
 
-def test_impacts_of_equal_blocks_are_said_once(content):
-    cases = [content.cases[FIRST], dataclasses.replace(content.cases[FIRST], name="other")]
-    (words,) = impact_words(cases)
-    assert "configuration-1, other: LS-DEM 0.800, NSCD rigid 0.820" in words
-    assert words.endswith("a rigid block on two edges 0.731 (Housner 1963).")
-
-
 def test_a_study_without_tests_has_no_scores_and_one_of_one_model_no_section(fake, content):
     untested = {**fake.study, "cases": [{**case, "measured": None} for case in fake.study["cases"]]}
     assert "scores" in [block.key for block in models(content).blocks if block.kind == "heading"]
@@ -96,13 +85,3 @@ def test_a_study_without_tests_has_no_scores_and_one_of_one_model_no_section(fak
     assert "scores" not in [block.key for block in section.blocks if block.kind == "heading"]
     alone = {**fake.study, "models": {"ls-dem": fake.study["models"]["ls-dem"]}}
     assert models(load_content(alone, fake.results, fake.logs)) is None
-
-
-def test_figure_has_the_distances_in_millimetres(content):
-    differences = {name: case.differences for name, case in content.cases.items()}
-    axes = plot_differences(differences).axes[0]
-    dots = [line for line in axes.lines if line.get_marker() == "o"]
-    drawn = [float(line.get_xdata()[0]) for line in dots]
-    found = differences[FIRST]["distance"].to_numpy()[np.triu_indices(4, 1)]
-    np.testing.assert_allclose(drawn, np.maximum(1e3 * found, 1e-4))
-    assert len([line for line in axes.lines if line.get_marker() == "x"]) == 6

@@ -1,14 +1,12 @@
-"""Twins of a short run, and the impact of one block against Housner's."""
+"""Twins of a short run."""
 
 import numpy as np
 import pandas as pd
 import pytest
 
 from blockshake.dynamics.motion import ground_motion
-from blockshake.geometry.structure import load_structure
 from blockshake.simulation.simulate import simulate
 from blockshake.store import Store
-from blockshake.study.comparison.kicked_block import housner_ratio
 from blockshake.study.comparison.twins import NUDGE, TWINS, simulate_twins
 from blockshake.study.ensembles.batch import CaseRuns
 
@@ -43,18 +41,3 @@ def test_twins_are_the_sample_a_little_stronger_and_at_half_the_step(twins, moti
         )
     assert tuple(twins["twin"].values) == TWINS
     assert float(np.abs(twins["marker_displacement"].diff("twin")).max()) > 1e-7
-
-
-def test_housners_ratio_is_that_of_the_flat_of_a_block():
-    """Housner (1963) for a base of 0.76 m between chamfers; the chamfer takes 0.1 % of mass and inertia."""
-    pivot, half = 0.38, 0.8
-    about_edge = (0.8**2 + 1.6**2) / 12.0 + pivot**2 + half**2
-    expected = 1.0 - 2.0 * pivot**2 / about_edge
-    assert housner_ratio(load_structure("configuration-1")) == pytest.approx(expected, rel=1e-3)
-
-
-def test_a_rigid_block_on_corners_keeps_what_housner_says(twins):
-    """Impacts are placed to a part of the step: half a per cent of the ratio, less at half the step."""
-    error = np.abs(twins["impact_ratio"] / twins["housner_ratio"] - 1.0)
-    assert float(error.sel(step="usual")) < 5e-3
-    assert float(error.sel(step="half")) < float(error.sel(step="usual"))

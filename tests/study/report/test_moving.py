@@ -6,7 +6,7 @@ import pytest
 
 from blockshake.study.ensembles.shown_samples import shown_markers
 from blockshake.study.report.content import load_content
-from blockshake.study.report.figures.moving import (
+from blockshake.study.report.moving import (
     MAGNIFICATIONS,
     moving_samples,
     plot_still,

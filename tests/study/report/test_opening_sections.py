@@ -4,7 +4,7 @@ from page import texts
 
 from blockshake.pages.blocks import Heading
 from blockshake.study.report.content import load_content
-from blockshake.study.report.opening_sections import motions, structures
+from blockshake.study.report.opening_sections import motions, probability_table, structures
 
 
 def test_a_structure_of_two_cases_is_shown_once(fake):
@@ -23,3 +23,22 @@ def test_a_record_is_said_with_its_format_and_baseline(fake):
     found.motions[name] = found.motions[name].assign_attrs(synthetic=0, **record)
     said = " ".join(texts(motions(found)))
     assert f"{name}: r.AT2 (PEER NGA AT2); baseline: corrected, not at rest." in said
+
+
+def test_collapse_and_quantiles_are_those_of_the_files_with_limits(fake):
+    content = load_content(fake.study, fake.results, fake.logs)
+    table = probability_table(content)
+    rows = {row[:2]: row[2:] for row in table.rows}
+    # one collapsed and one failed of six: 1 of 5 counts, limits of Clopper and Pearson
+    counted, collapse, drift, *_ = rows["configuration-4, top-face", "NSCD rigid"]
+    assert counted == "5 + 1 failed"
+    assert collapse == "20.0 [0.5, 71.6]"
+    assert drift == collapse  # a collapse is a drift beyond all limits, and no other sample drifts by 400 mm
+    assert rows["configuration-1, block-3-face", "LS-DEM"][:2] == ("10", "0.0 [0.0, 30.8]")
+    envelope = content.cases["configuration-1"].responses["ls-dem"].envelope
+    peak = envelope["peak"].sel(frame="slab", marker="block-3-face", quantile=0.5)
+    assert rows["configuration-1, block-3-face", "LS-DEM"][3].startswith(f"{1e3 * float(peak):.1f} [")
+    # ten samples bear no limits of the quantile 95 %, and five none of a median
+    assert rows["configuration-1, block-3-face", "LS-DEM"][4] == "none"
+    assert rows["configuration-4, top-face", "NSCD rigid"][3] == "none"
+    assert "95 % needs 59" in table.caption

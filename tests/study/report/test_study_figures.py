@@ -9,12 +9,11 @@ from matplotlib.collections import FillBetweenPolyCollection
 
 from blockshake.geometry.structure import load_structure
 from blockshake.pages.drawing import svg_of
+from blockshake.pages.scene.structure_picture import plot_understood
 from blockshake.simulation.models import MODELS
 from blockshake.study.report.content import load_content
-from blockshake.study.report.figures.displacement import plot_displacements
-from blockshake.study.report.figures.interactive import interactive_displacements
-from blockshake.study.report.figures.motion import plot_spectra
-from blockshake.study.report.figures.structure import plot_structure
+from blockshake.study.report.displacement_figure import interactive_displacements, plot_displacements
+from blockshake.study.report.motion_figure import plot_spectra
 from blockshake.study.sampling.figure import bin_count
 
 
@@ -74,20 +73,6 @@ def test_legend_calls_a_virtual_test_synthetic(case):
     assert "virtual test (synthetic)" in labels
 
 
-def test_structure_is_to_scale_with_its_sizes():
-    figure = plot_structure(load_structure("configuration-3"))
-    front, side = figure.axes
-    assert {front.get_aspect(), side.get_aspect()} == {1.0}
-    words = {text.get_text() for text in front.texts}
-    assert {"top", "wall-a-1", "wall-b-4", "7.2", "0.8", "2.4"} <= words
-    assert {"1.6", "0.8", "2.4", "3"} <= {text.get_text() for text in side.texts}
-
-
-def test_beams_one_behind_the_other_share_their_name():
-    front = plot_structure(load_structure("configuration-4")).axes[0]
-    assert "beam-1 to 4" in {text.get_text() for text in front.texts}
-
-
 def test_spectrum_of_a_recorded_motion_has_no_target():
     motion = xr.Dataset(
         {"pseudo_acceleration": ("period", [1.0, 2.0])},
@@ -101,9 +86,9 @@ def test_spectrum_of_a_recorded_motion_has_no_target():
 
 def test_svg_says_no_date_loads_nothing_and_leaves_the_style_alone():
     before = dict(matplotlib.rcParams)
-    svg = svg_of(plot_structure, load_structure("configuration-1"))
+    svg = svg_of(plot_understood, load_structure("configuration-1"))
     assert svg.startswith("<svg")
-    assert svg == svg_of(plot_structure, load_structure("configuration-1"))
+    assert svg == svg_of(plot_understood, load_structure("configuration-1"))
     assert "<metadata>" not in svg
     assert "<text" not in svg  # letters are outlines: the same wherever it is opened
     assert dict(matplotlib.rcParams) == before

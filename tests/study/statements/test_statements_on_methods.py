@@ -1,9 +1,8 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
-from blockshake.study.statements import measured_tests, solvers
+from blockshake.study.statements import inputs, solvers
 from blockshake.study.statements.statement import PaperVerdict, against_tests
 
 MET, NOT_MET, UNJUDGED = PaperVerdict.MET, PaperVerdict.NOT_MET, PaperVerdict.UNJUDGED
@@ -58,21 +57,13 @@ def test_cost_of_a_step(content):
     assert solvers.dear_steps(content).verdict == NOT_MET
 
 
-@pytest.mark.parametrize("judge", [solvers.stable_step, solvers.dear_steps])
-def test_a_model_that_is_not_there_is_named(content, judge):
-    del content.study["models"]["ls-dem"]
-    found = judge(content)
-    assert found.verdict == UNJUDGED
-    assert "no LS-DEM" in found.words
-
-
 def test_a_synthetic_test_judges_nothing_of_the_specimens(real):
-    assert measured_tests.along_one_axis(real).verdict == MET
+    assert inputs.along_one_axis(real).verdict == MET
     moved = real.cases["configuration-4"].base["displacement"]
     moved.loc[{"channel": "y"}] = 0.5 * moved.sel(channel="x")
-    assert measured_tests.along_one_axis(real).verdict == NOT_MET
+    assert inputs.along_one_axis(real).verdict == NOT_MET
     real.cases["configuration-4"].base.attrs["unread"] = ["y"]
-    assert measured_tests.along_one_axis(real).verdict == UNJUDGED
+    assert inputs.along_one_axis(real).verdict == UNJUDGED
     cases = [replace(case, synthetic=True) for case in real.cases.values()]
     for holds, side in ((True, "they bear"), (False, "they do not bear")):
         found = against_tests(cases, holds, "So much.")
@@ -82,7 +73,7 @@ def test_a_synthetic_test_judges_nothing_of_the_specimens(real):
 
 
 def test_the_strongest_test_is_that_of_the_campaign(content, tmp_path):
-    assert measured_tests.strongest_tests(content).verdict == MET
+    assert inputs.strongest_tests(content).verdict == MET
     (tmp_path / "virtual.nc").touch()
     (tmp_path / "campaign.yaml").write_text(
         "name: other\nstructure: configuration-1\ntests:\n"
@@ -92,7 +83,7 @@ def test_the_strongest_test_is_that_of_the_campaign(content, tmp_path):
     case = content.cases["configuration-1"]
     case.settings["measured"] = {"campaign": str(tmp_path), "test": "virtual"}
     del content.cases["configuration-4"]
-    found = measured_tests.strongest_tests(content)
+    found = inputs.strongest_tests(content)
     assert found.verdict == NOT_MET
     assert "strong (sealed)" in found.words
     assert "of its open tests virtual with 2.47 m/s2" in found.words

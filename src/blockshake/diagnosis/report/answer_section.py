@@ -5,8 +5,7 @@ import numpy as np
 from blockshake.diagnosis.report.statement import not_told, sensor_causes, statement
 from blockshake.diagnosis.wording import chance_words, estimate_words, percent_words
 from blockshake.effects.registry import title_of
-from blockshake.pages.blocks import Figure, Items, Section, Text
-from blockshake.pages.box import Box
+from blockshake.pages.blocks import Box, Figure, Items, Section, Text
 from blockshake.pages.drawing import BLACK, BLUE, LIGHT_GREY, new_figure, svg_of
 from blockshake.pages.units import printed
 from blockshake.pages.wording import sentence_case

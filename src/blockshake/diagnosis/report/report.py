@@ -11,9 +11,8 @@ from blockshake.diagnosis.report.sensors_section import sensors_section
 from blockshake.diagnosis.report.size_section import size_section
 from blockshake.diagnosis.verdict.track_record_section import track_record_section
 from blockshake.pages.blocks import Document, numbered
-from blockshake.pages.html import write_html
-from blockshake.pages.pdf import write_pdf
 from blockshake.pages.wording import count_words
+from blockshake.pages.writing import write_html, write_pdf
 
 _SECTIONS = (
     answer_section,

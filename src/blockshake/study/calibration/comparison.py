@@ -11,13 +11,13 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.simulation.models import model_of
 from blockshake.sources import script_sources, source_digest
+from blockshake.study.calibration.answers import Distances, chance_of_test, distances
 from blockshake.study.calibration.readings import (
     acceleration_spectra,
     displacement_curves,
     open_test,
     simulate_readings,
 )
-from blockshake.study.calibration.scores import Distances, chance_of_test, distances
 from blockshake.study.calibration.settings import (
     HOLLOW,
     OTHERS,

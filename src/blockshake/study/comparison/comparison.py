@@ -46,8 +46,6 @@ _DESCRIBED = {
     "common": ("samples that both models ran", "1"),
     "floor": ("mean difference of a sample from its twin", "m"),
     "horizon": ("first time that a sample differs from its twin", "s"),
-    "impact_ratio": ("angular velocity after an impact over that before, one block alone", "1"),
-    "housner_ratio": ("the same of a rigid block on two edges", "1"),
     "score": ("continuous ranked probability score against the measured curves", "m"),
     "score_difference": ("score of the other model minus that of the model", "m"),
 }
@@ -97,15 +95,17 @@ def compare_models(ensembles, twins, measured):
         its 5 % to its 95 % quantile; and ``width(model, marker)``, the mean absolute difference of two samples. Of two
         models, ``other`` the second: ``distance``, the energy distance of the ensembles, with ``distance_chance``;
         ``history_difference`` and ``parting_time`` of the ``common`` samples. Of the numerics, NaN without twins:
-        ``floor`` and ``horizon(model, twin)``; ``impact_ratio(model, step)`` and ``housner_ratio``. Against the
-        measured curves, NaN without any: ``score(model)`` and ``score_difference(model, other)``. Limits of 95 %,
-        ``NAME_interval(bound, ...)``: of medians by order statistics, of range, width and scores by bootstrap. NaN
-        where an ensemble has fewer than three samples, of a range six; times infinite where nothing parts.
+        ``floor`` and ``horizon(model, twin)``. Against the measured curves, NaN without any: ``score(model)`` and
+        ``score_difference(model, other)``. Limits of 95 %, ``NAME_interval(bound, ...)``: of medians by order
+        statistics, of range, width and scores by bootstrap. NaN where an ensemble has fewer than three samples, of a
+        range six; times infinite where nothing parts.
     """
     models = list(ensembles)
     counted = {model: counted_samples(one) for model, one in ensembles.items()}
     noise = markers.NOISE if measured is None else measured[1]
-    seed = int(content_digest("comparison", *_identity(ensembles)), 16)
+    first = next(iter(ensembles.values())).attrs
+    structure = str(first.get("structure"))
+    seed = int(content_digest("comparison", *ensembles, structure, str(first.get("motion"))), 16)
     result = xr.merge(
         [
             _alone(counted, seed),
@@ -121,19 +121,13 @@ def compare_models(ensembles, twins, measured):
         if str(name).endswith("_interval"):
             of = result[str(name).removesuffix("_interval")].attrs
             result[name].attrs = {"long_name": f"limits of the {of['long_name']}", "units": of["units"]}
-    first = next(iter(ensembles.values())).attrs
     result.attrs = {
         "title": "models of one case held against each other",
-        "structure": str(first.get("structure")),
+        "structure": structure,
         "synthetic": int(measured[0].attrs.get("synthetic", 0)) if measured else 0,
         "parted_beyond": TOLD_APART_BY * noise,
     }
     return result
-
-
-def _identity(ensembles):
-    first = next(iter(ensembles.values())).attrs
-    return (*ensembles, str(first.get("structure")), str(first.get("motion")))
 
 
 def _generator(seed, *names):
@@ -147,14 +141,14 @@ def _blocks(ensemble):
     return [str(name) for name in ensemble["marker"].values if name != slab]
 
 
-def _curves(displacement, slab, blocks):
-    """Displacement along x relative to the slab, float64 (..., n_times, n_markers) [m]."""
-    along = relative_to_slab(displacement.sel(axis="x", drop=True), slab).sel(marker=blocks)
-    return along.transpose(..., "time", "marker").to_numpy()
+def _curves(ensemble, displacement=None):
+    """Displacement of the blocks along x relative to the slab, float64 (..., n_times, n_markers) [m].
 
-
-def _of(ensemble):
-    return _curves(ensemble["marker_displacement"], ensemble.attrs["slab_marker"], _blocks(ensemble))
+    ``displacement``: of another run with the ensemble's markers; by default that of the ensemble's samples.
+    """
+    moved = ensemble["marker_displacement"] if displacement is None else displacement
+    along = relative_to_slab(moved.sel(axis="x", drop=True), ensemble.attrs["slab_marker"])
+    return along.sel(marker=_blocks(ensemble)).transpose(..., "time", "marker").to_numpy()
 
 
 def _alone(counted, seed):
@@ -167,29 +161,26 @@ def _alone(counted, seed):
             values = ensemble[name].sel(frame="slab", marker=blocks).transpose("sample", "marker").to_numpy()
             one[name] = ("marker", sample_quantiles(values, _MIDDLE)[0])
             one[f"{name}_interval"] = (("bound", "marker"), quantile_interval(values, _MIDDLE)[:, 0])
-        one |= _residual_range(values, _generator(seed, "residual", model))
-        width = np.full((1, len(blocks)), np.nan)
+        width, extent = np.full((2, len(blocks)), np.nan)
+        width_limits, extent_limits = np.full((2, 2, len(blocks)), np.nan)
+        residuals = values[np.isfinite(values).all(axis=1)]
+        if len(residuals) >= SURE_FROM:
+            extent = _extent(residuals)
+            extent_limits = bootstrap_interval(_extent, [residuals], _generator(seed, "residual", model))
         if size >= FEWEST:
-            curves = _of(ensemble)
+            curves = _curves(ensemble)
             weights = resampled_weights(size, _generator(seed, model))
-            width = mean_width(mean_differences(curves, curves), weights)
-        one["width"] = ("marker", width[0])
-        limits = limits_of(width[1:]) if size >= SURE_FROM else np.full((2, len(blocks)), np.nan)
-        one["width_interval"] = (("bound", "marker"), limits)
+            width, *resampled = mean_width(mean_differences(curves, curves), weights)
+            width_limits = limits_of(np.array(resampled)) if size >= SURE_FROM else width_limits
+        one |= {"width": ("marker", width), "residual_range": ("marker", extent)}
+        one["width_interval"] = (("bound", "marker"), width_limits)
+        one["residual_range_interval"] = (("bound", "marker"), extent_limits)
         parts.append(xr.Dataset(one, {"marker": blocks, "bound": ["lower", "upper"]}))
     return xr.concat(parts, dim=xr.Variable("model", list(counted)))
 
 
-def _residual_range(values, generator):
-    """Range of the residuals (n_samples, n_markers) of the samples that have one, with its limits."""
-    values = values[np.isfinite(values).all(axis=1)]
-    found, limits = np.full(values.shape[1], np.nan), np.full((2, values.shape[1]), np.nan)
-    if len(values) >= SURE_FROM:
-        found, limits = _range(values), bootstrap_interval(_range, [values], generator)
-    return {"residual_range": ("marker", found), "residual_range_interval": (("bound", "marker"), limits)}
-
-
-def _range(values):
+def _extent(values):
+    """Distance of the 5 % from the 95 % quantile over the first axis."""
     return np.diff(sample_quantiles(values, _ENDS), axis=0)[0]
 
 
@@ -198,39 +189,39 @@ def _pairs(counted, limit, seed):
     models = list(counted)
     shape = (len(models), len(models))
     names = ("distance", "distance_chance", "history_difference", "parting_time")
-    found = {name: np.full(shape, np.nan) for name in names}
+    pairs = {name: np.full(shape, np.nan) for name in names}
     interval, common = np.full((2, *shape), np.nan), np.zeros(shape, dtype=int)
-    curves = {model: _of(ensemble) for model, ensemble in counted.items()}
-    for own, other in combinations(models, 2):
-        places = [(models.index(own), models.index(other)), (models.index(other), models.index(own))]
-        both = np.concatenate([curves[own], curves[other]])
+    curves = {model: _curves(ensemble) for model, ensemble in counted.items()}
+    for row, column in combinations(range(len(models)), 2):
+        model, other = models[row], models[column]
+        both = np.concatenate([curves[model], curves[other]])
         differences = mean_differences(both, both).mean(axis=2)
-        split = len(curves[own])
+        split = len(curves[model])
         groups = np.arange(split), np.arange(split, len(both))
         values = dict.fromkeys(names, np.nan)
         if min(map(len, groups)) >= FEWEST:
             values["distance"] = ensemble_distance(differences, *groups)
-            values["distance_chance"] = chance_distance(differences, *groups, _generator(seed, own, other))
-        shared, at_own, at_other = np.intersect1d(
-            counted[own]["sample"], counted[other]["sample"], return_indices=True
+            values["distance_chance"] = chance_distance(differences, *groups, _generator(seed, model, other))
+        shared, at_model, at_other = np.intersect1d(
+            counted[model]["sample"], counted[other]["sample"], return_indices=True
         )
-        of_both = differences[at_own, split + at_other]
+        of_both = differences[at_model, split + at_other]
         values["history_difference"] = sample_quantiles(of_both, _MIDDLE)[0]
-        time = counted[own]["time"].to_numpy()
+        time = counted[model]["time"].to_numpy()
         parted = [
-            parting_time(time, curves[own][a], curves[other][b], limit)
-            for a, b in zip(at_own, at_other, strict=True)
+            parting_time(time, curves[model][a], curves[other][b], limit)
+            for a, b in zip(at_model, at_other, strict=True)
         ]
         values["parting_time"] = _upper_median(parted)
-        for place in places:
-            common[place] = len(shared)
-            interval[:, *place] = quantile_interval(of_both, _MIDDLE)[:, 0]
+        for cell in ((row, column), (column, row)):
+            common[cell] = len(shared)
+            interval[:, *cell] = quantile_interval(of_both, _MIDDLE)[:, 0]
             for name in names:
-                found[name][place] = values[name]
-    pair = ("model", "other")
-    result = xr.Dataset({name: (pair, values) for name, values in found.items()})
-    result["common"] = (pair, common)
-    result["history_difference_interval"] = (("bound", *pair), interval)
+                pairs[name][cell] = values[name]
+    dimensions = ("model", "other")
+    result = xr.Dataset({name: (dimensions, values) for name, values in pairs.items()})
+    result["common"] = (dimensions, common)
+    result["history_difference_interval"] = (("bound", *dimensions), interval)
     return result.assign_coords(model=models, other=models, bound=["lower", "upper"])
 
 
@@ -252,32 +243,21 @@ def _upper_median(times):
 
 
 def _numerics(counted, twins, limit):
-    """Floor and horizon of each model's numerics, and what its impacts keep."""
+    """Floor and horizon of each model's numerics, NaN where the sample failed that has the twins."""
     models = list(counted)
     floor, horizon = np.full((2, len(models), len(TWINS)), np.nan)
-    ratio, housner = np.full((len(models), 2), np.nan), np.nan
-    for place, model in enumerate(models):
-        if model not in twins:
+    for row, model in enumerate(models):
+        ensemble = counted[model]
+        if model not in twins or twins[model].attrs["sample"] not in ensemble["sample"].values:
             continue
-        given, ensemble = twins[model], counted[model]
-        ratio[place] = given["impact_ratio"].sel(step=["usual", "half"])
-        housner = float(given["housner_ratio"])
-        if given.attrs["sample"] not in ensemble["sample"].values:
-            continue  # it failed, and has no twin
-        own = _of(ensemble.sel(sample=given.attrs["sample"]))
-        for number, twin in enumerate(TWINS):
-            moved = given["marker_displacement"].sel(twin=twin)
-            other = _curves(moved, ensemble.attrs["slab_marker"], _blocks(ensemble))
-            floor[place, number] = mean_differences(own[None], other[None]).mean()
-            horizon[place, number] = parting_time(ensemble["time"].to_numpy(), own, other, limit)
+        sample = _curves(ensemble.sel(sample=twins[model].attrs["sample"]))
+        for column, twin in enumerate(TWINS):
+            other = _curves(ensemble, twins[model]["marker_displacement"].sel(twin=twin))
+            floor[row, column] = mean_differences(sample[None], other[None]).mean()
+            horizon[row, column] = parting_time(ensemble["time"].to_numpy(), sample, other, limit)
     return xr.Dataset(
-        {
-            "floor": (("model", "twin"), floor),
-            "horizon": (("model", "twin"), horizon),
-            "impact_ratio": (("model", "step"), ratio),
-            "housner_ratio": ((), housner),
-        },
-        {"model": models, "twin": list(TWINS), "step": ["usual", "half"]},
+        {"floor": (("model", "twin"), floor), "horizon": (("model", "twin"), horizon)},
+        {"model": models, "twin": list(TWINS)},
     )
 
 
@@ -294,27 +274,26 @@ def _scores(counted, measured, seed):
         weights = resampled_weights(size, _generator(seed, "score", model))
         away = mean_differences(seen, read[None])[:, 0].mean(axis=1)
         drawn[model] = ensemble_score(away, mean_differences(seen, seen).mean(axis=2), weights)
-    score, interval = np.full(len(models), np.nan), np.full((2, len(models)), np.nan)
     shape = (len(models), len(models))
-    difference, apart = np.full(shape, np.nan), np.full((2, *shape), np.nan)
-    for place, model in enumerate(models):
+    score, interval = np.full(len(models), np.nan), np.full((2, len(models)), np.nan)
+    difference, difference_interval = np.full(shape, np.nan), np.full((2, *shape), np.nan)
+    for row, model in enumerate(models):
         if model not in drawn:
             continue
-        score[place] = drawn[model][0]
-        sure = counted[model].sizes["sample"] >= SURE_FROM
-        interval[:, place] = limits_of(drawn[model][1:]) if sure else np.nan
-        for number, other in enumerate(models):
+        score[row] = drawn[model][0]
+        if counted[model].sizes["sample"] >= SURE_FROM:
+            interval[:, row] = limits_of(drawn[model][1:])
+        for column, other in enumerate(models):
             if other in drawn and other != model:
                 excess = drawn[other] - drawn[model]
-                difference[place, number] = excess[0]
-                apart[:, place, number] = limits_of(excess[1:])
-    pair = ("model", "other")
+                difference[row, column] = excess[0]
+                difference_interval[:, row, column] = limits_of(excess[1:])
     return xr.Dataset(
         {
             "score": ("model", score),
             "score_interval": (("bound", "model"), interval),
-            "score_difference": (pair, difference),
-            "score_difference_interval": (("bound", *pair), apart),
+            "score_difference": (("model", "other"), difference),
+            "score_difference_interval": (("bound", "model", "other"), difference_interval),
         },
         {"model": models, "other": models, "bound": ["lower", "upper"]},
     )

@@ -1,18 +1,25 @@
 """Section that holds the models against each other and against the measured curves."""
 
-from blockshake.pages.blocks import Figure, Heading, Items, Section, Text
-from blockshake.pages.drawing import svg_of
-from blockshake.study.comparison.figure import plot_differences
-from blockshake.study.comparison.tables import numerics_table, pairs_table, scores_table
-from blockshake.study.comparison.words import case_words, impact_words
+from itertools import combinations
+
+import numpy as np
+
+from blockshake.pages.blocks import Heading, Items, Section, Text
+from blockshake.pages.wording import count_words, given, model_label, number, share_words
+from blockshake.simulation.models import MODELS
+from blockshake.study.comparison.tables import (
+    in_millimetres,
+    larger_floor,
+    numerics_table,
+    pairs_table,
+    scores_table,
+)
 
 
 def models(content):
     """Distances of every pair of models beside chance and numerics; None where the study has one model."""
     if len(content.study["models"]) < 2:
         return None
-    cases = content.cases.values()
-    differences = {case.name: case.differences for case in cases}
     blocks = [
         Text(
             "Are two models farther apart than the samples and the numerics of each make them? The distance of two "
@@ -22,12 +29,7 @@ def models(content):
             "models, against a sample and its twin by one model, which differs by less than any test could tell. All "
             "displacements are along x and relative to the slab."
         ),
-        Items((*(case_words(case) for case in cases), *impact_words(cases))),
-        Figure(
-            "Pairs of models by case. Where a dot is within the grey bar, the ensembles are not told apart; where a "
-            "diamond is near its cross, the difference of two runs is no larger than that of their numerics.",
-            svg_of(plot_differences, differences),
-        ),
+        Items(tuple(map(case_words, content.cases.values()))),
         pairs_table(content),
         numerics_table(content),
     ]
@@ -35,3 +37,69 @@ def models(content):
     if scores is not None:
         blocks += [Heading("Scores against the measured curves", "scores"), scores]
     return Section("Models against each other", "models", tuple(blocks))
+
+
+def case_words(case):
+    """How far the models of a case are apart, in sentences; a pair of models with rigid blocks at more length."""
+    pairs = list(combinations(case.differences["model"].values, 2))
+    at = {pair: case.differences.sel(model=pair[0], other=pair[1]) for pair in pairs}
+    distance = {pair: float(at[pair]["distance"]) for pair in pairs if np.isfinite(at[pair]["distance"])}
+    beyond = [
+        distance[pair] > float(at[pair]["distance_chance"])
+        for pair in distance
+        if np.isfinite(at[pair]["distance_chance"])
+    ]
+    words = f"{case.name}, {case.motion} x {given(case.settings['scale'])}: "
+    if not beyond:
+        words += "too few samples to tell the ensembles of any two models apart."
+    elif len(pairs) == 1:
+        side = "farther" if beyond[0] else "no farther"
+        words += f"the ensembles of {_both(pairs[0])} are {side} apart than by chance."
+    else:
+        share = share_words(sum(beyond), len(beyond))
+        words += f"the ensembles of {share} pairs of models are farther apart than by chance."
+        if len(beyond) < len(pairs):
+            words += f" Too few samples to tell: {count_words(len(pairs) - len(beyond), 'further pair')}."
+    if len(distance) > 1:
+        near, far = (pick(distance, key=distance.get) for pick in (min, max))
+        words += (
+            f" Nearest are {_both(near)} ({in_millimetres(distance[near])} mm), farthest {_both(far)} "
+            f"({in_millimetres(distance[far])} mm)."
+        )
+    for pair in pairs:
+        if all(MODELS[model].rigid for model in pair):
+            words += f" {_rigid_words(case.differences, pair)}"
+    return words
+
+
+def _both(pair):
+    return " and ".join(map(model_label, pair))
+
+
+def _rigid_words(differences, pair):
+    """Difference of two models of rigid blocks beside the floor and the horizons of their numerics."""
+    at = differences.sel(model=pair[0], other=pair[1])
+    words = (
+        f"{_both(pair)} both have rigid blocks: the same sample by both differs by "
+        f"{in_millimetres(at['history_difference'])} mm (median of {int(at['common'])})"
+    )
+    floors = [larger_floor(differences, model) for model in pair]
+    parted = f"the runs {_parted(at['parting_time'])}"
+    if not np.isfinite(floors).all() or max(floors) == 0.0:
+        return f"{words}; {parted}."
+    twins = ", ".join(
+        f"those of {model_label(model)} {_parted(differences['horizon'].sel(model=model).min('twin', skipna=False))}"
+        for model in pair
+    )
+    ratio = float(at["history_difference"]) / max(floors)
+    return (
+        f"{words}, {number(ratio, 2)} times the larger floor of their numerics ({in_millimetres(max(floors))} mm); "
+        f"{parted}. Of the twins by one model {twins}."
+    )
+
+
+def _parted(time):
+    """When curves part, in words."""
+    return (
+        "are not told apart within the window" if np.isposinf(float(time)) else f"part after {number(time)} s"
+    )

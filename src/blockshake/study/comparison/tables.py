@@ -87,31 +87,27 @@ def pairs_table(content):
 
 
 def numerics_table(content):
-    """Floor and horizon of each model's numerics, and what an impact of one block keeps."""
+    """Floor and horizon of each model's numerics."""
     rows = []
     for case in content.cases.values():
         found = case.differences
         for model in found["model"].values:
             at = found.sel(model=model)
-            ratios = [number(at["impact_ratio"].sel(step=one)) for one in ("usual", "half")]
             rows.append((
-                case.name, given(case.settings["scale"]), model_label(model),
+                case.name, model_label(model),
                 *(in_millimetres(at["floor"].sel(twin=one)) for one in ("nudged", "half-step")),
                 *(_seconds(at["horizon"].sel(twin=one), case) for one in ("nudged", "half-step")),
-                *ratios, number(found["housner_ratio"]),
             ))  # fmt: skip
     return Table(
         "Numerics of each model. Twins of the first sample: with a ground motion larger by one part in a million "
         "(nudged), and with half the time step. Floor: mean difference from the twin. Horizon: when the sample is "
         f"first told apart from its twin, by more than {given(TOLD_APART_BY)} standard deviations of a marker's noise "
-        "at any block. Impact ratio: angular velocity after the first impact over that before, of the lowest block "
-        "rocking alone on the slab after a kick, nominal parameters, and that of a rigid block on two edges (Housner "
-        f"1963). {MISSING}: no twins, because the model ran fewer than three samples of the case.",
+        f"at any block. {MISSING}: no twins, because the model ran fewer than three samples of the case.",
         (
-            "Case", "Scale", "Model", "Floor, nudged [mm]", "Floor, half step [mm]", "Horizon, nudged [s]",
-            "Horizon, half step [s]", "Impact ratio [1]", "Half step [1]", "Housner [1]",
+            "Case", "Model", "Floor, nudged [mm]", "Floor, half step [mm]", "Horizon, nudged [s]",
+            "Horizon, half step [s]",
         ),
-        tuple(rows), "lrlrrrrrrr",
+        tuple(rows), "llrrrr",
     )  # fmt: skip
 
 

@@ -30,15 +30,15 @@ def conclusions(content):
     """Blocks: what was found in every case, then what is not known."""
     blocks = []
     for case in content.cases.values():
-        told = _case(case)
-        if told and case.name in content.fragility:
-            told.append(f"Fragility: {fragility_words(content, case.name)}")
-        if told:
+        sentences = _case(case)
+        if sentences and case.name in content.fragility:
+            sentences.append(f"Fragility: {fragility_words(content, case.name)}")
+        if sentences:
             blocks += [
                 Heading(
                     f"{case.title}, {case.motion} x {given(case.settings['scale'])}", f"found-{case.name}"
                 ),
-                Items(tuple(told)),
+                Items(tuple(sentences)),
             ]
     unknown = _unknown(content)
     return (
@@ -66,7 +66,7 @@ def _case(case):
 
 def _drift(case, counted, body, marker):
     """Peak of the top block, by the statistics that so many samples bear, and the share beyond the limit."""
-    told = []
+    by_model = []
     for model, response in counted.items():
         size, peak = (
             int(response.envelope.attrs["counted"]),
@@ -80,7 +80,7 @@ def _drift(case, counted, body, marker):
                 (at := peak.sel(quantile=quantile, bound=["lower", "upper"]))["peak_interval"]
             ).all()
         ]
-        told.append(
+        by_model.append(
             f"{', '.join([*statistics, f'largest {millimetres(largest)} mm'])} by {model_label(model)} (n = {size})"
         )
     limit = next(iter(counted.values())).envelope["drift_probability"].attrs["largest_drift"]
@@ -91,7 +91,7 @@ def _drift(case, counted, body, marker):
     ]
     return (
         f"Peak displacement of the top block ({body}, marker {marker}) from its place on the slab, with "
-        f"{quantile_percent(CONFIDENCE)} limits where the samples bear them: {'; '.join(told)}. "
+        f"{quantile_percent(CONFIDENCE)} limits where the samples bear them: {'; '.join(by_model)}. "
         + (
             f"Of the samples, beyond {millimetres(limit)} mm or fallen: {', '.join(beyond)}."
             if beyond
@@ -101,21 +101,19 @@ def _drift(case, counted, body, marker):
 
 
 def _collapse(counted):
-    told, falling, any_fell = [], [], False
+    """Probability of collapse with its limits, and the samples that still fell when the window ended."""
+    shares, falling = [], []
     for model, response in counted.items():
-        one = response.envelope
-        share, size = float(one["collapse_probability"]), int(one.attrs["counted"])
-        any_fell |= share > 0.0
+        one, size = response.envelope, int(response.envelope.attrs["counted"])
+        share = float(one["collapse_probability"])
+        lower, upper = map(percent, one["collapse_probability_interval"].sel(bound=["lower", "upper"]))
+        words = f"{percent(share)} % [{lower}, {upper}]" if share else f"below {upper} %"
+        shares.append(f"{words} by {model_label(model)} (n = {size})")
         if still := count_outcomes(response.samples["status"]).falling:
             falling.append(f"{still} of {size} by {model_label(model)}")
-        upper = percent(one["collapse_probability_interval"].sel(bound="upper"))
-        if share:
-            lower = percent(one["collapse_probability_interval"].sel(bound="lower"))
-            told.append(f"{percent(share)} % [{lower}, {upper}] by {model_label(model)} (n = {size})")
-        else:
-            told.append(f"below {upper} % by {model_label(model)} (n = {size})")
-    found = "Collapse is found" if any_fell else "No sample collapses"
-    words = f"{found}. Probability of collapse, {quantile_percent(CONFIDENCE)} limits: {', '.join(told)}."
+    any_fell = any(float(one.envelope["collapse_probability"]) > 0.0 for one in counted.values())
+    verdict = "Collapse is found" if any_fell else "No sample collapses"
+    words = f"{verdict}. Probability of collapse, {quantile_percent(CONFIDENCE)} limits: {', '.join(shares)}."
     if falling:
         words += f" Counted as collapsed, but still falling when the window ended: {', '.join(falling)}."
     return words
@@ -124,22 +122,19 @@ def _collapse(counted):
 def _joints(counted):
     """The joint that opens most and the one that slips most by any model."""
     words = []
-    for name, what in (("joint_uplift", "opening"), ("joint_slip", "slip")):
-        found = []
+    for name, motion in (("joint_uplift", "opening"), ("joint_slip", "slip")):
+        largest = []
         for model, response in counted.items():
             values = response.envelope[name].sel(quantile=0.5).dropna("joint")
             if values.size:
-                place = values.argmax("joint")
-                found.append((float(values[place]), str(values["joint"][place].values), model))
-        if found:
-            value, joint, model = max(found)
-            words.append(
-                f"the largest {what} is that of {joint}, {millimetres(value)} mm ({model_label(model)})"
-            )
+                at = values[values.argmax("joint")]
+                largest.append((float(at), str(at["joint"].values), model_label(model)))
+        if largest:
+            value, joint, model = max(largest)
+            words.append(f"the largest {motion} is that of {joint}, {millimetres(value)} mm ({model})")
     if not words:
         return "The structure has no joints at its start."
-    told = " and ".join(words)
-    return f"{told[0].upper()}{told[1:]}, median over the samples at the middle of the face."
+    return f"T{' and '.join(words)[1:]}, median over the samples at the middle of the face."
 
 
 def _models(counted, marker):
@@ -151,7 +146,9 @@ def _models(counted, marker):
     medians = {model: float(counted[model].envelope["peak"].sel(at)) for model in known}
     limits = {model: counted[model].envelope["peak_interval"].sel(at).to_numpy() for model in known}
     apart = [
-        (one, other) for one, other in combinations(known, 2) if not _overlap(limits[one], limits[other])
+        f"{model_label(one)} and {model_label(other)}"
+        for one, other in combinations(known, 2)
+        if max(limits[one].min(), limits[other].min()) > min(limits[one].max(), limits[other].max())
     ]
     low, high = min(medians, key=medians.get), max(medians, key=medians.get)
     spread = (
@@ -160,13 +157,8 @@ def _models(counted, marker):
     )
     if not apart:
         return [f"{spread}; the limits of every two of them overlap."]
-    pairs = ", ".join(f"{model_label(one)} and {model_label(other)}" for one, other in apart)
+    pairs = ", ".join(apart)
     return [f"{spread}; the limits of these do not overlap: {pairs}. The choice of the model matters here."]
-
-
-def _overlap(one, other):
-    """Whether two intervals have a value in common."""
-    return max(min(one), min(other)) <= min(max(one), max(other))
 
 
 def _measured(case, counted, body, marker):
@@ -198,19 +190,19 @@ def _measured(case, counted, body, marker):
 
 def _causes(counted, body, marker):
     """The variable that explains most of the spread beyond chance, models of the same variable together."""
-    told, silent = {}, []
+    by_variable, silent = {}, []
     for model, response in counted.items():
         history = response.sensitivity.sel(quantity="history", marker=marker)
         if not is_known(history, "first_order"):
             continue
         beyond = influences(history, "first_order").beyond_chance
         if beyond:
-            told.setdefault(beyond[0].parameter, []).append(
+            by_variable.setdefault(beyond[0].parameter, []).append(
                 f"{percent(beyond[0].value)} % by {model_label(model)}"
             )
         else:
             silent.append(model_label(model))
-    words = [f"{parameter_label(name)}, {', '.join(shares)}" for name, shares in told.items()]
+    words = [f"{parameter_label(name)}, {', '.join(shares)}" for name, shares in by_variable.items()]
     if words:
         explained = (
             f"Largest share of the spread of {body} over the window by one variable: {'; '.join(words)}."
@@ -224,13 +216,13 @@ def _causes(counted, body, marker):
 def _unknown(content):
     """Sentences on what these results leave open."""
     cases = list(content.cases.values())
-    told = []
+    sentences = []
     without = [case.name for case in cases if case.measured is None]
     synthetic = [case.name for case in cases if case.synthetic]
     if without or synthetic:
         named = [f"{', '.join(without)} (no measured test)"] if without else []
         named += [f"{', '.join(synthetic)} (synthetic tests)"] if synthetic else []
-        told.append(f"Whether any model is right about real blocks: {'; '.join(named)}.")
+        sentences.append(f"Whether any model is right about real blocks: {'; '.join(named)}.")
     few, few_from = {}, samples_needed(_UPPER)
     for case in cases:
         for model, one in case.responses.items():
@@ -239,7 +231,7 @@ def _unknown(content):
                 few.setdefault(f"{model_label(model)} (n = {size})", []).append(case.name)
     if few:
         words = "; ".join(f"{model}, {', '.join(names)}" for model, names in few.items())
-        told.append(
+        sentences.append(
             f"How large the {quantile_percent(_UPPER)} quantile is, of which fewer than {few_from} samples bear no "
             f"limits: {words}."
         )
@@ -249,7 +241,7 @@ def _unknown(content):
         if case.settings["duration"] < (end := float(content.motions[case.motion].attrs["significant_end"]))
     ]
     if short:
-        told.append(
+        sentences.append(
             f"Whether blocks fall after the window, which ends in the strong motion: {', '.join(short)}."
         )
     cut = [
@@ -259,32 +251,32 @@ def _unknown(content):
         if float(one.envelope["collapse_probability"]) > 0.0
     ]
     if cut:
-        told.append(
+        sentences.append(
             f"How far blocks of samples that fell would have moved, peaks are lower limits: {'; '.join(cut)}."
         )
     chaotic = _chaotic(cases)
     if chaotic:
-        told.append(
+        sentences.append(
             "Single histories after the time at which twins, alike to one part in a million of the motion or run at "
             f"half the time step, are told apart: {'; '.join(chaotic)}. Bounds and quantiles remain."
         )
     calibrated = chain.from_iterable((content.study.get("calibration") or {"cases": {}})["cases"].values())
     assumed = sorted({case.name for case in cases} - set(calibrated))
     if assumed:
-        told.append(f"The mean friction, which is assumed and not calibrated: {', '.join(assumed)}.")
-    untold = [
+        sentences.append(f"The mean friction, which is assumed and not calibrated: {', '.join(assumed)}.")
+    unanswered = [
         parameter_label(name)
         for name, one in (content.calibration or {"parameters": {}})["parameters"].items()
         if name.startswith("friction.") and not one["answers"][ALL]["told"]
     ]
-    if untold:
-        told.append(f"Frictions of which the open tests tell nothing: {'; '.join(untold)}.")
-    return told
+    if unanswered:
+        sentences.append(f"Frictions of which the open tests tell nothing: {'; '.join(unanswered)}.")
+    return sentences
 
 
 def _chaotic(cases):
     """Models with the earliest time at which their twins part within the window [s], in words by case."""
-    told = []
+    by_case = []
     for case in cases:
         horizons = case.differences["horizon"].min("twin")
         parted = [
@@ -293,5 +285,5 @@ def _chaotic(cases):
             if float(horizons.sel(model=model)) < case.settings["duration"]
         ]
         if parted:
-            told.append(f"{case.name}, {', '.join(parted)}")
-    return told
+            by_case.append(f"{case.name}, {', '.join(parted)}")
+    return by_case

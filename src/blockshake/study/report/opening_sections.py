@@ -3,23 +3,27 @@
 import numpy as np
 
 from blockshake.dynamics.load_motion import provenance
-from blockshake.pages.blocks import Figure, Heading, Items, Section, Text
+from blockshake.pages.blocks import PAGE_WIDTH, Figure, Heading, Items, Section, Table, Text
 from blockshake.pages.drawing import svg_of
+from blockshake.pages.rows import face_markers
+from blockshake.pages.scene.structure_picture import plot_understood
 from blockshake.pages.wording import (
+    CUBED,
+    MISSING,
+    SQUARED,
     count_words,
+    given,
+    millimetres,
     model_label,
+    number,
+    percent,
 )
-from blockshake.study.ensembles.outcomes import count_outcomes
+from blockshake.statistics.intervals import CONFIDENCE, samples_needed
+from blockshake.study.ensembles.outcomes import count_outcomes, shortfall
 from blockshake.study.report.conclusions import conclusions
-from blockshake.study.report.figures.motion import plot_motions, plot_spectra
-from blockshake.study.report.figures.structure import plot_structure, structure_width
-from blockshake.study.report.input_tables import (
-    bases_table,
-    bodies_table,
-    cases_table,
-    motions_table,
-)
-from blockshake.study.report.probability_table import probability_table
+from blockshake.study.report.motion_figure import plot_motions, plot_spectra
+
+_SHOWN = (0.5, 0.95)  # quantiles of peaks and rotations
 
 
 def summary(content):
@@ -50,26 +54,94 @@ def summary(content):
         )
     responses = [one for case in cases for one in case.responses.values()]
     ended = count_outcomes(np.concatenate([one.samples["status"] for one in responses]))
-    items = [
+    runs = (
         f"{count_words(len(content.cases), 'case')}, {count_words(len(content.study['models']), 'model')} "
         f"({', '.join(model_label(model) for model in content.study['models'])}), {sum(ended)} runs: "
         f"{ended.completed} completed, {ended.collapsed} collapsed, {ended.falling} still falling "
-        f"when the window ended, {ended.failed} failed.",
-        f"{len(content.design)} samples of {len(content.distributions)} random variables in the design (seed "
-        f"{content.study['ensemble']['seed']}).",
-    ]
-    return Section(
-        "Summary",
-        "summary",
-        (
-            *blocks,
-            *conclusions(content),
-            Heading("Figures behind these sentences", "figures-of-summary"),
-            probability_table(content),
-            Items(tuple(items)),
-            cases_table(content),
-        ),
+        f"when the window ended, {ended.failed} failed."
     )
+    blocks += [
+        *conclusions(content),
+        Heading("Figures behind these sentences", "figures-of-summary"),
+        probability_table(content),
+        Text(runs),
+        _cases_table(content),
+    ]
+    return Section("Summary", "summary", tuple(blocks))
+
+
+def probability_table(content):
+    """Collapse, drift beyond the limit, peak and rotation of the top block, each with its 95 % interval."""
+    needed = ", ".join(f"{100 * one:.0f} % needs {samples_needed(one)}" for one in _SHOWN)
+    rows = []
+    for case in content.cases.values():
+        body, marker = next(iter(face_markers(case.structure).items()))
+        for model, response in case.responses.items():
+            one = response.envelope
+            counted, failed, *_ = shortfall(one)
+            top = one.sel(marker=marker, body=body)
+            rows.append((
+                f"{case.name}, {marker}", model_label(model),
+                f"{counted} + {failed} failed" if failed else str(counted),
+                _with_limits(top, "collapse_probability", percent), _with_limits(top, "drift_probability", percent),
+                *(_with_limits(top.sel(frame="slab", quantile=q), "peak", _thousandths) for q in _SHOWN),
+                *(_with_limits(top.sel(quantile=q), "peak_rotation", _thousandths) for q in _SHOWN),
+            ))  # fmt: skip
+    limit = next(iter(next(iter(content.cases.values())).responses.values())).envelope["drift_probability"]
+    shown = " and ".join(f"{100 * one:.0f} %" for one in _SHOWN)
+    quantiles = [f"{100 * one:.0f} %" for one in _SHOWN]
+    return Table(
+        "Top block, at its marker: probability of collapse, and of a displacement relative to the slab of more than "
+        f"{number(1e3 * limit.attrs['largest_drift'])} mm, with Clopper-Pearson limits; quantiles {shown} of peak "
+        "displacement [mm] and peak rotation [mrad] over the n samples that did not fail, with limits by order "
+        f"statistics. {MISSING.capitalize()}: of a quantile for which n is too small to bear limits ({needed}). All "
+        f"limits are of {100 * CONFIDENCE:.0f} % and take samples as independent. A sample that collapsed, or still "
+        "fell when the window ended, counts as a collapse and as more than that drift, and with the peak that it had "
+        "reached.",
+        (
+            "Case, marker", "Model", "n", "Collapse [%]", "Drift [%]", *(f"Peak, {one} [mm]" for one in quantiles),
+            *(f"Rotation, {one} [mrad]" for one in quantiles),
+        ),
+        tuple(rows), "llrrrrrrr",
+    )  # fmt: skip
+
+
+def _with_limits(dataset, name, show):
+    value, limits = float(dataset[name]), dataset[f"{name}_interval"].sel(bound=["lower", "upper"])
+    if not np.isfinite([value, *limits]).all():
+        return MISSING
+    return f"{show(value)} [{', '.join(map(show, limits))}]"
+
+
+def _thousandths(value):
+    return f"{1e3 * float(value):.1f}"
+
+
+def _cases_table(content):
+    """Simulated cases: structure, motion, scale, peak acceleration, window, samples by model and their ends."""
+    rows = []
+    for case in content.cases.values():
+        for model, response in case.responses.items():
+            rows.append((
+                case.name, case.motion, given(case.settings["scale"]), number(content.peak_acceleration(case)),
+                given(case.settings["duration"]), model_label(model),
+                given(content.study["models"][model]["time_step"]), str(response.samples.sizes["sample"]),
+                " / ".join(map(str, count_outcomes(response.samples["status"]))),
+            ))  # fmt: skip
+    header = (
+        "Case", "Motion", "Scale", f"Peak acceleration [m/s{SQUARED}]", "Window [s]", "Model", "Time step [s]",
+        "Samples", "completed / collapsed / still falling / failed",
+    )  # fmt: skip
+    shared = [
+        f"{model_label(model)}: {', '.join(f'{name} {given(value)}' for name, value in settings['parameters'].items())}"
+        for model, settings in content.study["models"].items()
+        if settings.get("parameters")
+    ]
+    return Table(
+        "Cases and models. The peak acceleration is the scaled motion's; the window is counted from its start."
+        + (f" In all samples of {'; '.join(shared)}." if shared else ""),
+        header, tuple(rows), "llrrrlrrr",
+    )  # fmt: skip
 
 
 def structures(content):
@@ -92,55 +164,133 @@ def structures(content):
         blocks += [
             Heading(names, f"structure-{case.name}"),
             Figure(
-                f"{names}: {case.structure.file.description}. Sizes in m"
-                + (", some of them inferred (see above)" if case.is_shipped else "")
-                + ". The faces towards the reader are those at the lowest y (front view) and the largest x (side "
-                "view); sensors on hidden faces are drawn too.",
-                svg_of(plot_structure, case.structure),
-                structure_width(case.structure),
+                f"{names}: {case.structure.file.description}"
+                + (", some sizes inferred (see above)" if case.is_shipped else "")
+                + ". The table shakes along x. Joints are pairs of bodies nearer than 0.1 mm. Sensors on hidden faces "
+                "are drawn too.",
+                svg_of(plot_understood, case.structure, PAGE_WIDTH),
             ),
-            bodies_table(case.structure, names),
+            _bodies_table(case.structure, names),
         ]
     return Section("Structures", "structures", tuple(blocks))
 
 
+def _bodies_table(structure, names):
+    """Bodies of a structure with size, material and mass; ``names``: of its cases."""
+    rows = []
+    for body, mass in zip(structure.file.bodies, structure.mass, strict=True):
+        shape = structure.file.shapes[body.shape]
+        size = " x ".join(f"{edge:g}" for edge in shape.box) if shape.box else f"mesh {shape.mesh}"
+        rows.append((
+            body.name + (" (driven)" if body.driven else ""), size, f"{shape.chamfer:g}", body.material,
+            f"{body.density or structure.file.materials[body.material].density:g}", f"{mass:.0f}",
+        ))  # fmt: skip
+    return Table(
+        f"Bodies of {names}; sizes along x, y, z; masses of the chamfered shapes at nominal density.",
+        ("Body", "Size [m]", "Chamfer [m]", "Material", f"Density [kg/m{CUBED}]", "Mass [kg]"),
+        tuple(_merged(rows)), "lrrlrr",
+    )  # fmt: skip
+
+
+def _merged(rows):
+    """Rows that differ in the body's name only become one."""
+    merged = {}
+    for name, *rest in rows:
+        merged.setdefault(tuple(rest), []).append(name)
+    return [(", ".join(names), *rest) for rest, names in merged.items()]
+
+
 def motions(content):
-    """Histories, spectra and figures of the motions."""
-    used = {}
+    """Histories, spectra and figures of the motions that shake the cases."""
+    windows = {}
     for case in content.cases.values():
-        used.setdefault(content.motions[case.motion].attrs["name"], set()).add(case.settings["duration"])
-    lasts = {one.attrs["name"]: float(one["time"][-1]) for one in content.motions.values()}
-    cut = {name: sorted(end for end in ends if end < lasts[name]) for name, ends in used.items()}
-    cut = {name: ends for name, ends in cut.items() if ends}
-    unused = [
-        name for name in content.motions if name not in {case.motion for case in content.cases.values()}
-    ]
-    data = list(content.motions.values())
+        windows.setdefault(case.motion, set()).add(case.settings["duration"])
+    used = [content.motions[name] for name in windows]
+    cut = {
+        one.attrs["name"]: sorted(end for end in ends if end < float(one["time"][-1]))
+        for one, ends in zip(used, windows.values(), strict=True)
+    }
+    targets = any("target" in one for one in used)
     blocks = [
-        Text(
-            "Motions at 100 %; the cases multiply them by their scale."
-            + (
-                f" No case of this study uses {', '.join(unused)}, which the ladder of intensities names."
-                if unused
-                else ""
-            )
-        ),
-        Items(tuple(f"{one.attrs['name']}: {provenance(one.attrs)}." for one in data)),
+        Text("Motions at 100 %; the cases multiply them by their scale."),
+        Items(tuple(f"{one.attrs['name']}: {provenance(one.attrs)}." for one in used)),
         Figure(
             "Ground acceleration, velocity and displacement along x (after the paper's Fig. 5)"
-            + ("; dashed: end of the window that the cases simulate." if cut else "."),
-            svg_of(plot_motions, data, cut),
+            + ("; dashed: end of the window that the cases simulate." if any(cut.values()) else "."),
+            svg_of(plot_motions, used, cut),
         ),
         Figure(
             "Response spectra at 5 % damping"
-            + (
-                ", with the ordinates that a synthetic motion aims at."
-                if any("target" in one for one in data)
-                else "."
-            ),
-            svg_of(plot_spectra, data),
+            + (", with the ordinates that a synthetic motion aims at." if targets else "."),
+            svg_of(plot_spectra, used),
         ),
-        motions_table(content.motions),
-        *([bases_table(content)] if any(case.base is not None for case in content.cases.values()) else []),
+        _motions_table(used),
     ]
+    if any(case.base is not None for case in content.cases.values()):
+        blocks.append(_bases_table(content))
     return Section("Ground motions", "motions", tuple(blocks))
+
+
+def _motions_table(motions):
+    """Peaks, intensity and durations of the motions at 100 %."""
+    shown = (
+        (f"PGA [m/s{SQUARED}]", "peak_acceleration", 1.0),
+        ("PGV [m/s]", "peak_velocity", 1.0),
+        ("PGD [mm]", "peak_displacement", 1e3),
+        ("Arias intensity [m/s]", "arias_intensity", 1.0),
+        ("Significant duration, 5 to 95 % [s]", "significant_duration", 1.0),
+        ("Record [s]", "duration", 1.0),
+    )
+    rows = [
+        (
+            motion.attrs["name"],
+            "synthetic" if motion.attrs.get("synthetic") else motion.attrs.get("format", ""),
+            *(number(factor * motion.attrs[key]) for _, key, factor in shown),
+        )
+        for motion in motions
+    ]
+    return Table(
+        "Motions at 100 %: peak ground acceleration, velocity and displacement along x, Arias intensity and "
+        "durations.",
+        ("Motion", "Kind", *(label for label, _, _ in shown)), tuple(rows), "ll" + "r" * len(shown),
+    )  # fmt: skip
+
+
+def _bases_table(content):
+    """The slab's motion in the tests that the cases are compared with, beside what was commanded."""
+    rows = []
+    for case in content.cases.values():
+        base = case.base
+        if base is None:
+            continue
+        moved = base.sel(channel="pitch_y")["displacement"]
+        errors = [
+            float(base.sel(channel="x")[f"{name}_error"].median()) for name in ("displacement", "velocity")
+        ]
+        rows.append((
+            case.name, base.attrs["test"], case.settings["input"], number(1e3 * base.attrs["start"]),
+            number(base.attrs["gain"], 4), millimetres(base.attrs["departure"]),
+            number(1e3 * float(abs(moved).max())), number(1e3 * errors[0]), number(1e3 * errors[1]),
+        ))  # fmt: skip
+    return Table(
+        "Motion of the slab in the tests, as its sensors read it: when the command starts on the clock of the test, "
+        "displacement along x over the command and root mean square of what departs from the command, largest pitch, "
+        "and standard deviations of the smoothed displacement and velocity along x (medians over the record)."
+        + _unread_words(content),
+        (
+            "Case", "Test", "The models are driven by the motion", "Start [ms]", "Gain", "Departure [mm]",
+            "Pitch [mrad]", "Error [mm]", "Error [mm/s]",
+        ),
+        tuple(rows), "lllrrrrrr",
+    )  # fmt: skip
+
+
+def _unread_words(content):
+    """A sentence for each case whose slab was not measured along every axis."""
+    bases = {case.name: case.base.attrs for case in content.cases.values() if case.base is not None}
+    return "".join(
+        f" {name}: no marker measures the slab along {' and '.join(base['unread'])}, where it "
+        + ("moves as commanded." if base["follows"] else "is taken to be at rest.")
+        for name, base in bases.items()
+        if base.get("unread")
+    )

@@ -2,8 +2,7 @@
 
 from blockshake.files import write_json
 from blockshake.pages.blocks import Document, numbered
-from blockshake.pages.html import write_html
-from blockshake.pages.pdf import write_pdf
+from blockshake.pages.writing import write_html, write_pdf
 from blockshake.study.calibration.section import calibration
 from blockshake.study.comparison.section import models
 from blockshake.study.fragility.section import fragility
@@ -64,7 +63,7 @@ def make_report(study, results, logs, html, pdf, paper):
 
 
 def make_case_report(study, case, results, logs, html, pdf):
-    """Write the report of one case of a study, from the results of this case alone; parameters as of `make_report`."""
+    """Write the report of one case of a study, from the results of this case alone; parameters as in `make_report`."""
     document = compose(load_content(study, results, logs, case))
     write_html(html, document)
     write_pdf(pdf, document)
@@ -72,7 +71,7 @@ def make_case_report(study, case, results, logs, html, pdf):
 
 def compose(content):
     """Document of the content of a study or of one of its cases."""
-    sections = [one for one in _SECTIONS if not (content.only and one in _NOT_OF_A_CASE)]
+    sections = [section for section in _SECTIONS if not (content.only and section in _NOT_OF_A_CASE)]
     return numbered(
         Document(
             title=f"blockshake: {content.study['name']}" + (f", {content.only}" if content.only else ""),

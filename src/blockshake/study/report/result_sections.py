@@ -1,19 +1,27 @@
 """Section on the responses: displacement of the blocks by every model, case by case."""
 
-from blockshake.pages.blocks import Figure, Heading, Section, Text
+import numpy as np
+
+from blockshake.pages.blocks import Figure, Heading, Section, Table, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.rows import face_markers, main_bodies
-from blockshake.pages.wording import given, model_label, number, share_words
+from blockshake.pages.wording import (
+    SHOWN_QUANTILES,
+    given,
+    model_label,
+    number,
+    percent,
+    quantile_range,
+    share_words,
+)
 from blockshake.study.comparison.tables import block_tables
 from blockshake.study.ensembles.outcomes import shortfall
-from blockshake.study.report.figures.displacement import plot_displacements
-from blockshake.study.report.figures.interactive import interactive_displacements
-from blockshake.study.report.figures.moving import moving_samples, plot_still, usual_magnification
+from blockshake.study.report.displacement_figure import interactive_displacements, plot_displacements
 from blockshake.study.report.joint_blocks import joint_blocks
-from blockshake.study.report.result_tables import coverage_table, top_block_table
+from blockshake.study.report.moving import moving_samples, plot_still, usual_magnification
 from blockshake.study.sensitivity.findings import quiet_markers
 
-_PAPER_FIGURES = {f"configuration-{place}": 10 + place for place in (1, 2, 3, 4)}
+_PAPER_FIGURES = {f"configuration-{index}": 10 + index for index in (1, 2, 3, 4)}
 
 
 def responses(content):
@@ -26,7 +34,6 @@ def responses(content):
             "further run of the same model at one instant with probability (n - 1) / (n + 1). For a whole record no "
             "probability is known; therefore every coverage stands beside its leave-one-out reference."
         ),
-        top_block_table(content),
     ]
     for case in content.cases.values():
         blocks += _response(case, content.motions[case.motion])
@@ -115,18 +122,18 @@ def _gaps(case):
     """Numbers of samples that contribute where some stopped early or failed."""
     texts = []
     for model, one in case.responses.items():
-        found = shortfall(one.envelope)
-        if found.since == found.since:
+        missing = shortfall(one.envelope)
+        if np.isfinite(missing.since):
             texts.append(
                 Text(
-                    f"{model_label(model)}: {found.counted} samples contribute until {number(found.since)} s, "
-                    f"{found.at_end} at the end; bounds and quantiles are of those that contribute, and peaks of "
+                    f"{model_label(model)}: {missing.counted} samples contribute until {number(missing.since)} s, "
+                    f"{missing.at_end} at the end; bounds and quantiles are of those that contribute, and peaks of "
                     "samples that fell are lower limits."
                 )
             )
-        if found.failed:
+        if missing.failed:
             texts.append(
-                Text(f"{model_label(model)}: the statistics leave out failed samples ({found.failed}).")
+                Text(f"{model_label(model)}: the statistics leave out failed samples ({missing.failed}).")
             )
     return texts
 
@@ -146,3 +153,29 @@ def _lines(case, markers):
                 )
             )
     return texts
+
+
+def coverage_table(case):
+    """Coverage with its reference, and distance with its chance."""
+    rows = []
+    for body, marker in face_markers(case.structure).items():
+        for model, one in case.responses.items():
+            if marker not in one.comparison["marker"].values:
+                continue
+            at = one.comparison.sel(marker=marker)
+            if np.isfinite(at["coverage"]):  # not of too few samples
+                rows.append((
+                    body, model_label(model), percent(at["coverage"]), quantile_range(at["reference"], percent),
+                    number(float(at["distance"]), 2), number(float(at["curve_probability"]), 2),
+                ))  # fmt: skip
+    word = "virtual test" if case.synthetic else "measured curve"
+    quantiles = " / ".join(f"{100 * one:.0f}" for one in SHOWN_QUANTILES)
+    return Table(
+        f"{case.name}: share of the time that the {word} lies within the bounds (inertial frame), beside the share of "
+        "each sample in the bounds of the others (leave one out, read with the noise of the markers), quantiles "
+        f"{quantiles} %; root mean square distance of the {word} from the samples, in standard deviations of noise and "
+        "spread, and the chance of a distance as large for one more sample. Models with fewer than three samples are "
+        "left out.",
+        ("Block", "Model", f"Coverage of the {word} [%]", "Reference, leave one out [%]", "Distance", "Chance"),
+        tuple(rows), "llrrrr",
+    )  # fmt: skip

@@ -9,52 +9,37 @@ from blockshake.study.analyses import OF_THE_PAPER
 from blockshake.study.ensembles.coverage import UNLIKELY, is_likely
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.statements.solvers import RIGID
-from blockshake.study.statements.statement import (
-    PaperVerdict,
-    against_tests,
-    compared,
-    judged,
-    missing,
-    unjudged,
-)
+from blockshake.study.statements.statement import PaperVerdict, against_tests, compared, judged, unjudged
 
 _ELASTIC, _VISCOELASTIC = "nscd-elastic", "nscd-viscoelastic"
 _NEARER, _FARTHER, _UNDECIDED, _UNKNOWN = "nearer", "farther", "not told apart", "too few samples"
-_NO_TEST = "This study has no measured test."
 _NO_FIT = f"A chance of {percent(UNLIKELY)} % or less, or the lowest that the samples tell, counts as no fit."
 
 
 def resemblance(content):
     """Measured curves within the envelopes, Figs. 11 to 14."""
     cases = compared(content)
-    if not cases:
-        return unjudged(_NO_TEST)
-    told, holds = [], True
+    words, likely = [], []
     for case in cases:
         for model in case.responses:
-            found = _of_blocks(case, model)
-            chance = float(found["curve_probability"].median())
+            at = _of_blocks(case, model)
+            chance = float(at["curve_probability"].median())
             if np.isnan(chance):
                 continue  # too few samples
-            holds = holds and is_likely(chance, found.attrs["counted"])
-            told.append(
-                f"{case.name}, {model_label(model)}: {percent(found['coverage'].median())} % of the time inside "
-                f"(members {percent(found['reference'].sel(quantile=0.5).median())} %), chance {number(chance, 2)}"
+            likely.append(is_likely(chance, at.attrs["counted"]))
+            words.append(
+                f"{case.name}, {model_label(model)}: {percent(at['coverage'].median())} % of the time inside "
+                f"(members {percent(at['reference'].sel(quantile=0.5).median())} %), chance {number(chance, 2)}"
             )
-    if not told:
+    if not words:
         return unjudged("The samples are too few to hold the curves against them.")
-    return against_tests(
-        cases, holds, f"Medians over the markers of the blocks: {'; '.join(told)}. {_NO_FIT}"
-    )
+    sentence = f"Medians over the markers of the blocks: {'; '.join(words)}. {_NO_FIT}"
+    return against_tests(cases, all(likely), sentence)
 
 
 def best_model(content):
     """Viscoelastic blocks nearest to the tests of all configurations."""
-    if absent := missing(content, RIGID, _ELASTIC, _VISCOELASTIC):
-        return unjudged(absent)
     cases = {case.name: case for case in compared(content)}
-    if not cases:
-        return unjudged(_NO_TEST)
     sides = [_side(cases.get(name), other) for name in OF_THE_PAPER for other in (RIGID, _ELASTIC)]
     nearer, farther, undecided, unknown = map(sides.count, (_NEARER, _FARTHER, _UNDECIDED, _UNKNOWN))
     words = (
@@ -79,69 +64,60 @@ def _side(case, other):
     return _NEARER if lower > 0.0 else _FARTHER if upper < 0.0 else _UNDECIDED
 
 
-def satisfactory(content, model, fits, fails=()):
-    """A model that fits some configurations and not others, named by their numbers."""
-    if absent := missing(content, model):
-        return unjudged(absent)
+def satisfactory(content, model, fails=()):
+    """A model that fits all configurations but those that are named."""
     cases = [
         case
         for case in compared(content)
         if case.name in OF_THE_PAPER and case.responses[model].comparison["curve_probability"].notnull().any()
     ]
     if not cases:
-        return unjudged(_NO_TEST)
-    expected = {f"configuration-{place}": place in fits for place in (*fits, *fails)}
-    told, holds = [], True
+        return unjudged("The samples are too few to hold the curves against them.")
+    words, as_stated = [], []
     for case in cases:
-        found = _of_blocks(case, model)
-        chance = float(found["curve_probability"].median())
-        holds = holds and expected.get(case.name, True) == is_likely(chance, found.attrs["counted"])
-        told.append(f"{case.name} {number(chance, 2)}")
-    absent = sorted(set(expected) - {case.name for case in cases})
-    words = f"Chance of the measured curves, median over the markers of the blocks: {', '.join(told)}."
+        at = _of_blocks(case, model)
+        chance = float(at["curve_probability"].median())
+        as_stated.append(is_likely(chance, at.attrs["counted"]) == (case.name not in fails))
+        words.append(f"{case.name} {number(chance, 2)}")
+    absent = sorted(set(OF_THE_PAPER) - {case.name for case in cases})
+    sentence = f"Chance of the measured curves, median over the markers of the blocks: {', '.join(words)}."
     if absent:
-        words += f" Not in this study, or of fewer than three samples: {', '.join(absent)}."
-    words = f"{words} {_NO_FIT}"
-    found = against_tests(cases, holds, words)
-    return unjudged(words) if absent and found.verdict == PaperVerdict.MET else found
+        sentence += f" Not in this study, or of fewer than three samples: {', '.join(absent)}."
+    finding = against_tests(cases, all(as_stated), f"{sentence} {_NO_FIT}")
+    return unjudged(f"{sentence} {_NO_FIT}") if absent and finding.verdict == PaperVerdict.MET else finding
 
 
 def alike(content):
     """LS-DEM beside rigid and viscoelastic blocks in contact dynamics."""
-    others = [model for model in (RIGID, _VISCOELASTIC) if model in content.study["models"]]
-    if absent := missing(content, "ls-dem", *([] if others else [RIGID])):
-        return unjudged(absent)
-    told, few, apart, beyond = [], [], 0, 0
+    words, few, apart, beyond = [], [], 0, 0
     for case in content.cases.values():
-        for other in others:
-            pair = case.differences.sel(model="ls-dem", other=other)
-            distance, chance = float(pair["distance"]), float(pair["distance_chance"])
-            width = float(case.differences["width"].sel(model=["ls-dem", other]).mean("marker").max())
-            if int(case.differences["counted"].sel(model=["ls-dem", other]).min()) < SURE_FROM:
+        for other in (model for model in (RIGID, _VISCOELASTIC) if model in content.study["models"]):
+            both = ["ls-dem", other]
+            if int(case.differences["counted"].sel(model=both).min()) < SURE_FROM:
                 few.append(f"{case.name}, {model_label(other)}")
                 continue
-            apart, beyond = apart + (distance > width), beyond + (distance > chance)
+            pair = case.differences.sel(model="ls-dem", other=other)
+            distance, width = float(pair["distance"]), case.differences["width"].sel(model=both)
+            widest = float(width.mean("marker").max())
+            apart, beyond = apart + (distance > widest), beyond + (distance > float(pair["distance_chance"]))
             marker = next(iter(face_markers(case.structure).values()))
             at = {"frame": "slab", "marker": marker, "quantile": 0.5}
-            top = [case.responses[model].envelope["peak"].sel(at) for model in ("ls-dem", other)]
-            told.append(
-                f"{case.name}, {model_label(other)} {number(1e3 * distance)} mm beside {number(1e3 * width)} mm, "
-                f"median peaks at the top {number(1e3 * float(top[0]))} and {number(1e3 * float(top[1]))} mm"
+            peaks = [number(1e3 * float(case.responses[model].envelope["peak"].sel(at))) for model in both]
+            words.append(
+                f"{case.name}, {model_label(other)} {number(1e3 * distance)} mm beside {number(1e3 * widest)} mm, "
+                f"median peaks at the top {' and '.join(peaks)} mm"
             )
-    if not told:
+    if not words:
         return unjudged("The samples are too few to hold the models against each other.")
+    fewer = f" Of fewer than {SURE_FROM} samples, and not judged: {'; '.join(few)}." if few else ""
     return judged(
         not apart,
         "Energy distance of an ensemble of NSCD from that of LS-DEM, beside the mean difference of two samples of "
-        f"the wider of both, means over times and the markers of all blocks: {'; '.join(told)}. Alike counts where "
+        f"the wider of both, means over times and the markers of all blocks: {'; '.join(words)}. Alike counts where "
         "the distance is the smaller one: two equal normal distributions may be about two standard deviations apart. "
-        f"It is the larger one in {share_words(apart, len(told))} comparisons, and beyond that of samples "
-        f"exchanged at random in {share_words(beyond, len(told))}.{_too_few(few)}",
+        f"It is the larger one in {share_words(apart, len(words))} comparisons, and beyond that of samples "
+        f"exchanged at random in {share_words(beyond, len(words))}.{fewer}",
     )
-
-
-def _too_few(names):
-    return f" Of fewer than {SURE_FROM} samples, and not judged: {'; '.join(names)}." if names else ""
 
 
 def _of_blocks(case, model):
@@ -151,14 +127,14 @@ def _of_blocks(case, model):
         for body, driven in zip(case.structure.body_names, case.structure.driven, strict=True)
         if not driven
     ]
-    found = case.responses[model].comparison
+    comparison = case.responses[model].comparison
     on_blocks = {one.name for one in case.structure.file.markers if one.body in free}
-    return found.sel(marker=[name for name in found["marker"].values if name in on_blocks])
+    return comparison.sel(marker=[name for name in comparison["marker"].values if name in on_blocks])
 
 
 def rotations(content):
     """Rotations within the noise of the measurement."""
-    told, holds, cases = [], True, []
+    words, largest, cases = [], [], []
     for case in compared(content):
         shown = []
         for body, driven in zip(case.structure.body_names, case.structure.driven, strict=True):
@@ -173,14 +149,14 @@ def rotations(content):
             shown.append(turned / (np.sqrt(2.0) * case.marker_noise / reach))
         if shown:
             cases.append(case)
-            holds = holds and max(shown) < 1.0
-            told.append(f"{case.name} {number(min(shown), 2)} to {number(max(shown), 2)} times")
-    if not told:
+            largest.append(max(shown))
+            words.append(f"{case.name} {number(min(shown), 2)} to {number(max(shown), 2)} times")
+    if not words:
         return unjudged("No block of a measured test has two markers apart.")
     return against_tests(
         cases,
-        holds,
+        max(largest) < 1.0,
         "Largest rotation of a block, the largest of the models' medians over samples, over the standard deviation of "
         "a rotation from the two markers of the block that are furthest apart, from block to block: "
-        f"{'; '.join(told)}. Below 1 for all blocks counts as lost in the noise.",
+        f"{'; '.join(words)}. Below 1 for all blocks counts as lost in the noise.",
     )

@@ -7,8 +7,8 @@ from blockshake.pages.wording import given, model_label
 from blockshake.study.statements.statement import PaperVerdict
 from blockshake.study.statements.table import STATEMENTS
 
-HEADER = ("Place", "Statement of the paper", "Verdict", "Finding", "Command")
-_WIDTHS = (6, 9, 5, 17, 9)
+HEADER = ("Place", "Statement of the paper", "Verdict", "Finding")
+_WIDTHS = (6, 10, 5, 25)
 
 
 def judge_statements(content):
@@ -18,7 +18,8 @@ def judge_statements(content):
     if not content.cases:
         return {}
     return {
-        heading: tuple(_row(content, one) for one in statements) for heading, statements in STATEMENTS.items()
+        heading: tuple((one.place, one.claim, *map(str, one.finding(content))) for one in statements)
+        for heading, statements in STATEMENTS.items()
     }
 
 
@@ -34,13 +35,6 @@ def _of_the_paper(content):
         calibrated=tuple(one for one in calibrated if one.cases),
         calibration=content.calibration if len(cases) == len(content.cases) else None,
     )
-
-
-def _row(content, statement):
-    verdict, words = statement.judge(content)
-    made = statement.target.format(study=content.study["name"], case="CASE")
-    command = made if " " in made else f"snakemake -c2 {made}"
-    return statement.place, statement.claim, str(verdict), words, command
 
 
 def count_words(rows_by_heading):
@@ -77,10 +71,8 @@ def statements(content):
             "or does the same. Not met: it finds or does something else. Cannot be judged: the study lacks the model, "
             "the case or the real measurement that the statement hangs on. A synthetic test judges no statement about "
             "the real specimens; the synthetic tests that ship are runs of LS-DEM with an effect hidden in them, "
-            "none of contact dynamics. The numbers of a finding are computed from this study. The last column has the "
-            "command, in which CASE is a case of the study. The command takes --configfile FILE at its end for another "
-            "study than the default one. Statements that no study decides, and departures from the paper: "
-            "docs/results/the-paper.md."
+            "none of contact dynamics. The numbers of a finding are computed from this study. Statements that no study "
+            "decides, and departures from the paper: docs/results/the-paper.md."
         ),
         Text(count_words(rows_by_heading)),
     ]
@@ -88,6 +80,6 @@ def statements(content):
         key = heading.lower().replace(" ", "-").replace(",", "")
         blocks += [
             Heading(heading, f"paper-{key}"),
-            Table(f"{heading}: findings of this study.", HEADER, rows, "lllll", _WIDTHS),
+            Table(f"{heading}: findings of this study.", HEADER, rows, "llll", _WIDTHS),
         ]
     return Section("The paper, statement by statement", "paper", tuple(blocks))

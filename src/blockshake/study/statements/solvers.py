@@ -5,7 +5,7 @@ import numpy as np
 from blockshake.pages.wording import given, model_label, number
 from blockshake.simulation.models import MODELS
 from blockshake.study.ensembles.outcomes import count_outcomes, numerical_figure
-from blockshake.study.statements.statement import judged, missing, setting, unjudged
+from blockshake.study.statements.statement import judged, unjudged
 
 _CONSERVED = 0.01  # of the energy in play: a residual below it counts as none
 RIGID = "nscd-rigid"
@@ -13,8 +13,6 @@ RIGID = "nscd-rigid"
 
 def stable_step(content):
     """Eq. (6) and the explicit scheme with a step that is stable."""
-    if absent := missing(content, "ls-dem"):
-        return unjudged(absent)
     samples = [case.responses["ls-dem"].samples for case in content.cases.values()]
     step = content.study["models"]["ls-dem"]["time_step"]
     limit = min(numerical_figure(one, "numerics_stable_time_step", np.min) for one in samples)
@@ -34,29 +32,27 @@ def converged(content):
     models = [model for model in content.study["models"] if model.startswith("nscd")]
     if not models:
         return unjudged("This study has no nonsmooth model.")
-    told, capped, counted = [], 0, 0
+    words, capped, counted = [], 0, 0
     for model in models:
         steps = sum(_figure(content, model, "numerics_steps", np.sum))
         if not steps:
-            told.append(f"{model_label(model)}: no sample has figures of its steps.")
+            words.append(f"{model_label(model)}: no sample has figures of its steps.")
             continue
         at_cap = sum(_figure(content, model, "numerics_capped_steps", np.sum))
         worst = max(_figure(content, model, "numerics_max_residual", np.max), default=np.nan)
-        tolerance = setting(content, model, f"{MODELS[model].prefix}.tolerance")
+        tolerance = _setting(content, model, f"{MODELS[model].prefix}.tolerance")
         capped, counted = capped + at_cap, counted + steps
-        told.append(
+        words.append(
             f"{model_label(model)}: of the steps of all samples {number(100.0 * at_cap / steps, 2)} % ({at_cap:.0f}) "
             f"stopped at the iteration limit before the tolerance of {given(tolerance)}, which the paper does not "
             f"state; largest relative residual {number(worst)}."
         )
-    return judged(capped == 0, " ".join(told)) if counted else unjudged(" ".join(told))
+    return judged(capped == 0, " ".join(words)) if counted else unjudged(" ".join(words))
 
 
 def conserves(content):
     """Energy without damping."""
-    if absent := missing(content, RIGID):
-        return unjudged(absent)
-    theta = setting(content, RIGID, "nscd.theta")
+    theta = _setting(content, RIGID, "nscd.theta")
     residuals = _figure(content, RIGID, "energy_residual", np.max)
     if not residuals:
         return unjudged("The runs of this study have no energy audit.")
@@ -75,8 +71,6 @@ def conserves(content):
 
 def dear_steps(content):
     """Few steps, each of them dear."""
-    if absent := missing(content, "ls-dem", RIGID):
-        return unjudged(absent)
     ratios = []
     for name in content.cases:
         cost = {one.model: one.cpu_per_simulated for one in content.timings if one.case == name}
@@ -102,3 +96,9 @@ def _figure(content, model, name, statistic):
         numerical_figure(case.responses[model].samples, name, statistic) for case in content.cases.values()
     ]
     return [one for one in found if np.isfinite(one)]
+
+
+def _setting(content, model, name):
+    """Value of a numerical parameter of a model in the study, by dotted name: its default unless it is set."""
+    chosen = content.study["models"][model].get("parameters", {})
+    return chosen.get(name, MODELS[model].numerical_parameters()[name][0])

@@ -6,7 +6,6 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from blockshake.pages.wording import given, model_label
-from blockshake.simulation.models import MODELS
 
 
 class PaperVerdict(StrEnum):
@@ -36,15 +35,26 @@ class Statement:
         The statement in the words of this program.
     judge : callable
         `Content` of a study to `PaperFinding`.
-    target : str
-        Result that the finding rests on: a target of the workflow, with ``{study}`` and ``{case}`` to be filled in,
-        or, with a space in it, a whole command.
+    models : tuple of str
+        Models without which no study can judge it.
+    measured : bool
+        Whether a study needs a measured test to judge it.
     """
 
     place: str
     claim: str
     judge: Callable
-    target: str
+    models: tuple = ()
+    measured: bool = False
+
+    def finding(self, content):
+        """`PaperFinding` of a study, which cannot judge the statement where it lacks a model or a measured test."""
+        lacking = [model_label(model) for model in self.models if model not in content.study["models"]]
+        if lacking:
+            return unjudged(f"This study has no {' and no '.join(lacking)}.")
+        if self.measured and not compared(content):
+            return unjudged("This study has no measured test.")
+        return self.judge(content)
 
 
 def judged(holds, words):
@@ -66,18 +76,6 @@ def against_tests(cases, holds, words):
     return unjudged(
         f"The tests of {', '.join(synthetic)} are synthetic and tell nothing of the specimens; they {side}. {words}"
     )
-
-
-def missing(content, *models):
-    """Words on the models that the study lacks; empty where it has all of them."""
-    lacking = [model_label(model) for model in models if model not in content.study["models"]]
-    return f"This study has no {' and no '.join(lacking)}." if lacking else ""
-
-
-def setting(content, model, name):
-    """Value that a numerical parameter of a model has in the study, by dotted name: its default unless it is set."""
-    given = content.study["models"].get(model, {}).get("parameters", {})
-    return given.get(name, MODELS[model].numerical_parameters()[name][0])
 
 
 def compared(content):

@@ -5,30 +5,13 @@ Statements that no study decides, and the departures from the paper, are tables 
 
 from functools import partial
 
-from blockshake.study.statements import (
-    calibration,
-    envelopes,
-    measured_tests,
-    models,
-    rocking,
-    solvers,
-    stiffness,
-)
+from blockshake.study.statements import inputs, models, responses, solvers
+from blockshake.study.statements.responses import FIRST, FOURTH, SECOND, STACKS_AND_WALLS, THIRD
 from blockshake.study.statements.statement import Statement
 
-_SAMPLES = "results/{study}/samples/ls-dem/{case}.nc"
-_NSCD_SAMPLES = "results/{study}/samples/nscd-rigid/{case}.nc"
-_ENVELOPE = "results/{study}/envelopes/ls-dem/{case}.nc"
-_SENSITIVITY = "results/{study}/sensitivities/ls-dem/{case}.nc"
-_NSCD_SENSITIVITY = "results/{study}/sensitivities/nscd-rigid/{case}.nc"
-_COMPARISON = "results/{study}/comparisons/ls-dem/{case}.nc"
-_OF_MODEL = "results/{{study}}/comparisons/{}/{{case}}.nc"
-_STIFFNESS = "results/{study}/stiffness/{case}.csv"
-_DESIGN = "results/{study}/design.json"
-_OPEN_TESTS = "results/{study}/calibration.json"
-_DISPLACEMENT_FIGURES = "LS-DEM Results, Figs. 11 to 14"
-_LMGC90 = "LMGC90 Results, Figs. 11 to 14"
+_FIGURES = "Results, Figs. 11 to 14"
 _CALIBRATION = "Model Calibration"
+_LS_DEM, _RIGID = ("ls-dem",), ("nscd-rigid",)
 _NSCD = ("nscd-rigid", "nscd-elastic", "nscd-viscoelastic")
 
 STATEMENTS = {
@@ -36,136 +19,127 @@ STATEMENTS = {
         Statement(
             "LS-DEM, Eq. (6)",
             "Forces and moments drive explicit steps of one length that is stable.",
-            solvers.stable_step, _SAMPLES,
+            solvers.stable_step, _LS_DEM,
         ),
         Statement(
             "LMGC90",
             "Unilateral contact, impacts and friction are solved by implicit steps, each iterated to convergence.",
-            solvers.converged, _NSCD_SAMPLES,
+            solvers.converged,
         ),
         Statement(
             "LMGC90 and Comparison",
             "Rigid contacts need no damping to be stable, and energy can be conserved in discrete time.",
-            solvers.conserves, _NSCD_SAMPLES,
+            solvers.conserves, _RIGID,
         ),
         Statement(
             "Comparison", "A step of LMGC90 is long and takes much computing time.", solvers.dear_steps,
-            _NSCD_SAMPLES,
+            _LS_DEM + _RIGID,
         ),
     ),
     "Measured tests": (
         Statement(
-            "Case Study", "The table shakes along one axis.", measured_tests.along_one_axis,
-            "results/{study}/inputs/{case}.nc",
+            "Case Study", "The table shakes along one axis.", inputs.along_one_axis, measured=True,
         ),
         Statement(
-            _CALIBRATION, "The tests with the largest accelerations are simulated.", measured_tests.strongest_tests,
-            "blockshake check CAMPAIGN",
+            _CALIBRATION, "The tests with the largest accelerations are simulated.", inputs.strongest_tests,
+            measured=True,
         ),
     ),
     "Samples and friction": (
         Statement(
             f"{_CALIBRATION}, Table 2, Fig. 8",
             "Nine log-normal variables with the means and variations of the table are sampled.",
-            calibration.table_2, _DESIGN,
+            inputs.table_2,
         ),
         Statement(
             _CALIBRATION, "A Latin hypercube with controlled correlation draws the samples.",
-            calibration.correlation_control, _DESIGN,
+            inputs.correlation_control,
         ),
-        Statement(_CALIBRATION, "Each set has 50 samples.", calibration.size, _DESIGN),
+        Statement(_CALIBRATION, "Each set has 50 samples.", inputs.size),
         Statement(
-            "Model Calibration and Conclusion", "Estimates from so few samples vary little.",
-            calibration.low_variability, _ENVELOPE,
+            "Model Calibration and Conclusion", "Estimates from so few samples vary little.", inputs.low_variability,
         ),
         Statement(
             _CALIBRATION, "The mean friction of concrete on concrete is searched from 0.3 to 0.8.",
-            calibration.friction_range, _OPEN_TESTS,
+            inputs.friction_range,
         ),
-        Statement(
-            f"{_CALIBRATION}, Table 2", "A mean of 0.75 is the best.", calibration.optimum, _OPEN_TESTS,
-        ),
+        Statement(f"{_CALIBRATION}, Table 2", "A mean of 0.75 is the best.", inputs.optimum),
     ),
     "Contact stiffness and damping": (
         Statement(
-            _CALIBRATION, "The distributions of k_n and k_s need not follow those of E and G.",
-            stiffness.follow_moduli, _STIFFNESS,
+            _CALIBRATION, "The distributions of k_n and k_s need not follow those of E and G.", inputs.follow_moduli,
         ),
+        Statement(_CALIBRATION, "Heavier blocks need a larger stiffness.", inputs.heavier_blocks),
         Statement(
-            _CALIBRATION, "Heavier blocks need a larger stiffness.", stiffness.heavier_blocks, _STIFFNESS,
-        ),
-        Statement(
-            _CALIBRATION, "A moderate damping with C_res 0.5 is needed because k_n is large.", stiffness.restitution,
-            "results/{study}/calibration.json",
+            _CALIBRATION, "A moderate damping with C_res 0.5 is needed because k_n is large.", inputs.restitution,
         ),
     ),
     "Results of LS-DEM": (
         Statement(
-            _DISPLACEMENT_FIGURES, "Envelopes grow thicker from block to block upward.",
-            partial(envelopes.upward, model="ls-dem"), _SENSITIVITY,
+            f"LS-DEM {_FIGURES}", "Envelopes grow thicker from block to block upward.",
+            partial(responses.upward, model="ls-dem"), _LS_DEM,
         ),
         Statement(
-            _DISPLACEMENT_FIGURES, "At the top, configurations 2 to 4 have thicker envelopes than configuration 1.",
-            partial(envelopes.than_first, model="ls-dem"), _SENSITIVITY,
+            f"LS-DEM {_FIGURES}", "At the top, configurations 2 to 4 have thicker envelopes than configuration 1.",
+            partial(
+                responses.thicker_tops, model="ls-dem", pairs=[(FIRST, other) for other in (SECOND, THIRD, FOURTH)]
+            ),
+            _LS_DEM,
         ),
         Statement(
-            _DISPLACEMENT_FIGURES,
+            f"LS-DEM {_FIGURES}",
             "At the top, configuration 4 has a thicker envelope than configuration 3, perhaps by its beams.",
-            partial(envelopes.fourth_than_third, model="ls-dem"), _SENSITIVITY,
+            partial(responses.thicker_tops, model="ls-dem", pairs=[(THIRD, FOURTH)]), _LS_DEM,
         ),
         Statement(
             "LS-DEM Results", "Configuration 1, the lowest, has the fewest occurrences of rocking and slide-rocking.",
-            rocking.occurrences, _SAMPLES,
+            responses.occurrences, _LS_DEM,
         ),
         Statement(
             "LS-DEM Results",
             "Blocks that rock or slide can depend heavily on friction, density and stiffness.",
-            envelopes.parameters_matter, _SENSITIVITY,
+            responses.parameters_matter, _LS_DEM,
         ),
     ),
     "Results of LMGC90": (
         Statement(
-            _LMGC90, "Viscoelastic blocks are nearest to the tests of all configurations.", models.best_model,
-            _OF_MODEL.format("nscd-viscoelastic"),
+            f"LMGC90 {_FIGURES}", "Viscoelastic blocks are nearest to the tests of all configurations.",
+            models.best_model, _NSCD, measured=True,
         ),
         Statement(
-            _LMGC90, "Elastic blocks are satisfactory for configurations 1 and 2 and deviate much for 3 and 4.",
-            partial(models.satisfactory, model="nscd-elastic", fits=(1, 2), fails=(3, 4)),
-            _OF_MODEL.format("nscd-elastic"),
+            f"LMGC90 {_FIGURES}",
+            "Elastic blocks are satisfactory for configurations 1 and 2 and deviate much for 3 and 4.",
+            partial(models.satisfactory, model="nscd-elastic", fails=(THIRD, FOURTH)), ("nscd-elastic",),
+            measured=True,
         ),
         Statement(
-            _LMGC90, "Runs by elastic blocks deviate more from each other in configurations 3 and 4.",
-            partial(envelopes.walls_than_stacks, model="nscd-elastic"), _NSCD_SENSITIVITY,
+            f"LMGC90 {_FIGURES}", "Runs by elastic blocks deviate more from each other in configurations 3 and 4.",
+            partial(responses.thicker_tops, model="nscd-elastic", pairs=STACKS_AND_WALLS), ("nscd-elastic",),
         ),
         Statement(
-            _LMGC90, "Rigid blocks are satisfactory for all configurations.",
-            partial(models.satisfactory, model="nscd-rigid", fits=(1, 2, 3, 4)), _OF_MODEL.format("nscd-rigid"),
+            f"LMGC90 {_FIGURES}", "Rigid blocks are satisfactory for all configurations.",
+            partial(models.satisfactory, model="nscd-rigid"), _RIGID, measured=True,
         ),
         Statement(
-            _LMGC90, "With each kind of block, more complicated structures have thicker envelopes.",
-            partial(envelopes.with_structure, models=_NSCD), _NSCD_SENSITIVITY,
+            f"LMGC90 {_FIGURES}", "With each kind of block, more complicated structures have thicker envelopes.",
+            partial(responses.with_structure, models=_NSCD), _NSCD,
         ),
     ),
     "Comparison and conclusion": (
         Statement(
             "Comparison and Discussion and Conclusion", "Both models resemble the tests closely.",
-            models.resemblance, _COMPARISON,
+            models.resemblance, measured=True,
         ),
-        Statement(
-            "Conclusion", "The two models behave alike.", models.alike, _ENVELOPE,
-        ),
+        Statement("Conclusion", "The two models behave alike.", models.alike, _LS_DEM + _RIGID),
         Statement(
             "LS-DEM Results and Conclusion", "There is more rocking or sliding in configurations 3 and 4.",
-            rocking.complicated, _SAMPLES,
+            responses.complicated,
         ),
-        Statement(
-            "Conclusion", "Residual displacements scatter most in configuration 4.", envelopes.residuals,
-            _ENVELOPE,
-        ),
+        Statement("Conclusion", "Residual displacements scatter most in configuration 4.", responses.residuals),
         Statement(
             "Comparison and Discussion",
             "Rotations are small and cannot easily be read from the tests because of noise.",
-            models.rotations, _SAMPLES,
+            models.rotations,
         ),
     ),
 }  # fmt: skip

@@ -9,15 +9,14 @@ from scipy.spatial.transform import Rotation
 
 from blockshake.measurement.sensors.markers import marker_bodies
 from blockshake.pages.drawing import DARK_GREY, RED, new_figure
-from blockshake.pages.scene.colors import body_colors
-from blockshake.pages.scene.mesh import body_mesh
+from blockshake.pages.scene.bodies import body_colors, body_mesh
 from blockshake.pages.scene.projection import VIEWS, Scene
 from blockshake.pages.wording import given, millimetres, model_label
 from blockshake.study.ensembles.shown_samples import shown_markers
 
 MAGNIFICATIONS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
 _LARGEST_SHARE = 0.1  # of the structure's height: displacement of the median samples in the still
-_FINEST = 1e-5  # m and rad, of the whole numbers that positions are told in
+_FINEST = 1e-5  # m and rad, of the whole numbers of the positions
 _MOST = 32767  # a whole number of two bytes
 _NONE = -32768  # where no marker was read
 
@@ -53,7 +52,7 @@ def moving_samples(case):
             "turn": _packed(one["turn"].transpose("time", "body", "axis").to_numpy()),
         }
         for model, of_model in shown.items()
-        for one in (of_model.isel(sample=place) for place in range(of_model.sizes["sample"]))
+        for one in (of_model.isel(sample=index) for index in range(of_model.sizes["sample"]))
     ]
     measured = None
     if case.test is not None:

@@ -1,11 +1,15 @@
-"""The report as one page that needs nothing else."""
+"""A document as one page of HTML that needs nothing else, and as a PDF by Typst with vector graphics."""
 
+import dataclasses
+import json
 import re
+from importlib.resources import files
 
 import jinja2
+import typst
 from plotly.offline import get_plotlyjs
 
-from blockshake.files import write_text
+from blockshake.files import replacing, write_text
 from blockshake.pages.blocks import PAGE_WIDTH
 
 
@@ -42,3 +46,12 @@ def _picture(block):
     label = jinja2.filters.escape(f"Figure {block.number}")
     start = f'<svg role="img" aria-label="{label}" style="max-width: {share:.0f}%" '
     return jinja2.filters.Markup(svg.replace("<svg ", start, 1))
+
+
+def write_pdf(path, document):
+    """Write a numbered `Document` as PDF: A4, pages numbered, the same bytes for the same document."""
+    template = files("blockshake.pages").joinpath("templates/report.typ").read_bytes()
+    content = json.dumps(dataclasses.asdict(document)).encode()
+    pdf = typst.compile({"main.typ": template, "content.json": content}, ignore_system_fonts=True)
+    with replacing(path) as temporary:
+        temporary.write_bytes(pdf)
