@@ -9,11 +9,10 @@ import pytest
 from resting_stack import MARKERS, NOISE, resting_stack, write_campaign
 
 from blockshake.dynamics.records.contract_csv import write_motion_csv
+from blockshake.dynamics.motion import ground_motion
 from blockshake.errors import InputError
 from blockshake.files import file_digest
 from blockshake.measurement.checks.campaign_check import campaign_lines
-from blockshake.virtual.settings import Sine
-from blockshake.virtual.shake_table import swelling_sine
 
 SHARED = Path(os.environ.get("BLOCKSHAKE_SHARED", Path(__file__).parents[4] / "shared"))
 BLOCKS = [place for place, name in enumerate(MARKERS) if not name.startswith("slab")]
@@ -209,7 +208,10 @@ def test_a_small_sine_is_no_weak_or_strong_table(tmp_path):
 
     Its standard error is noise / (rms of the sine x root of the readings x markers) = 0.1 / (0.18 x 57) = 1 %.
     """
-    motion = swelling_sine(Sine(frequency=5.0, acceleration=0.3, duration=4.0))
+    time = np.arange(4001) / 1000.0
+    omega, swell = 10.0 * np.pi, np.clip(np.minimum(time, 4.0 - time) / 0.8, 0.0, 1.0)
+    moved = -0.3 / omega**2 * np.sin(omega * time) * swell**2 * (3.0 - 2.0 * swell)
+    motion = ground_motion("sine", time, {"x": moved}, "displacement")
     write_motion_csv(motion, tmp_path / "sine.csv")
     test = resting_stack().isel(time=slice(0, 801)).drop_vars("accelerometer").drop_dims("time_acc")
     read = np.zeros(test["marker_displacement"].shape)
