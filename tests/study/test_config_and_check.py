@@ -16,9 +16,8 @@ from blockshake.simulation.models import MODELS
 from blockshake.simulation.parameter_table import instances
 from blockshake.statistics.scores import FEWEST
 from blockshake.study.config import check_config, load_config
-from blockshake.study.motion_remarks import motion_remarks
+from blockshake.study.remarks import motion_remarks, structure_remarks, unusual_values
 from blockshake.study.sampling.distributions import TABLE_2
-from blockshake.study.structure_remarks import structure_remarks, unusual_values
 
 ROOT = PACKAGE.parents[1]
 

@@ -16,7 +16,6 @@ from blockshake.study.calibration.settings import CalibrationSettings
 from blockshake.study.config_checks import check_named
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED
 from blockshake.study.ensembles.rungs import Rungs
-from blockshake.study.fragility.settings import FragilitySettings
 from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, known_as, load_distributions
 from blockshake.study.sampling.latin_hypercube import LARGEST_SIZE, SMALLEST_SIZE
 from blockshake.validation import Count, Positive, Strict, Whole, validated
@@ -133,6 +132,16 @@ class Ladder(Rungs):
         None,
         description="displacement of a block relative to the slab that counts as a potential collapse, by default half "
         "of the smaller width of the structure's blocks [m]",
+    )
+
+
+class FragilitySettings(Strict):
+    """Samples that climb the ladder, each until its potential collapse."""
+
+    model: ModelName = Field("nscd-rigid", description="solver that climbs, one of the study's")
+    cases: tuple[str, ...] = Field(min_length=1, description="names of cases of the study")
+    size: Whole = Field(
+        20, ge=3, description="samples that climb: the first rows of the design, no more than there are [1]"
     )
 
 

@@ -6,8 +6,8 @@ from blockshake.geometry.structure import load_structure
 from blockshake.simulation.models import model_of, split_parameters
 from blockshake.store import load_made
 from blockshake.study.comparison.kicked_block import housner_ratio, rocking_block
-from blockshake.study.described import describe
 from blockshake.study.ensembles.batch import simulate_samples
+from blockshake.study.ensembles.ensemble import describe
 
 TWINS = ("nudged", "half-step")
 NUDGE = 1e-6  # share by which the ground motion of a twin is larger

@@ -5,6 +5,7 @@ import xarray as xr
 
 from blockshake.dynamics.system import Status
 from blockshake.errors import InputError
+from blockshake.measurement.motion.compared_curves import SAME_TIME
 from blockshake.simulation.joint_figures import JOINT_FIGURES
 from blockshake.store import load_made
 from blockshake.study.sampling.distributions import parameter_unit
@@ -231,3 +232,29 @@ def _extremes(ensemble):
     }
     order = ("sample", "frame", "marker")
     return {"peak": peak.transpose(*order), "residual": residual.transpose(*order)}
+
+
+def describe(dataset, described):
+    """Give variables and coordinates of a Dataset their attributes, in place of any that they have.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+    described : dict of str to (str, str)
+        Long name and unit, by variable.
+    """
+    for name, (long_name, units) in described.items():
+        dataset[name].attrs = {"long_name": long_name, "units": units}
+
+
+def measured_curves(test, slab_marker, duration):
+    """Measured displacement along x over the simulated window, ``displacement(frame, time, marker)`` [m].
+
+    And by the definitions of `gather_ensemble` ``peak`` and ``residual(frame, marker)`` [m]. ``test`` has
+    ``marker_displacement(time, marker, axis)`` [m], inertial frame; the frame ``slab`` moves with ``slab_marker``;
+    ``duration`` of the window [s].
+    """
+    along = test["marker_displacement"].sel(axis="x", drop=True)
+    along = in_frames(along.isel(time=(along["time"] <= duration + SAME_TIME).to_numpy()), slab_marker)
+    peak, residual = peak_and_residual(along, duration - RESIDUAL_WINDOW, skipna=True)
+    return xr.Dataset({"displacement": along, "peak": peak, "residual": residual})

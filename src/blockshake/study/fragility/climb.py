@@ -6,7 +6,7 @@ import xarray as xr
 from blockshake.dynamics.system import FINISHED
 from blockshake.geometry.reference_block import half_width
 from blockshake.geometry.structure import load_structure
-from blockshake.study.described import describe
+from blockshake.study.ensembles.ensemble import describe
 from blockshake.study.ensembles.ladder import climb
 
 _DESCRIBED = {

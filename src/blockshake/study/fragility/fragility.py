@@ -5,7 +5,7 @@ import xarray as xr
 
 from blockshake.statistics.intervals import CONFIDENCE, share_interval
 from blockshake.store import load_made
-from blockshake.study.described import describe
+from blockshake.study.ensembles.ensemble import describe
 from blockshake.study.ensembles.envelope import BOUNDS, QUANTILES, over_samples
 from blockshake.study.fragility.capacity import Capacity, fit_capacity, likely_capacities
 

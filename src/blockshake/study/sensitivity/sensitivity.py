@@ -11,8 +11,7 @@ from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.statistics.intervals import CONFIDENCE
 from blockshake.statistics.resampling import DRAWS, bootstrap_interval, chance_level
-from blockshake.study.described import describe
-from blockshake.study.ensembles.ensemble import ALONG_X, POSES, join_batches
+from blockshake.study.ensembles.ensemble import ALONG_X, POSES, describe, join_batches
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.sampling.latin_hypercube import load_design
 from blockshake.study.sampling.sample_parameters import sample_parameters, unused_variables
