@@ -15,8 +15,7 @@ from blockshake.pages.wording import (
 from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.analyses import OF_THE_PAPER
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
-from blockshake.study.sensitivity.findings import influences, is_known
-from blockshake.study.sensitivity.summary import markers_by_height
+from blockshake.study.sensitivity.findings import influences, is_known, markers_by_height
 from blockshake.study.statements.order import Limited, all_of, ordered
 from blockshake.study.statements.statement import judged, missing, scale_words, unjudged
 
