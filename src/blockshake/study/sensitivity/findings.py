@@ -150,8 +150,8 @@ def _seconds(result, noise):
         beyond = result["window"].values[share.values > chance]
         if len(beyond):
             said.append(
-                f"{parameter_label(str(name))} in {len(beyond)} (first about {beyond[0]:.1f} s, last {beyond[-1]:.1f} s, "
-                f"at most {float(share.max()):.2f})"
+                f"{parameter_label(str(name))} in {len(beyond)} (first about {beyond[0]:.1f} s, last "
+                f"{beyond[-1]:.1f} s, at most {float(share.max()):.2f})"
             )
     if not said:
         return f"In no single second is any share beyond chance ({chance:.2f})."
