@@ -82,7 +82,7 @@ def compare_models(ensembles, twins, measured):
     Parameters
     ----------
     ensembles : dict of str to xarray.Dataset
-        By model, from `gather_ensemble`.
+        By model, from `join_batches`.
     twins : dict of str to xarray.Dataset
         By model, from `simulate_twins`, of a sample that is among those of the model; any model may be missing.
     measured : tuple of (xarray.Dataset, float) or None

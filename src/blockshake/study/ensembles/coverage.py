@@ -49,7 +49,7 @@ def coverage(measured, ensemble, marker_noise):
         ``marker_displacement(time, marker, axis)`` [m], inertial frame, relative to the first
         reading; NaN is a gap. Its clock is the ensemble's.
     ensemble : xarray.Dataset
-        From `gather_ensemble`; only completed and collapsed samples count.
+        From `join_batches`; only completed and collapsed samples count.
     marker_noise : float
         Standard deviation of a measured marker's position [m].
 

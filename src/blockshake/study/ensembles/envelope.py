@@ -39,7 +39,7 @@ def envelope(ensemble, largest_drift, displacement=None):
     Parameters
     ----------
     ensemble : xarray.Dataset
-        From `gather_ensemble`.
+        From `join_batches`.
     largest_drift : float
         Displacement along x relative to the slab whose exceedance is counted [m].
     displacement : callable, optional

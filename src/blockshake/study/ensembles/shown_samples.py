@@ -35,7 +35,7 @@ def shown_samples(ensemble):
     Parameters
     ----------
     ensemble : xarray.Dataset
-        From `gather_ensemble`; only completed and collapsed samples count.
+        From `join_batches`; only completed and collapsed samples count.
 
     Returns
     -------

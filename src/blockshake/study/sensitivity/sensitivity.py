@@ -67,7 +67,7 @@ def sensitivity(ensemble, variables, controls=()):
     Parameters
     ----------
     ensemble : xarray.Dataset
-        From `gather_ensemble`.
+        From `join_batches`.
     variables : list of str
         Dotted names of the sampled variables; stiffness that follows from them is not one.
     controls : sequence of str
