@@ -66,8 +66,10 @@ def fragility(climbed):
     )
     fine = np.linspace(scales[0], scales[-1], _POINTS)
     fitted = fit_capacity(lower, upper)
-    told = fitted.dispersion > 0.0  # else the levels tell two factors alone, between which all capacities lie
-    likely = likely_capacities(lower, upper) if told else Capacity(np.full(1, np.nan), np.full(1, np.nan))
+    is_spread = fitted.dispersion > 0.0  # else all capacities lie between two factors, and no more is known
+    likely = (
+        likely_capacities(lower, upper) if is_spread else Capacity(np.full(1, np.nan), np.full(1, np.nan))
+    )
 
     def with_limits(of):
         values = of(likely)
@@ -87,7 +89,7 @@ def fragility(climbed):
         value, bounds = with_limits(of)
         result[name], result[f"{name}_interval"] = ((), float(value)), ("bound", bounds)
     value, bounds = with_limits(lambda one: one.probability(fine[:, None]))
-    value = value[:, 0] if told else np.full(_POINTS, np.nan)
+    value = value[:, 0] if is_spread else np.full(_POINTS, np.nan)
     result["curve"], result["curve_interval"] = ("fine_scale", value), (("bound", "fine_scale"), bounds)
     result = result.assign_coords(bound=list(BOUNDS), quantile=list(QUANTILES), fine_scale=fine)
     describe(result, _DESCRIBED)

@@ -86,7 +86,7 @@ def words(content, name):
             f"{who}: all capacities lie between {given(low)} and {given(high)} times the motion ({number(low * unit)} "
             f"and {number(high * unit)} m/s{SQUARED}). The levels are too far apart to tell more.{less}"
         )
-    if float(one["dispersion"]) < _told_from(one):
+    if float(one["dispersion"]) < _smallest_known(one):
         less += (
             " The capacities differ by less than the levels are apart: the dispersion, and with it the factor that "
             f"{percent(SAFE)} % are below, is bounded by the level below alone."
@@ -99,7 +99,7 @@ def words(content, name):
     )
 
 
-def _told_from(one):
+def _smallest_known(one):
     """Dispersion of capacities below which a step of the scales hides it: of a uniform spread over one step [1]."""
     return float(one["scale"][1] - one["scale"][0]) / float(one["median"]) / np.sqrt(12.0)
 
