@@ -191,21 +191,21 @@ class StudyConfig(Strict):
         """Give frictions the names that the distributions have, whose materials may be in the other order."""
         known = self.ensemble.distributions
 
-        def own(name):
+        def known_name(name):
             return known_as(name, known) or name
 
-        linked = {target: own(source) for target, source in self.ensemble.linked.items()}
+        linked = {target: known_name(source) for target, source in self.ensemble.linked.items()}
         changes = {"ensemble": self.ensemble.model_copy(update={"linked": linked})}
         if (asked := self.calibration) is not None:
-            ranges = {own(name): span for name, span in asked.ranges.items()}
+            ranges = {known_name(name): span for name, span in asked.ranges.items()}
             if len(ranges) < len(asked.ranges):
                 raise InputError("", "study.calibration.ranges", "expected every pair once")
             named = {
                 "ranges": ranges,
-                "linked": {own(name): own(source) for name, source in asked.linked.items()},
+                "linked": {known_name(name): known_name(source) for name, source in asked.linked.items()},
             }
             if asked.parameters is not None:
-                named["parameters"] = tuple(map(own, asked.parameters))
+                named["parameters"] = tuple(map(known_name, asked.parameters))
             changes["calibration"] = asked.model_copy(update=named)
         return self.model_copy(update=changes)
 

@@ -172,8 +172,8 @@ def motion_remarks(motion):
     remarks = []
     ends = [end for axis in "xyz" for end in acceleration_segments(motion, axis)[1:]]
     peak = float(max(np.abs(end).max() for end in ends))
-    place = motion.evaluate(motion.table.breaks) - motion.evaluate(motion.table.breaks[:1])
-    moved, pitched = float(np.abs(place[:, :PITCH]).max()), float(np.abs(place[:, PITCH]).max())
+    shift = motion.evaluate(motion.table.breaks) - motion.evaluate(motion.table.breaks[:1])
+    moved, pitched = float(np.abs(shift[:, :PITCH]).max()), float(np.abs(shift[:, PITCH]).max())
     strength = f"the peak acceleration is {peak / _ONE_G:.2g} g"
     if peak == 0.0 and pitched == 0.0:
         remarks.append("nothing moves")

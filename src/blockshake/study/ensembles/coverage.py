@@ -59,7 +59,7 @@ def coverage(measured, ensemble, marker_noise):
         Along the markers that both have, displacement along x, inertial frame: ``coverage(marker)`` of the measured
         curve in the bounds of all members; ``member_coverage(sample, marker)`` of each member, read with the same
         noise, in the bounds of the others; its ``reference(quantile, marker)``; ``distance(marker)`` of the measured
-        curve and ``member_distance(sample, marker)`` as of `distances`; ``curve_probability(marker)``, the rank of the
+        curve and ``member_distance(sample, marker)``, from `distances`; ``curve_probability(marker)``, the rank of the
         measured curve's distance among the members', from 1 / (n + 1) to 1; ``band_width(marker)`` [m], mean
         over time; and ``measured_peak(marker)`` [m], largest absolute displacement relative to the slab's marker, to
         hold the width against. All but the peak are NaN for fewer than three members: too few for a reference.
@@ -122,7 +122,7 @@ def compared_curves(measured, ensemble, marker_noise, seed):
     Parameters
     ----------
     measured, ensemble, marker_noise
-        As of `coverage`; the measured times need not be the ensemble's.
+        The arguments of `coverage`; the measured times need not be those of the ensemble.
     seed : int
         Of the noise that the members are read with.
 
@@ -175,19 +175,19 @@ def distances(readings, curves, noise):
     centre = np.nan_to_num(curves[0])  # near all of them, so that the squares below cancel little
     shifted = np.where(there, curves - centre, 0.0)
     count, total, square = there.sum(axis=0), shifted.sum(axis=0), (shifted**2).sum(axis=0)
-    found = []
-    for place, reading in enumerate(readings):
-        own = shifted[place] if place < len(curves) else 0.0
-        others = count - (there[place] if place < len(curves) else 0)
+    away_of_curves = []
+    for row, reading in enumerate(readings):
+        member = shifted[row] if row < len(curves) else 0.0
+        others = count - (there[row] if row < len(curves) else 0)
         with np.errstate(invalid="ignore", divide="ignore"):
-            mean = (total - own) / others
-            spread = np.maximum(square - own**2 - others * mean**2, 0.0) / (others - 1)
+            mean = (total - member) / others
+            spread = np.maximum(square - member**2 - others * mean**2, 0.0) / (others - 1)
             away = (reading - centre - mean) ** 2
             score = np.where(away == 0.0, 0.0, away / (spread * (1.0 + 1.0 / others) + 2.0 * noise**2))
         known = np.isfinite(reading) & (others > 1)
         with np.errstate(invalid="ignore"):
-            found.append(np.sqrt(np.where(known, score, 0.0).sum(axis=0) / known.sum(axis=0)))
-    return np.array(found)
+            away_of_curves.append(np.sqrt(np.where(known, score, 0.0).sum(axis=0) / known.sum(axis=0)))
+    return np.array(away_of_curves)
 
 
 def is_likely(chance, members):

@@ -189,7 +189,7 @@ def over_samples(values, probabilities):
         Dimension of ``probabilities`` in place of ``sample``; NaN where no sample has a value.
     """
     rest = values.transpose("sample", ...)
-    found = sample_quantiles(rest.to_numpy(), probabilities.to_numpy())
+    quantiles = sample_quantiles(rest.to_numpy(), probabilities.to_numpy())
     dims = (*probabilities.dims, *rest.dims[1:])
     coordinates = {name: rest.coords[name] for name in rest.dims[1:] if name in rest.coords}
-    return xr.DataArray(found, dims=dims, coords={**probabilities.coords, **coordinates})
+    return xr.DataArray(quantiles, dims=dims, coords={**probabilities.coords, **coordinates})

@@ -54,7 +54,7 @@ def read_timings(logs, samples):
         costs, covered = [], set()
         for path in sorted(Path(logs, "simulate_batch", model, case).glob("*-*.log")):
             first, last = (int(part) for part in path.stem.split("-"))
-            inside = [int(one) for one in figures["sample"].values if first <= one <= last]
+            inside = [int(sample) for sample in figures["sample"].values if first <= sample <= last]
             if (
                 inside and (cost := read_cost(path)) is not None
             ):  # else of an earlier configuration, or killed
@@ -68,6 +68,6 @@ def read_timings(logs, samples):
 
 def total_timing(timings):
     """`Timing` of all cases and models whose CPU time is known; its model and case are empty."""
-    known = [one for one in timings if np.isfinite(one.cpu_time)]
+    known = [timing for timing in timings if np.isfinite(timing.cpu_time)]
     names = ("jobs", "samples", "simulated", "cpu_time", "wall_time")
-    return Timing("", "", *(sum(getattr(one, name) for one in known) for name in names))
+    return Timing("", "", *(sum(getattr(timing, name) for timing in known) for name in names))

@@ -64,10 +64,10 @@ def fit_capacity(lower, upper):
 
     start = np.mean(middle), np.log(0.5 * np.ptp(ends))
     limits = [(ends.min(), ends.max()), (np.log(_SHARPEST), np.log(_WIDEST))]
-    found = minimize(
+    answer = minimize(
         unlikely, start, method="Nelder-Mead", bounds=limits, options={"xatol": 1e-6, "fatol": 1e-9}
     )
-    return Capacity(float(np.exp(found.x[0])), float(np.exp(found.x[1])))
+    return Capacity(float(np.exp(answer.x[0])), float(np.exp(answer.x[1])))
 
 
 def likely_capacities(lower, upper):

@@ -82,13 +82,13 @@ def fragility(climbed):
         peak=over_samples(climbed["peak"], xr.DataArray(list(QUANTILES), dims="quantile")),
     )
     for name, of in (
-        ("median", lambda one: one.median),
-        ("dispersion", lambda one: one.dispersion),
-        ("safe_scale", lambda one: one.level(SAFE)),
+        ("median", lambda capacity: capacity.median),
+        ("dispersion", lambda capacity: capacity.dispersion),
+        ("safe_scale", lambda capacity: capacity.level(SAFE)),
     ):
         value, bounds = with_limits(of)
         result[name], result[f"{name}_interval"] = ((), float(value)), ("bound", bounds)
-    value, bounds = with_limits(lambda one: one.probability(fine[:, None]))
+    value, bounds = with_limits(lambda capacity: capacity.probability(fine[:, None]))
     value = value[:, 0] if is_spread else np.full(_POINTS, np.nan)
     result["curve"], result["curve_interval"] = ("fine_scale", value), (("bound", "fine_scale"), bounds)
     result = result.assign_coords(bound=list(BOUNDS), quantile=list(QUANTILES), fine_scale=fine)

@@ -67,10 +67,10 @@ def influences(result, measure):
     names, controls = result["parameter"].values, result["control"].values
     ranked = (
         Influence(
-            str(names[place]), bool(controls[place]), *map(float, (values[place], lower[place], upper[place])),
-            bool(strength[place] > chance),
+            str(names[index]), bool(controls[index]), *map(float, (values[index], lower[index], upper[index])),
+            bool(strength[index] > chance),
         )
-        for place in order
+        for index in order
     )  # fmt: skip
     return Influences(tuple(ranked), chance)
 
@@ -121,24 +121,24 @@ def sentence(result, body, marker, noise):
 
 
 def _explained(history):
-    found = influences(history, "first_order")
-    named = ", then ".join(map(influence_words, found.beyond_chance))
+    answer = influences(history, "first_order")
+    named = ", then ".join(map(influence_words, answer.beyond_chance))
     if named:
-        return f"Shown to explain some of that by itself: {named}; level of chance {found.chance:.2f}."
+        return f"Shown to explain some of that by itself: {named}; level of chance {answer.chance:.2f}."
     return (
         "No variable is shown to explain any of that by itself: the largest share, "
-        f"{influence_words(found.ranked[0])}, is within the level of chance, {found.chance:.2f}."
+        f"{influence_words(answer.ranked[0])}, is within the level of chance, {answer.chance:.2f}."
     )
 
 
 def _steered(peak):
-    found = influences(peak, "rank_correlation")
-    named = ", then ".join(map(influence_words, found.beyond_chance))
+    answer = influences(peak, "rank_correlation")
+    named = ", then ".join(map(influence_words, answer.beyond_chance))
     if named:
-        return f"The peak follows {named} (partial rank correlation; level of chance {found.chance:.2f})."
+        return f"The peak follows {named} (partial rank correlation; level of chance {answer.chance:.2f})."
     return (
         "No variable is shown to steer the peak: the largest partial rank correlation, "
-        f"{influence_words(found.ranked[0])}, is within the level of chance, {found.chance:.2f}."
+        f"{influence_words(answer.ranked[0])}, is within the level of chance, {answer.chance:.2f}."
     )
 
 

@@ -93,12 +93,12 @@ def summary_table(content):
                 at = response.sensitivity.sel(marker=marker)
                 spread = number(1e3 * at["spread"].sel(quantity="history"))
                 rows.append((case.name, model_label(model), body, spread, *_strongest(at, case.marker_noise)))
-    told = {cell for row in rows for cell in row}
+    cells_shown = {cell for row in rows for cell in row}
     return Table(
         "Strongest variables at the lowest and the highest block. Spread: of the displacement relative to the slab, "
         "standard deviation over samples and time. Then the variable of the largest first-order share of the spread, "
         "and that of the largest partial rank correlation with the peak, each with its 95 % interval and, in round "
-        f"brackets, the level of chance.{''.join(f' {words}' for mark, words in marks.items() if mark in told)}",
+        f"brackets, the level of chance.{''.join(f' {words}' for mark, words in marks.items() if mark in cells_shown)}",
         ("Case", "Model", "Block", "Spread [mm]", "Largest share by itself [1]", "Largest rank correlation [1]"),
         tuple(rows), "lllrll",
     )  # fmt: skip
