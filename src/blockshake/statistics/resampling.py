@@ -88,8 +88,8 @@ def chance_distance(differences, first, second, generator):
     """Distance that 95 of 100 random divisions of all members into ensembles of these sizes stay below.
 
     The arguments are those of `ensemble_distance`. NaN where the members are so few that a twentieth of their divisions
-    or more are as far apart as the farthest. A sample that both models ran makes the ensembles more alike than the division
-    takes them to be, so that a distance beyond this level is rarer by chance than stated.
+    or more are as far apart as the farthest. A sample that both models ran makes the ensembles more alike than the
+    division takes them to be, so that a distance beyond this level is rarer by chance than stated.
     """
     # the same two groups come twice where they are of one size
     alike = (1 + (len(first) == len(second))) / comb(len(first) + len(second), len(first))
