@@ -15,9 +15,7 @@ _TRIED = 2  # draws of a test by a solver
 
 def campaign_cost(folder, effort):
     """CPU time of a diagnosis by itself, see `diagnosis_cost`, with its jobs beside their runs."""
-    parts = diagnosis_cost(folder, effort, {})
-    jobs = planned_jobs(diagnosis_command(folder, effort, cores=1))
-    return [*parts, jobs.as_part()]
+    return [*diagnosis_cost(folder, effort, {}), planned_jobs(diagnosis_command(folder, effort, cores=1))]
 
 
 def diagnosis_cost(folder, effort, tried):

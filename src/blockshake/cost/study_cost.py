@@ -56,7 +56,7 @@ def study_cost(path):
         sys.executable, "-m", "snakemake", "--cores", "1", "--snakefile", str(HOME / "Snakefile"),
         "--configfile", str(path),
     ]  # fmt: skip
-    return [*parts, planned_jobs(command).as_part()]
+    return [*parts, planned_jobs(command)]
 
 
 def _runs(config, model, case):

@@ -7,12 +7,12 @@ from blockshake.measurement.motion.compared_curves import curves_along_x
 from blockshake.measurement.sensors.markers import noisy_reading
 from blockshake.statistics.intervals import sample_quantiles
 from blockshake.statistics.resampling import rank_chance
+from blockshake.statistics.scores import FEWEST
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.ensemble import ALONG_X, POSES, describe, join_batches, relative_to_slab
 from blockshake.study.ensembles.envelope import counted_samples
 
 REFERENCE_QUANTILES = (0.05, 0.5, 0.95)
-_FEWEST_MEMBERS = 3
 _NOISE_SEED = 0  # of the readings of the members
 UNLIKELY = 0.05  # chance of a whole curve at or below which an ensemble does not fit
 _DESCRIBED = {
@@ -83,7 +83,7 @@ def coverage(measured, ensemble, marker_noise):
     inside = width = probability = np.full(len(markers), np.nan)
     member_coverage = np.full((len(curves), len(markers)), np.nan)
     away = np.full((len(curves) + 1, len(markers)), np.nan)  # of the members, and of the measured curve
-    if len(curves) >= _FEWEST_MEMBERS:
+    if len(curves) >= FEWEST:
         lower, upper = np.fmin.reduce(curves, axis=0), np.fmax.reduce(curves, axis=0)
         inside = share_inside(read.to_numpy(), lower, upper)
         member_coverage = members_inside(curves, readings)
