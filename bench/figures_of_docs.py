@@ -37,8 +37,7 @@ from blockshake.study.config import load_config
 from blockshake.study.report.content import load_content
 from blockshake.study.sampling.distributions import LINKED, TABLE_2
 from blockshake.study.sampling.sample_parameters import sample_parameters
-from blockshake.study.sensitivity.summary import markers_by_height
-from blockshake.study.sensitivity.words import sentence
+from blockshake.study.sensitivity.findings import markers_by_height, sentence
 from blockshake.study.statements.section import HEADER, count_words
 from blockshake.study.stiffness.wave_speed import calibrate_stiffness, stiffness_parameters
 

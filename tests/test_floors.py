@@ -35,7 +35,7 @@ ROOMS_OF_DIAGNOSIS = [
     ["report", "steps"],
 ]
 ROOMS_OF_STUDY = [
-    ["described", "motion_remarks", "sampling", "structure_remarks"],
+    ["remarks", "sampling"],
     ["ensembles", "stiffness"],
     ["comparison", "fragility", "sensitivity"],
     ["calibration"],

@@ -230,8 +230,7 @@ def _simulate(options):
     from blockshake.simulation.ending import ending
     from blockshake.simulation.models import part_parameters
     from blockshake.simulation.simulate import simulate_to_file
-    from blockshake.study.motion_remarks import motion_remarks
-    from blockshake.study.structure_remarks import unusual_values
+    from blockshake.study.remarks import motion_remarks, unusual_values
 
     _show_progress()
     begin = time.monotonic()

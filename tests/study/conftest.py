@@ -6,11 +6,10 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
-from fake_study import FakeStudy
+from fake_study import FakeStudy, ensemble_of
 from page import Page
 
 from blockshake.measurement.sensors.markers import noisy_reading
-from blockshake.study.ensembles.ensemble import gather_ensemble
 from blockshake.study.report.content import load_content
 from blockshake.study.report.report import compose, make_report
 
@@ -87,7 +86,7 @@ def gather():
 
     def gathered(runs):
         design = pd.DataFrame({"friction.concrete.concrete": 0.5 + 0.01 * np.arange(len(runs))})
-        return gather_ensemble(runs, range(len(runs)), design, "slab-face")
+        return ensemble_of(runs, design)
 
     return gathered
 

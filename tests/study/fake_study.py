@@ -16,7 +16,7 @@ from blockshake.study.comparison.comparison import compare_models
 from blockshake.study.comparison.twins import TWINS
 from blockshake.study.ensembles.case_input import measured_input
 from blockshake.study.ensembles.coverage import coverage
-from blockshake.study.ensembles.ensemble import gather_ensemble, sample_figures
+from blockshake.study.ensembles.ensemble import join_batches, run_as_sample, sample_figures
 from blockshake.study.ensembles.envelope import envelope
 from blockshake.study.ensembles.shown_samples import shown_samples
 from blockshake.study.fragility.climb import gathered
@@ -59,6 +59,12 @@ def climbed_and_fitted():
         climbs.append(rungs)
     climbs[-1][-1]["status"] = "not-converged"
     return fragility(gathered(np.arange(5), climbs, scales, 0.4))
+
+
+def ensemble_of(runs, design):
+    """Ensemble of runs as the first samples of a design, by row."""
+    rows = zip(runs, design.iterrows(), strict=False)
+    return join_batches([run_as_sample(run, sample, row, "slab-face") for run, (sample, row) in rows])
 
 
 class FakeStudy:
@@ -159,7 +165,7 @@ class FakeStudy:
             if count == 6:
                 end(runs[2], "collapsed", COLLAPSE_REASON, 1.0)
                 end(runs[4], "not-converged", "2.0 % of the steps ended above a residual", self.time[-1])
-            ensemble = ensembles[model] = gather_ensemble(runs, range(count), self.design, "slab-face")
+            ensemble = ensembles[model] = ensemble_of(runs, self.design)
             if count >= FEWEST:
                 twins[model] = self.twins(structure, model)
             for kind, result in (

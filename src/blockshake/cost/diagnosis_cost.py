@@ -1,10 +1,9 @@
 """How long a diagnosis takes, from a trial of each of its tests by each solver on this machine."""
 
-import time
-
 import numpy as np
 
 from blockshake.cost.jobs import CostPart, planned_jobs
+from blockshake.cost.trial import cpu_seconds
 from blockshake.diagnosis.nominal.histories import read_histories
 from blockshake.diagnosis.nominal.nominal_model import MODELS, draw_nominal
 from blockshake.diagnosis.nominal.plan import plan_diagnosis
@@ -16,9 +15,7 @@ _TRIED = 2  # draws of a test by a solver
 
 def campaign_cost(folder, effort):
     """CPU time of a diagnosis by itself, see `diagnosis_cost`, with its jobs beside their runs."""
-    parts = diagnosis_cost(folder, effort, {})
-    jobs = planned_jobs(diagnosis_command(folder, effort, cores=1))
-    return [*parts, jobs.as_part()]
+    return [*diagnosis_cost(folder, effort, {}), planned_jobs(diagnosis_command(folder, effort, cores=1))]
 
 
 def diagnosis_cost(folder, effort, tried):
@@ -60,11 +57,9 @@ def diagnosis_cost(folder, effort, tried):
 def _seconds_of_draws(planned, model):
     """CPU seconds of one simulated test, with its reading."""
     draws = [draw_nominal(planned.structure, model, number) for number in range(_TRIED)]
-    _seconds_of_draw(planned, draws[0])  # loads the kernels
-    return float(np.mean([_seconds_of_draw(planned, draw) for draw in draws]))
 
+    def read(draw):
+        read_histories(simulated_test(planned, draw), planned.structure, planned.sensors)
 
-def _seconds_of_draw(planned, draw):
-    started = time.process_time()
-    read_histories(simulated_test(planned, draw), planned.structure, planned.sensors)
-    return time.process_time() - started
+    read(draws[0])  # loads the kernels
+    return cpu_seconds(lambda: [read(draw) for draw in draws]) / _TRIED

@@ -1,4 +1,4 @@
-"""Parts of a cost; jobs of the workflow: their number, and the CPU time of each beside its simulations."""
+"""Parts of a cost, and that of the workflow's jobs beside their simulations."""
 
 import os
 import re
@@ -41,29 +41,22 @@ class CostPart(NamedTuple):
     seconds: float
 
 
-class Jobs(NamedTuple):
-    """Number of jobs by rule, and how slow this machine is beside that of the fixed costs [1]."""
-
-    counts: dict
-    slowness: float
-
-    def as_part(self):
-        """`CostPart` of a study: all that its jobs take beside the simulations that are tried."""
-        seconds = sum(count * _FIXED.get(rule, _USUAL) for rule, count in self.counts.items())
-        return CostPart("jobs beside their runs", sum(self.counts.values()), self.slowness * seconds)
-
-
 def planned_jobs(command):
-    """`Jobs` of a command that starts the workflow, if nothing is made yet.
+    """`CostPart` of the workflow's jobs beside the simulations that are tried, if nothing is made yet.
 
     Parameters
     ----------
     command : list of str
+        Starts the workflow.
 
     Raises
     ------
     InputError
         The workflow refuses its files.
+
+    Notes
+    -----
+    The fixed costs of a job count times the CPU time of the plan over that on the machine where they were measured.
     """
     before = os.times()
     done = subprocess.run(
@@ -75,4 +68,5 @@ def planned_jobs(command):
     counts = {rule: int(count) for rule, count in _ROW.findall(done.stdout + done.stderr)}
     counts.pop("total", None)
     spent = after.children_user + after.children_system - before.children_user - before.children_system
-    return Jobs(counts, spent / _PLANNED)
+    seconds = sum(count * _FIXED.get(rule, _USUAL) for rule, count in counts.items())
+    return CostPart("jobs beside their runs", sum(counts.values()), spent / _PLANNED * seconds)

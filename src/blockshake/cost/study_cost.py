@@ -56,25 +56,25 @@ def study_cost(path):
         sys.executable, "-m", "snakemake", "--cores", "1", "--snakefile", str(HOME / "Snakefile"),
         "--configfile", str(path),
     ]  # fmt: skip
-    return [*parts, planned_jobs(command).as_part()]
+    return [*parts, planned_jobs(command)]
 
 
 def _runs(config, model, case):
     """Runs of a case by a model, by the part of the study: their number, and the whole motions in them."""
     samples = config.samples(model, case.name)
-    found = {f"samples of {case.name}, {model}": (samples, samples)}
+    runs = {f"samples of {case.name}, {model}": (samples, samples)}
     if config.has_twins(model, case.name):
-        found[f"twins of {case.name}, {model}"] = _TWINS, _TWINS
+        runs[f"twins of {case.name}, {model}"] = _TWINS, _TWINS
     asked = config.calibration
     if asked is not None and case.name in asked.cases.get(model, ()):
         # a test is simulated for its record where that is shorter than the case
         shares = [min(record / case.duration, 1.0) for record in _open_records(case)]
-        found[f"calibration of {case.name}, {model}"] = asked.size * len(shares), asked.size * sum(shares)
+        runs[f"calibration of {case.name}, {model}"] = asked.size * len(shares), asked.size * sum(shares)
     climbs = config.fragility
     if climbs is not None and climbs.model == model and case.name in climbs.cases:
         count = climbs.size * len(config.ladder.scales)
-        found[f"fragility of {case.name}"] = count, count
-    return found
+        runs[f"fragility of {case.name}"] = count, count
+    return runs
 
 
 def _open_records(case):

@@ -21,9 +21,8 @@ from blockshake.own_files.import_map import ImportMap, load_map
 from blockshake.study.config import StudyConfig, load_config
 from blockshake.study.config_checks import typical_structure
 from blockshake.study.ensembles.case_input import measured_input
-from blockshake.study.motion_remarks import motion_line, motion_remarks
+from blockshake.study.remarks import motion_line, motion_remarks, structure_lines, structure_remarks
 from blockshake.study.sampling.sample_parameters import has_parameter
-from blockshake.study.structure_remarks import structure_lines, structure_remarks
 from blockshake.virtual.settings import VirtualCampaign, load_settings
 
 _WIDEST = 1.0  # of a variable, its standard deviation over its mean

@@ -118,7 +118,7 @@ def _convert_motion(options):
     from blockshake.dynamics.load_motion import load_motion
     from blockshake.dynamics.records.contract_csv import write_motion_csv
     from blockshake.dynamics.records.motion_table import load_motion_table
-    from blockshake.study.motion_remarks import motion_line, motion_remarks
+    from blockshake.study.remarks import motion_line, motion_remarks
     from blockshake.tables.table_file import TableLayout
     from blockshake.validation import validated
 

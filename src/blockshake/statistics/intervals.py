@@ -6,7 +6,7 @@ import numpy as np
 from scipy.stats import beta, binom
 
 CONFIDENCE = 0.95
-SURE_FROM = 6  # samples, as of `samples_needed` of the median
+SURE_FROM = 6  # samples: `samples_needed` for the median
 
 
 def share_interval(count, trials):
@@ -53,11 +53,11 @@ def sample_quantiles(values, probabilities):
     last = np.maximum(np.isfinite(ordered).sum(axis=0) - 1, 0)
     rows = []
     for probability in probabilities:
-        place = probability * last
-        below = np.floor(place).astype(np.int64)
+        index = probability * last
+        below = np.floor(index).astype(np.int64)
         low = np.take_along_axis(ordered, below[None], axis=0)[0]
         high = np.take_along_axis(ordered, np.minimum(below + 1, last)[None], axis=0)[0]
-        rows.append(low + (place - below) * (high - low))
+        rows.append(low + (index - below) * (high - low))
     return np.stack(rows)
 
 
@@ -123,9 +123,9 @@ def quantile_interval(values, probabilities):
     limits = np.full((2, len(probabilities), *values.shape[1:]), np.nan)
     ordered, sizes = np.sort(values, axis=0), np.isfinite(values).sum(axis=0)
     for size in np.unique(sizes):
-        for place, probability in enumerate(probabilities):
+        for index, probability in enumerate(probabilities):
             ranks = quantile_ranks(int(size), probability)
             if ranks:
                 for side, rank in enumerate(ranks):
-                    limits[side, place] = np.where(sizes == size, ordered[rank - 1], limits[side, place])
+                    limits[side, index] = np.where(sizes == size, ordered[rank - 1], limits[side, index])
     return limits

@@ -49,7 +49,7 @@ def bootstrap_interval(statistic, samples, generator, draws=DRAWS):
     drawn = []
     for _ in range(draws):
         rows = generator.integers(0, size, size)
-        drawn.append(statistic(*(one[rows] for one in samples)))
+        drawn.append(statistic(*(values[rows] for values in samples)))
     tails = (0.5 - 0.5 * CONFIDENCE, 0.5 + 0.5 * CONFIDENCE)
     return np.quantile(drawn, tails, axis=0) - np.mean(drawn, axis=0) + statistic(*samples)
 
@@ -78,24 +78,24 @@ def chance_level(statistic, inputs, outputs, generator, draws=DRAWS):
     """
     largest = np.full(draws, np.nan)
     for index in range(draws):
-        found = np.abs(statistic(inputs, outputs[generator.permutation(len(outputs))]))
-        if np.isfinite(found).any():
-            largest[index] = np.nanmax(found)
+        measures = np.abs(statistic(inputs, outputs[generator.permutation(len(outputs))]))
+        if np.isfinite(measures).any():
+            largest[index] = np.nanmax(measures)
     return float(np.quantile(largest, CONFIDENCE))
 
 
-def chance_distance(differences, own, other, generator):
+def chance_distance(differences, first, second, generator):
     """Distance that 95 of 100 random divisions of all members into ensembles of these sizes stay below.
 
-    Arguments as of `ensemble_distance`. NaN where the members are so few that a twentieth of their divisions or more
-    are as far apart as the farthest. A sample that both models ran makes the ensembles more alike than the division
-    takes them to be, so that a distance beyond this level is rarer by chance than stated.
+    The arguments are those of `ensemble_distance`. NaN where the members are so few that a twentieth of their divisions
+    or more are as far apart as the farthest. A sample that both models ran makes the ensembles more alike than the
+    division takes them to be, so that a distance beyond this level is rarer by chance than stated.
     """
     # the same two groups come twice where they are of one size
-    alike = (1 + (len(own) == len(other))) / comb(len(own) + len(other), len(own))
+    alike = (1 + (len(first) == len(second))) / comb(len(first) + len(second), len(first))
     if alike >= 1.0 - CONFIDENCE:
         return np.nan
-    pooled, size = np.concatenate([own, other]), len(own)
+    pooled, size = np.concatenate([first, second]), len(first)
     drawn = []
     for _ in range(DRAWS):
         mixed = generator.permutation(pooled)

@@ -21,24 +21,24 @@ def mean_differences(curves, others):
     float64 array, shape (n, m, n_markers)
         [m]; NaN for two curves without a common time.
     """
-    found = np.empty((len(curves), len(others), curves.shape[2]))
-    for place, curve in enumerate(curves):
+    means = np.empty((len(curves), len(others), curves.shape[2]))
+    for row, curve in enumerate(curves):
         apart = np.abs(others - curve)
         count = np.isfinite(apart).sum(axis=1)
         with np.errstate(invalid="ignore", divide="ignore"):
-            found[place] = np.where(count > 0, np.nansum(apart, axis=1) / count, np.nan)
-    return found
+            means[row] = np.where(count > 0, np.nansum(apart, axis=1) / count, np.nan)
+    return means
 
 
-def ensemble_distance(differences, own, other):
+def ensemble_distance(differences, first, second):
     """Energy distance of two ensembles, in the unit of the curves.
 
     Parameters
     ----------
     differences : float64 array, shape (n, n)
         Of all members from each other, from `mean_differences`.
-    own, other : int arrays
-        Places of the members of either ensemble; none in both.
+    first, second : int arrays
+        Rows of the members of either ensemble; none in both.
 
     Returns
     -------
@@ -52,8 +52,8 @@ def ensemble_distance(differences, own, other):
     over the squared difference of both distribution functions. Ensembles of few members are apart by chance already,
     see `blockshake.statistics.resampling.chance_distance`.
     """
-    between = differences[np.ix_(own, other)].mean()
-    within = differences[np.ix_(own, own)].mean() + differences[np.ix_(other, other)].mean()
+    between = differences[np.ix_(first, second)].mean()
+    within = differences[np.ix_(first, first)].mean() + differences[np.ix_(second, second)].mean()
     return float(between - 0.5 * within)
 
 
@@ -89,7 +89,7 @@ def ensemble_score(away, differences, weights):
     away : float64 array, shape (n, ...)
         Mean differences of the members from each curve.
     differences, weights
-        As of `mean_width`.
+        The same arguments as `mean_width` has.
 
     Notes
     -----
@@ -103,9 +103,9 @@ def ensemble_score(away, differences, weights):
 
 
 def member_scores(differences):
-    """Score of every member by the others, as of `ensemble_score`: float64 (n, ...); their mean is half the width.
+    """`ensemble_score` of the other members for every member, float64 (n, ...); its mean is half the width.
 
-    ``differences`` as of `mean_width`, of three members at least.
+    ``differences``: those that `mean_width` has, of three members at least.
     """
     count, away = len(differences), differences.sum(axis=1)
     pairs = 0.5 * away.sum(axis=0)

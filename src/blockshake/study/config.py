@@ -16,7 +16,6 @@ from blockshake.study.calibration.settings import CalibrationSettings
 from blockshake.study.config_checks import check_named
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED
 from blockshake.study.ensembles.rungs import Rungs
-from blockshake.study.fragility.settings import FragilitySettings
 from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, known_as, load_distributions
 from blockshake.study.sampling.latin_hypercube import LARGEST_SIZE, SMALLEST_SIZE
 from blockshake.validation import Count, Positive, Strict, Whole, validated
@@ -136,6 +135,16 @@ class Ladder(Rungs):
     )
 
 
+class FragilitySettings(Strict):
+    """Samples that climb the ladder, each until its potential collapse."""
+
+    model: ModelName = Field("nscd-rigid", description="solver that climbs, one of the study's")
+    cases: tuple[str, ...] = Field(min_length=1, description="names of cases of the study")
+    size: Whole = Field(
+        20, ge=3, description="samples that climb: the first rows of the design, no more than there are [1]"
+    )
+
+
 class Diagnosis(Strict):
     """Which measured campaigns are diagnosed, and how thoroughly."""
 
@@ -182,21 +191,21 @@ class StudyConfig(Strict):
         """Give frictions the names that the distributions have, whose materials may be in the other order."""
         known = self.ensemble.distributions
 
-        def own(name):
+        def known_name(name):
             return known_as(name, known) or name
 
-        linked = {target: own(source) for target, source in self.ensemble.linked.items()}
+        linked = {target: known_name(source) for target, source in self.ensemble.linked.items()}
         changes = {"ensemble": self.ensemble.model_copy(update={"linked": linked})}
         if (asked := self.calibration) is not None:
-            ranges = {own(name): span for name, span in asked.ranges.items()}
+            ranges = {known_name(name): span for name, span in asked.ranges.items()}
             if len(ranges) < len(asked.ranges):
                 raise InputError("", "study.calibration.ranges", "expected every pair once")
             named = {
                 "ranges": ranges,
-                "linked": {own(name): own(source) for name, source in asked.linked.items()},
+                "linked": {known_name(name): known_name(source) for name, source in asked.linked.items()},
             }
             if asked.parameters is not None:
-                named["parameters"] = tuple(map(own, asked.parameters))
+                named["parameters"] = tuple(map(known_name, asked.parameters))
             changes["calibration"] = asked.model_copy(update=named)
         return self.model_copy(update=changes)
 

@@ -101,10 +101,10 @@ def _read_motions(config, where):
     return read
 
 
-def _one_of(name, known, where, key):
+def _one_of(name, known, where, key, kind="one of "):
     """Refuse a name that is none of the known ones."""
     if name not in known:
-        raise InputError(where, key, f"expected one of {', '.join(known) or 'none'}, not {name}")
+        raise InputError(where, key, f"expected {kind}{', '.join(known) or 'none'}, not {name}")
 
 
 def _each_once(names, where, key):
@@ -291,21 +291,11 @@ def check_fragility(asked, config, structures, where):
         raise InputError(where, "fragility.size", f"expected at most ensemble.size, {config.ensemble.size}")
 
 
-def check_measured_cases(names, config, where, key):
-    """Refuse names that are not those of cases with a measured test, each once."""
-    known = [case.name for case in config.cases if case.measured is not None]
-    for name in names:
-        if name not in known:
-            raise InputError(
-                where, key, f"expected cases with a measured test: {', '.join(known) or 'none'}, not {name}"
-            )
-    _each_once(names, where, key)
-
-
 def check_calibration(asked, config, structures, where):
     """Models and measured cases of the study, and values of parameters that models and structures have a use for."""
     frictions = [name for name in config.ensemble.distributions if name.startswith("friction.")]
     known = [*frictions, *OTHERS]
+    measured = [case.name for case in config.cases if case.measured is not None]
     for name in asked.parameters or ():
         _one_of(name, known, where, "calibration.parameters")
     for name in asked.ranges:
@@ -314,22 +304,29 @@ def check_calibration(asked, config, structures, where):
     ranges = asked.ranges_of(config.ensemble.distributions)
     for name, source in asked.linked.items():
         _one_of(name, frictions, where, "calibration.linked")
-        _one_of(source, [one for one in frictions if one in ranges], where, f"calibration.linked.{name}")
+        _one_of(
+            source,
+            [friction for friction in frictions if friction in ranges],
+            where,
+            f"calibration.linked.{name}",
+        )
     for model, names in asked.cases.items():
         key = f"calibration.cases.{model}"
         _one_of(model, config.models, where, key)
-        check_measured_cases(names, config, where, key)
+        _each_once(names, where, key)
         for name in names:
+            _one_of(name, measured, where, key, "cases with a measured test: ")
             structure = structures[config.case(name).structure]
-            used = [one for one in ranges if has_use(model, structure, one)]
+            used = [parameter for parameter in ranges if has_use(model, structure, parameter)]
             if not used:
                 raise InputError(
                     where, key, f"expected a parameter among {', '.join(ranges)} that {model} has a use for"
                 )
-            ends = {one: (ranges[one].lowest, ranges[one].highest) for one in used if one != STIFFNESS}
+            spans = {parameter: ranges[parameter] for parameter in used if parameter != STIFFNESS}
+            ends = {parameter: (span.lowest, span.highest) for parameter, span in spans.items()}
 
             def parameters(values, structure=structure):
-                placed = {one: parameter_of(structure, one) for one in values}
-                return {name: factor * values[one] for one, (name, factor) in placed.items()}
+                named = {parameter: parameter_of(structure, parameter) for parameter in values}
+                return {name: factor * values[parameter] for parameter, (name, factor) in named.items()}
 
             check_ends(structure, ends, parameters, where, "calibration.ranges")

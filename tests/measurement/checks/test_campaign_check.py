@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from resting_stack import MARKERS, NOISE, resting_stack, write_campaign
 
-from blockshake.dynamics.records.contract_csv import write_motion_csv
 from blockshake.dynamics.motion import ground_motion
+from blockshake.dynamics.records.contract_csv import write_motion_csv
 from blockshake.errors import InputError
 from blockshake.files import file_digest
 from blockshake.measurement.checks.campaign_check import campaign_lines

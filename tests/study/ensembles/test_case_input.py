@@ -16,8 +16,8 @@ from blockshake.simulation.simulate import simulate
 from blockshake.store import Store
 from blockshake.study.ensembles.batch import CaseRuns, simulate_samples
 from blockshake.study.ensembles.case_input import driving_motions, measured_input, measured_on_clock
+from blockshake.study.ensembles.coverage import compared_curves
 from blockshake.study.ensembles.ensemble import join_batches
-from blockshake.study.ensembles.measured import compared_curves
 from blockshake.virtual.settings import TableErrors
 from blockshake.virtual.shake_table import followed
 
@@ -79,8 +79,8 @@ def score(case, tmp_path):
             runs, motions, pd.DataFrame({FRICTION: values}), Store(tmp_path / "store", "test")
         )
         measured, noise = measured_on_clock(named, base)
-        compared = compared_curves(measured, join_batches(finished), noise, 1)
-        return np.nanmean(crps(compared.readings, compared.measured.to_numpy()))
+        read, _, _, readings = compared_curves(measured, join_batches(finished), noise, 1)
+        return np.nanmean(crps(readings, read.to_numpy()))
 
     return scored
 

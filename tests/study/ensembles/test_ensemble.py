@@ -2,12 +2,12 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from fake_study import ensemble_of
 
 from blockshake.errors import InputError
 from blockshake.files import write_dataset
 from blockshake.study.ensembles.ensemble import (
     RESIDUAL_WINDOW,
-    gather_ensemble,
     join_batches,
     relative_to_slab,
     sample_figures,
@@ -20,16 +20,16 @@ def test_runs_stand_side_by_side_with_their_parameters(make_run):
     design = pd.DataFrame(
         {"friction.concrete.concrete": [0.6, 0.7, 0.8], "materials.concrete.density": 2400.0}
     )
-    runs = [make_run(0.01, sample=2), make_run(0.02, sample=0)]
-    ensemble = gather_ensemble(runs, [2, 0], design, "slab-face")
+    runs = [make_run(0.01), make_run(0.02)]
+    ensemble = ensemble_of(runs, design.loc[[0, 2]])
     assert ensemble["marker_displacement"].dims == ("sample", "time", "marker", "axis")
     assert ensemble["position"].dims == ("sample", "time", "body", "axis")
-    np.testing.assert_array_equal(ensemble["sample"], [2, 0])
+    np.testing.assert_array_equal(ensemble["sample"], [0, 2])
     np.testing.assert_array_equal(
-        ensemble["marker_displacement"].sel(sample=2).transpose("time", "marker", "axis"),
+        ensemble["marker_displacement"].sel(sample=0).transpose("time", "marker", "axis"),
         runs[0]["marker_displacement"],
     )
-    np.testing.assert_array_equal(ensemble["parameter_value"], [[0.8, 2400.0], [0.6, 2400.0]])
+    np.testing.assert_array_equal(ensemble["parameter_value"], [[0.6, 2400.0], [0.8, 2400.0]])
     assert list(ensemble["parameter_unit"].values) == ["1", "kg/m3"]
     # what all runs share, not what is one run's
     assert ensemble.attrs["model"] == "ls-dem"
@@ -75,25 +75,15 @@ def test_relative_displacement_takes_the_slab_away(make_run):
     np.testing.assert_allclose(relative.sel(marker="block-1-face", axis="x")[1:], 0.01, atol=ROUNDING)
 
 
-def test_files_and_datasets_give_the_same_ensemble_twice(make_run, gather, tmp_path):
-    runs = [make_run(0.01), make_run(0.02)]
-    for sample, run in enumerate(runs):
-        write_dataset(tmp_path / f"{sample}.nc", run)
-    from_files = gather([tmp_path / "0.nc", tmp_path / "1.nc"])
-    xr.testing.assert_equal(from_files, gather(runs))
-    write_dataset(tmp_path / "ensemble.nc", from_files)
-    xr.testing.assert_equal(xr.load_dataset(tmp_path / "ensemble.nc"), from_files)
-
-
 def test_batches_join_to_the_ensemble_gathered_at_once(make_run, tmp_path):
     design = pd.DataFrame({"friction.concrete.concrete": [0.5, 0.6, 0.7, 0.8]})
     runs = [make_run(0.01 * k, status="collapsed" if k == 3 else "completed") for k in range(4)]
     runs[0].attrs["numerics_steps"] = 7
     for samples in ([2, 3], [0, 1]):
-        batch = gather_ensemble([runs[k] for k in samples], samples, design, "slab-face")
+        batch = ensemble_of([runs[k] for k in samples], design.loc[samples])
         write_dataset(tmp_path / f"{samples[0]}.nc", batch)
     joined = join_batches([tmp_path / "2.nc", tmp_path / "0.nc"])
-    at_once = gather_ensemble(runs, range(4), design, "slab-face")
+    at_once = ensemble_of(runs, design)
     xr.testing.assert_equal(joined, at_once)
     assert joined.attrs == at_once.attrs
     with pytest.raises(InputError, match="every sample in one only"):
@@ -131,21 +121,12 @@ def test_every_quantity_has_a_name_and_a_unit(make_run, gather):
         assert ensemble[name].attrs["long_name"]
 
 
-def test_what_does_not_belong_together_is_refused(make_run):
-    design = pd.DataFrame({"friction.concrete.concrete": [0.6, 0.7]})
+def test_runs_that_do_not_belong_together_are_refused(make_run, gather):
     run = make_run(0.01)
-    with pytest.raises(InputError, match="same 'time'"):
-        gather_ensemble([run, run.isel(time=slice(0, 100))], [0, 1], design, "slab-face")
+    with pytest.raises(InputError, match="sample 1: expected the same 'time'"):
+        gather([run, run.isel(time=slice(0, 100))])
     with pytest.raises(InputError, match="same 'marker'"):
-        gather_ensemble([run, run.assign_coords(marker=["slab-face", "top"])], [0, 1], design, "slab-face")
-    with pytest.raises(InputError, match="sample 5: expected a row of the design"):
-        gather_ensemble([run], [5], design, "slab-face")
-    with pytest.raises(InputError, match="sample of its own"):
-        gather_ensemble([run, run], [0, 0], design, "slab-face")
-    with pytest.raises(InputError, match="at least one run"):
-        gather_ensemble([], [], design, "slab-face")
-    with pytest.raises(InputError, match="table: expected a marker"):
-        gather_ensemble([run], [0], design, "table")
+        gather([run, run.assign_coords(marker=["slab-face", "top"])])
 
 
 def test_joined_texts_keep_their_length_through_a_file(tmp_path):

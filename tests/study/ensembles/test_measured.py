@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from blockshake.study.ensembles.measured import measured_curves
+from blockshake.study.ensembles.ensemble import measured_curves
 
 TIME = np.arange(0.0, 2.001, 0.01)
 

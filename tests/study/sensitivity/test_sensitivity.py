@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from fake_study import ensemble_of
 
 from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
-from blockshake.study.ensembles.ensemble import gather_ensemble
 from blockshake.study.sampling.latin_hypercube import draw_samples
 from blockshake.study.sampling.sample_parameters import sample_parameters, unused_variables
 from blockshake.study.sensitivity.sensitivity import QUANTITIES, sensitivity
@@ -32,7 +32,7 @@ def ensemble(make_run, design):
             moved = 0.02 + 0.002 * score[FRICTION][sample] + 0.0002 * noise[sample]
             turned = 0.01 + 0.001 * score[DENSITY][sample]
             runs.append(change(sample, make_run(moved * np.minimum(TIME, 1.0), angle=turned)))
-        return gather_ensemble(runs, design.index, values, "slab-face")
+        return ensemble_of(runs, values)
 
     return gathered
 

@@ -7,7 +7,6 @@ from blockshake.study.sensitivity.findings import (
     influences,
     is_known,
     quiet_markers,
-    windows_beyond_chance,
 )
 
 NAMES = ["a", "b", "c"]
@@ -47,23 +46,6 @@ def test_what_is_not_known_differs_from_nothing():
     assert not differs(result([0.0] * 3).assign(spread=np.nan), 1e-9)
     assert is_known(result([0.0] * 3), "first_order")
     assert not is_known(result([0.0] * 3, chance=np.nan), "first_order")
-
-
-def test_windows_with_a_spread_within_the_noise_do_not_count():
-    shares = np.array([[0.9, 0.0], [0.5, 0.1], [0.7, 0.2]])
-    found = windows_beyond_chance(
-        xr.Dataset(
-            {
-                "window_first_order": (("window", "parameter"), shares),
-                "window_spread": ("window", [1e-5, 1e-3, 1e-3]),
-                "window_first_order_chance": ((), 0.3),
-            },
-            coords={"window": [0.5, 1.5, 2.5], "parameter": ["a", "b"]},
-        ),
-        1e-4,
-    )
-    assert (found.count, found.chance) == (2, 0.3)
-    assert found.found == (("a", 2, 1.5, 2.5, 0.7),)
 
 
 def test_quiet_markers_have_a_known_spread_below_the_noise():

@@ -8,9 +8,9 @@ from blockshake.geometry.structure import load_structure
 from blockshake.pages.rows import bodies_by_height, face_markers
 from blockshake.study.report.content import load_content
 from blockshake.study.sensitivity.figure import plot_sensitivity, plot_sensitivity_over_time
+from blockshake.study.sensitivity.findings import sentence
+from blockshake.study.sensitivity.section import summary_table
 from blockshake.study.sensitivity.sensitivity import QUANTITIES
-from blockshake.study.sensitivity.summary import summary_table
-from blockshake.study.sensitivity.words import sentence
 
 NOISE = 1e-4  # m
 FRICTION, VISCOUS = "friction.concrete.concrete", "materials.concrete.viscous_modulus"
@@ -65,6 +65,15 @@ def test_nothing_is_named_within_chance():
     assert "No variable is shown to explain any of that by itself" in words
     assert "No variable is shown to steer the peak" in words
     assert "In no single second is any share beyond chance (0.30)" in words
+
+
+def test_seconds_with_a_spread_within_the_noise_do_not_count():
+    result = made_up()
+    result["window_first_order"][:, :, 0] = [[0.9], [0.5], [0.7]]
+    result["window_spread"][0] = 1e-5
+    words = sentence(result, "block-2", "high-face", NOISE)
+    assert "Of the 2 seconds one by one, beyond chance (0.30): friction, concrete on concrete in 2" in words
+    assert "in 2 (first about 1.5 s, last 2.5 s, at most 0.70)" in words
 
 
 def test_samples_closer_than_the_noise_have_nothing_to_explain():

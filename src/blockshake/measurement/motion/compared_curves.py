@@ -16,7 +16,7 @@ def curves_along_x(measured, members):
         ``marker_displacement(time, marker, axis)`` [m], relative to the first reading; at any times of the members'
         clock.
     members : xarray.Dataset
-        From `gather_ensemble`.
+        From `join_batches`.
 
     Returns
     -------

@@ -24,9 +24,8 @@ from blockshake.statistics.scores import (
 )
 from blockshake.store import load_made
 from blockshake.study.comparison.twins import TWINS
-from blockshake.study.described import describe
 from blockshake.study.ensembles.case_input import measured_on_clock
-from blockshake.study.ensembles.ensemble import ALONG_X, POSES, join_batches, relative_to_slab
+from blockshake.study.ensembles.ensemble import ALONG_X, POSES, describe, join_batches, relative_to_slab
 from blockshake.study.ensembles.envelope import counted_samples
 
 MOST = 400  # samples of a model that are compared: each is held against each
@@ -81,7 +80,7 @@ def compare_models(ensembles, twins, measured):
     Parameters
     ----------
     ensembles : dict of str to xarray.Dataset
-        By model, from `gather_ensemble`.
+        By model, from `join_batches`.
     twins : dict of str to xarray.Dataset
         By model, from `simulate_twins`, of a sample that is among those of the model; any model may be missing.
     measured : tuple of (xarray.Dataset, float) or None

@@ -10,7 +10,7 @@ from blockshake.measurement.sensors.markers import driven_marker
 from blockshake.simulation.run_histories import joint_figures
 from blockshake.simulation.simulate import simulate
 from blockshake.store import structure_digest
-from blockshake.study.ensembles.ensemble import gather_ensemble
+from blockshake.study.ensembles.ensemble import run_as_sample
 from blockshake.study.sampling.latin_hypercube import load_design
 from blockshake.study.sampling.sample_parameters import sample_parameters
 
@@ -61,7 +61,7 @@ def simulate_samples(runs, motions, rows, store):
     Returns
     -------
     list of Path
-        Files in the store, in the order of ``rows``: what `gather_ensemble` keeps of a run, with the run's ``status``
+        Files in the store, in the order of ``rows``: what `run_as_sample` keeps of a run, with the run's ``status``
         and ``reason`` as attributes.
     """
     case, model, settings, _, output_rate = runs
@@ -71,14 +71,14 @@ def simulate_samples(runs, motions, rows, store):
     for sample, row in rows.iterrows():
         motion, parameters = motions(sample), runs.parameters(row, structure)
 
-        def simulated(checkpoint, sample=sample, motion=motion, parameters=parameters):
+        def simulated(checkpoint, sample=sample, row=row, motion=motion, parameters=parameters):
             run = simulate(
                 structure, motion, model, parameters,
                 time_step=settings["time_step"], duration=case["duration"], output_rate=output_rate,
                 accelerometers=False, checkpoint=checkpoint,
             )  # fmt: skip
             member = run.drop_dims("joint").merge(joint_figures(run, structure))
-            ensemble = gather_ensemble([member], [sample], rows, driven_marker(structure))
+            ensemble = run_as_sample(member, sample, row, driven_marker(structure))
             return ensemble.assign_attrs(status=run.attrs["status"], reason=run.attrs["reason"])
 
         given = (

@@ -146,8 +146,8 @@ def _against(base, command, duration):
     time = base["time"].to_numpy() - base.attrs["start"]
     inside = (time >= 0.0) & (time <= duration)
     moved = base["displacement"].transpose("time", "channel").to_numpy()[inside, :3]
-    told = command.evaluate(time[inside])[:, 0]
-    followed = follow(moved, told, 0.0)
+    asked = command.evaluate(time[inside])[:, 0]
+    followed = follow(moved, asked, 0.0)
     if followed is None or not base.attrs["follows"]:
         return np.nan, np.nan
-    return float(followed.share[0]), float(np.std(moved[:, 0] - told))
+    return float(followed.share[0]), float(np.std(moved[:, 0] - asked))

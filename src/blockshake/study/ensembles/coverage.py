@@ -3,16 +3,16 @@
 import numpy as np
 import xarray as xr
 
+from blockshake.measurement.motion.compared_curves import curves_along_x
+from blockshake.measurement.sensors.markers import noisy_reading
+from blockshake.statistics.intervals import sample_quantiles
 from blockshake.statistics.resampling import rank_chance
-from blockshake.study.described import describe
+from blockshake.statistics.scores import FEWEST
 from blockshake.study.ensembles.case_input import measured_on_clock
-from blockshake.study.ensembles.distance import distances
-from blockshake.study.ensembles.ensemble import ALONG_X, POSES, join_batches, relative_to_slab
-from blockshake.study.ensembles.envelope import over_samples
-from blockshake.study.ensembles.measured import compared_curves
+from blockshake.study.ensembles.ensemble import ALONG_X, POSES, describe, join_batches, relative_to_slab
+from blockshake.study.ensembles.envelope import counted_samples
 
 REFERENCE_QUANTILES = (0.05, 0.5, 0.95)
-_FEWEST_MEMBERS = 3
 _NOISE_SEED = 0  # of the readings of the members
 UNLIKELY = 0.05  # chance of a whole curve at or below which an ensemble does not fit
 _DESCRIBED = {
@@ -49,7 +49,7 @@ def coverage(measured, ensemble, marker_noise):
         ``marker_displacement(time, marker, axis)`` [m], inertial frame, relative to the first
         reading; NaN is a gap. Its clock is the ensemble's.
     ensemble : xarray.Dataset
-        From `gather_ensemble`; only completed and collapsed samples count.
+        From `join_batches`; only completed and collapsed samples count.
     marker_noise : float
         Standard deviation of a measured marker's position [m].
 
@@ -59,7 +59,7 @@ def coverage(measured, ensemble, marker_noise):
         Along the markers that both have, displacement along x, inertial frame: ``coverage(marker)`` of the measured
         curve in the bounds of all members; ``member_coverage(sample, marker)`` of each member, read with the same
         noise, in the bounds of the others; its ``reference(quantile, marker)``; ``distance(marker)`` of the measured
-        curve and ``member_distance(sample, marker)`` as of `distances`; ``curve_probability(marker)``, the rank of the
+        curve and ``member_distance(sample, marker)``, from `distances`; ``curve_probability(marker)``, the rank of the
         measured curve's distance among the members', from 1 / (n + 1) to 1; ``band_width(marker)`` [m], mean
         over time; and ``measured_peak(marker)`` [m], largest absolute displacement relative to the slab's marker, to
         hold the width against. All but the peak are NaN for fewer than three members: too few for a reference.
@@ -80,40 +80,29 @@ def coverage(measured, ensemble, marker_noise):
     """
     read, members, curves, readings = compared_curves(measured, ensemble, marker_noise, _NOISE_SEED)
     markers = list(read["marker"].values)
-    enough = len(curves) >= _FEWEST_MEMBERS
-    by_curve = np.full((len(curves) + 1, len(markers)), np.nan)
-    inside, width, (*member_coverage, _) = by_curve[-1], by_curve[-1], by_curve
-    *members_away, away = by_curve
-    if enough:
+    inside = width = probability = np.full(len(markers), np.nan)
+    member_coverage = np.full((len(curves), len(markers)), np.nan)
+    away = np.full((len(curves) + 1, len(markers)), np.nan)  # of the members, and of the measured curve
+    if len(curves) >= FEWEST:
         lower, upper = np.fmin.reduce(curves, axis=0), np.fmax.reduce(curves, axis=0)
-        inside, member_coverage = (
-            share_inside(read.to_numpy(), lower, upper),
-            members_inside(curves, readings),
-        )
-        every_reading = np.concatenate([readings, read.to_numpy()[None]])
-        *members_away, away = distances(every_reading, curves, marker_noise)
+        inside = share_inside(read.to_numpy(), lower, upper)
+        member_coverage = members_inside(curves, readings)
+        away = distances(np.concatenate([readings, read.to_numpy()[None]]), curves, marker_noise)
+        probability = rank_chance(away[-1], away[:-1])
         width = np.nanmean(upper - lower, axis=0)
-    member_coverage = np.reshape(member_coverage, (len(curves), len(markers)))
-    by_marker = {"marker": markers}
-    by_member = xr.DataArray(
-        member_coverage, dims=("sample", "marker"), coords={"sample": members["sample"], **by_marker}
-    )
-    probabilities = xr.DataArray(
-        list(REFERENCE_QUANTILES), dims="quantile", coords={"quantile": list(REFERENCE_QUANTILES)}
-    )
-    member_distance = by_member.copy(data=np.reshape(members_away, by_member.shape))
+    by_member = ("sample", "marker")
     result = xr.Dataset(
         {
             "coverage": ("marker", inside),
-            "reference": over_samples(by_member, probabilities),
-            "member_coverage": by_member,
-            "distance": ("marker", away),
-            "member_distance": member_distance,
-            "curve_probability": ("marker", rank_chance(away, members_away) if enough else away * np.nan),
+            "reference": (("quantile", "marker"), sample_quantiles(member_coverage, REFERENCE_QUANTILES)),
+            "member_coverage": (by_member, member_coverage),
+            "distance": ("marker", away[-1]),
+            "member_distance": (by_member, away[:-1]),
+            "curve_probability": ("marker", probability),
             "band_width": ("marker", width),
             "measured_peak": ("marker", _measured_peak(measured, members.attrs["slab_marker"], markers)),
         },
-        coords=by_marker,
+        coords={"quantile": list(REFERENCE_QUANTILES), "marker": markers, "sample": members["sample"]},
     )
     describe(result, _DESCRIBED)
     result.attrs = {
@@ -125,6 +114,80 @@ def coverage(measured, ensemble, marker_noise):
         "noise_seed": _NOISE_SEED,
     }
     return result
+
+
+def compared_curves(measured, ensemble, marker_noise, seed):
+    """Measured and simulated displacement along x at the same times, inertial frame [m].
+
+    Parameters
+    ----------
+    measured, ensemble, marker_noise
+        The arguments of `coverage`; the measured times need not be those of the ensemble.
+    seed : int
+        Of the noise that the members are read with.
+
+    Returns
+    -------
+    read : xarray.DataArray, (time, marker)
+        Measured.
+    members : xarray.Dataset
+        Completed and collapsed samples of the ensemble.
+    curves, readings : float64 arrays, shape (n_samples, n_times, n_markers)
+        Of the members, and the same with a marker's noise.
+
+    Raises
+    ------
+    InputError
+        No marker or no time in common.
+    """
+    members = counted_samples(ensemble)
+    read, curves = curves_along_x(measured, members)
+    curves, generator = curves.to_numpy(), np.random.default_rng(seed)
+    readings = [noisy_reading(curve, marker_noise, generator) for curve in curves]
+    return read, members, curves, np.reshape(readings, curves.shape)
+
+
+def distances(readings, curves, noise):
+    """Distance of every curve from each ensemble that it is held against, the members from the others.
+
+    Parameters
+    ----------
+    readings : float64 array, shape (n_curves, n_times, n_markers)
+        Members as an instrument would read them, in their order, and after these any further curves [m]; NaN is a gap.
+    curves : float64 array, shape (n_members, n_times, n_markers)
+        Members; NaN, as after the end of a run, is no value [m].
+    noise : float
+        Standard deviation of a position read [m]; a displacement since the first reading has it twice.
+
+    Returns
+    -------
+    float64 array, shape (n_curves, n_markers)
+        Root mean square over the times of the difference from the mean of the members, over the standard deviation of
+        a further reading of the ensemble. A member is left out of the ensemble that it is held against (leave one
+        out). Infinite for a curve off members that are all alike, without noise; NaN without any time.
+
+    Notes
+    -----
+    A distance has no end, where the share of the time within bounds has one: it tells 1 mm from 100 mm off a band that
+    is thinner than the noise.
+    """
+    there = np.isfinite(curves)
+    centre = np.nan_to_num(curves[0])  # near all of them, so that the squares below cancel little
+    shifted = np.where(there, curves - centre, 0.0)
+    count, total, square = there.sum(axis=0), shifted.sum(axis=0), (shifted**2).sum(axis=0)
+    away_of_curves = []
+    for row, reading in enumerate(readings):
+        member = shifted[row] if row < len(curves) else 0.0
+        others = count - (there[row] if row < len(curves) else 0)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean = (total - member) / others
+            spread = np.maximum(square - member**2 - others * mean**2, 0.0) / (others - 1)
+            away = (reading - centre - mean) ** 2
+            score = np.where(away == 0.0, 0.0, away / (spread * (1.0 + 1.0 / others) + 2.0 * noise**2))
+        known = np.isfinite(reading) & (others > 1)
+        with np.errstate(invalid="ignore"):
+            away_of_curves.append(np.sqrt(np.where(known, score, 0.0).sum(axis=0) / known.sum(axis=0)))
+    return np.array(away_of_curves)
 
 
 def is_likely(chance, members):

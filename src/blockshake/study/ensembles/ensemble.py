@@ -5,6 +5,7 @@ import xarray as xr
 
 from blockshake.dynamics.system import Status
 from blockshake.errors import InputError
+from blockshake.measurement.motion.compared_curves import SAME_TIME
 from blockshake.simulation.run_histories import JOINT_FIGURES
 from blockshake.store import load_made
 from blockshake.study.sampling.distributions import parameter_unit
@@ -16,18 +17,17 @@ ALONG_X = {"axis": ["x"]}
 _OF_ONE_RUN = ("status", "reason", "end_time", "sample", "parameters")
 
 
-def gather_ensemble(runs, samples, parameters, slab_marker):
-    """One Dataset of many runs.
+def run_as_sample(run, sample, values, slab_marker):
+    """Ensemble of one run, which `join_batches` joins to others of the same structure, motion and model.
 
     Parameters
     ----------
-    runs : sequence of xarray.Dataset or path, length n_samples
-        Run files or their content, of one structure, motion and model, at the same times, with `joint_figures` in
-        place of the joints' histories. Files are read one after the other.
-    samples : sequence of int, length n_samples
-        Their rows in the design.
-    parameters : pandas.DataFrame
-        The design's values: index the samples (more than these may be there), columns dotted names.
+    run : xarray.Dataset
+        Content of a run file, with `joint_figures` in place of the joints' histories.
+    sample : int
+        Its row in the design.
+    values : pandas.Series
+        Sampled values by dotted name.
     slab_marker : str
         Marker on the driven body that displacements are relative to in the frame ``slab``.
 
@@ -37,40 +37,31 @@ def gather_ensemble(runs, samples, parameters, slab_marker):
         Along ``sample``: ``marker_displacement(sample, time, marker, axis)`` and ``position(sample, time, body, axis)``
         [m], inertial frame; ``orientation(sample, time, body, quaternion)``; ``status`` and ``reason``;
         ``end_time`` [s]; ``peak`` and ``residual(sample, frame, marker)`` [m], along x;
-        ``peak_rotation(sample, body)`` [rad]; the runs' `joint_figures`, ``(sample, joint)``;
-        ``parameter_value(sample, parameter)``; and the runs' figures of their computation, ``energy_residual`` and
-        ``numerics_*``, NaN where a run has none. Attributes: the others that all runs share, and ``slab_marker``.
-
-    Raises
-    ------
-    InputError
-        No runs, runs whose times, markers or bodies differ, or a sample that the design lacks.
+        ``peak_rotation(sample, body)`` [rad]; the run's `joint_figures`, ``(sample, joint)``;
+        ``parameter_value(sample, parameter)``; and the run's figures of its computation, ``energy_residual`` and
+        ``numerics_*``. Attributes: the others of the run, and ``slab_marker``.
     """
-    samples = [int(sample) for sample in samples]
-    if not samples or len(samples) != len(runs) or len(set(samples)) < len(samples):
-        raise InputError("ensemble", "samples", "expected at least one run and a sample of its own for each")
-    for sample in samples:
-        if sample not in parameters.index:
-            raise InputError("ensemble", f"sample {sample}", "expected a row of the design")
-    pieces, attributes = [], []
-    for run, sample in zip(runs, samples, strict=True):
-        run = run if isinstance(run, xr.Dataset) else load_made(run)
-        piece = _piece(run)
-        if pieces:
-            _check_alike(piece, pieces[0], sample)
-        pieces.append(piece)
-        attributes.append(run.attrs)
-    if slab_marker not in pieces[0]["marker"].values:
-        raise InputError("ensemble", slab_marker, "expected a marker of the runs")
-    index = xr.DataArray(samples, dims="sample", attrs={"long_name": "row of the sample in its design"})
-    ensemble = xr.concat(
-        pieces, dim="sample", data_vars="all", coords="minimal", compat="override", join="override"
-    ).assign_coords(sample=index)
-    ensemble = ensemble.assign(_endings(attributes)).assign_coords(
-        _parameter_coordinates(parameters.loc[samples])
+    kept = run[["marker_displacement", "position", "orientation", *JOINT_FIGURES]]
+    kept = kept.assign(peak_rotation=_peak_rotation(run["orientation"]))
+    kept = kept.transpose("time", "marker", "body", "joint", "axis", "quaternion")
+    index = xr.DataArray([sample], dims="sample", attrs={"long_name": "row of the sample in its design"})
+    names = [str(name) for name in values.index]
+    ensemble = (
+        kept.expand_dims(sample=1)
+        .assign_coords(sample=index)
+        .assign(_endings(run.attrs))
+        .assign_coords(
+            parameter=("parameter", names, {"long_name": "dotted name of the parameter"}),
+            parameter_unit=("parameter", [parameter_unit(name) for name in names], {"long_name": "its unit"}),
+            parameter_value=(
+                ("sample", "parameter"),
+                values.to_numpy(dtype=float)[None],
+                {"long_name": "sampled value, in parameter_unit"},
+            ),
+        )
     )
     ensemble.attrs = {
-        **_common(attributes),
+        **_common([run.attrs]),
         "Conventions": "CF-1.11",
         "title": "ensemble of simulated runs",
         "slab_marker": slab_marker,
@@ -84,7 +75,7 @@ def join_batches(batches, without=(), chosen=None):
     Parameters
     ----------
     batches : sequence of xarray.Dataset or path
-        From `gather_ensemble`, of one structure, motion, model and design.
+        From here or from `run_as_sample`, of one structure, motion, model and design.
     without : sequence of str
         Variables that are not read from files, such as `POSES`: half of what an ensemble holds.
     chosen : dict of str to list, optional
@@ -93,7 +84,8 @@ def join_batches(batches, without=(), chosen=None):
     Returns
     -------
     xarray.Dataset
-        As from `gather_ensemble`, samples rising.
+        As from `run_as_sample`, samples rising; figures of the computation are NaN where a run has none. Attributes:
+        those that all runs share.
 
     Raises
     ------
@@ -107,7 +99,10 @@ def join_batches(batches, without=(), chosen=None):
     if not samples or len(set(samples)) < len(samples):
         raise InputError("ensemble", "samples", "expected at least one batch, and every sample in one only")
     for part in parts[1:]:
-        _check_alike(part, parts[0], int(part["sample"][0]), ("time", "marker", "body", "joint", "parameter"))
+        for name in ("time", "marker", "body", "joint", "parameter"):
+            if not part[name].equals(parts[0][name]):
+                sample = f"sample {int(part['sample'][0])}"
+                raise InputError("ensemble", sample, f"expected the same '{name}' in all runs")
     joined = xr.concat(
         parts, dim="sample", data_vars="all", coords="minimal", compat="override", join="override"
     ).sortby("sample")
@@ -122,14 +117,6 @@ def sample_figures(ensemble):
     return figures
 
 
-def _piece(run):
-    """The variables of a run that an ensemble keeps, and the largest rotation of its bodies."""
-    piece = run[["marker_displacement", "position", "orientation", *JOINT_FIGURES]]
-    piece = piece.assign(peak_rotation=_peak_rotation(run["orientation"]))
-    piece.attrs = {}
-    return piece.transpose("time", "marker", "body", "joint", "axis", "quaternion")
-
-
 def _peak_rotation(orientation):
     """Largest angle between each body's orientation and that at the start."""
     turned = np.abs((orientation * orientation.isel(time=0, drop=True)).sum("quaternion", skipna=False))
@@ -138,28 +125,16 @@ def _peak_rotation(orientation):
     return angle.reset_coords(drop=True)
 
 
-def _check_alike(piece, first, sample, names=("time", "marker", "body", "joint")):
-    for name in names:
-        if not piece[name].equals(first[name]):
-            raise InputError("ensemble", f"sample {sample}", f"expected the same '{name}' in all runs")
-
-
 def _endings(attributes):
-    """How each run ended and the figures of its computation, along ``sample``."""
-    described = {"status": "how the run ended", "reason": "why the run ended so"}
+    """How a run ended and the figures of its computation, along ``sample``."""
     endings = {
-        name: ("sample", [str(run.get(name, "")) for run in attributes], {"long_name": long_name})
-        for name, long_name in described.items()
+        name: ("sample", [str(attributes.get(name, ""))], {"long_name": long_name})
+        for name, long_name in (("status", "how the run ended"), ("reason", "why the run ended so"))
     }
-    for name in sorted({name for run in attributes for name in run if _is_figure(name)}):
-        values = [float(run.get(name, np.nan)) for run in attributes]
-        endings[name] = ("sample", values, {"long_name": name.replace("_", " ")})
-    endings["end_time"] = (
-        "sample",
-        [float(run["end_time"]) for run in attributes],
-        {"long_name": "time reached", "units": "s"},
-    )
-    return endings
+    for name in sorted(filter(_is_figure, attributes)):
+        endings[name] = ("sample", [float(attributes[name])], {"long_name": name.replace("_", " ")})
+    end = float(attributes["end_time"])
+    return endings | {"end_time": ("sample", [end], {"long_name": "time reached", "units": "s"})}
 
 
 def _is_figure(name):
@@ -175,20 +150,6 @@ def _common(attributes):
         if not _is_figure(name)
         and name not in _OF_ONE_RUN
         and all(np.array_equal(run.get(name), value) for run in rest)
-    }
-
-
-def _parameter_coordinates(parameters):
-    names = [str(name) for name in parameters.columns]
-    values = parameters.to_numpy(dtype=float)
-    return {
-        "parameter": ("parameter", names, {"long_name": "dotted name of the parameter"}),
-        "parameter_unit": ("parameter", [parameter_unit(name) for name in names], {"long_name": "its unit"}),
-        "parameter_value": (
-            ("sample", "parameter"),
-            values,
-            {"long_name": "sampled value, in parameter_unit"},
-        ),
     }
 
 
@@ -231,3 +192,29 @@ def _extremes(ensemble):
     }
     order = ("sample", "frame", "marker")
     return {"peak": peak.transpose(*order), "residual": residual.transpose(*order)}
+
+
+def describe(dataset, described):
+    """Give variables and coordinates of a Dataset their attributes, in place of any that they have.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+    described : dict of str to (str, str)
+        Long name and unit, by variable.
+    """
+    for name, (long_name, units) in described.items():
+        dataset[name].attrs = {"long_name": long_name, "units": units}
+
+
+def measured_curves(test, slab_marker, duration):
+    """Measured displacement along x over the simulated window, ``displacement(frame, time, marker)`` [m].
+
+    And by the definitions of `gather_ensemble` ``peak`` and ``residual(frame, marker)`` [m]. ``test`` has
+    ``marker_displacement(time, marker, axis)`` [m], inertial frame; the frame ``slab`` moves with ``slab_marker``;
+    ``duration`` of the window [s].
+    """
+    along = test["marker_displacement"].sel(axis="x", drop=True)
+    along = in_frames(along.isel(time=(along["time"] <= duration + SAME_TIME).to_numpy()), slab_marker)
+    peak, residual = peak_and_residual(along, duration - RESIDUAL_WINDOW, skipna=True)
+    return xr.Dataset({"displacement": along, "peak": peak, "residual": residual})

@@ -11,12 +11,18 @@ from blockshake.statistics.intervals import (
     sample_quantiles,
     share_interval,
 )
-from blockshake.study.ensembles.ensemble import POSES, in_frames, join_batches
+from blockshake.study.ensembles.ensemble import POSES, describe, in_frames, join_batches
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 BOUNDS = {"lower": 0.0, "upper": 1.0}
 _AT_HAND = 2**25  # displacements read from files at a time: 256 MiB
 _SINGLE = ("peak", "residual", "peak_rotation", *JOINT_FIGURES)  # numbers of a sample
+_DESCRIBED = {
+    "marker_envelope": ("smallest and largest marker displacement over the samples", "m"),
+    "marker_displacement": ("marker displacement since the start", "m"),
+    "contributing": ("samples with a value at this time", "1"),
+    "quantile": ("probability of a smaller value", "1"),
+}
 
 
 def counted_samples(ensemble):
@@ -39,7 +45,7 @@ def envelope(ensemble, largest_drift, displacement=None):
     Parameters
     ----------
     ensemble : xarray.Dataset
-        From `gather_ensemble`.
+        From `join_batches`.
     largest_drift : float
         Displacement along x relative to the slab whose exceedance is counted [m].
     displacement : callable, optional
@@ -79,15 +85,9 @@ def envelope(ensemble, largest_drift, displacement=None):
         }
     ).transpose("frame", "bound", "quantile", "time", "marker", "body", "joint", "axis")
     result = result.merge(_probabilities(counted, largest_drift)).merge(_intervals(counted, probabilities))
-    result["marker_envelope"].attrs = {
-        "long_name": "smallest and largest marker displacement over the samples",
-        "units": "m",
-    }
-    result["marker_displacement"].attrs = {"long_name": "marker displacement since the start", "units": "m"}
+    describe(result, _DESCRIBED)
     for name in _SINGLE:
         result[name].attrs = {**ensemble[name].attrs, "ancillary_variables": f"{name}_interval"}
-    result["contributing"].attrs = {"long_name": "samples with a value at this time", "units": "1"}
-    result["quantile"].attrs = {"long_name": "probability of a smaller value", "units": "1"}
     result["bound"].attrs = {"long_name": "edge of the envelope"}
     result.attrs = {
         **ensemble.attrs,
@@ -146,15 +146,12 @@ def _probabilities(counted, largest_drift):
     }
     for name, event in what.items():
         variable = f"{name}_probability"
-        result[variable].attrs = {
-            "long_name": f"share of the samples with {event}",
-            "units": "1",
-            "ancillary_variables": f"{variable}_interval",
+        described = {
+            variable: (f"share of the samples with {event}", "1"),
+            f"{variable}_interval": (f"Clopper-Pearson limits of the probability of {event}", "1"),
         }
-        result[f"{variable}_interval"].attrs = {
-            "long_name": f"Clopper-Pearson limits of the probability of {event}",
-            "units": "1",
-        }
+        describe(result, described)
+        result[variable].attrs["ancillary_variables"] = f"{variable}_interval"
     result["drift_probability"].attrs["largest_drift"] = float(largest_drift)
     return result
 
@@ -189,7 +186,7 @@ def over_samples(values, probabilities):
         Dimension of ``probabilities`` in place of ``sample``; NaN where no sample has a value.
     """
     rest = values.transpose("sample", ...)
-    found = sample_quantiles(rest.to_numpy(), probabilities.to_numpy())
+    quantiles = sample_quantiles(rest.to_numpy(), probabilities.to_numpy())
     dims = (*probabilities.dims, *rest.dims[1:])
     coordinates = {name: rest.coords[name] for name in rest.dims[1:] if name in rest.coords}
-    return xr.DataArray(found, dims=dims, coords={**probabilities.coords, **coordinates})
+    return xr.DataArray(quantiles, dims=dims, coords={**probabilities.coords, **coordinates})

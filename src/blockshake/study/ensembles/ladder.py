@@ -20,7 +20,7 @@ def climb(structure, runs, parameters, ladder, store):
     runs : CaseRuns
         With ``motion`` and ``baseline`` of the case, and its duration.
     parameters : dict
-        As of `simulate`.
+        Parameters of the run by dotted name, as `simulate` takes them.
     ladder : Ladder
         First scale, increment, highest scale and the drift that counts as a potential collapse: that of `half_width`
         where it says none.
@@ -69,20 +69,20 @@ def climb_ladders(cases, motions, time_step, ladder, store):
     """Climb the ladder of every case with every motion by LS-DEM, nominal parameters: rungs by structure and motion.
 
     ``cases``: ``structure`` and ``duration`` [s] of the configuration's; ``motions``: baselines by name or file;
-    ``time_step`` [s]; ``store`` as of `climb`, which says a line after each ladder. A structure of several cases is
-    climbed with the longest duration of these.
+    ``time_step`` [s]; ``store``: `Store` of the runs, which says a line after each ladder. A structure of several cases
+    is climbed with the longest duration of these.
     """
     durations = {}
     for case in cases:
         durations[case["structure"]] = max(case["duration"], durations.get(case["structure"], 0.0))
-    found = {name: {} for name in durations}
+    climbed = {name: {} for name in durations}
     for name, duration in durations.items():
         structure = load_structure(name)
         for motion, baseline in motions.items():
             case = {"motion": motion, "baseline": baseline, "duration": duration}
             runs = CaseRuns(case, "ls-dem", {"time_step": time_step}, {})
             rungs = climb(structure, runs, {}, ladder, store)
-            found[name][motion] = rungs
+            climbed[name][motion] = rungs
             passed = [rung["scale"] for rung in rungs if rung["passed"]]
             store.say(f"{name} {motion}: passed {passed}")
-    return found
+    return climbed

@@ -21,9 +21,9 @@ def shown_of_case(batches):
         wanted = figures["sample"].values[:1]
     parts = []
     for batch in batches:
-        own = np.intersect1d(load_made(batch, (*POSES, "marker_displacement"))["sample"], wanted)
-        if own.size:
-            parts.append(load_made(batch, chosen={"sample": own}))
+        inside = np.intersect1d(load_made(batch, (*POSES, "marker_displacement"))["sample"], wanted)
+        if inside.size:
+            parts.append(load_made(batch, chosen={"sample": inside}))
     ensemble = join_batches(parts)
     ensemble.attrs = figures.attrs
     return shown_samples(ensemble)
@@ -35,7 +35,7 @@ def shown_samples(ensemble):
     Parameters
     ----------
     ensemble : xarray.Dataset
-        From `gather_ensemble`; only completed and collapsed samples count.
+        From `join_batches`; only completed and collapsed samples count.
 
     Returns
     -------

@@ -1,15 +1,14 @@
 """Cost of the simulations, from the logs of their jobs."""
 
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from blockshake.log import read_cost
 
 
-@dataclass(frozen=True)
-class Timing:
+class Timing(NamedTuple):
     """Cost of one case by one model, as its jobs last ran.
 
     Attributes
@@ -52,28 +51,23 @@ def read_timings(logs, samples):
     """
     timings = []
     for (model, case), figures in samples.items():
-        jobs, covered, cpu_time, wall_time = 0, [], 0.0, 0.0
+        costs, covered = [], set()
         for path in sorted(Path(logs, "simulate_batch", model, case).glob("*-*.log")):
             first, last = (int(part) for part in path.stem.split("-"))
-            cost = read_cost(path)
-            inside = [int(one) for one in figures["sample"].values if first <= one <= last]
-            if not inside or cost is None:
-                continue  # of a batch of an earlier configuration, or killed
-            jobs += 1
-            covered += inside
-            cpu_time += cost.cpu_time
-            wall_time += cost.wall_time
-        end = figures["end_time"].sel(sample=sorted(set(covered)))
-        known = jobs > 0
-        timings.append(Timing(
-            model, case, jobs, len(set(covered)), float(end.sum()), cpu_time if known else np.nan,
-            wall_time if known else np.nan,
-        ))  # fmt: skip
+            inside = [int(sample) for sample in figures["sample"].values if first <= sample <= last]
+            if (
+                inside and (cost := read_cost(path)) is not None
+            ):  # else of an earlier configuration, or killed
+                costs.append(cost)
+                covered.update(inside)
+        simulated = float(figures["end_time"].sel(sample=sorted(covered)).sum())
+        wall_time, cpu_time = map(sum, zip(*costs, strict=True)) if costs else (np.nan, np.nan)
+        timings.append(Timing(model, case, len(costs), len(covered), simulated, cpu_time, wall_time))
     return tuple(timings)
 
 
 def total_timing(timings):
     """`Timing` of all cases and models whose CPU time is known; its model and case are empty."""
-    known = [one for one in timings if np.isfinite(one.cpu_time)]
+    known = [timing for timing in timings if np.isfinite(timing.cpu_time)]
     names = ("jobs", "samples", "simulated", "cpu_time", "wall_time")
-    return Timing("", "", *(sum(getattr(one, name) for one in known) for name in names))
+    return Timing("", "", *(sum(getattr(timing, name) for timing in known) for name in names))

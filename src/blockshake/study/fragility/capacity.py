@@ -55,24 +55,19 @@ def fit_capacity(lower, upper):
         return Capacity(np.nan, np.nan)
     if lower.max() < upper.min():
         return Capacity(float(np.sqrt(lower.max() * upper.min())), 0.0)
-    bounds, counts = np.unique(np.column_stack([lower, upper]), axis=0, return_counts=True)
-    with np.errstate(divide="ignore"):
-        low, high = np.log(bounds).T
+    low, high, counts, ends = _logarithms(lower, upper)
     between = np.isfinite(low) & np.isfinite(high)
-    ends = np.concatenate([low[np.isfinite(low)], high[np.isfinite(high)]])
     middle = 0.5 * (low[between] + high[between]) if between.any() else ends
 
     def unlikely(parameters):
-        spread = np.exp(parameters[1])
-        share = ndtr((high - parameters[0]) / spread) - ndtr((low - parameters[0]) / spread)
-        return -counts @ np.log(np.maximum(share, _NEVER))
+        return -counts @ _likelihood(low, high, parameters[0], np.exp(parameters[1]))
 
     start = np.mean(middle), np.log(0.5 * np.ptp(ends))
     limits = [(ends.min(), ends.max()), (np.log(_SHARPEST), np.log(_WIDEST))]
-    found = minimize(
+    answer = minimize(
         unlikely, start, method="Nelder-Mead", bounds=limits, options={"xatol": 1e-6, "fatol": 1e-9}
     )
-    return Capacity(float(np.exp(found.x[0])), float(np.exp(found.x[1])))
+    return Capacity(float(np.exp(answer.x[0])), float(np.exp(answer.x[1])))
 
 
 def likely_capacities(lower, upper):
@@ -81,7 +76,7 @@ def likely_capacities(lower, upper):
     Parameters
     ----------
     lower, upper
-        As of `fit_capacity`, which finds a dispersion above 0 in them.
+        Of `fit_capacity`, which finds a dispersion above 0 in them.
 
     Returns
     -------
@@ -95,16 +90,12 @@ def likely_capacities(lower, upper):
     capacities that are known exactly, ``n ln(1 + t^2 / (n - 1))``, and not its limit of many samples. A bootstrap held
     the dispersion in 79 of 100 cases of 20 samples.
     """
-    bounds, counts = np.unique(np.column_stack([lower, upper]), axis=0, return_counts=True)
-    with np.errstate(divide="ignore"):
-        low, high = np.log(bounds).T
-    ends = np.concatenate([low[np.isfinite(low)], high[np.isfinite(high)]])
+    low, high, counts, ends = _logarithms(lower, upper)
     middle = np.linspace(ends.min() - _BEYOND, ends.max() + _BEYOND, _MEDIANS)[:, None]
     spread = np.geomspace(_NARROWEST, _WIDEST, _DISPERSIONS)
     likelihood = np.zeros((_MEDIANS, _DISPERSIONS))
-    for one in range(len(counts)):
-        share = ndtr((high[one] - middle) / spread) - ndtr((low[one] - middle) / spread)
-        likelihood += counts[one] * np.log(np.maximum(share, _NEVER))
+    for count, *bounds in zip(counts, low, high, strict=True):
+        likelihood += count * _likelihood(*bounds, middle, spread)
     size = counts.sum()
     least = 0.5 * size * np.log1p(t.ppf(0.5 + 0.5 * CONFIDENCE, size - 1) ** 2 / (size - 1))
     likely = likelihood >= likelihood.max() - least
@@ -113,3 +104,17 @@ def likely_capacities(lower, upper):
     median, dispersion = np.nonzero(likely)
     spread[0] = 0.0
     return Capacity(np.exp(middle[median, 0]), spread[dispersion])
+
+
+def _logarithms(lower, upper):
+    """Logarithms of the different pairs of bounds, how often each pair stands, and those logarithms that are finite."""
+    bounds, counts = np.unique(np.column_stack([lower, upper]), axis=0, return_counts=True)
+    with np.errstate(divide="ignore"):
+        low, high = np.log(bounds).T
+    return low, high, counts, np.concatenate([low[np.isfinite(low)], high[np.isfinite(high)]])
+
+
+def _likelihood(low, high, middle, spread):
+    """Logarithm of the chance of a capacity between two bounds; all of them logarithms."""
+    share = ndtr((high - middle) / spread) - ndtr((low - middle) / spread)
+    return np.log(np.maximum(share, _NEVER))

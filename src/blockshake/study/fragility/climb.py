@@ -6,7 +6,7 @@ import xarray as xr
 from blockshake.dynamics.system import FINISHED
 from blockshake.geometry.reference_block import half_width
 from blockshake.geometry.structure import load_structure
-from blockshake.study.described import describe
+from blockshake.study.ensembles.ensemble import describe
 from blockshake.study.ensembles.ladder import climb
 
 _DESCRIBED = {
@@ -59,16 +59,16 @@ def _words(rungs):
 
 
 def gathered(samples, climbs, scales, largest_drift):
-    """Dataset of `climb_samples` from the rungs of each sample, as of `climb`."""
+    """Dataset of `climb_samples` from the rungs of each sample that `climb` returns."""
     peak, passed = np.full((2, len(samples), len(scales)), np.nan)
     bounds = np.zeros((len(samples), 2))
-    for place, rungs in enumerate(climbs):
-        told = [rung for rung in rungs if rung["status"] in FINISHED]
-        stood = [rung["scale"] for rung in told if rung["passed"]]
-        fell = [rung["scale"] for rung in told if not rung["passed"]]
-        bounds[place] = max(stood, default=0.0), min(fell, default=np.inf)
-        peak[place, : len(told)] = [rung["peak"] for rung in told]
-        passed[place, : len(told)] = [rung["passed"] for rung in told]
+    for row, rungs in enumerate(climbs):
+        known = [rung for rung in rungs if rung["status"] in FINISHED]
+        stood = [rung["scale"] for rung in known if rung["passed"]]
+        fell = [rung["scale"] for rung in known if not rung["passed"]]
+        bounds[row] = max(stood, default=0.0), min(fell, default=np.inf)
+        peak[row, : len(known)] = [rung["peak"] for rung in known]
+        passed[row, : len(known)] = [rung["passed"] for rung in known]
     result = xr.Dataset(
         {
             "peak": (("sample", "scale"), peak),

@@ -5,7 +5,7 @@ import xarray as xr
 
 from blockshake.statistics.intervals import CONFIDENCE, share_interval
 from blockshake.store import load_made
-from blockshake.study.described import describe
+from blockshake.study.ensembles.ensemble import describe
 from blockshake.study.ensembles.envelope import BOUNDS, QUANTILES, over_samples
 from blockshake.study.fragility.capacity import Capacity, fit_capacity, likely_capacities
 
@@ -66,8 +66,10 @@ def fragility(climbed):
     )
     fine = np.linspace(scales[0], scales[-1], _POINTS)
     fitted = fit_capacity(lower, upper)
-    told = fitted.dispersion > 0.0  # else the levels tell two factors alone, between which all capacities lie
-    likely = likely_capacities(lower, upper) if told else Capacity(np.full(1, np.nan), np.full(1, np.nan))
+    is_spread = fitted.dispersion > 0.0  # else all capacities lie between two factors, and no more is known
+    likely = (
+        likely_capacities(lower, upper) if is_spread else Capacity(np.full(1, np.nan), np.full(1, np.nan))
+    )
 
     def with_limits(of):
         values = of(likely)
@@ -80,14 +82,14 @@ def fragility(climbed):
         peak=over_samples(climbed["peak"], xr.DataArray(list(QUANTILES), dims="quantile")),
     )
     for name, of in (
-        ("median", lambda one: one.median),
-        ("dispersion", lambda one: one.dispersion),
-        ("safe_scale", lambda one: one.level(SAFE)),
+        ("median", lambda capacity: capacity.median),
+        ("dispersion", lambda capacity: capacity.dispersion),
+        ("safe_scale", lambda capacity: capacity.level(SAFE)),
     ):
         value, bounds = with_limits(of)
         result[name], result[f"{name}_interval"] = ((), float(value)), ("bound", bounds)
-    value, bounds = with_limits(lambda one: one.probability(fine[:, None]))
-    value = value[:, 0] if told else np.full(_POINTS, np.nan)
+    value, bounds = with_limits(lambda capacity: capacity.probability(fine[:, None]))
+    value = value[:, 0] if is_spread else np.full(_POINTS, np.nan)
     result["curve"], result["curve_interval"] = ("fine_scale", value), (("bound", "fine_scale"), bounds)
     result = result.assign_coords(bound=list(BOUNDS), quantile=list(QUANTILES), fine_scale=fine)
     describe(result, _DESCRIBED)

@@ -29,7 +29,7 @@ def fragility(content):
         return None
     asked = content.study["fragility"]
     limits = " or ".join(
-        sorted({millimetres(one.attrs["largest_drift"]) for one in content.fragility.values()})
+        sorted({millimetres(result.attrs["largest_drift"]) for result in content.fragility.values()})
     )
     blocks = [
         Text(
@@ -57,12 +57,12 @@ def fragility(content):
 
 def words(content, name):
     """Median capacity, safe factor and what the samples do not tell, of one case in sentences."""
-    one, case = content.fragility[name], content.cases[name]
+    result, case = content.fragility[name], content.cases[name]
     unit = content.motions[case.motion].attrs["peak_acceleration"]
-    size = one.sizes["sample"]
+    size = result.sizes["sample"]
     model = model_label(content.study["fragility"]["model"])
     who = f"{name}, {case.motion}, {size} samples by {model}"
-    ended = count_outcomes(one["status"])
+    ended = count_outcomes(result["status"])
     less = "".join(
         f" The last run of {count_words(count, 'sample')} {how}."
         for count, how in (
@@ -71,60 +71,61 @@ def words(content, name):
         )
         if count
     )
-    median = float(one["median"])
+    median = float(result["median"])
     if not np.isfinite(median):
-        passed = float(one["capacity_lower"].min())
+        passed = float(result["capacity_lower"].min())
         side = (
             f"all pass the highest factor that was climbed, {given(passed)}"
             if passed
-            else f"none passes the lowest factor, {given(one['scale'][0])}"
+            else f"none passes the lowest factor, {given(result['scale'][0])}"
         )
         return f"{who}: {side}, so that no fragility is told.{less}"
-    if float(one["dispersion"]) == 0.0:
-        low, high = float(one["capacity_lower"].max()), float(one["capacity_upper"].min())
+    if float(result["dispersion"]) == 0.0:
+        low, high = float(result["capacity_lower"].max()), float(result["capacity_upper"].min())
         return (
             f"{who}: all capacities lie between {given(low)} and {given(high)} times the motion ({number(low * unit)} "
             f"and {number(high * unit)} m/s{SQUARED}). The levels are too far apart to tell more.{less}"
         )
-    if float(one["dispersion"]) < _told_from(one):
+    if float(result["dispersion"]) < _smallest_known(result):
         less += (
             " The capacities differ by less than the levels are apart: the dispersion, and with it the factor that "
             f"{percent(SAFE)} % are below, is bounded by the level below alone."
         )
     return (
-        f"{who}: half of the capacities are below {_limited(one, 'median')} times the motion "
-        f"({number(median * unit)} m/s{SQUARED}), {percent(SAFE)} % below {_limited(one, 'safe_scale')} "
-        f"({number(float(one['safe_scale']) * unit)} m/s{SQUARED}); limits of {quantile_percent(CONFIDENCE)} in "
-        f"brackets. Dispersion: {_limited(one, 'dispersion')}.{less}"
+        f"{who}: half of the capacities are below {_limited(result, 'median')} times the motion "
+        f"({number(median * unit)} m/s{SQUARED}), {percent(SAFE)} % below {_limited(result, 'safe_scale')} "
+        f"({number(float(result['safe_scale']) * unit)} m/s{SQUARED}); limits of {quantile_percent(CONFIDENCE)} in "
+        f"brackets. Dispersion: {_limited(result, 'dispersion')}.{less}"
     )
 
 
-def _told_from(one):
+def _smallest_known(result):
     """Dispersion of capacities below which a step of the scales hides it: of a uniform spread over one step [1]."""
-    return float(one["scale"][1] - one["scale"][0]) / float(one["median"]) / np.sqrt(12.0)
+    return float(result["scale"][1] - result["scale"][0]) / float(result["median"]) / np.sqrt(12.0)
 
 
-def _limited(one, name):
-    limits = one[f"{name}_interval"].sel(bound=["lower", "upper"])
+def _limited(result, name):
+    limits = result[f"{name}_interval"].sel(bound=["lower", "upper"])
     if not np.isfinite(limits).all():
         return "a factor of which the samples bear no limits"
-    return f"{number(one[name])} [{', '.join(map(number, limits))}]"
+    return f"{number(result[name])} [{', '.join(map(number, limits))}]"
 
 
 def _table(content):
     rows = []
-    for name, one in content.fragility.items():
+    for name, result in content.fragility.items():
         case = content.cases[name]
         unit = content.motions[case.motion].attrs["peak_acceleration"]
-        for scale in one["scale"].values:
-            at = one.sel(scale=scale)
+        for scale in result["scale"].values:
+            at = result.sel(scale=scale)
+            peaks = " / ".join(millimetres(at["peak"].sel(quantile=share)) for share in _SHOWN_SHARES)
             known = int(at["known"])
             climbed = int(at["passed"].notnull().sum())
             low, high = (percent(at["share_interval"].sel(bound=side)) for side in ("lower", "upper"))
             rows.append((
                 name, given(scale), number(scale * unit), str(climbed),
                 f"{percent(at['share'])} [{low}, {high}]" if known else MISSING,
-                " / ".join(millimetres(at["peak"].sel(quantile=one)) for one in _SHOWN_SHARES) if climbed else MISSING,
+                peaks if climbed else MISSING,
             ))  # fmt: skip
     quantiles = " / ".join(map(quantile_percent, _SHOWN_SHARES))
     return Table(

@@ -14,7 +14,7 @@ from blockshake.pages.origin import software_versions
 from blockshake.store import load_made
 from blockshake.study.analyses import ANALYSES, is_of_the_paper
 from blockshake.study.ensembles.case_input import measured_on_clock
-from blockshake.study.ensembles.measured import measured_curves
+from blockshake.study.ensembles.ensemble import measured_curves
 from blockshake.study.ensembles.timing import read_timings
 from blockshake.study.sampling.distributions import load_distributions
 from blockshake.study.sampling.latin_hypercube import load_design

@@ -58,9 +58,9 @@ def plot_correlation(correlation, labels):
                 column + 0.5, row + 0.5, f"{value:.3f}", ha="center", va="center", fontsize=5.5,
                 color="white" if dark else "black",
             )  # fmt: skip
-    places = np.arange(len(labels)) + 0.5
-    axes.set_yticks(places, labels)
-    axes.set_xticks(places, labels, rotation=40, ha="right", rotation_mode="anchor")
+    centres = np.arange(len(labels)) + 0.5
+    axes.set_yticks(centres, labels)
+    axes.set_xticks(centres, labels, rotation=40, ha="right", rotation_mode="anchor")
     axes.invert_yaxis()
     bar = figure.colorbar(shade, ax=axes, label="correlation [1]")
     bar.outline.set_linewidth(0.5)

@@ -11,14 +11,14 @@ from blockshake.study.sampling.sample_parameters import unused_variables
 
 def samples(content):
     """The design: histograms, moments, correlation."""
-    found = content.design_summary
+    summary = content.design_summary
     target = (
         "none" if content.study["ensemble"].get("correlation") is None else "as given in the configuration"
     )
     blocks = (
         Text(
-            f"Latin hypercube of {found['size']} samples, seed {found['seed']}; each stratum is represented by its "
-            f"{found['stratum']}.{_without_use(content)}"
+            f"Latin hypercube of {summary['size']} samples, seed {summary['seed']}; each stratum is represented by its "
+            f"{summary['stratum']}.{_without_use(content)}"
         ),
         Figure(
             "Histograms of the samples and target densities (after the paper's Fig. 8).",
@@ -27,12 +27,12 @@ def samples(content):
         _table(content),
         *([Items(tuple(fewer))] if (fewer := _fewer_samples(content)) else []),
         Figure(
-            f"{found['correlation_kind'].capitalize()} correlation reached between the variables; asked for: {target}. "
-            f"Difference from the target over the pairs: {number(found['rms_correlation_error'])} rms, "
-            f"{number(found['largest_correlation_error'])} at most.",
+            f"{summary['correlation_kind'].capitalize()} correlation reached between the variables; asked for: "
+            f"{target}. Difference from the target over the pairs: {number(summary['rms_correlation_error'])} rms, "
+            f"{number(summary['largest_correlation_error'])} at most.",
             svg_of(
                 plot_correlation,
-                found["correlation"],
+                summary["correlation"],
                 [parameter_label(one) for one in content.distributions],
             ),
             0.15,

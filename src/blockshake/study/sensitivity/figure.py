@@ -24,7 +24,7 @@ SHOWN = {
     "rank_correlation": ("peak", "partial rank correlation with the peak [1]", (-1.05, 1.05), (-0.5, 0.5)),
 }
 _COLORS = {"first_order": BLUE, "rank_correlation": RED}
-# by place of the variable, so that one has its colour in every case
+# by index of the variable, so that it has the same colour in every case
 _LINES = (BLUE, ORANGE, SKY, GREEN, RED, GREY, PURPLE, BLACK, DARK_GREY)
 _ROW = 0.003  # m of paper, of one variable
 
@@ -58,15 +58,13 @@ def plot_sensitivity(sensitivities, markers, noise, measure):
     figure = new_figure(len(rows) * (0.010 + _ROW * len(variables)) + 0.006)
     panels = figure.subplots(len(rows), len(markers), sharey=True, squeeze=False)
     quantity, label, limits, ticks = SHOWN[measure]
-    for place, model in enumerate(rows):
-        line = panels[place]
+    for axes, body in zip(panels[0], markers, strict=True):
+        axes.set_title(body)
+    for line, model in zip(panels, rows, strict=True):
         result = sensitivities[model]
-        for axes, (body, marker) in zip(line, markers.items(), strict=True):
+        for axes, marker in zip(line, markers.values(), strict=True):
             _draw_panel(axes, result.sel(quantity=quantity, marker=marker), measure, noise)
-            axes.set_xlim(limits)
-            axes.set_xticks(ticks)
-            if place == 0:
-                axes.set_title(body)
+            axes.set(xlim=limits, xticks=ticks)
         line[0].set_ylabel(f"{model_label(model)}, n = {int(result['used'].sel(quantity=quantity))}")
         line[0].set_yticks(range(len(variables)), [parameter_label(name) for name in variables])
         for text, control in zip(line[0].get_yticklabels(), result["control"].values, strict=True):
@@ -93,27 +91,18 @@ def plot_sensitivity_over_time(sensitivities, marker, noise):
     panels = figure.subplots(2, len(sensitivities), sharex=True, sharey="row", squeeze=False)
     used = ~np.all([result["control"] for result in sensitivities.values()], axis=0)
     for (above, below), (model, result) in zip(panels.T, sensitivities.items(), strict=True):
-        spread, share = (
-            result["window_spread"].sel(marker=marker),
-            result["window_first_order"].sel(marker=marker),
-        )
+        at = result.sel(marker=marker)
+        spread, share = at["window_spread"], at["window_first_order"]
         above.semilogy(result["window"], 1e3 * spread, color=BLACK, marker=".", markersize=3)
         above.axhline(1e3 * noise, color=DARK_GREY, linestyle=(0, (4, 2)), linewidth=0.7)
         above.set_title(f"{model_label(model)}\nn = {int(result['used'].sel(quantity='history'))}")
         level = float(result["window_first_order_chance"])
         below.axhspan(-level, level, color=LIGHT_GREY, linewidth=0.0)
         shown = share.where(spread >= noise)
-        for place in np.flatnonzero(used):
-            name = parameter_label(str(result["parameter"].values[place]))
-            color = _LINES[place % len(_LINES)]
-            below.plot(
-                result["window"],
-                shown.isel(parameter=place),
-                color=color,
-                marker=".",
-                markersize=3,
-                label=name,
-            )
+        for index in np.flatnonzero(used):
+            name = parameter_label(str(result["parameter"].values[index]))
+            line = {"color": _LINES[index % len(_LINES)], "marker": ".", "markersize": 3, "label": name}
+            below.plot(result["window"], shown.isel(parameter=index), **line)
         below.set(ylim=(-0.3, 1.02), xlabel="time [s]")
         if not (spread >= noise).any():
             known = bool(np.isfinite(spread).any())

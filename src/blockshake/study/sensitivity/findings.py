@@ -1,8 +1,11 @@
-"""Findings of a sensitivity study: spreads within the noise, and variables that stand out from chance."""
+"""Findings of a sensitivity study, and the words for them: spreads within the noise, and variables beyond chance."""
 
 from typing import NamedTuple
 
 import numpy as np
+
+from blockshake.pages.rows import bodies_by_height, face_markers
+from blockshake.pages.wording import millimetres, number, parameter_label, percent
 
 
 class Influence(NamedTuple):
@@ -39,35 +42,6 @@ class Influences(NamedTuple):
         return tuple(one for one in self.ranked if one.beyond_chance)
 
 
-class Windows(NamedTuple):
-    """Windows in which a variable's share stands out from chance.
-
-    Attributes
-    ----------
-    parameter : str
-        Dotted name.
-    count : int
-    first, last : float
-        Middle of the first and of the last of them [s].
-    largest : float
-        Largest share of any window [1].
-    """
-
-    parameter: str
-    count: int
-    first: float
-    last: float
-    largest: float
-
-
-class WindowFindings(NamedTuple):
-    """Windows with a spread of at least the noise, the level of chance [1], and the variables that stand out."""
-
-    count: int
-    chance: float
-    found: tuple
-
-
 def differs(result, noise):
     """Whether samples of a `sensitivity` differ by at least a marker's noise [m], a standard deviation.
 
@@ -93,30 +67,12 @@ def influences(result, measure):
     names, controls = result["parameter"].values, result["control"].values
     ranked = (
         Influence(
-            str(names[place]), bool(controls[place]), *map(float, (values[place], lower[place], upper[place])),
-            bool(strength[place] > chance),
+            str(names[index]), bool(controls[index]), *map(float, (values[index], lower[index], upper[index])),
+            bool(strength[index] > chance),
         )
-        for place in order
+        for index in order
     )  # fmt: skip
     return Influences(tuple(ranked), chance)
-
-
-def windows_beyond_chance(result, noise):
-    """`WindowFindings`: variables whose share of a window's spread stands out from chance.
-
-    ``result`` from `sensitivity`, at one marker; windows with a smaller spread than ``noise`` [m] are left out.
-    """
-    chance = float(result["window_first_order_chance"])
-    loud = result["window_spread"] >= noise
-    shares, found = result["window_first_order"].where(loud), []
-    for name in result["parameter"].values:
-        one = shares.sel(parameter=name)
-        beyond = one["window"].values[one.values > chance]
-        if len(beyond):
-            found.append(
-                Windows(str(name), len(beyond), float(beyond[0]), float(beyond[-1]), float(one.max()))
-            )
-    return WindowFindings(int(loud.sum()), chance, tuple(found))
 
 
 def quiet_markers(result, markers, noise):
@@ -125,3 +81,84 @@ def quiet_markers(result, markers, noise):
     Markers without a known spread do not count.
     """
     return int((result["spread"].sel(quantity="history", marker=list(markers)) < noise).sum())
+
+
+def markers_by_height(case):
+    """Bodies that stand for the heights of a structure, with their markers, from the lowest up."""
+    markers = face_markers(case.structure)
+    return {body: markers[body] for body in bodies_by_height(case.structure, markers)}
+
+
+def sentence(result, body, marker, noise):
+    """Spread of a block, and the variables that explain it beyond chance, in sentences.
+
+    ``result`` from `sensitivity`; ``noise`` of a measured marker [m].
+    """
+    history = result.sel(quantity="history", marker=marker)
+    if not np.isfinite(history["spread"]):
+        return f"too few completed samples for a sensitivity of {body}: {int(history['used'])}."
+    spread = "(standard deviation over samples and time)"
+    if not differs(history, noise):
+        return (
+            f"the samples of {body} differ by {number(1e3 * history['spread'], 2)} mm {spread}, less than the noise of "
+            "a marker: the envelope is a line and there is nothing to explain."
+        )
+    words = (
+        f"the samples of {body} differ by {millimetres(history['spread'])} mm {spread}. "
+        f"{_explained(history)} {_seconds(result.sel(marker=marker), noise)}"
+    )
+    peak = result.sel(quantity="peak", marker=marker)
+    if not is_known(peak, "rank_correlation"):
+        return (
+            f"{words} {int(peak['used'])} samples are too few for partial correlations of so many variables."
+        )
+    explained = float(peak["explained"])
+    share = f"{percent(explained)} %" if explained > 0.0 else "nothing"
+    return (
+        f"{words} {_steered(peak)} All variables together explain {share} of the ranks of the peak "
+        f"(adjusted R\N{SUPERSCRIPT TWO} {explained:.2f})."
+    )
+
+
+def _explained(history):
+    answer = influences(history, "first_order")
+    named = ", then ".join(map(influence_words, answer.beyond_chance))
+    if named:
+        return f"Shown to explain some of that by itself: {named}; level of chance {answer.chance:.2f}."
+    return (
+        "No variable is shown to explain any of that by itself: the largest share, "
+        f"{influence_words(answer.ranked[0])}, is within the level of chance, {answer.chance:.2f}."
+    )
+
+
+def _steered(peak):
+    answer = influences(peak, "rank_correlation")
+    named = ", then ".join(map(influence_words, answer.beyond_chance))
+    if named:
+        return f"The peak follows {named} (partial rank correlation; level of chance {answer.chance:.2f})."
+    return (
+        "No variable is shown to steer the peak: the largest partial rank correlation, "
+        f"{influence_words(answer.ranked[0])}, is within the level of chance, {answer.chance:.2f}."
+    )
+
+
+def _seconds(result, noise):
+    """Seconds in which a variable's share is beyond chance, of those with a spread of at least the noise [m]."""
+    chance, loud, said = float(result["window_first_order_chance"]), result["window_spread"] >= noise, []
+    for name in result["parameter"].values:
+        share = result["window_first_order"].sel(parameter=name).where(loud)
+        beyond = result["window"].values[share.values > chance]
+        if len(beyond):
+            said.append(
+                f"{parameter_label(str(name))} in {len(beyond)} (first about {beyond[0]:.1f} s, last "
+                f"{beyond[-1]:.1f} s, at most {float(share.max()):.2f})"
+            )
+    if not said:
+        return f"In no single second is any share beyond chance ({chance:.2f})."
+    return f"Of the {int(loud.sum())} seconds one by one, beyond chance ({chance:.2f}): {', '.join(said)}."
+
+
+def influence_words(one):
+    """One variable, marked if it is a control, with its measure and interval."""
+    control = ", a control" if one.control else ""
+    return f"{parameter_label(one.parameter)}{control} {one.value:.2f} [{one.lower:.2f}, {one.upper:.2f}]"

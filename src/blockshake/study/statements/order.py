@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.study.sensitivity.summary import shaking
 from blockshake.study.statements.statement import PaperFinding, PaperVerdict, judged, unjudged
 
 
@@ -41,7 +40,7 @@ def ordered(content, found, pairs, words, written, ceiling=np.inf):
     absent = f" Not in this study, or of too few samples: {', '.join(lacking)}." if lacking else ""
     if not pairs:
         return unjudged(f"This study lacks the cases to compare.{absent}")
-    if len({shaking(content.cases[name]) for name in names}) > 1:
+    if len({_shaking(content.cases[name]) for name in names}) > 1:
         return unjudged("The cases are shaken differently, which the structures cannot be told from.")
     full = sorted({less for less, _ in pairs if found[less].value >= ceiling})
     pairs = [pair for pair in pairs if pair[0] not in full]
@@ -82,3 +81,8 @@ def all_of(findings):
         one for one in (PaperVerdict.NOT_MET, PaperVerdict.UNJUDGED, PaperVerdict.MET) if one in verdicts
     )
     return PaperFinding(worst, words)
+
+
+def _shaking(case):
+    """Whatever tells the shaking of two cases apart: motion, scale, window."""
+    return case.motion, case.settings["scale"], case.settings["duration"]

@@ -10,8 +10,7 @@ from blockshake.statistics.intervals import SURE_FROM, quantile_interval, sample
 from blockshake.study.analyses import OF_THE_PAPER
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 from blockshake.study.ensembles.envelope import counted_samples
-from blockshake.study.sensitivity.findings import influences, is_known
-from blockshake.study.sensitivity.summary import markers_by_height
+from blockshake.study.sensitivity.findings import influences, is_known, markers_by_height
 from blockshake.study.statements.order import Limited, all_of, ordered
 from blockshake.study.statements.statement import judged, scale_words, unjudged
 

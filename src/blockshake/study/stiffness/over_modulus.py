@@ -38,5 +38,5 @@ def grows_with_density(stiffness, modulus, density):
     """
     if over_modulus(stiffness, modulus).is_one_number:
         return False
-    found = spearmanr(stiffness / modulus, density)
-    return bool(found.statistic > 0.0 and found.pvalue <= _LEVEL)
+    correlation = spearmanr(stiffness / modulus, density)
+    return bool(correlation.statistic > 0.0 and correlation.pvalue <= _LEVEL)

@@ -30,14 +30,15 @@ def tower_of(structure):
         The structure has no free body.
     """
     file, block = structure.file, reference_block(structure)
-    own = file.bodies[block.body]
-    under = next((body.material for body in file.bodies if body.driven), own.material)
-    materials = list(dict.fromkeys([own.material, under]))
+    reference = file.bodies[block.body]
+    under = next((body.material for body in file.bodies if body.driven), reference.material)
+    materials = list(dict.fromkeys([reference.material, under]))
     width, depth, height = (float(edge) for edge in block.size)
     plate = _PLATE_WIDTH * max(width, depth), _PLATE_HEIGHT * height
     bodies = [
         {
-            "name": f"block-{number + 1}", "shape": "block", "material": own.material, "density": own.density,
+            "name": f"block-{number + 1}", "shape": "block",
+            "material": reference.material, "density": reference.density,
             "position": [0.0, 0.0, round((number + 0.5) * height, _DECIMALS)],
         }
         for number in range(_BLOCKS)
@@ -48,10 +49,10 @@ def tower_of(structure):
         "materials": {name: file.materials[name].model_dump() for name in materials},
         "shapes": {
             "slab": {"box": [plate[0], plate[0], plate[1]]},
-            "block": {"box": [width, depth, height], "chamfer": file.shapes[own.shape].chamfer},
+            "block": {"box": [width, depth, height], "chamfer": file.shapes[reference.shape].chamfer},
         },
         "bodies": [{**slab, "position": [0.0, 0.0, -0.5 * plate[1]]}, *bodies],
-        "friction": [{"pair": [own.material, other], "coefficient": _FRICTION} for other in materials],
+        "friction": [{"pair": [reference.material, other], "coefficient": _FRICTION} for other in materials],
         "restitution": file.restitution,
     }
     return build_structure(mapping, structure.source, structure.folder)

@@ -168,15 +168,15 @@ def calibrate_design(structure, design, linked, store):
         With the design's index: ``ls_dem.normal_stiffness`` and ``ls_dem.shear_stiffness`` [N/m3].
     """
     loaded = load_structure(structure)
-    identity, found = structure_digest(loaded), []
+    identity, rows = structure_digest(loaded), []
     for _, row in design.iterrows():
         parameters = sample_parameters(row, loaded, linked)
         calibrated = store.value(
             ("stiffness", identity, parameters),
             lambda _, given=parameters: calibrate_stiffness(loaded, given),
         )
-        found.append(stiffness_parameters(calibrated))
-    return pd.DataFrame(found, index=design.index)
+        rows.append(stiffness_parameters(calibrated))
+    return pd.DataFrame(rows, index=design.index)
 
 
 def stiffness_parameters(calibrated):
@@ -186,8 +186,8 @@ def stiffness_parameters(calibrated):
 
 def speed_deviation(waves, direction):
     """Deviation of the wave speed reached from its target in a direction of `wave_tests`, over the target [1]."""
-    one = waves.sel(direction=direction)
-    return float(one["wave_speed"]) / float(one["target_wave_speed"]) - 1.0
+    wave = waves.sel(direction=direction)
+    return float(wave["wave_speed"]) / float(wave["target_wave_speed"]) - 1.0
 
 
 def wave_tests(structure):
