@@ -73,7 +73,7 @@ def plan_diagnosis(folder, effort):
         raise InputError("effort", str(effort), f"expected one of {', '.join(EFFORTS)}")
     campaign = load_campaign(folder)
     names = open_tests(campaign)
-    chosen = simulated_tests(campaign, names, EFFORTS[effort].tests)
+    chosen = [] if campaign.still else simulated_tests(campaign, names, EFFORTS[effort].tests)
     structure = load_structure(campaign.structure) if chosen else None
     return Plan(
         campaign, EFFORTS[effort], names, {name: planned_test(campaign, name, structure) for name in chosen}
@@ -94,6 +94,8 @@ def open_tests(campaign):
             "tests",
             "expected a test with the role fit or select, found none",
         )
+    if campaign.still:
+        return list(campaign.open)
     return list(read_open_tests(campaign, list(campaign.open)).tests)
 
 
