@@ -10,6 +10,8 @@ from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.checks.campaign_check import campaign_lines
+from blockshake.measurement.imports.import_campaign import import_campaign
+from blockshake.measurement.imports.import_map import load_map
 from blockshake.measurement.poses.pose_file import read_poses
 from blockshake.measurement.poses.posed_test import load_posed
 
@@ -146,3 +148,37 @@ def test_more_than_one_free_body_is_refused(tmp_path):
     (tmp_path / "structure.yaml").write_text(yaml.safe_dump(mapping))
     with pytest.raises(InputError, match="one free body"):
         load_posed(load_campaign(campaign(tmp_path)), ["drop"])
+
+
+def test_a_table_in_other_units_is_imported(tmp_path, structure):
+    table = pd.DataFrame(
+        {"t": TIME, "across": 100.0 * TIME, "up": 1e3 - 4900.0 * TIME**2, "turn": -np.degrees(ANGLE)}
+    )
+    table.to_csv(tmp_path / "filmed.txt", index=False, sep=";")
+    mapping = {
+        "name": "filmed", "structure": "structure.yaml", "time": "t", "displacement_unit": "mm", "rotation_unit": "deg",
+        "columns": {
+            "block.x": "across", "block.z": "up", "block.angle_y": {"column": "turn", "reversed": True},
+        },
+        "tests": [{"name": "drop", "file": "filmed.txt", "role": "fit"}],
+    }  # fmt: skip
+    (tmp_path / "map.yaml").write_text(yaml.safe_dump(mapping))
+    lines = import_campaign(load_map(tmp_path / "map.yaml"), tmp_path / "made", "map.yaml")
+    assert "1 test of block" in lines[0]
+    read = read_poses(tmp_path / "made" / "drop.csv", structure)
+    same = read_poses(written(tmp_path, planar()), structure)
+    np.testing.assert_allclose(read["position"], same["position"], rtol=1e-12)
+    np.testing.assert_allclose(read["rotation"], same["rotation"], atol=1e-12)
+
+
+def test_a_map_with_a_column_of_no_pose_is_refused(tmp_path, structure):
+    planar().to_csv(tmp_path / "filmed.csv", index=False)
+    mapping = {
+        "name": "filmed", "structure": "structure.yaml", "time": "time_s", "displacement_unit": "m",
+        "columns": {"block.x": "block.x", "block.tilt": "block.angle_y"},
+        "tests": [{"name": "drop", "file": "filmed.csv", "role": "fit"}],
+    }  # fmt: skip
+    (tmp_path / "map.yaml").write_text(yaml.safe_dump(mapping))
+    with pytest.raises(InputError, match=r"columns\.block\.tilt"):
+        import_campaign(load_map(tmp_path / "map.yaml"), tmp_path / "made", "map.yaml")
+    assert not (tmp_path / "made").exists()

@@ -208,7 +208,7 @@ def impact_words(found):
         if "restitution" in own:
             one, ratio = own["restitution"], own["ratio"]
             words.append(
-                f"{one['count']} impacts of a {kind} keep {one['median']:.2f} ({one['lower']:.2f} to "
+                f"{one['count']} impacts of {'an' if kind == 'edge' else 'a'} {kind} keep {one['median']:.2f} ({one['lower']:.2f} to "
                 f"{one['upper']:.2f}, quartiles) of the normal velocity; tangential over normal impulse "
                 f"{ratio['median']:.2f} ({ratio['lower']:.2f} to {ratio['upper']:.2f})"
             )

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
-from blockshake.files import replacing_folder, write_dataset
+from blockshake.files import replacing_folder, write_dataset, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign_folder import (
     motion_in_folder,
@@ -14,6 +14,7 @@ from blockshake.measurement.campaigns.campaign_folder import (
 )
 from blockshake.measurement.campaigns.recorded_test import checked_test
 from blockshake.measurement.checks.campaign_check import campaign_lines
+from blockshake.measurement.imports.posed_table import posed_table
 from blockshake.measurement.imports.read_readings import read_readings
 
 
@@ -54,13 +55,17 @@ def _fill(asked, folder, where):
     structure = load_structure(asked.structure)
     tests, motions = [], {}
     for test in asked.tests:
+        name = re.sub(r"[^\w.-]+", "-", test.name)
+        if test.motion is None:
+            write_text(folder / f"{name}.csv", posed_table(test, asked, structure, where))
+            tests.append({**test.model_dump(exclude={"motion", "scale"}), "file": f"{name}.csv"})
+            continue
         load_motion(test.motion, test.scale, test.baseline)
         if motions.setdefault(Path(test.motion).name, test.motion) != test.motion:
             raise InputError(
                 where, f"tests.{test.name}.motion", "expected motions in files of different names"
             )
         readings = checked_test(read_readings(test, asked, structure, where), structure, test.file)
-        name = re.sub(r"[^\w.-]+", "-", test.name)
         readings.attrs = {
             "Conventions": "CF-1.11",
             "title": f"measured test {test.name}",

@@ -41,8 +41,8 @@ def read_readings(test, asked, structure, where):
         raise InputError(where, "columns", "expected a column of a marker, MARKER.x")
     source = test.accelerometers or test.file
     for names in (markers, [*channels, *transducers]) if source != test.file else (asked.columns,):
-        _check_once(names, asked, where)
-    time, readings = _readings(test.file, markers, asked, "displacement", where)
+        check_once(names, asked, where)
+    time, readings = columns_of(test.file, markers, asked, "displacement", where)
     names = list(dict.fromkeys(name.rpartition(".")[0] for name in markers))
     values = np.full((len(time), len(names), len(AXES)), np.nan)
     for key, column in zip(markers, readings.T, strict=True):
@@ -59,11 +59,11 @@ def read_readings(test, asked, structure, where):
     variables = {"marker_displacement": (("time", "marker", "axis"), values, {"units": "m"})}
     coordinates = {"time": ("time", time, {"units": "s"}), "marker": names, "axis": list(AXES)}
     if channels:
-        time_acc, read = _readings(source, channels, asked, "acceleration", where)
+        time_acc, read = columns_of(source, channels, asked, "acceleration", where)
         variables["accelerometer"] = (("time_acc", "channel"), read, {"units": "m s-2"})
         coordinates |= {"time_acc": ("time_acc", time_acc, {"units": "s"}), "channel": channels}
     if transducers:
-        time_acc, read = _readings(source, transducers, asked, "displacement", where)
+        time_acc, read = columns_of(source, transducers, asked, "displacement", where)
         for column, key in zip(read.T, transducers, strict=True):
             column -= _rest(time_acc, column, asked.rest, source, key)
         variables["transducer_displacement"] = (("time_acc", "transducer"), read, {"units": "m"})
@@ -71,7 +71,7 @@ def read_readings(test, asked, structure, where):
     return xr.Dataset(variables, coordinates)
 
 
-def _check_once(names, asked, where):
+def check_once(names, asked, where):
     """Refuse a column of one table that is mapped twice."""
     taken = {asked.time.column: "time"}
     for name in names:
@@ -84,7 +84,7 @@ def _check_once(names, asked, where):
             )
 
 
-def _readings(source, names, asked, kind, where):
+def columns_of(source, names, asked, kind, where):
     """Times (n_times,) and readings (n_times, n_names) of a table, in SI."""
     table = read_table(source, asked.layout)
     time = _clock(table, asked, where)

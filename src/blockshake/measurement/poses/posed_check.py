@@ -18,7 +18,8 @@ def posed_lines(campaign):
     posed = load_posed(campaign, list(campaign.tests))
     mass = posed.structure.mass[posed.body]
     lines = [
-        f"campaign {campaign.name} on {campaign.structure}: {len(posed.tests)} tests of {posed.name} ({mass:.4g} kg) "
+        f"campaign {campaign.name} on {campaign.structure}: {len(posed.tests)} "
+        f"test{'s' * (len(posed.tests) != 1)} of {posed.name} ({mass:.4g} kg) "
         f"over a ground at rest at {posed.ground:g} m"
     ]
     remarks = []
