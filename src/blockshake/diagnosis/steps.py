@@ -36,9 +36,15 @@ def decide(folder, without):
     """
     from blockshake.diagnosis.answer.decide import decide
     from blockshake.diagnosis.evidence.seen_campaign import see_campaign
+    from blockshake.diagnosis.flight.decide import decide_flights
     from blockshake.measurement.campaigns.campaign import load_campaign
+    from blockshake.measurement.poses.posed_test import load_posed
+    from blockshake.parity.parity import UNCHECKED
 
-    seen = see_campaign(load_campaign(folder), without)
+    campaign = load_campaign(folder)
+    if campaign.still:
+        return DecidedCampaign(UNCHECKED, *decide_flights(load_posed(campaign, list(campaign.open)), without))
+    seen = see_campaign(campaign, without)
     unseen = [f"{name} is not judged: {reason}" for name, reason in seen.unseen.items()]
     if not seen.tests:
         expected = f"expected an open test whose forces can be read; {'; '.join(unseen)}"
@@ -102,16 +108,21 @@ def measure_gain(folder, effort, files):
     """
     from blockshake.diagnosis.answer.decision import check_frozen, load_decision
     from blockshake.diagnosis.evidence.seen_campaign import see_campaign, see_sealed
+    from blockshake.diagnosis.flight.gain import flight_gain
     from blockshake.diagnosis.gain.campaign_gain import campaign_gain, with_rows
     from blockshake.diagnosis.gain.row_gain import row_gain
     from blockshake.diagnosis.gain.sensor_gain import sensor_gain
     from blockshake.diagnosis.misfit.judged_test import measured_histories
     from blockshake.diagnosis.nominal.plan import plan_diagnosis
     from blockshake.measurement.campaigns.campaign import load_campaign
+    from blockshake.measurement.poses.posed_test import load_posed
     from blockshake.parity.parity import load_parity
 
     check_frozen(files.frozen, files.decision)
     campaign, decision = load_campaign(folder), load_decision(files.decision)
+    if campaign.still:
+        opened, sealed = (load_posed(campaign, list(tests)) for tests in (campaign.open, campaign.sealed))
+        return flight_gain(opened, sealed, decision)
     findings = load_parity(files.parity).findings
     if not decision.parts:
         return sensor_gain(campaign, decision.tests, findings)

@@ -4,11 +4,12 @@ import re
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
-from blockshake.files import replacing_folder, write_dataset
+from blockshake.files import replacing_folder, write_dataset, write_text
 from blockshake.geometry.schema import AXES
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign_folder import (
@@ -19,6 +20,7 @@ from blockshake.measurement.campaigns.campaign_folder import (
 from blockshake.measurement.campaigns.clocks import missing_rows
 from blockshake.measurement.campaigns.recorded_test import checked_test
 from blockshake.measurement.checks.campaign_check import campaign_lines
+from blockshake.measurement.poses.pose_file import ANGLE, QUATERNION, free_body
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.transducers import transducer_names
 from blockshake.tables.table_file import read_table
@@ -62,12 +64,16 @@ def _fill(asked, folder, where):
     structure = load_structure(asked.structure)
     tests, motions = [], {}
     for test in asked.tests:
+        name = re.sub(r"[^\w.-]+", "-", test.name)
+        if test.motion is None:
+            write_text(folder / f"{name}.csv", posed_table(test, asked, structure, where))
+            tests.append({**test.model_dump(exclude={"motion", "scale"}), "file": f"{name}.csv"})
+            continue
         load_motion(test.motion, test.scale, test.baseline)
         if motions.setdefault(Path(test.motion).name, test.motion) != test.motion:
             key = f"tests.{test.name}.motion"
             raise InputError(where, key, "expected motions in files of different names")
         readings = checked_test(read_readings(test, asked, structure, where), structure, test.file)
-        name = re.sub(r"[^\w.-]+", "-", test.name)
         title = f"measured test {test.name}"
         readings.attrs = {"Conventions": "CF-1.11", "title": title, "source": Path(test.file).name}
         write_dataset(folder / f"{name}.nc", readings)
@@ -108,7 +114,7 @@ def read_readings(test, asked, structure, where):
     source = test.accelerometers or test.file
     for names in (markers, [*channels, *transducers]) if source != test.file else (asked.columns,):
         _check_once(names, asked, where)
-    time, readings = _readings(test.file, markers, asked, "displacement", where)
+    time, readings = _columns_of(test.file, markers, asked, "displacement", where)
     names = list(dict.fromkeys(name.rpartition(".")[0] for name in markers))
     values = np.full((len(time), len(names), len(AXES)), np.nan)
     for key, column in zip(markers, readings.T, strict=True):
@@ -128,7 +134,7 @@ def read_readings(test, asked, structure, where):
     ):
         if not sensors:
             continue
-        time_acc, read = _readings(source, sensors, asked, kind, where)
+        time_acc, read = _columns_of(source, sensors, asked, kind, where)
         if kind == "displacement":
             for column, key in zip(read.T, sensors, strict=True):
                 column -= _rest(time_acc, column, asked.rest, source, key)
@@ -147,7 +153,7 @@ def _check_once(names, asked, where):
             raise InputError(where, f"columns.{name}", f"expected a column of its own; '{column}' is {other}")
 
 
-def _readings(source, names, asked, kind, where):
+def _columns_of(source, names, asked, kind, where):
     """Times (n_times,) and readings (n_times, n_names) of a table, in SI."""
     table = read_table(source, asked.layout)
     time = _clock(table, asked, where)
@@ -197,3 +203,38 @@ def _rest(time, column, length, source, key):
     if not len(resting):
         raise InputError(source, key, f"expected a reading in the first {length:g} s of rest")
     return resting.mean()
+
+
+def posed_table(test, asked, structure, where):
+    """Text of a CSV table with ``time_s`` and the columns of the free body; see `read_poses`.
+
+    Parameters
+    ----------
+    test : ImportedTest
+    asked : ImportMap
+    structure : Structure
+    where : str
+        Map that an error names.
+
+    Raises
+    ------
+    InputError
+        A key that is no pose of the free body; faults of the table as of `read_readings`.
+    """
+    body = structure.body_names[free_body(structure)[0]]
+    places = [f"{body}.{axis}" for axis in AXES]
+    turns = [f"{body}.{ANGLE}", *(f"{body}.q{one}" for one in QUATERNION)]
+    for key in asked.columns:
+        if key not in (*places, *turns):
+            raise InputError(where, f"columns.{key}", f"expected one of {', '.join((*places, *turns))}")
+    _check_once(asked.columns, asked, where)
+    parts = []
+    for names, kind in ((places, "displacement"), (turns, "rotation")):
+        mapped = [name for name in names if name in asked.columns]
+        if not mapped:
+            raise InputError(where, "columns", f"expected a column of {body} among {', '.join(names)}")
+        time, values = _columns_of(test.file, mapped, asked, kind, where)
+        parts.append(pd.DataFrame(values, columns=mapped))
+    table = pd.concat(parts, axis=1)
+    table.insert(0, "time_s", np.asarray(time))
+    return table.to_csv(index=False)

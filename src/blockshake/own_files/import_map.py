@@ -56,10 +56,11 @@ class ImportMap(Strict):
     acceleration_unit: str | None = Field(
         None, description="m/s2, cm/s2 or g; needed where there are channels"
     )
+    rotation_unit: str = Field("rad", description="rad, mrad or deg, of angles of filmed bodies")
     columns: dict[str, ReadingEntry] = Field(
         min_length=1,
         description="by MARKER.x and the like, accelerometer channel or displacement transducer: a column's name, or "
-        "an entry",
+        "an entry; without base motion by BODY.x and the like, BODY.angle_y, or BODY.qw to BODY.qz",
     )
     rest: NotNegative = Field(
         0.0,
@@ -91,7 +92,7 @@ def load_map(path):
         key, beside = f"tests.{test.name}", test.accelerometers
         changes = {
             "file": below(test.file, f"{key}.file"),
-            "motion": below(test.motion, f"{key}.motion", "motions"),
+            "motion": None if test.motion is None else below(test.motion, f"{key}.motion", "motions"),
             "accelerometers": None if beside is None else below(beside, f"{key}.accelerometers"),
         }
         tests.append(test.model_copy(update=changes))

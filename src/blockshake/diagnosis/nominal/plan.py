@@ -102,7 +102,7 @@ def plan_diagnosis(folder, effort):
         raise InputError("effort", str(effort), f"expected one of {', '.join(EFFORTS)}")
     campaign, effort = load_campaign(folder), EFFORTS[effort]
     names = open_tests(campaign)
-    chosen = simulated_tests(campaign, names, effort.tests)
+    chosen = [] if campaign.still else simulated_tests(campaign, names, effort.tests)
     structure = load_structure(campaign.structure) if chosen else None
     tests = {name: planned_test(campaign, name, structure) for name in chosen}
     return Plan(campaign, effort, names, tests)
@@ -122,6 +122,8 @@ def open_tests(campaign):
             "tests",
             "expected a test with the role fit or select, found none",
         )
+    if campaign.still:
+        return list(campaign.open)
     return list(read_open_tests(campaign, list(campaign.open)).tests)
 
 

@@ -44,4 +44,6 @@ FORMS = (
     Form("rope", "a rope or spring to either side", "stiffness", "N/m", _rows("rope"), _acts("stiffness")),
     Form("drag", "a viscous drag", "damping", "N s/m", _rows("drag"), _acts("damping")),
     Form("dry-drag", "a dry drag", "force", "N", _rows("dry-drag"), _acts("drag")),
+    # of free flights alone: on blocks that rock it is not told from a viscous one
+    Form("square-drag", "a drag with the square of the speed", "coefficient", "kg/m"),
 )

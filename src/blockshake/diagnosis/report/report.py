@@ -1,5 +1,8 @@
 """The report of a diagnosis: one page and one PDF from the same content."""
 
+from pathlib import Path
+
+from blockshake.diagnosis.flight.report import compose_flights
 from blockshake.diagnosis.gain.section import gain_section
 from blockshake.diagnosis.misfit.section import misfit_section
 from blockshake.diagnosis.report.answer_section import answer_section
@@ -10,6 +13,7 @@ from blockshake.diagnosis.report.origin_section import origin_section
 from blockshake.diagnosis.report.sensors_section import sensors_section
 from blockshake.diagnosis.report.size_section import size_section
 from blockshake.diagnosis.verdict.track_record_section import track_record_section
+from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.pages.blocks import Document, numbered
 from blockshake.pages.wording import count_words
 from blockshake.pages.writing import write_html, write_pdf
@@ -47,7 +51,11 @@ def make_diagnosis_report(campaign, results, effort, track_record, html, pdf):
     InputError
         A file is missing or holds something else.
     """
-    document = compose_diagnosis(load_diagnosed(campaign, results, effort, track_record))
+    measured = load_campaign(campaign)
+    if measured.still:
+        document = compose_flights(measured, Path(results))
+    else:
+        document = compose_diagnosis(load_diagnosed(campaign, results, effort, track_record))
     write_html(html, document)
     write_pdf(pdf, document)
 

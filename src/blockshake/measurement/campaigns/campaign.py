@@ -5,7 +5,7 @@ from os.path import isfile  # false, not an error, for a name that no file can h
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, model_validator
 
 from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.errors import InputError
@@ -33,12 +33,22 @@ class MeasuredTest(Strict):
 
     name: str = Field(description="unique in the campaign")
     file: str = Field(description="readings: a CSV or netCDF file in the folder")
-    motion: str = Field(description="commanded motion: a shipped name, or a file in the folder")
-    scale: Scale = Field(description="multiplies the motion; not 0 [1]")
+    motion: str | None = Field(
+        None,
+        description="commanded motion: a shipped name, or a file in the folder; none of a body that is filmed over a "
+        "ground at rest",
+    )
+    scale: Scale = Field(1.0, description="multiplies the motion, with which it is needed; not 0 [1]")
     baseline: Baseline = AUTO
     role: Literal["fit", "select", "sealed"] = Field(
         description="what the test may be used for: to fit, to choose between models, or to judge a frozen one"
     )
+
+    @model_validator(mode="after")
+    def _scaled(self):
+        if self.motion is not None and "scale" not in self.model_fields_set:
+            raise ValueError("missing key: scale of the motion")
+        return self
 
 
 class CampaignFile(Strict):
@@ -71,6 +81,11 @@ class Campaign:
     tests: dict
 
     @property
+    def still(self):
+        """Whether the ground is at rest in all tests, in which one body is filmed as poses."""
+        return all(test.motion is None for test in self.tests.values())
+
+    @property
     def open(self):
         """Tests that are not sealed, by name."""
         return {name: test for name, test in self.tests.items() if test.role != "sealed"}
@@ -96,14 +111,19 @@ def load_campaign(folder):
     if len(tests) < len(file.tests):
         raise InputError(path, "tests", "expected every test's name once")
     check_plain(folder, path, "")
+    moved = [test.name for test in file.tests if test.motion is not None]
+    if moved and len(moved) < len(tests):
+        still = next(name for name in tests if name not in moved)
+        raise InputError(path, f"tests.{still}.motion", f"missing key; {moved[0]} has one")
     for test in file.tests:
-        for key in ("file", "motion"):
+        for key in ("file", "motion") if moved else ("file",):
             check_plain(getattr(test, key), path, f"tests.{test.name}.{key}")
         if not isfile(file_below(folder, test.file, path, f"tests.{test.name}.file")):
             raise InputError(
                 path, f"tests.{test.name}.file", f"expected a file in {folder}; it has no {test.file}"
             )
-        file_below(folder, test.motion, path, f"tests.{test.name}.motion")
+        if moved:
+            file_below(folder, test.motion, path, f"tests.{test.name}.motion")
     check_plain(file.structure, path, "structure")
     structure = file_below(folder, file.structure, path, "structure")
     if not isfile(structure) and file.structure not in shipped_names("structures"):

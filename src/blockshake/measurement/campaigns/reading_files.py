@@ -38,13 +38,26 @@ def read_netcdf(path):
     InputError
         No netCDF, readings or coordinates missing, other dimensions, no numbers, another unit than SI stated.
     """
-    test = _dataset(path)
+    test = read_variables(path, _VARIABLES)
     if "marker_displacement" not in test:
         raise InputError(path, "marker_displacement", "expected displacements over time, marker and axis")
-    known = [name for name in _VARIABLES if name in test]
+    return test.transpose("time", "marker", "axis", ...)
+
+
+def read_variables(path, variables):
+    """Those of some variables that a netCDF file has, float64 with float64 times.
+
+    Parameters
+    ----------
+    path : Path
+    variables : dict of str to (tuple of str, tuple of str)
+        By name: dimensions, and words for its unit.
+    """
+    test = _dataset(path)
+    known = [name for name in variables if name in test]
     for name in known:
-        _check_variable(test, name, path)
-    test = test[known].transpose("time", "marker", "axis", ...).astype(np.float64)
+        _check_variable(test, name, path, *variables[name])
+    test = test[known].astype(np.float64)
     return test.assign_coords(
         {
             name: (name, test[name].to_numpy().astype(np.float64), test[name].attrs)
@@ -67,8 +80,7 @@ def _dataset(path):
         raise InputError(path, "", "expected a netCDF file; this is cut, damaged or something else") from None
 
 
-def _check_variable(test, name, path):
-    dimensions, units = _VARIABLES[name]
+def _check_variable(test, name, path, dimensions, units):
     if set(test[name].dims) != set(dimensions):
         raise InputError(path, name, f"expected the dimensions {', '.join(dimensions)}")
     for dimension in dimensions:
@@ -102,7 +114,7 @@ def read_tables(path, transducers):
     InputError
         A table without times or readings, a cell that is no number, a column that is empty or names no marker and axis.
     """
-    time, columns = _table(path)
+    time, columns = read_columns(path)
     markers = list(dict.fromkeys(name.rpartition(".")[0] for name in columns))
     values = np.full((len(time), len(markers), 3), np.nan)
     for name, column in columns.items():
@@ -116,7 +128,7 @@ def read_tables(path, transducers):
     coordinates = {"time": time, "marker": markers, "axis": list(AXES)}
     wanted = f"{path.stem}-acc.csv".lower()
     for beside in sorted(item for item in path.parent.iterdir() if item.name.lower() == wanted)[:1]:
-        time_acc, read = _table(file_below(path.parent, beside.name, path, "accelerometers"))
+        time_acc, read = read_columns(file_below(path.parent, beside.name, path, "accelerometers"))
         coordinates["time_acc"] = time_acc
         for variable, dimension, sensors, unit in (
             ("accelerometer", "channel", [name for name in read if name not in transducers], "m s-2"),
@@ -129,7 +141,7 @@ def read_tables(path, transducers):
     return xr.Dataset(variables, coordinates)
 
 
-def _table(path):
+def read_columns(path):
     """Times and columns of a CSV; empty cells are NaN."""
     reader = csv.reader(io.StringIO(read_text(path).removeprefix("\ufeff")), strict=True)
     try:

@@ -78,7 +78,7 @@ def checked_test(test, structure, path):
     """Readings of one test as a file has them, checked as by `read_test`; an error names ``path``."""
     for name in ("time", "time_acc"):
         if name in test.coords:
-            _check_times(test[name].to_numpy(), path, name)
+            check_times(test[name].to_numpy(), path, name)
     if tuple(test["axis"].values) != AXES:
         test = _ordered_axes(test, path)
     _check_names(test, structure, path)
@@ -90,7 +90,8 @@ def checked_test(test, structure, path):
     return test
 
 
-def _check_times(time, path, name):
+def check_times(time, path, name):
+    """Refuse times that do not increase, are not in seconds, or lack more rows than there are."""
     if len(time) < 2 or not np.isfinite(time).all():
         raise InputError(path, name, "expected at least two times, all finite")
     steps = np.diff(time)

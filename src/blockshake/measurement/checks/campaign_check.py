@@ -24,6 +24,7 @@ from blockshake.measurement.checks.quiet_noise import (
     marker_noise,
 )
 from blockshake.measurement.motion.fall import find_fall
+from blockshake.measurement.poses.posed_check import posed_lines
 from blockshake.measurement.sensors.accelerometers import shaken_channels
 from blockshake.measurement.sensors.markers import (
     directions_read,
@@ -52,6 +53,8 @@ def campaign_lines(folder):
         an accelerometer that reads in g.
     """
     campaign = load_campaign(folder)
+    if campaign.still:
+        return posed_lines(campaign)
     structure = load_structure(campaign.structure)
     lines = [
         f"campaign {campaign.name} on {campaign.structure}: {len(campaign.tests)} tests; stated noise of markers "

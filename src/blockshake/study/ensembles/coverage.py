@@ -199,14 +199,6 @@ def is_likely(chance, members):
     return bool(chance > max(UNLIKELY, 1.0 / (1.0 + members)))
 
 
-def relative_width(comparison, peak):
-    """Mean width of the band of a `coverage` over the peak of the measured curve [1].
-
-    ``peak``: of the displacement relative to the slab over the simulated window [m].
-    """
-    return comparison["band_width"] / peak
-
-
 def share_inside(curve, lower, upper):
     """Share of the times at which curve and band exist that the curve is inside, over the first axis."""
     known = np.isfinite(curve) & np.isfinite(lower)

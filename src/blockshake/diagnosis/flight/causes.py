@@ -1,0 +1,113 @@
+"""Causes that a free flight can show, as the paths that they make, and what of them sound tests have anyway."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from blockshake.forces.flight.paths import (
+    dragged,
+    dragged_by_square,
+    dragged_dry,
+    longer,
+    off_centre,
+    pushed,
+)
+
+# sizes that sound tests have, and that are not named
+_LENGTHS = 5e-3  # of all lengths: calibration of a camera
+_CENTRE = 0.02  # of the radius: mass centre of a block said to be uniform
+# small errors of sound tests, standard deviations
+_LEVEL = 3e-3  # rad, of the camera's vertical
+_AIR, _DRAG_COEFFICIENT, _UNSURE = 1.2, 1.05, 0.5  # kg/m3; of a cube (Hoerner 1965); share of both
+
+
+@dataclass(frozen=True)
+class FlightCause:
+    """A cause as a registered effect or a form from outside, by its paths in a flight.
+
+    Attributes
+    ----------
+    name, title : str
+        As in ``verdict.json``, and in words.
+    sizes : tuple of (str, str)
+        Name and unit of each amplitude.
+    paths : callable
+        Of an `Arc` and the `PosedCampaign`: (n, n_amplitudes, 3), per unit of the amplitudes.
+    scale : callable
+        Of the `PosedCampaign`: standard deviation of the amplitudes' prior.
+    positive : bool
+        The amplitude is not negative.
+    sound : callable
+        Of the `PosedCampaign`: size up to which sound tests have it.
+    """
+
+    name: str
+    title: str
+    sizes: tuple
+    paths: Callable
+    scale: Callable
+    positive: bool = False
+    sound: Callable = lambda posed: 0.0
+
+
+def _mass(posed):
+    return float(posed.structure.mass[posed.body])
+
+
+def _gravity(posed):
+    return np.array(posed.structure.file.gravity)
+
+
+def _weight(posed):
+    return _mass(posed) * float(np.linalg.norm(_gravity(posed)))
+
+
+def _sideways(arc, posed):
+    return pushed(arc)[:, :2] / _mass(posed)
+
+
+CAUSES = (
+    FlightCause(
+        "sensor-gain", "lengths read too long (or a clock too slow, or gravity less than stated)", (("error", "1"),),
+        lambda arc, posed: longer(arc, _gravity(posed)), lambda posed: 0.03,
+        sound=lambda posed: _LENGTHS,
+    ),
+    FlightCause(
+        "eccentricity", "mass centre beside the middle", (("offset_x", "m"), ("offset_y", "m"), ("offset_z", "m")),
+        lambda arc, posed: off_centre(arc), lambda posed: 0.1 * posed.radius,
+        sound=lambda posed: _CENTRE * posed.radius,
+    ),
+    FlightCause(
+        "push", "a steady sideways push", (("force_x", "N"), ("force_y", "N")),
+        _sideways, lambda posed: 0.1 * _weight(posed),
+    ),
+    FlightCause(
+        "drag", "a viscous drag", (("damping", "N s/m"),),
+        lambda arc, posed: dragged(arc) / _mass(posed), lambda posed: 0.5 * _mass(posed), True,
+    ),
+    FlightCause(
+        "dry-drag", "a dry drag", (("force", "N"),),
+        lambda arc, posed: dragged_dry(arc) / _mass(posed), lambda posed: 0.05 * _weight(posed), True,
+    ),
+    FlightCause(
+        "square-drag", "a drag with the square of the speed", (("coefficient", "kg/m"),),
+        lambda arc, posed: dragged_by_square(arc) / _mass(posed), lambda posed: 0.5 * _mass(posed), True,
+    ),
+)  # fmt: skip
+
+
+def air_drag(posed):
+    """Drag of the air over the square of the speed and the mass [1/m].
+
+    The mean shadow of a convex body is a quarter of its surface (Cauchy 1841).
+    """
+    solid = posed.structure.solids[posed.structure.file.bodies[posed.body].shape]
+    return 0.5 * _AIR * _DRAG_COEFFICIENT * 0.25 * solid.properties.area / _mass(posed)
+
+
+def nuisances(arc, posed):
+    """Paths of the small errors of sound tests times their standard deviations, (n, n_nuisances, 3)."""
+    gravity = _gravity(posed)
+    tilted = pushed(arc)[:, :2] * _LEVEL * np.linalg.norm(gravity)
+    return np.concatenate([tilted, _UNSURE * air_drag(posed) * dragged_by_square(arc)], axis=1)

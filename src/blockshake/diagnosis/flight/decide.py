@@ -1,0 +1,273 @@
+"""The decision on tests of a body over a ground at rest: free flight first, then what impacts keep."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from blockshake.diagnosis.answer.answer import ODDS, coarsened
+from blockshake.diagnosis.answer.decision import Cause, Decision, Estimate, Part
+from blockshake.diagnosis.answer.size import FORM
+from blockshake.diagnosis.evidence.explanation import mean_evidence
+from blockshake.diagnosis.flight.causes import CAUSES
+from blockshake.diagnosis.flight.evidence import explain, explained_share, flight_rows
+from blockshake.diagnosis.outside.registry import FORMS
+from blockshake.effects.registry import EFFECTS
+from blockshake.errors import InputError
+from blockshake.forces.flight.arcs import find_arcs
+from blockshake.forces.flight.impacts import find_impacts, summary
+from blockshake.forces.flight.paths import fallen
+
+_NEEDED, _MORE = 8.0, 0.1  # nats of a cause; of a further one, that and a share of what those before it gain
+_MOST = 3  # causes
+_NINETY = 1.645  # standard deviations
+READINGS = "free flight"
+
+
+class DecidedFlights(NamedTuple):
+    """A decision; and ``arc(flight)`` with what was measured and explained, impacts by kind in its attributes."""
+
+    decision: Decision
+    evidence: xr.Dataset
+
+
+class Stage(NamedTuple):
+    """One cause of a campaign: all rivals by falling gain, and those that are not told from the first."""
+
+    fits: list
+    alike: list
+    odds: dict
+
+
+def decide_flights(posed, without=()):
+    """Decide what the flights of some tests speak for.
+
+    Parameters
+    ----------
+    posed : PosedCampaign
+        Of open tests.
+    without : sequence of str
+        Effects that are left out.
+
+    Returns
+    -------
+    DecidedFlights
+
+    Raises
+    ------
+    InputError
+        No flight.
+    """
+    arcs, broken = find_arcs(posed)
+    if not arcs:
+        raise InputError(
+            posed.structure.source,
+            "tests",
+            "expected tests in which the body flies for some readings; found none",
+        )
+    impacts = find_impacts(posed, arcs)
+    rows = flight_rows(posed, arcs)
+    stages, beside = [], rows
+    gained = 0.0
+    while len(stages) < _MOST:
+        tried = [cause for cause in CAUSES if cause.name not in [*without, *_named(stages)]]
+        fits = sorted((explain(beside, cause) for cause in tried), key=lambda fit: -fit.gain)
+        if not fits or fits[0].gain < _NEEDED + _MORE * gained:
+            break
+        first = fits[0]
+        if first.size < first.cause.sound(posed):
+            beside = beside.beside(first, 0.0)
+            without = (*without, first.cause.name)
+            continue
+        gained += first.gain
+        odds = {fit.cause.name: float(coarsened(first.gain - fit.gain, first.gain)) for fit in fits}
+        alike = [fit for fit in fits if odds[fit.cause.name] < ODDS]
+        stages.append(Stage(fits, alike, odds))
+        beside = beside.beside(first, FORM)
+    parts = tuple(_part(posed, stage) for stage in stages)
+    causes = [stage.alike[0] for stage in stages]
+    share = explained_share(rows, causes) if causes else 0.0
+    names = [test.name for test in posed.tests]
+    flying = {arc.test for arc in arcs}
+    decision = Decision(
+        decision=_kind(parts),
+        parts=parts,
+        probabilities={name: _probability(parts, name) for name in EFFECTS if name not in without},
+        limits=_limits(posed, rows),
+        excluded_above={},
+        p=min(
+            1.0,
+            sum(float(np.exp(-min(mean_evidence([fit.gain for fit in one.fits]), 700.0))) for one in stages),
+        )
+        if stages
+        else 1.0,
+        where=f"free flight of {posed.name}" if stages else "no departure larger than chance",
+        tests=names,
+        silent=[name for name in names if name not in flying],
+        n_rows=sum(map(len, rows.values)),
+        impacts=impact_words(summary(impacts)),
+        cannot_see=_not_seen(posed, broken, stages, share, rows),
+    )
+    return DecidedFlights(decision, _evidence(posed, rows, causes, impacts, broken, share))
+
+
+def _named(stages):
+    return [stage.fits[0].cause.name for stage in stages]
+
+
+def _kind(parts):
+    """Kind of the answer: where the first cause is a form from outside, it is unknown."""
+    effects = {one.name for part in parts for one in part.effects}
+    if not parts:
+        return "none"
+    if not effects or parts[0].causes[0].outside:
+        return "unknown"
+    if any(len(part.causes) > 1 for part in parts):
+        return "ambiguous"
+    return "combination" if len(effects) > 1 else "named"
+
+
+def _part(posed, stage):
+    causes = tuple(
+        Cause(
+            name=fit.cause.name,
+            place={"body": posed.name},
+            places=(posed.name,),
+            gain=fit.gain,
+            odds=stage.odds[fit.cause.name],
+            parameters=_sizes(posed, fit),
+            members=(
+                {name: float(size) for (name, _), size in zip(fit.cause.sizes, fit.sizes, strict=True)},
+            ),
+            amplitudes=fit.sizes.tolist(),
+        )
+        for fit in stage.alike
+    )
+    gains = {fit.cause.name: fit.gain for fit in stage.fits}
+    return Part(readings=READINGS, causes=causes, odds=stage.odds, gains=gains)
+
+
+def _sizes(posed, fit):
+    """Sizes with intervals of 90 %; those of a form, which may be another one's, a tenth wider to either side."""
+    found, outside = {}, fit.cause.name in FORMS
+    for (name, unit), size, deviation in zip(
+        fit.cause.sizes, fit.sizes, np.sqrt(np.diag(fit.covariance)), strict=True
+    ):
+        half = _NINETY * deviation + (FORM * abs(size) if outside else 0.0)
+        found[name] = Estimate(
+            estimate=float(size), lower=float(size - half), upper=float(size + half), unit=unit
+        )
+    if fit.cause.name == "drag":
+        mass, one = float(posed.structure.mass[posed.body]), found["damping"]
+        found["rate"] = Estimate(
+            estimate=one.estimate / mass, lower=one.lower / mass, upper=one.upper / mass, unit="1/s"
+        )
+    return found
+
+
+def _probability(parts, name):
+    for part in parts:
+        if name in part.odds:
+            total = sum(np.exp(-odds) for odds in part.odds.values())
+            if part.odds[name] < ODDS:
+                return float(np.exp(-part.odds[name]) / total)
+    return 0.0
+
+
+def _limits(posed, rows):
+    """Sizes of effects of the registry from which on they would have been seen, by body."""
+    found = {}
+    for cause in CAUSES:
+        if cause.name in EFFECTS:
+            deviation = np.sqrt(np.diag(explain(rows, cause).covariance)).max()
+            seen = float(np.sqrt(2.0 * _NEEDED) * deviation)
+            found[cause.name] = {posed.name: max(seen, cause.sound(posed))}
+    return found
+
+
+def _not_seen(posed, broken, stages, share, rows):
+    lines = [f"noise of the poses {1e3 * rows.noise:.3g} mm, found in {len(rows.arcs)} free flights"]
+    if broken:
+        lines.append(
+            f"{len(broken)} flights were left out: something other than the ground was hit, or the tracking slipped"
+        )
+    if stages:
+        lines.append(f"the causes explain {100.0 * share:.0f} % of what the flights have beyond noise")
+    for stage in stages:
+        if len(stage.alike) > 1:
+            lines.append(
+                "free flight does not tell these apart: "
+                + "; ".join(f"{fit.cause.title} ({_size_words(posed, fit)})" for fit in stage.alike)
+            )
+    if any(test.planar for test in posed.tests):
+        lines.append("the motion was filmed in one plane: nothing across it is known")
+    return tuple(lines)
+
+
+def _size_words(posed, fit):
+    sizes = _sizes(posed, fit)
+    return ", ".join(
+        f"{name} {one.estimate:.3g} ({one.lower:.3g} to {one.upper:.3g}) {one.unit}"
+        for name, one in sizes.items()
+    )
+
+
+def impact_words(found):
+    """What impacts keep, in one sentence by kind; empty without any."""
+    words = []
+    for kind, own in found.items():
+        if "restitution" in own:
+            one, ratio = own["restitution"], own["ratio"]
+            words.append(
+                f"{one['count']} impacts of {'an' if kind == 'edge' else 'a'} {kind} keep {one['median']:.2f} "
+                f"({one['lower']:.2f} to {one['upper']:.2f}, quartiles) of the normal velocity; tangential over normal "
+                f"impulse {ratio['median']:.2f} ({ratio['lower']:.2f} to {ratio['upper']:.2f})"
+            )
+        if "returned" in own:
+            one, kept = own["returned"], own["kept"]
+            words.append(
+                f"{one['count']} faces come down in rocking: {100.0 * one['share']:.0f} % return to the edge that "
+                f"they came from, spin kept {kept['median']:.2f} ({kept['lower']:.2f} to {kept['upper']:.2f})"
+            )
+    return "; ".join(words)
+
+
+def _evidence(posed, rows, causes, impacts, broken, share):
+    """Mean acceleration and velocity of every flight, measured and explained, and all impacts."""
+    arcs, gravity = rows.arcs, posed.structure.file.gravity
+    taken = [_mean_acceleration(arc, arc.position - fallen(arc, gravity)) for arc in arcs]
+    explained = [
+        sum(
+            (
+                _mean_acceleration(arc, np.einsum("nkx,k->nx", fit.cause.paths(arc, posed), fit.sizes))
+                for fit in causes
+            ),
+            np.zeros(3),
+        )
+        for arc in arcs
+    ]
+    shape = ("flight", "axis")
+    return xr.Dataset(
+        {
+            "velocity": (shape, [arc.smooth()[1].mean(axis=0) for arc in arcs], {"units": "m s-1"}),
+            "acceleration": (shape, taken, {"units": "m s-2"}),
+            "explained": (shape, explained, {"units": "m s-2"}),
+            "length": ("flight", [arc.time[-1] for arc in arcs], {"units": "s"}),
+            **{
+                name: ("impact", [getattr(impact, name) for impact in impacts])
+                for name in ("time", "restitution", "ratio", "kept")
+            },
+        },
+        {
+            "test": ("flight", [arc.test for arc in arcs]),
+            "axis": list("xyz"),
+            "impact_test": ("impact", [impact.test for impact in impacts]),
+            "kind": ("impact", [impact.kind for impact in impacts]),
+        },
+        {"left_out": len(broken), "explained_share": share, "noise": rows.noise},
+    )
+
+
+def _mean_acceleration(arc, path):
+    """Of a path, by the parabola through it, (3,) [m/s2]."""
+    return 2.0 * np.polyfit(arc.time, path, 2)[0]

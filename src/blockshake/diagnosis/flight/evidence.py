@@ -1,0 +1,148 @@
+"""Evidence of causes in free flights: what Newton's second law leaves of the paths."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from blockshake.diagnosis.evidence.likelihood import Likelihood, from_rows
+from blockshake.diagnosis.flight.causes import CAUSES, air_drag, nuisances
+from blockshake.forces.flight.arcs import noise_of
+from blockshake.forces.flight.paths import dragged_by_square, fallen, off_centre
+
+_INDEPENDENT = 3.0  # numbers that a flight and axis tell, if what its readings leave is smooth and no noise
+_ROUNDS = 4  # of weighing the flights
+
+
+@dataclass(frozen=True)
+class FlightRows:
+    """Rows of all flights, a block for each flight and filmed axis, and their likelihood.
+
+    Attributes
+    ----------
+    posed : PosedCampaign
+    arcs : list of Arc
+    values : list of float64 array, shape (n_rows,)
+        Positions less a free fall in air [m].
+    noise : float
+        Of a coordinate [m].
+    likelihood : Likelihood
+    """
+
+    posed: object
+    arcs: list
+    values: list
+    noise: float
+    likelihood: Likelihood
+
+    def columns(self, paths):
+        """Rows of paths, a callable of an `Arc` to (n, k, 3): list of float64 array, shape (n_rows, k)."""
+        return _blocks(self.arcs, paths)
+
+    def of_cause(self, cause):
+        """Rows of a `FlightCause` at sizes 1: list of float64 array, shape (n_rows, n_sizes)."""
+        return self.columns(lambda arc: cause.paths(arc, self.posed))
+
+    def beside(self, fit, share):
+        """The rows with a cause among the nuisances, whose form may leave a share of the path that it makes."""
+        columns = self.of_cause(fit.cause)
+        errors = [share**2 * np.outer(column @ fit.sizes, column @ fit.sizes) for column in columns]
+        scales = np.full(len(fit.sizes), fit.cause.scale(self.posed))
+        wide = self.likelihood.beside(columns, scales, errors)
+        return FlightRows(self.posed, self.arcs, self.values, self.noise, wide)
+
+
+@dataclass(frozen=True)
+class FlightFit:
+    """A cause beside the rows.
+
+    Attributes
+    ----------
+    cause : FlightCause
+    gain : float
+        Logarithm of its evidence over that of none.
+    sizes : float64 array, shape (n_sizes,)
+        The likeliest ones.
+    covariance : float64 array, shape (n_sizes, n_sizes)
+    """
+
+    cause: object
+    gain: float
+    sizes: np.ndarray
+    covariance: np.ndarray
+
+    @property
+    def size(self):
+        """Length of all sizes together."""
+        return float(np.linalg.norm(self.sizes))
+
+
+def flight_rows(posed, arcs):
+    """`FlightRows` of the flights of a campaign.
+
+    Notes
+    -----
+    What all causes together leave of a flight is larger than the noise, and smooth: errors of the tracking that turn
+    with the body, a touch of a guide. A flight and axis therefore counts as three independent readings of that size,
+    at least the usual one, so that flights that something else disturbs are worth less, for all causes alike.
+    """
+    noise, values = noise_of(arcs), [left[:, 0] for left in _blocks(arcs, lambda arc: _left(arc, posed))]
+    small = _blocks(arcs, lambda arc: nuisances(arc, posed))
+    whole = _blocks(
+        arcs,
+        lambda arc: np.concatenate(
+            [nuisances(arc, posed), *(cause.scale(posed) * cause.paths(arc, posed) for cause in CAUSES)],
+            axis=1,
+        ),
+    )
+    variances = np.full(len(values), noise**2)
+    for _ in range(_ROUNDS):
+        variances = _variances_beside(values, whole, variances, noise)
+    covariances = [variance * np.eye(len(value)) for variance, value in zip(variances, values, strict=True)]
+    by_nuisance = [[rows[:, number] for rows in small] for number in range(small[0].shape[1])]
+    return FlightRows(posed, arcs, values, noise, from_rows(covariances, values, by_nuisance))
+
+
+def _left(arc, posed):
+    """Path less that of the mass centre in air, (n, 1, 3) [m]."""
+    file = posed.structure.file
+    offset = np.array(file.bodies[posed.body].mass_offset)
+    known = fallen(arc, file.gravity) + air_drag(posed) * dragged_by_square(arc)[:, 0]
+    return (arc.position - known - np.einsum("nkx,k->nx", off_centre(arc), offset))[:, None]
+
+
+def _blocks(arcs, paths):
+    """Rows of paths, a callable of an `Arc` to (n, k, 3): an array (n_rows, k) for each flight and filmed axis."""
+    return [rows[:, :, axis] for arc in arcs for rows in [arc.free(paths(arc))] for axis in arc.axes]
+
+
+def _variances_beside(values, columns, variances, noise):
+    """Variances of a reading in each block, (n_blocks,), beside columns of standard normal amplitudes at their best."""
+    precision, target = np.eye(columns[0].shape[1]), np.zeros(columns[0].shape[1])
+    for value, rows, variance in zip(values, columns, variances, strict=True):
+        precision += rows.T @ rows / variance
+        target += rows.T @ value / variance
+    amplitudes = np.linalg.solve(precision, target)
+    left = np.array([
+        np.mean((value - rows @ amplitudes) ** 2) for value, rows in zip(values, columns, strict=True)
+    ])  # fmt: skip
+    return (
+        noise**2
+        + np.maximum(left, np.median(left)) * np.array([len(value) for value in values]) / _INDEPENDENT
+    )
+
+
+def explain(rows, cause):
+    """`FlightFit` of a `FlightCause`."""
+    columns = rows.of_cause(cause)
+    scales = np.full(columns[0].shape[1], cause.scale(rows.posed))
+    fit = rows.likelihood.amplitudes(rows.likelihood.whiten(columns), scales, cause.positive)
+    return FlightFit(cause, fit.gain, fit.mean, fit.covariance)
+
+
+def explained_share(rows, fits):
+    """Share of the squared distance beyond the noise that causes at their best sizes take off all flights [1]."""
+    before = np.concatenate(rows.values)
+    taken = sum(np.concatenate(rows.of_cause(fit.cause)) @ fit.sizes for fit in fits)
+    floor = rows.noise**2 * len(before)
+    left = before - taken
+    return float(1.0 - (left @ left - floor) / (before @ before - floor))

@@ -1,0 +1,108 @@
+"""Tests of poses of a campaign, each read once, and where the lowest points of the body are."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from blockshake.errors import InputError
+from blockshake.geometry.structure import Structure, load_structure
+from blockshake.measurement.poses.pose_file import free_body, read_poses
+
+_SUNK = 0.2  # of the body's radius, deeper than which no tracking error leaves half of all readings
+
+
+@dataclass(frozen=True)
+class PosedTest:
+    """One test of a body over a level ground.
+
+    Attributes
+    ----------
+    name : str
+    time : float64 array, shape (n_times,)
+        From the first reading [s].
+    position : float64 array, shape (n_times, 3)
+        Of the shape's centroid, world frame [m]; NaN along an axis that was not filmed, and in gaps.
+    rotation : float64 array, shape (n_times, 3, 3)
+        Body to world.
+    planar : bool
+        Filmed in the plane of x and z alone.
+    """
+
+    name: str
+    time: np.ndarray
+    position: np.ndarray
+    rotation: np.ndarray
+    planar: bool
+
+    @property
+    def axes(self):
+        """Numbers of the axes that were filmed."""
+        return np.flatnonzero(np.isfinite(self.position).any(axis=0))
+
+
+@dataclass(frozen=True)
+class PosedCampaign:
+    """Tests of one body, and what it is.
+
+    Attributes
+    ----------
+    structure : Structure
+    tests : list of PosedTest
+    body : int
+        Index of the free body.
+    vertices : float64 array, shape (n_vertices, 3)
+        Of the free body from its centroid, body frame [m].
+    ground : float
+        Height of the ground [m].
+    """
+
+    structure: Structure
+    tests: list
+    body: int
+    vertices: np.ndarray
+    ground: float
+
+    @property
+    def radius(self):
+        """Distance of the farthest vertex from the centroid [m]."""
+        return float(np.linalg.norm(self.vertices, axis=1).max())
+
+    @property
+    def name(self):
+        """Of the free body."""
+        return self.structure.body_names[self.body]
+
+    def heights(self, test):
+        """Heights of the vertices over the ground, (n_times, n_vertices) [m]."""
+        return test.position[:, 2, None] + test.rotation[:, 2] @ self.vertices.T - self.ground
+
+
+def load_posed(campaign, names):
+    """`PosedCampaign` of the named tests of a campaign without base motion.
+
+    Raises
+    ------
+    InputError
+        As of `read_poses`; or the body is below the ground in half of all readings of a test.
+    """
+    structure = load_structure(campaign.structure)
+    body, ground = free_body(structure)
+    solid = structure.solids[structure.file.bodies[body].shape]
+    top = structure.position[ground, 2] + structure.solid(ground).vertices[:, 2].max()
+    found = PosedCampaign(structure, [], body, solid.polyhedron.vertices, float(top))
+    for name in names:
+        path = campaign.folder / campaign.tests[name].file
+        read = read_poses(path, structure)
+        test = PosedTest(
+            name, read["time"].to_numpy(), read["position"].to_numpy(), read["rotation"].to_numpy(),
+            bool(read.attrs["planar"]),
+        )  # fmt: skip
+        lowest = np.nanmedian(found.heights(test).min(axis=1))
+        if lowest < -_SUNK * found.radius:
+            raise InputError(
+                path, f"{found.name}.z",
+                f"expected the height of the centroid, z up, over a ground at {found.ground:g} m; the body is "
+                f"{-1e3 * lowest:.3g} mm below it in half of all readings",
+            )  # fmt: skip
+        found.tests.append(test)
+    return found
