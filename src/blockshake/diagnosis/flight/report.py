@@ -12,8 +12,6 @@ from blockshake.pages.origin import command_blocks, digests_table, software_vers
 from blockshake.pages.wording import count_words
 from blockshake.store import load_made
 
-_PACKAGES = ("numpy", "scipy", "numba", "xarray", "snakemake", "matplotlib", "typst")
-
 
 def compose_flights(campaign, results):
     """`Document` of the diagnosis of a campaign without base motion.
@@ -56,6 +54,6 @@ def _origin(campaign, results, gain):
         "Origin", "origin",
         (
             *command_blocks("snakemake -c2 diagnose --config campaign=FOLDER"),
-            digests_table(digests), versions_table(software_versions(_PACKAGES)),
+            digests_table(digests), versions_table(software_versions()),
         ),
     )  # fmt: skip

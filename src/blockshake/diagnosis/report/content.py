@@ -16,7 +16,6 @@ from blockshake.pages.origin import software_versions
 from blockshake.parity.parity import Parity, load_parity
 from blockshake.store import load_made
 
-_PACKAGES = ("numpy", "scipy", "numba", "xarray", "snakemake", "matplotlib", "typst")
 _RESULTS = ("parity.json", "decision.json", "evidence.nc", "verdict.json")
 _GAIN, _MISFIT = "gain.nc", "misfit.nc"
 
@@ -97,7 +96,7 @@ def load_diagnosed(campaign, results, effort, track_record):
         motions=_motions(campaign),
         track_record=load_track_record(track_record) if track_record.exists() else None,
         digests={"/".join(path.parts[-2:]): file_digest(path) for path in files},
-        versions=software_versions(_PACKAGES),
+        versions=software_versions(),
     )
 
 

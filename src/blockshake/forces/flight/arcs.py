@@ -9,7 +9,7 @@ from scipy.linalg import null_space
 CLEAR = 0.03  # of the body's radius: farther from the ground than tracked corners sink into it at impacts
 LEAST = 8  # readings of a flight; four are taken by a cubic
 _BROKEN = 4.0  # times the usual residual about a cubic: something was hit, or the tracking slipped
-_GAP = 1.5  # usual steps of the clock
+_NEXT = 1.5  # usual steps of the clock
 _STRUCK = (
     5.0  # times the usual distance of a reading from the middle of its neighbours: an impact lies between
 )
@@ -116,7 +116,7 @@ def _kinks(posed, test):
 
 def _arcs_of(test, up):
     step = np.diff(test.time)
-    joined = np.concatenate([[False], up[1:] & up[:-1] & (step < _GAP * np.median(step)), [False]])
+    joined = np.concatenate([[False], up[1:] & up[:-1] & (step < _NEXT * np.median(step)), [False]])
     first = np.flatnonzero(~joined[:-1] & joined[1:])
     last = np.flatnonzero(joined[:-1] & ~joined[1:])
     for start, end in zip(first, last, strict=True):

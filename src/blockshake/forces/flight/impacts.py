@@ -17,7 +17,7 @@ _TURNING = 0.5  # rad/s of approach, below which spin kept is not told
 _WINDOW = 5  # readings of each side, of a face that comes down without a flight
 
 
-class Impact(NamedTuple):
+class FlightImpact(NamedTuple):
     """One impact.
 
     ``test``, ``time`` [s]; ``kind``: corner, edge or face; ``restitution``: normal velocity of the contact after over
@@ -35,7 +35,7 @@ class Impact(NamedTuple):
 
 
 def find_impacts(posed, arcs):
-    """All `Impact` of a campaign that lie between two flights, and all faces that come down in rocking."""
+    """All `FlightImpact` of a campaign that lie between two flights, and all faces that come down in rocking."""
     found = []
     for test in posed.tests:
         own = [arc for arc in arcs if arc.test == test.name]
@@ -69,7 +69,7 @@ def _between(posed, test, before, after):
     turn = turned @ posed.structure.inertia[posed.body] @ turned.T @ (spun - spin)
     if approach > -_SEEN or impulse[2] <= 0.0 or _cosine(turn, moment) < _OF_ONE:
         return None
-    return Impact(
+    return FlightImpact(
         test.name, float(times[at]), _KINDS.get(int(hit.sum()), "face"),
         float(-(left + np.cross(spun, arm))[2] / approach),
         float(np.linalg.norm(impulse[:2]) / impulse[2]),
@@ -119,7 +119,7 @@ def _rocking(posed, test):
             for rows in (slice(at - _WINDOW, at), slice(at + 1, at + _WINDOW + 1))
         )
         if tilt[at - _WINDOW] > 2.0 * tilt[at] and np.linalg.norm(before) > _TURNING:
-            yield Impact(test.name, float(test.time[at]), "face", np.nan, np.nan, _kept(before, after))
+            yield FlightImpact(test.name, float(test.time[at]), "face", np.nan, np.nan, _kept(before, after))
 
 
 def _spin(time, rotation):

@@ -14,7 +14,7 @@ from blockshake.measurement.sensors.markers import driven_names, marker_position
 from blockshake.measurement.sensors.transducers import transducer_names
 from blockshake.tables.numbers import missing_code
 
-_FARTHEST = 20.0  # m; no table moves so far, a file in millimetres does
+FARTHEST = 20.0  # m; no table moves so far, a file in millimetres does
 # Readings a second. Shaking has 0.5 to 50 Hz, most of it below 10 Hz, which takes 20 readings a second. 10 kHz are
 # 200 readings in the shortest period; times in milliseconds (200 Hz become 0.2) and in minutes (12 000) lie outside.
 _RATES = (20.0, 1e4)
@@ -173,7 +173,7 @@ def _check_readings(test, path):
                 raise InputError(path, str(name), "expected readings; all are missing")
     for variable in ("marker_displacement", "transducer_displacement"):
         farthest = float(np.abs(test[variable]).max()) if variable in test else 0.0
-        if farthest > _FARTHEST:
+        if farthest > FARTHEST:
             wrong = f"expected metres; a displacement of {farthest:g} looks like millimetres"
             raise InputError(path, variable, wrong)
 

@@ -9,12 +9,11 @@ from scipy.spatial.transform import Rotation
 from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES
 from blockshake.measurement.campaigns.reading_files import read_columns, read_variables
-from blockshake.measurement.campaigns.recorded_test import check_times
+from blockshake.measurement.campaigns.recorded_test import FARTHEST, check_times
 
 QUATERNION = ("w", "x", "y", "z")
 ANGLE = "angle_y"  # rad, right-handed about +y: of a body that is filmed in the plane of x and z
-_UNIT = 0.01  # by which the length of a quaternion may differ from 1
-_FARTHEST = 20.0  # m
+_LENGTH_ERROR = 0.01  # by which the length of a quaternion may differ from 1
 _FASTEST = 100.0  # rad/s, of a median turning rate: degrees are 57 times as many
 _VARIABLES = {
     "position": (("time", "body", "axis"), ("m", "metre", "metres", "meter", "meters")),
@@ -52,7 +51,7 @@ def read_poses(path, structure):
     read = _from_table(path, name) if path.suffix.lower() == ".csv" else _from_netcdf(path, name)
     time, position, rotation, planar = read
     check_times(time, path, "time")
-    if np.nanmax(np.abs(position), initial=0.0) > _FARTHEST:
+    if np.nanmax(np.abs(position), initial=0.0) > FARTHEST:
         raise InputError(path, f"{name}.x", f"expected metres, not {np.nanmax(np.abs(position)):.4g}")
     _check_turning(time, rotation, path, name)
     return xr.Dataset(
@@ -132,7 +131,7 @@ def _rotations(quaternion, path, name):
     rotation = np.full((len(quaternion), 3, 3), np.nan)
     read = np.isfinite(quaternion).all(axis=1)
     length = np.linalg.norm(quaternion[read], axis=1)
-    if (np.abs(length - 1.0) > _UNIT).any():
+    if (np.abs(length - 1.0) > _LENGTH_ERROR).any():
         row = int(np.flatnonzero(read)[np.abs(length - 1.0).argmax()])
         raise InputError(
             path, f"{name}.q", f"expected unit quaternions, not of length {np.linalg.norm(quaternion[row]):.3g} "

@@ -20,8 +20,6 @@ from blockshake.study.sampling.distributions import load_distributions
 from blockshake.study.sampling.latin_hypercube import load_design
 from blockshake.study.sampling.sample_parameters import has_parameter
 
-_PACKAGES = ("numpy", "scipy", "numba", "xarray", "pandas", "snakemake", "matplotlib", "typst")
-
 
 @dataclass(frozen=True)
 class Response:
@@ -212,7 +210,7 @@ def load_content(study, results, logs, only=None):
             "configuration of the study": content_digest(study),
             **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, *stiffness]},
         },
-        versions=software_versions(_PACKAGES),
+        versions=software_versions(),
     )  # fmt: skip
 
 
