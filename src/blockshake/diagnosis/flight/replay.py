@@ -9,6 +9,7 @@ from blockshake.diagnosis.flight.causes import air_drag
 from blockshake.dynamics.motion import GroundMotion, rest_table
 from blockshake.forces.flight.paths import dragged_by_square, fallen, off_centre
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.poses.posed_test import PosedTest
 from blockshake.simulation.simulate import simulate
 
 MODEL = "nscd-rigid"
@@ -37,24 +38,13 @@ class FlightModel:
 
 @dataclass(frozen=True)
 class Replayed:
-    """A test and its replay, from its first flight on.
+    """Distance of a replay from its test at each reading, from the first flight on.
 
-    ``measured`` and ``simulated`` (n_times, n_vertices, 3): vertices of the body [m]; ``rotations`` of both.
+    ``middle`` (n_times,): of the body's middle [m]; ``turned`` (n_times,): angle between the rotations [rad].
     """
 
-    measured: np.ndarray
-    simulated: np.ndarray
-    rotations: tuple
-
-    @property
-    def middle(self):
-        """Distance of the body's middle at each reading [m]."""
-        return np.linalg.norm((self.simulated - self.measured).mean(axis=1), axis=1)
-
-    @property
-    def turned(self):
-        """Angle between the two rotations at each reading [rad]."""
-        return (self.rotations[0].inv() * self.rotations[1]).magnitude()
+    middle: np.ndarray
+    turned: np.ndarray
 
 
 def start_arc(test, arcs):
@@ -74,27 +64,37 @@ def replay(posed, test, arc, model):
         From `start_arc`.
     model : FlightModel
     """
+    run = filmed_replay(posed, test, arc, model)
+    seen = slice(arc.first, None)
+    return Replayed(
+        np.linalg.norm(run.position - np.nan_to_num(test.position[seen]) / _length(model), axis=1),
+        (Rotation.from_matrix(test.rotation[seen]).inv() * Rotation.from_matrix(run.rotation)).magnitude(),
+    )
+
+
+def filmed_replay(posed, test, arc, model, solver=MODEL, **options):
+    """A `PosedTest` as a solver has it, at the readings of a test from its first flight on.
+
+    Parameters
+    ----------
+    posed, test, arc, model
+        As of `replay`.
+    solver : str
+    **options
+        Parameters and time step of `simulate`.
+    """
     structure = _structure(posed, test, arc, model)
     time = test.time[arc.first :] - test.time[arc.first]
     step = float(np.median(np.diff(time)))
     still = GroundMotion("ground at rest", rest_table(), "displacement")
     run = simulate(
-        structure, still, MODEL, duration=float(time[-1]) + step, output_rate=1.0 / step, accelerometers=False
-    )
-    centre = run["position"].to_numpy()[:, posed.body]
+        structure, still, solver, duration=float(time[-1]) + step, output_rate=1.0 / step, accelerometers=False,
+        **options,
+    )  # fmt: skip
     rotation = rotation_matrices(run["orientation"].to_numpy()[:, posed.body])
-    centre = centre - rotation @ structure.mass_offset[posed.body]
-    at = np.clip(np.rint(time / step).astype(int), 0, len(centre) - 1)
-    seen = np.nan_to_num(test.position[arc.first :]) / _length(model)
-    return Replayed(
-        _vertices(posed, seen, test.rotation[arc.first :]),
-        _vertices(posed, centre[at], rotation[at]),
-        (Rotation.from_matrix(test.rotation[arc.first :]), Rotation.from_matrix(rotation[at])),
-    )
-
-
-def _vertices(posed, position, rotation):
-    return position[:, None] + np.einsum("tij,vj->tvi", rotation, posed.vertices)
+    centroid = run["position"].to_numpy()[:, posed.body] - rotation @ structure.mass_offset[posed.body]
+    at = np.clip(np.rint(time / step).astype(int), 0, len(centroid) - 1)
+    return PosedTest(test.name, time, centroid[at], rotation[at], planar=False)
 
 
 def _size(model, name):
@@ -122,7 +122,7 @@ def _structure(posed, test, arc, model):
         if sorted(set(entry["pair"])) == materials:
             entry["coefficient"] = model.friction
     mapping["gravity"] = (np.array(mapping["gravity"]) + model.shift).tolist()
-    mapping["nscd_restitution"] = model.restitution
+    mapping["nscd_restitution"] = mapping["restitution"] = model.restitution
     damping, dry = _size(model, "drag")[0], _size(model, "dry-drag")[0]
     if damping or dry:
         mapping["external_forces"] += [
