@@ -15,10 +15,10 @@ from blockshake.diagnosis.verdict.verdict import OF_A_GAIN, Contrast, Gain, Meas
 from blockshake.forces.flight.arcs import find_arcs
 from blockshake.statistics.resampling import limits_of, resampled_weights
 
-_FRICTION = (0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.45, 0.7)
-_RESTITUTION = (0.0, 0.15, 0.3, 0.4, 0.5, 0.6)
-_FINER = (0.8, 1.0, 1.25)  # of the best friction
-_BESIDE = (-0.05, 0.0, 0.05)  # beside the best restitution
+_FRICTION = (0.03, 0.06, 0.1, 0.15, 0.22, 0.33, 0.5)
+_RESTITUTION = (0.0, 0.15, 0.3, 0.45, 0.6)
+_FINER = (0.75, 0.85, 1.0, 1.1, 1.25)  # times the best friction of these
+_BESIDE = (-0.1, -0.05, 0.0, 0.05, 0.1)  # beside the best restitution of these
 _MOST = 60  # open tests that a model is fitted to
 _EARLY = 0.1  # s after the first flight
 _ACTING = ("sensor-gain", "eccentricity", "push", "drag", "dry-drag")  # causes that a replay can have
