@@ -348,6 +348,7 @@ ROWS = {
         ("layout.header", 900, "t1.csv"),
         ("layout.data", 900, "t1.csv"),
         ("time.column", "clock", "clock"),
+        ("rotation_unit", "turns", "'rad', 'mrad' or 'deg'"),
         ("time", {"column": "time_s", "reversed": True}, "reversed: unknown key"),
         ("time.unit", "days", "expected a unit of"),
         ("displacement_unit", "feet", "expected a unit of"),

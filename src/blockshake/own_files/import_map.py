@@ -1,7 +1,7 @@
 """The map of an import: which column of which file is which reading, in which unit."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field
 
@@ -56,7 +56,7 @@ class ImportMap(Strict):
     acceleration_unit: str | None = Field(
         None, description="m/s2, cm/s2 or g; needed where there are channels"
     )
-    rotation_unit: str = Field("rad", description="rad, mrad or deg, of angles of filmed bodies")
+    rotation_unit: Literal["rad", "mrad", "deg"] = Field("rad", description="of angles of filmed bodies")
     columns: dict[str, ReadingEntry] = Field(
         min_length=1,
         description="by MARKER.x and the like, accelerometer channel or displacement transducer: a column's name, or "

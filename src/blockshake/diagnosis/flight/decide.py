@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from blockshake.diagnosis.answer.answer import ODDS, coarsened
+from blockshake.diagnosis.answer.answer import ODDS, coarsened, needed_of
 from blockshake.diagnosis.answer.decision import Cause, Decision, Estimate, Part
 from blockshake.diagnosis.answer.size import FORM
 from blockshake.diagnosis.evidence.explanation import mean_evidence
@@ -18,7 +18,7 @@ from blockshake.forces.flight.arcs import find_arcs
 from blockshake.forces.flight.impacts import find_impacts, summary
 from blockshake.forces.flight.paths import fallen
 
-_NEEDED, _MORE = 8.0, 0.1  # nats of a cause; of a further one, that and a share of what those before it gain
+_MORE = 0.1  # of what the causes before it gain, that a further one needs besides
 _MOST = 3  # causes
 _NINETY = 1.645  # standard deviations
 READINGS = "free flight"
@@ -72,7 +72,7 @@ def decide_flights(posed, without=()):
     while len(stages) < _MOST:
         tried = [cause for cause in CAUSES if cause.name not in [*without, *_named(stages)]]
         fits = sorted((explain(beside, cause) for cause in tried), key=lambda fit: -fit.gain)
-        if not fits or fits[0].gain < _NEEDED + _MORE * gained:
+        if not fits or fits[0].gain < needed_of(fits[0].cause.name) + _MORE * gained:
             break
         first = fits[0]
         if first.size < first.cause.sound(posed):
@@ -180,7 +180,7 @@ def _limits(posed, rows):
     for cause in CAUSES:
         if cause.name in EFFECTS:
             deviation = np.sqrt(np.diag(explain(rows, cause).covariance)).max()
-            seen = float(np.sqrt(2.0 * _NEEDED) * deviation)
+            seen = float(np.sqrt(2.0 * needed_of(cause.name)) * deviation)
             found[cause.name] = {posed.name: max(seen, cause.sound(posed))}
     return found
 
