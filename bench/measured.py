@@ -85,8 +85,8 @@ def _head():
     return (
         "# Real measurements\n\n"
         "Everything else that this program diagnoses in its tests is synthetic. This page tells of measurements of "
-        "others, as the tool answered: no sentence below a heading with a date was typed by hand. The data are "
-        "not part of the project. The command is\n\n"
+        "others, as the tool answered: under each heading, all but the description of the set, what others published, "
+        "and the captions is computed. The data are not part of the project. The command is\n\n"
         "```\npython bench/measured.py SHARED\n```\n\n"
         "It makes a campaign of each set by `examples/measured_flights.py`, half of the tests open and half "
         "sealed, and runs `blockshake diagnose` on it. Free flight is judged first: Newton's second law of a body "

@@ -83,7 +83,7 @@ def decide(seen, without=(), unseen=()):
     shown = departures(seen, evidence, explained)
     limits = limits_of(evidence, slab)
     decision = Decision(
-        decision=_kind(parts),
+        decision=kind_of(parts),
         parts=parts,
         probabilities=_probabilities(parts, without),
         limits=limits,
@@ -116,7 +116,7 @@ def _chance(part):
     return float(np.exp(-min(mean_evidence(gains), 700.0)))
 
 
-def _kind(parts):
+def kind_of(parts):
     """Kind of the answer: an outside form alone is unknown; beside an effect it keeps the effect from being alone."""
     if not parts:
         return "none"

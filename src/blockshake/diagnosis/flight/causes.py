@@ -40,6 +40,8 @@ class FlightCause:
         The amplitude is not negative.
     sound : callable
         Of the `PosedCampaign`: size up to which sound tests have it.
+    alias : str
+        Sentence on what flies alike; empty where nothing does.
     """
 
     name: str
@@ -49,6 +51,7 @@ class FlightCause:
     scale: Callable
     positive: bool = False
     sound: Callable = lambda posed: 0.0
+    alias: str = ""
 
 
 def _mass(posed):
@@ -69,18 +72,21 @@ def _sideways(arc, posed):
 
 CAUSES = (
     FlightCause(
-        "sensor-gain", "lengths read too long (or a clock too slow, or gravity less than stated)", (("error", "1"),),
+        "sensor-gain", "lengths read too long", (("error", "1"),),
         lambda arc, posed: longer(arc, _gravity(posed)), lambda posed: 0.03,
         sound=lambda posed: _LENGTHS,
+        alias="gravity above the stated one by the same share, or a clock slow by half of it, would fall alike",
     ),
     FlightCause(
         "eccentricity", "mass centre beside the middle", (("offset_x", "m"), ("offset_y", "m"), ("offset_z", "m")),
         lambda arc, posed: off_centre(arc), lambda posed: 0.1 * posed.radius,
         sound=lambda posed: _CENTRE * posed.radius,
+        alias="an origin of the tracker that lies off the centroid by as much the other way would fly alike",
     ),
     FlightCause(
         "push", "a steady sideways push", (("force_x", "N"), ("force_y", "N")),
         _sideways, lambda posed: 0.1 * _weight(posed),
+        alias="a vertical of the camera that is off by force over weight would look alike",
     ),
     FlightCause(
         "drag", "a viscous drag", (("damping", "N s/m"),),

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.diagnosis.answer.answer import ODDS, coarsened, needed_of
+from blockshake.diagnosis.answer.decide import kind_of
 from blockshake.diagnosis.answer.decision import Cause, Decision, Estimate, Part
 from blockshake.diagnosis.answer.size import FORM
 from blockshake.diagnosis.evidence.explanation import mean_evidence
@@ -61,39 +62,46 @@ def decide_flights(posed, without=()):
     arcs, broken = find_arcs(posed)
     if not arcs:
         raise InputError(
-            posed.structure.source,
-            "tests",
-            "expected tests in which the body flies for some readings; found none",
-        )
+            posed.structure.source, "tests",
+            f"expected tests in which {posed.name} flies for some readings; found {len(broken)} flights, none of "
+            "them smooth",
+        )  # fmt: skip
     impacts = find_impacts(posed, arcs)
     rows = flight_rows(posed, arcs)
-    stages, beside = [], rows
-    gained = 0.0
+    stages, sound, beside, gained = [], [], rows, 0.0
     while len(stages) < _MOST:
-        tried = [cause for cause in CAUSES if cause.name not in [*without, *_named(stages)]]
-        fits = sorted((explain(beside, cause) for cause in tried), key=lambda fit: -fit.gain)
+        known = [
+            *without,
+            *(fit.cause.name for fit in sound),
+            *(stage.fits[0].cause.name for stage in stages),
+        ]
+        fits = [explain(beside, cause) for cause in CAUSES if cause.name not in known]
+        fits.sort(key=lambda fit: -fit.gain)
         if not fits or fits[0].gain < needed_of(fits[0].cause.name) + _MORE * gained:
             break
         first = fits[0]
         if first.size < first.cause.sound(posed):
+            sound.append(first)
             beside = beside.beside(first, 0.0)
-            without = (*without, first.cause.name)
             continue
         gained += first.gain
         odds = {fit.cause.name: float(coarsened(first.gain - fit.gain, first.gain)) for fit in fits}
         alike = [fit for fit in fits if odds[fit.cause.name] < ODDS]
         stages.append(Stage(fits, alike, odds))
-        beside = beside.beside(first, FORM)
+        beside = beside.beside(first, FORM if first.cause.name in FORMS else 0.0)
+    stages = [
+        stage._replace(alike=[rows.refitted(fit, [*sound, *_firsts(stages, stage)]) for fit in stage.alike])
+        for stage in stages
+    ]
     parts = tuple(_part(posed, stage) for stage in stages)
     causes = [stage.alike[0] for stage in stages]
     share = explained_share(rows, causes) if causes else 0.0
     names = [test.name for test in posed.tests]
-    flying = {arc.test for arc in arcs}
     decision = Decision(
-        decision=_kind(parts),
+        decision=kind_of(parts),
         parts=parts,
         probabilities={name: _probability(parts, name) for name in EFFECTS if name not in without},
-        limits=_limits(posed, rows),
+        limits=_limits(posed, rows, gained),
         excluded_above={},
         p=min(
             1.0,
@@ -103,28 +111,17 @@ def decide_flights(posed, without=()):
         else 1.0,
         where=f"free flight of {posed.name}" if stages else "no departure larger than chance",
         tests=names,
-        silent=[name for name in names if name not in flying],
+        silent=(),
         n_rows=sum(map(len, rows.values)),
         impacts=impact_words(summary(impacts)),
-        cannot_see=_not_seen(posed, broken, stages, share, rows),
+        cannot_see=_not_seen(posed, broken, stages, share, rows, fits[0] if fits else None),
     )
     return DecidedFlights(decision, _evidence(posed, rows, causes, impacts, broken, share))
 
 
-def _named(stages):
-    return [stage.fits[0].cause.name for stage in stages]
-
-
-def _kind(parts):
-    """Kind of the answer: where the first cause is a form from outside, it is unknown."""
-    effects = {one.name for part in parts for one in part.effects}
-    if not parts:
-        return "none"
-    if not effects or parts[0].causes[0].outside:
-        return "unknown"
-    if any(len(part.causes) > 1 for part in parts):
-        return "ambiguous"
-    return "combination" if len(effects) > 1 else "named"
+def _firsts(stages, own):
+    """Likeliest causes of all stages but one."""
+    return [stage.alike[0] for stage in stages if stage is not own]
 
 
 def _part(posed, stage):
@@ -174,31 +171,49 @@ def _probability(parts, name):
     return 0.0
 
 
-def _limits(posed, rows):
-    """Sizes of effects of the registry from which on they would have been seen, by body."""
+def _limits(posed, rows, gained):
+    """Sizes of effects of the registry along the filmed directions from which on they would have been named."""
     found = {}
     for cause in CAUSES:
-        if cause.name in EFFECTS:
-            deviation = np.sqrt(np.diag(explain(rows, cause).covariance)).max()
-            seen = float(np.sqrt(2.0 * needed_of(cause.name)) * deviation)
-            found[cause.name] = {posed.name: max(seen, cause.sound(posed))}
+        if cause.name not in EFFECTS:
+            continue
+        deviations = np.sqrt(np.diag(explain(rows, cause).covariance))
+        scale = cause.scale(posed)
+        seen = deviations[deviations < 0.9 * scale]  # the others are not filmed
+        if len(seen):
+            # the gain of a size m: m^2 / (2 d^2) - ln(scale / d)
+            needed = needed_of(cause.name) + _MORE * gained + np.log(scale / seen).sum()
+            found[cause.name] = {
+                posed.name: max(float(np.sqrt(2.0 * needed) * seen.max()), cause.sound(posed))
+            }
     return found
 
 
-def _not_seen(posed, broken, stages, share, rows):
-    lines = [f"noise of the poses {1e3 * rows.noise:.3g} mm, found in {len(rows.arcs)} free flights"]
+def _not_seen(posed, broken, stages, share, rows, runner_up):
+    lines = [
+        f"{len(rows.arcs)} free flights lie {1e3 * rows.noise:.3g} mm about cubics, in the root mean square"
+    ]
     if broken:
         lines.append(
             f"{len(broken)} flights were left out: something other than the ground was hit, or the tracking slipped"
         )
+    silent = [test.name for test in posed.tests if test.name not in {arc.test for arc in rows.arcs}]
+    if silent:
+        lines.append(f"no free flight was read in {', '.join(silent)}")
     if stages:
         lines.append(f"the causes explain {100.0 * share:.0f} % of what the flights have beyond noise")
+    if stages and runner_up is not None and runner_up.gain > needed_of(runner_up.cause.name):
+        lines.append(
+            f"beside them {runner_up.cause.title} gains {runner_up.gain:.0f} nats, less than a tenth of what they "
+            "gain, and is not named"
+        )
     for stage in stages:
         if len(stage.alike) > 1:
             lines.append(
                 "free flight does not tell these apart: "
                 + "; ".join(f"{fit.cause.title} ({_size_words(posed, fit)})" for fit in stage.alike)
             )
+        lines += [fit.cause.alias for fit in stage.alike if fit.cause.alias]
     if any(test.planar for test in posed.tests):
         lines.append("the motion was filmed in one plane: nothing across it is known")
     return tuple(lines)
@@ -219,14 +234,14 @@ def impact_words(found):
         if "restitution" in own:
             one, ratio = own["restitution"], own["ratio"]
             words.append(
-                f"{one['count']} impacts of {'an' if kind == 'edge' else 'a'} {kind} keep {one['median']:.2f} "
+                f"impacts of {'an' if kind == 'edge' else 'a'} {kind} ({one['count']}) keep {one['median']:.2f} "
                 f"({one['lower']:.2f} to {one['upper']:.2f}, quartiles) of the normal velocity; tangential over normal "
                 f"impulse {ratio['median']:.2f} ({ratio['lower']:.2f} to {ratio['upper']:.2f})"
             )
         if "returned" in own:
             one, kept = own["returned"], own["kept"]
             words.append(
-                f"{one['count']} faces come down in rocking: {100.0 * one['share']:.0f} % return to the edge that "
+                f"faces that come down in rocking ({one['count']}): {100.0 * one['share']:.0f} % return to the edge that "
                 f"they came from, spin kept {kept['median']:.2f} ({kept['lower']:.2f} to {kept['upper']:.2f})"
             )
     return "; ".join(words)

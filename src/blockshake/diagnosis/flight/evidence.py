@@ -50,6 +50,14 @@ class FlightRows:
         wide = self.likelihood.beside(columns, scales, errors)
         return FlightRows(self.posed, self.arcs, self.values, self.noise, wide)
 
+    def refitted(self, fit, others):
+        """A fit beside other fits, all sizes free together; its gain stays."""
+        rows = self
+        for other in others:
+            rows = rows.beside(other, 0.0)
+        again = explain(rows, fit.cause)
+        return FlightFit(fit.cause, fit.gain, again.sizes, again.covariance)
+
 
 @dataclass(frozen=True)
 class FlightFit:
@@ -81,9 +89,9 @@ def flight_rows(posed, arcs):
 
     Notes
     -----
-    What all causes together leave of a flight is larger than the noise, and smooth: errors of the tracking that turn
-    with the body, a touch of a guide. A flight and axis therefore counts as three independent readings of that size,
-    at least the usual one, so that flights that something else disturbs are worth less, for all causes alike.
+    What all causes together leave of a flight beyond white noise is smooth: errors of the tracking that turn with the
+    body, a touch of a guide. That rest therefore counts as three independent readings a flight and axis, at least of
+    the usual size, so that flights that something else disturbs are worth less, for all causes alike.
     """
     noise, values = noise_of(arcs), [left[:, 0] for left in _blocks(arcs, lambda arc: _left(arc, posed))]
     small = _blocks(arcs, lambda arc: nuisances(arc, posed))
@@ -125,10 +133,12 @@ def _variances_beside(values, columns, variances, noise):
     left = np.array([
         np.mean((value - rows @ amplitudes) ** 2) for value, rows in zip(values, columns, strict=True)
     ])  # fmt: skip
-    return (
-        noise**2
-        + np.maximum(left, np.median(left)) * np.array([len(value) for value in values]) / _INDEPENDENT
+    count = np.array([len(value) for value in values])
+    # what white noise alone leaves, with its own scatter, is no smooth rest
+    smooth = np.maximum(
+        np.maximum(left, np.median(left)) - noise**2 * (1.0 + 2.0 * np.sqrt(2.0 / count)), 0.0
     )
+    return noise**2 + smooth * count / _INDEPENDENT
 
 
 def explain(rows, cause):

@@ -21,7 +21,7 @@ _FINER = (0.75, 0.85, 1.0, 1.1, 1.25)  # times the best friction of these
 _BESIDE = (-0.1, -0.05, 0.0, 0.05, 0.1)  # beside the best restitution of these
 _MOST = 60  # open tests that a model is fitted to
 _EARLY = 0.1  # s after the first flight
-_ACTING = ("sensor-gain", "eccentricity", "push", "drag", "dry-drag")  # causes that a replay can have
+_ACTING = ("sensor-gain", "eccentricity", "push", "drag")  # causes that a replay can have
 KINDS = (NOMINAL, RECALIBRATED, DISCREPANCY, EXTENDED)
 
 
@@ -48,39 +48,43 @@ def flight_gain(opened, sealed, decision):
     flights have beyond gravity.
     """
     arcs_opened, arcs_sealed = find_arcs(opened)[0], find_arcs(sealed)[0]
-    fitted, count = _fitted_tests(opened, arcs_opened), 0
-    models = {NOMINAL: _nominal(opened)}
+    shift = np.mean([arc.acceleration for arc in arcs_opened], axis=0) - opened.structure.file.gravity
+    shift[[axis for axis in range(3) if axis not in arcs_opened[0].axes]] = 0.0
+    rows = _row_gain(sealed, arcs_sealed, decision, shift) if arcs_sealed else None
+    fitted = _fitted_tests(opened, arcs_opened)
+    able = _fitted_tests(sealed, arcs_sealed, most=len(sealed.tests))
+    choices = [fits for fits in _combinations(decision) if fits]
+    if not (fitted and able and choices):
+        why = (
+            "no cause that a replay can have"
+            if not choices
+            else "no open or no sealed test begins with a free flight"
+        )
+        caveats = (f"no gain was measured on the paths: {why}",)
+        return CampaignGain(MeasuredGain(rows=rows, caveats=caveats), xr.Dataset())
+    models, best, count = {NOMINAL: _nominal(opened)}, np.inf, 0
     models[RECALIBRATED], _, runs = _recalibrated(opened, fitted, models[NOMINAL])
     count += runs
-    shift = np.mean([arc.acceleration for arc in arcs_opened], axis=0) - opened.structure.file.gravity
-    models[DISCREPANCY] = replace(models[RECALIBRATED], shift=tuple(shift * np.isfinite(shift)))
-    best = np.inf
-    for fits in _combinations(decision):
+    models[DISCREPANCY] = replace(models[RECALIBRATED], shift=tuple(shift.tolist()))
+    for fits in choices:
         model, error, runs = _recalibrated(opened, fitted, replace(models[NOMINAL], fits=fits))
         count += runs
         if error < best:
             models[EXTENDED], best = model, error
-    scores = _scores(sealed, arcs_sealed, models)
-    count += scores.sizes["test"] * len(models)
-    kinds = [kind for kind in KINDS if kind in models]
+    scores = _scores(sealed, able, models)
     scores = scores.assign(
-        friction=("kind", [models[kind].friction for kind in kinds]),
-        restitution=("kind", [models[kind].restitution for kind in kinds]),
+        friction=("kind", [models[kind].friction for kind in KINDS]),
+        restitution=("kind", [models[kind].restitution for kind in KINDS]),
     )
     chosen = [fit.cause.title for fit in models[EXTENDED].fits]
     caveats = [f"the model was extended by {' and '.join(chosen)}, by the paths of the open tests"]
-    left = len(sealed.tests) - scores.sizes["test"]
-    if left:
-        caveats.append(
-            f"{left} sealed tests start in an impact or without a free flight, and were not predicted"
-        )
-    summary = MeasuredGain(
-        rows=_row_gain(sealed, arcs_sealed, models),
-        gain=_contrasts(scores["place"]),
-        caveats=tuple(caveats),
-        runs=count,
+    if len(able) < len(sealed.tests):
+        left = len(sealed.tests) - len(able)
+        caveats.append(f"{left} sealed tests do not begin with a free flight, and were not predicted")
+    count += len(able) * len(models)
+    return CampaignGain(
+        MeasuredGain(rows=rows, gain=_contrasts(scores["place"]), caveats=tuple(caveats), runs=count), scores
     )
-    return CampaignGain(summary, scores)
 
 
 def _nominal(posed):
@@ -100,10 +104,10 @@ def _combinations(decision):
         )
 
 
-def _fitted_tests(posed, arcs):
-    """At most `_MOST` open tests that can be replayed, spread evenly, with their first flights."""
+def _fitted_tests(posed, arcs, most=_MOST):
+    """At most some tests that can be replayed, spread evenly, with their first flights."""
     able = [(test, arc) for test in posed.tests if (arc := start_arc(test, arcs)) is not None]
-    return able[:: max(1, -(-len(able) // _MOST))]
+    return able[:: max(1, -(-len(able) // max(most, 1)))]
 
 
 def _recalibrated(posed, tests, model):
@@ -114,7 +118,7 @@ def _recalibrated(posed, tests, model):
         key = friction, restitution
         if key not in errors:
             tried = replace(model, friction=friction, restitution=restitution)
-            errors[key] = np.mean([replay(posed, test, arc, tried).middle.mean() for test, arc in tests])
+            errors[key] = np.mean([np.nanmean(replay(posed, test, arc, tried).middle) for test, arc in tests])
         return errors[key]
 
     coarse = min(product(_FRICTION, _RESTITUTION), key=lambda one: error(*one))
@@ -128,31 +132,27 @@ def _recalibrated(posed, tests, model):
     )  # fmt: skip
 
 
-def _scores(posed, arcs, models):
-    rows, names = [], []
-    for test in posed.tests:
-        arc = start_arc(test, arcs)
-        if arc is None:
-            continue
-        names.append(test.name)
+def _scores(posed, tests, models):
+    rows = []
+    for test, arc in tests:
         runs = [replay(posed, test, arc, models[kind]) for kind in KINDS]
         until = np.searchsorted(test.time[arc.first :], test.time[arc.last] + _EARLY)
-        rows.append([[run.middle.mean(), run.middle[:until].mean(), run.turned.mean()] for run in runs])
+        rows.append([
+            [np.nanmean(run.middle), np.nanmean(run.middle[:until]), np.nanmean(run.turned)] for run in runs
+        ])  # fmt: skip
     table = np.array(rows).reshape(-1, len(KINDS), 3)
     return xr.Dataset(
         {
             name: (("test", "kind"), table[..., number], {"units": unit})
             for number, (name, unit) in enumerate((("place", "m"), ("early", "m"), ("turn", "rad")))
         },
-        {"test": names, "kind": list(KINDS)},
+        {"test": [test.name for test, _ in tests], "kind": list(KINDS)},
     )
 
 
 def _contrasts(error):
     """`Gain` of mean errors over tests, tests drawn again."""
     count = error.sizes["test"]
-    if not count:
-        return None
     weights = resampled_weights(count, np.random.default_rng([count, 42])) / count
     means = {str(kind): weights @ error.sel(kind=kind).to_numpy() for kind in error["kind"].values}
     return Gain(
@@ -165,23 +165,24 @@ def _contrast(rival, extended):
     return Contrast.cut_off(values[0], *limits_of(values[1:], OF_A_GAIN))
 
 
-def _row_gain(posed, arcs, models):
+def _row_gain(posed, arcs, decision, shift):
     """Gain on the sealed flights' own rows, at the frozen sizes; flights drawn again."""
-    rows = flight_rows(posed, arcs)
+    rows, by_name = flight_rows(posed, arcs), {cause.name: cause for cause in CAUSES}
+    fits = [(by_name[part.causes[0].name], np.array(part.causes[0].amplitudes)) for part in decision.parts]
     paths = {
         RECALIBRATED: lambda arc: np.zeros((len(arc.time), 3)),
         EXTENDED: lambda arc: sum(
-            np.einsum("nkx,k->nx", fit.cause.paths(arc, posed), fit.sizes) for fit in models[EXTENDED].fits
+            np.einsum("nkx,k->nx", cause.paths(arc, posed), sizes) for cause, sizes in fits
         ),
-        DISCREPANCY: lambda arc: 0.5 * arc.time[:, None] ** 2 * np.array(models[DISCREPANCY].shift),
+        DISCREPANCY: lambda arc: 0.5 * arc.time[:, None] ** 2 * shift,
     }
     squares = {}
     for kind, path in paths.items():
         columns = rows.columns(lambda arc, path=path: path(arc)[:, None])
         value = rows.likelihood.value - rows.likelihood.whiten(columns)[:, 0]
         squares[kind] = np.add.reduceat(value**2, rows.likelihood.ends[:-1])
-    sizes = np.diff(rows.likelihood.ends)
-    weights = resampled_weights(len(sizes), np.random.default_rng([len(sizes), 43]))
-    means = {kind: (weights @ own) / (weights @ sizes) for kind, own in squares.items()}
+    count = len(rows.likelihood.roots)
+    weights = resampled_weights(count, np.random.default_rng([count, 43]))
+    means = {kind: weights @ own for kind, own in squares.items()}
     contrasts = {rival: _contrast(means[rival], means[EXTENDED]) for rival in (RECALIBRATED, DISCREPANCY)}
     return Gain(**contrasts, nominal=contrasts[RECALIBRATED])

@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import Rotation, Slerp
 
 from blockshake.diagnosis.flight.causes import air_drag
 from blockshake.dynamics.motion import GroundMotion, rest_table
 from blockshake.forces.flight.paths import dragged_by_square, fallen, off_centre
+from blockshake.forces.flight.tumbling import spins, tumbling
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.poses.posed_test import PosedTest
 from blockshake.simulation.simulate import simulate
@@ -40,7 +41,8 @@ class FlightModel:
 class Replayed:
     """Distance of a replay from its test at each reading, from the first flight on.
 
-    ``middle`` (n_times,): of the body's middle [m]; ``turned`` (n_times,): angle between the rotations [rad].
+    ``middle`` (n_times,): of the body's middle [m]; ``turned`` (n_times,): angle between the rotations [rad]; both
+    NaN in gaps.
     """
 
     middle: np.ndarray
@@ -65,11 +67,15 @@ def replay(posed, test, arc, model):
     model : FlightModel
     """
     run = filmed_replay(posed, test, arc, model)
-    seen = slice(arc.first, None)
-    return Replayed(
-        np.linalg.norm(run.position - np.nan_to_num(test.position[seen]) / _length(model), axis=1),
-        (Rotation.from_matrix(test.rotation[seen]).inv() * Rotation.from_matrix(run.rotation)).magnitude(),
-    )
+    position, rotation = test.position[arc.first :], test.rotation[arc.first :]
+    read = np.isfinite(position[:, test.axes]).all(axis=1) & np.isfinite(rotation).all(axis=(1, 2))
+    middle, turned = np.full((2, len(read)), np.nan)
+    seen = _true_lengths(posed, np.nan_to_num(position[read]), model)
+    middle[read] = np.linalg.norm(run.position[read] - seen, axis=1)
+    turned[read] = (
+        Rotation.from_matrix(rotation[read]).inv() * Rotation.from_matrix(run.rotation[read])
+    ).magnitude()
+    return Replayed(middle, turned)
 
 
 def filmed_replay(posed, test, arc, model, solver=MODEL, **options):
@@ -93,8 +99,10 @@ def filmed_replay(posed, test, arc, model, solver=MODEL, **options):
     )  # fmt: skip
     rotation = rotation_matrices(run["orientation"].to_numpy()[:, posed.body])
     centroid = run["position"].to_numpy()[:, posed.body] - rotation @ structure.mass_offset[posed.body]
-    at = np.clip(np.rint(time / step).astype(int), 0, len(centroid) - 1)
-    return PosedTest(test.name, time, centroid[at], rotation[at], planar=False)
+    clock = run["time"].to_numpy()
+    place = np.array([np.interp(time, clock, values) for values in centroid.T]).T
+    turned = Slerp(clock, Rotation.from_matrix(rotation))(np.minimum(time, clock[-1])).as_matrix()
+    return PosedTest(test.name, time, place, turned, planar=False)
 
 
 def _size(model, name):
@@ -102,9 +110,10 @@ def _size(model, name):
     return next((fit.sizes for fit in model.fits if fit.cause.name == name), np.zeros(3))
 
 
-def _length(model):
-    """Lengths read over true ones."""
-    return 1.0 + _size(model, "sensor-gain")[0]
+def _true_lengths(posed, position, model):
+    """Positions as they are where lengths were read too long; heights count from the ground."""
+    ground = np.array([0.0, 0.0, posed.ground])
+    return ground + (position - ground) / (1.0 + _size(model, "sensor-gain")[0])
 
 
 def _structure(posed, test, arc, model):
@@ -123,10 +132,10 @@ def _structure(posed, test, arc, model):
             entry["coefficient"] = model.friction
     mapping["gravity"] = (np.array(mapping["gravity"]) + model.shift).tolist()
     mapping["nscd_restitution"] = mapping["restitution"] = model.restitution
-    damping, dry = _size(model, "drag")[0], _size(model, "dry-drag")[0]
-    if damping or dry:
+    damping = float(_size(model, "drag")[0])
+    if damping:
         mapping["external_forces"] += [
-            {"body": posed.name, "position": offset.tolist(), "axis": axis, "damping": damping, "drag": dry}
+            {"body": posed.name, "position": offset.tolist(), "axis": axis, "damping": damping}
             for axis in "xyz"
         ]
     pushes = _size(model, "push")
@@ -152,12 +161,12 @@ def _start(posed, arc, model):
     for fit in model.fits:
         if fit.cause.name not in ("sensor-gain", "eccentricity"):
             known = known + np.einsum("nkx,k->nx", fit.cause.paths(arc, posed), fit.sizes)
-    centre = arc.position / _length(model) - np.einsum("nkx,k->nx", off_centre(arc), offset) - known
+    centre = (
+        _true_lengths(posed, arc.position, model) - np.einsum("nkx,k->nx", off_centre(arc), offset) - known
+    )
     line = np.stack([np.ones_like(arc.time), arc.time], axis=1)
     (place, velocity), *_ = np.linalg.lstsq(line, centre, rcond=None)
-    turned = Rotation.from_matrix(arc.rotation)
-    middle = turned[len(arc.time) // 2]
-    (away, spin), *_ = np.linalg.lstsq(line, (turned * middle.inv()).as_rotvec(), rcond=None)
-    orientation = Rotation.from_rotvec(away) * middle
+    path, momentum = tumbling(posed, arc)
+    orientation, spin = path[0], spins(posed, path, momentum)[0]
     arm = orientation.apply(offset)
     return place - arm, velocity - np.cross(spin, arm), orientation.as_quat(scalar_first=True), spin

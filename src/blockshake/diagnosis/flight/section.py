@@ -3,13 +3,15 @@
 import numpy as np
 
 from blockshake.diagnosis.answer.answer import ODDS
+from blockshake.diagnosis.flight.causes import CAUSES
 from blockshake.diagnosis.flight.figure import plot_accelerations, plot_errors
-from blockshake.diagnosis.wording import estimate_words, name_of, percent_words, times_words
+from blockshake.diagnosis.wording import estimate_words, percent_words, times_words
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import BLUE, GREEN, GREY, ORANGE, svg_of
 from blockshake.pages.wording import MISSING, number, sentence_case
 
 _MODELS = {"nominal": GREY, "recalibrated": ORANGE, "discrepancy": GREEN, "extended": BLUE}
+_TITLES = {cause.name: cause.title for cause in CAUSES}
 _WORDS = {
     "nominal": "as the structure file says",
     "recalibrated": "recalibrated without a cause",
@@ -22,14 +24,11 @@ def answer_section(found):
     """The answer, the size of its causes, and what the poses do not show."""
     verdict, decision = found.verdict, found.decision
     causes = [part.causes[0] for part in decision.parts]
-    words = f"{sentence_case(verdict.word)}."
+    words = sentence_case(verdict.word)
     if causes:
-        words = f"{sentence_case(verdict.word)}: {'; beside it '.join(map(_cause_words, causes))}."
-    facts = tuple(
-        (f"{name} of {one.title}", estimate_words(name, estimate), "90 % interval")
-        for one in causes[:1]
-        for name, estimate in list(one.parameters.items())[-1:]
-    )
+        acting = "; beside it ".join(map(_cause_words, causes))
+        words = sentence_case(f"{verdict.word}: {acting}")
+    facts = tuple(map(_largest, causes[:1]))
     share = found.evidence.attrs["explained_share"]
     facts += (
         ("Share of the flights' misfit explained", f"{100.0 * share:.0f} %", "beyond the noise of the poses"),
@@ -55,9 +54,18 @@ def answer_section(found):
     )  # fmt: skip
 
 
+def _largest(cause):
+    """Fact of the parameter that is most sure not to be zero."""
+    name, estimate = max(
+        cause.parameters.items(),
+        key=lambda one: abs(one[1].estimate) / max(one[1].upper - one[1].lower, 1e-12),
+    )
+    return f"{name} of {_TITLES[cause.name]}", estimate_words(name, estimate), "90 % interval"
+
+
 def _cause_words(cause):
     sizes = ", ".join(f"{name} {estimate_words(name, one)}" for name, one in cause.parameters.items())
-    return f"{cause.title} on {cause.place['body']} ({sizes})"
+    return f"{_TITLES[cause.name]}, {cause.place['body']} ({sizes})"
 
 
 def _gain_words(verdict):
@@ -71,7 +79,7 @@ def odds_section(found):
         first, names = part.causes[0], sorted(part.odds, key=part.odds.get)
         rows = tuple(
             (
-                name_of(name),
+                _TITLES[name],
                 f"{'not told apart' if part.odds[name] < ODDS else times_words(part.odds[name])}",
                 number(part.gains[name]),
             )
@@ -79,8 +87,8 @@ def odds_section(found):
         )
         blocks.append(
             Table(
-                f"How many times less likely each cause is than {first.title}, the likeliest, by free flights alone, "
-                "and its gain over nothing [nats].",
+                f"How many times less likely each cause is than {_TITLES[first.name]}, the likeliest, by free "
+                "flights alone, and its gain over nothing [nats].",
                 ("Cause", "Less likely", "Gain"), rows, "lrr",
             )
         )  # fmt: skip
@@ -105,7 +113,7 @@ def impacts_section(found):
     return Section(
         "Impacts", "impacts",
         (
-            Text(sentence_case(found.decision.impacts) + "."),
+            Text(sentence_case(found.decision.impacts)),
             Table(
                 "Impacts between two flights, and faces that come down in rocking (without restitution): median and "
                 "quartiles. Restitution: of the normal velocity of the contact; ratio: tangential over normal impulse; "

@@ -6,17 +6,19 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import null_space
 
-CLEAR = 0.03  # of the body's radius: farther from the ground than tracked corners sink into it at impacts
+from blockshake.measurement.poses.posed_test import CLEAR
+
 LEAST = 8  # readings of a flight; four are taken by a cubic
 _BROKEN = 4.0  # times the usual residual about a cubic: something was hit, or the tracking slipped
 _NEXT = 1.5  # usual steps of the clock
 _STRUCK = (
     5.0  # times the usual distance of a reading from the middle of its neighbours: an impact lies between
 )
-_HELD = 0.2  # of gravity, that a mean acceleration may be off: more, and the body slid along something or was held
+_HELD = 0.2  # of gravity, that a mean acceleration may be off the usual: more, and the body slid or was held
+_USUAL = 6.0  # times as far as usual, beside that
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Arc:
     """One flight of a test.
 
@@ -84,13 +86,11 @@ def find_arcs(posed):
     if not found:
         return [], []
     usual = np.median([arc.residual for arc in found])
-    fall = np.array(posed.structure.file.gravity)
-
-    def is_free(arc):
-        off = np.linalg.norm((arc.acceleration - fall)[arc.axes])
-        return arc.residual <= _BROKEN * usual and off <= _HELD * np.linalg.norm(fall)
-
-    return [arc for arc in found if is_free(arc)], [arc for arc in found if not is_free(arc)]
+    mean = np.array([arc.acceleration[arc.axes] for arc in found])
+    away = np.linalg.norm(mean - np.median(mean, axis=0), axis=1)
+    most = max(_HELD * np.linalg.norm(posed.structure.file.gravity), _USUAL * np.median(away))
+    free = [arc.residual <= _BROKEN * usual and off <= most for arc, off in zip(found, away, strict=True)]
+    return tuple([arc for arc, one in zip(found, free, strict=True) if one == kept] for kept in (True, False))
 
 
 def noise_of(arcs):

@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from blockshake.forces.flight.tumbling import spins, tumbling
+
 _TOGETHER = 0.05  # of the radius, within which the lowest vertices hit together
 _KINDS = {1: "corner", 2: "edge"}  # by vertices that hit together; more are a face
 _APART = 8.5  # readings between two flights, in which only one impact lies
@@ -54,15 +56,15 @@ def _between(posed, test, before, after):
     if end - start > _APART * step:
         return None
     times = np.linspace(start, end, 50)
-    down = [_moved(arc, times - test.time[arc.first]) for arc in (before, after)]
-    heights = [
-        (p[:, 2, None] + (R[:, 2] @ posed.vertices.T) - posed.ground).min(axis=1) for p, _, R, _ in down
-    ]
+    offset = np.array(posed.structure.file.bodies[posed.body].mass_offset)
+    arms = posed.vertices - offset
+    down = [_moved(posed, arc, offset, times - test.time[arc.first]) for arc in (before, after)]
+    heights = [(p[:, 2, None] + R[:, 2] @ arms.T - posed.ground).min(axis=1) for p, _, R, _ in down]
     at = int(np.argmin(np.abs(heights[0] - heights[1])))
     (place, came, turned, spin), (_, left, _, spun) = ([one[at] for one in side] for side in down)
-    height = place[2] + turned[2] @ posed.vertices.T
+    height = place[2] + turned[2] @ arms.T
     hit = height < height.min() + _TOGETHER * posed.radius
-    arm = turned @ posed.vertices[hit].mean(axis=0)
+    arm = turned @ arms[hit].mean(axis=0)
     approach = (came + np.cross(spin, arm))[2]
     impulse = left - came
     moment = np.cross(arm, impulse)
@@ -86,17 +88,17 @@ def _kept(before, after):
     return float(before @ after / (before @ before)) if np.linalg.norm(before) > _TURNING else np.nan
 
 
-def _moved(arc, time):
-    """Place, velocity, rotation and spin of a flight at some times, beyond its ends as well."""
+def _moved(posed, arc, offset, time):
+    """Place and velocity of the mass centre, rotation and spin of a flight at some times near one of its ends."""
     fit = np.polynomial.Polynomial
-    paths = [fit.fit(arc.time, arc.position[:, axis], 2) for axis in range(3)]
-    turned = Rotation.from_matrix(arc.rotation)
-    middle = turned[len(arc.time) // 2]
-    line = np.stack([np.ones_like(arc.time), arc.time], axis=1)
-    (away, spin), *_ = np.linalg.lstsq(line, (turned * middle.inv()).as_rotvec(), rcond=None)
-    rotation = (Rotation.from_rotvec(away + time[:, None] * spin) * middle).as_matrix()
-    place = np.array([path(time) for path in paths]).T
-    velocity = np.array([path.deriv()(time) for path in paths]).T
+    centre = arc.position + arc.rotation @ offset
+    paths = [fit.fit(arc.time, centre[:, axis], 2) for axis in range(3)]
+    path, momentum = tumbling(posed, arc)
+    end = 0 if time[-1] <= arc.time[0] else -1
+    spin = spins(posed, path, momentum)[end]
+    rotation = (Rotation.from_rotvec((time - arc.time[end])[:, None] * spin) * path[end]).as_matrix()
+    place = np.array([one(time) for one in paths]).T
+    velocity = np.array([one.deriv()(time) for one in paths]).T
     return place, velocity, rotation, np.broadcast_to(spin, place.shape)
 
 
@@ -112,7 +114,7 @@ def _rocking(posed, test):
         around = slice(at - _WINDOW, at + _WINDOW + 1)
         if tilt[at] > _FLAT or tilt[at] > tilt[around].min() or not low[at - _WINDOW : at + 1].all():
             continue
-        if not (face[around] == face[at]).all():
+        if not (face[around] == face[at]).all() or np.isnan(heights[around]).any():
             continue
         before, after = (
             _spin(test.time[rows], test.rotation[rows])

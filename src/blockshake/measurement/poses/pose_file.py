@@ -51,6 +51,9 @@ def read_poses(path, structure):
     read = _from_table(path, name) if path.suffix.lower() == ".csv" else _from_netcdf(path, name)
     time, position, rotation, planar = read
     check_times(time, path, "time")
+    for axis in (0, 2):
+        if np.isnan(position[:, axis]).all():
+            raise InputError(path, f"{name}.{AXES[axis]}", "expected readings; all are missing")
     if np.nanmax(np.abs(position), initial=0.0) > FARTHEST:
         raise InputError(path, f"{name}.x", f"expected metres, not {np.nanmax(np.abs(position)):.4g}")
     _check_turning(time, rotation, path, name)
@@ -110,6 +113,8 @@ def _from_table(path, name):
     for key in wanted:
         if key not in columns:
             raise InputError(path, key, f"missing column; expected {', '.join(wanted)}, or {turned}")
+    if turned in columns and any(key in columns for key in whole):
+        raise InputError(path, turned, "expected an angle or a quaternion, not both")
     known = {f"{name}.{axis}" for axis in AXES} | {turned, *whole}
     for key in columns:
         if key.startswith(f"{name}.") and key not in known:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.measurement.poses.posed_test import load_posed
+from blockshake.measurement.poses.posed_test import CLEAR, load_posed
 
 _MOST = 10  # tests that are described one by one
 
@@ -34,7 +34,7 @@ def posed_lines(campaign):
             )
         if np.ptp(np.diff(test.time)) > 0.01 / rate:
             remarks.append(f"  {test.name}: the times are not even; a flight ends where rows are missing")
-        if role != "sealed" and posed.heights(test)[0].min() < 0.0:
+        if role != "sealed" and posed.heights(test)[0].min() < CLEAR * posed.radius:
             remarks.append(f"  {test.name}: the body touches the ground at the first reading")
     if len(posed.tests) > _MOST:
         lines.append(f"  and {len(posed.tests) - _MOST} more tests")
