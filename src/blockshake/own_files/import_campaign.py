@@ -227,6 +227,12 @@ def posed_table(test, asked, structure, where):
     for key in asked.columns:
         if key not in (*places, *turns):
             raise InputError(where, f"columns.{key}", f"expected one of {', '.join((*places, *turns))}")
+        if key in turns[1:] and (
+            asked.columns[key].reversed or asked.columns[key].unit or asked.rotation_unit != "rad"
+        ):
+            raise InputError(
+                where, f"columns.{key}", "expected a quaternion's column as it is, without unit or reversed"
+            )
     _check_once(asked.columns, asked, where)
     parts = []
     for names, kind in ((places, "displacement"), (turns, "rotation")):

@@ -17,12 +17,12 @@ SIDE, DENSITY = 0.1, 600.0  # m, kg/m3
 MASS = DENSITY * SIDE**3
 
 
-def mapping(**changes):
+def mapping(size=(SIDE, SIDE, SIDE), **changes):
     """Structure file of a box over a wide ground."""
     return {
         "name": "tossed box",
         "materials": {"wood": {"density": DENSITY, "youngs_modulus": 1e10, "poisson_ratio": 0.3}},
-        "shapes": {"ground": {"box": [20.0, 20.0, 0.2]}, "box": {"box": [SIDE] * 3}},
+        "shapes": {"ground": {"box": [20.0, 20.0, 0.2]}, "box": {"box": list(size)}},
         "bodies": [
             {"name": "ground", "shape": "ground", "material": "wood", "position": [0.0, 0.0, -0.1], "driven": True},
             {"name": "box", "shape": "box", "material": "wood", "position": [0.0, 0.0, 1.0], **changes.pop("body", {})},
@@ -70,9 +70,9 @@ def _turned(rotation, random):
     return left @ right
 
 
-def campaign(numbers, hidden=(), scale=1.0):
+def campaign(numbers, hidden=(), scale=1.0, size=(SIDE, SIDE, SIDE)):
     """`PosedCampaign` of some tosses, lengths read ``scale`` times too long, judged by a box with nothing hidden."""
-    structure = build_structure(mapping(), "made", Path())
-    tests = [toss(number, dict(hidden)) for number in numbers]
+    structure = build_structure(mapping(size), "made", Path())
+    tests = [toss(number, {"size": size, **dict(hidden)}) for number in numbers]
     tests = [replace(test, position=scale * test.position) for test in tests]
     return PosedCampaign(structure, tests, 1, structure.solids["box"].polyhedron.vertices, 0.0)

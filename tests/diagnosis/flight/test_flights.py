@@ -1,10 +1,14 @@
 """Something is hidden in simulated tosses, and the diagnosis of free flight finds it with its size."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from made_flights import MASS, campaign, drag
 
 from blockshake.diagnosis.flight.decide import decide_flights
 from blockshake.diagnosis.flight.gain import flight_gain
+from blockshake.diagnosis.flight.replay import FlightModel, replay, start_arc
 from blockshake.forces.flight.arcs import find_arcs
 from blockshake.forces.flight.impacts import find_impacts, summary
 
@@ -39,6 +43,13 @@ def test_a_viscous_drag_is_found_outside_of_the_registry():
     measured = flight_gain(opened, sealed, decision).summary
     assert measured.gain.recalibrated.lower > 0.0
     assert measured.rows.recalibrated.estimate > 0.8
+    # a drag with the square of the speed is in no solver: its gain is that on the flights alone
+    squared = first.model_copy(update={"name": "square-drag", "amplitudes": (0.2 * MASS,)})
+    parts = (decision.parts[0].model_copy(update={"causes": (squared,)}),)
+    measured = flight_gain(opened, sealed, decision.model_copy(update={"parts": parts})).summary
+    assert measured.gain is None
+    assert measured.rows.recalibrated.estimate > 0.0
+    assert "no gain was measured on the paths" in measured.caveats[0]
 
 
 @pytest.mark.parametrize("offset", [(0.006, 0.0, 0.0), (0.0, -0.004, 0.005)])
@@ -58,3 +69,43 @@ def test_lengths_read_too_long_are_named():
 def test_a_small_eccentricity_of_sound_blocks_is_not_named():
     decision, _ = decide_flights(campaign(OPEN, {"body": {"mass_offset": [0.001, 0.0, 0.0]}}))
     assert decision.decision == "none"
+
+
+def test_causes_that_act_together_have_sizes_that_hold():
+    hidden = {"external_forces": drag(0.6 * MASS), "body": {"mass_offset": [0.006, 0.0, -0.004]}}
+    decision, _ = decide_flights(campaign(OPEN, hidden))
+    found = {cause.name: cause.parameters for part in decision.parts for cause in part.causes[:1]}
+    assert set(found) == {"drag", "eccentricity"}
+    assert found["drag"]["rate"].estimate == pytest.approx(0.6, rel=0.1)
+    offsets = [found["eccentricity"][f"offset_{axis}"].estimate for axis in "xyz"]
+    assert offsets == pytest.approx([0.006, 0.0, -0.004], abs=4e-4)
+
+
+def test_a_box_that_is_no_cube_keeps_its_angular_momentum_and_not_its_spin():
+    posed = campaign(range(6), size=(0.06, 0.24, 0.16))
+    arcs, _ = find_arcs(posed)
+    tests = [(test, arc) for test in posed.tests if (arc := start_arc(test, arcs))]
+    assert len(tests) >= 4
+    for test, arc in tests:
+        turned = replay(posed, test, arc, FlightModel(0.2, 0.4)).turned[: len(arc.time)]
+        assert np.degrees(turned.max()) < 1.0
+
+
+def test_rows_without_a_pose_are_left_out_of_paths():
+    posed = campaign(range(3))
+    (test, *others), rows = posed.tests, slice(60, 64)
+    position, rotation = test.position.copy(), test.rotation.copy()
+    position[rows], rotation[rows] = np.nan, np.nan
+    posed = replace(posed, tests=[replace(test, position=position, rotation=rotation), *others])
+    decide_flights(posed)
+    arc = start_arc(posed.tests[0], find_arcs(posed)[0])
+    middle = replay(posed, posed.tests[0], arc, FlightModel(0.2, 0.4)).middle
+    assert np.flatnonzero(np.isnan(middle)).tolist() == [row - arc.first for row in range(60, 64)]
+    assert np.nanmax(middle) < 0.5
+
+
+def test_a_large_drag_is_not_taken_for_broken_flights():
+    decision, evidence = decide_flights(campaign(OPEN, {"external_forces": drag(2.0 * MASS)}))
+    assert decision.parts[0].causes[0].name == "drag"
+    assert decision.parts[0].causes[0].parameters["rate"].estimate == pytest.approx(2.0, rel=0.1)
+    assert evidence.attrs["left_out"] <= 2

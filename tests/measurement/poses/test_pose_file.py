@@ -112,6 +112,8 @@ def test_signs_of_quaternions_may_jump_and_empty_cells_are_gaps(tmp_path, struct
         (planar().drop(columns="block.angle_y"), "block.qw"),
         (planar(**{"block.roll": ANGLE}), "block.roll"),
         (in_space().assign(**{"block.qw": 1.5}), "expected unit quaternions"),
+        (in_space().assign(**{"block.angle_y": ANGLE}), "an angle or a quaternion, not both"),
+        (planar(**{"block.z": np.nan}), "all are missing"),
         (planar(time_s=TIME[::-1]), "expected times that increase"),
         (planar(time_s=1e3 * TIME), "expected seconds"),
     ],

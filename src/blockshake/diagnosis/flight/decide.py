@@ -241,8 +241,8 @@ def impact_words(found):
         if "returned" in own:
             one, kept = own["returned"], own["kept"]
             words.append(
-                f"faces that come down in rocking ({one['count']}): {100.0 * one['share']:.0f} % return to the edge that "
-                f"they came from, spin kept {kept['median']:.2f} ({kept['lower']:.2f} to {kept['upper']:.2f})"
+                f"faces that come down in rocking ({one['count']}): {100.0 * one['share']:.0f} % return to the edge "
+                f"that they came from, spin kept {kept['median']:.2f} ({kept['lower']:.2f} to {kept['upper']:.2f})"
             )
     return "; ".join(words)
 

@@ -3,11 +3,12 @@
 from functools import lru_cache
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 from scipy.spatial.transform import Rotation
 
 _ROUNDS = 4  # of Gauss and Newton
-_STEPS = 4  # between two readings
+_STEPS = 2  # between two readings
+_CHANGE = 1e-4  # rad; share of the momentum: by which the path's derivative is found
+_ROUND = 1e-9  # of the inertia, within which it is alike about all axes
 
 
 @lru_cache(maxsize=4096)
@@ -38,42 +39,40 @@ def tumbling(posed, arc):
     number = np.arange(1, len(arc.time))
     momentum = np.average(middle.apply(rates @ inertia), axis=0, weights=number * (len(arc.time) - number))
     start = read[0]
+    small = _CHANGE * np.diag([1.0] * 3 + [np.linalg.norm(momentum) + 1e-12] * 3)
     for _ in range(_ROUNDS):
-        path = _turned(start, momentum, np.linalg.inv(inertia), arc.time)
-        left = (read * path.inv()).as_rotvec()
-        per_momentum = cumulative_trapezoid(_mobilities(path, inertia), arc.time, axis=0, initial=0.0)
-        design = np.concatenate([np.broadcast_to(np.eye(3), per_momentum.shape), per_momentum], axis=2)
-        change, *_ = np.linalg.lstsq(design.reshape(-1, 6), left.ravel(), rcond=None)
+        changes = np.concatenate([np.zeros((1, 6)), small])
+        starts = Rotation.from_rotvec(changes[:, :3]) * start
+        paths = _turned(starts, momentum + changes[:, 3:], inertia, arc.time)
+        left = (read * paths[0].inv()).as_rotvec().ravel()
+        design = np.stack([(path * paths[0].inv()).as_rotvec().ravel() for path in paths[1:]], axis=1)
+        change = np.linalg.lstsq(design, left, rcond=None)[0] @ small
         start, momentum = Rotation.from_rotvec(change[:3]) * start, momentum + change[3:]
-    return _turned(start, momentum, np.linalg.inv(inertia), arc.time), momentum
+    return _turned(Rotation.concatenate([start]), momentum[None], inertia, arc.time)[0], momentum
 
 
 def spins(posed, path, momentum):
     """Angular velocities of rotations with an angular momentum, (n, 3), world frame [rad/s]."""
-    return _mobilities(path, posed.structure.inertia[posed.body]) @ momentum
+    inverse = np.linalg.inv(posed.structure.inertia[posed.body])
+    return _spins(path, np.tile(momentum, (len(path), 1)), inverse)
 
 
-def _mobilities(path, inertia):
-    turned = path.as_matrix()
-    return turned @ np.linalg.inv(inertia) @ np.swapaxes(turned, 1, 2)
-
-
-def _turned(start, momentum, inverse, time):
-    """Rotations from a start on, by the midpoint rule."""
-    turned, found = start.as_matrix(), [start.as_matrix()]
-    for step in np.diff(time):
+def _turned(starts, momenta, inertia, time):
+    """Rotations at the times from several starts with their momenta, by the midpoint rule: a list of paths."""
+    inverse = np.linalg.inv(inertia)
+    if np.ptp(np.linalg.eigvalsh(inertia)) < _ROUND * np.trace(inertia):  # the spin is kept
+        return [
+            Rotation.from_rotvec(time[:, None] * (inverse @ momentum)) * start
+            for start, momentum in zip(starts, momenta, strict=True)
+        ]
+    turned, found = starts, [starts.as_matrix()]
+    for step in np.diff(time) / _STEPS:
         for _ in range(_STEPS):
-            half = _rotated(turned @ (inverse @ (momentum @ turned)) * (0.5 * step / _STEPS)) @ turned
-            turned = _rotated(half @ (inverse @ (momentum @ half)) * (step / _STEPS)) @ turned
-        found.append(turned)
-    return Rotation.from_matrix(np.array(found))
+            half = Rotation.from_rotvec(0.5 * step * _spins(turned, momenta, inverse)) * turned
+            turned = Rotation.from_rotvec(step * _spins(half, momenta, inverse)) * turned
+        found.append(turned.as_matrix())
+    return [Rotation.from_matrix(path) for path in np.swapaxes(found, 0, 1)]
 
 
-def _rotated(vector):
-    """Rotation matrix of a rotation vector (Rodrigues 1840)."""
-    angle = float(np.sqrt(vector @ vector))
-    x, y, z = vector
-    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    first = np.sinc(angle / np.pi)
-    second = 0.5 * np.sinc(0.5 * angle / np.pi) ** 2
-    return np.eye(3) + first * skew + second * (skew @ skew)
+def _spins(turned, momenta, inverse):
+    return turned.apply(turned.inv().apply(momenta) @ inverse)
