@@ -50,7 +50,7 @@ LS_DEM = {
     "parameters": {
         "ls_dem.normal_stiffness": 2e9,
         "ls_dem.shear_stiffness": 1e9,
-        "ls_dem.node_spacing": 0.02,
+        "ls_dem.node_spacing": 10.0,
     },
     "time_step": 2e-5,
 }
@@ -155,7 +155,7 @@ def _faces(folder, gain):
     return "\n".join([
         "Faces that come down while the body rocks on the ground, by the same reading in all rows: "
         "share that returns to the edge it came from, and spin kept (negative: returned), quartiles. "
-        f"LS-DEM has {LS_DEM['parameters']['ls_dem.normal_stiffness']:g} N/m3 and nodes 20 mm apart.", "",
+        f"LS-DEM has {LS_DEM['parameters']['ls_dem.normal_stiffness']:g} N/m3 and three nodes a side.", "",
         "| | faces | returned | spin kept |", "| --- | --- | --- | --- |", *rows,
     ])  # fmt: skip
 

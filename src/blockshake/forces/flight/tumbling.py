@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-_ROUNDS = 4  # of Gauss and Newton
+_NEWTON_STEPS = 3  # of Gauss and Newton
 _STEPS = 2  # between two readings
 _CHANGE = 1e-4  # rad; share of the momentum: by which the path's derivative is found
 _ROUND = 1e-9  # of the inertia, within which it is alike about all axes
@@ -40,7 +40,7 @@ def tumbling(posed, arc):
     momentum = np.average(middle.apply(rates @ inertia), axis=0, weights=number * (len(arc.time) - number))
     start = read[0]
     small = _CHANGE * np.diag([1.0] * 3 + [np.linalg.norm(momentum) + 1e-12] * 3)
-    for _ in range(_ROUNDS):
+    for _ in range(_NEWTON_STEPS):
         changes = np.concatenate([np.zeros((1, 6)), small])
         starts = Rotation.from_rotvec(changes[:, :3]) * start
         paths = _turned(starts, momentum + changes[:, 3:], inertia, arc.time)
