@@ -57,7 +57,7 @@ IMPORT = {
                                                                "transducer_noise": 1e-4},
     "layout": {"separator": ",", "decimal": ".", "header": 1, "data": 2},
     "time": {"column": "time_s", "unit": "s"},
-    "displacement_unit": "m", "acceleration_unit": "m/s2", "rest": 0.1, "fill_gaps": False,
+    "displacement_unit": "m", "rotation_unit": "rad", "acceleration_unit": "m/s2", "rest": 0.1, "fill_gaps": False,
     "columns": {"slab-face.x": "slab-face.x",
                 "high-face.x": {"column": "high-face.x", "unit": "m", "reversed": False}, "felt-x": "felt-x"},
     "tests": [{"name": "t1", "file": "t1.csv", "accelerometers": "felt.csv", "motion": "push.csv", "scale": 1.0,
