@@ -10,6 +10,7 @@ import datetime
 import subprocess
 import sys
 import tempfile
+import textwrap
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,6 +19,7 @@ import xarray as xr
 
 import blockshake
 from blockshake.diagnosis.answer.decision import load_decision
+from blockshake.diagnosis.flight.causes import CAUSES
 from blockshake.diagnosis.flight.figure import plot_accelerations, plot_errors
 from blockshake.diagnosis.flight.replay import FlightModel, filmed_replay, start_arc
 from blockshake.diagnosis.steps import decide
@@ -30,6 +32,7 @@ from blockshake.pages.drawing import BLUE, GREEN, GREY, ORANGE, save_picture
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "results" / "measured.md"
+TITLES = {cause.name: cause.title for cause in CAUSES}
 COLORS = {"nominal": GREY, "recalibrated": ORANGE, "discrepancy": GREEN, "extended": BLUE}
 SETS = {
     "square-drops": (
@@ -78,7 +81,21 @@ def main(arguments):
             source = options.shared / "measured" / name
             if source.is_dir():
                 parts.append(_part(name, source, Path(folder), options.halves))
-    write_text(PAGE, "\n\n".join([_head(), *parts]) + "\n")
+    write_text(PAGE, wrapped("\n\n".join([_head(), *parts])) + "\n")
+
+
+def wrapped(text):
+    """Paragraphs and items of a page in lines of at most 99 signs."""
+    lines = []
+    for line in text.splitlines():
+        after = "  " if line.startswith("- ") else ""
+        plain = line.startswith(("|", "#", "![", "```"))
+        lines += (
+            [line]
+            if plain or not line
+            else textwrap.wrap(line, 99, subsequent_indent=after, break_on_hyphens=False)
+        )
+    return "\n".join(lines)
 
 
 def _head():
@@ -127,7 +144,7 @@ def _part(name, source, folder, halves):
         f"**{verdict.decision}** ({verdict.word}).",
         "\n".join(f"- {line}" for line in _causes(decision)),
         f"![acceleration beyond gravity over velocity]({name}-flights.png)",
-        "What the tool says beside it:", "\n".join(f"- {line}." for line in verdict.caveats),
+        "Beside it the tool says:", "\n".join(f"- {line}." for line in verdict.caveats),
         _gains(load_json(output / "verdict.json")), _errors(gain, width),
         f"![errors on sealed tests]({name}-errors.png)",
         _of_halves(others),
@@ -183,7 +200,7 @@ def _causes(decision):
                 if cause is part.causes[0]
                 else f"; less likely by {np.exp(cause.odds):.2g} times, not told apart"
             )
-            yield f"{cause.title}: {sizes}; gain {cause.gain:.0f} nats{odds}"
+            yield f"{TITLES[cause.name]}: {sizes}; gain {cause.gain:.0f} nats{odds}"
 
 
 def _gains(verdict):
@@ -223,14 +240,14 @@ def _of_halves(decisions):
         return ""
     kinds = {}
     for one in decisions:
-        key = f"{one.decision}: {' + '.join(part.causes[0].title for part in one.parts) or 'none'}"
+        key = f"{one.decision}: {' + '.join(TITLES[part.causes[0].name] for part in one.parts) or 'none'}"
         kinds[key] = kinds.get(key, 0) + 1
     sizes = {}
     for one in decisions:
         for part in one.parts:
             for cause in part.causes:
                 for name, estimate in cause.parameters.items():
-                    sizes.setdefault((cause.title, name, estimate.unit), []).append(estimate.estimate)
+                    sizes.setdefault((TITLES[cause.name], name, estimate.unit), []).append(estimate.estimate)
     lines = [
         f"- {count} of {len(decisions)}: {key}"
         for key, count in sorted(kinds.items(), key=lambda one: -one[1])
