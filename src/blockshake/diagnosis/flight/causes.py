@@ -72,7 +72,7 @@ def _sideways(arc, posed):
 
 CAUSES = (
     FlightCause(
-        "sensor-gain", "lengths read too long", (("error", "1"),),
+        "sensor-gain", "a scale error of the lengths", (("error", "1"),),
         lambda arc, posed: longer(arc, _gravity(posed)), lambda posed: 0.03,
         sound=lambda posed: _LENGTHS,
         alias="gravity above the stated one by the same share, or a clock slow by half of it, would fall alike",

@@ -220,11 +220,14 @@ def _not_seen(posed, broken, stages, share, rows, runner_up):
 
 
 def _size_words(posed, fit):
-    sizes = _sizes(posed, fit)
-    return ", ".join(
-        f"{name} {one.estimate:.3g} ({one.lower:.3g} to {one.upper:.3g}) {one.unit}"
-        for name, one in sizes.items()
-    )
+    return ", ".join(f"{name} {estimate_in_si(one)}" for name, one in _sizes(posed, fit).items())
+
+
+def estimate_in_si(estimate):
+    """An `Estimate` in words, in its own unit: sizes of small bodies are small."""
+    values = (estimate.estimate, estimate.lower, estimate.upper)
+    middle, lower, upper = (f"{value:.3g}" for value in values)
+    return f"{middle} ({lower} to {upper}){'' if estimate.unit == '1' else ' ' + estimate.unit}"
 
 
 def impact_words(found):

@@ -4,8 +4,9 @@ import numpy as np
 
 from blockshake.diagnosis.answer.answer import ODDS
 from blockshake.diagnosis.flight.causes import CAUSES
+from blockshake.diagnosis.flight.decide import estimate_in_si
 from blockshake.diagnosis.flight.figure import plot_accelerations, plot_errors
-from blockshake.diagnosis.wording import estimate_words, percent_words, times_words
+from blockshake.diagnosis.wording import percent_words, times_words
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import BLUE, GREEN, GREY, ORANGE, svg_of
 from blockshake.pages.wording import MISSING, number, sentence_case
@@ -60,11 +61,11 @@ def _largest(cause):
         cause.parameters.items(),
         key=lambda one: abs(one[1].estimate) / max(one[1].upper - one[1].lower, 1e-12),
     )
-    return f"{name} of {_TITLES[cause.name]}", estimate_words(name, estimate), "90 % interval"
+    return f"{name} of {_TITLES[cause.name]}", estimate_in_si(estimate), "90 % interval"
 
 
 def _cause_words(cause):
-    sizes = ", ".join(f"{name} {estimate_words(name, one)}" for name, one in cause.parameters.items())
+    sizes = ", ".join(f"{name} {estimate_in_si(one)}" for name, one in cause.parameters.items())
     return f"{_TITLES[cause.name]}, {cause.place['body']} ({sizes})"
 
 
@@ -80,7 +81,7 @@ def odds_section(found):
         rows = tuple(
             (
                 _TITLES[name],
-                f"{'not told apart' if part.odds[name] < ODDS else times_words(part.odds[name])}",
+                _less_likely(part, name),
                 number(part.gains[name]),
             )
             for name in names
@@ -93,6 +94,12 @@ def odds_section(found):
             )
         )  # fmt: skip
     return Section("Odds of all causes", "odds", tuple(blocks)) if blocks else None
+
+
+def _less_likely(part, name):
+    if name == part.causes[0].name:
+        return "the likeliest"
+    return "not told apart" if part.odds[name] < ODDS else times_words(part.odds[name])
 
 
 def impacts_section(found):
