@@ -15,7 +15,11 @@ def files_of_tests(campaign, tests):
     for test in tests:
         path = campaign.folder / test.file
         accelerometers = path.with_name(f"{path.stem}-acc.csv")
-        files += [path, accelerometers, *([campaign.folder / test.motion] if test.motion else [])]
+        files += [
+            path,
+            accelerometers,
+            *([campaign.folder / test.motion] if test.motion else []),
+        ]
     return [str(path) for path in dict.fromkeys(files) if path.is_file()]
 
 
