@@ -58,7 +58,7 @@ def flight_gain(opened, sealed, decision):
         why = (
             "no cause that a replay can have"
             if not choices
-            else "no open or no sealed test begins with a free flight"
+            else "no open or no sealed test has a free flight"
         )
         caveats = (f"no gain was measured on the paths: {why}",)
         return CampaignGain(MeasuredGain(rows=rows, caveats=caveats), xr.Dataset())
@@ -80,7 +80,7 @@ def flight_gain(opened, sealed, decision):
     caveats = [f"the model was extended by {' and '.join(chosen)}, by the paths of the open tests"]
     if len(able) < len(sealed.tests):
         left = len(sealed.tests) - len(able)
-        caveats.append(f"{left} sealed tests do not begin with a free flight, and were not predicted")
+        caveats.append(f"{left} sealed tests have no free flight, and were not predicted")
     count += len(able) * len(models)
     return CampaignGain(
         MeasuredGain(rows=rows, gain=_contrasts(scores["place"]), caveats=tuple(caveats), runs=count), scores

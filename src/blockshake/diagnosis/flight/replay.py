@@ -14,7 +14,6 @@ from blockshake.measurement.poses.posed_test import PosedTest
 from blockshake.simulation.simulate import simulate
 
 MODEL = "nscd-rigid"
-_LATEST = 5  # rows, after which a first flight is no start of the test
 
 
 @dataclass(frozen=True)
@@ -50,9 +49,8 @@ class Replayed:
 
 
 def start_arc(test, arcs):
-    """The flight from which a test can be simulated, None where it starts in an impact or broken."""
-    own = [arc for arc in arcs if arc.test == test.name]
-    return own[0] if own and own[0].first < _LATEST else None
+    """The first flight of a test, from which it can be simulated; None without any."""
+    return next((arc for arc in arcs if arc.test == test.name), None)
 
 
 def replay(posed, test, arc, model):
