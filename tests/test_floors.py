@@ -56,7 +56,7 @@ MOST_LINES = {
     "study/statements": 1100, "study/report": 1795, "views": 750, "diagnosis": 315,
     "diagnosis/evidence": 1095, "diagnosis/outside": 675, "diagnosis/answer": 1200,
     "diagnosis/nominal": 795, "diagnosis/misfit": 430, "diagnosis/verdict": 570, "diagnosis/gain": 1245,
-    "diagnosis/report": 995, "virtual": 485, "own_files": 845, "cost": 310, "diagnosis/flight": 1235,
+    "diagnosis/report": 995, "virtual": 485, "own_files": 845, "cost": 310, "diagnosis/flight": 1255,
 }  # fmt: skip
 MOST_LINES_TOGETHER = 49_600
 

@@ -14,7 +14,7 @@ PAGES = sorted([ROOT / "README.md", *ROOT.glob("docs/**/*.md"), *ROOT.glob("*/RE
 TEXTS = (".py", ".smk", ".md", ".yaml", ".yml", ".toml", ".j2", ".typ", ".json", ".lock", "")
 FOLDERS = ("src", "tests", "docs", "bench", "hidden_effects", "workflow", "config", "data", "profiles", ".ci")
 WIDTH = 100
-MOST_UNFORMATTED = 190  # lines and statements of `src` that keep a layout of their own; formulas need one
+MOST_UNFORMATTED = 187  # lines and statements of `src` that keep a layout of their own; formulas need one
 MOST_LINES_OF_COMMON = 165
 # names of pages, folders and hosts outside of the project; written so that this file does not hold them
 OUTSIDE = re.compile(

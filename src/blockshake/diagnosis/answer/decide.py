@@ -88,7 +88,7 @@ def decide(seen, without=(), unseen=()):
         probabilities=_probabilities(parts, without),
         limits=limits,
         excluded_above=excluded_above(limits, seen[0].structure),
-        p=min(1.0, sum(map(_chance, parts))) if parts else 1.0,
+        p=min(1.0, sum(map(chance, parts))) if parts else 1.0,
         where=largest(shown) if parts else _NOT_SHOWN,
         tests=[test.name for test in seen],
         silent=[test.name for test in seen if not len(test.rows.value)],
@@ -110,7 +110,7 @@ def _key(group):
     return group.rivals[0].cause, group.rivals[0].place
 
 
-def _chance(part):
+def chance(part):
     """Largest chance of as much without a cause: a mean of evidence ratios exceeds x with the chance 1 / x at most."""
     gains = np.array(list(part.gains.values()))
     return float(np.exp(-min(mean_evidence(gains), 700.0)))

@@ -79,8 +79,8 @@ class Part(Strict):
     Attributes
     ----------
     readings : str
-        ``joints``, ``joints, beside the first``, ``impacts``, ``rotation of the slab`` or ``vertical motion of the
-        slab``.
+        ``joints``, ``joints, beside the first``, ``impacts``, ``free flight``, ``rotation of the slab`` or ``vertical
+        motion of the slab``.
     causes : tuple of Cause
     odds : dict of str to float
         Of the likeliest over every rival, as a logarithm, coarsened.

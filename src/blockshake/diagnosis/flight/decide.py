@@ -6,10 +6,9 @@ import numpy as np
 import xarray as xr
 
 from blockshake.diagnosis.answer.answer import ODDS, coarsened, needed_of
-from blockshake.diagnosis.answer.decide import kind_of
+from blockshake.diagnosis.answer.decide import chance, kind_of
 from blockshake.diagnosis.answer.decision import Cause, Decision, Estimate, Part
 from blockshake.diagnosis.answer.size import FORM
-from blockshake.diagnosis.evidence.explanation import mean_evidence
 from blockshake.diagnosis.flight.causes import CAUSES
 from blockshake.diagnosis.flight.evidence import explain, explained_share, flight_rows
 from blockshake.diagnosis.outside.registry import FORMS
@@ -22,11 +21,11 @@ from blockshake.forces.flight.paths import fallen
 _MORE = 0.1  # of what the causes before it gain, that a further one needs besides
 _MOST = 3  # causes
 _NINETY = 1.645  # standard deviations
-READINGS = "free flight"
+_READINGS = "free flight"
 
 
 class DecidedFlights(NamedTuple):
-    """A decision; and ``arc(flight)`` with what was measured and explained, impacts by kind in its attributes."""
+    """A decision; and along ``flight`` and ``impact`` what was measured and explained."""
 
     decision: Decision
     evidence: xr.Dataset
@@ -68,7 +67,7 @@ def decide_flights(posed, without=()):
         )  # fmt: skip
     impacts = find_impacts(posed, arcs)
     rows = flight_rows(posed, arcs)
-    stages, sound, beside, gained = [], [], rows, 0.0
+    stages, sound, beside, gained, hidden = [], [], rows, 0.0, None
     while len(stages) < _MOST:
         known = [
             *without,
@@ -78,6 +77,7 @@ def decide_flights(posed, without=()):
         fits = [explain(beside, cause) for cause in CAUSES if cause.name not in known]
         fits.sort(key=lambda fit: -fit.gain)
         if not fits or fits[0].gain < needed_of(fits[0].cause.name) + _MORE * gained:
+            hidden = next((fit for fit in fits if fit.gain > needed_of(fit.cause.name)), None)
             break
         first = fits[0]
         if first.size < first.cause.sound(posed):
@@ -103,18 +103,13 @@ def decide_flights(posed, without=()):
         probabilities={name: _probability(parts, name) for name in EFFECTS if name not in without},
         limits=_limits(posed, rows, gained),
         excluded_above={},
-        p=min(
-            1.0,
-            sum(float(np.exp(-min(mean_evidence([fit.gain for fit in one.fits]), 700.0))) for one in stages),
-        )
-        if stages
-        else 1.0,
+        p=min(1.0, sum(map(chance, parts))) if parts else 1.0,
         where=f"free flight of {posed.name}" if stages else "no departure larger than chance",
         tests=names,
         silent=(),
         n_rows=sum(map(len, rows.values)),
         impacts=impact_words(summary(impacts)),
-        cannot_see=_not_seen(posed, broken, stages, share, rows, fits[0] if fits else None),
+        cannot_see=_not_seen(posed, broken, stages, share, rows, hidden),
     )
     return DecidedFlights(decision, _evidence(posed, rows, causes, impacts, broken, share))
 
@@ -141,7 +136,7 @@ def _part(posed, stage):
         for fit in stage.alike
     )
     gains = {fit.cause.name: fit.gain for fit in stage.fits}
-    return Part(readings=READINGS, causes=causes, odds=stage.odds, gains=gains)
+    return Part(readings=_READINGS, causes=causes, odds=stage.odds, gains=gains)
 
 
 def _sizes(posed, fit):
@@ -189,7 +184,8 @@ def _limits(posed, rows, gained):
     return found
 
 
-def _not_seen(posed, broken, stages, share, rows, runner_up):
+def _not_seen(posed, broken, stages, share, rows, hidden):
+    """Lines on what the poses do not show; ``hidden``: a cause that the share of the named ones hides, or None."""
     lines = [
         f"{len(rows.arcs)} free flights lie {1e3 * rows.noise:.3g} mm about cubics, in the root mean square"
     ]
@@ -202,9 +198,9 @@ def _not_seen(posed, broken, stages, share, rows, runner_up):
         lines.append(f"no free flight was read in {', '.join(silent)}")
     if stages:
         lines.append(f"the causes explain {100.0 * share:.0f} % of what the flights have beyond noise")
-    if stages and runner_up is not None and runner_up.gain > needed_of(runner_up.cause.name):
+    if hidden:
         lines.append(
-            f"beside them {runner_up.cause.title} gains {runner_up.gain:.0f} nats, less than a tenth of what they "
+            f"beside them {hidden.cause.title} gains {hidden.gain:.0f} nats, less than a tenth of what they "
             "gain, and is not named"
         )
     for stage in stages:

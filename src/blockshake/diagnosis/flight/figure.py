@@ -5,7 +5,6 @@ import numpy as np
 from blockshake.pages.drawing import BLACK, BLUE, GREY, MEASURED, new_figure
 
 _BINS = 12
-_WIDTH = 0.17
 
 
 def plot_accelerations(evidence, axes_shown):
@@ -39,14 +38,14 @@ def _medians(velocity, values):
     return [np.median(velocity[one]) for one in order], [np.median(values[one]) for one in order]
 
 
-def plot_errors(scores, words):
+def plot_errors(scores, colors):
     """Mean distance of the middle on sealed tests by model, early and over the whole path: cumulative shares."""
     figure = new_figure(0.06)
     panels = figure.subplots(1, 2, squeeze=False)[0]
     for panel, name, title in zip(
         panels, ("early", "place"), ("until 0.1 s after the first flight", "whole path"), strict=True
     ):
-        for kind, color in words.items():
+        for kind, color in colors.items():
             values = np.sort(1e3 * scores[name].sel(kind=kind).to_numpy())
             panel.plot(values, (1.0 + np.arange(len(values))) / len(values), color=color, label=kind)
         panel.set_title(title)

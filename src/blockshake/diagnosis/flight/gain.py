@@ -55,11 +55,7 @@ def flight_gain(opened, sealed, decision):
     able = _fitted_tests(sealed, arcs_sealed, most=len(sealed.tests))
     choices = [fits for fits in _combinations(decision) if fits]
     if not (fitted and able and choices):
-        why = (
-            "no cause that a replay can have"
-            if not choices
-            else "no open or no sealed test has a free flight"
-        )
+        why = "no open or no sealed test has a free flight" if choices else "no replay can have the causes"
         caveats = (f"no gain was measured on the paths: {why}",)
         return CampaignGain(MeasuredGain(rows=rows, caveats=caveats), xr.Dataset())
     models, best, count = {NOMINAL: _nominal(opened)}, np.inf, 0

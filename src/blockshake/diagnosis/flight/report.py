@@ -1,9 +1,13 @@
 """The report of a diagnosis of filmed flights."""
 
-from types import SimpleNamespace
-
 from blockshake.diagnosis.answer.decision import load_decision
-from blockshake.diagnosis.flight.section import answer_section, gain_section, impacts_section, odds_section
+from blockshake.diagnosis.flight.section import (
+    FoundFlights,
+    answer_section,
+    gain_section,
+    impacts_section,
+    odds_section,
+)
 from blockshake.diagnosis.verdict.verdict import load_verdict
 from blockshake.files import file_digest
 from blockshake.geometry.structure import load_structure
@@ -25,7 +29,7 @@ def compose_flights(campaign, results):
     verdict = load_verdict(results / "verdict.json")
     gain = results / "gain.nc" if verdict.gain else None
     decision = load_decision(results / "decision.json")
-    found = SimpleNamespace(
+    found = FoundFlights(
         verdict=verdict,
         decision=decision,
         evidence=load_made(results / "evidence.nc"),

@@ -1,11 +1,16 @@
 """Sections of the report on filmed flights."""
 
+from typing import NamedTuple
+
 import numpy as np
+import xarray as xr
 
 from blockshake.diagnosis.answer.answer import ODDS
+from blockshake.diagnosis.answer.decision import Decision
 from blockshake.diagnosis.flight.causes import CAUSES
 from blockshake.diagnosis.flight.decide import estimate_in_si
 from blockshake.diagnosis.flight.figure import plot_accelerations, plot_errors
+from blockshake.diagnosis.verdict.verdict import Verdict
 from blockshake.diagnosis.wording import percent_words, times_words
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import BLUE, GREEN, GREY, ORANGE, svg_of
@@ -19,6 +24,15 @@ _WORDS = {
     "discrepancy": "recalibrated, with a steady acceleration without a name",
     "extended": "with the causes, recalibrated",
 }
+
+
+class FoundFlights(NamedTuple):
+    """Verdict, decision, evidence of `DecidedFlights` and scores of `flight_gain` (None where none were measured)."""
+
+    verdict: Verdict
+    decision: Decision
+    evidence: xr.Dataset
+    gain: xr.Dataset | None
 
 
 def answer_section(found):
