@@ -103,3 +103,16 @@ def test_points_inside_the_hull_are_dropped():
     solid = convex_polyhedron(np.vstack([[[0.0, 0.0, 0.0], [0.5, 0.1, 0.2]], corners]))
     assert len(solid.vertices) == 8
     assert all(len(face) == 4 for face in solid.faces)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_every_edge_lies_between_two_faces(seed):
+    """A grid of corners that bulges by rounding of single precision: facets in nearly the same plane (Euler 1758)."""
+    rng = np.random.default_rng(seed)
+    grid = np.stack(np.meshgrid(*[np.linspace(-0.3, 0.3, 12)] * 2), axis=-1).reshape(-1, 2)
+    bulge = -1e-6 * (grid**2).sum(axis=1) + 3e-8 * rng.normal(size=len(grid))
+    polyhedron = convex_polyhedron(np.vstack([np.column_stack([grid, bulge]), [[0.1, 0.0, -0.5]]]))
+    edges = [tuple(edge) for face in polyhedron.faces for edge in zip(face, np.roll(face, -1), strict=True)]
+    assert len(set(edges)) == len(edges)
+    assert {edge[::-1] for edge in edges} == set(edges)
+    assert len(polyhedron.vertices) - len(edges) / 2 + len(polyhedron.faces) == 2

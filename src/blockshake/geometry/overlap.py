@@ -89,7 +89,7 @@ def penetration_depths(solid_a, positions_a, orientations_a, solid_b, positions_
         rows = max(1, _MOST_AT_ONCE // len(edges_b[0]))
         for start in range(0, len(edges_a[0]), rows):
             part = [values[start : start + rows] for values in edges_a]
-            depth = np.minimum(depth, _edge_overlap(part, edges_b, turn, shift))
+            depth = np.minimum(depth, _edge_overlap(part, edges_b, turn, shift, solid_a, solid_b))
         depths[pairs] = depth
     return depths
 
@@ -123,16 +123,17 @@ def _face_overlap(solid, other, rotation, offset):
     return least
 
 
-def _edge_overlap(edges_a, edges_b, rotation, offset):
+def _edge_overlap(edges_a, edges_b, rotation, offset, solid_a, solid_b):
     """Least overlap along the normals to an edge of each, for every pose of the second [m].
 
     Only two edges that form a face of the Minkowski difference can have the least: those whose
     arcs between their faces' normals cross on the unit sphere, the second's turned around
     (Gregorius 2013, The separating axis test between convex polyhedra, Game Developers Conference).
+    The overlap along a normal is that of all corners: the thin faces of a scanned surface have normals of rounding,
+    whose arcs can cross where the edges form no face.
     """
-    point_a, along_a, left_a, right_a = edges_a
-    point_b, along_b, left_b, right_b = (values @ rotation.transpose(0, 2, 1) for values in edges_b)
-    point_b = point_b + offset[:, None]
+    along_a, left_a, right_a = edges_a
+    along_b, left_b, right_b = (values @ rotation.transpose(0, 2, 1) for values in edges_b)
     # sides of the plane of one arc on which the ends of the other lie
     b_left, b_right = -along_a @ left_b.transpose(0, 2, 1), -along_a @ right_b.transpose(0, 2, 1)
     a_left = left_a @ along_b.transpose(0, 2, 1)
@@ -145,12 +146,18 @@ def _edge_overlap(edges_a, edges_b, rotation, offset):
     pair, a, b, axes = pair[kept], a[kept], b[kept], axes[kept] / lengths[kept, None]
     axes *= np.sign((axes * (left_a[a] + right_a[a])).sum(axis=1))[:, None]
     least = np.full(len(rotation), np.inf)
-    np.minimum.at(least, pair, (axes * (point_a[a] - point_b[pair, b])).sum(axis=1))
+    rows = max(1, _MOST_AT_ONCE // (len(solid_a.vertices) + len(solid_b.vertices)))
+    for start in range(0, len(pair), rows):
+        of, axis = pair[start : start + rows], axes[start : start + rows]
+        ends = (axis @ solid_a.vertices.T).max(axis=1)
+        turned = (axis[:, None] @ rotation[of])[:, 0]  # in the second's frame
+        begins = (turned @ solid_b.vertices.T).min(axis=1) + (axis * offset[of]).sum(axis=1)
+        np.minimum.at(least, of, ends - begins)
     return least
 
 
 def _edges(polyhedron):
-    """Start, unit direction and the unit normals of the faces to the left and right of every edge, (n_edges, 3)."""
+    """Unit direction and the unit normals of the faces to the left and right of every edge, (n_edges, 3) each."""
     starts = np.concatenate(polyhedron.faces)
     ends = np.concatenate([np.roll(face, -1) for face in polyhedron.faces])
     face = np.repeat(np.arange(len(polyhedron.faces)), [len(face) for face in polyhedron.faces])
@@ -161,7 +168,6 @@ def _edges(polyhedron):
     along = polyhedron.vertices[ends[there]] - polyhedron.vertices[starts[there]]
     along /= np.linalg.norm(along, axis=1)[:, None]
     return [
-        polyhedron.vertices[starts[there]],
         along,
         polyhedron.normals[face[there]],
         polyhedron.normals[face[back]],

@@ -4,7 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import trimesh
-from scipy.spatial import ConvexHull, cKDTree
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import ConvexHull
 
 # Two facets of a hull belong to one face when their unit normals and offsets agree to this much,
 # relative to the size of the body: far above rounding, far below any intended edge.
@@ -85,31 +87,38 @@ def convex_polyhedron(vertices):
     hull = ConvexHull(vertices)
     scale = np.ptp(vertices, axis=0).max()
     planes = np.column_stack([hull.equations[:, :3], -hull.equations[:, 3] / scale])
-    tree = cKDTree(planes)
-    fresh = np.ones(len(planes), dtype=bool)
-    distinct = []
-    for index in np.lexsort(np.round(planes, 6).T):
-        if fresh[index]:
-            distinct.append(index)
-            fresh[tree.query_ball_point(planes[index], _SAME_PLANE, p=np.inf)] = False
+    # neighbours in the same plane are one face, so that every edge has a face on either side
+    facet, side = np.nonzero(np.abs(planes[hull.neighbors] - planes[:, None]).max(axis=2) < _SAME_PLANE)
+    links = coo_array((np.ones(len(facet)), (facet, hull.neighbors[facet, side])), (len(planes),) * 2)
+    _, face_of = connected_components(links, directed=False)
+    order = np.lexsort(np.round(planes, 6).T)
+    _, first = np.unique(face_of[order], return_index=True)
+    distinct = order[np.sort(first)]
     normals = planes[distinct, :3]
     offsets = planes[distinct, 3] * scale
-    is_corner = np.isin(np.arange(len(vertices)), hull.vertices)
     faces = []
-    for normal, offset in zip(normals, offsets, strict=True):
-        on_face = np.flatnonzero((np.abs(vertices @ normal - offset) < _SAME_PLANE * scale) & is_corner)
-        faces.append(_counter_clockwise(vertices, on_face, normal))
+    for face, normal in zip(face_of[distinct], normals, strict=True):
+        facets = np.flatnonzero(face_of == face)
+        facet, opposite = np.nonzero(face_of[hull.neighbors[facets]] != face)
+        faces.append(_counter_clockwise(vertices, hull.simplices[facets][facet], opposite, normal))
     used = np.unique(np.concatenate(faces))
     renumbered = np.full(len(vertices), -1)
     renumbered[used] = np.arange(len(used))
     return Polyhedron(vertices[used], tuple(renumbered[face] for face in faces), normals, offsets)
 
 
-def _counter_clockwise(vertices, indices, normal):
+def _counter_clockwise(vertices, corners, opposite, normal):
+    """Corners of a face in order, from its facets on the rim: ``corners`` (n, 3), ``opposite`` (n,) off the rim."""
+    off, start, end = (corners[np.arange(len(corners)), (opposite + turn) % 3] for turn in range(3))
+    turned = np.cross(vertices[start] - vertices[off], vertices[end] - vertices[off]) @ normal < 0.0
+    following = dict(zip(np.where(turned, end, start), np.where(turned, start, end), strict=True))
+    indices = np.array(sorted(following))
     points = vertices[indices] - vertices[indices].mean(axis=0)
     first = points[0] / np.linalg.norm(points[0])
-    second = np.cross(normal, first)
-    return indices[np.argsort(np.arctan2(points @ second, points @ first))]
+    face = [indices[np.arctan2(points @ np.cross(normal, first), points @ first).argmin()]]
+    for _ in following.keys() - face:
+        face.append(following[face[-1]])
+    return np.array(face)
 
 
 def triangles(polyhedron):
