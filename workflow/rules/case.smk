@@ -12,14 +12,12 @@ def campaign_files(case, every=False):
 def files_of_tests(campaign, tests):
     """The file of a campaign, those of some of its tests, and others that describe them, as far as they are there."""
     files = [campaign.folder / "campaign.yaml", Path(campaign.structure)]
+    files += [campaign.table] if campaign.table else []
     for test in tests:
-        path = campaign.folder / test.file
-        accelerometers = path.with_name(f"{path.stem}-acc.csv")
-        files += [
-            path,
-            accelerometers,
-            *([campaign.folder / test.motion] if test.motion else []),
-        ]
+        files += [campaign.folder / test.motion] if test.motion else []
+        if test.file:
+            path = campaign.folder / test.file
+            files += [path, path.with_name(f"{path.stem}-acc.csv")]
     return [str(path) for path in dict.fromkeys(files) if path.is_file()]
 
 

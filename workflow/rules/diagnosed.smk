@@ -81,10 +81,31 @@ def test_files(campaign, role):
     return files_of_tests(given, [given.tests[name] for name in names])
 
 
+def outcome_files(campaign):
+    """Simulated outcomes of all tests, batch by batch, of a campaign of outcomes; else none."""
+    from blockshake.diagnosis.outcomes.runs import BATCH, solvers_of
+
+    with refusing():
+        given = load_campaign(CAMPAIGNS[campaign])
+    batches = -(-len(given.tests) // BATCH) if given.by_outcomes else 0
+    return expand(
+        f"results/diagnosis/{campaign}/outcomes/{{number}}-{{solver}}.nc",
+        number=range(batches),
+        solver=solvers_of(effort().outcomes),
+    )
+
+
 def sealed_motions(campaign):
     """Files of the motions that were commanded in the sealed tests, which are no readings."""
+    return motion_files(campaign, "sealed")
+
+
+def motion_files(campaign, role=None):
+    """Files of the motions that were commanded in tests of a role, or in all."""
     given = load_campaign(CAMPAIGNS[campaign])
-    motions = [test.motion for test in given.sealed.values()]
+    motions = [
+        test.motion for test in given.tests.values() if role in (None, test.role)
+    ]
     paths = [given.folder / motion for motion in motions]
     paths += [Path(definition("motions", motion)) for motion in motions]
     return sorted({str(path) for path in paths if path.is_file()})

@@ -72,6 +72,29 @@ rule simulate_nominal:
         "../scripts/simulate_nominal.py"
 
 
+rule simulate_outcomes:
+    """A batch of tests of which it is known alone whether the body fell, by several models of one solver."""
+    input:
+        tests=lambda wildcards: motion_files(wildcards.campaign),
+        kernels=lambda wildcards: kernels(wildcards.solver),
+    output:
+        "results/diagnosis/{campaign}/outcomes/{number}-{solver}.nc",
+    log:
+        "logs/diagnosis/{campaign}/simulate_outcomes/{number}-{solver}.log",
+    conda:
+        "../envs/blockshake.yaml"
+    resources:
+        runtime=480,
+    params:
+        folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
+        effort=EFFORT,
+        draws=lambda wildcards: effort().outcomes,
+        source=lambda wildcards: source_of("simulate_outcomes", wildcards.solver),
+        store="results/store/diagnosis",
+    script:
+        "../scripts/simulate_outcomes.py"
+
+
 rule describe_misfit:
     """The nominal ensembles beside what was measured, as long as each joint can be predicted."""
     input:

@@ -66,6 +66,15 @@ def simulate_nominal(folder, effort, number, solver, store):
     return simulate_members(members, store)
 
 
+def simulate_outcomes(folder, effort, batch, solver, store):
+    """A batch of all tests of a campaign of outcomes by one solver, from the function of this name; no outcome is read."""
+    from blockshake.diagnosis.nominal.plan import EFFORTS
+    from blockshake.diagnosis.outcomes.runs import simulate_outcomes
+    from blockshake.measurement.campaigns.campaign import load_campaign
+
+    return simulate_outcomes(load_campaign(folder), batch, solver, EFFORTS[effort].outcomes, store)
+
+
 def describe_misfit(folder, effort, files):
     """`misfit` of the nominal ensembles of both solvers beside the measured histories of the open tests."""
     from blockshake.diagnosis.misfit.judged_test import judged_test, measured_histories

@@ -31,18 +31,21 @@ class Effort:
         Of every ensemble that predicts a sealed test, by each solver.
     twins : int
         By which it is measured how long a test can be predicted, by each solver.
+    outcomes : int
+        Models of each test of which it is known alone whether the body fell.
     """
 
     tests: int
     draws: int
     members: int
     twins: int
+    outcomes: int
 
 
 EFFORTS = {
-    "quick": Effort(tests=0, draws=0, members=0, twins=0),
-    "standard": Effort(tests=3, draws=40, members=12, twins=4),
-    "deep": Effort(tests=12, draws=80, members=40, twins=8),
+    "quick": Effort(tests=0, draws=0, members=0, twins=0, outcomes=4),
+    "standard": Effort(tests=3, draws=40, members=12, twins=4, outcomes=8),
+    "deep": Effort(tests=12, draws=80, members=40, twins=8, outcomes=16),
 }
 
 
@@ -102,7 +105,7 @@ def plan_diagnosis(folder, effort):
         raise InputError("effort", str(effort), f"expected one of {', '.join(EFFORTS)}")
     campaign, effort = load_campaign(folder), EFFORTS[effort]
     names = open_tests(campaign)
-    chosen = [] if campaign.still else simulated_tests(campaign, names, effort.tests)
+    chosen = [] if campaign.still or campaign.by_outcomes else simulated_tests(campaign, names, effort.tests)
     structure = load_structure(campaign.structure) if chosen else None
     tests = {name: planned_test(campaign, name, structure) for name in chosen}
     return Plan(campaign, effort, names, tests)
@@ -122,7 +125,7 @@ def open_tests(campaign):
             "tests",
             "expected a test with the role fit or select, found none",
         )
-    if campaign.still:
+    if campaign.still or campaign.by_outcomes:
         return list(campaign.open)
     return list(read_open_tests(campaign, list(campaign.open)).tests)
 

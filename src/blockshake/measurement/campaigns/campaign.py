@@ -5,6 +5,7 @@ from os.path import isfile  # false, not an error, for a name that no file can h
 from pathlib import Path
 from typing import Annotated, Literal
 
+import pandas as pd
 from pydantic import AfterValidator, Field, model_validator
 
 from blockshake.dynamics.baseline import AUTO, Baseline
@@ -16,6 +17,7 @@ from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 from blockshake.measurement.campaigns.recorded_test import read_test
 from blockshake.measurement.sensors.instruments import Sensors
 from blockshake.paths import check_plain, file_below
+from blockshake.tables.numbers import plain_number
 from blockshake.validation import Finite, Strict, validated
 
 
@@ -32,7 +34,12 @@ class MeasuredTest(Strict):
     """One test of the list: what was commanded, where it was recorded, what it may be used for."""
 
     name: str = Field(description="unique in the campaign")
-    file: str = Field(description="readings: a CSV or netCDF file in the folder")
+    file: str | None = Field(
+        None, description="readings: a CSV or netCDF file in the folder; needed but with an outcome"
+    )
+    outcome: Literal["fell", "stood"] | None = Field(
+        None, description="all that is known of a test without readings: whether the body fell"
+    )
     motion: str | None = Field(
         None,
         description="commanded motion: a shipped name, or a file in the folder; none of a body that is filmed over a "
@@ -43,6 +50,14 @@ class MeasuredTest(Strict):
     role: Literal["fit", "select", "sealed"] = Field(
         description="what the test may be used for: to fit, to choose between models, or to judge a frozen one"
     )
+
+    @model_validator(mode="after")
+    def _known(self):
+        if (self.file is None) == (self.outcome is None):
+            raise ValueError("expected either file, with readings, or outcome")
+        if self.outcome is not None and self.motion is None:
+            raise ValueError("missing key: motion, of a test with an outcome")
+        return self
 
     @model_validator(mode="after")
     def _scaled(self):
@@ -57,7 +72,9 @@ class CampaignFile(Strict):
     name: str = Field(description="of the campaign, for reports")
     structure: str = Field(description="shipped name, or a file in the folder")
     sensors: Sensors = Sensors()
-    tests: tuple[MeasuredTest, ...] = Field(min_length=1)
+    tests: Annotated[tuple[MeasuredTest, ...], Field(min_length=1)] = Field(
+        description="the list, or a CSV table in the folder with these keys as its columns"
+    )
 
 
 @dataclass(frozen=True)
@@ -72,6 +89,8 @@ class Campaign:
     sensors : Sensors
     tests : dict of str to MeasuredTest
         By name.
+    table : Path or None
+        The CSV table that lists them, where one does.
     """
 
     folder: Path
@@ -79,11 +98,17 @@ class Campaign:
     structure: str
     sensors: Sensors
     tests: dict
+    table: Path | None = None
 
     @property
     def still(self):
         """Whether the ground is at rest in all tests, in which one body is filmed as poses."""
         return all(test.motion is None for test in self.tests.values())
+
+    @property
+    def by_outcomes(self):
+        """Whether all that is known of the tests is which of them the body survived."""
+        return all(test.outcome is not None for test in self.tests.values())
 
     @property
     def open(self):
@@ -106,7 +131,11 @@ def load_campaign(folder):
     """
     folder = Path(folder)
     path = folder / "campaign.yaml"
-    file = validated(CampaignFile, load_yaml(path), path)
+    mapping, table = load_yaml(path), None
+    if isinstance(mapping.get("tests"), str):
+        table = file_below(folder, mapping["tests"], path, "tests")
+        mapping["tests"] = _listed(folder, mapping["tests"], path)
+    file = validated(CampaignFile, mapping, path)
     tests = {test.name: test for test in file.tests}
     if len(tests) < len(file.tests):
         raise InputError(path, "tests", "expected every test's name once")
@@ -115,10 +144,15 @@ def load_campaign(folder):
     if moved and len(moved) < len(tests):
         still = next(name for name in tests if name not in moved)
         raise InputError(path, f"tests.{still}.motion", f"missing key; {moved[0]} has one")
+    known = [test.name for test in file.tests if test.outcome is None]
+    if known and len(known) < len(tests):
+        other = next(name for name in tests if name not in known)
+        raise InputError(path, f"tests.{other}.file", f"missing key; {known[0]} has one")
     for test in file.tests:
-        for key in ("file", "motion") if moved else ("file",):
-            check_plain(getattr(test, key), path, f"tests.{test.name}.{key}")
-        if not isfile(file_below(folder, test.file, path, f"tests.{test.name}.file")):
+        for key in ("file", "motion"):
+            if getattr(test, key) is not None:
+                check_plain(getattr(test, key), path, f"tests.{test.name}.{key}")
+        if known and not isfile(file_below(folder, test.file, path, f"tests.{test.name}.file")):
             raise InputError(
                 path, f"tests.{test.name}.file", f"expected a file in {folder}; it has no {test.file}"
             )
@@ -130,8 +164,30 @@ def load_campaign(folder):
         known = ", ".join(shipped_names("structures"))
         raise InputError(path, "structure", f"expected a file in {folder} or one of {known}")
     return Campaign(
-        folder, file.name, str(structure) if isfile(structure) else file.structure, file.sensors, tests
+        folder,
+        file.name,
+        str(structure) if isfile(structure) else file.structure,
+        file.sensors,
+        tests,
+        table,
     )
+
+
+def _listed(folder, name, path):
+    """Tests of a CSV table, a mapping each; empty cells are left out."""
+    check_plain(name, path, "tests")
+    try:
+        rows = pd.read_csv(folder / name, dtype=str, keep_default_na=False)
+    except (OSError, ValueError) as error:
+        raise InputError(path, "tests", f"expected a list, or a CSV table in {folder}; {error}") from None
+    return [
+        {
+            key: float(cell) if key == "scale" and plain_number(cell) else cell
+            for key, cell in row.items()
+            if cell
+        }
+        for row in rows.to_dict("records")
+    ]
 
 
 def load_test(campaign, name, structure=None):

@@ -1,0 +1,119 @@
+"""Simulated outcomes: how far a body leans in every test by models drawn over all unknowns, until it falls."""
+
+import numpy as np
+import xarray as xr
+from scipy.stats import qmc
+
+from blockshake.diagnosis.nominal.nominal_model import MODELS
+from blockshake.diagnosis.outcomes.unknowns import UNKNOWNS, model_at
+from blockshake.dynamics.intensity import motion_figures
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.system import FALLEN, FINISHED
+from blockshake.errors import InputError
+from blockshake.files import named_file
+from blockshake.geometry.rotations import rotation_matrices
+from blockshake.geometry.structure import load_structure
+from blockshake.simulation.simulate import simulate
+from blockshake.store import structure_digest
+
+BATCH = 25  # tests
+_RATE = 50.0  # Hz, of the orientations that are kept
+_SEED = 42
+
+
+def solvers_of(draws):
+    """Solvers by which tests are simulated: with few draws the one that takes longer steps alone."""
+    return MODELS if draws > 4 else ("nscd-rigid",)
+
+
+def free_body(structure):
+    """Number of the one body that is not driven.
+
+    Raises
+    ------
+    InputError
+        There is another number of them, or the body touches no driven one.
+    """
+    free = np.flatnonzero(~structure.driven)
+    if len(free) != 1 or not structure.touching[free[0]].any():
+        found = f"found {len(free)}" if len(free) != 1 else "it touches nothing at the start"
+        raise InputError(
+            structure.source, "bodies", f"expected one body that stands on a driven one, of outcomes; {found}"
+        )
+    return int(free[0])
+
+
+def shares_of(number, draws):
+    """Shares of the models of a test, by its number: the structure file's first, then Halton's next, (draws, n)."""
+    sequence = qmc.Halton(len(UNKNOWNS), seed=_SEED)
+    sequence.fast_forward(number * (draws - 1))
+    return np.vstack([np.zeros(len(UNKNOWNS)), 2.0 * sequence.random(draws - 1) - 1.0])
+
+
+def simulate_outcomes(campaign, batch, solver, draws, store):
+    """Outcomes of a batch of tests by some models each; each run ends at the fall, and is kept at once.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        Of outcomes, which are not read.
+    batch : int
+        Number of the batch of `BATCH` tests, in the campaign's order.
+    solver : str
+    draws : int
+        Models of each test.
+    store : Store
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``test`` and ``draw``: ``lean``, the largest angle between the body's first vertical and its own until
+        the end [rad], infinite of a body that fell and NaN of a run that was not finished; ``share(test, draw,
+        unknown)``. Along ``test``: ``pga`` [m/s2] and ``pgv`` [m/s] of the commanded motion along x.
+    """
+    structure = load_structure(campaign.structure)
+    body, identity = free_body(structure), structure_digest(structure)
+    names = list(campaign.tests)[batch * BATCH : (batch + 1) * BATCH]
+    leans, shares, peaks = [], [], []
+    for done, name in enumerate(names):
+        entry = campaign.tests[name]
+        shares.append(shares_of(batch * BATCH + done, draws))
+        path = campaign.folder / entry.motion
+        path = path if path.is_file() else named_file("motions", entry.motion)
+        figures = motion_figures(load_motion(path, entry.scale, entry.baseline))
+        peaks.append((figures["peak_acceleration"], figures["peak_velocity"]))
+        content = path.read_bytes()
+        for number, own in enumerate(shares[-1]):
+            given = (solver, identity, content, entry.scale, str(entry.baseline), own)
+            made = store.value(
+                given,
+                lambda checkpoint, own=own: _run(structure, body, path, entry, solver, own),
+            )
+            how = {"inf": "fell", "nan": "not finished"}.get(
+                f"{made:g}", f"leant by {np.degrees(made):.2g} degrees"
+            )
+            store.say(f"{name} {solver} model {number} {done + 1}/{len(names)}: {how}")
+            leans.append(made)
+    return xr.Dataset(
+        {
+            "lean": (("test", "draw"), np.reshape(leans, (len(names), draws)), {"units": "rad"}),
+            "share": (("test", "draw", "unknown"), shares),
+            "pga": ("test", [peak for peak, _ in peaks], {"units": "m s-2"}),
+            "pgv": ("test", [peak for _, peak in peaks], {"units": "m s-1"}),
+        },
+        {"test": names, "unknown": [unknown.name for unknown in UNKNOWNS]},
+        {"model": solver},
+    )
+
+
+def _run(structure, body, path, entry, solver, shares):
+    """Largest lean [rad] of one run, see `simulate_outcomes`."""
+    built, factor = model_at(structure, body, solver, shares)
+    motion = load_motion(path, entry.scale * factor, entry.baseline)
+    run = simulate(built, motion, solver, output_rate=_RATE, accelerometers=False)
+    if run.attrs["status"] not in FINISHED:
+        return np.nan
+    if run.attrs["status"] in FALLEN:
+        return np.inf
+    turned = rotation_matrices(run["orientation"][:, body].to_numpy())
+    return float(np.arccos(np.clip(np.einsum("nk,k->n", turned[:, 2], turned[0, 2]), -1.0, 1.0)).max())
