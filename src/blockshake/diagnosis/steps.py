@@ -67,7 +67,7 @@ def simulate_nominal(folder, effort, number, solver, store):
 
 
 def simulate_outcomes(folder, effort, batch, solver, store):
-    """A batch of all tests of a campaign of outcomes by one solver, from the function of this name; no outcome is read."""
+    """A batch of tests of a campaign of outcomes by one solver; no outcome is read."""
     from blockshake.diagnosis.nominal.plan import EFFORTS
     from blockshake.diagnosis.outcomes.runs import simulate_outcomes
     from blockshake.measurement.campaigns.campaign import load_campaign

@@ -1,5 +1,7 @@
 """Simulated outcomes: how far a body leans in every test by models drawn over all unknowns, until it falls."""
 
+from functools import partial
+
 import numpy as np
 import xarray as xr
 from scipy.stats import qmc
@@ -85,10 +87,7 @@ def simulate_outcomes(campaign, batch, solver, draws, store):
         content = path.read_bytes()
         for number, own in enumerate(shares[-1]):
             given = (solver, identity, content, entry.scale, str(entry.baseline), own)
-            made = store.value(
-                given,
-                lambda checkpoint, own=own: _run(structure, body, path, entry, solver, own),
-            )
+            made = store.value(given, partial(_run, structure, body, path, entry, solver, own))
             how = {"inf": "fell", "nan": "not finished"}.get(
                 f"{made:g}", f"leant by {np.degrees(made):.2g} degrees"
             )
@@ -106,8 +105,8 @@ def simulate_outcomes(campaign, batch, solver, draws, store):
     )
 
 
-def _run(structure, body, path, entry, solver, shares):
-    """Largest lean [rad] of one run, see `simulate_outcomes`."""
+def _run(structure, body, path, entry, solver, shares, checkpoint):
+    """Largest lean [rad] of one run, see `simulate_outcomes`; a run of seconds needs no checkpoint."""
     built, factor = model_at(structure, body, solver, shares)
     motion = load_motion(path, entry.scale * factor, entry.baseline)
     run = simulate(built, motion, solver, output_rate=_RATE, accelerometers=False)
