@@ -133,14 +133,15 @@ def extended_files(wildcards):
 
 
 def gain_files(wildcards):
-    """The gain and its scores, where there are sealed tests, and causes or faults of sensors."""
+    """The gain and its scores, where there are sealed tests, and causes, faults of sensors, or outcomes alone."""
     from blockshake.parity.parity import load_parity
 
     parity = f"results/diagnosis/{wildcards.campaign}/parity.json"
     acting = decided(wildcards).extending
     with refusing():
         acting = acting or load_parity(parity).findings
-    if acting and plan(wildcards.campaign).campaign.sealed:
+    campaign = plan(wildcards.campaign).campaign
+    if (acting or campaign.by_outcomes) and campaign.sealed:
         return expand(
             f"results/diagnosis/{wildcards.campaign}/{{name}}",
             name=["gain.json", "gain.nc"],

@@ -30,7 +30,8 @@ rule verdicts:
 checkpoint decide:
     """The sensors checked, the open tests seen, and what they speak for; frozen before a sealed test is opened."""
     input:
-        lambda wildcards: test_files(wildcards.campaign, "open"),
+        tests=lambda wildcards: test_files(wildcards.campaign, "open"),
+        outcomes=lambda wildcards: outcome_files(wildcards.campaign),
     output:
         parity="results/diagnosis/{campaign}/parity.json",
         decision="results/diagnosis/{campaign}/decision.json",
@@ -155,6 +156,7 @@ rule measure_gain:
         tests=lambda wildcards: test_files(wildcards.campaign, "open"),
         ensembles=lambda wildcards: ensemble_files(wildcards.campaign),
         extended=extended_files,
+        outcomes=lambda wildcards: outcome_files(wildcards.campaign),
         sealed=lambda wildcards: test_files(wildcards.campaign, "sealed"),
     output:
         gain="results/diagnosis/{campaign}/gain.nc",

@@ -26,8 +26,10 @@ class DecidedCampaign(NamedTuple):
     evidence: xr.Dataset
 
 
-def decide(folder, without):
+def decide(folder, without, files):
     """`DecidedCampaign`: the open tests read, the faults of sensors taken out, and what acts decided.
+
+    ``files.outcomes`` are the batches of `simulate_outcomes`, empty of a campaign with readings.
 
     Raises
     ------
@@ -37,6 +39,7 @@ def decide(folder, without):
     from blockshake.diagnosis.answer.decide import decide
     from blockshake.diagnosis.evidence.seen_campaign import see_campaign
     from blockshake.diagnosis.flight.decide import decide_flights
+    from blockshake.diagnosis.outcomes.decide import decide_outcomes
     from blockshake.measurement.campaigns.campaign import load_campaign
     from blockshake.measurement.poses.posed_test import load_posed
     from blockshake.parity.parity import UNCHECKED
@@ -44,6 +47,8 @@ def decide(folder, without):
     campaign = load_campaign(folder)
     if campaign.still:
         return DecidedCampaign(UNCHECKED, *decide_flights(load_posed(campaign, list(campaign.open)), without))
+    if campaign.by_outcomes:
+        return DecidedCampaign(UNCHECKED, *decide_outcomes(campaign, files.outcomes, without))
     seen = see_campaign(campaign, without)
     unseen = [f"{name} is not judged: {reason}" for name, reason in seen.unseen.items()]
     if not seen.tests:
@@ -113,7 +118,8 @@ def extend_model(folder, effort, solver, files, store):
 def measure_gain(folder, effort, files):
     """`CampaignGain`, on the sealed tests, of naming the causes: the one step that reads these tests.
 
-    ``files.ensembles`` and ``files.extended`` are empty where nothing is simulated.
+    ``files.ensembles`` and ``files.extended`` are empty where nothing is simulated, and ``files.outcomes`` where there
+    are readings.
     """
     from blockshake.diagnosis.answer.decision import check_frozen, load_decision
     from blockshake.diagnosis.evidence.seen_campaign import see_campaign, see_sealed
@@ -123,6 +129,7 @@ def measure_gain(folder, effort, files):
     from blockshake.diagnosis.gain.sensor_gain import sensor_gain
     from blockshake.diagnosis.misfit.judged_test import measured_histories
     from blockshake.diagnosis.nominal.plan import plan_diagnosis
+    from blockshake.diagnosis.outcomes.gain import outcome_gain
     from blockshake.measurement.campaigns.campaign import load_campaign
     from blockshake.measurement.poses.posed_test import load_posed
     from blockshake.parity.parity import load_parity
@@ -132,6 +139,8 @@ def measure_gain(folder, effort, files):
     if campaign.still:
         opened, sealed = (load_posed(campaign, list(tests)) for tests in (campaign.open, campaign.sealed))
         return flight_gain(opened, sealed, decision)
+    if campaign.by_outcomes:
+        return outcome_gain(campaign, files.outcomes, decision)
     findings = load_parity(files.parity).findings
     if not decision.parts:
         return sensor_gain(campaign, decision.tests, findings)

@@ -80,7 +80,7 @@ def _with_remarks(lines, remarks):
 
 def _campaign_line(folder):
     campaign = load_campaign(folder)
-    lines = campaign_lines(folder) + ([] if campaign.still else sight_lines(campaign))
+    lines = campaign_lines(folder) + ([] if campaign.still or campaign.by_outcomes else sight_lines(campaign))
     remarks = [] if campaign.still else structure_remarks(load_structure(campaign.structure))
     return _with_remarks(lines, [remark for remark in remarks if not any(remark in line for line in lines)])
 

@@ -36,7 +36,7 @@ def compose_flights(campaign, results):
         gain=load_made(gain) if gain else None,
     )
     sections = [section(found) for section in (answer_section, gain_section, impacts_section, odds_section)]
-    sections.append(_origin(campaign, results, gain))
+    sections.append(origin(campaign, results, gain))
     structure = load_structure(campaign.structure)
     return numbered(
         Document(
@@ -47,7 +47,8 @@ def compose_flights(campaign, results):
     )
 
 
-def _origin(campaign, results, gain):
+def origin(campaign, results, gain):
+    """`Section` of the command, the digests of the files, and the versions; ``gain``: path of ``gain.nc`` or None."""
     files = [
         campaign.folder / "campaign.yaml",
         *(results / name for name in ("decision.json", "evidence.nc", "verdict.json")),

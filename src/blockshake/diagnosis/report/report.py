@@ -5,6 +5,7 @@ from pathlib import Path
 from blockshake.diagnosis.flight.report import compose_flights
 from blockshake.diagnosis.gain.section import gain_section
 from blockshake.diagnosis.misfit.section import misfit_section
+from blockshake.diagnosis.outcomes.report import compose_outcomes
 from blockshake.diagnosis.report.answer_section import answer_section
 from blockshake.diagnosis.report.content import load_diagnosed
 from blockshake.diagnosis.report.limits_section import limits_section
@@ -54,6 +55,8 @@ def make_diagnosis_report(campaign, results, effort, track_record, html, pdf):
     measured = load_campaign(campaign)
     if measured.still:
         document = compose_flights(measured, Path(results))
+    elif measured.by_outcomes:
+        document = compose_outcomes(measured, Path(results))
     else:
         document = compose_diagnosis(load_diagnosed(campaign, results, effort, track_record))
     write_html(html, document)

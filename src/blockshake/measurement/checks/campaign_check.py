@@ -16,6 +16,7 @@ from blockshake.measurement.campaigns.commanded_motion import (
 )
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines
 from blockshake.measurement.checks.against_slab import carried_remarks, clock_remarks
+from blockshake.measurement.checks.outcomes import outcome_lines
 from blockshake.measurement.checks.quiet_noise import (
     accelerometer_noise,
     accelerometer_remarks,
@@ -56,6 +57,8 @@ def campaign_lines(folder):
     if campaign.still:
         return posed_lines(campaign)
     structure = load_structure(campaign.structure)
+    if campaign.by_outcomes:
+        return outcome_lines(campaign)
     lines = [
         f"campaign {campaign.name} on {campaign.structure}: {len(campaign.tests)} tests; stated noise of markers "
         f"{campaign.sensors.marker_noise:g} m, of accelerometers {campaign.sensors.accelerometer_noise:g} m/s2"

@@ -1,0 +1,171 @@
+"""The decision on tests of which it is known alone whether a body fell."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from blockshake.diagnosis.answer.answer import ODDS, coarsened, needed_of
+from blockshake.diagnosis.answer.decide import chance, kind_of
+from blockshake.diagnosis.answer.decision import MEMBERS, Cause, Decision, Estimate, Part
+from blockshake.diagnosis.outcomes.posterior import (
+    fitted_curve,
+    load_outcomes,
+    posterior,
+    prior,
+    unknowns_of,
+)
+from blockshake.diagnosis.outcomes.runs import free_body
+from blockshake.diagnosis.outcomes.unknowns import UNKNOWNS, largest_extent, value_of
+from blockshake.effects.registry import EFFECTS
+from blockshake.geometry.structure import load_structure
+
+_MORE = 0.1  # of what the causes before it gain, that a further one needs besides
+_MOST = 3  # causes
+_INTERVAL = (0.05, 0.5, 0.95)
+_DECIDED = 0.02  # chance of the other outcome, below which a test tells nothing
+_READINGS = "outcomes"
+CAUSES = tuple(dict.fromkeys(unknown.cause for unknown in UNKNOWNS if unknown.cause))
+PREDICTED = ("nominal", "recalibrated", "extended", "curve")
+
+
+class DecidedOutcomes(NamedTuple):
+    """A decision; and of every open test its outcome beside what the models predict."""
+
+    decision: Decision
+    evidence: xr.Dataset
+
+
+def decide_outcomes(campaign, files, without=()):
+    """Decide what the outcomes of a campaign's open tests speak for.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    files : list of path
+        Of the batches of `simulate_outcomes`.
+    without : sequence of str
+        Effects that are left out.
+    """
+    outcomes, names = load_outcomes(files), list(campaign.open)
+    structure = load_structure(campaign.structure)
+    body = free_body(structure)
+    name, extent = structure.body_names[body], largest_extent(structure, body)
+    rows, fell = outcomes.rows(names), fell_in(campaign, names)
+    weighed = {}
+
+    def weigh(causes):
+        key = tuple(sorted(causes))
+        if key not in weighed:
+            weighed[key] = posterior(outcomes, rows, fell, key)
+        return weighed[key]
+
+    stages, gained = [], 0.0
+    while len(stages) < _MOST:
+        known = [next(iter(stage)) for stage in stages]
+        gains = {
+            cause: weigh([*known, cause]).evidence - weigh(known).evidence
+            for cause in CAUSES
+            if cause not in known and cause not in without
+        }
+        gains = dict(sorted(gains.items(), key=lambda one: -one[1]))
+        first = next(iter(gains), None)
+        if first is None or gains[first] < needed_of(first) + _MORE * gained:
+            break
+        gained += gains[first]
+        stages.append(gains)
+    firsts = [next(iter(stage)) for stage in stages]
+    parts = tuple(
+        _part(name, extent, gains, [other for other in firsts if other != own], weigh)
+        for gains, own in zip(stages, firsts, strict=True)
+    )
+    chances = {
+        "nominal": prior(outcomes).chance(outcomes, rows),
+        "recalibrated": weigh([]).chance(outcomes, rows),
+        "extended": weigh(firsts).chance(outcomes, rows),
+        "curve": fitted_curve(outcomes, rows, fell)[rows],
+    }
+    telling = [one for one, p in zip(names, chances["nominal"], strict=True) if _DECIDED < p < 1.0 - _DECIDED]
+    decision = Decision(
+        decision=kind_of(parts),
+        parts=parts,
+        probabilities={effect: _probability(parts, effect) for effect in EFFECTS if effect not in without},
+        limits={},
+        excluded_above={},
+        p=min(1.0, sum(map(chance, parts))) if parts else 1.0,
+        where=f"falls of {name}" if parts else "no departure larger than chance",
+        tests=names,
+        silent=tuple(one for one in names if one not in telling),
+        n_rows=len(names),
+        cannot_see=_not_seen(outcomes, names, telling, chances, fell),
+    )
+    return DecidedOutcomes(decision, predicted(outcomes, names, fell, chances))
+
+
+def fell_in(campaign, names):
+    """Whether the body fell in some tests, bool (n_tests,)."""
+    return np.array([campaign.tests[name].outcome == "fell" for name in names])
+
+
+def predicted(outcomes, names, fell, chances):
+    """Dataset along ``test``: ``fell``, ``pga`` [m/s2], ``pgv`` [m/s] and the chance of a fall by every model."""
+    rows, run = outcomes.rows(names), outcomes.runs[0]
+    simulated = [np.isposinf(one["lean"].to_numpy()[rows, 0]).astype(np.int8) for one in outcomes.runs]
+    return xr.Dataset(
+        {
+            "fell": ("test", np.asarray(fell, dtype=np.int8)),
+            "pga": ("test", run["pga"].to_numpy()[rows], {"units": "m s-2"}),
+            "pgv": ("test", run["pgv"].to_numpy()[rows], {"units": "m s-1"}),
+            "chance": (("model", "test"), [chances[model] for model in PREDICTED]),
+            "simulated": (("solver", "test"), simulated),
+        },
+        {"test": names, "model": list(PREDICTED), "solver": [one.attrs["model"] for one in outcomes.runs]},
+    )  # fmt: skip
+
+
+def _part(body, extent, gains, others, weigh):
+    first = next(iter(gains))
+    odds = {cause: float(coarsened(gains[first] - gain, gains[first])) for cause, gain in gains.items()}
+    causes = []
+    for cause in (cause for cause in gains if odds[cause] < ODDS):
+        found, own = weigh([*others, cause]), unknowns_of([cause])
+        parameters, values = {}, []
+        for number in own:
+            unknown = UNKNOWNS[number]
+            lower, middle, upper = value_of(unknown, found.quantiles(number, _INTERVAL), extent)
+            parameters[unknown.name] = Estimate(estimate=middle, lower=lower, upper=upper, unit=unknown.unit)
+            values.append(value_of(unknown, found.members(MEMBERS)[:, number], extent))
+        names = [UNKNOWNS[number].name for number in own]
+        causes.append(
+            Cause(
+                name=cause,
+                place={"body": body},
+                places=(body,),
+                gain=gains[cause],
+                odds=odds[cause],
+                parameters=parameters,
+                members=tuple(dict(zip(names, map(float, row), strict=True)) for row in np.transpose(values)),
+                amplitudes=[estimate.estimate for estimate in parameters.values()],
+            )
+        )
+    return Part(readings=_READINGS, causes=tuple(causes), odds=odds, gains=gains)
+
+
+def _probability(parts, name):
+    for part in parts:
+        if part.odds.get(name, ODDS) < ODDS:
+            return float(np.exp(-part.odds[name]) / sum(np.exp(-odds) for odds in part.odds.values()))
+    return 0.0
+
+
+def _not_seen(outcomes, names, telling, chances, fell):
+    """Lines on what the outcomes do not show."""
+    lines = [
+        f"{len(names) - len(telling)} of {len(names)} open tests end alike by all sound models, and tell little"
+    ]
+    unfinished = sum(int(np.isnan(run["lean"]).sum()) for run in outcomes.runs)
+    if unfinished:
+        lines.append(f"{unfinished} runs were not finished, and were left out")
+    wrong = sum(int((p > 0.5) != outcome) for p, outcome in zip(chances["extended"], fell, strict=True))
+    lines.append(f"the likeliest model predicts {wrong} of {len(names)} open tests otherwise than they ended")
+    return tuple(lines)

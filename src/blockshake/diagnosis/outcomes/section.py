@@ -1,0 +1,191 @@
+"""Sections of the report on outcomes."""
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from blockshake.diagnosis.answer.answer import ODDS
+from blockshake.diagnosis.answer.decision import Decision
+from blockshake.diagnosis.flight.decide import estimate_in_si
+from blockshake.diagnosis.outcomes.figure import plot_fragility, plot_survival
+from blockshake.diagnosis.verdict.verdict import Verdict
+from blockshake.diagnosis.wording import percent_words, times_words
+from blockshake.effects.registry import title_of
+from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
+from blockshake.pages.drawing import svg_of
+from blockshake.pages.wording import MISSING, number, sentence_case
+from blockshake.statistics.intervals import share_interval
+
+_WORDS = {
+    "nominal": "sound models, before any outcome was known",
+    "recalibrated": "sound models, weighted by the open outcomes",
+    "extended": "models with the causes, weighted by the open outcomes",
+    "curve": "logistic curve over peak acceleration and velocity, fitted to the open outcomes",
+}
+_CLASSES = (0.0, 0.1, 0.3, 0.7, 0.9, 1.0)  # of the predicted chance, for the reliability
+
+
+class FoundOutcomes(NamedTuple):
+    """Verdict, decision, evidence of `DecidedOutcomes` and scores of `outcome_gain` (None where none were measured)."""
+
+    verdict: Verdict
+    decision: Decision
+    evidence: xr.Dataset
+    gain: xr.Dataset | None
+
+
+def answer_section(found):
+    """The answer, the size of its causes, and what the outcomes do not show."""
+    causes = [part.causes[0] for part in found.decision.parts]
+    words = found.verdict.word
+    if causes:
+        words += ": " + "; beside it ".join(map(_cause_words, causes))
+    scores = found.evidence if found.gain is None else found.gain
+    which = "open tests, which were fitted to" if found.gain is None else "sealed tests"
+    chance, fell = scores["chance"].sel(model="extended").to_numpy(), scores["fell"].to_numpy() == 1
+    facts = (
+        ("Tests predicted as they ended", f"{100.0 * ((chance > 0.5) == fell).mean():.0f} %", which),
+        (
+            "Balanced accuracy",
+            f"{balanced_accuracy(chance, fell):.2f}",
+            "mean of the shares of falls and of stands",
+        ),
+        ("Brier score", f"{np.mean((chance - fell) ** 2):.3f}", "0 is perfect, 0.25 knows nothing"),
+    )
+    return Section(
+        "Answer", "answer",
+        (
+            Box(sentence_case(words), facts),
+            Items(tuple(map(sentence_case, found.verdict.caveats))),
+            Figure(
+                f"Every one of the {which.split(',')[0]} by the peaks of its motion; the colour is the predicted "
+                "chance of a fall.",
+                svg_of(plot_survival, scores),
+            ),
+        ),
+    )  # fmt: skip
+
+
+def _cause_words(cause):
+    sizes = ", ".join(f"{name} {estimate_in_si(one)}" for name, one in cause.parameters.items())
+    return f"{title_of(cause.name)}, {cause.place['body']} ({sizes})"
+
+
+def balanced_accuracy(chance, fell):
+    """Mean of the shares of falls and of stands that were predicted; NaN without either."""
+    right = (chance > 0.5) == fell
+    return 0.5 * (right[fell].mean() + right[~fell].mean()) if fell.any() and not fell.all() else np.nan
+
+
+def scores_section(found):
+    """Predicted beside measured outcomes by model: confusion, scores, reliability, fragility."""
+    blocks = []
+    for scores, which in ((found.gain, "sealed"), (found.evidence, "open")):
+        if scores is None:
+            continue
+        fell = scores["fell"].to_numpy() == 1
+        rows = [
+            _score_row(words, scores["chance"].sel(model=model).to_numpy(), fell)
+            for model, words in _WORDS.items()
+        ]
+        rows += [
+            _score_row(
+                f"the structure file's model, {solver}",
+                scores["simulated"].sel(solver=solver).to_numpy(),
+                fell,
+            )
+            for solver in scores["solver"].to_numpy()
+        ]
+        blocks.append(
+            Table(
+                f"The {len(fell)} {which} tests, in {fell.sum()} of which the body fell: falls predicted and seen, "
+                "predicted and not seen, seen and not predicted; balanced accuracy; Brier score.",
+                ("Model", "Right falls", "False falls", "Missed falls", "Balanced accuracy", "Brier score"),
+                tuple(rows), "lrrrrr",
+            )
+        )  # fmt: skip
+    scores = found.evidence if found.gain is None else found.gain
+    which = "open" if found.gain is None else "sealed"
+    blocks.append(
+        Table(
+            f"Reliability on the {which} tests: share of falls among tests of like predicted chance, by the models "
+            "with the causes, with its interval of 95 %.",
+            ("Predicted chance", "Tests", "Falls", "Share"), tuple(_reliability(scores)), "lrrr",
+        )
+    )  # fmt: skip
+    blocks.append(
+        Figure(
+            f"Share of the {which} tests with a fall, in bins of equal numbers of tests.",
+            svg_of(plot_fragility, scores),
+        )
+    )
+    return Section("Predicted beside measured", "scores", tuple(blocks))
+
+
+def _score_row(words, chance, fell):
+    called = chance > 0.5
+    return (
+        words, str((called & fell).sum()), str((called & ~fell).sum()), str((~called & fell).sum()),
+        number(balanced_accuracy(chance, fell)), f"{np.mean((chance - fell) ** 2):.3f}",
+    )  # fmt: skip
+
+
+def _reliability(scores):
+    chance, fell = scores["chance"].sel(model="extended").to_numpy(), scores["fell"].to_numpy() == 1
+    for low, high in pairwise(_CLASSES):
+        own = (chance >= low) & ((chance < high) | (high == 1.0))
+        count, falls = int(own.sum()), int(fell[own].sum())
+        share = MISSING
+        if count:
+            lower, upper = share_interval(falls, count)
+            share = f"{falls / count:.2f} ({lower:.2f} to {upper:.2f})"
+        yield f"{low:g} to {high:g}", str(count), str(falls), share
+
+
+def gain_section(found):
+    """Gain on the sealed tests; None where none was measured."""
+    gain = found.verdict.gain
+    if gain is None:
+        return None
+    against = {
+        "sound models, before any outcome was known": gain.nominal,
+        "sound models, weighted by the open outcomes": gain.recalibrated,
+        "a logistic curve, fitted to the open outcomes": gain.discrepancy,
+    }
+    return Section(
+        "Gain on sealed tests", "gain",
+        (
+            Text(
+                "Gain: the share of a rival's Brier score on the sealed tests that the models with the causes remove. "
+                "Nothing was fitted to a sealed outcome."
+            ),
+            Table(
+                "Gain with its interval of 90 %, tests drawn again.", ("Rival", "Gain"),
+                tuple((words, percent_words(one)) for words, one in against.items()), "lr",
+            ),
+        ),
+    )  # fmt: skip
+
+
+def odds_section(found):
+    """Odds and gains of all rivals, one table a cause; None where nothing acts."""
+    blocks = [
+        Table(
+            f"How many times less likely each cause is than {title_of(part.causes[0].name)}, the likeliest, and its "
+            "gain over nothing [nats].",
+            ("Cause", "Less likely", "Gain"),
+            tuple(
+                (
+                    title_of(name),
+                    "the likeliest" if name == part.causes[0].name
+                    else "not told apart" if part.odds[name] < ODDS else times_words(part.odds[name]),
+                    number(part.gains[name]),
+                )
+                for name in sorted(part.odds, key=part.odds.get)
+            ), "lrr",
+        )
+        for part in found.decision.parts
+    ]  # fmt: skip
+    return Section("Odds of all causes", "odds", tuple(blocks)) if blocks else None

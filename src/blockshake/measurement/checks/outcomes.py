@@ -1,0 +1,43 @@
+"""Content and contradictions of a campaign of outcomes, in lines for a reader."""
+
+from collections import defaultdict
+
+from blockshake.errors import InputError
+from blockshake.measurement.campaigns.commanded_motion import commanded_motion
+
+
+def outcome_lines(campaign):
+    """Lines that say what is there, and then every contradiction; of sealed tests their number alone.
+
+    Raises
+    ------
+    InputError
+        A motion that is not at hand.
+    """
+    opened = campaign.open.values()
+    fell = sum(test.outcome == "fell" for test in opened)
+    lines = [
+        f"campaign {campaign.name} on {campaign.structure}: {len(campaign.tests)} tests of which the outcome alone is "
+        f"known; open: {fell} fell, {len(opened) - fell} stood; {len(campaign.sealed)} are sealed"
+    ]
+    for name, test in campaign.tests.items():
+        if commanded_motion(campaign, test) is None:
+            path = campaign.folder / "campaign.yaml"
+            raise InputError(
+                path, f"tests.{name}.motion", f"expected a file in {campaign.folder} or a shipped name"
+            )
+    by_motion, remarks = defaultdict(list), []
+    for test in opened:
+        by_motion[test.motion].append(test)
+    for motion, tests in by_motion.items():
+        fallen = min((test for test in tests if test.outcome == "fell"), key=_strength, default=None)
+        stood = max((test for test in tests if test.outcome == "stood"), key=_strength, default=None)
+        if fallen and stood and _strength(stood) >= _strength(fallen):
+            remarks.append(
+                f"  {stood.name} stood at {stood.scale:g} of {motion}, {fallen.name} fell at {fallen.scale:g}"
+            )
+    return lines + (["remarks:", *remarks] if remarks else ["no inconsistency found"])
+
+
+def _strength(test):
+    return abs(test.scale)
