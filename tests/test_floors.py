@@ -33,6 +33,7 @@ ROOMS_OF_DIAGNOSIS = [
     ["verdict"],
     ["gain"],
     ["flight"],
+    ["outcomes"],
     ["report", "steps"],
 ]
 ROOMS_OF_STUDY = [
@@ -49,16 +50,17 @@ ROOMS_OF_STUDY = [
 MOST_MODULES = 15
 WITH_ROOMS = ("diagnosis", "study")  # whose folders have a budget each
 MOST_LINES = {
-    ".": 2130, "tables": 610, "statistics": 370, "geometry": 2490, "dynamics": 2795, "solvers": 8610,
-    "measurement": 4050, "simulation": 1590, "parity": 2265, "forces": 2160, "effects": 990, "pages": 1330,
+    ".": 2130, "tables": 610, "statistics": 370, "geometry": 2505, "dynamics": 2795, "solvers": 8610,
+    "measurement": 4160, "simulation": 1590, "parity": 2265, "forces": 2160, "effects": 990, "pages": 830,
     "study": 895, "study/sampling": 1010, "study/ensembles": 1315, "study/stiffness": 590,
     "study/comparison": 615, "study/fragility": 525, "study/sensitivity": 845, "study/calibration": 1090,
-    "study/statements": 1100, "study/report": 1795, "views": 750, "diagnosis": 315,
+    "study/statements": 1100, "study/report": 1795, "views": 750, "diagnosis": 335,
     "diagnosis/evidence": 1095, "diagnosis/outside": 675, "diagnosis/answer": 1200,
-    "diagnosis/nominal": 795, "diagnosis/misfit": 430, "diagnosis/verdict": 570, "diagnosis/gain": 1245,
-    "diagnosis/report": 995, "virtual": 485, "own_files": 845, "cost": 310, "diagnosis/flight": 1255,
+    "diagnosis/nominal": 800, "diagnosis/misfit": 430, "diagnosis/verdict": 570, "diagnosis/gain": 1245,
+    "diagnosis/report": 1000, "virtual": 485, "own_files": 845, "cost": 310, "diagnosis/flight": 1255,
+    "diagnosis/outcomes": 1000,
 }  # fmt: skip
-MOST_LINES_TOGETHER = 49_600
+MOST_LINES_TOGETHER = 50_200
 
 
 def place(name, floors):
@@ -111,7 +113,7 @@ def test_rooms_of_the_diagnosis_have_few_arrows():
         for own, other in arrows()
         if own[0] == other[0] == "diagnosis" and len(own) > 2 and len(other) > 2 and own[1] != other[1]
     }
-    assert len(pairs) <= 23
+    assert len(pairs) <= 29
 
 
 def test_no_folder_holds_more_than_fifteen_modules():

@@ -336,6 +336,7 @@ ROWS = {
         ("tests.0.scale", 0.0, "other than 0"),
         ("tests.0.baseline", "zero", _BASELINE),
         ("tests.0.role", "open", "'fit', 'select' or 'sealed'"),
+        ("tests.0.outcome", "fell", "either file"),
     ],
     "import": [
         ("structure", "nothing.yaml", "readable file"),

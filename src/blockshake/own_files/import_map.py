@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field
 
 from blockshake.files import load_yaml, shipped_names
-from blockshake.measurement.campaigns.campaign import MeasuredTest, Sensors
+from blockshake.measurement.campaigns.campaign import CommandedTest, Sensors
 from blockshake.paths import file_below
 from blockshake.tables.table_file import TableLayout
 from blockshake.validation import NotNegative, Strict, validated
@@ -34,7 +34,7 @@ TimeEntry = Annotated[NamedColumn, BeforeValidator(_entry, json_schema_input_typ
 ReadingEntry = Annotated[Reading, BeforeValidator(_entry, json_schema_input_type=Reading | str | int)]
 
 
-class ImportedTest(MeasuredTest):
+class ImportedTest(CommandedTest):
     """One test, as in ``campaign.yaml``; its files are those to be imported."""
 
     file: str = Field(description="text file or workbook, FILE#SHEET of one with several sheets")

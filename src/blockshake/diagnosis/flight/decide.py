@@ -18,8 +18,8 @@ from blockshake.forces.flight.arcs import find_arcs
 from blockshake.forces.flight.impacts import find_impacts, summary
 from blockshake.forces.flight.paths import fallen
 
-_MORE = 0.1  # of what the causes before it gain, that a further one needs besides
-_MOST = 3  # causes
+MORE = 0.1  # of what the causes before it gain, that a further one needs besides
+MOST_CAUSES = 3  # causes
 _NINETY = 1.645  # standard deviations
 _READINGS = "free flight"
 
@@ -68,7 +68,7 @@ def decide_flights(posed, without=()):
     impacts = find_impacts(posed, arcs)
     rows = flight_rows(posed, arcs)
     stages, sound, beside, gained, hidden = [], [], rows, 0.0, None
-    while len(stages) < _MOST:
+    while len(stages) < MOST_CAUSES:
         known = [
             *without,
             *(fit.cause.name for fit in sound),
@@ -76,7 +76,7 @@ def decide_flights(posed, without=()):
         ]
         fits = [explain(beside, cause) for cause in CAUSES if cause.name not in known]
         fits.sort(key=lambda fit: -fit.gain)
-        if not fits or fits[0].gain < needed_of(fits[0].cause.name) + _MORE * gained:
+        if not fits or fits[0].gain < needed_of(fits[0].cause.name) + MORE * gained:
             hidden = next((fit for fit in fits if fit.gain > needed_of(fit.cause.name)), None)
             break
         first = fits[0]
@@ -177,7 +177,7 @@ def _limits(posed, rows, gained):
         seen = deviations[deviations < 0.9 * scale]  # the others are not filmed
         if len(seen):
             # the gain of a size m: m^2 / (2 d^2) - ln(scale / d)
-            needed = needed_of(cause.name) + _MORE * gained + np.log(scale / seen).sum()
+            needed = needed_of(cause.name) + MORE * gained + np.log(scale / seen).sum()
             found[cause.name] = {
                 posed.name: max(float(np.sqrt(2.0 * needed) * seen.max()), cause.sound(posed))
             }

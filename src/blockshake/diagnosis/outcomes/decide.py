@@ -8,6 +8,7 @@ import xarray as xr
 from blockshake.diagnosis.answer.answer import ODDS, coarsened, needed_of
 from blockshake.diagnosis.answer.decide import chance, kind_of
 from blockshake.diagnosis.answer.decision import MEMBERS, Cause, Decision, Estimate, Part
+from blockshake.diagnosis.flight.decide import MORE, MOST_CAUSES
 from blockshake.diagnosis.outcomes.posterior import (
     fitted_curve,
     load_outcomes,
@@ -20,9 +21,7 @@ from blockshake.diagnosis.outcomes.unknowns import UNKNOWNS, largest_extent, val
 from blockshake.effects.registry import EFFECTS
 from blockshake.geometry.structure import load_structure
 
-_MORE = 0.1  # of what the causes before it gain, that a further one needs besides
-_MOST = 3  # causes
-_INTERVAL = (0.05, 0.5, 0.95)
+_QUANTILES = (0.05, 0.5, 0.95)
 _DECIDED = 0.02  # chance of the other outcome, below which a test tells nothing
 _READINGS = "outcomes"
 CAUSES = tuple(dict.fromkeys(unknown.cause for unknown in UNKNOWNS if unknown.cause))
@@ -61,7 +60,7 @@ def decide_outcomes(campaign, files, without=()):
         return weighed[key]
 
     stages, gained = [], 0.0
-    while len(stages) < _MOST:
+    while len(stages) < MOST_CAUSES:
         known = [next(iter(stage)) for stage in stages]
         gains = {
             cause: weigh([*known, cause]).evidence - weigh(known).evidence
@@ -70,7 +69,7 @@ def decide_outcomes(campaign, files, without=()):
         }
         gains = dict(sorted(gains.items(), key=lambda one: -one[1]))
         first = next(iter(gains), None)
-        if first is None or gains[first] < needed_of(first) + _MORE * gained:
+        if first is None or gains[first] < needed_of(first) + MORE * gained:
             break
         gained += gains[first]
         stages.append(gains)
@@ -120,7 +119,7 @@ def predicted(outcomes, names, fell, chances):
             "simulated": (("solver", "test"), simulated),
         },
         {"test": names, "model": list(PREDICTED), "solver": [one.attrs["model"] for one in outcomes.runs]},
-    )  # fmt: skip
+    )
 
 
 def _part(body, extent, gains, others, weigh):
@@ -132,7 +131,7 @@ def _part(body, extent, gains, others, weigh):
         parameters, values = {}, []
         for number in own:
             unknown = UNKNOWNS[number]
-            lower, middle, upper = value_of(unknown, found.quantiles(number, _INTERVAL), extent)
+            lower, middle, upper = value_of(unknown, found.quantiles(number, _QUANTILES), extent)
             parameters[unknown.name] = Estimate(estimate=middle, lower=lower, upper=upper, unit=unknown.unit)
             values.append(value_of(unknown, found.members(MEMBERS)[:, number], extent))
         names = [UNKNOWNS[number].name for number in own]

@@ -17,9 +17,18 @@ def plot_survival(scores):
     fell, chance = scores["fell"].to_numpy() == 1, scores["chance"].sel(model="extended").to_numpy()
     for marker, own, label in (("o", fell, "fell"), ("v", ~fell, "stood")):
         points = panel.scatter(
-            pga[own], ratio[own], c=chance[own], marker=marker, s=14, vmin=0.0, vmax=1.0, cmap="coolwarm",
-            edgecolors=BLACK, linewidths=0.3, label=label,
-        )  # fmt: skip
+            pga[own],
+            ratio[own],
+            c=chance[own],
+            marker=marker,
+            s=14,
+            vmin=0.0,
+            vmax=1.0,
+            cmap="coolwarm",
+            edgecolors=BLACK,
+            linewidths=0.3,
+            label=label,
+        )
     panel.set_xscale("log")
     panel.set_yscale("log")
     panel.set_xlabel("peak acceleration [g]")

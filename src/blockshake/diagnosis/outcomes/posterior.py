@@ -1,4 +1,4 @@
-"""What outcomes say of a body's unknowns: evidence of causes, and chances of a fall by weighted models."""
+"""Evidence of causes from outcomes, and chances of a fall by weighted models."""
 
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ _MODELS, _SEED = 2048, 43
 _MISREAD = 0.005  # chance that an outcome is otherwise than it was noted
 
 
-class Outcomes(NamedTuple):
+class SimulatedOutcomes(NamedTuple):
     """Simulated and measured outcomes of a campaign.
 
     Attributes
@@ -39,14 +39,14 @@ class Outcomes(NamedTuple):
 
 
 def load_outcomes(files):
-    """`Outcomes` of the files of all batches, solver by solver."""
+    """`SimulatedOutcomes` of the files of all batches, solver by solver."""
     batches = [load_made(path) for path in files]
     solvers = dict.fromkeys(batch.attrs["model"] for batch in batches)
     runs = tuple(
         xr.concat([batch for batch in batches if batch.attrs["model"] == solver], "test")
         for solver in solvers
     )
-    return Outcomes(tuple(runs[0]["test"].to_numpy().tolist()), runs, tuple(map(emulate, runs)))
+    return SimulatedOutcomes(tuple(runs[0]["test"].to_numpy().tolist()), runs, tuple(map(emulate, runs)))
 
 
 class Posterior(NamedTuple):

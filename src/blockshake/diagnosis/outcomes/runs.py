@@ -19,7 +19,7 @@ from blockshake.simulation.simulate import simulate
 from blockshake.store import structure_digest
 
 BATCH = 25  # tests
-_RATE = 50.0  # Hz, of the orientations that are kept
+_KEPT_RATE = 50.0  # Hz, of the orientations that are kept
 _SEED = 42
 
 
@@ -109,7 +109,7 @@ def _run(structure, body, path, entry, solver, shares, checkpoint):
     """Largest lean [rad] of one run, see `simulate_outcomes`; a run of seconds needs no checkpoint."""
     built, factor = model_at(structure, body, solver, shares)
     motion = load_motion(path, entry.scale * factor, entry.baseline)
-    run = simulate(built, motion, solver, output_rate=_RATE, accelerometers=False)
+    run = simulate(built, motion, solver, output_rate=_KEPT_RATE, accelerometers=False)
     if run.attrs["status"] not in FINISHED:
         return np.nan
     if run.attrs["status"] in FALLEN:

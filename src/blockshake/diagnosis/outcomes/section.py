@@ -55,7 +55,8 @@ def answer_section(found):
         ("Brier score", f"{np.mean((chance - fell) ** 2):.3f}", "0 is perfect, 0.25 knows nothing"),
     )
     return Section(
-        "Answer", "answer",
+        "Answer",
+        "answer",
         (
             Box(sentence_case(words), facts),
             Items(tuple(map(sentence_case, found.verdict.caveats))),
@@ -65,7 +66,7 @@ def answer_section(found):
                 svg_of(plot_survival, scores),
             ),
         ),
-    )  # fmt: skip
+    )
 
 
 def _cause_words(cause):
@@ -103,18 +104,21 @@ def scores_section(found):
                 f"The {len(fell)} {which} tests, in {fell.sum()} of which the body fell: falls predicted and seen, "
                 "predicted and not seen, seen and not predicted; balanced accuracy; Brier score.",
                 ("Model", "Right falls", "False falls", "Missed falls", "Balanced accuracy", "Brier score"),
-                tuple(rows), "lrrrrr",
+                tuple(rows),
+                "lrrrrr",
             )
-        )  # fmt: skip
+        )
     scores = found.evidence if found.gain is None else found.gain
     which = "open" if found.gain is None else "sealed"
     blocks.append(
         Table(
             f"Reliability on the {which} tests: share of falls among tests of like predicted chance, by the models "
             "with the causes, with its interval of 95 %.",
-            ("Predicted chance", "Tests", "Falls", "Share"), tuple(_reliability(scores)), "lrrr",
+            ("Predicted chance", "Tests", "Falls", "Share"),
+            tuple(_reliability(scores)),
+            "lrrr",
         )
-    )  # fmt: skip
+    )
     blocks.append(
         Figure(
             f"Share of the {which} tests with a fall, in bins of equal numbers of tests.",
@@ -127,9 +131,13 @@ def scores_section(found):
 def _score_row(words, chance, fell):
     called = chance > 0.5
     return (
-        words, str((called & fell).sum()), str((called & ~fell).sum()), str((~called & fell).sum()),
-        number(balanced_accuracy(chance, fell)), f"{np.mean((chance - fell) ** 2):.3f}",
-    )  # fmt: skip
+        words,
+        str((called & fell).sum()),
+        str((called & ~fell).sum()),
+        str((~called & fell).sum()),
+        number(balanced_accuracy(chance, fell)),
+        f"{np.mean((chance - fell) ** 2):.3f}",
+    )
 
 
 def _reliability(scores):
@@ -155,18 +163,21 @@ def gain_section(found):
         "a logistic curve, fitted to the open outcomes": gain.discrepancy,
     }
     return Section(
-        "Gain on sealed tests", "gain",
+        "Gain on sealed tests",
+        "gain",
         (
             Text(
                 "Gain: the share of a rival's Brier score on the sealed tests that the models with the causes remove. "
                 "Nothing was fitted to a sealed outcome."
             ),
             Table(
-                "Gain with its interval of 90 %, tests drawn again.", ("Rival", "Gain"),
-                tuple((words, percent_words(one)) for words, one in against.items()), "lr",
+                "Gain with its interval of 90 %, tests drawn again.",
+                ("Rival", "Gain"),
+                tuple((words, percent_words(one)) for words, one in against.items()),
+                "lr",
             ),
         ),
-    )  # fmt: skip
+    )
 
 
 def odds_section(found):
@@ -179,13 +190,17 @@ def odds_section(found):
             tuple(
                 (
                     title_of(name),
-                    "the likeliest" if name == part.causes[0].name
-                    else "not told apart" if part.odds[name] < ODDS else times_words(part.odds[name]),
+                    "the likeliest"
+                    if name == part.causes[0].name
+                    else "not told apart"
+                    if part.odds[name] < ODDS
+                    else times_words(part.odds[name]),
                     number(part.gains[name]),
                 )
                 for name in sorted(part.odds, key=part.odds.get)
-            ), "lrr",
+            ),
+            "lrr",
         )
         for part in found.decision.parts
-    ]  # fmt: skip
+    ]
     return Section("Odds of all causes", "odds", tuple(blocks)) if blocks else None

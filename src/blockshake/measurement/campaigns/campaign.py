@@ -30,16 +30,10 @@ def _not_zero(value):
 Scale = Annotated[Finite, AfterValidator(_not_zero)]
 
 
-class MeasuredTest(Strict):
-    """One test of the list: what was commanded, where it was recorded, what it may be used for."""
+class CommandedTest(Strict):
+    """What was commanded in one test, and what the test may be used for."""
 
     name: str = Field(description="unique in the campaign")
-    file: str | None = Field(
-        None, description="readings: a CSV or netCDF file in the folder; needed but with an outcome"
-    )
-    outcome: Literal["fell", "stood"] | None = Field(
-        None, description="all that is known of a test without readings: whether the body fell"
-    )
     motion: str | None = Field(
         None,
         description="commanded motion: a shipped name, or a file in the folder; none of a body that is filmed over a "
@@ -52,17 +46,28 @@ class MeasuredTest(Strict):
     )
 
     @model_validator(mode="after")
+    def _scaled(self):
+        if self.motion is not None and "scale" not in self.model_fields_set:
+            raise ValueError("missing key: scale of the motion")
+        return self
+
+
+class MeasuredTest(CommandedTest):
+    """One test of the list, and where it was recorded or how it ended."""
+
+    file: str | None = Field(
+        None, description="readings: a CSV or netCDF file in the folder; needed but with an outcome"
+    )
+    outcome: Literal["fell", "stood"] | None = Field(
+        None, description="all that is known of a test without readings: whether the body fell"
+    )
+
+    @model_validator(mode="after")
     def _known(self):
         if (self.file is None) == (self.outcome is None):
             raise ValueError("expected either file, with readings, or outcome")
         if self.outcome is not None and self.motion is None:
             raise ValueError("missing key: motion, of a test with an outcome")
-        return self
-
-    @model_validator(mode="after")
-    def _scaled(self):
-        if self.motion is not None and "scale" not in self.model_fields_set:
-            raise ValueError("missing key: scale of the motion")
         return self
 
 
@@ -196,5 +201,7 @@ def load_test(campaign, name, structure=None):
     ``structure`` is the campaign's, where it is loaded already.
     """
     entry, structure = campaign.tests[name], load_structure(structure or campaign.structure)
+    if entry.file is None:
+        raise InputError(campaign.folder / "campaign.yaml", f"tests.{name}.file", "missing key: readings")
     test = on_one_clock(read_test(campaign.folder / entry.file, structure), structure)
     return from_command(test, structure, commanded_motion(campaign, entry))
