@@ -18,7 +18,7 @@ from blockshake.pages.drawing import svg_of
 from blockshake.pages.wording import MISSING, number, sentence_case
 from blockshake.statistics.intervals import share_interval
 
-_WORDS = {
+MODELS_IN_WORDS = {
     "nominal": "sound models, before any outcome was known",
     "recalibrated": "sound models, weighted by the open outcomes",
     "extended": "models with the causes, weighted by the open outcomes",
@@ -89,7 +89,7 @@ def scores_section(found):
         fell = scores["fell"].to_numpy() == 1
         rows = [
             _score_row(words, scores["chance"].sel(model=model).to_numpy(), fell)
-            for model, words in _WORDS.items()
+            for model, words in MODELS_IN_WORDS.items()
         ]
         rows += [
             _score_row(
@@ -115,7 +115,7 @@ def scores_section(found):
             f"Reliability on the {which} tests: share of falls among tests of like predicted chance, by the models "
             "with the causes, with its interval of 95 %.",
             ("Predicted chance", "Tests", "Falls", "Share"),
-            tuple(_reliability(scores)),
+            tuple(reliability(scores)),
             "lrrr",
         )
     )
@@ -140,7 +140,8 @@ def _score_row(words, chance, fell):
     )
 
 
-def _reliability(scores):
+def reliability(scores):
+    """Rows of texts by class of predicted chance: tests, falls, and their share with its interval of 95 %."""
     chance, fell = scores["chance"].sel(model="extended").to_numpy(), scores["fell"].to_numpy() == 1
     for low, high in pairwise(_CLASSES):
         own = (chance >= low) & ((chance < high) | (high == 1.0))

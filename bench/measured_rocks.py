@@ -1,0 +1,153 @@
+"""Rocks that fell or stood on a shake table through the whole loop, and the page docs/results/granite-rocks.md.
+
+``python bench/measured_rocks.py SHARED FOLDER`` makes a campaign of each rock in SHARED/measured/granite-rocks by
+``examples/measured_rocks.py``, diagnoses it as a user would, has LS-DEM simulate every fourth batch by the structure
+file's model, and writes the page with its figures. What was simulated lies in FOLDER: a killed command goes on there.
+"""
+
+import datetime
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from measured import wrapped
+
+import blockshake
+from blockshake.diagnosis.answer.decision import load_decision
+from blockshake.diagnosis.outcomes.decide import fell_in
+from blockshake.diagnosis.outcomes.figure import plot_fragility, plot_survival
+from blockshake.diagnosis.outcomes.runs import BATCH, simulate_outcomes
+from blockshake.diagnosis.outcomes.section import MODELS_IN_WORDS, balanced_accuracy, reliability
+from blockshake.effects.registry import title_of
+from blockshake.files import load_json, write_text
+from blockshake.measurement.campaigns.campaign import load_campaign
+from blockshake.pages.drawing import save_picture
+from blockshake.sources import script_sources, source_digest
+from blockshake.store import Store
+
+ROOT = Path(__file__).parents[1]
+PAGE = ROOT / "docs" / "results" / "granite-rocks.md"
+ROCKS = ("SP1", "SP2")
+_EVERY = 4  # batch is simulated by LS-DEM
+HEAD = """# Granite rocks on a shake table
+
+Two scanned granite rocks of 353 kg each stood on a shake table under the recorded motions of
+hundreds of tests. It is known which motions threw each rock down, and nothing else. All but the
+description of the set and the captions is computed; the data are not part of the project (GPL-3.0, published with the
+scans and the table's motions). The command is
+
+```
+python bench/measured_rocks.py SHARED FOLDER
+```
+
+It makes a campaign of each rock by `examples/measured_rocks.py`: the convex hull of the scan in its resting pose, the
+mass centre of the closed scan where there is one, the table's acceleration from its displacement and accelerometer,
+friction 0.6. One half of the ground motions is open with all its tests, the other is sealed. `blockshake diagnose`
+simulates every test by four models and reads the open outcomes alone
+([diagnosis of outcomes](../theory/outcomes.md))."""
+
+
+def main(shared, folder):
+    """Write the page."""
+    parts = [_part(rock, shared / "measured" / "granite-rocks", folder) for rock in ROCKS]
+    write_text(PAGE, wrapped("\n\n".join([HEAD, *parts])) + "\n")
+
+
+def _part(rock, source, folder):
+    campaign, output = folder / rock, folder / f"{rock}-output"
+    if not campaign.is_dir():
+        program = ROOT / "examples" / "measured_rocks.py"
+        subprocess.run([sys.executable, str(program), rock, str(source), str(campaign)], check=True)
+    blockshake.diagnose(campaign, output, effort="quick")
+    return part(rock, campaign, output, folder / "ls-dem")
+
+
+def part(rock, folder, output, store):
+    """Lines on one rock, from the results of its diagnosis in ``output``; LS-DEM's runs are kept in ``store``."""
+    campaign, verdict = load_campaign(folder), load_json(output / "verdict.json")
+    decision = load_decision(output / "decision.json")
+    gain, evidence = (xr.load_dataset(output / f"{name}.nc") for name in ("gain", "evidence"))
+    save_picture(PAGE.parent / f"{rock.lower()}-survival.png", plot_survival, gain)
+    save_picture(PAGE.parent / f"{rock.lower()}-fragility.png", plot_fragility, gain)
+    fell = fell_in(campaign, list(campaign.open))
+    lines = [
+        f"## {rock}, {datetime.date.today().isoformat()}",
+        f"{len(fell)} open tests, of which {fell.sum()} ended in a fall, and {gain.sizes['test']} sealed tests, of "
+        f"which {int(gain['fell'].sum())} did. The verdict: **{verdict['decision']}** ({verdict['word']}).",
+        "\n".join(f"- {line}" for line in _causes(decision)) or "- no cause is named",
+        "Beside it the tool says:", "\n".join(f"- {line}." for line in verdict["caveats"]),
+        _scores(gain, "sealed"), _scores(evidence, "open"), _gains(verdict),
+        f"![tests that the rock survived, and the predicted chance of a fall]({rock.lower()}-survival.png)",
+        f"![share of falls over the motion's peaks]({rock.lower()}-fragility.png)",
+        "\n".join([
+            "| predicted chance of a fall | sealed tests | falls | share, interval of 95 % |",
+            "| --- | --- | --- | --- |", *(f"| {' | '.join(row)} |" for row in reliability(gain)),
+        ]),
+        _other_solver(campaign, store),
+    ]  # fmt: skip
+    return "\n\n".join(lines)
+
+
+def _causes(decision):
+    for one in decision.parts:
+        for cause in one.causes:
+            sizes = ", ".join(
+                f"{name} {size.estimate:.3g} ({size.lower:.3g} to {size.upper:.3g}) {size.unit}"
+                for name, size in cause.parameters.items()
+            )
+            odds = "" if cause is one.causes[0] else f"; less likely by {np.exp(cause.odds):.2g} times"
+            yield f"{title_of(cause.name)}: {sizes}; gain {cause.gain:.1f} nats{odds}"
+
+
+def _scores(scores, which):
+    fell = scores["fell"].to_numpy() == 1
+    rows = [(words, scores["chance"].sel(model=model).to_numpy()) for model, words in MODELS_IN_WORDS.items()]
+    rows.insert(0, ("the structure file's model, nscd-rigid", scores["simulated"].to_numpy()[0]))
+    return "\n".join([
+        f"| model, {which} tests | right falls | false falls | missed falls | balanced accuracy | Brier score |",
+        "| --- | --- | --- | --- | --- | --- |", *(_row(words, chance, fell) for words, chance in rows),
+    ])  # fmt: skip
+
+
+def _row(words, chance, fell):
+    called = chance > 0.5
+    counts = (called & fell).sum(), (called & ~fell).sum(), (~called & fell).sum()
+    accuracy, brier = balanced_accuracy(chance, fell), np.mean((chance - fell) ** 2)
+    return f"| {words} | {' | '.join(map(str, counts))} | {accuracy:.3f} | {brier:.3f} |"
+
+
+def _gains(verdict):
+    rows = ["| rival | gain in Brier score on sealed tests | interval of 90 % |", "| --- | --- | --- |"]
+    for rival, words in (
+        ("nominal", "sound models, before any outcome was known"),
+        ("recalibrated", "sound models, weighted by the open outcomes"),
+        ("discrepancy", "logistic curve, fitted to the open outcomes"),
+    ):
+        one = verdict["gain"][rival]
+        rows.append(f"| {words} | {one['estimate']:.1%} | {one['lower']:.1%} to {one['upper']:.1%} |")
+    return "\n".join(rows)
+
+
+def _other_solver(campaign, store):
+    """Both solvers on the structure file's model, on the tests of every fourth batch."""
+    batches = range(0, -(-len(campaign.tests) // BATCH), _EVERY)
+    rows = []
+    for solver in ("nscd-rigid", "ls-dem"):
+        kept = Store(store, source_digest(*script_sources("simulate_outcomes", solver)))
+        runs = xr.concat([simulate_outcomes(campaign, batch, solver, 1, kept) for batch in batches], "test")
+        lean = runs["lean"].to_numpy()[:, 0]
+        done = np.isfinite(lean) | np.isposinf(lean)
+        fell = fell_in(campaign, runs["test"].to_numpy().tolist())
+        rows.append(_row(f"{solver}, {done.sum()} tests", np.isposinf(lean)[done].astype(float), fell[done]))
+    return "\n".join([
+        f"Both solvers by the structure file's model, on all tests of every {_EVERY}th batch of {BATCH}, sealed "
+        "ones with them:", "",
+        "| solver | right falls | false falls | missed falls | balanced accuracy | Brier score |",
+        "| --- | --- | --- | --- | --- | --- |", *rows,
+    ])  # fmt: skip
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), Path(sys.argv[2]))
