@@ -85,7 +85,7 @@ def decide(seen, without=(), unseen=()):
     decision = Decision(
         decision=kind_of(parts),
         parts=parts,
-        probabilities=_probabilities(parts, without),
+        probabilities=probabilities(parts, without),
         limits=limits,
         excluded_above=excluded_above(limits, seen[0].structure),
         p=min(1.0, sum(map(chance, parts))) if parts else 1.0,
@@ -130,16 +130,17 @@ def kind_of(parts):
     return "ambiguous" if any(len(part.causes) > 1 and part.effects for part in parts) else "combination"
 
 
-def _probabilities(parts, without):
-    probabilities = {name: 0.0 for name in EFFECTS if name not in without}
+def probabilities(parts, without):
+    """Probability of every effect in its part, among all rivals and nothing, from coarsened odds; 0 of all others."""
+    found = {name: 0.0 for name in EFFECTS if name not in without}
     for part in parts:
         best = part.causes[0].gain
         none = coarsened(best, best)
         total = float(np.exp(-none)) + sum(float(np.exp(-odds)) for odds in part.odds.values())
         for name, odds in part.odds.items():
-            if name in probabilities:
-                probabilities[name] = max(probabilities[name], float(np.exp(-odds)) / total)
-    return probabilities
+            if name in found:
+                found[name] = max(found[name], float(np.exp(-odds)) / total)
+    return found
 
 
 def _part(readings, group, seen, evidence, closed, slab=None):

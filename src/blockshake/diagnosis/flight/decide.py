@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.diagnosis.answer.answer import ODDS, coarsened, needed_of
-from blockshake.diagnosis.answer.decide import chance, kind_of
+from blockshake.diagnosis.answer.decide import chance, kind_of, probabilities
 from blockshake.diagnosis.answer.decision import Cause, Decision, Estimate, Part
 from blockshake.diagnosis.answer.size import FORM
 from blockshake.diagnosis.flight.causes import CAUSES
@@ -100,7 +100,7 @@ def decide_flights(posed, without=()):
     decision = Decision(
         decision=kind_of(parts),
         parts=parts,
-        probabilities={name: _probability(parts, name) for name in EFFECTS if name not in without},
+        probabilities=probabilities(parts, without),
         limits=_limits(posed, rows, gained),
         excluded_above={},
         p=min(1.0, sum(map(chance, parts))) if parts else 1.0,
@@ -155,15 +155,6 @@ def _sizes(posed, fit):
             estimate=one.estimate / mass, lower=one.lower / mass, upper=one.upper / mass, unit="1/s"
         )
     return found
-
-
-def _probability(parts, name):
-    for part in parts:
-        if name in part.odds:
-            total = sum(np.exp(-odds) for odds in part.odds.values())
-            if part.odds[name] < ODDS:
-                return float(np.exp(-part.odds[name]) / total)
-    return 0.0
 
 
 def _limits(posed, rows, gained):

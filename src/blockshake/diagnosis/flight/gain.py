@@ -11,9 +11,9 @@ from blockshake.diagnosis.flight.evidence import FlightFit, flight_rows
 from blockshake.diagnosis.flight.replay import FlightModel, replay, start_arc
 from blockshake.diagnosis.gain.campaign_gain import CampaignGain
 from blockshake.diagnosis.nominal.ensemble import DISCREPANCY, EXTENDED, NOMINAL, RECALIBRATED
-from blockshake.diagnosis.verdict.verdict import OF_A_GAIN, Contrast, Gain, MeasuredGain
+from blockshake.diagnosis.verdict.verdict import Contrast, Gain, MeasuredGain
 from blockshake.forces.flight.arcs import find_arcs
-from blockshake.statistics.resampling import limits_of, resampled_weights
+from blockshake.statistics.resampling import resampled_weights
 
 _FRICTION = (0.03, 0.06, 0.1, 0.15, 0.22, 0.33, 0.5)
 _RESTITUTION = (0.0, 0.15, 0.3, 0.45, 0.6)
@@ -152,13 +152,11 @@ def _contrasts(error):
     weights = resampled_weights(count, np.random.default_rng([count, 42])) / count
     means = {str(kind): weights @ error.sel(kind=kind).to_numpy() for kind in error["kind"].values}
     return Gain(
-        **{rival: _contrast(means[rival], means[EXTENDED]) for rival in (RECALIBRATED, NOMINAL, DISCREPANCY)}
+        **{
+            rival: Contrast.of_errors(means[rival], means[EXTENDED])
+            for rival in (RECALIBRATED, NOMINAL, DISCREPANCY)
+        }
     )
-
-
-def _contrast(rival, extended):
-    values = (rival - extended) / np.maximum(rival, 1e-12)
-    return Contrast.cut_off(values[0], *limits_of(values[1:], OF_A_GAIN))
 
 
 def _row_gain(posed, arcs, decision, shift):
@@ -180,5 +178,7 @@ def _row_gain(posed, arcs, decision, shift):
     count = len(rows.likelihood.roots)
     weights = resampled_weights(count, np.random.default_rng([count, 43]))
     means = {kind: weights @ own for kind, own in squares.items()}
-    contrasts = {rival: _contrast(means[rival], means[EXTENDED]) for rival in (RECALIBRATED, DISCREPANCY)}
+    contrasts = {
+        rival: Contrast.of_errors(means[rival], means[EXTENDED]) for rival in (RECALIBRATED, DISCREPANCY)
+    }
     return Gain(**contrasts, nominal=contrasts[RECALIBRATED])

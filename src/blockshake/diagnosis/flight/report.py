@@ -2,6 +2,7 @@
 
 from blockshake.diagnosis.answer.decision import load_decision
 from blockshake.diagnosis.flight.section import (
+    TITLES,
     FoundFlights,
     answer_section,
     gain_section,
@@ -35,7 +36,8 @@ def compose_flights(campaign, results):
         evidence=load_made(results / "evidence.nc"),
         gain=load_made(gain) if gain else None,
     )
-    sections = [section(found) for section in (answer_section, gain_section, impacts_section, odds_section)]
+    sections = [section(found) for section in (answer_section, gain_section, impacts_section)]
+    sections.append(odds_section(decision, TITLES, "free flights"))
     sections.append(origin(campaign, results, gain))
     structure = load_structure(campaign.structure)
     return numbered(

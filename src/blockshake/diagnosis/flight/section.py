@@ -17,7 +17,7 @@ from blockshake.pages.drawing import BLUE, GREEN, GREY, ORANGE, svg_of
 from blockshake.pages.wording import MISSING, number, sentence_case
 
 _MODELS = {"nominal": GREY, "recalibrated": ORANGE, "discrepancy": GREEN, "extended": BLUE}
-_TITLES = {cause.name: cause.title for cause in CAUSES}
+TITLES = {cause.name: cause.title for cause in CAUSES}
 _WORDS = {
     "nominal": "as the structure file says",
     "recalibrated": "recalibrated without a cause",
@@ -75,35 +75,33 @@ def _largest(cause):
         cause.parameters.items(),
         key=lambda one: abs(one[1].estimate) / max(one[1].upper - one[1].lower, 1e-12),
     )
-    return f"{name} of {_TITLES[cause.name]}", estimate_in_si(estimate), "90 % interval"
+    return f"{name} of {TITLES[cause.name]}", estimate_in_si(estimate), "90 % interval"
 
 
 def _cause_words(cause):
     sizes = ", ".join(f"{name} {estimate_in_si(one)}" for name, one in cause.parameters.items())
-    return f"{_TITLES[cause.name]}, {cause.place['body']} ({sizes})"
+    return f"{TITLES[cause.name]}, {cause.place['body']} ({sizes})"
 
 
 def _gain_words(verdict):
     return percent_words(verdict.gain.recalibrated) if verdict.gain else "not measured"
 
 
-def odds_section(found):
-    """Odds and gains of all rivals, one table a cause; None where nothing acts."""
+def odds_section(decision, titles, readings):
+    """Odds and gains of all rivals, one table a cause; None where nothing acts.
+
+    ``titles`` has the words for a cause by its name, and ``readings`` says what the odds rest on.
+    """
     blocks = []
-    for part in found.decision.parts:
-        first, names = part.causes[0], sorted(part.odds, key=part.odds.get)
+    for part in decision.parts:
         rows = tuple(
-            (
-                _TITLES[name],
-                _less_likely(part, name),
-                number(part.gains[name]),
-            )
-            for name in names
+            (titles[name], _less_likely(part, name), number(part.gains[name]))
+            for name in sorted(part.odds, key=part.odds.get)
         )
         blocks.append(
             Table(
-                f"How many times less likely each cause is than {_TITLES[first.name]}, the likeliest, by free "
-                "flights alone, and its gain over nothing [nats].",
+                f"How many times less likely each cause is than {titles[part.causes[0].name]}, the likeliest, by "
+                f"{readings} alone, and its gain over nothing [nats].",
                 ("Cause", "Less likely", "Gain"), rows, "lrr",
             )
         )  # fmt: skip

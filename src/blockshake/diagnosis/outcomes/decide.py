@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.diagnosis.answer.answer import ODDS, coarsened, needed_of
-from blockshake.diagnosis.answer.decide import chance, kind_of
+from blockshake.diagnosis.answer.decide import chance, kind_of, probabilities
 from blockshake.diagnosis.answer.decision import MEMBERS, Cause, Decision, Estimate, Part
 from blockshake.diagnosis.flight.decide import MORE, MOST_CAUSES
 from blockshake.diagnosis.outcomes.posterior import (
@@ -18,7 +18,6 @@ from blockshake.diagnosis.outcomes.posterior import (
 )
 from blockshake.diagnosis.outcomes.runs import free_body
 from blockshake.diagnosis.outcomes.unknowns import UNKNOWNS, largest_extent, value_of
-from blockshake.effects.registry import EFFECTS
 from blockshake.geometry.structure import load_structure
 
 _QUANTILES = (0.05, 0.5, 0.95)
@@ -88,7 +87,7 @@ def decide_outcomes(campaign, files, without=()):
     decision = Decision(
         decision=kind_of(parts),
         parts=parts,
-        probabilities={effect: _probability(parts, effect) for effect in EFFECTS if effect not in without},
+        probabilities=probabilities(parts, without),
         limits={},
         excluded_above={},
         p=min(1.0, sum(map(chance, parts))) if parts else 1.0,
@@ -148,13 +147,6 @@ def _part(body, extent, gains, others, weigh):
             )
         )
     return Part(readings=_READINGS, causes=tuple(causes), odds=odds, gains=gains)
-
-
-def _probability(parts, name):
-    for part in parts:
-        if part.odds.get(name, ODDS) < ODDS:
-            return float(np.exp(-part.odds[name]) / sum(np.exp(-odds) for odds in part.odds.values()))
-    return 0.0
 
 
 def _not_seen(outcomes, names, telling, chances, fell):

@@ -5,8 +5,8 @@ import numpy as np
 from blockshake.diagnosis.gain.campaign_gain import CampaignGain
 from blockshake.diagnosis.outcomes.decide import PREDICTED, fell_in, predicted
 from blockshake.diagnosis.outcomes.posterior import fitted_curve, load_outcomes, posterior, prior
-from blockshake.diagnosis.verdict.verdict import OF_A_GAIN, Contrast, Gain, MeasuredGain
-from blockshake.statistics.resampling import limits_of, resampled_weights
+from blockshake.diagnosis.verdict.verdict import Contrast, Gain, MeasuredGain
+from blockshake.statistics.resampling import resampled_weights
 
 
 def outcome_gain(campaign, files, decision):
@@ -42,7 +42,7 @@ def outcome_gain(campaign, files, decision):
     weights = resampled_weights(len(sealed), np.random.default_rng([len(sealed), 44])) / len(sealed)
     means = {model: weights @ own for model, own in squares.items()}
     contrasts = {
-        rival: _contrast(means[model], means["extended"])
+        rival: Contrast.of_errors(means[model], means["extended"])
         for rival, model in (
             ("recalibrated", "recalibrated"),
             ("nominal", "nominal"),
@@ -51,8 +51,3 @@ def outcome_gain(campaign, files, decision):
     }
     runs = sum(run["lean"].size for run in outcomes.runs)
     return CampaignGain(MeasuredGain(gain=Gain(**contrasts), runs=runs), scores)
-
-
-def _contrast(rival, extended):
-    values = (rival - extended) / np.maximum(rival, 1e-12)
-    return Contrast.cut_off(values[0], *limits_of(values[1:], OF_A_GAIN))

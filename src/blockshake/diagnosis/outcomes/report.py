@@ -2,14 +2,16 @@
 
 from blockshake.diagnosis.answer.decision import load_decision
 from blockshake.diagnosis.flight.report import origin
+from blockshake.diagnosis.flight.section import odds_section
+from blockshake.diagnosis.outcomes.decide import CAUSES
 from blockshake.diagnosis.outcomes.section import (
     FoundOutcomes,
     answer_section,
     gain_section,
-    odds_section,
     scores_section,
 )
 from blockshake.diagnosis.verdict.verdict import load_verdict
+from blockshake.effects.registry import title_of
 from blockshake.geometry.structure import load_structure
 from blockshake.pages.blocks import Document, numbered
 from blockshake.pages.wording import count_words
@@ -33,7 +35,9 @@ def compose_outcomes(campaign, results):
         evidence=load_made(results / "evidence.nc"),
         gain=load_made(gain) if gain else None,
     )
-    sections = [section(found) for section in (answer_section, scores_section, gain_section, odds_section)]
+    sections = [section(found) for section in (answer_section, scores_section, gain_section)]
+    titles = {cause: title_of(cause) for cause in CAUSES}
+    sections.append(odds_section(found.decision, titles, "outcomes"))
     sections.append(origin(campaign, results, gain))
     structure = load_structure(campaign.structure)
     return numbered(

@@ -6,12 +6,11 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from blockshake.diagnosis.answer.answer import ODDS
 from blockshake.diagnosis.answer.decision import Decision
 from blockshake.diagnosis.flight.decide import estimate_in_si
 from blockshake.diagnosis.outcomes.figure import plot_fragility, plot_survival
 from blockshake.diagnosis.verdict.verdict import Verdict
-from blockshake.diagnosis.wording import percent_words, times_words
+from blockshake.diagnosis.wording import percent_words
 from blockshake.effects.registry import title_of
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import svg_of
@@ -179,29 +178,3 @@ def gain_section(found):
             ),
         ),
     )
-
-
-def odds_section(found):
-    """Odds and gains of all rivals, one table a cause; None where nothing acts."""
-    blocks = [
-        Table(
-            f"How many times less likely each cause is than {title_of(part.causes[0].name)}, the likeliest, and its "
-            "gain over nothing [nats].",
-            ("Cause", "Less likely", "Gain"),
-            tuple(
-                (
-                    title_of(name),
-                    "the likeliest"
-                    if name == part.causes[0].name
-                    else "not told apart"
-                    if part.odds[name] < ODDS
-                    else times_words(part.odds[name]),
-                    number(part.gains[name]),
-                )
-                for name in sorted(part.odds, key=part.odds.get)
-            ),
-            "lrr",
-        )
-        for part in found.decision.parts
-    ]
-    return Section("Odds of all causes", "odds", tuple(blocks)) if blocks else None

@@ -9,6 +9,7 @@ from pydantic import Field, JsonValue, model_validator
 from blockshake.diagnosis.answer.decision import Estimate
 from blockshake.diagnosis.verdict.ladder import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.files import load_json, write_json
+from blockshake.statistics.resampling import limits_of
 from blockshake.validation import Count, Finite, Fraction, Strict, validated
 
 VERSION = 3
@@ -27,6 +28,12 @@ class Contrast(Strict):
         """The gain from -1 to 1; an interval of few draws that misses its estimate is widened to it."""
         ends = {"estimate": estimate, "lower": min(lower, estimate), "upper": max(upper, estimate)}
         return cls(**{name: float(np.clip(value, -1.0, 1.0)) for name, value in ends.items()})
+
+    @classmethod
+    def of_errors(cls, rival, extended):
+        """Share of a rival's error that the extended model removes: both once, and then with tests drawn again."""
+        values = (rival - extended) / np.maximum(rival, 1e-12)
+        return cls.cut_off(values[0], *limits_of(values[1:], OF_A_GAIN))
 
 
 NOTHING_TO_GAIN = Contrast(estimate=0.0, lower=-1.0, upper=1.0)
