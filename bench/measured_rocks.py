@@ -2,7 +2,7 @@
 
 ``python bench/measured_rocks.py SHARED FOLDER`` makes a campaign of each rock in SHARED/measured/granite-rocks by
 ``examples/measured_rocks.py``, diagnoses it as a user would, has LS-DEM simulate every fourth batch by the structure
-file's model, and writes the page with its figures. What was simulated lies in FOLDER: a killed command goes on there.
+file's model, and writes the page with its figures. Runs lie in FOLDER: a killed command goes on there.
 """
 
 import datetime

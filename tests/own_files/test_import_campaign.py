@@ -4,15 +4,20 @@ from decimal import Decimal
 
 import numpy as np
 import openpyxl
+import pandas as pd
 import pytest
 import xarray as xr
+import yaml
+from scipy.spatial.transform import Rotation
 
 from blockshake.cli import main
+from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import PACKAGE
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.campaigns.clocks import from_first_reading
 from blockshake.measurement.campaigns.recorded_test import read_test
+from blockshake.simulation.simulate import simulate
 
 SHIPPED = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-1"
 TEST = "basso-tirreno-200"
@@ -232,3 +237,64 @@ tests: [{name: t 1, file: v1.csv, motion: alkion, scale: 1.0, role: fit}]
     # a map says all
     call = ["import-campaign", str(tmp_path / "map.yaml"), "--rest", "1", "--output", str(tmp_path / "d")]
     assert main(call) == 2
+
+
+@pytest.fixture(scope="module")
+def filmed(tmp_path_factory):
+    """Folder with a run's noisy poses in mm as a table, and its map; and the displacements of the markers by name."""
+    folder, generator = tmp_path_factory.mktemp("filmed"), np.random.default_rng(1)
+    structure = load_structure("configuration-1")
+    run = simulate(structure, load_motion("basso-tirreno", 2.0), "nscd-rigid", duration=4.0)
+    table, moved = {"t": run["time"].to_numpy()}, {}
+    for body in run["body"].values:
+        noise = 1e-4 * generator.normal(size=(2, run.sizes["time"], 3))
+        place = run["position"].sel(body=body).to_numpy() + noise[0]
+        turn = Rotation.from_quat(run["orientation"].sel(body=body), scalar_first=True)
+        turn = Rotation.from_rotvec(noise[1]) * turn
+        table |= {f"{body}.{axis}": column for axis, column in zip("xyz", 1e3 * place.T, strict=True)}
+        quaternion = turn.as_quat(scalar_first=True)
+        table |= {f"{body}.q{part}": column for part, column in zip("wxyz", quaternion.T, strict=True)}
+        for marker in structure.file.markers:
+            if marker.body == body:
+                moved[marker.name] = place + turn.apply(marker.position)
+    table = pd.DataFrame(table)
+    table.to_csv(folder / "poses.csv", index=False)
+    columns = {name: name for name in table.columns[1:]}
+    test = {"name": "t1", "file": "poses.csv", "motion": "basso-tirreno", "scale": 2.0, "role": "fit"}
+    asked = {"name": "filmed", "structure": "configuration-1", "time": "t", "displacement_unit": "mm"}
+    (folder / "map.yaml").write_text(yaml.safe_dump({**asked, "tests": [test], "columns": columns}))
+    return folder, {name: values - values[0] for name, values in moved.items()}
+
+
+def test_poses_of_a_shaken_stack_become_what_its_markers_read(filmed, tmp_path):
+    folder, moved = filmed
+    assert main(["import-campaign", str(folder / "map.yaml"), "--output", str(tmp_path / "campaign")]) == 0
+    campaign = load_campaign(tmp_path / "campaign")
+    test = read_test(campaign.folder / campaign.tests["t1"].file, load_structure("configuration-1"))
+    assert set(test["marker"].values) == set(moved)
+    for name, expected in moved.items():
+        np.testing.assert_allclose(test["marker_displacement"].sel(marker=name), expected, atol=1e-9)
+
+
+def test_a_marker_has_columns_of_its_own_or_a_pose(filmed, tmp_path, capsys):
+    folder, _ = filmed
+    asked = yaml.safe_load((folder / "map.yaml").read_text())
+    table = pd.read_csv(folder / "poses.csv").assign(own=0.0)
+    table.to_csv(tmp_path / "poses.csv", index=False)
+    asked["columns"]["block-1-face.x"] = "own"
+    (tmp_path / "map.yaml").write_text(yaml.safe_dump(asked))
+    assert main(["import-campaign", str(tmp_path / "map.yaml"), "--output", str(tmp_path / "campaign")]) == 2
+    assert "block-1-face is read from the poses of block-1" in capsys.readouterr().err
+    assert not (tmp_path / "campaign").exists()
+
+
+def test_four_markers_in_a_tetrahedron_know_a_pose_as_well_as_its_film():
+    """Independent noise of 2 s at four corners of radius 1.22 s / t is noise s of the place and t of the rotation."""
+    place, turn = 1e-4, 2e-4  # m, rad
+    radius = np.sqrt(1.5) * place / turn
+    corners = radius / np.sqrt(3.0) * np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+    # displacement of a corner: place + rotation x corner
+    rows = np.concatenate([np.column_stack([np.eye(3), np.cross(np.eye(3), corner).T]) for corner in corners])
+    covariance = (2.0 * place) ** 2 * np.linalg.inv(rows.T @ rows)
+    np.testing.assert_allclose(covariance[:3, :3], place**2 * np.eye(3), atol=1e-20)
+    np.testing.assert_allclose(covariance[3:, 3:], turn**2 * np.eye(3), atol=1e-20)

@@ -20,11 +20,13 @@ from blockshake.measurement.campaigns.campaign_folder import (
 from blockshake.measurement.campaigns.clocks import missing_rows
 from blockshake.measurement.campaigns.recorded_test import checked_test
 from blockshake.measurement.checks.campaign_check import campaign_lines
-from blockshake.measurement.poses.pose_file import ANGLE, QUATERNION, free_body
+from blockshake.measurement.poses.pose_file import ANGLE, QUATERNION, free_body, poses_of_columns
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.transducers import transducer_names
 from blockshake.tables.table_file import read_table
 from blockshake.tables.units import unit_size
+
+_TURNS = tuple(f"q{part}" for part in QUATERNION)
 
 
 def import_campaign(asked, folder, where):
@@ -110,22 +112,21 @@ def read_readings(test, asked, structure, where):
     transducers = [name for name in asked.columns if name in transducer_names(structure)]
     markers = [name for name in asked.columns if name not in (*channels, *transducers)]
     if not markers:
-        raise InputError(where, "columns", "expected a column of a marker, MARKER.x")
+        raise InputError(where, "columns", "expected a column of a marker, MARKER.x, or of a pose, BODY.x")
+    posed = [key for key in markers if _is_pose(key, structure)]
+    markers = [key for key in markers if key not in posed]
     source = test.accelerometers or test.file
-    for names in (markers, [*channels, *transducers]) if source != test.file else (asked.columns,):
+    for names in ([*markers, *posed], [*channels, *transducers]) if source != test.file else (asked.columns,):
         _check_once(names, asked, where)
-    time, readings = _columns_of(test.file, markers, asked, "displacement", where)
-    names = list(dict.fromkeys(name.rpartition(".")[0] for name in markers))
-    values = np.full((len(time), len(names), len(AXES)), np.nan)
-    for key, column in zip(markers, readings.T, strict=True):
-        name, _, axis = key.rpartition(".")
-        if axis not in AXES or not name:
-            wrong = (
-                "expected MARKER.x, MARKER.y, MARKER.z, an accelerometer channel or a displacement transducer"
+    time, read = _displacements(test.file, markers, asked, where) if markers else (None, {})
+    for body in dict.fromkeys(key.rpartition(".")[0] for key in posed):
+        time, filmed = _markers_of_poses(test.file, body, posed, asked, structure, where)
+        for name in filmed.keys() & read.keys():
+            raise InputError(
+                where, f"columns.{name}.x", f"expected none; {name} is read from the poses of {body}"
             )
-            raise InputError(where, f"columns.{key}", wrong)
-        start = _rest(time, column, asked.rest, test.file, key)
-        values[:, names.index(name), AXES.index(axis)] = column - start
+        read |= filmed
+    names, values = list(read), np.stack([*read.values()], axis=1)
     variables = {"marker_displacement": (("time", "marker", "axis"), values, {"units": "m"})}
     coordinates = {"time": ("time", time, {"units": "s"}), "marker": names, "axis": list(AXES)}
     for variable, dimension, sensors, kind, unit in (
@@ -141,6 +142,70 @@ def read_readings(test, asked, structure, where):
         variables[variable] = (("time_acc", dimension), read, {"units": unit})
         coordinates |= {"time_acc": ("time_acc", time_acc, {"units": "s"}), dimension: sensors}
     return xr.Dataset(variables, coordinates)
+
+
+def _displacements(source, keys, asked, where):
+    """Times, and displacements (n_times, 3) [m] by marker, from its own columns; NaN along axes without a column."""
+    time, readings = _columns_of(source, keys, asked, "displacement", where)
+    found = {}
+    for key, column in zip(keys, readings.T, strict=True):
+        name, _, axis = key.rpartition(".")
+        if axis not in AXES or not name:
+            wrong = (
+                "expected MARKER.x, MARKER.y, MARKER.z, an accelerometer channel or a displacement transducer"
+            )
+            raise InputError(where, f"columns.{key}", wrong)
+        values = found.setdefault(name, np.full((len(time), len(AXES)), np.nan))
+        values[:, AXES.index(axis)] = column - _rest(time, column, asked.rest, source, key)
+    return time, found
+
+
+def _is_pose(key, structure):
+    name, _, part = key.rpartition(".")
+    markers = {marker.name for marker in structure.file.markers}
+    return name in structure.body_names and name not in markers and part in (*AXES, ANGLE, *_TURNS)
+
+
+def _markers_of_poses(source, body, posed, asked, structure, where):
+    """Times, and displacements (n_times, 3) [m] of all markers of a body, from its poses."""
+    own = [marker for marker in structure.file.markers if marker.body == body]
+    if not own:
+        raise InputError(where, f"columns.{body}.x", f"expected markers of {body} in the structure")
+    time, columns = _pose_columns(
+        source, body, [key for key in posed if key.startswith(f"{body}.")], asked, where
+    )
+    position, rotation, _ = poses_of_columns(columns, source, body)
+    found = {}
+    for marker in own:
+        place = position + rotation @ np.array(marker.position)
+        start = (
+            [_rest(time, column, asked.rest, source, f"{body}.x") for column in place.T]
+            if asked.rest
+            else 0.0
+        )
+        found[marker.name] = place - (start or place[np.isfinite(place[:, 0]).argmax()])
+    return time, found
+
+
+def _pose_columns(source, body, keys, asked, where):
+    """Times, and columns by key of a body's pose, in m and rad."""
+    places = [f"{body}.{axis}" for axis in AXES]
+    turns = [f"{body}.{ANGLE}", *(f"{body}.{part}" for part in _TURNS)]
+    for key in keys:
+        if key in turns[1:] and (
+            asked.columns[key].reversed or asked.columns[key].unit or asked.rotation_unit != "rad"
+        ):
+            raise InputError(
+                where, f"columns.{key}", "expected a quaternion's column as it is, without unit or reversed"
+            )
+    columns = {}
+    for names, kind in ((places, "displacement"), (turns, "rotation")):
+        mapped = [name for name in names if name in keys]
+        if not mapped:
+            raise InputError(where, "columns", f"expected a column of {body} among {', '.join(names)}")
+        time, values = _columns_of(source, mapped, asked, kind, where)
+        columns |= dict(zip(mapped, values.T, strict=True))
+    return time, columns
 
 
 def _check_once(names, asked, where):
@@ -222,25 +287,10 @@ def posed_table(test, asked, structure, where):
         A key that is no pose of the free body; faults of the table as of `read_readings`.
     """
     body = structure.body_names[free_body(structure)[0]]
-    places = [f"{body}.{axis}" for axis in AXES]
-    turns = [f"{body}.{ANGLE}", *(f"{body}.q{one}" for one in QUATERNION)]
+    known = [f"{body}.{part}" for part in (*AXES, ANGLE, *_TURNS)]
     for key in asked.columns:
-        if key not in (*places, *turns):
-            raise InputError(where, f"columns.{key}", f"expected one of {', '.join((*places, *turns))}")
-        if key in turns[1:] and (
-            asked.columns[key].reversed or asked.columns[key].unit or asked.rotation_unit != "rad"
-        ):
-            raise InputError(
-                where, f"columns.{key}", "expected a quaternion's column as it is, without unit or reversed"
-            )
+        if key not in known:
+            raise InputError(where, f"columns.{key}", f"expected one of {', '.join(known)}")
     _check_once(asked.columns, asked, where)
-    parts = []
-    for names, kind in ((places, "displacement"), (turns, "rotation")):
-        mapped = [name for name in names if name in asked.columns]
-        if not mapped:
-            raise InputError(where, "columns", f"expected a column of {body} among {', '.join(names)}")
-        time, values = _columns_of(test.file, mapped, asked, kind, where)
-        parts.append(pd.DataFrame(values, columns=mapped))
-    table = pd.concat(parts, axis=1)
-    table.insert(0, "time_s", np.asarray(time))
-    return table.to_csv(index=False)
+    time, columns = _pose_columns(test.file, body, list(asked.columns), asked, where)
+    return pd.DataFrame({"time_s": time, **columns}).to_csv(index=False)

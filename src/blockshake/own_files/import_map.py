@@ -60,7 +60,7 @@ class ImportMap(Strict):
     columns: dict[str, ReadingEntry] = Field(
         min_length=1,
         description="by MARKER.x and the like, accelerometer channel or displacement transducer: a column's name, or "
-        "an entry; without base motion by BODY.x and the like, BODY.angle_y, or BODY.qw to BODY.qz",
+        "an entry; of a filmed body by BODY.x and the like, BODY.angle_y, or BODY.qw to BODY.qz",
     )
     rest: NotNegative = Field(
         0.0,

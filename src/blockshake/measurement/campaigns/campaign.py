@@ -31,7 +31,7 @@ Scale = Annotated[Finite, AfterValidator(_not_zero)]
 
 
 class CommandedTest(Strict):
-    """What was commanded in one test, and what the test may be used for."""
+    """The command of one test, and the use that may be made of it."""
 
     name: str = Field(description="unique in the campaign")
     motion: str | None = Field(

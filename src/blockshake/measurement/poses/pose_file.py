@@ -103,7 +103,21 @@ def _from_netcdf(path, name):
 
 def _from_table(path, name):
     time, columns = read_columns(path)
-    position = np.full((len(time), 3), np.nan)
+    return (time, *poses_of_columns(columns, path, name))
+
+
+def poses_of_columns(columns, path, name):
+    """Position (n_times, 3) [m], rotation (n_times, 3, 3) and whether it is planar, from the columns of a body.
+
+    ``columns``: float64 arrays (n_times,) by ``BODY.x`` and the like, as in `read_poses`; ``path`` is the file that an
+    error names.
+
+    Raises
+    ------
+    InputError
+        A column that is missing or unknown, a quaternion that is not of unit length.
+    """
+    position = np.full((len(next(iter(columns.values()))), 3), np.nan)
     for number, axis in enumerate(AXES):
         if f"{name}.{axis}" in columns:
             position[:, number] = columns[f"{name}.{axis}"]
@@ -120,8 +134,8 @@ def _from_table(path, name):
         if key.startswith(f"{name}.") and key not in known:
             raise InputError(path, key, f"expected one of {', '.join(sorted(known))}")
     if turned in columns:
-        return time, position, _about_y(columns[turned]), True
-    return time, position, _rotations(np.column_stack([columns[key] for key in whole]), path, name), False
+        return position, _about_y(columns[turned]), True
+    return position, _rotations(np.column_stack([columns[key] for key in whole]), path, name), False
 
 
 def _about_y(angle):
