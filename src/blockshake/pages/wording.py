@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.simulation.models import MODELS
+from blockshake.simulation.models import MODELS, NAME_IN_STUDY
 
 CUBED = "\N{SUPERSCRIPT THREE}"
 SQUARED = "\N{SUPERSCRIPT TWO}"
@@ -25,8 +25,9 @@ _NAMES = {
 
 
 def model_label(model):
-    """Name of a solver in print."""
-    return MODELS[model].label if model in MODELS else model
+    """Name in print of a solver, and of a study's model: ``LS-DEM as printed`` of ``ls-dem-as-printed``."""
+    named = NAME_IN_STUDY.fullmatch(model)
+    return f"{MODELS[named[1]].label}{named[2].replace('-', ' ')}" if named else model
 
 
 def parameter_label(name):

@@ -3,13 +3,22 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, ConfigDict, Field, StringConstraints, field_validator, model_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    StringConstraints,
+    WithJsonSchema,
+    field_validator,
+    model_validator,
+)
 
 from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.measurement.sensors.markers import RATE
-from blockshake.simulation.models import ModelName
+from blockshake.simulation.models import NAME_IN_STUDY, solver_of
 from blockshake.statistics.scores import FEWEST
 from blockshake.study.analyses import ANALYSES
 from blockshake.study.calibration.settings import CalibrationSettings
@@ -26,6 +35,19 @@ def _links(ensemble):
     return {
         name: source for name, source in LINKED.items() if source in ensemble.get("distributions", TABLE_2)
     }
+
+
+def _of_a_solver(name):
+    """The name of a model, which begins with its solver's."""
+    solver_of(name)
+    return name
+
+
+_ModelName = Annotated[
+    str,
+    AfterValidator(_of_a_solver),
+    WithJsonSchema({"type": "string", "pattern": f"^{NAME_IN_STUDY.pattern}$"}),
+]
 
 
 def _as_text(given):
@@ -61,7 +83,7 @@ class Ensemble(Strict):
 
 
 class ModelSettings(Strict):
-    """One solver in the study."""
+    """One model of the study: a solver with settings."""
 
     time_step: Positive = Field(description="of the integration [s]")
     parameters: dict[str, float | int | str | bool] = Field(
@@ -95,7 +117,7 @@ class StudyCase(Strict):
     scale: Positive = Field(description="multiplies the motion [1]")
     baseline: Baseline = AUTO
     duration: Positive = Field(description="simulated time [s]")
-    samples: dict[ModelName, Count] = Field(
+    samples: dict[str, Count] = Field(
         {},
         description="fewer samples than the ensemble's, at least 1, by model: the first rows of the design. With fewer "
         "than three the case has no twins, distances, widths or scores of that model",
@@ -138,7 +160,7 @@ class Ladder(Rungs):
 class FragilitySettings(Strict):
     """Samples that climb the ladder, each until its potential collapse."""
 
-    model: ModelName = Field("nscd-rigid", description="solver that climbs, one of the study's")
+    model: str = Field("nscd-rigid", description="model that climbs, one of the study's")
     cases: tuple[str, ...] = Field(min_length=1, description="names of cases of the study")
     size: Whole = Field(
         20, ge=3, description="samples that climb: the first rows of the design, no more than there are [1]"
@@ -176,7 +198,11 @@ class StudyConfig(Strict):
     samples_per_job: Whole = Field(
         10, ge=1, description="samples in one job; a killed job resumes at the sample, whatever this is [1]"
     )
-    models: dict[ModelName, ModelSettings] = Field(min_length=1)
+    models: dict[_ModelName, ModelSettings] = Field(
+        min_length=1,
+        description="by name: a solver's, or a solver's with words of yours after it, such as `ls-dem-as-printed`. "
+        "Models of one solver run the same samples, and the report says how each differs from that of the plain name",
+    )
     cases: tuple[StudyCase, ...] = Field(min_length=1)
     ensemble: Ensemble
     ladder: Ladder = Ladder()

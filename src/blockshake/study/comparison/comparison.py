@@ -8,6 +8,7 @@ import xarray as xr
 from blockshake.files import content_digest
 from blockshake.measurement.motion.compared_curves import curves_along_x
 from blockshake.measurement.sensors import markers
+from blockshake.simulation.models import solver_of
 from blockshake.statistics.intervals import SURE_FROM, quantile_interval, sample_quantiles
 from blockshake.statistics.resampling import (
     bootstrap_interval,
@@ -30,6 +31,7 @@ from blockshake.study.ensembles.envelope import counted_samples
 
 MOST = 400  # samples of a model that are compared: each is held against each
 TOLD_APART_BY = 3.0  # standard deviations of a marker's noise that curves are apart when they have parted
+CHANGES = ("peak", "residual", "width")  # of a solver with other settings, told from the same samples
 _MIDDLE = [0.5]
 _ENDS = (0.05, 0.95)  # quantiles between which a range lies
 _DESCRIBED = {
@@ -38,6 +40,13 @@ _DESCRIBED = {
     "residual": ("median of the displacement along x relative to the slab at the end", "m"),
     "residual_range": ("from the 5 % to the 95 % quantile of the residual", "m"),
     "width": ("mean absolute difference of two samples relative to the slab", "m"),
+    "peak_change": (
+        "peak minus that of the model of the solver's own name, median over the same samples",
+        "m",
+    ),
+    "residual_change": ("residual minus that of the model of the solver's own name, median likewise", "m"),
+    "width_change": ("width minus that of the model of the solver's own name, of the same samples", "m"),
+    "changed": ("samples that both models have", "1"),
     "distance": ("energy distance of the ensembles, mean over times and blocks", "m"),
     "distance_chance": ("distance that random divisions of the samples stay below", "m"),
     "history_difference": ("mean difference of the same sample by both models, median over the samples", "m"),
@@ -91,7 +100,9 @@ def compare_models(ensembles, twins, measured):
     xarray.Dataset
         Displacements are along x relative to the slab's marker [m]; markers are those of the blocks. Of one model:
         ``counted(model)``; medians ``peak`` and ``residual(model, marker)``; ``residual_range(model, marker)``, from
-        its 5 % to its 95 % quantile; and ``width(model, marker)``, the mean absolute difference of two samples. Of two
+        its 5 % to its 95 % quantile; and ``width(model, marker)``, the mean absolute difference of two samples. Of a
+        model with settings of its own, against that of its solver's name alone, over the ``changed(model)`` samples of
+        both: ``peak_change``, ``residual_change`` and ``width_change(model, marker)``, NaN for all others. Of two
         models, ``other`` the second: ``distance``, the energy distance of the ensembles, with ``distance_chance``;
         ``history_difference`` and ``parting_time`` of the ``common`` samples. Of the numerics, NaN without twins:
         ``floor`` and ``horizon(model, twin)``. Against the measured curves, NaN without any: ``score(model)`` and
@@ -108,6 +119,7 @@ def compare_models(ensembles, twins, measured):
     result = xr.merge(
         [
             _alone(counted, seed),
+            _changes(counted, seed),
             _pairs(counted, TOLD_APART_BY * noise, seed),
             _numerics(counted, twins, TOLD_APART_BY * noise),
             _scores(counted, None if measured is None else measured[0], seed),
@@ -181,6 +193,41 @@ def _alone(counted, seed):
 def _extent(values):
     """Distance of the 5 % from the 95 % quantile over the first axis."""
     return np.diff(sample_quantiles(values, _ENDS), axis=0)[0]
+
+
+def _changes(counted, seed):
+    """What the settings of a model change of the model that has its solver's name alone, over the samples of both."""
+    models, blocks = list(counted), _blocks(next(iter(counted.values())))
+    change = {name: np.full((len(models), len(blocks)), np.nan) for name in CHANGES}
+    limits = {name: np.full((2, len(models), len(blocks)), np.nan) for name in CHANGES}
+    common = np.zeros(len(models), dtype=int)
+    for row, model in enumerate(models):
+        plain = solver_of(model).name
+        if plain == model or plain not in counted:
+            continue
+        both = np.intersect1d(counted[model]["sample"], counted[plain]["sample"])
+        own, other = (counted[name].sel(sample=both) for name in (model, plain))
+        common[row] = len(both)
+        for name in ("peak", "residual"):
+            moved = (own[name] - other[name]).sel(frame="slab", marker=blocks)
+            moved = moved.transpose("sample", "marker").to_numpy()
+            change[name][row] = sample_quantiles(moved, _MIDDLE)[0]
+            limits[name][:, row] = quantile_interval(moved, _MIDDLE)[:, 0]
+        if len(both) >= FEWEST:
+            weights = resampled_weights(len(both), _generator(seed, "change", model))
+            wide, usual = (
+                mean_width(mean_differences(one, one), weights) for one in map(_curves, (own, other))
+            )
+            change["width"][row] = (wide - usual)[0]
+            if len(both) >= SURE_FROM:
+                limits["width"][:, row] = limits_of((wide - usual)[1:])
+    by_block = ("model", "marker")
+    named = {f"{name}_change": (by_block, change[name]) for name in CHANGES}
+    named |= {f"{name}_change_interval": (("bound", *by_block), limits[name]) for name in CHANGES}
+    return xr.Dataset(
+        {**named, "changed": ("model", common)},
+        {"model": models, "marker": blocks, "bound": ["lower", "upper"]},
+    )
 
 
 def _pairs(counted, limit, seed):

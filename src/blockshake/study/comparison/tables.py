@@ -7,8 +7,9 @@ import numpy as np
 from blockshake.pages.blocks import Table
 from blockshake.pages.rows import face_markers
 from blockshake.pages.wording import MISSING, given, millimetres, model_label, number
+from blockshake.simulation.models import solver_of
 from blockshake.statistics.intervals import SURE_FROM
-from blockshake.study.comparison.comparison import TOLD_APART_BY
+from blockshake.study.comparison.comparison import CHANGES, TOLD_APART_BY
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 
 
@@ -84,6 +85,45 @@ def pairs_table(content):
         ),
         tuple(rows), "llrrrrrr",
     )  # fmt: skip
+
+
+def other_settings(content):
+    """Models of a study that have settings of their own beside the model of their solver's name, a list of str."""
+    models = content.study["models"]
+    return [model for model in models if model != (plain := solver_of(model).name) and plain in models]
+
+
+def other_settings_table(content):
+    """Peak, residual and width of the envelope at the top block: by the plain model, and what other settings change."""
+    rows = []
+    for case in content.cases.values():
+        at_top = case.differences.sel(marker=marker_at_top(case))
+        for model in other_settings(content):
+            own, plain = (at_top.sel(model=name) for name in (model, solver_of(model).name))
+            cells = [
+                cell
+                for name in CHANGES
+                for cell in (millimetres(plain[name]), _with_limits(own, f"{name}_change"))
+            ]
+            rows.append((case.name, model_label(model), str(int(own["changed"])), *cells))
+    return Table(
+        "One solver with other settings, at the top block, along x relative to the slab. Peak and residual: medians "
+        "over the samples by the model of the solver's plain name; width of its envelope: mean difference of two "
+        "samples. Change: what the same n samples by the named model have more, of peak and residual the median of "
+        "the differences with limits of 95 % by order statistics, of the width with bootstrap limits. Limits that hold "
+        "zero show no change. A sample that failed by either model is left out of n, and one that fell has no residual "
+        f"and the peak that it had reached. {MISSING.capitalize()}: too few samples.",
+        (
+            "Case", "Model", "n", "Peak [mm]", "Change [mm]", "Residual [mm]", "Change [mm]", "Width [mm]",
+            "Change [mm]",
+        ),
+        tuple(rows), "llrrrrrrr",
+    )  # fmt: skip
+
+
+def marker_at_top(case):
+    """Marker of the top block of a case."""
+    return next(iter(face_markers(case.structure).values()))
 
 
 def numerics_table(content):
