@@ -121,7 +121,12 @@ def _findings(path):
     found = load_json(path)
     lines = _study_words(found, count_words(found["findings"]))
     if found.get("other_settings"):
-        lines += ["", "### Settings as printed", "", markdown(*_table(found["other_settings"]))]
+        lines += [
+            "",
+            "### Settings as printed",
+            "",
+            markdown(found["other_settings"][0], found["other_settings"][1:]),
+        ]
     for heading, rows in found["findings"].items():
         lines += ["", f"### {heading}", "", markdown(HEADER, rows)]
     return "\n".join(lines)
@@ -142,13 +147,9 @@ def printed_settings():
     if not LITERAL.is_file():
         return None
     found = load_json(LITERAL)
-    return "\n".join([*_study_words(found), "", markdown(*_table(found["other_settings"]))])
-
-
-def _table(found):
-    """Header and rows of a table of a study's findings."""
-    header, *rows = found
-    return header, rows
+    return "\n".join(
+        [*_study_words(found), "", markdown(found["other_settings"][0], found["other_settings"][1:])]
+    )
 
 
 def arrival_definitions():

@@ -139,7 +139,7 @@ def _key(location, mapping, prefix):
 def _words(location, mapping):
     """Parts of a dotted key, entries of lists by name."""
     words, place = [], mapping
-    for part in (one for one in location if one != "[key]"):  # pydantic's mark of the name of an entry
+    for part in location:
         if isinstance(place, (list, tuple)) and isinstance(part, int) and part < len(place):
             place = place[part]
             words.append(str(place.get("name", part)) if isinstance(place, dict) else str(part))

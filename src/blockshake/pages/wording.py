@@ -85,7 +85,7 @@ def share_words(count, total):
     >>> share_words(3, 5), share_words(5, 5), share_words(0, 5)
     ('3 of 5', 'all 5', 'none of 5')
     """
-    return {0: f"none of {total}", total: f"all {total}"}.get(count, f"{count} of {total}")
+    return {total: f"all {total}", 0: f"none of {total}"}.get(count, f"{count} of {total}")
 
 
 def count_words(count, noun):

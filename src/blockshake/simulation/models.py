@@ -216,23 +216,20 @@ def model_of(name):
 
 
 def solver_of(name):
-    """Row of the solver of a study's model, by which the model's name begins.
+    """Row of the solver by which the name of a study's model begins: of ``ls-dem-as-printed`` that of ``ls-dem``.
 
     Raises
     ------
     InputError
         The name begins with no solver.
-
-    Examples
-    --------
-    >>> solver_of("ls-dem-as-printed").name
-    'ls-dem'
     """
     named = NAME_IN_STUDY.fullmatch(name)
     if named is None:
         solvers = ", ".join(MODELS)
         raise InputError(
-            "models", name, f"expected one of {solvers}, or one of these and words such as ls-dem-coarse"
+            "",
+            f"models.{name}",
+            f"expected one of {solvers}, or one of these and words such as ls-dem-coarse",
         )
     return MODELS[named[1]]
 

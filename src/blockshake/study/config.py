@@ -3,22 +3,13 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import (
-    AfterValidator,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    StringConstraints,
-    WithJsonSchema,
-    field_validator,
-    model_validator,
-)
+from pydantic import BeforeValidator, ConfigDict, Field, StringConstraints, field_validator, model_validator
 
 from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.measurement.sensors.markers import RATE
-from blockshake.simulation.models import NAME_IN_STUDY, solver_of
+from blockshake.simulation.models import solver_of
 from blockshake.statistics.scores import FEWEST
 from blockshake.study.analyses import ANALYSES
 from blockshake.study.calibration.settings import CalibrationSettings
@@ -35,19 +26,6 @@ def _links(ensemble):
     return {
         name: source for name, source in LINKED.items() if source in ensemble.get("distributions", TABLE_2)
     }
-
-
-def _of_a_solver(name):
-    """The name of a model, which begins with its solver's."""
-    solver_of(name)
-    return name
-
-
-_ModelName = Annotated[
-    str,
-    AfterValidator(_of_a_solver),
-    WithJsonSchema({"type": "string", "pattern": f"^{NAME_IN_STUDY.pattern}$"}),
-]
 
 
 def _as_text(given):
@@ -198,7 +176,7 @@ class StudyConfig(Strict):
     samples_per_job: Whole = Field(
         10, ge=1, description="samples in one job; a killed job resumes at the sample, whatever this is [1]"
     )
-    models: dict[_ModelName, ModelSettings] = Field(
+    models: dict[str, ModelSettings] = Field(
         min_length=1,
         description="by name: a solver's, or a solver's with words of yours after it, such as `ls-dem-as-printed`. "
         "Models of one solver run the same samples, and the report says how each differs from that of the plain name",
@@ -211,6 +189,13 @@ class StudyConfig(Strict):
         None, description="none: friction, restitution and contact stiffness are taken as they are"
     )
     diagnosis: Diagnosis = Field(Diagnosis(), description="none: no campaign is diagnosed")
+
+    @field_validator("models")
+    @classmethod
+    def _of_solvers(cls, models):
+        for name in models:
+            solver_of(name)
+        return models
 
     @model_validator(mode="after")
     def _variables_by_one_name(self):

@@ -40,12 +40,9 @@ _DESCRIBED = {
     "residual": ("median of the displacement along x relative to the slab at the end", "m"),
     "residual_range": ("from the 5 % to the 95 % quantile of the residual", "m"),
     "width": ("mean absolute difference of two samples relative to the slab", "m"),
-    "peak_change": (
-        "peak minus that of the model of the solver's own name, median over the same samples",
-        "m",
-    ),
-    "residual_change": ("residual minus that of the model of the solver's own name, median likewise", "m"),
-    "width_change": ("width minus that of the model of the solver's own name, of the same samples", "m"),
+    "peak_change": ("peak minus that of the model of the solver's plain name, median of the pairs", "m"),
+    "residual_change": ("residual minus that of the model of the plain name, median of the pairs", "m"),
+    "width_change": ("width minus that of the model of the plain name, of the same samples", "m"),
     "changed": ("samples that both models have", "1"),
     "distance": ("energy distance of the ensembles, mean over times and blocks", "m"),
     "distance_chance": ("distance that random divisions of the samples stay below", "m"),
@@ -197,37 +194,27 @@ def _extent(values):
 
 def _changes(counted, seed):
     """What the settings of a model change of the model that has its solver's name alone, over the samples of both."""
-    models, blocks = list(counted), _blocks(next(iter(counted.values())))
-    change = {name: np.full((len(models), len(blocks)), np.nan) for name in CHANGES}
-    limits = {name: np.full((2, len(models), len(blocks)), np.nan) for name in CHANGES}
-    common = np.zeros(len(models), dtype=int)
-    for row, model in enumerate(models):
-        plain = solver_of(model).name
-        if plain == model or plain not in counted:
-            continue
-        both = np.intersect1d(counted[model]["sample"], counted[plain]["sample"])
-        own, other = (counted[name].sel(sample=both) for name in (model, plain))
-        common[row] = len(both)
+    parts = []
+    for model, own in counted.items():
+        other, blocks = counted.get(solver_of(model).name, own), _blocks(own)
+        both = [] if other is own else np.intersect1d(own["sample"], other["sample"])
+        pair = [one.isel(sample=np.isin(one["sample"], both)) for one in (own, other)]
+        one = {"changed": ((), len(both))}
         for name in ("peak", "residual"):
-            moved = (own[name] - other[name]).sel(frame="slab", marker=blocks)
-            moved = moved.transpose("sample", "marker").to_numpy()
-            change[name][row] = sample_quantiles(moved, _MIDDLE)[0]
-            limits[name][:, row] = quantile_interval(moved, _MIDDLE)[:, 0]
+            values = [of[name].sel(frame="slab", marker=blocks).transpose("sample", "marker") for of in pair]
+            moved = np.subtract(*(of.to_numpy() for of in values))
+            one[f"{name}_change"] = ("marker", sample_quantiles(moved, _MIDDLE)[0])
+            one[f"{name}_change_interval"] = (("bound", "marker"), quantile_interval(moved, _MIDDLE)[:, 0])
+        drawn = np.full((1, len(blocks)), np.nan)
         if len(both) >= FEWEST:
             weights = resampled_weights(len(both), _generator(seed, "change", model))
-            wide, usual = (
-                mean_width(mean_differences(one, one), weights) for one in map(_curves, (own, other))
-            )
-            change["width"][row] = (wide - usual)[0]
-            if len(both) >= SURE_FROM:
-                limits["width"][:, row] = limits_of((wide - usual)[1:])
-    by_block = ("model", "marker")
-    named = {f"{name}_change": (by_block, change[name]) for name in CHANGES}
-    named |= {f"{name}_change_interval": (("bound", *by_block), limits[name]) for name in CHANGES}
-    return xr.Dataset(
-        {**named, "changed": ("model", common)},
-        {"model": models, "marker": blocks, "bound": ["lower", "upper"]},
-    )
+            widths = [mean_width(mean_differences(of, of), weights) for of in map(_curves, pair)]
+            drawn = np.subtract(*widths)
+        one["width_change"] = ("marker", drawn[0])
+        limits = limits_of(drawn[1:] if len(both) >= SURE_FROM else drawn[:0])
+        one["width_change_interval"] = (("bound", "marker"), limits)
+        parts.append(xr.Dataset(one, {"marker": blocks, "bound": ["lower", "upper"]}))
+    return xr.concat(parts, dim=xr.Variable("model", list(counted)))
 
 
 def _pairs(counted, limit, seed):

@@ -6,12 +6,12 @@ import numpy as np
 
 from blockshake.pages.blocks import Heading, Items, Section, Text
 from blockshake.pages.wording import count_words, given, model_label, number, share_words
-from blockshake.simulation.models import MODELS, solver_of
+from blockshake.simulation.models import MODELS
 from blockshake.study.comparison.comparison import CHANGES
 from blockshake.study.comparison.tables import (
+    at_top,
     in_millimetres,
     larger_floor,
-    marker_at_top,
     numerics_table,
     other_settings,
     other_settings_table,
@@ -37,12 +37,9 @@ def models(content):
         pairs_table(content),
         numerics_table(content),
     ]
-    if other_settings(content):
-        blocks += [
-            Heading("One solver with other settings", "settings"),
-            Items(tuple(_settings_words(content, model) for model in other_settings(content))),
-            other_settings_table(content),
-        ]
+    if (prices := other_settings_table(content)) is not None:
+        words = tuple(_settings_words(content, model) for model in other_settings(content))
+        blocks += [Heading("One solver with other settings", "settings"), Items(words), prices]
     scores = scores_table(content)
     if scores is not None:
         blocks += [Heading("Scores against the measured curves", "scores"), scores]
@@ -83,36 +80,15 @@ def case_words(case):
 
 
 def _settings_words(content, model):
-    """Settings in which a model differs from that of its solver's name, and what is shown to change by them."""
-    plain = solver_of(model).name
-    own, usual = (content.study["models"][name] for name in (model, plain))
-    values, others = ({"time_step": one["time_step"], **one.get("parameters", {})} for one in (own, usual))
-    names = sorted({*values, *others})
-    differing = [
-        f"{name} {_setting(values.get(name))}" for name in names if values.get(name) != others.get(name)
-    ]
-    shown = []
+    """In how many cases the settings of a model are shown to change what, in a sentence."""
+    shown, cases = [], [at_top(case).sel(model=model) for case in content.cases.values()]
     for name in CHANGES:
-        limits = [
-            case.differences[f"{name}_change_interval"]
-            .sel(model=model, marker=marker_at_top(case))
-            .to_numpy()
-            for case in content.cases.values()
+        known = [
+            one for case in cases if np.isfinite(one := case[f"{name}_change_interval"].to_numpy()).all()
         ]
-        known = [one for one in limits if np.isfinite(one).all()]
-        beyond = sum(one.min() > 0.0 or one.max() < 0.0 for one in known)
-        shown.append(f"{name} in {share_words(beyond, len(known))}" if known else f"{name}: too few samples")
-    return (
-        f"{model_label(model)} differs from {model_label(plain)} in: {', '.join(differing) or 'nothing'}. Cases in "
-        f"which the limits of the change at the top block leave out zero: {', '.join(shown)}."
-    )
-
-
-def _setting(value):
-    """Value of a setting as a reader sees it."""
-    if value is None:
-        return "as by default"
-    return given(value) if isinstance(value, float) else str(value).lower()
+        beyond = sum(one.prod() > 0.0 for one in known)
+        shown.append(f"{name} in {share_words(beyond, len(known))}")
+    return f"{model_label(model)}: cases in which the limits of a change leave out zero: {', '.join(shown)}."
 
 
 def _both(pair):

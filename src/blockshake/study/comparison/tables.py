@@ -22,7 +22,8 @@ def block_tables(case):
     )
     captions = {
         "peak": f"peak displacement along x relative to the slab [mm], median over the n samples. {limits}",
-        "residual": f"residual displacement ({at_end}) relative to the slab [mm], median over the samples. {limits}",
+        "residual": f"residual displacement ({at_end}) relative to the slab [mm], median over those of the n samples "
+        f"that did not fall. {limits}",
         "width": "width of the envelope [mm]: mean difference of two samples, over all pairs and times. The width does "
         "not grow with the number of samples, as the bounds in the figures do. In brackets bootstrap limits of 95 %, "
         f"which hold in 89 to 93 of 100 cases; none with fewer than {SURE_FROM} samples, and no width with fewer than "
@@ -94,12 +95,13 @@ def other_settings(content):
 
 
 def other_settings_table(content):
-    """Peak, residual and width of the envelope at the top block: by the plain model, and what other settings change."""
+    """What other settings of a solver change at the top block; None where no model has any."""
+    if not other_settings(content):
+        return None
     rows = []
     for case in content.cases.values():
-        at_top = case.differences.sel(marker=marker_at_top(case))
         for model in other_settings(content):
-            own, plain = (at_top.sel(model=name) for name in (model, solver_of(model).name))
+            own, plain = (at_top(case).sel(model=name) for name in (model, solver_of(model).name))
             cells = [
                 cell
                 for name in CHANGES
@@ -121,9 +123,9 @@ def other_settings_table(content):
     )  # fmt: skip
 
 
-def marker_at_top(case):
-    """Marker of the top block of a case."""
-    return next(iter(face_markers(case.structure).values()))
+def at_top(case):
+    """Differences of the models of a case at the marker of its top block."""
+    return case.differences.sel(marker=next(iter(face_markers(case.structure).values())))
 
 
 def numerics_table(content):

@@ -5,7 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.pages.rows import bodies_by_height, face_markers
-from blockshake.pages.wording import millimetres, number, parameter_label, percent
+from blockshake.pages.wording import millimetres, number, parameter_label, percent, share_words
+
+SHARED = 0.05  # r squared of two variables beyond which each share holds much of the other's
+_NAMED = 3  # pairs of such variables
 
 
 class Influence(NamedTuple):
@@ -73,6 +76,24 @@ def influences(result, measure):
         for index in order
     )  # fmt: skip
     return Influences(tuple(ranked), chance)
+
+
+def shared_words(result):
+    """Which variables of a `sensitivity` share their indices, since they are correlated among its samples."""
+    known, names = result["correlation"].to_numpy(), result["parameter"].values
+    if not np.isfinite(known).all():
+        return "too few completed samples for an index"
+    pairs = [*zip(*np.triu_indices(len(names), 1), strict=True)]
+    shared = sorted((pair for pair in pairs if known[pair] ** 2 > SHARED), key=lambda pair: -abs(known[pair]))
+    if not shared:
+        return "no two variables are correlated, and no index holds another's"
+    told = "; ".join(
+        f"{parameter_label(names[one])} and {parameter_label(names[other])} {known[one, other]:.2f}"
+        for one, other in shared[:_NAMED]
+    )
+    return (
+        f"{share_words(len(shared), len(pairs))} pairs of variables share their indices, most of all {told}"
+    )
 
 
 def quiet_markers(result, markers, noise):

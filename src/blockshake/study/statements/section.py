@@ -5,7 +5,7 @@ from dataclasses import replace
 from blockshake.pages.blocks import Heading, Section, Table, Text
 from blockshake.pages.wording import given, model_label
 from blockshake.simulation.models import MODELS
-from blockshake.study.comparison.tables import other_settings, other_settings_table
+from blockshake.study.comparison.tables import other_settings_table
 from blockshake.study.statements.statement import PaperVerdict
 from blockshake.study.statements.table import STATEMENTS
 
@@ -56,7 +56,8 @@ def count_words(rows_by_heading):
 
 
 def findings(content):
-    """Findings of a study as JSON-like values: what it is, and the rows of `judge_statements`."""
+    """Findings of a study as JSON-like values: what it is, what settings change, and the rows of `judge_statements`."""
+    prices = other_settings_table(content)
     return {
         "study": content.study["name"],
         "description": " ".join(content.study["description"].split()),
@@ -67,14 +68,9 @@ def findings(content):
         ],
         "models": [model_label(model) for model in content.study["models"]],
         "version": content.versions["blockshake"],
-        "other_settings": _values(other_settings_table(content)) if other_settings(content) else None,
+        "other_settings": prices and [prices.header, *prices.rows],
         "findings": {heading: list(map(list, rows)) for heading, rows in judge_statements(content).items()},
     }
-
-
-def _values(table):
-    """Header and rows of a table."""
-    return [list(table.header), *map(list, table.rows)]
 
 
 def statements(content):
