@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.pages.rows import bodies_by_height, face_markers
-from blockshake.pages.wording import millimetres, number, parameter_label, percent, share_words
+from blockshake.pages.wording import millimetres, number, parameter_label, percent
 
 SHARED = 0.05  # r squared of two variables beyond which each share holds much of the other's
 _NAMED = 3  # pairs of such variables
@@ -91,9 +91,7 @@ def shared_words(result):
         f"{parameter_label(names[one])} and {parameter_label(names[other])} {known[one, other]:.2f}"
         for one, other in shared[:_NAMED]
     )
-    return (
-        f"{share_words(len(shared), len(pairs))} pairs of variables share their indices, most of all {told}"
-    )
+    return f"{len(shared)} of {len(pairs)} pairs of variables share their indices, most of all {told}"
 
 
 def quiet_markers(result, markers, noise):
