@@ -133,7 +133,7 @@ def _findings(path):
 
 
 def _study_words(found, *more):
-    """What a study is that findings come from, and more sentences, in lines."""
+    """The study that findings come from, and more sentences, in lines."""
     cases, models = "; ".join(found["cases"]), ", ".join(found["models"])
     words = (
         f"Study `{found['study']}` (blockshake {found['version']}): {found['description']}. "

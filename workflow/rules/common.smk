@@ -25,8 +25,7 @@ from blockshake.errors import BAD_INPUT, InputError
 from blockshake.files import HOME, PACKAGE, load_yaml, parse_yaml, shipped
 from blockshake.log import Failures
 from blockshake.measurement.campaigns.campaign import load_campaign
-from blockshake.simulation.models import MODELS as SOLVERS
-from blockshake.simulation.models import solver_of
+from blockshake.simulation.models import MODELS as SOLVERS, solver_of
 from blockshake.sources import kernel_sources, script_sources, source_digest
 from blockshake.study.analyses import ANALYSES
 from blockshake.study.config import StudyConfig, check_config
@@ -120,8 +119,7 @@ def kernels(model):
     Its name holds their digest, so that it goes out of date just when the model's runs do. Snakemake's `ancient`
     would not do: with it a study whose compilation is due runs that and nothing else (issue 4166).
     """
-    solver = solver_of(model).name
-    return f"results/kernels/{solver}-{source_digest(*kernel_sources(solver))}.json"
+    return f"results/kernels/{solver_of(model).name}-{source_digest(*kernel_sources(model))}.json"
 
 
 FAILURES = Failures()

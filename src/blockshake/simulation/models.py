@@ -228,7 +228,7 @@ def solver_of(name):
         solvers = ", ".join(MODELS)
         raise InputError(
             "",
-            f"models.{name}",
+            f"study.models.{name}",
             f"expected one of {solvers}, or one of these and words such as ls-dem-coarse",
         )
     return MODELS[named[1]]

@@ -190,16 +190,11 @@ class StudyConfig(Strict):
     )
     diagnosis: Diagnosis = Field(Diagnosis(), description="none: no campaign is diagnosed")
 
-    @field_validator("models")
-    @classmethod
-    def _of_solvers(cls, models):
-        for name in models:
-            solver_of(name)
-        return models
-
     @model_validator(mode="after")
-    def _variables_by_one_name(self):
-        """Give frictions the names that the distributions have, whose materials may be in the other order."""
+    def _names_that_are_known(self):
+        """Models of solvers, and frictions by the names of the distributions, whose materials may be in other order."""
+        for name in self.models:
+            solver_of(name)
         known = self.ensemble.distributions
 
         def known_name(name):

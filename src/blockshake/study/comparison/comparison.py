@@ -193,7 +193,7 @@ def _extent(values):
 
 
 def _changes(counted, seed):
-    """What the settings of a model change of the model that has its solver's name alone, over the samples of both."""
+    """Changes by the settings of a model against that of its solver's plain name, over the samples of both."""
     parts = []
     for model, own in counted.items():
         other, blocks = counted.get(solver_of(model).name, own), _blocks(own)

@@ -1,6 +1,6 @@
 """Tables of what differs between the models: blocks, pairs of models, numerics, scores."""
 
-from itertools import combinations
+from itertools import chain, combinations
 
 import numpy as np
 
@@ -95,19 +95,16 @@ def other_settings(content):
 
 
 def other_settings_table(content):
-    """What other settings of a solver change at the top block; None where no model has any."""
+    """Changes by other settings of a solver at the top block; None where no model has any."""
     if not other_settings(content):
         return None
     rows = []
     for case in content.cases.values():
         for model in other_settings(content):
             own, plain = (at_top(case).sel(model=name) for name in (model, solver_of(model).name))
-            cells = [
-                cell
-                for name in CHANGES
-                for cell in (millimetres(plain[name]), _with_limits(own, f"{name}_change"))
-            ]
-            rows.append((case.name, model_label(model), str(int(own["changed"])), *cells))
+            pairs = ((millimetres(plain[name]), _with_limits(own, f"{name}_change")) for name in CHANGES)
+            rows.append((case.name, model_label(model), str(int(own["changed"])), *chain(*pairs)))
+    heads = (f"{head} [mm]" for name in CHANGES for head in (name.capitalize(), "Change"))
     return Table(
         "One solver with other settings, at the top block, along x relative to the slab. Peak and residual: medians "
         "over the samples by the model of the solver's plain name; width of its envelope: mean difference of two "
@@ -115,12 +112,10 @@ def other_settings_table(content):
         "the differences with limits of 95 % by order statistics, of the width with bootstrap limits. Limits that hold "
         "zero show no change. A sample that failed by either model is left out of n, and one that fell has no residual "
         f"and the peak that it had reached. {MISSING.capitalize()}: too few samples.",
-        (
-            "Case", "Model", "n", "Peak [mm]", "Change [mm]", "Residual [mm]", "Change [mm]", "Width [mm]",
-            "Change [mm]",
-        ),
-        tuple(rows), "llrrrrrrr",
-    )  # fmt: skip
+        ("Case", "Model", "n", *heads),
+        tuple(rows),
+        "llrrrrrrr",
+    )
 
 
 def at_top(case):

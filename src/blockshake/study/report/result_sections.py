@@ -120,37 +120,42 @@ def _early_end(case, motion):
 
 
 def unfinished_table(case):
-    """What samples that fell or failed do to each statistic, by model; None where every sample completed."""
+    """Samples that each statistic rests on, by model; None where every sample completed."""
     rows = []
     for model, one in case.responses.items():
         samples, missing = one.samples, shortfall(one.envelope)
         ended = count_outcomes(samples["status"])
         if ended.completed == sum(ended):
             continue
-        until = (
-            f" until {number(missing.since)} s, then {missing.at_end}" if np.isfinite(missing.since) else ""
-        )
+        until = f" until {number(missing.since)} s, then {missing.at_end}" * bool(np.isfinite(missing.since))
         residuals = np.isfinite(counted_samples(samples)["residual"]).all(("frame", "marker")).sum()
-        used = one.sensitivity["used"].sel(quantity=["history", "peak"]).values
-        rows.append((
-            model_label(model), *map(str, (sum(ended), ended.collapsed + ended.falling, ended.failed)),
-            f"{missing.counted}{until}", str(missing.counted), str(int(residuals)), *(str(int(one)) for one in used),
-        ))  # fmt: skip
+        used = one.sensitivity["used"].sel(quantity=["history", "peak"])
+        fell, counted = ended.collapsed + ended.falling, missing.counted
+        numbers = sum(ended), fell, ended.failed, f"{counted}{until}", counted, int(residuals), *used.values
+        rows.append((model_label(model), *map(str, numbers)))
     if not rows:
         return None
     return Table(
         f"{case.name}: samples that did not complete, and how many each statistic rests on. A sample that fell, by a "
-        "collapse or as the window ended, is in bounds, quantiles, widths, coverage, distances and scores until its "
-        "end. It counts as a collapse, and as beyond the drift, in all probabilities. Its peak and its rotation are "
-        "what it had reached, lower limits, and rank first in sensitivities. It has no residual, and no share in the "
-        "sensitivity of the history. A sample that failed is in none of these; the limits of probabilities hold the "
-        "case that all of them fell and the case that none did.",
+        "collapse or as the window ended, is in bounds, quantiles, widths, coverage, distances and scores (histories) "
+        "until its end. It counts as a collapse, and as beyond the drift, in all probabilities. Its peak and its "
+        "rotation are what it had reached, lower limits, and its peak ranks first in the sensitivity. It has no "
+        "residual, and is not in the sensitivity of the history. A sample that failed is in none of these; the limits "
+        "of probabilities hold the case that all of them fell and the case that none did.",
         (
-            "Model", "Samples", "Fell", "Failed", "Histories", "Peaks, rotations, probabilities", "Residuals",
-            "Sensitivity of the history", "Sensitivity of the peak",
+            "Model",
+            "Samples",
+            "Fell",
+            "Failed",
+            "Histories",
+            "Peaks",
+            "Residuals",
+            "History index",
+            "Peak index",
         ),
-        tuple(rows), "lrrrrrrrr",
-    )  # fmt: skip
+        tuple(rows),
+        "lrrrrrrrr",
+    )
 
 
 def _lines(case, markers):

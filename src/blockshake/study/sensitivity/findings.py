@@ -8,7 +8,7 @@ from blockshake.pages.rows import bodies_by_height, face_markers
 from blockshake.pages.wording import millimetres, number, parameter_label, percent
 
 SHARED = 0.05  # r squared of two variables beyond which each share holds much of the other's
-_NAMED = 3  # pairs of such variables
+_TOLD = 3  # pairs of such variables
 
 
 class Influence(NamedTuple):
@@ -89,7 +89,7 @@ def shared_words(result):
         return "no two variables are correlated, and no index holds another's"
     told = "; ".join(
         f"{parameter_label(names[one])} and {parameter_label(names[other])} {known[one, other]:.2f}"
-        for one, other in shared[:_NAMED]
+        for one, other in shared[:_TOLD]
     )
     return f"{len(shared)} of {len(pairs)} pairs of variables share their indices, most of all {told}"
 
