@@ -122,11 +122,11 @@ def test_too_few_samples_are_not_called_close_to_each_other():
 @pytest.mark.parametrize(
     ("shared", "words"),
     [
-        (0.2, "no two variables are correlated, and no index holds another's"),
+        (0.2, "no two variables have r squared beyond 0.05"),
         (
             -0.5,
-            "1 of 1 pairs of variables share their indices, most of all friction, concrete on concrete and viscous "
-            "modulus of concrete -0.50",
+            "1 of 1 pairs of variables share their indices, r squared beyond 0.05: friction, concrete on concrete and "
+            "viscous modulus of concrete, r -0.50",
         ),
         (np.nan, "too few completed samples for an index"),
     ],

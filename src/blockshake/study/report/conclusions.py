@@ -263,8 +263,8 @@ def _unknown(content):
     ]
     if failed:
         sentences.append(
-            "How samples would have ended that failed for a numerical reason, which no statistic has and the limits of "
-            f"probabilities allow for either way: {'; '.join(failed)}."
+            f"How samples end that failed for a numerical reason: {'; '.join(failed)}. No statistic counts them; the "
+            "limits of probabilities allow for either end."
         )
     chaotic = _chaotic(cases)
     if chaotic:

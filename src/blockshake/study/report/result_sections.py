@@ -142,17 +142,7 @@ def unfinished_table(case):
         "rotation are what it had reached, lower limits, and its peak ranks first in the sensitivity. It has no "
         "residual, and is not in the sensitivity of the history. A sample that failed is in none of these; the limits "
         "of probabilities hold the case that all of them fell and the case that none did.",
-        (
-            "Model",
-            "Samples",
-            "Fell",
-            "Failed",
-            "Histories",
-            "Peaks",
-            "Residuals",
-            "History index",
-            "Peak index",
-        ),
+        ("Model", "Runs", "Fell", "Failed", "Histories", "Peaks", "Residuals", "History index", "Peak index"),
         tuple(rows),
         "lrrrrrrrr",
     )

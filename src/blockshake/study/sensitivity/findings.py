@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.pages.rows import bodies_by_height, face_markers
 from blockshake.pages.wording import millimetres, number, parameter_label, percent
 
-SHARED = 0.05  # r squared of two variables beyond which each share holds much of the other's
+SHARED = 0.05  # r squared of two variables beyond which they are said to share their indices
 _TOLD = 3  # pairs of such variables
 
 
@@ -86,12 +86,12 @@ def shared_words(result):
     pairs = [*zip(*np.triu_indices(len(names), 1), strict=True)]
     shared = sorted((pair for pair in pairs if known[pair] ** 2 > SHARED), key=lambda pair: -abs(known[pair]))
     if not shared:
-        return "no two variables are correlated, and no index holds another's"
+        return f"no two variables have r squared beyond {SHARED}"
     told = "; ".join(
-        f"{parameter_label(names[one])} and {parameter_label(names[other])} {known[one, other]:.2f}"
+        f"{parameter_label(names[one])} and {parameter_label(names[other])}, r {known[one, other]:.2f}"
         for one, other in shared[:_TOLD]
     )
-    return f"{len(shared)} of {len(pairs)} pairs of variables share their indices, most of all {told}"
+    return f"{len(shared)} of {len(pairs)} pairs of variables share their indices, r squared beyond {SHARED}: {told}"
 
 
 def quiet_markers(result, markers, noise):

@@ -10,7 +10,6 @@ from blockshake.study.sensitivity.figure import (
     plot_sensitivity_over_time,
 )
 from blockshake.study.sensitivity.findings import (
-    SHARED,
     differs,
     influence_words,
     influences,
@@ -36,9 +35,9 @@ def sensitivities(content):
             "shown to matter. Samples that failed are in no measure. Those that fell are not in the history, and rank "
             "first in the peak. Variables that act together, the motion of the slab where each sample draws it within "
             "the error of its readings, and sensitivity of the motion to small differences explain the rest. Where the "
-            "ranks of two variables have a correlation r among the completed samples, asked for or left by few, the "
-            "share of each holds up to r squared of the other's. Such shares are not parted; they are named below "
-            f"where r squared is beyond {SHARED}."
+            "ranks of two variables have a correlation r among the completed samples, asked for or left by few, each "
+            "index holds a part of the other's, which is not parted: a variable without an effect of its own then has "
+            "up to r squared of the other's share."
         ),
         summary_table(content),
         Items(_shared(content)),
