@@ -30,7 +30,6 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import load_json, load_yaml, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.pages.wording import model_label, number
-from blockshake.simulation.energy_residual import energy_residual
 from blockshake.simulation.simulate import simulate
 from blockshake.study.calibration.section import answers_table, tests_table
 from blockshake.study.config import load_config
@@ -61,9 +60,7 @@ DIAGNOSED = DOCS.parent / "data" / "virtual-campaign" / "configuration-2"
 PROFILE = DOCS.parent / "profiles" / "slurm" / "profile.yaml"
 _CORES = (1, 64, 1024)
 _SHOWN = 8  # rules that take most of the time
-LITERAL = DOCS.parent / "config" / "literal.yaml"
-_FINE_IMPACTS = {"nscd.impact_parts": 20}  # as in config/study.yaml
-_GRID = "ls_dem.level_set", "ls_dem.grid_spacing"  # mean nothing without each other
+LITERAL = Path("results/literal/the-paper.json")  # of config/literal.yaml
 
 
 def slenderness():
@@ -122,38 +119,37 @@ def _findings(path):
     if not path.is_file():
         return None
     found = load_json(path)
-    cases, models = "; ".join(found["cases"]), ", ".join(found["models"])
-    words = (
-        f"Study `{found['study']}` (blockshake {found['version']}): {found['description']}. "
-        f"{found['samples']} samples; {models}; {cases}. {count_words(found['findings'])}"
-    )
-    lines = textwrap.wrap(words, 100, break_on_hyphens=False)
+    lines = _study_words(found, count_words(found["findings"]))
+    if found.get("other_settings"):
+        lines += [
+            "",
+            "### Settings as printed",
+            "",
+            markdown(found["other_settings"][0], found["other_settings"][1:]),
+        ]
     for heading, rows in found["findings"].items():
         lines += ["", f"### {heading}", "", markdown(HEADER, rows)]
     return "\n".join(lines)
 
 
-def published_settings():
-    """Peak, end and energy audit of configuration 1 by the settings of `LITERAL`, one at a time and together."""
-    structure, motion = load_structure("configuration-1"), load_motion("basso-tirreno", 2.0)
-    printed = load_config(LITERAL).models
-    rows = []
-    for model, usual in (("ls-dem", {}), ("nscd-rigid", _FINE_IMPACTS)):
-        settings = {name: value for name, value in printed[model].parameters.items() if name not in _GRID}
-        grid = {name: value for name, value in printed[model].parameters.items() if name in _GRID}
-        choices = [("defaults", usual), *([(_words(grid), grid)] if grid else [])]
-        choices += [(_words({name: value}), usual | {name: value}) for name, value in settings.items()]
-        choices.append(("all of them", usual | settings | grid))
-        for words, parameters in choices:
-            run = simulate(
-                structure, motion, model, parameters, time_step=printed[model].time_step, duration=10.0,
-                accelerometers=False,
-            )  # fmt: skip
-            drift = 1e3 * top_drift(run)
-            residual = 100.0 * energy_residual(run["energy"].to_numpy())
-            rows.append((model, words, f"{np.abs(drift).max():.1f}", f"{drift[-1]:.1f}", number(residual, 2)))
-    heads = "model", "settings", "peak drift [mm]", "drift at 10 s [mm]", "energy not explained [%]"
-    return markdown(heads, rows)
+def _study_words(found, *more):
+    """The study that findings come from, and more sentences, in lines."""
+    cases, models = "; ".join(found["cases"]), ", ".join(found["models"])
+    words = (
+        f"Study `{found['study']}` (blockshake {found['version']}): {found['description']}. "
+        f"{found['samples']} samples; {models}; {cases}."
+    )
+    return textwrap.wrap(" ".join([words, *more]), 100, break_on_hyphens=False)
+
+
+def printed_settings():
+    """Prices of the printed settings, each alone and all together; None where their study has not been run."""
+    if not LITERAL.is_file():
+        return None
+    found = load_json(LITERAL)
+    return "\n".join(
+        [*_study_words(found), "", markdown(found["other_settings"][0], found["other_settings"][1:])]
+    )
 
 
 def arrival_definitions():
@@ -281,17 +277,13 @@ def top_drift(run):
     return (along.sel(marker="block-3-face") - along.sel(marker="slab-face")).to_numpy()
 
 
-def _words(parameters):
-    return ", ".join(f"`{name}: {str(value).lower()}`" for name, value in parameters.items())
-
-
 MAKERS = {
     "convergence": lambda: markdown(CONVERGENCE_HEADER, convergence_rows()),
     "slenderness": slenderness,
     "single-changes": single_changes,
     "statements": statements,
     "paper-statements": paper_statements,
-    "published-settings": published_settings,
+    "printed-settings": printed_settings,
     "shear-damping": shear_damping,
     "joint-calibration": joint_calibration,
     "hollow-faces": lambda: markdown(HOLLOW_HEADER, hollow_rows()),

@@ -19,6 +19,7 @@ from blockshake.diagnosis.nominal.plan import plan_diagnosis
 from blockshake.files import HOME
 from blockshake.log import read_cost
 from blockshake.measurement.campaigns.campaign import load_campaign
+from blockshake.simulation.models import solver_of
 
 _JOB = re.compile(r"^(?:localrule|rule|checkpoint) (\w+):\n((?:    .+\n)+)", re.MULTILINE)
 _TWINS = 3  # runs that twins cost: one, and one of twice the steps
@@ -108,7 +109,7 @@ def timed_study(jobs, config, done, times):
     for job in jobs:
         if job.rule in ("simulate_batch", "run_twins"):
             runs = _TWINS if job.rule == "run_twins" else job.samples
-            job.seconds = runs * times["simulate_batch", job.key] * _steps(config, done, *job.key)
+            job.seconds = runs * times["simulate_batch", _done(job.key)] * _steps(config, done, *job.key)
         elif job.rule == "climb_samples":
             (case,) = job.key
             known = times.get((job.rule, job.key))
@@ -118,19 +119,25 @@ def timed_study(jobs, config, done, times):
             model, case = job.key
             runs = config.calibration.size * len(load_campaign(config.case(case).measured.campaign).open)
             # the records are as long as the windows of the study that was done
-            steps = done.models[model].time_step / config.models[model].time_step
-            job.seconds = runs * times["simulate_batch", job.key] * steps
+            steps = done.models[solver_of(model).name].time_step / config.models[model].time_step
+            job.seconds = runs * times["simulate_batch", _done(job.key)] * steps
         else:
             job.seconds = times.get((job.rule, job.key), times.get((job.rule, ()), _START))
     return jobs
 
 
+def _done(key):
+    """Model and case of the study that was done, whose models have the names of their solvers."""
+    model, case = key
+    return solver_of(model).name, case
+
+
 def _steps(config, done, model, case):
     """Steps of a run over those of the run that was done."""
     counts = []
-    for one in (config, done):
+    for one, name in ((config, model), (done, solver_of(model).name)):
         (duration,) = [found.duration for found in one.cases if found.name == case]
-        counts.append(duration / one.models[model].time_step)
+        counts.append(duration / one.models[name].time_step)
     return counts[0] / counts[1]
 
 

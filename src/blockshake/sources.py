@@ -93,9 +93,9 @@ class _Source(NamedTuple):
 
 
 def _modules_of(models):
-    from blockshake.simulation.models import model_of
+    from blockshake.simulation.models import solver_of
 
-    return [_file(module) for model in models for module in model_of(model).modules]
+    return [_file(module) for model in models for module in solver_of(model).modules]
 
 
 def _closure(sources):

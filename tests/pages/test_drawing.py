@@ -5,7 +5,7 @@ import pytest
 from PIL import Image
 
 from blockshake.errors import InputError
-from blockshake.pages.drawing import new_figure, save_picture, svg_of
+from blockshake.pages.drawing import column_title, new_figure, save_picture, svg_of
 
 
 def plot(end):
@@ -82,3 +82,11 @@ def test_powers_of_ten_are_plain_letters(tmp_path, scale, limits, wanted):
     }
     assert wanted <= labels, labels
     assert not [label for label in labels if set(label) & set("${}\\^")]
+
+
+def test_titles_of_many_columns_break_and_those_of_few_stay():
+    words = "NSCD viscoelastic\n10 of 10 samples"
+    assert column_title(words, 4) == words
+    assert column_title("NSCD rigid in whole steps\n10 of 10 samples", 9) == (
+        "NSCD\nrigid in\nwhole\nsteps\n10 of 10\nsamples"
+    )

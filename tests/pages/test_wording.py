@@ -5,6 +5,7 @@ from blockshake.pages.wording import (
     MISSING,
     given,
     millimetres,
+    model_label,
     number,
     parameter_label,
     percent,
@@ -20,6 +21,12 @@ from blockshake.pages.wording import (
 )  # fmt: skip
 def test_number_keeps_three_digits(value, text):
     assert number(value) == text
+
+
+def test_a_model_with_settings_of_its_own_has_the_label_of_its_solver_and_its_words():
+    assert model_label("nscd-rigid") == "NSCD rigid"
+    assert model_label("nscd-rigid-as-printed") == "NSCD rigid as printed"
+    assert [model_label(name) for name in ("all", "", "ls-dem2")] == ["all", "", "ls-dem2"]
 
 
 def test_lengths_shares_and_given_numbers():

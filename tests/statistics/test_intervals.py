@@ -25,6 +25,9 @@ def test_at_the_limits_so_many_events_have_a_chance_of_a_fortieth(count, trials)
 def test_no_event_of_fifty_still_has_an_upper_limit():
     """1 - 0.025^(1/50) = 7.1 %."""
     assert share_interval(0, 50) == (0.0, pytest.approx(1.0 - 0.025 ** (1.0 / 50.0)))
+    # whatever came of two more trials
+    assert share_interval(3, 10, 2) == (share_interval(3, 12)[0], share_interval(5, 12)[1])
+    assert share_interval(0, 0, 3) == (0.0, 1.0)
     assert share_interval(50, 50) == (pytest.approx(0.025 ** (1.0 / 50.0)), 1.0)
 
 

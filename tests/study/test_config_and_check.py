@@ -12,7 +12,7 @@ from blockshake.files import PACKAGE, load_yaml
 from blockshake.geometry.structure import load_structure
 from blockshake.own_files.check import check_file
 from blockshake.quantities import USUAL
-from blockshake.simulation.models import MODELS
+from blockshake.simulation.models import MODELS, solver_of
 from blockshake.simulation.parameter_table import instances
 from blockshake.statistics.scores import FEWEST
 from blockshake.study.config import check_config, load_config
@@ -47,16 +47,32 @@ def test_paper_is_the_paper(monkeypatch):
 def test_literal_is_as_printed(monkeypatch):
     """Zhou et al. (2023), sections LS-DEM and NSCD: steps, grid of level sets, Eqs. (2) and (3) without a change."""
     monkeypatch.chdir(ROOT)
-    models = load_config("config/literal.yaml").models
-    assert models["ls-dem"].time_step == 1e-5
-    assert models["ls-dem"].parameters == {
-        "ls_dem.level_set": "grid",
-        "ls_dem.grid_spacing": 0.02,
-        "ls_dem.damping": "node",
-        "ls_dem.pulling": True,
-    }
-    assert models["nscd-rigid"].time_step == 1e-3
-    assert models["nscd-rigid"].parameters["nscd.impact_parts"] == 1
+    studies = [load_config(f"config/{name}.yaml").models for name in ("literal", "paper")]
+    for models in studies:
+        printed = models["ls-dem-as-printed"]
+        assert printed.time_step == 1e-5
+        assert printed.parameters == {
+            "ls_dem.level_set": "grid",
+            "ls_dem.grid_spacing": 0.02,
+            "ls_dem.damping": "node",
+            "ls_dem.pulling": True,
+        }
+        rigid = models["nscd-rigid-as-printed"]
+        assert rigid.time_step == 1e-3
+        assert rigid.parameters["nscd.impact_parts"] == 1
+        # the plain ones are those of the paper's study
+        assert {name: models[name] for name in ("ls-dem", "nscd-rigid")} == {
+            name: studies[1][name] for name in ("ls-dem", "nscd-rigid")
+        }
+    singles = [
+        one for name, one in studies[0].items() if solver_of(name).name != name and "as-printed" not in name
+    ]
+    together = (
+        studies[0]["ls-dem-as-printed"].parameters.items()
+        | studies[0]["nscd-rigid-as-printed"].parameters.items()
+    )
+    plain = studies[0]["nscd-rigid"].parameters.items()
+    assert set().union(*(one.parameters.items() for one in singles)) - plain == together
 
 
 def test_all_models_run_all_cases_of_the_default_study(mapping):
@@ -106,7 +122,27 @@ def test_all_models_run_all_cases_of_the_default_study(mapping):
         ),
         (("cases", 0, "measured", "campaign"), "nowhere", "nowhere/campaign.yaml: expected a readable file"),
         (("convergence",), {"structure": "configuration-1"}, "study.yaml: convergence: "),
-        (("models", "no-such"), {"time_step": 1e-3}, "study.yaml: models.no-such"),
+        (
+            ("models", "no-such"),
+            {"time_step": 1e-3},
+            "study.yaml: models.no-such: expected one of ls-dem, nscd-rigid, nscd-elastic, nscd-viscoelastic, or one",
+        ),
+        (
+            ("models", "ls-dem-As-Printed"),
+            {"time_step": 1e-5},
+            "study.yaml: models.ls-dem-As-Printed: expected one",
+        ),
+        (("models", "ls-dem-"), {"time_step": 1e-5}, "study.yaml: models.ls-dem-: expected one of"),
+        (
+            ("models", "ls-dem-as-printed"),
+            {"time_step": 1e-5, "parameters": {"nscd.parts": 5}},
+            "models.ls-dem-as-printed.parameters.nscd.parts: expected one of nscd.{theta, ",
+        ),
+        (
+            ("cases", 0, "samples"),
+            {"ls-dem-as-printed": 5},
+            "study.yaml: cases.0.samples: expected one of ls-dem, ",
+        ),
         (
             ("models", "nscd-rigid", "parameters"),
             {"friction.concrete.concrete": 0.5},

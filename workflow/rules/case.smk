@@ -61,7 +61,9 @@ def run_files(wildcards):
 
 def stiffness_file(model, study, case):
     """Calibrated stiffness of the samples, for the models that have any: an edit of LS-DEM reruns no NSCD."""
-    return f"results/{study}/stiffness/{case}.csv" if SOLVERS[model].calibrated else []
+    return (
+        f"results/{study}/stiffness/{case}.csv" if solver_of(model).calibrated else []
+    )
 
 
 def runs_of(model, case, **others):

@@ -25,7 +25,7 @@ from blockshake.errors import BAD_INPUT, InputError
 from blockshake.files import HOME, PACKAGE, load_yaml, parse_yaml, shipped
 from blockshake.log import Failures
 from blockshake.measurement.campaigns.campaign import load_campaign
-from blockshake.simulation.models import MODELS as SOLVERS
+from blockshake.simulation.models import MODELS as SOLVERS, solver_of
 from blockshake.sources import kernel_sources, script_sources, source_digest
 from blockshake.study.analyses import ANALYSES
 from blockshake.study.config import StudyConfig, check_config
@@ -119,7 +119,7 @@ def kernels(model):
     Its name holds their digest, so that it goes out of date just when the model's runs do. Snakemake's `ancient`
     would not do: with it a study whose compilation is due runs that and nothing else (issue 4166).
     """
-    return f"results/kernels/{model}-{source_digest(*kernel_sources(model))}.json"
+    return f"results/kernels/{solver_of(model).name}-{source_digest(*kernel_sources(model))}.json"
 
 
 FAILURES = Failures()
@@ -158,7 +158,7 @@ MOTIONS = {Path(motion).stem: motion for motion in BASELINES}
 
 wildcard_constraints:
     study="|".join([STUDY]),
-    model="|".join(SOLVERS),
+    model="|".join({**SOLVERS, **config["models"]}),
     case="|".join(CASES),
     motion="|".join(MOTIONS),
     batch=r"\d\d\d+-\d\d\d+",

@@ -10,6 +10,7 @@ from blockshake.files import HOME
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.motion.measured_base import record_start
+from blockshake.simulation.models import solver_of
 from blockshake.study.config import load_config
 
 _TWINS = 3  # runs that twins cost: one of the usual step, one of half
@@ -44,7 +45,7 @@ def study_cost(path):
                 load_structure(case.structure),
                 load_motion(case.motion, case.scale, case.baseline),
             )
-            trial = {"model": model, **settings.model_dump()}
+            trial = {"model": solver_of(model).name, **settings.model_dump()}
             asked = _runs(config, model, case)
             runs = sum(count for count, _ in asked.values())
             each = run_seconds(structure, motion, trial, case.duration, runs)

@@ -2,6 +2,7 @@
 
 import io
 import re
+import textwrap
 from pathlib import Path
 
 import matplotlib
@@ -18,6 +19,7 @@ SKY, PURPLE = "#56b4e9", "#cc79a7"
 LIGHT_GREY, GREY, DARK_GREY = "#e2e2e2", "#b8b8b8", "#555555"
 MEASURED = {"color": BLACK, "linestyle": (0, (4, 2)), "linewidth": 0.9}  # line of a measured curve
 _INCH = 0.0254  # m
+_LETTERS = 84  # of titles, over the columns of a figure
 STYLE = {
     "font.family": "DejaVu Sans",
     "font.size": 7.5,
@@ -52,6 +54,12 @@ _NO_METADATA = {"Date": None, "Creator": None, "Format": None, "Type": None}
 # formats of picture files by suffix, with the same of theirs
 _PICTURES = {".png": {}, ".pdf": {"CreationDate": None}, ".svg": _NO_METADATA}
 _RESOLUTION = 200  # dots an inch, of a PNG
+
+
+def column_title(words, columns):
+    """Title of one of so many columns, in lines that fit its width."""
+    lines = (textwrap.wrap(line, _LETTERS // columns, break_long_words=False) for line in words.split("\n"))
+    return "\n".join("\n".join(line) for line in lines)
 
 
 def new_figure(height, width=PAGE_WIDTH):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.simulation.models import MODELS
+from blockshake.simulation.models import MODELS, NAME_IN_STUDY
 
 CUBED = "\N{SUPERSCRIPT THREE}"
 SQUARED = "\N{SUPERSCRIPT TWO}"
@@ -25,8 +25,9 @@ _NAMES = {
 
 
 def model_label(model):
-    """Name of a solver in print."""
-    return MODELS[model].label if model in MODELS else model
+    """Name in print of a solver, and of a study's model: ``LS-DEM as printed`` of ``ls-dem-as-printed``."""
+    named = NAME_IN_STUDY.fullmatch(model)
+    return f"{MODELS[named[1]].label}{named[2].replace('-', ' ')}" if named else model
 
 
 def parameter_label(name):
@@ -84,7 +85,7 @@ def share_words(count, total):
     >>> share_words(3, 5), share_words(5, 5), share_words(0, 5)
     ('3 of 5', 'all 5', 'none of 5')
     """
-    return {0: f"none of {total}", total: f"all {total}"}.get(count, f"{count} of {total}")
+    return {total: f"all {total}", 0: f"none of {total}"}.get(count, f"{count} of {total}")
 
 
 def count_words(count, noun):

@@ -196,6 +196,8 @@ MODELS = {
     )
 }
 ModelName = Literal[tuple(MODELS)]
+# name of a model of a study: its solver's alone, or with words after it, such as ls-dem-as-printed
+NAME_IN_STUDY = re.compile(rf"({'|'.join(MODELS)})((?:-[a-z0-9]+){{0,8}})")
 CALIBRATED = tuple(name for model in MODELS.values() for name in model.stiffness)
 _PREFIXES = tuple(f"{model.prefix}." for model in MODELS.values())
 
@@ -211,6 +213,25 @@ def model_of(name):
     if name not in MODELS:
         raise InputError("--model", "", f"expected one of {', '.join(MODELS)}, not '{name}'")
     return MODELS[name]
+
+
+def solver_of(name):
+    """Row of the solver by which the name of a study's model begins: of ``ls-dem-as-printed`` that of ``ls-dem``.
+
+    Raises
+    ------
+    InputError
+        The name begins with no solver.
+    """
+    named = NAME_IN_STUDY.fullmatch(name)
+    if named is None:
+        solvers = ", ".join(MODELS)
+        raise InputError(
+            "",
+            f"study.models.{name}",
+            f"expected one of {solvers}, or one of these and words such as ls-dem-coarse",
+        )
+    return MODELS[named[1]]
 
 
 def part_parameters(parameters):

@@ -9,12 +9,14 @@ CONFIDENCE = 0.95
 SURE_FROM = 6  # samples: `samples_needed` for the median
 
 
-def share_interval(count, trials):
+def share_interval(count, trials, unknown=0):
     """Interval of 95 % for the probability of an event that was met ``count`` times in ``trials``.
+
+    It holds whatever came of ``unknown`` more trials: the lower limit takes them as none, the upper one as all met.
 
     Parameters
     ----------
-    count, trials : int
+    count, trials, unknown : int
 
     Returns
     -------
@@ -27,8 +29,8 @@ def share_interval(count, trials):
     trials as independent; those of a Latin hypercube are spread more evenly, which makes it wider still.
     """
     tail = 0.5 - 0.5 * CONFIDENCE
-    lower = beta.ppf(tail, count, trials - count + 1) if count > 0 else 0.0
-    upper = beta.ppf(1.0 - tail, count + 1, trials - count) if count < trials else 1.0
+    lower = beta.ppf(tail, count, trials + unknown - count + 1) if count > 0 else 0.0
+    upper = beta.ppf(1.0 - tail, count + unknown + 1, trials - count) if count < trials else 1.0
     return float(lower), float(upper)
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from blockshake.files import load_json
-from blockshake.simulation.models import MODELS
+from blockshake.simulation.models import solver_of
 from blockshake.store import load_made
 from blockshake.study.config_checks import (
     check_calibration,
@@ -31,7 +31,7 @@ def _measured_cases(study):
 
 def _cases_of_stiffness(study):
     """Cases of a study that tells of contact stiffness: a model has any, or a structure is the paper's."""
-    calibrated = any(MODELS[model].calibrated for model in study["models"])
+    calibrated = any(solver_of(model).calibrated for model in study["models"])
     named = calibrated or any(is_of_the_paper(case["structure"]) for case in study["cases"])
     return _every_case(study) if named else []
 

@@ -9,7 +9,7 @@ from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.measurement.sensors.markers import RATE
-from blockshake.simulation.models import ModelName
+from blockshake.simulation.models import solver_of
 from blockshake.statistics.scores import FEWEST
 from blockshake.study.analyses import ANALYSES
 from blockshake.study.calibration.settings import CalibrationSettings
@@ -61,7 +61,7 @@ class Ensemble(Strict):
 
 
 class ModelSettings(Strict):
-    """One solver in the study."""
+    """One model of the study: a solver with settings."""
 
     time_step: Positive = Field(description="of the integration [s]")
     parameters: dict[str, float | int | str | bool] = Field(
@@ -95,7 +95,7 @@ class StudyCase(Strict):
     scale: Positive = Field(description="multiplies the motion [1]")
     baseline: Baseline = AUTO
     duration: Positive = Field(description="simulated time [s]")
-    samples: dict[ModelName, Count] = Field(
+    samples: dict[str, Count] = Field(
         {},
         description="fewer samples than the ensemble's, at least 1, by model: the first rows of the design. With fewer "
         "than three the case has no twins, distances, widths or scores of that model",
@@ -138,7 +138,7 @@ class Ladder(Rungs):
 class FragilitySettings(Strict):
     """Samples that climb the ladder, each until its potential collapse."""
 
-    model: ModelName = Field("nscd-rigid", description="solver that climbs, one of the study's")
+    model: str = Field("nscd-rigid", description="model that climbs, one of the study's")
     cases: tuple[str, ...] = Field(min_length=1, description="names of cases of the study")
     size: Whole = Field(
         20, ge=3, description="samples that climb: the first rows of the design, no more than there are [1]"
@@ -176,7 +176,11 @@ class StudyConfig(Strict):
     samples_per_job: Whole = Field(
         10, ge=1, description="samples in one job; a killed job resumes at the sample, whatever this is [1]"
     )
-    models: dict[ModelName, ModelSettings] = Field(min_length=1)
+    models: dict[str, ModelSettings] = Field(
+        min_length=1,
+        description="by name: a solver's, or a solver's with words of yours after it, such as `ls-dem-as-printed`. "
+        "Models of one solver run the same samples, and the report says how each differs from that of the plain name",
+    )
     cases: tuple[StudyCase, ...] = Field(min_length=1)
     ensemble: Ensemble
     ladder: Ladder = Ladder()
@@ -187,8 +191,10 @@ class StudyConfig(Strict):
     diagnosis: Diagnosis = Field(Diagnosis(), description="none: no campaign is diagnosed")
 
     @model_validator(mode="after")
-    def _variables_by_one_name(self):
-        """Give frictions the names that the distributions have, whose materials may be in the other order."""
+    def _names_that_are_known(self):
+        """Models of solvers, and frictions by the names of the distributions, whose materials may be in other order."""
+        for name in self.models:
+            solver_of(name)
         known = self.ensemble.distributions
 
         def known_name(name):

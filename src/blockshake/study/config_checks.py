@@ -16,7 +16,7 @@ from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.motion.measured_base import record_start
 from blockshake.measurement.sensors.markers import block_markers, driven_marker
 from blockshake.paths import check_plain
-from blockshake.simulation.models import model_of, part_parameters
+from blockshake.simulation.models import part_parameters, solver_of
 from blockshake.simulation.simulate import check_run
 from blockshake.study.calibration.comparison import has_use, parameter_of
 from blockshake.study.calibration.settings import OTHERS, STIFFNESS
@@ -177,8 +177,8 @@ def check_simulations(config, index, structure, motion, where):
     for model, settings in config.models.items():
         given = settings.parameters, settings.time_step, case.duration, config.output_rate
         try:
-            check_run(structure, motion, model, *given)
-            if model_of(model).calibrated:
+            check_run(structure, motion, solver_of(model).name, *given)
+            if solver_of(model).calibrated:
                 tower_of(structure)
         except InputError as error:
             key = _OPTIONS.get(error.where)

@@ -146,3 +146,36 @@ def test_curves_part_where_one_is_beyond_the_limit_or_has_ended():
     assert parting_time(time, own, other, 0.6) == np.inf
     other[1:] = np.nan
     assert parting_time(time, own, other, 0.6) == 1.0
+
+
+def test_other_settings_are_held_against_the_plain_model_over_the_samples_of_both(make_run, gather):
+    plain, wider = 0.010 + 0.001 * np.arange(8), 0.030 + 0.002 * np.arange(8)
+    runs = [make_run(level) for level in wider]
+    runs[0] = make_run(wider[0], status="not-converged")
+    runs[7] = make_run(wider[7], status="collapsed", end=1.0)
+    both = {"ls-dem": gather([make_run(level) for level in plain]), "ls-dem-wider": gather(runs)}
+    found = compare_models(both, {}, None).sel(marker=BLOCK)
+    at = found.sel(model="ls-dem-wider")
+    assert int(at["changed"]) == 7  # of the sample that failed nothing is known
+    assert float(at["peak_change"]) == pytest.approx(np.median((wider - plain)[1:]), rel=1e-12)
+    # a sample that fell has no residual
+    assert float(at["residual_change"]) == pytest.approx(np.median((wider - plain)[1:7]), rel=1e-12)
+    alone = [compare_models({"ls-dem": gather(one)}, {}, None).sel(model="ls-dem", marker=BLOCK)["width"]
+             for one in (runs[1:], [make_run(level) for level in plain[1:]])]  # fmt: skip
+    assert float(at["width_change"]) == pytest.approx(float(alone[0] - alone[1]), rel=1e-9)
+    for name, value in (("peak", at["peak_change"]), ("width", at["width_change"])):
+        lower, upper = at[f"{name}_change_interval"].to_numpy()
+        assert 0.0 < lower <= float(value) <= upper
+    assert np.isnan(found["peak_change"].sel(model="ls-dem"))
+
+
+def test_equal_settings_change_nothing_and_a_study_without_the_plain_model_tells_of_no_change(ensembles):
+    whole = ensembles["ls-dem"]
+    same = compare_models({"ls-dem": whole, "ls-dem-again": whole}, {}, None).sel(
+        model="ls-dem-again", marker=BLOCK
+    )
+    assert [float(same[f"{name}_change"]) for name in comparison.CHANGES] == [0.0, 0.0, 0.0]
+    assert np.isnan(same["peak_change_interval"]).all()  # four samples bear no limits
+    other = compare_models({"nscd-rigid": whole, "ls-dem-again": whole}, {}, None).sel(model="ls-dem-again")
+    assert int(other["changed"]) == 0
+    assert np.isnan(other["width_change"]).all()

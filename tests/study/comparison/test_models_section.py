@@ -1,12 +1,21 @@
 """The section that holds the models against each other says what its files say."""
 
+import fake_study
 import numpy as np
 import pytest
 
+from blockshake.files import load_json
 from blockshake.simulation.models import MODELS
 from blockshake.study.comparison.section import case_words, models
-from blockshake.study.comparison.tables import block_tables, numerics_table, pairs_table
+from blockshake.study.comparison.tables import (
+    block_tables,
+    numerics_table,
+    other_settings_table,
+    pairs_table,
+)
 from blockshake.study.report.content import load_content
+from blockshake.study.report.report import make_report
+from blockshake.study.statements.section import judge_statements
 
 FIRST, LAST = "configuration-1", "configuration-4"
 
@@ -85,3 +94,54 @@ def test_a_study_without_tests_has_no_scores_and_one_of_one_model_no_section(fak
     assert "scores" not in [block.key for block in section.blocks if block.kind == "heading"]
     alone = {**fake.study, "models": {"ls-dem": fake.study["models"]["ls-dem"]}}
     assert models(load_content(alone, fake.results, fake.logs)) is None
+
+
+PRINTED = "ls-dem-as-printed"
+
+
+@pytest.fixture
+def printed(tmp_path, monkeypatch):
+    """A made-up study with one solver twice: as printed its blocks sway by a tenth more."""
+    settings = {"time_step": 1e-5, "parameters": {"ls_dem.pulling": True}}
+    rigid = {name: fake_study.MODELS[name] for name in ("ls-dem", "nscd-rigid")}
+    monkeypatch.setattr(fake_study, "MODELS", {**rigid, PRINTED: settings})
+    monkeypatch.setattr(fake_study, "STRENGTH", {**fake_study.STRENGTH, PRINTED: 0.9})
+    return fake_study.FakeStudy(tmp_path)
+
+
+def test_every_departure_has_its_price_by_configuration_in_one_table(printed):
+    content = load_content(printed.study, printed.results, printed.logs)
+    table = other_settings_table(content)
+    assert [row[:3] for row in table.rows] == [(name, "LS-DEM as printed", "10") for name in (FIRST, LAST)]
+    at = content.cases[FIRST].differences.sel(marker="block-3-face")
+    _, _, _, peak, change, *_ = table.rows[0]
+    assert peak == f"{1e3 * float(at['peak'].sel(model='ls-dem')):.1f}"
+    low, high = (1e3 * float(one) for one in at["peak_change_interval"].sel(model=PRINTED))
+    assert change == f"{1e3 * float(at['peak_change'].sel(model=PRINTED)):.1f} [{low:.1f}, {high:.1f}]"
+    section = models(content)
+    (words,) = [
+        item
+        for block in section.blocks
+        if block.kind == "items"
+        for item in block.items
+        if "leave out zero" in item
+    ]
+    assert words.startswith(
+        "LS-DEM as printed: cases in which the limits of a change leave out zero: peak in all 2, residual "
+    )
+    assert table in section.blocks
+
+
+def test_the_price_goes_to_other_pages_and_the_statements_are_judged_by_the_plain_models(printed, tmp_path):
+    paper = tmp_path / "the-paper.json"
+    make_report(
+        printed.study, printed.results, printed.logs, tmp_path / "one.html", tmp_path / "one.pdf", paper
+    )
+    found = load_json(paper)
+    content = load_content(printed.study, printed.results, printed.logs)
+    table = other_settings_table(content)
+    assert found["other_settings"] == [list(table.header), *map(list, table.rows)]
+    assert found["models"] == ["LS-DEM", "NSCD rigid", "LS-DEM as printed"]
+    plain = {name: one for name, one in printed.study["models"].items() if name != PRINTED}
+    without = load_content({**printed.study, "models": plain}, printed.results, printed.logs)
+    assert judge_statements(content) == judge_statements(without)

@@ -83,16 +83,24 @@ def test_every_variable_has_a_name_and_a_unit(make_run, gather):
         assert variable.attrs["long_name"], name
 
 
-def test_probabilities_count_collapses_as_too_much_drift(make_run, gather):
+@pytest.mark.parametrize(
+    ("failed", "collapse", "beyond"),
+    [
+        (0, [0.0252, 0.5561], [0.1871, 0.8129]),
+        # one failed: the lower limit is that of 2 and 5 of 11, the upper one that of 3 and 6 of 11
+        (1, [0.0228, 0.6097], [0.1675, 0.8325]),
+    ],
+)
+def test_probabilities_count_collapses_as_too_much_drift(failed, collapse, beyond, make_run, gather):
     """Two collapsed and three that drifted too far of ten; limits from tables of Clopper and Pearson (1934)."""
     runs = [make_run(0.5) for _ in range(3)] + [make_run(0.1) for _ in range(5)]
     runs += [make_run(0.05, status="collapsed", end=1.0) for _ in range(2)]
-    result = envelope(gather([*runs, make_run(9.0, status="diverged")]), LIMIT)
+    result = envelope(gather([*runs, *[make_run(9.0, status="diverged")] * failed]), LIMIT)
     assert float(result["collapse_probability"]) == 0.2
-    np.testing.assert_allclose(result["collapse_probability_interval"], [0.0252, 0.5561], atol=5e-5)
+    np.testing.assert_allclose(result["collapse_probability_interval"], collapse, atol=5e-5)
     drift = result.sel(marker="block-1-face")
     assert float(drift["drift_probability"]) == 0.5
-    np.testing.assert_allclose(drift["drift_probability_interval"], [0.1871, 0.8129], atol=5e-5)
+    np.testing.assert_allclose(drift["drift_probability_interval"], beyond, atol=5e-5)
     assert result["drift_probability"].attrs["largest_drift"] == LIMIT
     # the slab's marker does not drift, but a fall is one of everything
     assert float(result["drift_probability"].sel(marker="slab-face")) == 0.2

@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 import yaml
 
+from blockshake.statistics.intervals import share_interval
 from blockshake.store import Store
 from blockshake.study.config import Ladder
 from blockshake.study.ensembles.batch import CaseRuns
@@ -83,6 +84,9 @@ def test_shares_count_what_is_known_at_each_level():
     np.testing.assert_allclose(found["share"], [0.0, 1.0 / 3.0, 2.0 / 3.0])
     # Clopper and Pearson of 0 in 4
     assert float(found["share_interval"].sel(bound="upper")[0]) == pytest.approx(1.0 - 0.025**0.25)
+    # of the sample whose run failed nothing is known at the higher levels: 1 of 4 at least, 2 of 4 at most
+    limits = [*share_interval(1, 4)[:1], *share_interval(2, 4)[1:]]
+    np.testing.assert_allclose(found["share_interval"].sel(scale=2.0), limits)
     assert 2.0 < float(found["median"]) < 3.5
     assert float(found["safe_scale"]) < float(found["median"])
     assert found.identical(fragility(climbed))

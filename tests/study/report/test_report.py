@@ -98,8 +98,13 @@ def test_samples_that_did_not_complete_are_listed_with_their_reason(text):
     assert f"configuration-4 NSCD rigid 2 collapsed 1 {COLLAPSE_REASON}" in text
     assert "configuration-4 NSCD rigid 4 not-converged" in text
     assert "48 runs: 46 completed, 1 collapsed, 0 still falling when the window ended, 1 failed" in text
-    assert "NSCD rigid: 5 samples contribute until" in text
-    assert "the statistics leave out failed samples (1)" in text
+    # six samples, one fell and one failed: histories are of five until the fall
+    assert "NSCD rigid 6 1 1 5 until 1.02 s, then 4 5 4 4 5" in text
+    assert "configuration-1: samples that did not complete" not in text
+    assert (
+        "How samples end that failed for a numerical reason: NSCD rigid, configuration-4 (1 of 6). No statistic"
+        in text
+    )
 
 
 def test_fewer_samples_of_a_model_are_said_first_and_their_cost_with_the_samples(text):

@@ -8,15 +8,15 @@ from blockshake.geometry.structure import load_structure
 from blockshake.pages.rows import bodies_by_height, face_markers
 from blockshake.study.report.content import load_content
 from blockshake.study.sensitivity.figure import plot_sensitivity, plot_sensitivity_over_time
-from blockshake.study.sensitivity.findings import sentence
-from blockshake.study.sensitivity.section import summary_table
+from blockshake.study.sensitivity.findings import sentence, shared_words
+from blockshake.study.sensitivity.section import sensitivities, summary_table
 from blockshake.study.sensitivity.sensitivity import QUANTITIES
 
 NOISE = 1e-4  # m
 FRICTION, VISCOUS = "friction.concrete.concrete", "materials.concrete.viscous_modulus"
 
 
-def made_up(share=0.6, correlation=-0.7, spread=0.01, level=0.3):
+def made_up(share=0.6, correlation=-0.7, spread=0.01, level=0.3, shared=0.01):
     """Sensitivity of two blocks to friction, with a control without effect."""
     pairs = ("quantity", "marker", "parameter")
     shape = (len(QUANTITIES), 2, 2)
@@ -37,6 +37,7 @@ def made_up(share=0.6, correlation=-0.7, spread=0.01, level=0.3):
             "explained": (("quantity", "marker"), np.full(shape[:2], 0.42)),
             "spread": (("quantity", "marker"), np.full(shape[:2], spread)),
             "used": ("quantity", np.full(len(QUANTITIES), 50)),
+            "correlation": (("parameter", "other"), [[1.0, shared], [shared, 1.0]]),
             "control": ("parameter", [0, 1]),
             "window_first_order": (("window", "marker", "parameter"), windows),
             "window_spread": (("window", "marker"), np.full((3, 2), spread)),
@@ -116,6 +117,32 @@ def test_too_few_samples_are_not_called_close_to_each_other():
     result = made_up(spread=np.nan)
     below = plot_sensitivity_over_time({"nscd-rigid": result}, "high-face", NOISE).axes[1]
     assert [text.get_text() for text in below.texts] == ["too few samples"]
+
+
+@pytest.mark.parametrize(
+    ("shared", "words"),
+    [
+        (0.2, "no two variables have r squared beyond 0.05"),
+        (
+            -0.5,
+            "1 of 1 pairs of variables share their indices, r squared beyond 0.05: friction, concrete on concrete and "
+            "viscous modulus of concrete, r -0.50",
+        ),
+        (np.nan, "too few completed samples for an index"),
+    ],
+)
+def test_variables_that_share_an_index_are_named(shared, words):
+    assert shared_words(made_up(shared=shared)) == words
+
+
+def test_how_many_samples_an_index_rests_on_stands_beside_it(fake):
+    """Of the made-up configuration 4 by rigid NSCD one of six samples collapsed and one failed."""
+    content = load_content(fake.study, fake.results, fake.logs)
+    (told,) = [block.items for block in sensitivities(content).blocks if block.kind == "items"]
+    few = "configuration-4 by NSCD rigid (6 samples, of which 4 for the history, 5 for the peak)"
+    (words,) = [words for words in told if few in words]
+    assert words.endswith("too few completed samples for an index.")
+    assert any(words.startswith("configuration-1 by LS-DEM, configuration-1 by NSCD rigid") for words in told)
 
 
 def test_columns_are_one_body_of_each_height_from_the_lowest():

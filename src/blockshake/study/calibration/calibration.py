@@ -4,7 +4,6 @@ import numpy as np
 import xarray as xr
 
 from blockshake.geometry.structure import load_structure
-from blockshake.simulation.models import MODELS
 from blockshake.store import load_made
 from blockshake.study.calibration.answers import SHARES, answer_questions
 from blockshake.study.calibration.comparison import hollow_shape, left_out, read_distances
@@ -100,9 +99,8 @@ def _of_test(compared, test, reading):
 
 
 def models_of(found):
-    """Models in the answers of `calibrate`, in the order of the table of solvers."""
-    groups = {group for one in found["parameters"].values() for group in one["answers"]}
-    return [model for model in MODELS if model in groups]
+    """Models in the answers of `calibrate`, by name."""
+    return sorted({group for one in found["parameters"].values() for group in one["answers"]} - {ALL})
 
 
 def _assumed(name, study, cases):

@@ -9,7 +9,7 @@ import xarray as xr
 from blockshake.geometry.reference_block import reference_block
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
-from blockshake.simulation.models import model_of
+from blockshake.simulation.models import solver_of
 from blockshake.sources import script_sources, source_digest
 from blockshake.study.calibration.answers import Distances, chance_of_test, distances
 from blockshake.study.calibration.readings import (
@@ -76,7 +76,7 @@ def compare_open_tests(case, campaign, model, given, store):
         test = open_test(case, campaign, name)
         store.say(f"{name}: {test.case['motion']} at {test.case['scale']:g}, {test.case['duration']:.4g} s")
         run = run_settings, rows, steps, ensemble, store
-        tests[name] = _compared(test, simulate_readings(test, model, *run))
+        tests[name] = _compared(test, simulate_readings(test, solver_of(model).name, *run))
     shares = [ranges[one].share(drawn[one].to_numpy()) for one in used]
     found = xr.concat(tests.values(), dim=xr.Variable("test", list(tests)))
     found = found.assign(share=(("parameter", "sample"), shares)).assign_coords(parameter=used)
@@ -119,7 +119,7 @@ def has_use(model, structure, parameter):
     if parameter == HOLLOW and hollow_shape(structure)[0] is None:
         return False
     if parameter in OTHERS:
-        return bool(model_of(model).calibrated)
+        return bool(solver_of(model).calibrated)
     return has_parameter(structure, parameter)
 
 

@@ -5,7 +5,6 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from blockshake.simulation.models import ModelName
 from blockshake.validation import Positive, Strict, Whole
 
 FEWEST = 19  # samples with which a range of 95 % has an end: the largest excess of 19 stands for the 20th
@@ -62,7 +61,7 @@ class CalibrationSettings(Strict):
     whose envelope fits.
     """
 
-    cases: dict[ModelName, tuple[str, ...]] = Field(
+    cases: dict[str, tuple[str, ...]] = Field(
         min_length=1, description="by model, one of the study's: names of cases with a measured test"
     )
     size: Whole = Field(

@@ -8,6 +8,7 @@ import xarray as xr
 from blockshake.files import content_digest
 from blockshake.measurement.motion.compared_curves import curves_along_x
 from blockshake.measurement.sensors import markers
+from blockshake.simulation.models import solver_of
 from blockshake.statistics.intervals import SURE_FROM, quantile_interval, sample_quantiles
 from blockshake.statistics.resampling import (
     bootstrap_interval,
@@ -30,6 +31,7 @@ from blockshake.study.ensembles.envelope import counted_samples
 
 MOST = 400  # samples of a model that are compared: each is held against each
 TOLD_APART_BY = 3.0  # standard deviations of a marker's noise that curves are apart when they have parted
+CHANGES = ("peak", "residual", "width")  # of a solver with other settings, told from the same samples
 _MIDDLE = [0.5]
 _ENDS = (0.05, 0.95)  # quantiles between which a range lies
 _DESCRIBED = {
@@ -38,6 +40,10 @@ _DESCRIBED = {
     "residual": ("median of the displacement along x relative to the slab at the end", "m"),
     "residual_range": ("from the 5 % to the 95 % quantile of the residual", "m"),
     "width": ("mean absolute difference of two samples relative to the slab", "m"),
+    "peak_change": ("peak minus that of the model of the solver's plain name, median of the pairs", "m"),
+    "residual_change": ("residual minus that of the model of the plain name, median of the pairs", "m"),
+    "width_change": ("width minus that of the model of the plain name, of the same samples", "m"),
+    "changed": ("samples that both models have", "1"),
     "distance": ("energy distance of the ensembles, mean over times and blocks", "m"),
     "distance_chance": ("distance that random divisions of the samples stay below", "m"),
     "history_difference": ("mean difference of the same sample by both models, median over the samples", "m"),
@@ -91,7 +97,9 @@ def compare_models(ensembles, twins, measured):
     xarray.Dataset
         Displacements are along x relative to the slab's marker [m]; markers are those of the blocks. Of one model:
         ``counted(model)``; medians ``peak`` and ``residual(model, marker)``; ``residual_range(model, marker)``, from
-        its 5 % to its 95 % quantile; and ``width(model, marker)``, the mean absolute difference of two samples. Of two
+        its 5 % to its 95 % quantile; and ``width(model, marker)``, the mean absolute difference of two samples. Of a
+        model with settings of its own, against that of its solver's name alone, over the ``changed(model)`` samples of
+        both: ``peak_change``, ``residual_change`` and ``width_change(model, marker)``, NaN for all others. Of two
         models, ``other`` the second: ``distance``, the energy distance of the ensembles, with ``distance_chance``;
         ``history_difference`` and ``parting_time`` of the ``common`` samples. Of the numerics, NaN without twins:
         ``floor`` and ``horizon(model, twin)``. Against the measured curves, NaN without any: ``score(model)`` and
@@ -108,6 +116,7 @@ def compare_models(ensembles, twins, measured):
     result = xr.merge(
         [
             _alone(counted, seed),
+            _changes(counted, seed),
             _pairs(counted, TOLD_APART_BY * noise, seed),
             _numerics(counted, twins, TOLD_APART_BY * noise),
             _scores(counted, None if measured is None else measured[0], seed),
@@ -181,6 +190,31 @@ def _alone(counted, seed):
 def _extent(values):
     """Distance of the 5 % from the 95 % quantile over the first axis."""
     return np.diff(sample_quantiles(values, _ENDS), axis=0)[0]
+
+
+def _changes(counted, seed):
+    """Changes by the settings of a model against that of its solver's plain name, over the samples of both."""
+    parts = []
+    for model, own in counted.items():
+        other, blocks = counted.get(solver_of(model).name, own), _blocks(own)
+        both = [] if other is own else np.intersect1d(own["sample"], other["sample"])
+        pair = [one.isel(sample=np.isin(one["sample"], both)) for one in (own, other)]
+        one = {"changed": ((), len(both))}
+        for name in ("peak", "residual"):
+            values = [of[name].sel(frame="slab", marker=blocks).transpose("sample", "marker") for of in pair]
+            moved = np.subtract(*(of.to_numpy() for of in values))
+            one[f"{name}_change"] = ("marker", sample_quantiles(moved, _MIDDLE)[0])
+            one[f"{name}_change_interval"] = (("bound", "marker"), quantile_interval(moved, _MIDDLE)[:, 0])
+        drawn = np.full((1, len(blocks)), np.nan)
+        if len(both) >= FEWEST:
+            weights = resampled_weights(len(both), _generator(seed, "change", model))
+            widths = [mean_width(mean_differences(of, of), weights) for of in map(_curves, pair)]
+            drawn = np.subtract(*widths)
+        one["width_change"] = ("marker", drawn[0])
+        limits = limits_of(drawn[1:] if len(both) >= SURE_FROM else drawn[:0])
+        one["width_change_interval"] = (("bound", "marker"), limits)
+        parts.append(xr.Dataset(one, {"marker": blocks, "bound": ["lower", "upper"]}))
+    return xr.concat(parts, dim=xr.Variable("model", list(counted)))
 
 
 def _pairs(counted, limit, seed):

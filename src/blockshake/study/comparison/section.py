@@ -7,10 +7,14 @@ import numpy as np
 from blockshake.pages.blocks import Heading, Items, Section, Text
 from blockshake.pages.wording import count_words, given, model_label, number, share_words
 from blockshake.simulation.models import MODELS
+from blockshake.study.comparison.comparison import CHANGES
 from blockshake.study.comparison.tables import (
+    at_top,
     in_millimetres,
     larger_floor,
     numerics_table,
+    other_settings,
+    other_settings_table,
     pairs_table,
     scores_table,
 )
@@ -33,6 +37,9 @@ def models(content):
         pairs_table(content),
         numerics_table(content),
     ]
+    if (prices := other_settings_table(content)) is not None:
+        words = tuple(_settings_words(content, model) for model in other_settings(content))
+        blocks += [Heading("One solver with other settings", "settings"), Items(words), prices]
     scores = scores_table(content)
     if scores is not None:
         blocks += [Heading("Scores against the measured curves", "scores"), scores]
@@ -67,9 +74,21 @@ def case_words(case):
             f"({in_millimetres(distance[far])} mm)."
         )
     for pair in pairs:
-        if all(MODELS[model].rigid for model in pair):
+        if all(model in MODELS and MODELS[model].rigid for model in pair):
             words += f" {_rigid_words(case.differences, pair)}"
     return words
+
+
+def _settings_words(content, model):
+    """In how many cases the settings of a model are shown to change what, in a sentence."""
+    shown, cases = [], [at_top(case).sel(model=model) for case in content.cases.values()]
+    for name in CHANGES:
+        known = [
+            one for case in cases if np.isfinite(one := case[f"{name}_change_interval"].to_numpy()).all()
+        ]
+        beyond = sum(one.prod() > 0.0 for one in known)
+        shown.append(f"{name} in {share_words(beyond, len(known))}")
+    return f"{model_label(model)}: cases in which the limits of a change leave out zero: {', '.join(shown)}."
 
 
 def _both(pair):

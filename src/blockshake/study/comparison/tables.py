@@ -1,14 +1,15 @@
 """Tables of what differs between the models: blocks, pairs of models, numerics, scores."""
 
-from itertools import combinations
+from itertools import chain, combinations
 
 import numpy as np
 
 from blockshake.pages.blocks import Table
 from blockshake.pages.rows import face_markers
 from blockshake.pages.wording import MISSING, given, millimetres, model_label, number
+from blockshake.simulation.models import solver_of
 from blockshake.statistics.intervals import SURE_FROM
-from blockshake.study.comparison.comparison import TOLD_APART_BY
+from blockshake.study.comparison.comparison import CHANGES, TOLD_APART_BY
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 
 
@@ -21,7 +22,8 @@ def block_tables(case):
     )
     captions = {
         "peak": f"peak displacement along x relative to the slab [mm], median over the n samples. {limits}",
-        "residual": f"residual displacement ({at_end}) relative to the slab [mm], median over the samples. {limits}",
+        "residual": f"residual displacement ({at_end}) relative to the slab [mm], median over those of the n samples "
+        f"that did not fall. {limits}",
         "width": "width of the envelope [mm]: mean difference of two samples, over all pairs and times. The width does "
         "not grow with the number of samples, as the bounds in the figures do. In brackets bootstrap limits of 95 %, "
         f"which hold in 89 to 93 of 100 cases; none with fewer than {SURE_FROM} samples, and no width with fewer than "
@@ -84,6 +86,41 @@ def pairs_table(content):
         ),
         tuple(rows), "llrrrrrr",
     )  # fmt: skip
+
+
+def other_settings(content):
+    """Models of a study that have settings of their own beside the model of their solver's name, a list of str."""
+    models = content.study["models"]
+    return [model for model in models if model != (plain := solver_of(model).name) and plain in models]
+
+
+def other_settings_table(content):
+    """Changes by other settings of a solver at the top block; None where no model has any."""
+    if not other_settings(content):
+        return None
+    rows = []
+    for case in content.cases.values():
+        for model in other_settings(content):
+            own, plain = (at_top(case).sel(model=name) for name in (model, solver_of(model).name))
+            pairs = ((millimetres(plain[name]), _with_limits(own, f"{name}_change")) for name in CHANGES)
+            rows.append((case.name, model_label(model), str(int(own["changed"])), *chain(*pairs)))
+    heads = (f"{head} [mm]" for name in CHANGES for head in (name.capitalize(), "Change"))
+    return Table(
+        "One solver with other settings, at the top block, along x relative to the slab. Peak and residual: medians "
+        "over the samples by the model of the solver's plain name; width of its envelope: mean difference of two "
+        "samples. Change: what the same n samples by the named model have more, of peak and residual the median of "
+        "the differences with limits of 95 % by order statistics, of the width with bootstrap limits. Limits that hold "
+        "zero show no change. A sample that failed by either model is left out of n, and one that fell has no residual "
+        f"and the peak that it had reached. {MISSING.capitalize()}: too few samples.",
+        ("Case", "Model", "n", *heads),
+        tuple(rows),
+        "llrrrrrrr",
+    )
+
+
+def at_top(case):
+    """Differences of the models of a case at the marker of its top block."""
+    return case.differences.sel(marker=next(iter(face_markers(case.structure).values())))
 
 
 def numerics_table(content):

@@ -7,6 +7,7 @@ import pandas as pd
 from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.markers import driven_marker
+from blockshake.simulation.models import solver_of
 from blockshake.simulation.run_histories import joint_figures
 from blockshake.simulation.simulate import simulate
 from blockshake.store import structure_digest
@@ -26,6 +27,7 @@ class CaseRuns(NamedTuple):
     case : dict
         Its entries of the configuration: ``structure``, ``duration`` [s] and those of its motion.
     model : str
+        Of the study: its solver's name, words may follow.
     settings : dict
         The model's: ``time_step`` [s], and optionally ``parameters`` of the solver that all samples share, by dotted
         name.
@@ -65,6 +67,7 @@ def simulate_samples(runs, motions, rows, store):
         and ``reason`` as attributes.
     """
     case, model, settings, _, output_rate = runs
+    solver = solver_of(model).name
     structure = load_structure(case["structure"])
     identity = structure_digest(structure)
     finished = []
@@ -73,7 +76,7 @@ def simulate_samples(runs, motions, rows, store):
 
         def simulated(checkpoint, sample=sample, row=row, motion=motion, parameters=parameters):
             run = simulate(
-                structure, motion, model, parameters,
+                structure, motion, solver, parameters,
                 time_step=settings["time_step"], duration=case["duration"], output_rate=output_rate,
                 accelerometers=False, checkpoint=checkpoint,
             )  # fmt: skip
@@ -82,7 +85,7 @@ def simulate_samples(runs, motions, rows, store):
             return ensemble.assign_attrs(status=run.attrs["status"], reason=run.attrs["reason"])
 
         given = (
-            model, identity, *motion.table, case["duration"], output_rate, settings["time_step"], parameters,
+            solver, identity, *motion.table, case["duration"], output_rate, settings["time_step"], parameters,
             int(sample), row.to_dict(),
         )  # fmt: skip
         words = f"{structure.file.name} {model} sample {sample}"

@@ -70,9 +70,11 @@ def envelope(ensemble, largest_drift, displacement=None):
     value: after a collapse cut a run short, those of the others. The peak of a collapsed run is what it had reached, so
     that upper quantiles of the peak are then lower limits. The band from lower to upper of n runs holds a further run
     at one instant with probability (n - 1) / (n + 1); it has no stated probability for a whole record. A run that still
-    falls as the window ends counts as a collapse, and a collapse as a drift beyond the limit.
+    falls as the window ends counts as a collapse, and a collapse as a drift beyond the limit. Failed runs are in no
+    statistic; the limits of the probabilities hold that all of them fell and that none did.
     """
     counted = counted_samples(ensemble)
+    failed = ensemble.sizes["sample"] - counted.sizes["sample"]
     probabilities = xr.DataArray(list(QUANTILES), dims="quantile", coords={"quantile": list(QUANTILES)})
     bounds = xr.DataArray(list(BOUNDS.values()), dims="bound", coords={"bound": list(BOUNDS)})
     edges, quantiles, known = _over_markers(counted, displacement or _held(ensemble), bounds, probabilities)
@@ -84,7 +86,9 @@ def envelope(ensemble, largest_drift, displacement=None):
             "contributing": known.sum("sample"),
         }
     ).transpose("frame", "bound", "quantile", "time", "marker", "body", "joint", "axis")
-    result = result.merge(_probabilities(counted, largest_drift)).merge(_intervals(counted, probabilities))
+    result = result.merge(_probabilities(counted, failed, largest_drift)).merge(
+        _intervals(counted, probabilities)
+    )
     describe(result, _DESCRIBED)
     for name in _SINGLE:
         result[name].attrs = {**ensemble[name].attrs, "ancillary_variables": f"{name}_interval"}
@@ -124,14 +128,14 @@ def _over_markers(counted, displacement, bounds, probabilities):
     return xr.concat(edges, dim="marker"), xr.concat(quantiles, dim="marker"), known
 
 
-def _probabilities(counted, largest_drift):
-    """Shares of the samples that fell and that drifted too far, with their limits."""
+def _probabilities(counted, failed, largest_drift):
+    """Shares of the samples that fell and that drifted too far, with limits for whatever the ``failed`` ones did."""
     fell = np.isin(counted["status"].values, FALLEN)
     peak = counted["peak"].sel(frame="slab", drop=True).transpose("sample", "marker").to_numpy()
     counts = np.array([fell.sum(), *(fell[:, None] | (peak > largest_drift)).sum(axis=0)])
     size = len(fell)
     share = counts / size if size else np.full(len(counts), np.nan)
-    limits = np.array([share_interval(int(count), size) for count in counts]).T
+    limits = np.array([share_interval(int(count), size, failed) for count in counts]).T
     result = xr.Dataset(
         {
             "collapse_probability": ((), share[0]),

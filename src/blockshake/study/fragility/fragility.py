@@ -54,16 +54,16 @@ def fragility(climbed):
     Notes
     -----
     Limits of 95 %, of `likely_capacities`, NaN where the samples bear none; samples are taken as independent. A
-    sample whose run ended for a numerical reason is known at the levels below. The spread is that of the sampled
+    sample whose run ended for a numerical reason is known at the levels below; above them the limits of the share hold
+    either outcome. The spread is that of the sampled
     variables under one motion: another motion has another fragility.
     """
     lower, upper = climbed["capacity_lower"].to_numpy(), climbed["capacity_upper"].to_numpy()
     scales = climbed["scale"].to_numpy()
     failed = (upper[:, None] <= scales + 1e-9).sum(axis=0)
     known = failed + (lower[:, None] >= scales - 1e-9).sum(axis=0)
-    limits = np.array(
-        [share_interval(int(count), int(size)) for count, size in zip(failed, known, strict=True)]
-    )
+    numbers = zip(failed, known, len(lower) - known, strict=True)
+    limits = np.array([share_interval(*map(int, one)) for one in numbers])
     fine = np.linspace(scales[0], scales[-1], _POINTS)
     fitted = fit_capacity(lower, upper)
     is_spread = fitted.dispersion > 0.0  # else all capacities lie between two factors, and no more is known

@@ -124,14 +124,16 @@ def _table(content):
             low, high = (percent(at["share_interval"].sel(bound=side)) for side in ("lower", "upper"))
             rows.append((
                 name, given(scale), number(scale * unit), str(climbed),
-                f"{percent(at['share'])} [{low}, {high}]" if known else MISSING,
+                f"{percent(at['share'])} [{low}, {high}] of {known}" if known else MISSING,
                 peaks if climbed else MISSING,
             ))  # fmt: skip
     quantiles = " / ".join(map(quantile_percent, _SHOWN_SHARES))
     return Table(
         "Levels that the samples climbed. Not passed: share that does not pass this level, or did not pass a lower "
-        "one, of the samples of which this is known, with Clopper-Pearson limits of 95 %. Displacement: the largest of "
-        f"the mass centre of any block from the slab, quantiles {quantiles} over the samples that climbed this level.",
+        "one, of the samples of which this is known, whose number stands behind. Clopper-Pearson limits of 95 % in "
+        "brackets hold either outcome of the other samples, whose run ended for a numerical reason. Displacement: the "
+        f"largest of the mass centre of any block from the slab, quantiles {quantiles} over the samples that climbed "
+        "this level.",
         (
             "Case", "Factor", f"Peak acceleration [m/s{SQUARED}]", "Climbed", "Not passed [%]",
             f"Displacement, {quantiles} [mm]",

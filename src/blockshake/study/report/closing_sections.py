@@ -6,7 +6,7 @@ import yaml
 from blockshake.pages.blocks import Items, Listing, Section, Table, Text
 from blockshake.pages.origin import command_blocks, digests_table, pairs_table, versions_table
 from blockshake.pages.wording import MISSING, model_label, number, parameter_label
-from blockshake.simulation.models import MODELS
+from blockshake.simulation.models import solver_of
 from blockshake.study.ensembles.case_input import COMMANDED
 from blockshake.study.ensembles.outcomes import numerical_figure, unfinished
 from blockshake.study.ensembles.timing import total_timing
@@ -182,7 +182,7 @@ def limits(content):
     )
     if measured:
         random.append(f"the motion of the slab within the error of its readings ({measured})")
-    rigid = [model_label(model) for model in content.study["models"] if MODELS[model].rigid]
+    rigid = [model_label(model) for model in content.study["models"] if solver_of(model).rigid]
     items = [
         "Friction is Coulomb's, with one coefficient a pair of materials, constant in time, place and rate.",
         f"Random are: {'; '.join(random)}. Sizes, places and the condition of the joints are taken as known.",

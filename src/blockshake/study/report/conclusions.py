@@ -14,12 +14,13 @@ from blockshake.pages.wording import (
     parameter_label,
     percent,
     quantile_percent,
+    share_words,
 )
 from blockshake.statistics.intervals import CONFIDENCE, SURE_FROM, samples_needed
 from blockshake.study.calibration.calibration import ALL
 from blockshake.study.ensembles.coverage import is_likely
 from blockshake.study.ensembles.envelope import counted_samples
-from blockshake.study.ensembles.outcomes import count_outcomes
+from blockshake.study.ensembles.outcomes import count_outcomes, shortfall
 from blockshake.study.fragility.section import words as fragility_words
 from blockshake.study.sensitivity.findings import influences, is_known
 
@@ -253,6 +254,17 @@ def _unknown(content):
     if cut:
         sentences.append(
             f"How far blocks of samples that fell would have moved, peaks are lower limits: {'; '.join(cut)}."
+        )
+    failed = [
+        f"{model_label(model)}, {case.name} ({share_words(lost, one.samples.sizes['sample'])})"
+        for case in cases
+        for model, one in case.responses.items()
+        if (lost := shortfall(one.envelope).failed)
+    ]
+    if failed:
+        sentences.append(
+            f"How samples end that failed for a numerical reason: {'; '.join(failed)}. No statistic counts them; the "
+            "limits of probabilities allow for either end."
         )
     chaotic = _chaotic(cases)
     if chaotic:

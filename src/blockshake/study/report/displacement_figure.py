@@ -6,7 +6,7 @@ import json
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from blockshake.pages.drawing import BLACK, GREY, LIGHT_GREY, MEASURED, RED, new_figure
+from blockshake.pages.drawing import BLACK, GREY, LIGHT_GREY, MEASURED, RED, column_title, new_figure
 from blockshake.pages.wording import model_label
 
 _MOST_POINTS = (
@@ -50,7 +50,8 @@ def plot_displacements(envelopes, measured, markers, labels, frame, synthetic):
             if measured is not None and marker in measured["marker"].values:
                 axes.plot(measured["time"], 1e3 * measured["displacement"].sel(**at), **MEASURED)
         counted, samples = (int(envelope.attrs[name]) for name in ("counted", "samples"))
-        column[0].set_title(f"{model_label(model)}\n{counted} of {samples} samples")
+        words = f"{model_label(model)}\n{counted} of {samples} samples"
+        column[0].set_title(column_title(words, len(envelopes)))
         column[-1].set_xlabel("time [s]")
     panels[0, 0].set_xlim(0.0, float(next(iter(envelopes.values()))["time"][-1]))
     for axes, label in zip(panels[:, 0], labels, strict=True):
@@ -113,7 +114,8 @@ def interactive_displacements(envelopes, measured, markers, labels, frame, synth
             axes |= {f"xaxis{_suffix(index)}": along, f"yaxis{_suffix(index)}": up}
     titles = [
         {
-            "text": model_label(model), "showarrow": False, "xref": f"x{_suffix(column)} domain", "yref": "paper",
+            "text": column_title(model_label(model), len(envelopes)).replace("\n", "<br>"),
+            "showarrow": False, "xref": f"x{_suffix(column)} domain", "yref": "paper",
             "x": 0.5, "y": 1.0, "yanchor": "bottom",
         }
         for column, model in enumerate(envelopes)

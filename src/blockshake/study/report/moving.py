@@ -8,7 +8,7 @@ from matplotlib.collections import PolyCollection
 from scipy.spatial.transform import Rotation
 
 from blockshake.measurement.sensors.markers import marker_bodies
-from blockshake.pages.drawing import DARK_GREY, RED, new_figure
+from blockshake.pages.drawing import DARK_GREY, RED, column_title, new_figure
 from blockshake.pages.scene.bodies import body_colors, body_mesh
 from blockshake.pages.scene.projection import VIEWS, Scene
 from blockshake.pages.wording import given, millimetres, model_label
@@ -85,9 +85,8 @@ def plot_still(case):
         _draw_blocks(axes, scene, colors, case.structure, one.isel(time=frame), magnification)
         if case.test is not None:
             _draw_markers(axes, scene, case, one["time"].to_numpy()[frame], magnification)
-        axes.set_title(
-            f"{model_label(model)}\nsample {int(one['sample'])} at {float(one['time'][frame]):.2f} s"
-        )
+        words = f"{model_label(model)}\nsample {int(one['sample'])} at {float(one['time'][frame]):.2f} s"
+        axes.set_title(column_title(words, len(found)))
         axes.set_aspect("equal")
         axes.autoscale_view()
         axes.set_axis_off()

@@ -97,7 +97,8 @@ def probability_table(content):
         f"statistics. {MISSING.capitalize()}: of a quantile for which n is too small to bear limits ({needed}). All "
         f"limits are of {100 * CONFIDENCE:.0f} % and take samples as independent. A sample that collapsed, or still "
         "fell when the window ended, counts as a collapse and as more than that drift, and with the peak that it had "
-        "reached.",
+        "reached. One that failed counts in none of these; the limits of probabilities hold that all of these fell and "
+        "that none did.",
         (
             "Case, marker", "Model", "n", "Collapse [%]", "Drift [%]", *(f"Peak, {one} [mm]" for one in quantiles),
             *(f"Rotation, {one} [mrad]" for one in quantiles),

@@ -1,6 +1,6 @@
 """Parameters of one structure that a sample of the design stands for."""
 
-from blockshake.simulation.models import model_of
+from blockshake.simulation.models import solver_of
 
 
 def sample_parameters(row, structure, linked):
@@ -40,5 +40,5 @@ def unused_variables(variables, model, parameters):
 
     Dotted names. ``parameters``: what a sample gives to the structure, from `sample_parameters`, without what it lacks.
     """
-    unused = model_of(model).without_effect
+    unused = solver_of(model).without_effect
     return [name for name in variables if name not in parameters or name.rsplit(".", 1)[1] in unused]

@@ -7,6 +7,9 @@ import numpy as np
 from blockshake.pages.rows import bodies_by_height, face_markers
 from blockshake.pages.wording import millimetres, number, parameter_label, percent
 
+SHARED = 0.05  # r squared of two variables beyond which they are said to share their indices
+_TOLD = 3  # pairs of such variables
+
 
 class Influence(NamedTuple):
     """One variable's measure with its 95 % interval [1].
@@ -73,6 +76,22 @@ def influences(result, measure):
         for index in order
     )  # fmt: skip
     return Influences(tuple(ranked), chance)
+
+
+def shared_words(result):
+    """Which variables of a `sensitivity` share their indices, since they are correlated among its samples."""
+    known, names = result["correlation"].to_numpy(), result["parameter"].values
+    if not np.isfinite(known).all():
+        return "too few completed samples for an index"
+    pairs = [*zip(*np.triu_indices(len(names), 1), strict=True)]
+    shared = sorted((pair for pair in pairs if known[pair] ** 2 > SHARED), key=lambda pair: -abs(known[pair]))
+    if not shared:
+        return f"no two variables have r squared beyond {SHARED}"
+    told = "; ".join(
+        f"{parameter_label(names[one])} and {parameter_label(names[other])}, r {known[one, other]:.2f}"
+        for one, other in shared[:_TOLD]
+    )
+    return f"{len(shared)} of {len(pairs)} pairs of variables share their indices, r squared beyond {SHARED}: {told}"
 
 
 def quiet_markers(result, markers, noise):

@@ -1,6 +1,6 @@
 """Section on the causes of the differences between samples: figures, words and the summary over cases."""
 
-from blockshake.pages.blocks import Figure, Heading, Section, Table, Text
+from blockshake.pages.blocks import Figure, Heading, Items, Section, Table, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.wording import MISSING, model_label, number
 from blockshake.study.sensitivity.figure import (
@@ -16,6 +16,7 @@ from blockshake.study.sensitivity.findings import (
     is_known,
     markers_by_height,
     sentence,
+    shared_words,
 )
 
 
@@ -31,14 +32,35 @@ def sensitivities(content):
             "steadily, and in which direction, the peak follows a variable once the part of the others is taken out. "
             "Intervals are bootstrap intervals of 95 %. The level of chance is the largest value over all blocks and "
             "variables that 95 of 100 random pairings of results and samples stay below: only a value beyond it is "
-            "shown to matter. Variables that act together, the motion of the slab where each sample draws it within "
-            "the error of its readings, and sensitivity of the motion to small differences explain the rest."
+            "shown to matter. Samples that failed are in no measure. Those that fell are not in the history, and rank "
+            "first in the peak. Variables that act together, the motion of the slab where each sample draws it within "
+            "the error of its readings, and sensitivity of the motion to small differences explain the rest. Where the "
+            "ranks of two variables have a correlation r among the completed samples, asked for or left by few, each "
+            "index holds a part of the other's, which is not parted: a variable without an effect of its own then has "
+            "up to r squared of the other's share."
         ),
         summary_table(content),
+        Items(_shared(content)),
     ]
     for case in content.cases.values():
         blocks += _case(case)
     return Section("Causes of the thickness of the envelopes", "sensitivity", tuple(blocks))
+
+
+def _shared(content):
+    """Samples that did not complete, and variables that share their indices, in a sentence for cases alike."""
+    told = {}
+    for case in content.cases.values():
+        for model, one in case.responses.items():
+            history, peak = (int(one.sensitivity["used"].sel(quantity=name)) for name in ("history", "peak"))
+            size = one.samples.sizes["sample"]
+            less = f" ({size} samples, of which {history} for the history, {peak} for the peak)" * (
+                history < size
+            )
+            told.setdefault(shared_words(one.sensitivity), []).append(
+                f"{case.name} by {model_label(model)}{less}"
+            )
+    return tuple(f"{', '.join(names)}: {words}." for words, names in told.items())
 
 
 def _case(case):

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import xarray as xr
+from scipy.stats import rankdata
 
 from blockshake.dynamics.system import Status
 from blockshake.errors import InputError
@@ -21,7 +22,7 @@ from blockshake.study.sensitivity.measures import (
     partial_rank_correlation,
 )
 
-QUANTITIES = {"history": "m", "peak": "m", "residual": "m", "rotation": "rad"}
+QUANTITIES = ("history", "peak")
 _WINDOW = 1.0  # s; about a cycle of rocking: shorter ones show the phase within it
 _KEPT = 1.0 - 1e-9  # of a history's variance, by the components that stand for it
 _MEASURES = {
@@ -37,14 +38,16 @@ _DESCRIBED = {
     ),
     "window_spread": ("standard deviation over the samples within a second", "m"),
     "window": ("middle of the second", "s"),
+    "spread": ("standard deviation over the samples", "m"),
     "explained": ("adjusted R^2 of a regression of ranks on all variables", "1"),
     "used": ("samples used", "1"),
+    "correlation": ("rank correlation of two variables among the completed samples", "1"),
     "control": ("1 where model or structure has no use for the variable", "1"),
 }  # fmt: skip
 _NAMED = {  # without a unit
-    "spread": "standard deviation over the samples, in quantity_unit",
     "marker": "marker, relative to the slab's marker",
     "parameter": "dotted name of the random variable",
+    "other": "dotted name of a second random variable",
     "bound": "edge of the interval",
 }
 
@@ -62,7 +65,7 @@ def sensitivity_of_case(batches, design, model, structure, linked):
 
 
 def sensitivity(ensemble, variables, controls=()):
-    """Sensitivity of the histories, peaks, residuals and rotations of an ensemble to its random variables.
+    """Sensitivity of the histories and peaks of an ensemble to its random variables.
 
     Parameters
     ----------
@@ -80,12 +83,12 @@ def sensitivity(ensemble, variables, controls=()):
         [1], the partial rank correlation; of each the 95 % bootstrap interval ``_interval(bound, ...)`` and
         ``_chance(quantity)``, what the largest over all markers and variables reaches without any effect in 95
         of 100 cases; ``explained(quantity, marker)`` [1], adjusted R^2 of a regression of ranks on all
-        variables; ``spread(quantity, marker)``, standard deviation over the samples in ``quantity_unit``;
-        ``used(quantity)``, samples; ``control(parameter)``, 1 where a variable cannot matter. Quantities, of
-        each marker relative to the slab's along x: ``history``, the displacement at all times together;
-        ``peak``; ``residual``; and ``rotation``, the largest of the marker's body. A history has no rank
-        correlation; ``window_first_order(window, marker, parameter)`` is the index of its seconds one by one, with
-        ``window_spread`` [m].
+        variables; ``spread(quantity, marker)``, standard deviation over the samples [m];
+        ``used(quantity)``, samples; ``correlation(parameter, other)``, of the ranks of two variables among the
+        completed samples; ``control(parameter)``, 1 where a variable cannot matter. Quantities, of each marker
+        relative to the slab's along x: ``history``, the displacement at all times together, and ``peak``. A history
+        has no rank correlation; ``window_first_order(window, marker, parameter)`` is the index of its seconds one by
+        one, with ``window_spread`` [m].
 
     Raises
     ------
@@ -94,8 +97,8 @@ def sensitivity(ensemble, variables, controls=()):
 
     Notes
     -----
-    Samples that failed are left out. One that collapsed or still falls ranks first: its peak and rotation are at least
-    the largest of the completed ones. Residuals and histories rest on the completed samples.
+    Samples that failed are left out. One that collapsed or still falls ranks first: its peak is at least the
+    largest of the completed ones. Histories rest on the completed samples.
     Variables are taken as independent; of correlated ones the index holds what they carry of each other. The share of
     a history weighs each time by the variance there: it says what the envelope's thickness over time comes from.
     """
@@ -119,7 +122,13 @@ def sensitivity(ensemble, variables, controls=()):
     result = xr.concat(parts, dim=xr.Variable("quantity", list(QUANTITIES)))
     result = result.merge(_over_time(counted, markers, slab, inputs, generator))
     result["control"] = ("parameter", np.array([name in controls for name in variables], dtype=np.int8))
-    return _described(result.assign_coords(marker=markers, parameter=variables), ensemble, counted, seed)
+    completed = inputs[counted["status"].values == Status.COMPLETED]
+    enough = len(completed) >= FEWEST_SAMPLES
+    known = np.corrcoef(rankdata(completed, axis=0), rowvar=False) if enough else np.nan
+    result["correlation"] = (("parameter", "other"), np.broadcast_to(known, 2 * (len(variables),)))
+    return _described(
+        result.assign_coords(other=variables, marker=markers, parameter=variables), ensemble, counted, seed
+    )
 
 
 def _outputs(counted, quantity, markers, slab):
@@ -127,13 +136,8 @@ def _outputs(counted, quantity, markers, slab):
     completed = counted["status"].values == Status.COMPLETED
     if quantity == "history":
         return principal_components(completed_histories(counted, markers, slab))
-    if quantity == "rotation":
-        bodies = counted["marker_body"].sel(marker=markers)
-        values = counted["peak_rotation"].sel(body=bodies).transpose("sample", "marker").to_numpy()
-    else:
-        chosen = counted[quantity].sel(frame="slab", marker=markers)
-        values = chosen.transpose("sample", "marker").to_numpy()
-    if quantity != "residual" and completed.any():
+    values = counted[quantity].sel(frame="slab", marker=markers).transpose("sample", "marker").to_numpy()
+    if completed.any():
         values = np.where(completed[:, None], values, np.fmax(values, values[completed].max(axis=0)))
     return values[:, :, None]
 
@@ -251,7 +255,6 @@ def _measured(inputs, outputs, is_history, generator):
 
 
 def _described(result, ensemble, counted, seed):
-    result = result.assign_coords(quantity_unit=("quantity", list(QUANTITIES.values())))
     describe(result, _DESCRIBED)
     for name in _MEASURES:
         of = result[name].attrs

@@ -4,6 +4,8 @@ from dataclasses import replace
 
 from blockshake.pages.blocks import Heading, Section, Table, Text
 from blockshake.pages.wording import given, model_label
+from blockshake.simulation.models import MODELS
+from blockshake.study.comparison.tables import other_settings_table
 from blockshake.study.statements.statement import PaperVerdict
 from blockshake.study.statements.table import STATEMENTS
 
@@ -24,13 +26,22 @@ def judge_statements(content):
 
 
 def _of_the_paper(content):
-    """The content without the cases of other structures, and without a calibration that they take part in."""
-    cases = {name: case for name, case in content.cases.items() if case.is_shipped}
+    """The content without the cases of other structures, and without a calibration that they take part in.
+
+    And without the models that have settings of their own, which are told beside the plain ones elsewhere.
+    """
+    models = {name: settings for name, settings in content.study["models"].items() if name in MODELS}
+    cases = {
+        name: replace(case, responses={model: case.responses[model] for model in models})
+        for name, case in content.cases.items()
+        if case.is_shipped
+    }
     calibrated = [
         replace(one, cases=tuple(name for name in one.cases if name in cases)) for one in content.calibrated
     ]
     return replace(
         content,
+        study={**content.study, "models": models},
         cases=cases,
         calibrated=tuple(one for one in calibrated if one.cases),
         calibration=content.calibration if len(cases) == len(content.cases) else None,
@@ -45,7 +56,8 @@ def count_words(rows_by_heading):
 
 
 def findings(content):
-    """Findings of a study as JSON-like values: what it is, and the rows of `judge_statements`."""
+    """Findings of a study as JSON-like values: what it is, what settings change, and the rows of `judge_statements`."""
+    prices = other_settings_table(content)
     return {
         "study": content.study["name"],
         "description": " ".join(content.study["description"].split()),
@@ -56,6 +68,7 @@ def findings(content):
         ],
         "models": [model_label(model) for model in content.study["models"]],
         "version": content.versions["blockshake"],
+        "other_settings": prices and [prices.header, *prices.rows],
         "findings": {heading: list(map(list, rows)) for heading, rows in judge_statements(content).items()},
     }
 
