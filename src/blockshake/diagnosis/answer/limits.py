@@ -1,55 +1,206 @@
 """Sizes from which causes would be seen, before any cause is looked for; and motions that the sensors do not show."""
 
-import numpy as np
+from dataclasses import replace
+from typing import NamedTuple
 
-from blockshake.diagnosis.answer.answer import needed_of, needed_of_slab
+import numpy as np
+from scipy.special import ndtr
+
+from blockshake.diagnosis.answer.answer import needed_of, needed_of_slab, soft_gains
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_name
+from blockshake.diagnosis.evidence.explanation import best_of, mean_evidence
+from blockshake.diagnosis.evidence.slab_motion import explain_lift, slab_turns
+from blockshake.effects.joint_compliance import COMPLIANCES
+from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
 from blockshake.measurement.motion.body_poses import PLANAR, POSE
 
-_USUAL_GAP = 0.02  # m, at which a stop's limit is told
+SEEN = 0.9  # chance with which the readings' noise lets a cause of its limit be seen
 _LOST = 0.1  # of a test, for which a motion may be unknown without a word
+_TRIED = (5.0, 9.0)  # standard deviations of an amplitude, at which its gain is computed
+_FINEST, _STEPS = 1e4, 80  # sizes that are looked at: from this part of the visible one on
+_APART = 6  # of them, of which the gain of a vertical motion is computed at one
 
 
-def limits_of(evidence, slab):
-    """Sizes from which effects would be seen, by effect and place.
+class Visible(NamedTuple):
+    """How surely an effect of a size at a place would be seen.
+
+    ``distance`` (n_sizes,): of the first parameter from its null value; ``sigmas`` (n_sizes,): by which the mean gain
+    exceeds what is needed, in standard deviations of the gain; ``values``: of the variant.
+    """
+
+    distance: np.ndarray
+    sigmas: np.ndarray
+    values: dict
+
+
+def limits_of(visible):
+    """Sizes from which effects would be seen in nine of ten campaigns of the same motion.
 
     Parameters
     ----------
-    evidence : Evidence or None
-    slab : dict of str to Explanation
+    visible : dict of str to dict of str to Visible
+        From `visible_sizes`.
 
     Returns
     -------
     dict of str to dict of str to float
-        Of the effect's first parameter, in its unit; only places where the tests tell it.
+        By effect and place, of the effect's first parameter, in its unit; only places where the tests tell it.
     """
-    limits_by_name = {}
-    for name, explained in slab.items():
-        fit = explained.best
-        error = float(np.sqrt(fit.covariance[0, 0]))
-        needed = needed_of_slab(name)
-        limit = _parameter(
-            name, fit.values, error * np.sqrt(2.0 * needed + 2.0 * np.log(fit.scales[0] / error + 1.0))
-        )
-        if _possible(name, limit):
-            limits_by_name[name] = {EVERYWHERE: limit}
+    limits = {}
+    for name, by_place in visible.items():
+        found = {place: limit_of(name, [one]) for place, one in by_place.items()}
+        limits[name] = {place: limit for place, limit in found.items() if limit is not None}
+    return limits
+
+
+def limit_of(name, visible):
+    """The size at which the chance of being seen, averaged over some `Visible`, is `SEEN`; None within no prior."""
+    chance = np.mean([ndtr(one.sigmas) for one in visible], axis=0)
+    beyond = np.flatnonzero(chance < SEEN)
+    first = int(beyond[-1]) + 1 if len(beyond) else 0
+    if first == len(chance):
+        return None
+    distance = visible[0].distance[first]
+    if first:
+        share = (SEEN - chance[first - 1]) / (chance[first] - chance[first - 1])
+        distance = visible[0].distance[first - 1] ** (1.0 - share) * distance**share
+    size = EFFECTS[name].parameters[0]
+    return float(size.null + np.sign(size.visible - size.null) * distance)
+
+
+def visible_sizes(evidence, slabs, closed, without=()):
+    """`Visible` by effect and place, of effects that make forces or move the slab.
+
+    Parameters
+    ----------
+    evidence : Evidence or None
+        Its likelihood that speaks loudest is taken.
+    slabs : list of SlabMotion
+    closed : dict of str to ClosedJoint
+    without : sequence of str
+        Effects that are left out.
+
+    Notes
+    -----
+    With the standard deviation s of its amplitude, nuisances free, a cause of the size a has the mean gain ``q (a /
+    s)^2 - o``: q is one half but for what the grid of variants lacks, and o is what averages over sizes, variants and
+    places cost. The gain scatters with the readings' noise by ``a / s``.
+    """
+    visible = {}
+    for name, effect in EFFECTS.items():
+        if name in without or not (effect.turns or effect.lifts):
+            continue
+        if effect.turns:
+            variants = list(zip(*(effect.turns(slab) for slab in slabs), strict=True))
+            by_place = _by_place(name, slab_turns(slabs), {EVERYWHERE: variants}, needed_of_slab(name))
+        else:
+            by_place = {EVERYWHERE: _lifted(name, slabs)}
+        visible[name] = by_place
     if evidence is None:
-        return limits_by_name
+        return visible
     loudest = max(evidence.explained, key=lambda one: one.likelihood.log_evidence).likelihood
     tried = {}
     for (name, place), variants in evidence.tried.variants.items():
         tried.setdefault(name, {})[place] = variants
     for name, by_place in tried.items():
-        needed = needed_of(name, evidence.tests[0].seen.tree) + np.log(len(by_place))
-        limits = {place: _limit(name, loudest, variants, needed) for place, variants in by_place.items()}
-        limits_by_name[name] = {place: limit for place, limit in limits.items() if _possible(name, limit)}
-    return limits_by_name
+        needed = needed_of(name, evidence.tests[0].seen.tree)
+        if name == JOINT_COMPLIANCE.name:
+            visible[name] = _soft(loudest, by_place, needed, closed)
+        else:
+            visible[name] = _by_place(name, loudest, by_place, needed)
+    return visible
 
 
-def _possible(name, limit):
+def distances(name):
     size = EFFECTS[name].parameters[0]
-    return size.lower <= limit <= size.upper
+    end = size.upper if size.visible > size.null else size.lower
+    return np.geomspace(abs(size.visible - size.null) / _FINEST, abs(end - size.null), _STEPS)
+
+
+def usual_column(name, variants, likelihood):
+    """Whitened rows, (n_rows,), of the variant whose parameters beside the size are nearest to their usual values.
+
+    Of several, such as an oscillator of any damping, the one of which the likelihood tells least. With them one over
+    the variance of the amplitude, nuisances free, and the values of the variant.
+    """
+    usual = {one.name: one.null for one in EFFECTS[name].parameters[1:]}
+
+    def away(variant):
+        values = variant[0].values
+        return sum(abs(np.log(values[key] / null)) for key, null in usual.items() if key in values)
+
+    nearest = min(map(away, variants))
+    chosen = [variant for variant in variants if away(variant) == nearest]
+    units = [likelihood.whiten([columns.rows[:, :1] for columns in variant]) for variant in chosen]
+    precisions = [float(likelihood.normal_equations(unit)[1][0, 0]) for unit in units]
+    least = int(np.argmin(precisions))
+    return units[least][:, 0], precisions[least], chosen[least][0].values
+
+
+def _by_place(name, likelihood, by_place, needed):
+    found = {}
+    for place, variants in by_place.items():
+        unit, precision, values = usual_column(name, variants, likelihood)
+        if not precision > 0.0:
+            continue
+        deviation = precision**-0.5
+        gains = [
+            _mean_gain(name, replace(likelihood, value=many * deviation * unit), by_place) for many in _TRIED
+        ]
+        share = (gains[1] - gains[0]) / (_TRIED[1] ** 2 - _TRIED[0] ** 2)
+        cost = share * _TRIED[0] ** 2 - gains[0]
+        sigmas = distances(name) / deviation
+        found[place] = Visible(distances(name), share * sigmas - (cost + needed) / sigmas, values)
+    return found
+
+
+def _mean_gain(name, expected, by_place):
+    return float(
+        mean_evidence([best_of(expected, name, place, variants).gain for place, variants in by_place.items()])
+    )
+
+
+def _soft(likelihood, by_place, needed, closed):
+    """Of a soft layer, whose rows have no amplitude: closed and turned joints together, compliance by compliance."""
+    places = sorted({*by_place, *closed})
+    found = {}
+    for place in places:
+        sigmas = []
+        for number, compliance in enumerate(COMPLIANCES):
+            turned, square = {}, 0.0
+            if place in by_place:
+                true = likelihood.whiten([columns.rows for columns in by_place[place][number]])
+                square = float(likelihood.normal_equations(true)[1][0, 0])
+                expected = replace(likelihood, value=true[:, 0])
+                turned = {
+                    one: best_of(expected, JOINT_COMPLIANCE.name, one, variants).gains
+                    for one, variants in by_place.items()
+                }
+            stiff = {
+                one: joint._replace(target=compliance * joint.information * (one == place)).gains
+                for one, joint in closed.items()
+            }
+            if place in closed:
+                square += compliance**2 * closed[place].information
+            gains = [mean_evidence(soft_gains(turned.get(one, 0.0), stiff.get(one, 0.0))) for one in places]
+            sigmas.append((float(mean_evidence(gains)) - needed) / max(np.sqrt(square), 1e-9))
+        grid = distances(JOINT_COMPLIANCE.name)
+        found[place] = Visible(grid, np.interp(np.log(grid), np.log(COMPLIANCES), sigmas), {})
+    return found
+
+
+def _lifted(name, slabs):
+    """Of a vertical motion of the slab in proportion to the horizontal one, of sizes far apart."""
+    effect, grid = EFFECTS[name], distances(name)
+    fit = explain_lift(effect, slabs).best
+    tried = grid[::_APART]
+    sigmas = []
+    for size in tried:
+        moved = [replace(slab, lift=size * slab.travel) for slab in slabs]
+        gain = explain_lift(effect, moved).gain - needed_of_slab(name)
+        sigmas.append(gain * float(np.sqrt(fit.covariance[0, 0])) / size)
+    return Visible(grid, np.interp(np.log(grid), np.log(tried), sigmas), fit.values)
 
 
 def excluded_above(limits, structure):
@@ -63,40 +214,6 @@ def excluded_above(limits, structure):
             size = effect.parameters[0]
             sizes[name] = max(by_place.values(), key=lambda value: abs(value - size.null))
     return sizes
-
-
-def _limit(name, likelihood, variants, needed):
-    """The size, in the effect's own unit, at which the gain reaches what is needed; infinite where no row tells it.
-
-    With the standard deviation s of the amplitude, nuisances free, an amplitude a gains
-    ``a^2 / (2 s^2) - ln(1 + scale^2 / s^2) / 2`` in the mean. It is that of the usual variant; of an effect without an
-    amplitude the smallest variant that would be seen.
-    """
-    if variants[0][0].scales is None:
-        for variant in variants:
-            if _gram(likelihood, variant) >= 2.0 * needed:
-                return _parameter(name, variant[0].values, 1.0)
-        return np.inf
-    usual = min(variants, key=lambda variant: abs(variant[0].values.get("gap", _USUAL_GAP) - _USUAL_GAP))
-    gram = _gram(likelihood, usual)
-    if not gram > 0.0:
-        return np.inf
-    size = float(np.sqrt((2.0 * needed + np.log1p(gram * usual[0].scales[0] ** 2)) / gram))
-    return _parameter(name, usual[0].values, size)
-
-
-def _gram(likelihood, variant):
-    """One over the variance of a variant's first amplitude, nuisances free."""
-    return float(
-        likelihood.normal_equations(likelihood.whiten([columns.rows[:, :1] for columns in variant]))[1][0, 0]
-    )
-
-
-def _parameter(name, values, size):
-    if "gap" in values:
-        return float(size)
-    read = EFFECTS[name].reads(values, np.array([size]), 0.0)
-    return float(np.broadcast_to(read[EFFECTS[name].parameters[0].name], 1)[0])
 
 
 def cannot_see(seen_tests):
