@@ -18,6 +18,7 @@ from blockshake.diagnosis.answer.decision import Cause, Decision, Part
 from blockshake.diagnosis.answer.departures import departures, largest, slab_departures
 from blockshake.diagnosis.answer.explain import gather_evidence
 from blockshake.diagnosis.answer.limits import cannot_see, excluded_above, limits_of, visible_sizes
+from blockshake.diagnosis.answer.next_test import next_tests
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_of
 from blockshake.diagnosis.answer.size import members_of, size_of
 from blockshake.diagnosis.evidence.closed_joints import closed_joints
@@ -163,7 +164,10 @@ def _part(readings, group, seen, evidence, closed, slab=None):
                 amplitudes=best.mean.tolist(),
             )
         )
-    return Part(readings=readings, causes=causes, odds=group.odds, gains=group.gains)
+    measurements = next_tests(causes, seen, evidence)
+    return Part(
+        readings=readings, causes=causes, odds=group.odds, gains=group.gains, next_tests=measurements
+    )
 
 
 def _fits(rival, places, evidence, closed, slab):

@@ -105,16 +105,16 @@ def expected_readings(seen, name, place, values):
     return dict([changed[name]]) if name in changed else {}
 
 
-def distance(test, first, second, spreads=({}, {})):
-    """Squared distance of two causes' readings in a `StaticTest`, in its standard deviations and the causes' own.
+def distance(test, first, first_errors, second, second_errors):
+    """Squared distance of two causes' expected readings in a `StaticTest`, in standard deviations.
 
-    ``spreads`` are standard deviations of the two causes' readings, from those of their sizes.
+    ``first_errors`` and ``second_errors`` are the standard deviations of the readings from those of the causes' sizes.
     """
     total = 0.0
     for reading, deviation in test.readings.items():
         apart = first.get(reading, 0.0) - second.get(reading, 0.0)
-        own = sum(spread.get(reading, 0.0) ** 2 for spread in spreads)
-        total += apart**2 / (deviation**2 + own)
+        errors = deviation, first_errors.get(reading, 0.0), second_errors.get(reading, 0.0)
+        total += apart**2 / sum(error**2 for error in errors)
     return float(total)
 
 

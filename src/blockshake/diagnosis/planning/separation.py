@@ -113,7 +113,7 @@ class NominalCampaign:
         chance = float(ndtr(np.interp(np.log(size), np.log(one.distance), one.sigmas)))
         if static is None:
             return chance
-        alone = np.sqrt(distance(static, self._reads(name, place, self._true(name, size)), {}))
+        alone = np.sqrt(distance(static, self._reads(name, place, self._true(name, size)), {}, {}, {}))
         return max(chance, float(ndtr(alone - np.sqrt(2.0 * needed_of(name)))))
 
     def chance_apart(self, name, place, size, rival, static=None):
@@ -122,7 +122,7 @@ class NominalCampaign:
         further = 0.0
         if static is not None:
             true = self._reads(name, place, self._true(name, size))
-            further = distance(static, true, self._reads(cause, one.place, one.values))
+            further = distance(static, true, {}, self._reads(cause, one.place, one.values), {})
         sure = (one.odds + 0.5 * further - ODDS) / np.sqrt(max(one.deviation**2 + further, 1e-12))
         return float(ndtr(sure))
 

@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, JsonValue, model_validator
 
-from blockshake.diagnosis.answer.decision import Estimate
+from blockshake.diagnosis.answer.decision import Estimate, Measurement
 from blockshake.diagnosis.verdict.ladder import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.files import load_json, write_json
 from blockshake.validation import Count, Finite, Fraction, Strict, validated
@@ -82,6 +82,7 @@ class Verdict(Strict):
     misfit: Misfit
     excluded_above: dict[str, Finite] = Field(default_factory=dict)
     next_test: str | None = None
+    next_tests: tuple[Measurement, ...] = ()
     gain: Gain | None = None
     runs: Count
     caveats: tuple[str, ...] = ()
