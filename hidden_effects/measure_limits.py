@@ -42,7 +42,9 @@ def planned_causes(plan, structure, share):
             place for place in effect.places(structure)
             if one["place"] == EVERYWHERE or one["place"] == place_name(place) or body == place.get("body")
         )  # fmt: skip
-        values = {first.name: first.null + share * (limit - first.null)} | {other.name: other.null for other in others}
+        values = {first.name: first.null + share * (limit - first.null)} | {
+            other.name: other.null for other in others
+        }
         causes.append({"name": name, "values": values, "place": place, "size": share})
     return causes
 
@@ -51,7 +53,9 @@ def _found(folder, structure, job):
     """The job's effect and share, and whether it is named or in the set."""
     cause, seed = job
     case = folder / f"{cause['name']}-{cause['size']:g}-{seed}"
-    make_case(seed, [cause["name"]], "large", case / "campaign", case / "truth", False, structure, causes=[cause])
+    make_case(
+        seed, [cause["name"]], "large", case / "campaign", case / "truth", False, structure, causes=[cause]
+    )
     decision = steps.decide(str(case / "campaign"), ()).decision
     return {
         "effect": cause["name"], "share": cause["size"], "seed": seed, "decision": decision.decision,
@@ -83,11 +87,15 @@ def main(arguments):
             log("case", **result)
     for share, goal in SHARES.items():
         for name in (*plan["effects"], None):
-            hits = [one["found"] for one in results if one["share"] == share and name in (None, one["effect"])]
+            hits = [
+                one["found"] for one in results if one["share"] == share and name in (None, one["effect"])
+            ]
             if hits:
                 lower, upper = share_interval(sum(hits), len(hits))
                 words = f"{share:g} of the limit, {name or 'all'}: {sum(hits)} of {len(hits)} found"
-                sys.stdout.write(f"{words} ({lower:.2f} to {upper:.2f}), goal {goal if name is None else ''}\n")
+                sys.stdout.write(
+                    f"{words} ({lower:.2f} to {upper:.2f}), goal {goal if name is None else ''}\n"
+                )
     (asked.output / "limits.json").write_text(json.dumps(results, indent=1))
 
 

@@ -29,7 +29,7 @@ ROOMS_OF_DIAGNOSIS = [
     ["outside"],
     ["answer"],
     ["nominal", "wording"],
-    ["misfit"],
+    ["misfit", "planning"],
     ["verdict"],
     ["gain"],
     ["flight"],
@@ -49,14 +49,14 @@ ROOMS_OF_STUDY = [
 MOST_MODULES = 15
 WITH_ROOMS = ("diagnosis", "study")  # whose folders have a budget each
 MOST_LINES = {
-    ".": 2130, "tables": 610, "statistics": 370, "geometry": 2490, "dynamics": 2795, "solvers": 8610,
+    ".": 2165, "tables": 610, "statistics": 370, "geometry": 2490, "dynamics": 2795, "solvers": 8610,
     "measurement": 4050, "simulation": 1590, "parity": 2265, "forces": 2160, "effects": 990, "pages": 1330,
     "study": 895, "study/sampling": 1010, "study/ensembles": 1315, "study/stiffness": 590,
     "study/comparison": 615, "study/fragility": 525, "study/sensitivity": 845, "study/calibration": 1090,
     "study/statements": 1100, "study/report": 1795, "views": 750, "diagnosis": 315,
-    "diagnosis/evidence": 1095, "diagnosis/outside": 675, "diagnosis/answer": 1200,
+    "diagnosis/evidence": 1095, "diagnosis/outside": 675, "diagnosis/planning": 600, "diagnosis/answer": 1560,
     "diagnosis/nominal": 795, "diagnosis/misfit": 430, "diagnosis/verdict": 570, "diagnosis/gain": 1245,
-    "diagnosis/report": 995, "virtual": 485, "own_files": 845, "cost": 310, "diagnosis/flight": 1255,
+    "diagnosis/report": 1015, "virtual": 485, "own_files": 845, "cost": 310, "diagnosis/flight": 1255,
 }  # fmt: skip
 MOST_LINES_TOGETHER = 49_600
 
@@ -111,7 +111,7 @@ def test_rooms_of_the_diagnosis_have_few_arrows():
         for own, other in arrows()
         if own[0] == other[0] == "diagnosis" and len(own) > 2 and len(other) > 2 and own[1] != other[1]
     }
-    assert len(pairs) <= 23
+    assert len(pairs) <= 26
 
 
 def test_no_folder_holds_more_than_fifteen_modules():

@@ -167,16 +167,24 @@ def _parser():
     command.add_argument("--cores", type=int, metavar="N", help="default: all")
 
     command = add(
-        "plan-campaign", _plan_campaign, "which causes motions and sensors would tell apart, and what one test more adds"
+        "plan-campaign",
+        _plan_campaign,
+        "which causes motions and sensors would tell apart, and what one test more adds",
     )
     command.add_argument("structure", metavar="STRUCTURE")
     command.add_argument(
-        "--motions", nargs="+", required=True, metavar="NAME|FILE[@SCALE]", help="a test each, such as alkion@2.5"
+        "--motions",
+        nargs="+",
+        required=True,
+        metavar="NAME|FILE[@SCALE]",
+        help="a test each, such as alkion@2.5",
     )
     command.add_argument("--sensors", metavar="SENSORS.yaml", help="default: those of the structure file")
     command.add_argument("--duration", type=float, metavar="S", help="of every test (default: its motion's)")
-    command.add_argument("--costs", metavar="COSTS.yaml", help="of one measurement more, over that of a shake")
-    command.add_argument("--output", required=True, metavar="DIR", help="of plan.json, plan.csv and plan.html")
+    command.add_argument(
+        "--costs", metavar="COSTS.yaml", help="of one measurement more, over that of a shake"
+    )
+    command.add_argument("--output", required=True, metavar="DIR", help="of plan.json and plan.html")
 
     command = add("check", _check, "say what is wrong with structure, motion or study files")
     command.add_argument("files", nargs="+", metavar="FILE")

@@ -17,7 +17,7 @@ from blockshake.diagnosis.answer.answer import (
 from blockshake.diagnosis.answer.decision import Cause, Decision, Part
 from blockshake.diagnosis.answer.departures import departures, largest, slab_departures
 from blockshake.diagnosis.answer.explain import gather_evidence
-from blockshake.diagnosis.answer.limits import cannot_see, excluded_above, limits_of, visible_sizes
+from blockshake.diagnosis.answer.limits import cannot_see, excluded_above, limits_of
 from blockshake.diagnosis.answer.next_test import next_tests
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_of
 from blockshake.diagnosis.answer.size import members_of, size_of
@@ -83,7 +83,7 @@ def decide(seen, without=(), unseen=()):
         acting.append(_of_impacts(impacts))
     parts = tuple(sorted(acting, key=lambda part: -part.causes[0].gain))
     shown = departures(seen, evidence, explained)
-    limits = limits_of(visible_sizes(evidence, slabs, joints, without))
+    limits = limits_of(evidence, slabs, joints, without)
     decision = Decision(
         decision=kind_of(parts),
         parts=parts,
@@ -165,9 +165,7 @@ def _part(readings, group, seen, evidence, closed, slab=None):
             )
         )
     measurements = next_tests(causes, seen, evidence)
-    return Part(
-        readings=readings, causes=causes, odds=group.odds, gains=group.gains, next_tests=measurements
-    )
+    return Part(readings=readings, causes=causes, odds=group.odds, gains=group.gains, next_tests=measurements)
 
 
 def _fits(rival, places, evidence, closed, slab):

@@ -150,6 +150,11 @@ class Evidence:
         """`JointRows` of the tests with rows."""
         return self.tried.tests
 
+    @property
+    def usual(self):
+        """The `Likelihood` that speaks loudest without any cause."""
+        return max((one.likelihood for one in self.explained), key=lambda one: one.log_evidence)
+
     def gain(self, key):
         """Gain of a cause at a place over none, summed over the likelihoods."""
         return float(self._log_sum([explained.by_key[key].gain for explained in self.explained]))

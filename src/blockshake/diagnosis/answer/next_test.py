@@ -33,7 +33,7 @@ def next_tests(causes, seen, evidence):
     if len(causes) < 2:
         return ()
     both = [(one, other) for one in range(len(causes)) for other in range(len(causes)) if other != one]
-    read = [_readings(seen[0], cause) for cause in causes]
+    read = [readings_of_cause(seen[0], cause) for cause in causes]
     apart = {}
     for static in static_tests(seen[0]):
         apart[static.kind, static.words] = {
@@ -63,8 +63,8 @@ def _split(true, rival, square, gained, rows):
     return float(ndtr((mean - ODDS) / (share * np.sqrt(square))))
 
 
-def _readings(seen, cause):
-    """Expected static readings of a cause, and their standard deviations from that of its size."""
+def readings_of_cause(seen, cause):
+    """Expected static readings of a `Cause`, and their standard deviations from that of its size, by name."""
     values = {name: one.estimate for name, one in cause.parameters.items()} | cause.when
     middle = expected_readings(seen, cause.name, cause.place, values)
     name = next(iter(cause.parameters), None)
@@ -90,7 +90,10 @@ def _further_rows(causes, evidence, number):
     again = slice(likelihood.ends[number], likelihood.ends[number + 1])
     fits = {one: evidence.best(keys[one]).best for one in known}
     columns = {one: likelihood.whiten(fit.columns) for one, fit in fits.items()}
-    lasts = {one: float(not causes[one].outside or FORMS[causes[one].name].lasts(causes[one].when)) for one in known}
+    lasts = {
+        one: float(not causes[one].outside or FORMS[causes[one].name].lasts(causes[one].when))
+        for one in known
+    }
     nuisances, squares = likelihood.nuisances, {}
     for one in known:
         made = columns[one] @ fits[one].mean

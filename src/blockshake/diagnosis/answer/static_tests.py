@@ -1,4 +1,4 @@
-"""Measurements without a shake: what a weighing, a slow tilt, a snap release or a jack reads, and what causes make of it.
+"""Measurements without a shake: readings of a weighing, a slow tilt, a snap release or a jack, and those of causes.
 
 A reading is named by its kind and its place, such as ``("centre", "block-1")``. Forces from outside that belong to the
 shaking (a push, a blow, a viscous drag) are not there in a static test.
@@ -10,7 +10,9 @@ import numpy as np
 
 WEIGHING, TILT, SNAP, JACK = "weighing", "slow tilt", "snap release", "jack"
 _CENTRE = 2e-3  # m, of a mass centre by load cells of 0.2 % under two supports 1 m apart
-_MASS = 0.04  # of a block's mass: the scatter of densities, Zhou et al. (2023), Table 2; a scale is far better
+_MASS = (
+    0.04  # of a block's mass: the scatter of densities, Zhou et al. (2023), Table 2; a scale is far better
+)
 _ANGLE = 1e-3  # rad, of an inclinometer as a joint opens
 _FORCE = 0.01  # of a jack's force, by its load cell
 _LAYER = 5e-11  # m3/N, of elastic blocks and of the rotation of a closed joint
@@ -60,7 +62,11 @@ def static_tests(seen):
         *found,
         StaticTest(TILT, "tilt the slab slowly to both sides until a joint opens", edges | soft),
         StaticTest(SNAP, "pull the top by 20 mm and release it, to both sides", edges | follows),
-        StaticTest(JACK, "pull the top slowly with a jack by 20 mm and back, to both sides", edges | follows | soft | base),
+        StaticTest(
+            JACK,
+            "pull the top slowly with a jack by 20 mm and back, to both sides",
+            edges | follows | soft | base,
+        ),
     ]
 
 
@@ -77,25 +83,27 @@ def expected_readings(seen, name, place, values):
     values : dict of str to float
         Parameters and what else the cause is.
     """
-    structure = seen.structure
-    size = next(iter(values.values()), 0.0)
-    joint = next((face.name for face in seen.faces if "joint" in place and _is_of(face, structure, place)), None)
-    body = place.get("body")
+    names, mass, size = seen.structure.body_names, seen.structure.mass, next(iter(values.values()), 0.0)
+    body, pair = place.get("body"), sorted(place.get("joint", ()))
+    joint = next(
+        (face.name for face in seen.faces if sorted((names[face.lower], names[face.upper])) == pair), None
+    )
     if name == "eccentricity":
-        index = structure.body_names.index(body)
-        over = [number for number in range(len(seen.faces)) if index in _above(seen, number)]
-        leans = {("lean", seen.faces[number].name): size * structure.mass[index] / _carried(seen, number) for number in over}
+        index = names.index(body)
+        over = [number for number in range(len(seen.faces)) if seen.tree and index in _above(seen, number)]
+        leans = {
+            ("lean", seen.faces[number].name): size * mass[index] / _carried(seen, number) for number in over
+        }
         return {("centre", body): size, **leans}
     if name in ("unmodelled-mass", "loose-weight"):
-        return {("mass", body): size / structure.mass[structure.body_names.index(body)]}
+        return {("mass", body): size / mass[names.index(body)]}
     if name == "reduced-bearing":
         return {("lever", face.name): -size for face in seen.faces if joint in (None, face.name)}
     if name == "changed-edge":
         edge = values.get("edge", 0)
         return {("lever", joint): -size * (0.5 if edge else 1.0), ("lean", joint): -0.5 * edge * size}
-    if name == "stopper-contact":
-        return {("spring", "top"): size if values.get("gap", 0.0) < _PULLED else 0.0}
     changed = {
+        "stopper-contact": (("spring", "top"), size if values.get("gap", 0.0) < _PULLED else 0.0),
         "weak-joint": (("friction", joint), 1.0 - size),
         "joint-compliance": (("layer", joint), size),
         "base-compliance": (("base", "slab"), size),
@@ -116,10 +124,6 @@ def distance(test, first, first_errors, second, second_errors):
         errors = deviation, first_errors.get(reading, 0.0), second_errors.get(reading, 0.0)
         total += apart**2 / sum(error**2 for error in errors)
     return float(total)
-
-
-def _is_of(face, structure, place):
-    return sorted(place["joint"]) == sorted((structure.body_names[face.lower], structure.body_names[face.upper]))
 
 
 def _above(seen, face):

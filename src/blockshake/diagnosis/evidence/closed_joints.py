@@ -30,6 +30,10 @@ class ClosedJoint(NamedTuple):
         """Gain of every compliance, (n_compliances,)."""
         return COMPLIANCES * self.target - 0.5 * COMPLIANCES**2 * self.information
 
+    def expected(self, compliance):
+        """Mean gain of every compliance where the joint has this one."""
+        return self._replace(target=compliance * self.information).gains
+
 
 def closed_joints(tests):
     """`ClosedJoint` by joint; only of structures whose joints are a tree, and of joints that are closed long enough.

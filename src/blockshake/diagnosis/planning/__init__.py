@@ -1,1 +1,1 @@
-"""A plan of tests: what motions and sensors would tell, from simulated nominal tests and the information of the rows."""
+"""A plan of tests: what motions and sensors would tell, from simulated nominal tests and their rows alone."""

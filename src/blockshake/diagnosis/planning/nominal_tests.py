@@ -21,7 +21,12 @@ from blockshake.simulation.simulate import check_run
 from blockshake.validation import Strict, validated
 
 SOLVER = "nscd-rigid"
-_USUAL = {"face": (0.0, -0.5, 0.0), "lower": (-0.35, -0.5, -0.4), "upper": (0.35, -0.5, 0.4), "end": (0.5, 0.0, 0.0)}
+_USUAL = {
+    "face": (0.0, -0.5, 0.0),
+    "lower": (-0.35, -0.5, -0.4),
+    "upper": (0.35, -0.5, 0.4),
+    "end": (0.5, 0.0, 0.0),
+}
 _TOP = (0.5, 0.0, 0.43)  # of an accelerometer; places over the edges of the body's box
 
 
@@ -123,7 +128,7 @@ def load_asked(structure, motions, sensors=None, duration=None):
     driven_marker(_with_sensors(whole, chosen))
     scaled = {}
     for entry in motions:
-        name, test, motion = _motion(entry)
+        test, motion = _motion(entry)
         if test in scaled:
             raise InputError("--motions", entry, "expected every motion and scale once")
         scaled[test] = motion
@@ -138,7 +143,7 @@ def _motion(entry):
     except ValueError:
         raise InputError("--motions", entry, "expected NAME or NAME@SCALE, such as alkion@2.5") from None
     motion = load_motion(name, scale)
-    return name, f"{motion.name}@{scale:g}", motion
+    return f"{motion.name}@{scale:g}", motion
 
 
 def _usual(body, solid, prefix=""):
@@ -148,5 +153,10 @@ def _usual(body, solid, prefix=""):
         {"name": f"{prefix}{body.name}-{name}", "body": body.name, "position": (edges * place).tolist()}
         for name, place in _USUAL.items()
     ]
-    top = {"name": f"{prefix}{body.name}-acc", "body": body.name, "position": (edges * _TOP).tolist(), "axes": ["x", "z"]}
+    top = {
+        "name": f"{prefix}{body.name}-acc",
+        "body": body.name,
+        "position": (edges * _TOP).tolist(),
+        "axes": ["x", "z"],
+    }
     return {"markers": markers, "accelerometers": [top]}

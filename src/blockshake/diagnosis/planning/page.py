@@ -1,13 +1,9 @@
-"""The plan as files and as a page: JSON, a CSV of sizes, and one HTML page with the matrix and the ranked additions."""
+"""The plan as files and as a page: JSON, and one HTML page with the matrix and the ranked additions."""
 
-import csv
-import io
-
-from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.diagnosis.planning.plan import CAMPAIGNS, OF_ADDITIONS
 from blockshake.diagnosis.wording import name_of, named_place, size_words
 from blockshake.effects.registry import EFFECTS
-from blockshake.files import check_output, write_json, write_text
+from blockshake.files import write_json
 from blockshake.pages.blocks import Document, Section, Table, Text, numbered
 from blockshake.pages.wording import number, sentence_case
 from blockshake.pages.writing import write_html
@@ -16,16 +12,17 @@ _SHOWN = 3  # pairs of an addition
 
 
 def write_plan(folder, asked, told, additions):
-    """Write ``plan.json``, ``plan.csv`` and ``plan.html`` of what `plan_campaign` gave."""
-    for name in ("plan.json", "plan.csv", "plan.html"):
-        check_output(f"{folder}/{name}")
+    """Write ``plan.json`` and ``plan.html`` of what `plan_campaign` gave."""
     effects = {
         name: {
-            "size": EFFECTS[name].parameters[0].name, "unit": EFFECTS[name].parameters[0].unit, "place": one.place,
-            "limits": one.limits, "told_apart": {rival: size for rival, size in one.apart.items() if rival},
+            "size": EFFECTS[name].parameters[0].name,
+            "unit": EFFECTS[name].parameters[0].unit,
+            "place": one.place,
+            "limits": one.limits,
+            "told_apart": {rival: size for rival, size in one.apart.items() if rival},
         }
         for name, one in told.items()
-    }  # fmt: skip
+    }
     ranked = [
         {**one._asdict(), "separates": [[name, rival or "nothing"] for name, rival in one.separates]}
         for one in additions
@@ -33,21 +30,12 @@ def write_plan(folder, asked, told, additions):
     tests = list(asked.motions)
     plan = {"structure": asked.structure.file.name, "tests": tests, "effects": effects, "additions": ranked}
     write_json(f"{folder}/plan.json", plan)
-    text = io.StringIO()
-    rows = csv.writer(text, lineterminator="\n")
-    rows.writerow(("effect", "place", "against", "size", "unit"))
-    for name, one in effects.items():
-        for place, size in one["limits"].items():
-            rows.writerow((name, place, "nothing", "" if size is None else size, one["unit"]))
-        for rival, size in one["told_apart"].items():
-            rows.writerow((name, one["place"], rival, "never" if size is None else size, one["unit"]))
-    write_text(f"{folder}/plan.csv", text.getvalue())
     write_html(f"{folder}/plan.html", _document(asked, told, additions))
 
 
 def matrix_rows(told):
     """Header and rows of the matrix: by rival, the size from which each effect is told from it."""
-    rivals = [None, *(name for name in (*EFFECTS, *FORMS) if any(name in one.apart for one in told.values()))]
+    rivals = dict.fromkeys([None, *(rival for one in told.values() for rival in one.apart)])
     rows = [("told from", *told)]
     for rival in rivals:
         cells = [_cell(name, one, rival) for name, one in told.items()]
@@ -68,7 +56,9 @@ def addition_rows(additions):
     """Header and rows of the additions, the one that is worth most for its cost first."""
     rows = [("one measurement more", "pairs", "cost", "separates above all")]
     for one in additions:
-        pairs = [f"{name_of(name)} from {name_of(rival) if rival else 'nothing'}" for name, rival in one.separates]
+        pairs = [
+            f"{name_of(name)} from {name_of(rival) if rival else 'nothing'}" for name, rival in one.separates
+        ]
         rows.append((one.words, number(one.pairs, 2), number(one.cost), "; ".join(pairs[:_SHOWN])))
     return rows
 
@@ -77,7 +67,9 @@ def _document(asked, told, additions):
     header, *rows = matrix_rows(told)
     bodies = asked.structure.body_names
     places = "; ".join(
-        f"{name_of(name)}: {named_place(one.place, bodies)}" for name, one in told.items() if one.place != "all"
+        f"{name_of(name)}: {named_place(one.place, bodies)}"
+        for name, one in told.items()
+        if one.place != "all"
     )
     matrix = (
         Text(
@@ -105,6 +97,9 @@ def _document(asked, told, additions):
         "lrrl",
         (0.4, 0.1, 0.1, 0.4),
     )
-    sections = (Section("Effects that are seen and told apart", "matrix", matrix), Section("One measurement more", "more", (more,)))
+    sections = (
+        Section("Effects that are seen and told apart", "matrix", matrix),
+        Section("One measurement more", "more", (more,)),
+    )
     subtitle = f"{asked.structure.file.name}, tests {', '.join(asked.motions)}"
     return numbered(Document("blockshake: plan of a campaign", subtitle, sections))

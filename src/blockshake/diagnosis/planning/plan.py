@@ -3,7 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from blockshake.diagnosis.answer.limits import SEEN, limit_of
+
+from blockshake.diagnosis.answer.limits import SEEN, from_null, largest
 from blockshake.diagnosis.answer.static_tests import static_tests
 from blockshake.diagnosis.planning.separation import NominalCampaign
 from blockshake.effects.registry import EFFECTS
@@ -12,10 +13,10 @@ from blockshake.files import load_yaml
 from blockshake.validation import Positive, Strict, validated
 
 CAMPAIGNS, OF_ADDITIONS = 4, 2  # nominal campaigns: of the plan, and of one measurement more
+_GRID = np.geomspace(1e-4, 1.0, 200)  # of the end of the prior, at which the chance to be seen is computed
 _SIZES = (1.0, 1.6, 2.5, 4.0, 8.0)  # over the limit, at which an effect is held against its rivals
 _STRONGER = 1.25
 _SEPARATED = 0.5  # chance more, from which an addition is said to separate a pair
-SHAKE, SENSOR = "shake", "sensor"
 
 
 class Costs(Strict):
@@ -28,19 +29,10 @@ class Costs(Strict):
     snap_release: Positive = 1.0
     jack: Positive = 1.0
 
-    def of(self, kind):
-        """Cost of a measurement of a kind."""
-        return getattr(self, kind.replace(" ", "_"))
-
 
 def load_costs(path):
-    """`Costs` of a YAML file; what it leaves out has its default."""
-    if path is None:
-        return Costs()
-    mapping = load_yaml(path)
-    if not isinstance(mapping, dict):
-        raise InputError(path, "", f"expected costs by kind: {', '.join(Costs.model_fields)}")
-    return validated(Costs, mapping, path)
+    """`Costs` of a YAML file, or the defaults; what the file leaves out has its default."""
+    return validated(Costs, load_yaml(path), path) if path else Costs()
 
 
 class Told(NamedTuple):
@@ -49,11 +41,11 @@ class Told(NamedTuple):
     Attributes
     ----------
     place : str
-        Where the tests tell least of it, in words; of the places at which they tell it.
+        In words, where the tests tell least of it, of the places at which they tell it.
     limits : dict of str to float or None
-        By place, the size from which it is seen in nine of ten campaigns; None beyond the largest of the prior.
+        By place, the size from which it is seen in nine of ten campaigns; None: not within the prior.
     apart : dict of str to (float or None)
-        By rival, the size from which it is told from that one in nine of ten campaigns; None: never.
+        By rival, the size from which it is told from that one there; under None that from which it is seen.
     """
 
     place: str
@@ -62,9 +54,11 @@ class Told(NamedTuple):
 
 
 class Addition(NamedTuple):
-    """One measurement more: its kind, in words, cost, effects more that it separates of their rivals, and which."""
+    """One measurement more: its words and cost, the pairs of effect and rival that it separates, and which above all.
 
-    kind: str
+    ``pairs`` is the sum of the chances more, of effects of their visible size; the rival None is to be seen at all.
+    """
+
     words: str
     cost: float
     pairs: float
@@ -86,39 +80,39 @@ def plan_campaign(asked, costs, progress):
     InputError
         A test of which no forces can be read.
     """
-    campaigns, readings = [], []
+    campaigns, readings, tests = [], [], list(asked.motions)
     for number in range(CAMPAIGNS):
         progress(f"nominal campaign {number + 1} of {CAMPAIGNS}")
-        readings.append({
-            test: asked.simulated(test, number * len(asked.motions) + at) for at, test in enumerate(asked.motions)
-        })  # fmt: skip
+        draws = range(number * len(tests), (number + 1) * len(tests))
+        readings.append({test: asked.simulated(test, draw) for test, draw in zip(tests, draws, strict=True)})
         campaigns.append(_campaign(asked, readings[-1]))
     told = {}
-    for name in dict.fromkeys(name for one in campaigns for name in one.visible if one.visible[name]):
+    for name in dict.fromkeys(name for one in campaigns for name in one.limits if one.limits[name]):
         progress(f"{name} against its rivals")
         told[name] = _told(name, campaigns)
     few, readings = campaigns[:OF_ADDITIONS], readings[:OF_ADDITIONS]
-    before, additions = _chances(few, told), []
+    before, additions = _of_visible(few, told), []
 
     def add(kind, words, after):
+        cost = getattr(costs, kind.replace(" ", "_"))
         gained = {pair: chance - before.get(pair, 0.0) for pair, chance in after.items()}
         most = sorted((pair for pair in gained if gained[pair] > _SEPARATED), key=lambda pair: -gained[pair])
-        additions.append(Addition(kind, words, costs.of(kind), sum(gained.values()), tuple(most)))
+        additions.append(Addition(words, cost, sum(gained.values()), tuple(most)))
 
     for static in static_tests(few[0].seen[0]):
-        add(static.kind, static.words, _chances(few, told, static))
+        add(static.kind, static.words, _of_visible(few, told, static))
     for words, names in asked.more.items():
         progress(words)
-        add(SENSOR, words, _chances([_campaign(asked, one, names) for one in readings], told))
-    for test in asked.motions:
+        add("sensor", words, _of_visible([_campaign(asked, one, names) for one in readings], told))
+    for test in tests:
         for factor, words in ((1.0, f"{test} once more"), (_STRONGER, f"{test} times {_STRONGER:g}")):
             progress(words)
-            draws = range(CAMPAIGNS * len(asked.motions), CAMPAIGNS * len(asked.motions) + OF_ADDITIONS)
-            more = [
-                {**one, words: asked.simulated(test, draw, factor)}
-                for one, draw in zip(readings, draws, strict=True)
+            draws = range(CAMPAIGNS * len(tests), CAMPAIGNS * len(tests) + OF_ADDITIONS)
+            more = [asked.simulated(test, draw, factor) for draw in draws]
+            longer = [
+                _campaign(asked, {**one, words: test}) for one, test in zip(readings, more, strict=True)
             ]
-            add(SHAKE, words, _chances([_campaign(asked, one) for one in more], told))
+            add("shake", words, _of_visible(longer, told))
     return told, sorted(additions, key=lambda one: (-one.pairs / one.cost, one.words))
 
 
@@ -131,49 +125,51 @@ def _campaign(asked, readings, more=frozenset()):
 
 
 def _told(name, campaigns):
-    first = EFFECTS[name].parameters[0]
-    places = dict.fromkeys(place for one in campaigns for place in one.visible.get(name, ()))
-    limits = {place: limit_of(name, [one.visible_at(name, place) for one in campaigns]) for place in places}
-    known = {place: abs(limit - first.null) for place, limit in limits.items() if limit is not None}
-    if not known:
-        return Told(next(iter(places)), limits, {})
-    place = max(known, key=known.get)
-    sizes = known[place] * np.array(_SIZES)
-    end = campaigns[0].visible_at(name, place).distance[-1]
-    sizes = np.append(sizes[sizes < end], end)
-    found = [_chances_of(name, place, size, campaigns) for size in sizes]
-    apart = {}
-    for rival in found[-1]:
-        chances = np.array([chance.get(rival, 0.0) for chance in found])
-        enough = np.flatnonzero(chances >= SEEN - 1e-6)
-        size = sizes[enough[0]] if len(enough) else None
-        if size is not None and enough[0]:
-            below, above = chances[enough[0] - 1 : enough[0] + 1]
-            share = (SEEN - below) / (above - below)
-            size = sizes[enough[0] - 1] ** (1.0 - share) * size**share
-        side = np.sign(first.visible - first.null)
-        apart[rival] = None if size is None else float(first.null + side * size)
-    return Told(place, limits, apart)
+    places = dict.fromkeys(place for one in campaigns for place in one.limits.get(name, ()))
+    grid, limits = largest(name) * _GRID, {}
+    for place in places:
+        chances = [np.mean([one.chance_seen(name, place, size) for one in campaigns]) for size in grid]
+        limits[place] = _first(grid, chances)
+    known = {place: size for place, size in limits.items() if size is not None}
+    place, apart = max(known, key=known.get, default=next(iter(places))), {}
+    if known:
+        sizes = known[place] * np.array(_SIZES)
+        sizes = np.append(sizes[sizes < largest(name)], largest(name))
+        found = [_chances(name, place, size, campaigns) for size in sizes]
+        apart = {rival: _first(sizes, [one.get(rival, 0.0) for one in found]) for rival in found[-1]}
+    shown = (
+        {key: None if size is None else from_null(name, size) for key, size in sizes.items()}
+        for sizes in (limits, apart)
+    )
+    return Told(place, *shown)
 
 
-def _chances(campaigns, told, static=None):
-    """Chances to see every effect of its visible size, as a rival None, and to tell it from each rival."""
+def _first(sizes, chances):
+    """The first size at which a chance is `SEEN`, even in the logarithm between two; None if at none."""
+    enough = np.flatnonzero(np.array(chances) >= SEEN - 1e-3)
+    if not len(enough):
+        return None
+    first = int(enough[0])
+    if first == 0:
+        return float(sizes[0])
+    share = np.clip((SEEN - chances[first - 1]) / (chances[first] - chances[first - 1]), 0.0, 1.0)
+    return float(sizes[first - 1] ** (1.0 - share) * sizes[first] ** share)
+
+
+def _of_visible(campaigns, told, static=None):
+    """Chances by effect, of its visible size, and rival."""
     chances = {}
     for name, one in told.items():
         first = EFFECTS[name].parameters[0]
-        size = abs(first.visible - first.null)
-        for rival, chance in _chances_of(name, one.place, size, campaigns, static).items():
+        for rival, chance in _chances(
+            name, one.place, abs(first.visible - first.null), campaigns, static
+        ).items():
             chances[name, rival] = chance
     return chances
 
 
-def _chances_of(name, place, size, campaigns, static=None):
-    """Chance to see an effect of a size, as that of a rival None, and to tell it from each rival: mean of campaigns."""
-    chances = []
-    for one in campaigns:
-        seen = one.chance_seen(name, place, size, static)
-        rivals = one.rivals(name, place, size)
-        apart = {rival: one.chance_apart(name, place, size, (rival, odds), static) for rival, odds in rivals.items()}
-        chances.append({None: seen, **{rival: min(seen, chance) for rival, chance in apart.items()}})
-    every = dict.fromkeys(rival for one in chances for rival in one)
-    return {rival: float(np.mean([one.get(rival, 0.0) for one in chances])) for rival in every}
+def _chances(name, place, size, campaigns, static=None):
+    """Chances of `NominalCampaign.chances`, mean of campaigns."""
+    chances = [one.chances(name, place, size, static) for one in campaigns]
+    rivals = dict.fromkeys(rival for one in chances for rival in one)
+    return {rival: float(np.mean([one.get(rival, 0.0) for one in chances])) for rival in rivals}

@@ -8,7 +8,7 @@ from scipy.special import ndtr
 
 from blockshake.diagnosis.answer.answer import COARSENING, ODDS, needed_of, rank
 from blockshake.diagnosis.answer.explain import Evidence, explain, gather_evidence
-from blockshake.diagnosis.answer.limits import Visible, distances, usual_column, visible_sizes
+from blockshake.diagnosis.answer.limits import SURELY, from_null, limits_of, usual_column
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_of
 from blockshake.diagnosis.answer.static_tests import distance, expected_readings
 from blockshake.diagnosis.evidence.closed_joints import closed_joints
@@ -17,11 +17,13 @@ from blockshake.diagnosis.evidence.slab_motion import slab_motion, slab_turns
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
 
+_AT_LIMIT = 5.5  # standard deviations of an amplitude at its limit, within a tenth for all effects
+
 
 class Rivalry(NamedTuple):
-    """A true effect against one rival: odds expected of it, their standard deviation, and the rival's place and size.
+    """A true effect against one rival: odds expected of it and their standard deviation, logarithms, coarsened.
 
-    ``odds`` and ``deviation`` are logarithms, coarsened; ``place`` in words, ``values`` parameters of the rival.
+    ``place`` in words and ``values``, parameters, are those of the rival at its best.
     """
 
     odds: float
@@ -33,11 +35,7 @@ class Rivalry(NamedTuple):
 class NominalCampaign:
     """Nominal tests of one campaign, and the answers that they would give.
 
-    Attributes
-    ----------
-    seen : list of SeenTest
-    visible : dict of str to dict of str to Visible
-        From `visible_sizes`.
+    ``limits`` are those of `limits_of`.
     """
 
     def __init__(self, seen):
@@ -45,109 +43,92 @@ class NominalCampaign:
         self._evidence = gather_evidence(seen)
         self._slabs = [slab_motion(test) for test in seen]
         self._closed = closed_joints(seen)
-        self.visible = visible_sizes(self._evidence, self._slabs, self._closed)
+        self.limits = limits_of(self._evidence, self._slabs, self._closed)
 
-    def rivals(self, name, place, distance_from_null):
-        """`Rivalry` by cause of an effect at a place, whose size is so far from its null value.
+    def chance_seen(self, name, place, size):
+        """Chance to see an effect as far from its null value."""
+        limit = self.limits.get(name, {}).get(place)
+        away = abs(limit - EFFECTS[name].parameters[0].null) if limit is not None else np.inf
+        return float(ndtr(SURELY + _AT_LIMIT * (size / away - 1.0)))
 
-        Causes of other readings than the effect's are told from it for nothing, and are left out.
+    def chances(self, name, place, size, static=None):
+        """Chance to see an effect as far from its null value, under None, and to tell it from each rival, by name.
+
+        ``static`` is a `StaticTest` that is made beside. Rivals that show in other readings are left out.
         """
-        if place == EVERYWHERE and (EFFECTS[name].turns or EFFECTS[name].lifts):
-            return self._of_slab(name, distance_from_null)
-        if self._evidence is None or (name != JOINT_COMPLIANCE.name and (name, place) not in self._evidence.keys):
+        first, *others = EFFECTS[name].parameters
+        true = {first.name: from_null(name, size)} | {one.name: one.null for one in others}
+        read, seen, further = self._reads(name, place, true), self.chance_seen(name, place, size), 0.0
+        if static:
+            alone = np.sqrt(distance(static, read, {}, {}, {}))
+            seen = max(seen, float(ndtr(alone - np.sqrt(2.0 * needed_of(name)))))
+        chances = {None: seen}
+        for rival, one in self._rivals(name, place, size).items():
+            if static:
+                further = distance(static, read, {}, self._reads(rival, one.place, one.values), {})
+            sure = (one.odds + 0.5 * further - ODDS) / np.sqrt(max(one.deviation**2 + further, 1e-12))
+            chances[rival] = min(seen, float(ndtr(sure)))
+        return chances
+
+    def _reads(self, cause, place, values):
+        return expected_readings(self.seen[0], cause, place_of(cause, place, self.seen[0]), values)
+
+    def _rivals(self, name, place, size):
+        """`Rivalry` by cause: all are tried on the rows that the effect would make, without noise."""
+        if EFFECTS[name].columns is None:
+            return self._of_slab(name, size) if EFFECTS[name].turns else {}
+        soft, evidence = name == JOINT_COMPLIANCE.name, self._evidence
+        if evidence is None or (not soft and (name, place) not in evidence.keys):
             return {}
-        tried = self._evidence.tried
-        likelihood = max(self._evidence.explained, key=lambda one: one.likelihood.log_evidence).likelihood
-        closed = {joint: one._replace(target=0.0) for joint, one in self._closed.items()}
+        likelihood, variants = evidence.usual, evidence.tried.variants.get((name, place), [])
         value = np.zeros_like(likelihood.value)
-        if name == JOINT_COMPLIANCE.name:
-            if place in closed:
-                information = closed[place].information
-                closed[place] = closed[place]._replace(target=distance_from_null * information)
-            variants = tried.variants.get((name, place), [])
-            nearest = min(
-                variants, key=lambda one: abs(np.log(one[0].values["compliance"] / distance_from_null)), default=None
-            )
-            if nearest:
-                value = likelihood.whiten([columns.rows for columns in nearest])[:, 0]
-        else:
-            value = distance_from_null * usual_column(name, tried.variants[name, place], likelihood)[0]
-        evidence = Evidence(tried, [explain(replace(likelihood, value=value), tried)])
-        ranked = rank(evidence, {joint: one.gains for joint, one in closed.items()})
-        own = next((rival for rival in ranked if rival.cause == name), None)
-        if own is None:
-            return {}
-        return {
-            rival.cause: _rivalry(own.score - rival.score, own.gain - rival.gain, own.gain, rival.place, evidence, rival)
-            for rival in ranked
-            if rival is not own
+        if soft and variants:
+            nearest = min(variants, key=lambda one: abs(np.log(one[0].values["compliance"] / size)))
+            value = likelihood.whiten([columns.rows for columns in nearest])[:, 0]
+        elif not soft:
+            value = size * usual_column(name, variants, likelihood)[0]
+        explained = explain(replace(likelihood, value=value), evidence.tried)
+        closed = {
+            joint: one.expected(size * (soft and joint == place)) for joint, one in self._closed.items()
         }
+        ranked = {rival.cause: rival for rival in rank(Evidence(evidence.tried, [explained]), closed)}
+        if name not in ranked:
+            return {}
+        own, found = ranked.pop(name), {}
+        for rival, one in ranked.items():
+            odds = _odds(own.gain, own.gain - one.gain, one.score - one.gain - own.score + own.gain)
+            found[rival] = Rivalry(*odds, one.place, _values(explained.by_key.get((rival, one.place))))
+        return found
 
     def _of_slab(self, name, size):
-        if not EFFECTS[name].turns:
-            return {}
         likelihood = slab_turns(self._slabs)
         variants = {
             other: list(zip(*(effect.turns(slab) for slab in self._slabs), strict=True))
             for other, effect in EFFECTS.items()
             if effect.turns
         }
-        true = usual_column(name, variants[name], likelihood)[0]
-        expected = replace(likelihood, value=size * true)
+        expected = replace(likelihood, value=size * usual_column(name, variants[name], likelihood)[0])
         explained = {other: best_of(expected, other, EVERYWHERE, tried) for other, tried in variants.items()}
-        gains = {other: one.gain for other, one in explained.items()}
+        own = explained.pop(name).gain
         return {
-            other: Rivalry(*_odds(gains[name] - gain, gains[name] - gain, gains[name]), EVERYWHERE, _values(explained[other]))
-            for other, gain in gains.items()
-            if other != name
+            other: Rivalry(*_odds(own, own - one.gain), EVERYWHERE, _values(one))
+            for other, one in explained.items()
         }
 
-    def visible_at(self, name, place):
-        """`Visible` of an effect at a place; of no chance where these tests tell nothing of it."""
-        grid = distances(name)
-        return self.visible.get(name, {}).get(place) or Visible(grid, np.full_like(grid, -np.inf), {})
 
-    def chance_seen(self, name, place, size, static=None):
-        """Chance that an effect of a size is seen by the tests, or by a `StaticTest` beside them."""
-        one = self.visible_at(name, place)
-        chance = float(ndtr(np.interp(np.log(size), np.log(one.distance), one.sigmas)))
-        if static is None:
-            return chance
-        alone = np.sqrt(distance(static, self._reads(name, place, self._true(name, size)), {}, {}, {}))
-        return max(chance, float(ndtr(alone - np.sqrt(2.0 * needed_of(name)))))
+def _odds(gain, apart, prior=0.0):
+    """Coarsened odds of a cause over a rival that gains less, and their standard deviation by the sensors' noise.
 
-    def chance_apart(self, name, place, size, rival, static=None):
-        """Chance that an effect is told from a rival, a pair of its name and `Rivalry`, with a `StaticTest` beside."""
-        cause, one = rival
-        further = 0.0
-        if static is not None:
-            true = self._reads(name, place, self._true(name, size))
-            further = distance(static, true, {}, self._reads(cause, one.place, one.values), {})
-        sure = (one.odds + 0.5 * further - ODDS) / np.sqrt(max(one.deviation**2 + further, 1e-12))
-        return float(ndtr(sure))
-
-    def _true(self, name, size):
-        first = EFFECTS[name].parameters[0]
-        usual = {one.name: one.null for one in EFFECTS[name].parameters[1:]}
-        return {first.name: first.null + np.sign(first.visible - first.null) * size, **usual}
-
-    def _reads(self, cause, place, values):
-        return expected_readings(self.seen[0], cause, place_of(cause, place, self.seen[0]), values)
-
-
-def _odds(score, gain, own):
-    share = 1.0 / (1.0 + COARSENING * max(own, 0.0) / ODDS)
-    return share * score, share * np.sqrt(2.0 * max(gain, 0.0))
-
-
-def _rivalry(score, gain, own, place, evidence, rival):
-    explanation = evidence.explained[0].by_key.get((rival.cause, place))
-    values = _values(explanation) if explanation else {}
-    return Rivalry(*_odds(score, gain, own), place, values)
+    ``prior`` is by how much the rival's score exceeds its gain more than the cause's does.
+    """
+    share = 1.0 / (1.0 + COARSENING * max(gain, 0.0) / ODDS)
+    return share * (apart - prior), share * np.sqrt(2.0 * max(apart, 0.0))
 
 
 def _values(explanation):
     """Size of a rival, first, and what else its best variant is."""
+    if explanation is None:
+        return {}
     fit, effect = explanation.best, EFFECTS.get(explanation.cause)
     size = float(fit.contrast @ fit.mean) if len(fit.mean) else 0.0  # a blow may be in no test
     if effect is None:

@@ -95,14 +95,22 @@ def _items(diagnosed):
 def _next_tests(verdict):
     """The ranked measurements that would split what the tests do not tell apart."""
     rows = [
-        (sentence_case(one.test), listed([name_of(name) for name in one.between], "or"), f"{100.0 * one.share:.0f} %")
+        (
+            sentence_case(one.test),
+            listed([name_of(name) for name in one.between], "or"),
+            f"{100.0 * one.share:.0f} %",
+        )
         for one in verdict.next_tests
     ]
     words = (
         "Measurements that would split what the tests do not tell apart, and the share of such cases in which they "
         "are expected to leave the true cause alone: from the odds, the sizes and the forces of these tests."
     )
-    return [Table(words, ("Measurement", "Between", "Splits"), tuple(rows), "llr", (0.4, 0.45, 0.15))] if rows else []
+    return (
+        [Table(words, ("Measurement", "Between", "Splits"), tuple(rows), "llr", (0.4, 0.45, 0.15))]
+        if rows
+        else []
+    )
 
 
 def _figures(diagnosed):

@@ -82,7 +82,6 @@ class Verdict(Strict):
     misfit: Misfit
     excluded_above: dict[str, Finite] = Field(default_factory=dict)
     next_test: str | None = None
-    next_tests: tuple[Measurement, ...] = ()
     gain: Gain | None = None
     runs: Count
     caveats: tuple[str, ...] = ()
@@ -93,6 +92,7 @@ class Verdict(Strict):
     word: Literal[ESTABLISHED, PROBABLE, ONE_OF, UNKNOWN, NOTHING]
     missing: tuple[str, ...] = ()
     row_gain: Gain | None = None
+    next_tests: tuple[Measurement, ...] = ()
 
     @model_validator(mode="after")
     def _consistent(self):
